@@ -1,0 +1,894 @@
+#!/usr/bin/env python3
+"""Makes the project's own inputs in data/, with data/README.md and data/expected.txt.
+
+    python3 tools/make_data.py [data]
+
+Python 3 standard library only; every run gives the same bytes. Numbers are the shortest decimals that read back as the
+same double. What comes out of sin, cos and the like is rounded to a few decimals, so that it does not depend on the
+mathematics library. data/coast/ comes from make_coast.py, is read here for the tables, and is not written.
+
+Each input is one function with the decorator @case, which says what the file is for and what a right program does.
+"""
+import math
+import os
+import random
+import sys
+
+import pslg_facts
+
+CASES = []
+
+
+class Case:
+    def __init__(self, name, build, what, right, runs):
+        self.name, self.build, self.what, self.right, self.runs = name, build, what, right, runs
+
+
+def case(name, what, right, runs=("-p",)):
+    """Registers a builder. It returns a Poly, or bytes for files that are written as they are."""
+    def register(build):
+        CASES.append(Case(name, build, what, right, runs))
+        return build
+    return register
+
+
+# --- polys and writing
+
+def number(value):
+    return repr(value)[:-2] if isinstance(value, float) and repr(value).endswith(".0") else repr(value)
+
+
+class Poly:
+    """Points, segments, holes and regions while they are collected. Equal points given to point() are one vertex."""
+
+    def __init__(self, base=1, with_markers=True):
+        self.base, self.with_markers = base, with_markers
+        self.points, self.attributes, self.markers = [], [], []
+        self.segments, self.holes, self.regions = [], [], []
+        self.index = {}
+
+    def new_point(self, x, y, marker=0, attributes=()):
+        self.points.append((x, y))
+        self.attributes.append(attributes)
+        self.markers.append(marker)
+        return len(self.points) - 1
+
+    def point(self, x, y, marker=0, attributes=()):
+        if (x, y) not in self.index:
+            self.index[x, y] = self.new_point(x, y, marker, attributes)
+        k = self.index[x, y]
+        self.markers[k] = self.markers[k] or marker
+        return k
+
+    def segment(self, a, b, marker=0):
+        self.segments.append((a, b, marker))
+
+    def path(self, points, marker=0):
+        ids = [self.point(x, y, marker) for x, y in points]
+        for a, b in zip(ids, ids[1:]):
+            self.segment(a, b, marker)
+
+    def ring(self, points, marker=0):
+        self.path(list(points) + [points[0]], marker)
+
+    def box(self, x0, y0, x1, y1, marker=0):
+        self.ring([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], marker)
+
+    def hole(self, x, y):
+        self.holes.append((x, y))
+
+    def region(self, x, y, attribute, area=-1):
+        self.regions.append((x, y, attribute, area))
+
+    def rows(self, is_poly):
+        base, marked = self.base, self.with_markers
+        columns = max(map(len, self.attributes), default=0)
+        yield "%d 2 %d %d" % (len(self.points), columns, marked)
+        for k, (p, a, m) in enumerate(zip(self.points, self.attributes, self.markers)):
+            yield " ".join([str(k + base), *map(number, (*p, *a)), *([str(m)] if marked else [])])
+        if not is_poly:
+            return
+        yield "%d %d" % (len(self.segments), marked)
+        for k, (a, b, m) in enumerate(self.segments):
+            yield " ".join([str(k + base), str(a + base), str(b + base), *([str(m)] if marked else [])])
+        for rows in (self.holes, self.regions):
+            yield "%d" % len(rows)
+            for k, row in enumerate(rows):
+                yield " ".join([str(k + base), *map(number, row)])
+
+    def text(self, title, is_poly):
+        return "\n".join(["# " + title, *self.rows(is_poly)]) + "\n"
+
+
+def cloud(points):
+    """A vertex set without markers, for .node files."""
+    poly = Poly(with_markers=False)
+    for p in points:
+        poly.new_point(*p)
+    return poly
+
+
+# --- helpers
+
+def circle(x, y, radius, count, turn=0.0, digits=6):
+    """Counterclockwise regular polygon, first corner at angle turn * 360 / count degrees."""
+    angles = [2 * math.pi * (k + turn) / count for k in range(count)]
+    return [(round(x + radius * math.cos(t), digits), round(y + radius * math.sin(t), digits)) for t in angles]
+
+
+def arc(x, y, radius, start, stop, count, digits=6):
+    """Points on a circle from angle start to stop (degrees), both included."""
+    angles = [math.radians(start + (stop - start) * k / (count - 1)) for k in range(count)]
+    return [(round(x + radius * math.cos(t), digits), round(y + radius * math.sin(t), digits)) for t in angles]
+
+
+# --- shapes and sections
+
+def letter_outline():
+    bowl = arc(5.25, 10.25, 3.75, -60, 90, 21)
+    outline = [(1.0, 0.0), (5.0, 0.0), (5.0, 0.75), (4.25, 1.25), (4.25, 6.5), (5.0, 6.5), (7.25, 1.25), (6.75, 0.75),
+               (6.75, 0.0), (10.5, 0.0), (10.5, 0.75), (9.75, 1.25), *bowl,
+               (1.0, 14.0), (1.0, 13.25), (1.75, 12.75), (1.75, 1.25), (1.0, 0.75)]
+    counter = [(4.25, 8.0), *arc(5.25, 10.25, 2.25, -90, 90, 17), (4.25, 12.5)]
+    return outline, counter
+
+
+@case("letter.poly", "a slab-serif letter R; one attribute column (height above the base line, 0..1), one hole",
+      "interpolates the attribute at new vertices: it stays y / 14 within 1e-6")
+def letter():
+    poly = Poly()
+    outline, counter = letter_outline()
+    for ring, marker in ((outline, 1), (counter, 2)):
+        for x, y in ring:
+            poly.point(x, y, marker, (round(y / 14, 6),))
+        poly.ring(ring, marker)
+    poly.hole(5.0, 10.25)
+    return poly
+
+
+@case("square.poly", "the unit square", "two triangles; the smallest possible valid run")
+def square():
+    poly = Poly()
+    poly.box(0, 0, 1, 1, 1)
+    return poly
+
+
+@case("square_random1000.poly", "the unit square with 1000 random points inside", "keeps every input vertex")
+def square_random():
+    poly = square()
+    numbers = random.Random(1000)
+    for _ in range(1000):
+        poly.point(numbers.random(), numbers.random())
+    return poly
+
+
+@case("box_hole.poly", "box with an off-centre hole; markers 1..4 on the sides, 5 on the hole",
+      "hands the markers to split segments and new vertices")
+def box_hole():
+    poly = Poly()
+    corners = [(0, 0), (4, 0), (4, 3), (0, 3)]
+    for k in range(4):
+        poly.path([corners[k], corners[(k + 1) % 4]], k + 1)
+    poly.ring([(2.5, 1), (3.25, 1.25), (3, 2), (2.25, 2.25), (1.75, 1.5)], 5)
+    poly.hole(2.5, 1.5)
+    return poly
+
+
+@case("section.poly", "retaining wall on layered ground, metres: rock 1, clay 2, sand 3, concrete 4, backfill 5, "
+      "gravel 6, steel sheet pile 7 (1/8 m thick), asphalt 8, tunnel lining 9; a tunnel as hole; area bound per region",
+      "-pqaA: attributes and area bounds hold on both sides of shared interfaces")
+def section():
+    poly = Poly()
+    poly.path([(0, -16), (40, -16)], 1)
+    poly.path([(40, -16), (40, -10), (40, -3), (40, -0.5), (40, 7.75), (40, 8)], 2)
+    poly.path([(40, 8), (19, 8), (17, 8), (16.5, 8), (16, 8), (16, 0), (0, 0)], 3)
+    poly.path([(0, 0), (0, -3), (0, -11), (0, -16)], 2)
+    poly.path([(0, -11), (12, -10.5), (24, -9), (40, -10)], 10)
+    poly.path([(0, -3), (16, -3)], 10)
+    poly.path([(16.125, -3), (40, -3)], 10)
+    poly.path([(16, 0), (16, -0.5), (14, -0.5), (14, -1.5), (16, -1.5), (16.125, -1.5), (21, -1.5), (21, -0.5),
+               (18, -0.5), (17.5, -0.5), (16.5, 8)], 11)
+    poly.path([(21, -0.5), (40, -0.5)], 10)
+    poly.path([(18, -0.5), (17, 8)], 12)
+    poly.path([(16, -1.5), (16, -3), (16, -6.5), (16.125, -6.5), (16.125, -3), (16.125, -1.5)], 13)
+    poly.path([(19, 8), (19, 7.75), (40, 7.75)], 14)
+    poly.ring(circle(30, -6.5, 1.5, 24), 15)
+    poly.ring(circle(30, -6.5, 1.25, 24, 0.5), 20)
+    poly.hole(30, -6.5)
+    for x, y, attribute, area in ((20, -14, 1, 8), (5, -6, 2, 4), (5, -1.5, 3, 2), (16.5, 2, 4, 0.25), (30, 3, 5, 3),
+                                  (17.5, 2, 6, 0.125), (16.0625, -5, 7, 0.0078125), (30, 7.875, 8, 0.0625),
+                                  (31.375, -6.5, 9, 0.0625)):
+        poly.region(x, y, attribute, area)
+    return poly
+
+
+def involute(angle):
+    return math.tan(angle) - angle
+
+
+def gear_tooth(teeth, module, k):
+    """Counterclockwise points of tooth k and of the root before it; pressure angle 20 degrees."""
+    pitch, alpha = teeth * module / 2, math.radians(20)
+    base, tip, root = pitch * math.cos(alpha), pitch + module, pitch - 1.25 * module
+    middle = 2 * math.pi * k / teeth
+    flank = []
+    for i in range(7):
+        radius = base + (tip - base) * i / 6
+        flank.append((radius, math.pi / (2 * teeth) + involute(alpha) - involute(math.acos(min(1.0, base / radius)))))
+    foot = flank[0][1]
+    gap = 2 * math.pi / teeth - 2 * foot
+    polar = [(root, middle - foot - gap / 2), (root, middle - foot), *((r, middle - a) for r, a in flank),
+             (tip, middle), *((r, middle + a) for r, a in reversed(flank)), (root, middle + foot)]
+    return [(round(r * math.cos(t), 6), round(r * math.sin(t), 6)) for r, t in polar]
+
+
+@case("gear.poly", "involute spur gear, 24 teeth, module 2 mm; bore with keyway, six lightening holes",
+      "carves seven holes; short root segments beside long flanks")
+def gear():
+    poly = Poly()
+    poly.ring([p for k in range(24) for p in gear_tooth(24, 2, k)], 1)
+    key = arc(0, 0, 6, 110, 430, 41)
+    poly.ring(key + [(key[-1][0], 8.25), (key[0][0], 8.25)], 2)
+    poly.hole(0, 0)
+    for k in range(6):
+        x, y = circle(0, 0, 13.5, 6, 0.25)[k]
+        poly.ring(circle(x, y, 3, 24), 3)
+        poly.hole(x, y)
+    return poly
+
+
+def naca4(camber, position, thickness, count):
+    """Airfoil of chord 1 with closed trailing edge; counterclockwise from the trailing edge over the upper side."""
+    def surface(x, side):
+        half = 5 * thickness * (0.2969 * math.sqrt(x) - 0.1260 * x - 0.3516 * x ** 2 + 0.2843 * x ** 3 -
+                                0.1036 * x ** 4)
+        front = x < position
+        scale = camber / (position ** 2 if front else (1 - position) ** 2)
+        mean = scale * ((0 if front else 1 - 2 * position) + 2 * position * x - x * x)
+        slope = 2 * scale * (position - x)
+        length = math.sqrt(1 + slope * slope)
+        return (round(x - side * half * slope / length, 9), round(mean + side * half / length, 9))
+
+    stations = [(1 - math.cos(math.pi * k / count)) / 2 for k in range(1, count)]
+    return [(1, 0), *(surface(x, 1) for x in reversed(stations)), (0, 0), *(surface(x, -1) for x in stations)]
+
+
+@case("naca2412_box.poly", "NACA 2412 airfoil (closed trailing edge, 200 points, cosine spacing) as hole in a box",
+      "grades from 2e-4 at the nose to the size of the box")
+def naca():
+    poly = Poly()
+    poly.box(-1.5, -1.5, 3, 1.5, 1)
+    poly.ring(naca4(0.02, 0.4, 0.12, 100), 2)
+    poly.hole(0.5, 0.02)
+    return poly
+
+
+def koch(level, scale):
+    """Koch snowflake, counterclockwise, about the origin."""
+    height = math.sqrt(3) / 2
+    ring = [(-0.5, -height / 3), (0.5, -height / 3), (0.0, 2 * height / 3)]
+    for _ in range(level):
+        finer = []
+        for (ax, ay), (bx, by) in zip(ring, ring[1:] + ring[:1]):
+            dx, dy = (bx - ax) / 3, (by - ay) / 3
+            finer += [(ax, ay), (ax + dx, ay + dy),
+                      (ax + 1.5 * dx + height * dy, ay + 1.5 * dy - height * dx), (ax + 2 * dx, ay + 2 * dy)]
+        ring = finer
+    return [(round(scale * x, 9), round(scale * y, 9)) for x, y in ring]
+
+
+@case("koch_lake.poly", "lake bounded by a Koch snowflake of level 5 with an island of level 3",
+      "3264 boundary segments, corners of 60 and 240 degrees only")
+def koch_lake():
+    poly = Poly()
+    poly.ring(koch(5, 1.0), 1)
+    poly.ring(koch(3, 0.4), 2)
+    poly.hole(0, 0)
+    return poly
+
+
+@case("perforated.poly", "plate with 400 round holes of random size (dodecagons)", "400 hole points")
+def perforated():
+    poly = Poly()
+    numbers = random.Random(400)
+    poly.box(0, 0, 25, 16, 1)
+    for i in range(25):
+        for j in range(16):
+            poly.ring(circle(i + 0.5, j + 0.5, 0.125 + 0.25 * numbers.random(), 12, numbers.random(), 4), 2)
+            poly.hole(i + 0.5, j + 0.5)
+    return poly
+
+
+@case("cracked_plate.poly", "plate with a round hole and dangling segments: a crack from the edge, a branched one from "
+      "the hole, one with both tips inside", "both sides of a crack keep their triangles; tips are vertices")
+def cracked_plate():
+    poly = Poly()
+    poly.ring([(0, 0), (10, 0), (10, 6), (0, 6), (0, 3)], 1)
+    rim = circle(7, 3.5, 1, 32)
+    poly.ring(rim, 2)
+    poly.hole(7, 3.5)
+    poly.path([(0, 3), (1.5, 3.125), (2.25, 2.875), (3, 3)], 3)
+    poly.path([rim[20], (5.5, 2.25), (5.25, 1.5), (5.75, 1)], 4)
+    poly.path([(5.25, 1.5), (4.5, 1.25)], 4)
+    poly.path([(3.5, 4.5), (4.25, 4.75), (4.875, 4.625)], 5)
+    return poly
+
+
+@case("thin_channel.poly", "channel of 1 x 1e-3; markers inlet 1, outlet 2, walls 3",
+      "about 1000 triangles with -pq20: no more than the thickness asks for")
+def thin_channel():
+    poly = Poly()
+    poly.path([(0, 0), (1, 0)], 3)
+    poly.path([(1, 0), (1, 0.001)], 2)
+    poly.path([(1, 0.001), (0, 0.001)], 3)
+    poly.path([(0, 0.001), (0, 0)], 1)
+    return poly
+
+
+# --- small and narrow angles
+
+def fan(points):
+    poly = Poly()
+    poly.ring([(0, 0), *points], 1)
+    for p in points[1:-1]:
+        poly.path([(0, 0), p])
+    return poly
+
+
+SHELLS = "terminates; angles below the bound only where the input's own angles force them"
+
+
+@case("nasty/fan_1deg.poly", "20 wedges of 1 degree at one vertex", SHELLS)
+def fan_1deg():
+    return fan(arc(0, 0, 1, 0, 20, 21, 12))
+
+
+@case("nasty/fan_1e-3deg.poly", "20 wedges of 1e-3 degree at one vertex", SHELLS)
+def fan_1e3():
+    return fan([(1, k * 1.7453292519943e-05) for k in range(21)])
+
+
+@case("nasty/fan_1e-6deg.poly", "20 wedges of 1e-6 degree at one vertex", SHELLS)
+def fan_1e6():
+    return fan([(1, k * 1.7453292519943e-08) for k in range(21)])
+
+
+@case("nasty/needle_1e-9.poly", "one triangle with an angle of 1e-9 degree", SHELLS)
+def needle():
+    return fan([(1, 0), (1, 1.7453292519943e-11)])
+
+
+@case("nasty/spike.poly", "square with a cape and an inlet out and back along nearly one line, tips of 1e-11 degree, "
+      "as real coastlines have", "terminates; splits nothing near the tips beyond what doubles can hold")
+def spike():
+    poly = Poly()
+    e = 1.7453e-13
+    poly.ring([(0, 0), (2, 0), (2, 1 - e), (3, 1 - e / 2), (4, 1), (3.5, 1 + e / 4), (2, 1 + e), (2, 2), (0, 2),
+               (0, 1 + e), (1, 1 + e / 2), (2 - 0.5, 1), (0.75, 1 - e / 2), (0, 1 - e)], 1)
+    return poly
+
+
+@case("nasty/spike_flat.poly",
+      "square whose outline runs out and back over the same vertices: two segments given twice",
+      "ignores the part outside: nothing is enclosed there; 2 of 7 vertices remain unused")
+def spike_flat():
+    poly = Poly()
+    poly.ring([(0, 0), (2, 0), (2, 1), (3, 1.25), (4, 1), (3, 1.25), (2, 1), (2, 2), (0, 2)], 1)
+    return poly
+
+
+@case("nasty/slit_1e-9.poly", "two parallel segments of length 0.5 at distance 1e-9 in the unit square",
+      "-pq20 would need about 1e9 triangles: stops at a limit or with what it has, does not die")
+def slit():
+    poly = square()
+    poly.path([(0.25, 0.5), (0.75, 0.5)], 2)
+    poly.path([(0.25, 0.500000001), (0.75, 0.500000001)], 2)
+    return poly
+
+
+@case("nasty/aspect_1e8.poly", "rectangle of 1e8 x 1", "-pq20 would need 1e8 triangles: a limit, not a crash")
+def aspect():
+    poly = Poly()
+    poly.box(0, 0, 1e8, 1, 1)
+    return poly
+
+
+@case("nasty/tiny_feature.poly", "unit square with a triangle of size 1e-12 inside", "grades over 12 decades")
+def tiny_feature():
+    poly = square()
+    poly.ring([(0.5, 0.5), (0.500000000001, 0.5), (0.5, 0.500000000001)], 2)
+    return poly
+
+
+@case("nasty/dense_parallel.poly", "eight zigzag chains, each one ulp above the last, in the unit square",
+      "-p is exact; -q stops where doubles end")
+def dense_parallel():
+    poly = square()
+    for k in range(8):
+        poly.path([((j + 1) / 22, 0.625 + (j % 3) / 64 + k * 2.0 ** -53) for j in range(21)], 2)
+    return poly
+
+
+# --- point sets
+
+PLAIN = ("-Q",)
+
+
+@case("nasty/cocircular_grid.node", "integer grid of 101 x 101: each cell is cocircular",
+      "20000 triangles; ties are broken the same way in every run", PLAIN)
+def cocircular_grid():
+    return cloud((i, j) for j in range(101) for i in range(101))
+
+
+@case("nasty/grid_rotated.node", "grid of 41 x 41 turned by the angle of the 3-4-5 triangle and rounded",
+      "hull and cells are almost, not exactly, collinear and cocircular; the original crashes on such a file with -q",
+      PLAIN)
+def grid_rotated():
+    return cloud((0.8 * i - 0.6 * j, 0.6 * i + 0.8 * j) for j in range(41) for i in range(41))
+
+
+@case("nasty/cocircular_ring.node", "all 252 integer points on the circle of radius 27625", "250 triangles", PLAIN)
+def cocircular_ring():
+    radius = 27625
+    points = []
+    for x in range(-radius, radius + 1):
+        y = math.isqrt(radius * radius - x * x)
+        if x * x + y * y == radius * radius:
+            points += [(x, y), (x, -y)] if y else [(x, 0)]
+    return cloud(points)
+
+
+@case("nasty/collinear.node", "100 points exactly on one line", "0 triangles, exit 0, also with -q", PLAIN)
+def collinear():
+    return cloud((k, 2 * k) for k in range(100))
+
+
+@case("nasty/near_collinear.node", "400 points on y = 0.3 x + 0.1, rounded: off the line by at most an ulp",
+      "exact predicates find the triangles that exist", PLAIN)
+def near_collinear():
+    numbers = random.Random(300)
+    xs = sorted(numbers.random() for _ in range(400))
+    return cloud((x, 0.3 * x + 0.1) for x in xs)
+
+
+@case("nasty/collinear.poly", "chain of segments on one line", "0 triangles, exit 0", ("-p", "-pc"))
+def collinear_poly():
+    poly = Poly()
+    poly.path([(k, 3 * k) for k in range(10)], 1)
+    return poly
+
+
+@case("nasty/duplicates.node", "500 random points, every second one twice", "the copy with the lowest number is used",
+      PLAIN)
+def duplicates_node():
+    numbers = random.Random(500)
+    points = [(numbers.random(), numbers.random()) for _ in range(500)]
+    points += points[::2]
+    numbers.shuffle(points)
+    return cloud(points)
+
+
+@case("nasty/identical.node", "five times the same point", "error: all vertices are identical", PLAIN)
+def identical():
+    return cloud([(1.5, 2.5)] * 5)
+
+
+# --- segments that meet wrongly
+
+@case("nasty/duplicates.poly", "square with a diagonal chain; most segments name second or third copies of the points",
+      "segments are moved to the copy with the lowest number; nothing crashes")
+def duplicates_poly():
+    poly = Poly()
+    corners = [(0, 0), (4, 0), (4, 4), (0, 4)]
+    first = [poly.new_point(x, y, 1) for x, y in corners]
+    second = [poly.new_point(x, y, 1) for x, y in corners]
+    middle = [poly.new_point(2, 2.5) for _ in range(3)]
+    poly.segment(first[0], second[1], 1)
+    poly.segment(second[1], first[2], 1)
+    poly.segment(second[2], second[3], 1)
+    poly.segment(first[3], second[0], 1)
+    poly.segment(second[0], middle[1], 2)
+    poly.segment(middle[2], first[2], 2)
+    poly.segment(middle[0], middle[2], 3)
+    return poly
+
+
+@case("nasty/crossing.poly", "12 + 12 + 12 crossing segments in a box; all crossings are exact doubles",
+      "cuts every crossing with a new vertex, also with plain -p")
+def crossing():
+    poly = Poly()
+    poly.box(0, 0, 12, 12, 1)
+    for k in range(12):
+        poly.path([(0.25, k + 0.5), (11.75, k + 0.5)], 2)
+        poly.path([(k + 0.5, 0.25), (k + 0.5, 11.75)], 3)
+    for k in range(-6, 6):
+        x0, x1 = max(0.125, 0.125 - k - 0.25), min(11.875, 11.875 - k - 0.25)
+        poly.path([(x0, x0 + k + 0.25), (x1, x1 + k + 0.25)], 4)
+    return poly
+
+
+@case("nasty/crossing_triple.poly", "as crossing.poly, but three segments pass through each crossing on the diagonals",
+      "one vertex per triple crossing, no sliver triangles")
+def crossing_triple():
+    poly = Poly()
+    poly.box(0, 0, 8, 8, 1)
+    for k in range(8):
+        poly.path([(0.25, k + 0.5), (7.75, k + 0.5)], 2)
+        poly.path([(k + 0.5, 0.25), (k + 0.5, 7.75)], 3)
+    for k in range(-3, 4):
+        poly.path([(max(0, -k) + 0.125, max(0, k) + 0.125), (8 - max(0, k) - 0.125, 8 - max(0, -k) - 0.125)], 4)
+    return poly
+
+
+@case("nasty/crossing_random.poly", "60 random segments in the unit square; crossings are rounded",
+      "as many crossings as exact arithmetic finds")
+def crossing_random():
+    poly = square()
+    numbers = random.Random(60)
+    for _ in range(60):
+        poly.path([(numbers.random(), numbers.random()), (numbers.random(), numbers.random())], 2)
+    return poly
+
+
+@case("nasty/bowtie.poly", "quadrilateral that crosses itself", "two triangles on a new vertex in the middle")
+def bowtie():
+    poly = Poly()
+    poly.ring([(0, 0), (4, 4), (4, 0), (0, 4)], 1)
+    return poly
+
+
+@case("nasty/overlap.poly", "collinear segments that overlap, contain or repeat each other, points on segments, a "
+      "segment on the side of the box", "each piece is one subsegment; the first non-zero marker wins")
+def overlap():
+    poly = Poly()
+    poly.box(0, 0, 8, 8, 1)
+    for k, (p, q) in enumerate((((1, 1), (5, 1)), ((3, 1), (7, 1)), ((2, 2), (6, 2)), ((3, 2), (5, 2)),
+                                ((6, 2), (2, 2)), ((2, 0), (6, 0)), ((1, 3), (5, 7)), ((2, 4), (4, 6)),
+                                ((7, 3), (7, 7)), ((7, 3), (7, 5)))):
+        poly.path([p, q], k + 2)
+    for p in ((3, 5), (4, 8), (4, 1), (7, 6), (8, 0.5)):
+        poly.point(*p)
+    return poly
+
+
+@case("nasty/tjunction.poly", "segments end in the middle of other segments, exactly",
+      "splits them there; no new vertex")
+def tjunction():
+    poly = Poly()
+    poly.box(0, 0, 8, 8, 1)
+    for p, q in (((0, 4), (8, 4)), ((4, 4), (4, 8)), ((2, 0), (2, 4)), ((6, 4), (6, 2)), ((0, 5), (3, 8)),
+                 ((1.5, 6.5), (4, 6.5))):
+        poly.path([p, q], 2)
+    return poly
+
+
+@case("nasty/self_touch.poly", "outline touching itself at a vertex, a hole touching the outline at a corner, two "
+      "holes sharing a corner", "a vertex with several separate fans is no error")
+def self_touch():
+    poly = Poly()
+    poly.ring([(0, 0), (8, 0), (8, 8), (4, 4), (0, 8)], 1)
+    poly.ring([(4, 4), (6, 12), (2, 12)], 1)
+    poly.ring([(0, 0), (2, 1), (1, 2)], 2)
+    poly.ring([(4, 1), (5, 2), (4, 3), (3, 2)], 3)
+    poly.ring([(5, 2), (6, 1), (7, 2), (6, 3)], 3)
+    for x, y in ((1, 1), (4, 2), (6, 2)):
+        poly.hole(x, y)
+    return poly
+
+
+@case("nasty/nested_holes.poly", "seven nested squares, every second ring-shaped face a hole",
+      "a hole ends at the next ring; islands inside holes stay")
+def nested_holes():
+    poly = Poly()
+    for k in range(7):
+        poly.box(k, k, 16 - k, 16 - k, k + 1)
+    for k in (1, 3, 5):
+        poly.hole(k + 0.5, 8)
+    return poly
+
+
+@case("nasty/hole_eats_all.poly", "square with a hole point in its middle", "0 triangles, exit 0", ("-p", "-pc"))
+def hole_eats_all():
+    poly = square()
+    poly.hole(0.5, 0.375)
+    return poly
+
+
+@case("nasty/open_boundary.poly", "three sides of a square", "-p: everything is eaten, exit 0; -pc: two triangles",
+      ("-p", "-pc"))
+def open_boundary():
+    poly = Poly()
+    poly.path([(0, 0), (1, 0), (1, 1), (0, 1)], 1)
+    return poly
+
+
+@case("nasty/badindex.poly", "square and a diagonal; further segments name vertices 0, 9 and -3 or twice the same one",
+      "skips these four with a warning each, exit 0")
+def badindex():
+    poly = square()
+    poly.segment(0, 2, 2)
+    for a, b in ((0, 8), (-1, 2), (1, -4), (3, 3)):
+        poly.segment(a, b, 3)
+    return poly
+
+
+# --- scale, base
+
+def small_shape(move, base=1):
+    poly = Poly(base)
+    poly.ring([move(*p) for p in ((0.125, 0.25), (0.875, 0.125), (0.75, 0.625), (0.9375, 0.875), (0.25, 0.8125))], 1)
+    poly.ring([move(*p) for p in ((0.375, 0.375), (0.625, 0.3125), (0.5625, 0.5625), (0.4375, 0.625))], 2)
+    poly.hole(*move(0.5, 0.5))
+    return poly
+
+
+SAME = "the mesh of base1.poly, moved or scaled"
+
+
+@case("base1.poly", "pentagon with a quadrilateral hole, numbers from 1", "output numbers from 1")
+def base1():
+    return small_shape(lambda x, y: (x, y))
+
+
+@case("base0.poly", "the same with numbers from 0", "output numbers from 0, without -z")
+def base0():
+    return small_shape(lambda x, y: (x, y), 0)
+
+
+@case("nasty/huge_offset.poly", "the shape of base1.poly with 1e7 added", SAME)
+def huge_offset():
+    return small_shape(lambda x, y: (x + 1e7, y + 1e7))
+
+
+@case("nasty/tiny_scale.poly", "the shape of base1.poly times 1e-300: products of coordinates underflow",
+      SAME + "; the original gives 0 triangles without a word")
+def tiny_scale():
+    return small_shape(lambda x, y: (x * 1e-300, y * 1e-300))
+
+
+@case("nasty/huge_scale.poly", "the shape of base1.poly times 1e150: fourth powers overflow", SAME)
+def huge_scale():
+    return small_shape(lambda x, y: (x * 1e150, y * 1e150))
+
+
+def lexical(base):
+    long_blank = " " * 1500
+    rows = ["# comment before anything", "", "\t  \t", "7 2 1 1   extra fields 99 # vertices", "",
+            "vertex %d: +0.0e0\t-0 , 1.5 ; 1" % base, "%d, 4. , .0 , 25e-1, 1# no blank before this" % (base + 1),
+            "#5 6 7", "77 = (4 ; +4.0E+0) 3 1", "%d\t\t00.0 4 %s4.5 1 1 1 1" % (base + 3, long_blank),
+            "no number in this line", "%d 1 1" % (base + 4), "-1 3 1 0.5", "%d 2 3 -7e-2 0" % base,
+            "7 1 " + "# " + "long " * 500, "1, %d, %d, 11" % (base, base + 1), "2 %d %d +12" % (base + 1, base + 2),
+            "3 from %d to %d" % (base + 2, base + 3), "", "4 (%d , %d , 14 )" % (base + 3, base),
+            "5 %d %d 2" % (base + 4, base + 5), "6 %d %d 2 # hole" % (base + 5, base + 6),
+            "7 %d %d 2" % (base + 6, base + 4), "1 hole", "1 , 2 , 1.5", "# regions", "1", "1 0.5 0.5 8"]
+    ends = ["\r\n", "\n", " \r\n", "\t\n"]
+    return "".join(row + ends[k % 4] for k, row in enumerate(rows))[:-1].encode("ascii")
+
+
+LEXICAL = "square with a triangular hole written badly: CRLF, commas, words, comments, tabs, signs, wrong record " \
+    "numbers, missing and extra fields, lines over 2000 characters, no end of line at the end"
+
+
+@case("lexical.poly", LEXICAL, "reads it as it reads a clean file; numbers from 1")
+def lexical1():
+    return lexical(1)
+
+
+@case("lexical_base0.poly", "the same with numbers from 0", "numbers from 0")
+def lexical0():
+    return lexical(0)
+
+
+# --- malformed files
+
+def malformed(name, what, content, runs):
+    case(name, what, "error with file and line, exit 1, no output", runs)(
+        lambda: content if isinstance(content, bytes) else content.encode("ascii"))
+
+
+SQUARE = "4 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n"
+SIDES = "4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n"
+
+for _name, _what, _content in (
+        ("two_points.node", "two vertices", "2 2 0 0\n1 0 0\n2 1 0\n"),
+        ("nan.node", "a coordinate that is nan", "4 2 0 0\n1 0 0\n2 1 0\n3 nan 1\n4 0 1\n"),
+        ("inf.node", "a coordinate too large for a double", "4 2 0 0\n1 0 0\n2 1 0\n3 1e400 1\n4 0 1\n"),
+        ("inf_word.node", "a coordinate that is inf", "4 2 0 0\n1 0 0\n2 1 0\n3 1 inf\n4 0 1\n"),
+        ("missing_y.node", "a vertex without y", "4 2 0 0\n1 0 0\n2 1\n3 1 1\n4 0 1\n"),
+        ("truncated.node", "ten vertices announced, four there", SQUARE.replace("4 2", "10 2", 1)),
+        ("count_huge.node", "4e9 vertices announced: no memory may be taken for them",
+         SQUARE.replace("4 2", "4000000000 2", 1)),
+        ("count_negative.node", "-4 vertices announced", SQUARE.replace("4 2", "-4 2", 1)),
+        ("dim3.node", "three-dimensional", "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n"),
+        ("empty.node", "an empty file", ""),
+        ("comments_only.node", "nothing but comments", "# 4 2 0 0\n\n# 1 0 0\n"),
+        ("rubbish.node", "4096 random bytes", random.Random(4096).randbytes(4096))):
+    malformed("nasty/" + _name, _what, _content, PLAIN)
+for _name, _what, _content in (
+        ("truncated.poly", "ends in the middle of a segment", SQUARE + "4 0\n1 1 2\n2 2 3\n3 3"),
+        ("no_hole_count.poly", "ends before the line with the number of holes", SQUARE + SIDES),
+        ("missing_endpoint.poly", "a segment with one end", SQUARE + SIDES.replace("3 3 4", "3 3") + "0\n"),
+        ("missing_hole_y.poly", "a hole without y", SQUARE + SIDES + "1\n1 0.5\n"),
+        ("rubbish.poly", "a valid vertex section, then random bytes",
+         SQUARE.encode("ascii") + random.Random(77).randbytes(1000))):
+    malformed("nasty/" + _name, _what, _content, ("-p",))
+malformed("nasty/region_no_value.poly", "a region with neither attribute nor area",
+          SQUARE + SIDES + "0\n1\n1 0.5 0.5\n", ("-pA",))
+
+
+@case("nasty/badindex_mesh.node", "vertices for badindex_mesh.ele, whose second triangle names vertex 7 of 4",
+      "error, exit 1, no output", ("-r",))
+def badindex_mesh():
+    return SQUARE.encode("ascii")
+
+
+EXTRA_FILES = {"nasty/badindex_mesh.ele": "2 3 0\n1 1 2 3\n2 1 3 7\n"}
+
+
+# --- coordinates from public bug reports
+
+OUTSIDE = """
+2.1948854485272875 0.2233940429716767 2.210334747734508 0.2045690176995104 2.23101526067872 0.19170904853717624
+2.2547319630849922 0.18617908927292653 2.2789675703171275 0.18856608834740984 2.301149721315429 0.1986166902985606
+2.3189240083317504 0.21526412684456825 2.3304038731566465 0.23674144339235967 2.334370845917945 0.2607690431393805
+2.333798685834391 0.27 2.1854430073431304 0.27 2.184870847259575 0.26076904313938054
+2.1874178917967892 0.24142231941101294"""
+
+
+@case("regress/hole_outside.poly", "hole point outside the outline but inside its box (github drufat/triangle issue 2)",
+      "ignores the hole: 11 triangles; the original crashes")
+def hole_outside():
+    poly = Poly(0)
+    numbers = list(map(float, OUTSIDE.split()))
+    poly.ring(list(zip(numbers[::2], numbers[1::2])), 1)
+    poly.hole(2.194746831368343, 0.22198663923314035)
+    return poly
+
+
+@case("regress/near_collinear_repeat.poly", "nearly collinear segments that cross, one given twice (github "
+      "qnzhou/trianglelite issue 1)", "ends; the original loops for ever", ("-p", "-pc"))
+def near_collinear_repeat():
+    poly = Poly(1, False)
+    for x, y in ((6.899643741648033, 10.556739733611963), (6.8743893086546723, 10.577559204153792),
+                 (6.8990280198173055, 10.557055643048765), (6.8994694525740767, 10.556817827203695),
+                 (6.8996252478389311, 10.556759464230709), (6.899537086138448, 10.5566972172105)):
+        poly.point(x, y)
+    for a, b in ((0, 1), (2, 3), (3, 4), (4, 3)):
+        poly.segment(a, b)
+    return poly
+
+
+@case("regress/touching_squares.poly", "two squares that share a corner given as two vertices (github wo80/Triangle "
+      "issue 10)", "7 used vertices, 4 triangles; the original may crash")
+def touching_squares():
+    poly = Poly(0)
+    for low, high in ((0, 10), (10, 15)):
+        ids = [poly.new_point(x, y) for x, y in ((low, low), (high, low), (high, high), (low, high))]
+        for a, b in zip(ids, ids[1:] + ids[:1]):
+            poly.segment(a, b)
+    return poly
+
+
+@case("regress/pentagon_repeat.poly", "pentagon whose last two vertices are the same point (github drufat/triangle "
+      "issue 4)", "2 triangles, 4 subsegments; the original may crash")
+def pentagon_repeat():
+    poly = Poly(0)
+    ids = [poly.new_point(x, y) for x, y in ((5, -5), (5, 0), (0, 0), (0, -2), (0, -2))]
+    for a, b in zip(ids, ids[1:] + ids[:1]):
+        poly.segment(a, b)
+    return poly
+
+
+# --- the coast
+
+COAST = [
+    Case("coast/norway_sea.poly", None,
+         "sea around Norway: fjords, islands as holes; metres; markers coast 1, open sea 2",
+         "a real domain of several thousand boundary segments", ("-p",)),
+    Case("coast/islands.poly", None, "sea around the British Isles; metres; markers coast 1, open sea 2",
+         "the same, small enough for every test", ("-p",)),
+    Case("coast/borders.poly", None,
+         "the countries of Africa; borders are internal segments, given once; "
+         "region attribute = ISO 3166-1 numeric code, area bound = area / 40; markers coast 1, border 2",
+         "-pqaA: each triangle carries the code of its country", ("-p",)),
+]
+
+
+# --- tables and main
+
+EXPECTED_HEAD = """\
+# What a right program makes of the inputs. One run per line:
+#   file  switches  vertices  triangles  used  area
+# vertices   in the output .node file without -j: those of the input and one per crossing of segments
+# triangles  fact of the input: Euler's formula for the faces that remain
+# used       vertices that are corners of triangles
+# area       sum of the areas of the triangles, the exact value rounded to a double
+# -1 everywhere: the input is refused with an error (exit 1, no output).
+# Found by tools/make_data.py in exact arithmetic, without a mesh generator.
+"""
+
+README_HEAD = """\
+# Inputs
+
+Small inputs of our own making: shapes, engineering sections, real coasts, and everything a mesh generator should
+survive.
+
+- `tools/make_data.py` writes all of it except `coast/` and `yardstick.txt`, byte for byte the same on every run
+  (Python 3.9, no packages).
+- `tools/make_coast.py` writes `coast/` from Natural Earth (`npm pack world-atlas@2.0.2`).
+- `expected.txt` gives, for each run of each input, the numbers that any right program gets; tests read it.
+- `yardstick.txt` gives the sizes of the quality meshes that Triangle 1.6 makes of them (`tools/make_yardstick.py`).
+- `tools/pslg_facts.py` finds the numbers of `expected.txt` by exact arithmetic on the planar subdivision, without
+  triangulating.
+
+Origin and licence: `coast/` is Natural Earth, public domain. The coordinates in `regress/` come from public bug
+reports, named in the table. All else is made from formulas here, MIT as the rest of the project. Random points come
+from Python's generator with fixed seeds.
+
+Columns: vertices, segments, holes and regions in the file; triangles with the first run of `expected.txt` ("error": the
+file is refused); the smallest angle in degrees between two segments with domain in between; valid = no duplicate
+vertex, no crossing, no vertex on a foreign segment, no repeated or meaningless segment.
+"""
+
+
+def expected_line(name, run, facts):
+    fields = (facts.vertices, facts.triangles, facts.used, number(float(facts.area))) if facts else (-1,) * 4
+    return " ".join(map(str, (name, run, *fields)))
+
+
+def table_row(entry, pslg, facts):
+    if pslg is None:
+        cells = ["", "", "", "", "error", "", ""]
+    else:
+        angle = "%.4g" % facts.smallest_angle if pslg.segments and facts.smallest_angle < 180 else ""
+        cells = [len(pslg.points), len(pslg.segments), len(pslg.holes), len(pslg.regions), facts.triangles, angle,
+                 "yes" if facts.valid else "no"]
+    return "| " + " | ".join(map(str, [entry.name, *cells, entry.what, entry.right])) + " |"
+
+
+def examine(folder, entry):
+    """Facts of each run of an input: (pslg, facts, lines), with None for pslg and facts where it is refused."""
+    pslg, first, lines = None, None, []
+    for run in entry.runs:
+        try:
+            facts = None
+            if run not in ("-r", "-pA"):
+                pslg = pslg_facts.read(os.path.join(folder, entry.name))
+                facts = pslg_facts.Facts(pslg, run)
+        except pslg_facts.InputError:
+            pass
+        assert (facts is None) == entry.right.startswith("error"), (entry.name, run)
+        first = first or facts
+        lines.append(expected_line(entry.name, run, facts))
+    return pslg, first, lines
+
+
+def write(path, content):
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "wb") as stream:
+        stream.write(content if isinstance(content, bytes) else content.encode("ascii"))
+
+
+def main(folder):
+    for entry in CASES:
+        content = entry.build()
+        if isinstance(content, Poly):
+            content = content.text(entry.what, entry.name.endswith(".poly"))
+        write(os.path.join(folder, entry.name), content)
+    for name, content in EXTRA_FILES.items():
+        write(os.path.join(folder, name), content)
+    write(os.path.join(folder, ".gitattributes"), "# Line ends are part of the inputs.\n* -text\n")
+    table = ["| file | vertices | segments | holes | regions | triangles | angle | valid | what it is | "
+             "a right program |", "|---|---|---|---|---|---|---|---|---|---|"]
+    expected = []
+    for entry in CASES + [c for c in COAST if os.path.exists(os.path.join(folder, c.name))]:
+        pslg, facts, lines = examine(folder, entry)
+        table.append(table_row(entry, pslg, facts))
+        expected += lines
+    write(os.path.join(folder, "expected.txt"), EXPECTED_HEAD + "\n".join(expected) + "\n")
+    write(os.path.join(folder, "README.md"), README_HEAD + "\n" + "\n".join(table) + "\n")
+
+
+if __name__ == "__main__":
+    here = os.path.dirname(os.path.abspath(__file__))
+    main(sys.argv[1] if len(sys.argv) > 1 else os.path.join(here, "..", "data"))

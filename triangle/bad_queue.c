@@ -1,0 +1,112 @@
+/* Buckets of linked lists over one pool; a ring with a stack behind it. */
+#include "triangle/bad_queue.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MASK = TRI_WINDOW - 1, HALF = TRI_WINDOW / 2, NIL = -1 };
+
+bool tri_bad_queue_init(struct tri_bad_queue *queue)
+{
+    *queue = (struct tri_bad_queue){.free_node = NIL, .top = NIL};
+    for (int b = 0; b < TRI_BUCKETS; b++)
+        queue->first[b] = queue->last[b] = NIL;
+    queue->window = malloc(TRI_WINDOW * sizeof *queue->window);
+    return queue->window;
+}
+
+void tri_bad_queue_free(struct tri_bad_queue *queue)
+{
+    free(queue->node);
+    free(queue->window);
+    free(queue->cold);
+    *queue = (struct tri_bad_queue){0};
+}
+
+static int32_t take_node(struct tri_bad_queue *queue)
+{
+    if (queue->free_node != NIL) {
+        int32_t node = queue->free_node;
+        queue->free_node = queue->node[node].next;
+        return node;
+    }
+    if (queue->n_nodes == queue->node_capacity) {
+        int32_t capacity = queue->node_capacity ? 2 * queue->node_capacity : 1024;
+        struct tri_node *fresh = realloc(queue->node, (size_t)capacity * sizeof *fresh);
+        if (!fresh)
+            return NIL;
+        queue->node = fresh;
+        queue->node_capacity = capacity;
+    }
+    return queue->n_nodes++;
+}
+
+bool tri_bad_queue_push_angle(struct tri_bad_queue *queue, struct tri_entry entry, int bucket)
+{
+    int32_t node = take_node(queue);
+    assert(bucket >= 0 && bucket < TRI_BUCKETS);
+    if (node == NIL)
+        return false;
+    queue->node[node] = (struct tri_node){entry, NIL};
+    if (queue->first[bucket] == NIL)
+        queue->first[bucket] = node;
+    else
+        queue->node[queue->last[bucket]].next = node;
+    queue->last[bucket] = node;
+    queue->top = bucket > queue->top ? bucket : queue->top;
+    return true;
+}
+
+static bool spill(struct tri_bad_queue *queue)
+{
+    if (queue->n_cold + HALF > queue->cold_capacity) {
+        size_t capacity = queue->cold_capacity ? queue->cold_capacity + queue->cold_capacity / 2 : TRI_WINDOW;
+        struct tri_entry *fresh = realloc(queue->cold, capacity * sizeof *fresh);
+        if (!fresh)
+            return false;
+        queue->cold = fresh;
+        queue->cold_capacity = capacity;
+    }
+    for (int i = 0; i < HALF; i++)
+        queue->cold[queue->n_cold++] = queue->window[queue->head++ & MASK];
+    return true;
+}
+
+bool tri_bad_queue_push_size(struct tri_bad_queue *queue, struct tri_entry entry)
+{
+    if (queue->tail - queue->head == TRI_WINDOW && !spill(queue))
+        return false;
+    queue->window[queue->tail++ & MASK] = entry;
+    return true;
+}
+
+static void refill(struct tri_bad_queue *queue)
+{
+    size_t n = queue->n_cold < HALF ? queue->n_cold : HALF;
+    queue->n_cold -= n;
+    for (size_t i = 0; i < n; i++)
+        queue->window[queue->tail++ & MASK] = queue->cold[queue->n_cold + i];
+}
+
+bool tri_bad_queue_pop(struct tri_bad_queue *queue, struct tri_entry *entry)
+{
+    while (queue->top >= 0) {
+        int32_t node = queue->first[queue->top];
+        if (node == NIL) {
+            queue->top--;
+            continue;
+        }
+        *entry = queue->node[node].entry;
+        queue->first[queue->top] = queue->node[node].next;
+        queue->node[node].next = queue->free_node;
+        queue->free_node = node;
+        return true;
+    }
+    if (queue->head == queue->tail && queue->n_cold > 0)
+        refill(queue);
+    if (queue->head == queue->tail)
+        return false;
+    *entry = queue->window[queue->head++ & MASK];
+    return true;
+}

@@ -1,0 +1,49 @@
+/* The triangles that wait to be refined.
+ *
+ * Two kinds. Those whose angle is bad wait in buckets, worst first: order decides how many points they cost. Those that are
+ * only too large wait first in, first out, which spreads sizes evenly, but in a window: when it is full its older half goes to
+ * a stack and is taken back when the window has run empty. So the work stays where the cache is, for any size of mesh.
+ *
+ * An entry names a slot and the state the slot had; whoever takes an entry compares. */
+#ifndef TRIANGLE_BAD_QUEUE_H
+#define TRIANGLE_BAD_QUEUE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { TRI_BUCKETS = 64, TRI_WINDOW = 1 << 13 };
+
+struct tri_entry {
+    int32_t t;
+    uint32_t state;
+};
+
+struct tri_node {
+    struct tri_entry entry;
+    int32_t next;
+};
+
+struct tri_bad_queue {
+    struct tri_node *node; /* pool of the buckets' entries */
+    int32_t n_nodes, node_capacity, free_node;
+    int32_t first[TRI_BUCKETS], last[TRI_BUCKETS];
+    int top; /* no bucket above this one holds anything; -1: all empty */
+
+    struct tri_entry *window; /* ring of TRI_WINDOW */
+    uint32_t head, tail;      /* tail - head entries wait in the ring */
+    struct tri_entry *cold;   /* stack of what the window had no room for */
+    size_t n_cold, cold_capacity;
+};
+
+bool tri_bad_queue_init(struct tri_bad_queue *queue);
+void tri_bad_queue_free(struct tri_bad_queue *queue);
+
+/* bucket: 0 .. TRI_BUCKETS - 1, larger is worse. False where memory ran out. Amortised O(1). */
+bool tri_bad_queue_push_angle(struct tri_bad_queue *queue, struct tri_entry entry, int bucket);
+bool tri_bad_queue_push_size(struct tri_bad_queue *queue, struct tri_entry entry);
+
+/* Takes the next entry: bad angles first. False where nothing waits. */
+bool tri_bad_queue_pop(struct tri_bad_queue *queue, struct tri_entry *entry);
+
+#endif

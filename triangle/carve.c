@@ -1,0 +1,244 @@
+/* Floods over triangles that stop at segments.
+ *
+ * INVARIANT: a flood marks whole components of the mesh minus its segments, so a dead and a live triangle only ever meet at
+ * a subsegment; removing the dead ones needs to tell subsegments alone. */
+#include "triangle/carve.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "triangle/predicates.h"
+
+struct flood {
+    struct tri_mesh *mesh;
+    int32_t *stack;    /* [n_slots]: each triangle is pushed at most once a flood */
+    uint8_t *dead;     /* [n_slots] */
+    int32_t *reached;  /* [n_slots] number of the last region flood that came here */
+    int32_t near;      /* where the last location ended */
+};
+
+static bool is_wall(const struct tri_mesh *mesh, int32_t link, bool keep_hull)
+{
+    return link < 0 && (keep_hull || mesh->parents[mesh->sub[~link].parent].segment != TRI_NONE);
+}
+
+static void kill_from(struct flood *f, int32_t start)
+{
+    int32_t n = 0;
+    if (f->dead[start])
+        return;
+    f->dead[start] = 1;
+    f->stack[n++] = start;
+    while (n > 0) {
+        int32_t t = f->stack[--n];
+        for (int e = 0; e < 3; e++) {
+            int32_t link = f->mesh->tri[t].n[e];
+            if (link >= 0 && !f->dead[tri_of(link)]) {
+                f->dead[tri_of(link)] = 1;
+                f->stack[n++] = tri_of(link);
+            }
+        }
+    }
+}
+
+static void kill_concavities(struct flood *f)
+{
+    const struct tri_mesh *mesh = f->mesh;
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        for (int e = 0; e < 3; e++)
+            if (mesh->tri[t].n[e] < 0 && !is_wall(mesh, mesh->tri[t].n[e], false))
+                kill_from(f, t);
+}
+
+static int32_t step_over(const struct tri_mesh *mesh, int32_t t, int e)
+{
+    int32_t link = mesh->tri[t].n[e];
+    if (link >= 0)
+        return tri_of(link);
+    const struct tri_subsegment *s = &mesh->sub[~link];
+    int32_t code = s->side[1 - tri_side(s, mesh->tri[t].v[tri_next[e]])];
+    return code == TRI_NONE ? TRI_NONE : tri_of(code);
+}
+
+/* The triangle that holds q, TRI_NONE outside the hull. A visibility walk over a constrained triangulation may cycle; the edge
+ * it tries first turns with the number of steps, and after too many steps every triangle is looked at. */
+static int32_t locate(struct flood *f, struct tri_point q)
+{
+    const struct tri_mesh *mesh = f->mesh;
+    int32_t t = f->near;
+    for (int32_t steps = 0; steps < mesh->n_slots; steps++) {
+        const struct tri_triangle *at = &mesh->tri[t];
+        int k = 0, e = 0;
+        for (; k < 3; k++) {
+            e = (int)((k + steps) % 3);
+            if (tri_orient2d(mesh->xy[at->v[tri_next[e]]], mesh->xy[at->v[tri_prev[e]]], q) < 0)
+                break;
+        }
+        if (k == 3)
+            return f->near = t;
+        t = step_over(mesh, t, e);
+        if (t == TRI_NONE)
+            return TRI_NONE; /* the hull is convex: whoever leaves it does not come back */
+        f->near = t;
+    }
+    for (t = 0; t < mesh->n_slots; t++) {
+        const int32_t *v = mesh->tri[t].v;
+        if (tri_orient2d(mesh->xy[v[0]], mesh->xy[v[1]], q) >= 0 && tri_orient2d(mesh->xy[v[1]], mesh->xy[v[2]], q) >= 0 &&
+            tri_orient2d(mesh->xy[v[2]], mesh->xy[v[0]], q) >= 0)
+            return t;
+    }
+    return TRI_NONE;
+}
+
+static void kill_holes(struct flood *f, const struct tri_pslg *pslg)
+{
+    for (int32_t k = 0; k < pslg->n_holes; k++) {
+        struct tri_point q = {pslg->holes[2 * k], pslg->holes[2 * k + 1]};
+        int32_t t = locate(f, q);
+        if (t != TRI_NONE)
+            kill_from(f, t);
+    }
+}
+
+/* Regions are few where they are many-celled: each flood costs the cells it reaches. */
+static void spread(struct flood *f, int32_t start, int32_t region)
+{
+    int32_t n = 0;
+    f->stack[n++] = start;
+    f->reached[start] = region;
+    while (n > 0) {
+        int32_t t = f->stack[--n];
+        f->mesh->tri[t].region = region;
+        for (int e = 0; e < 3; e++) {
+            int32_t link = f->mesh->tri[t].n[e];
+            if (link >= 0 && f->reached[tri_of(link)] != region) {
+                f->reached[tri_of(link)] = region;
+                f->stack[n++] = tri_of(link);
+            }
+        }
+    }
+}
+
+static enum tri_status spread_regions(struct flood *f, const struct tri_pslg *pslg, struct tri_error *error)
+{
+    struct tri_mesh *mesh = f->mesh;
+    struct tri_region *regions = realloc(mesh->regions, ((size_t)pslg->n_regions + 1) * sizeof *regions);
+    if (!regions)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for regions");
+    mesh->regions = regions;
+    mesh->n_regions = pslg->n_regions + 1;
+    for (int32_t k = 0; k < pslg->n_regions; k++) {
+        const double *r = &pslg->regions[4 * k];
+        regions[k + 1] = (struct tri_region){r[2], r[3]};
+        int32_t t = locate(f, (struct tri_point){r[0], r[1]});
+        if (t != TRI_NONE && !f->dead[t])
+            spread(f, t, k + 1);
+    }
+    return TRI_OK;
+}
+
+/* Markers of segments pass to vertices without one. */
+static void mark_vertices(struct tri_mesh *mesh)
+{
+    for (int32_t s = 0; s < mesh->n_subs; s++)
+        for (int k = 0; k < 2; k++)
+            if (mesh->sub[s].marker && !mesh->vertex_markers[mesh->sub[s].v[k]])
+                mesh->vertex_markers[mesh->sub[s].v[k]] = mesh->sub[s].marker;
+}
+
+static void remove_dead(struct flood *f)
+{
+    struct tri_mesh *mesh = f->mesh;
+    for (int32_t t = 0; t < mesh->n_slots; t++) {
+        struct tri_triangle *at = &mesh->tri[t];
+        if (!f->dead[t])
+            continue;
+        for (int e = 0; e < 3; e++)
+            if (at->n[e] < 0)
+                mesh->sub[~at->n[e]].side[tri_side(&mesh->sub[~at->n[e]], at->v[tri_next[e]])] = TRI_NONE;
+        at->v[0] = at->v[1] = at->v[2] = TRI_NONE;
+    }
+    tri_mesh_compact(mesh);
+}
+
+/* Counting sort of the living subsegments by input segment; hull edges, which have none, come last. */
+static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, struct tri_error *error)
+{
+    int32_t *start = calloc((size_t)n_segments + 2, sizeof *start), kept = 0;
+    struct tri_subsegment *sorted = malloc(((size_t)mesh->n_subs + 1) * sizeof *sorted);
+    int32_t *segment = malloc(((size_t)mesh->n_subs + 1) * sizeof *segment);
+    enum tri_status status = TRI_OK;
+    if (!start || !sorted || !segment) {
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d subsegments", (int)mesh->n_subs);
+        goto done;
+    }
+    for (int32_t s = 0; s < mesh->n_subs; s++) {
+        int32_t k = mesh->parents[mesh->sub[s].parent].segment;
+        segment[s] = k == TRI_NONE ? n_segments : k;
+        if (mesh->sub[s].side[0] != TRI_NONE || mesh->sub[s].side[1] != TRI_NONE)
+            start[segment[s] + 1]++, kept++;
+    }
+    for (int32_t k = 0; k <= n_segments; k++)
+        start[k + 1] += start[k];
+    for (int32_t s = 0; s < mesh->n_subs; s++)
+        if (mesh->sub[s].side[0] != TRI_NONE || mesh->sub[s].side[1] != TRI_NONE) {
+            int32_t at = start[segment[s]]++;
+            sorted[at] = mesh->sub[s];
+            sorted[at].parent = segment[s] == n_segments ? TRI_NONE : segment[s];
+        }
+    for (int32_t s = 0; s < kept; s++) {
+        mesh->sub[s] = sorted[s];
+        mesh->parents[s] = (struct tri_parent){{sorted[s].v[0], sorted[s].v[1]}, sorted[s].parent};
+        mesh->sub[s].parent = s;
+        for (int side = 0; side < 2; side++)
+            if (sorted[s].side[side] != TRI_NONE)
+                mesh->tri[tri_of(sorted[s].side[side])].n[tri_edge(sorted[s].side[side])] = ~s;
+    }
+    mesh->n_subs = mesh->n_parents = kept;
+done:
+    free(start);
+    free(sorted);
+    free(segment);
+    return status;
+}
+
+enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_carve_options *options,
+                          struct tri_error *error)
+{
+    size_t n = (size_t)mesh->n_slots + 1;
+    struct flood f = {mesh, malloc(n * sizeof *f.stack), calloc(n, 1), calloc(n, sizeof *f.reached), 0};
+    enum tri_status status = TRI_OK;
+    if (!f.stack || !f.dead || !f.reached)
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)mesh->n_slots);
+    mark_vertices(mesh);
+    if (!status && mesh->n_slots > 0) {
+        if (!options->keep_hull)
+            kill_concavities(&f);
+        if (!options->ignore_holes)
+            kill_holes(&f, pslg);
+        if (options->spread_regions)
+            status = spread_regions(&f, pslg, error);
+        if (!status)
+            remove_dead(&f);
+    }
+    free(f.stack);
+    free(f.dead);
+    free(f.reached);
+    if (!status) /* each subsegment gets a parent of its own */
+        status = tri_mesh_reserve_subs(mesh, mesh->n_subs, error);
+    return status ? status : order_subs(mesh, pslg->n_segments, error);
+}
+
+void tri_mark_boundary(struct tri_mesh *mesh)
+{
+    for (int32_t s = 0; s < mesh->n_subs; s++) {
+        struct tri_subsegment *sub = &mesh->sub[s];
+        if (sub->side[0] != TRI_NONE && sub->side[1] != TRI_NONE)
+            continue;
+        if (sub->marker == 0)
+            sub->marker = 1;
+        for (int k = 0; k < 2; k++)
+            if (mesh->vertex_markers[sub->v[k]] == 0)
+                mesh->vertex_markers[sub->v[k]] = 1;
+    }
+}

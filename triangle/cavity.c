@@ -1,0 +1,264 @@
+/* Search and fill of cavities; see the header for the theorems. */
+#include "triangle/cavity.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "triangle/predicates.h"
+
+/* |error of the determinant| <= (10 + 96 u) u * permanent, u = 2^-53 (Shewchuk 1997, section 4.4). The permanent, the sum of
+ * l_a (|b_x c_y| + |b_y c_x|), is at most l_a l_b + l_b l_c + l_c l_a by Cauchy-Schwarz and 2 s t <= s^2 + t^2; the factor is
+ * rounded up to pay for the rounding of that sum. Nothing underflows in the range of predicates.h. */
+static const double DOUBT = 1.2e-15;
+
+void tri_cavity_free(struct tri_cavity *cavity)
+{
+    free(cavity->tri);
+    free(cavity->rim);
+    free(cavity->wall);
+    free(cavity->pending);
+    *cavity = (struct tri_cavity){0};
+}
+
+/* Each array is replaced only once its realloc has succeeded, so that a failure leaves everything to be freed. */
+static bool grow(struct tri_cavity *c)
+{
+    int32_t capacity = c->capacity ? 2 * c->capacity : 256;
+    size_t n = (size_t)capacity;
+    int32_t *tri = realloc(c->tri, n * sizeof *tri);
+    c->tri = tri ? tri : c->tri;
+    struct tri_rim *rim = realloc(c->rim, (n + 4) * sizeof *rim);
+    c->rim = rim ? rim : c->rim;
+    int32_t *wall = realloc(c->wall, (n + 4) * sizeof *wall);
+    c->wall = wall ? wall : c->wall;
+    struct tri_pending *pending = realloc(c->pending, (n + 4) * sizeof *pending);
+    c->pending = pending ? pending : c->pending;
+    if (!tri || !rim || !wall || !pending)
+        return false;
+    c->capacity = capacity;
+    return true;
+}
+
+static inline bool holds(const struct tri_fence *f, const struct tri_point *q)
+{
+    return q->x >= f->x_min && q->x < f->x_max && q->y >= f->y_min && q->y < f->y_max;
+}
+
+static bool owns(const struct tri_cavity *c, const struct tri_mesh *mesh, int32_t t)
+{
+    const int32_t *v = mesh->tri[t].v;
+    return !c->fence || (holds(c->fence, &mesh->xy[v[0]]) && holds(c->fence, &mesh->xy[v[1]]) &&
+                         holds(c->fence, &mesh->xy[v[2]]));
+}
+
+/* Is p in the circumdisk of a, b, c, which are the vertices behind the relative coordinates? */
+static inline bool in_circle(const struct tri_mesh *mesh, struct tri_point p, int32_t a, int32_t b, int32_t c,
+                             struct tri_relative ra, struct tri_relative rb, struct tri_relative rc)
+{
+    double det = ra.l * tri_cross(rb, rc) + rb.l * tri_cross(rc, ra) + rc.l * tri_cross(ra, rb);
+    double doubt = DOUBT * (ra.l * rb.l + rb.l * rc.l + rc.l * ra.l);
+    if (det > doubt)
+        return true;
+    if (det < -doubt)
+        return false;
+    return tri_in_circle_near(mesh->xy[a], mesh->xy[b], mesh->xy[c], p);
+}
+
+/* Explores what lies behind the link of the edge a -> b, depth first and left first, so that rims come out in order. */
+static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t link, int32_t region, int32_t a,
+                               int32_t b, struct tri_relative ra, struct tri_relative rb)
+{
+    const struct tri_triangle *tri = mesh->tri;
+    const struct tri_point *xy = mesh->xy, p = c->p;
+    int32_t n_pending = 0;
+    for (;;) {
+        if (link >= 0) {
+            const struct tri_triangle *t = &tri[link >> 2];
+            int e = link & 3;
+            int32_t apex = t->v[e];
+            struct tri_relative rapex = tri_relative(&xy[apex], p);
+            if (in_circle(mesh, p, a, apex, b, ra, rapex, rb)) {
+                if (c->fence && !holds(c->fence, &xy[apex]))
+                    return TRI_SEARCH_FENCED;
+                if (c->n_tri == c->capacity && !grow(c))
+                    return TRI_SEARCH_NO_MEMORY;
+                c->tri[c->n_tri++] = link >> 2;
+                region = t->region;
+                c->pending[n_pending++] = (struct tri_pending){t->n[tri_prev[e]], b, region, rb};
+                link = t->n[tri_next[e]];
+                b = apex;
+                rb = rapex;
+                continue;
+            }
+        } else {
+            c->wall[c->n_wall++] = c->n_rim;
+        }
+        c->rim[c->n_rim++] = (struct tri_rim){link, a, region, TRI_NONE, ra};
+        if (n_pending == 0)
+            return TRI_SEARCH_FOUND;
+        const struct tri_pending *next = &c->pending[--n_pending];
+        a = b;
+        ra = rb;
+        link = next->link;
+        b = next->end;
+        region = next->region;
+        rb = next->rend;
+    }
+}
+
+static bool begin(struct tri_cavity *c, struct tri_point p)
+{
+    c->p = p;
+    c->n_tri = c->n_rim = c->n_wall = 0;
+    return c->capacity > 0 || grow(c);
+}
+
+static bool add_start(struct tri_cavity *c, int32_t t)
+{
+    if (c->n_tri == c->capacity && !grow(c))
+        return false;
+    c->tri[c->n_tri++] = t;
+    return true;
+}
+
+enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p, int32_t t)
+{
+    if (!begin(c, p) || !add_start(c, t))
+        return TRI_SEARCH_NO_MEMORY;
+    if (!owns(c, mesh, t))
+        return TRI_SEARCH_FENCED;
+    const struct tri_triangle start = mesh->tri[t];
+    struct tri_relative r[3];
+    for (int k = 0; k < 3; k++) {
+        r[k] = tri_relative(&mesh->xy[start.v[k]], p);
+        if (r[k].l == 0)
+            return TRI_SEARCH_OUTSIDE;
+    }
+    if (!in_circle(mesh, p, start.v[0], start.v[1], start.v[2], r[0], r[1], r[2]))
+        return TRI_SEARCH_OUTSIDE;
+    for (int e = 0; e < 3; e++) {
+        int f = tri_next[e], g = tri_prev[e];
+        enum tri_search found = explore(c, mesh, start.n[e], start.region, start.v[f], start.v[g], r[f], r[g]);
+        if (found != TRI_SEARCH_FOUND)
+            return found;
+    }
+    return TRI_SEARCH_FOUND;
+}
+
+/* One side of a split: the two other edges of the triangle at the subsegment. */
+static enum tri_search explore_side(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t code)
+{
+    int32_t t = tri_of(code);
+    int e = tri_edge(code), f = tri_next[e], g = tri_prev[e];
+    if (!add_start(c, t))
+        return TRI_SEARCH_NO_MEMORY;
+    if (!owns(c, mesh, t))
+        return TRI_SEARCH_FENCED;
+    const struct tri_triangle start = mesh->tri[t];
+    struct tri_relative r[3];
+    for (int k = 0; k < 3; k++)
+        r[k] = tri_relative(&mesh->xy[start.v[k]], c->p);
+    enum tri_search found = explore(c, mesh, start.n[f], start.region, start.v[g], start.v[e], r[g], r[e]);
+    if (found != TRI_SEARCH_FOUND)
+        return found;
+    return explore(c, mesh, start.n[g], start.region, start.v[e], start.v[f], r[e], r[f]);
+}
+
+/* Rounding may place a split point off its subsegment: every rim must still be seen counter-clockwise. */
+static bool sees_rims(const struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end, int32_t last)
+{
+    for (int32_t i = first; i < end; i++) {
+        int32_t b = i + 1 < end ? c->rim[i + 1].a : last;
+        if (c->rim[i].ra.l == 0 || tri_orient2d(c->p, mesh->xy[c->rim[i].a], mesh->xy[b]) <= 0)
+            return false;
+    }
+    return true;
+}
+
+enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p, int32_t s,
+                                        int32_t *n_left)
+{
+    const struct tri_subsegment *sub = &mesh->sub[s];
+    *n_left = 0;
+    if (!begin(c, p))
+        return TRI_SEARCH_NO_MEMORY;
+    for (int side = 0; side < 2; side++) {
+        int32_t first = c->n_rim, last = sub->v[side];
+        if (sub->side[side] == TRI_NONE)
+            continue;
+        enum tri_search found = explore_side(c, mesh, sub->side[side]);
+        if (found != TRI_SEARCH_FOUND)
+            return found;
+        if (!sees_rims(c, mesh, first, c->n_rim, last))
+            return TRI_SEARCH_OUTSIDE;
+        if (side == 0)
+            *n_left = c->n_rim;
+    }
+    return TRI_SEARCH_FOUND;
+}
+
+/* A slot for the next new triangle: first those of the cavity, then fresh ones. A fan has at least as many triangles as its
+ * cavity (Euler), so no slot is ever left over. */
+static inline int32_t take_slot(const struct tri_cavity *c, struct tri_mesh *mesh, int32_t i)
+{
+    if (i < c->n_tri)
+        return c->tri[i];
+    assert(mesh->n_slots < mesh->slot_capacity);
+    mesh->tri[mesh->n_slots].state = 0;
+    return mesh->n_slots++;
+}
+
+/* Makes the triangles of rims first .. end - 1, linked with each other; the chain ends at vertex `last`. */
+static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v, int32_t first, int32_t end, int32_t last)
+{
+    int32_t before = TRI_NONE;
+    for (int32_t i = first; i < end; i++) {
+        struct tri_rim *rim = &c->rim[i];
+        int32_t slot = take_slot(c, mesh, i), b = i + 1 < end ? c->rim[i + 1].a : last;
+        struct tri_triangle *t = &mesh->tri[slot];
+        rim->slot = slot;
+        t->v[0] = v;
+        t->v[1] = rim->a;
+        t->v[2] = b;
+        t->n[0] = rim->outer;
+        t->region = rim->region;
+        t->state++;
+        tri_relink(mesh, rim->outer, rim->a, tri_code(slot, 0));
+        if (before != TRI_NONE) {
+            mesh->tri[before].n[1] = tri_code(slot, 2);
+            t->n[2] = tri_code(before, 1);
+        }
+        before = slot;
+    }
+}
+
+void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v)
+{
+    assert(c->n_rim >= 3 && c->n_rim >= c->n_tri);
+    fill_chain(c, mesh, v, 0, c->n_rim, c->rim[0].a);
+    int32_t first = c->rim[0].slot, last = c->rim[c->n_rim - 1].slot;
+    mesh->tri[first].n[2] = tri_code(last, 1);
+    mesh->tri[last].n[1] = tri_code(first, 2);
+}
+
+int32_t tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v, int32_t s, int32_t n_left)
+{
+    const struct tri_subsegment old = mesh->sub[s];
+    int32_t second = mesh->n_subs++, ends[2] = {0, n_left};
+    assert(mesh->n_subs <= mesh->sub_capacity && c->n_rim >= c->n_tri);
+    mesh->sub[s] = (struct tri_subsegment){{old.v[0], v}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
+    mesh->sub[second] = (struct tri_subsegment){{v, old.v[1]}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
+    for (int side = 0; side < 2; side++) {
+        int32_t first = ends[side], end = side == 0 ? n_left : c->n_rim;
+        if (first == end)
+            continue;
+        fill_chain(c, mesh, v, first, end, old.v[side]);
+        /* Seen from the left the chain runs from v[1] to v[0], from the right the other way. */
+        int32_t at_start = side == 0 ? second : s, at_end = side == 0 ? s : second;
+        mesh->tri[c->rim[first].slot].n[2] = ~at_start;
+        mesh->sub[at_start].side[side] = tri_code(c->rim[first].slot, 2);
+        mesh->tri[c->rim[end - 1].slot].n[1] = ~at_end;
+        mesh->sub[at_end].side[side] = tri_code(c->rim[end - 1].slot, 1);
+    }
+    return second;
+}

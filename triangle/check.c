@@ -1,0 +1,195 @@
+/* The judge: runs the checks in the order in which they lean on each other, and keeps the report.
+ *
+ * Each check lives in a check_*.c of its own. A check that needs the outcome of another is skipped when that one failed:
+ * what it would say has no meaning then. */
+#include "triangle/check.h"
+
+#include <assert.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "triangle/check_internal.h"
+
+static const char *const names[TRI_N_CHECKS] = {
+    [TRI_CHECK_ARRAYS] = "indices and coordinates",
+    [TRI_CHECK_ORIENTATION] = "orientation",
+    [TRI_CHECK_EDGES] = "edges in pairs",
+    [TRI_CHECK_NEIGHBORS] = "neighbors",
+    [TRI_CHECK_STARS] = "vertex stars",
+    [TRI_CHECK_OVERLAP] = "no overlap",
+    [TRI_CHECK_HULL] = "convex hull",
+    [TRI_CHECK_SUBSEGMENTS] = "subsegments are edges",
+    [TRI_CHECK_BOUNDARY] = "boundary is subsegments",
+    [TRI_CHECK_LOCAL_DELAUNAY] = "Delaunay",
+    [TRI_CHECK_ENCROACHMENT] = "diametral circles",
+    [TRI_CHECK_INPUT_VERTICES] = "input vertices",
+    [TRI_CHECK_LOST_VERTICES] = "no lost vertices",
+    [TRI_CHECK_INPUT_SEGMENTS] = "input segments",
+    [TRI_CHECK_MARKERS] = "segment markers",
+    [TRI_CHECK_HOLES] = "holes",
+    [TRI_CHECK_ANGLES] = "angles",
+    [TRI_CHECK_AREAS] = "areas",
+};
+
+const char *tri_check_name(enum tri_check_kind kind)
+{
+    assert(kind >= 0 && kind < TRI_N_CHECKS);
+    return names[kind];
+}
+
+bool tri_check_passed(const struct tri_check_report *report)
+{
+    for (int k = 0; k < TRI_N_CHECKS; k++) {
+        if (report->item[k].state == TRI_CHECK_FAILED)
+            return false;
+    }
+    return true;
+}
+
+void check_begin(struct checker *c, enum tri_check_kind kind)
+{
+    struct tri_check_item *item = &c->report->item[kind];
+    if (item->state == TRI_CHECK_SKIPPED)
+        item->state = TRI_CHECK_OK;
+}
+
+void check_fault(struct checker *c, enum tri_check_kind kind, const char *format, ...)
+{
+    struct tri_check_item *item = &c->report->item[kind];
+    item->state = TRI_CHECK_FAILED;
+    if (item->count++ > 0)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(item->text, sizeof item->text, format, arguments);
+    va_end(arguments);
+}
+
+void *check_array(int64_t n, size_t size)
+{
+    assert(n >= 0 && size > 0);
+    if ((uint64_t)n >= SIZE_MAX / size)
+        return NULL;
+    return malloc(((size_t)n + 1) * size);
+}
+
+void *check_zeros(int64_t n, size_t size)
+{
+    assert(n >= 0 && size > 0);
+    return (uint64_t)n >= SIZE_MAX / size ? NULL : calloc((size_t)n + 1, size);
+}
+
+enum tri_status check_ask(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id)
+{
+    if (c->n_queries == c->query_capacity) {
+        if (c->query_capacity > INT32_MAX / 2 - 16)
+            return TRI_TOO_LARGE;
+        int32_t capacity = 2 * c->query_capacity + 16;
+        struct check_query *queries = realloc(c->queries, (size_t)capacity * sizeof *queries);
+        if (queries == NULL)
+            return TRI_NO_MEMORY;
+        c->queries = queries;
+        c->query_capacity = capacity;
+    }
+    c->queries[c->n_queries++] = (struct check_query){at, kind, id, false};
+    return TRI_OK;
+}
+
+static void check_arrays(struct checker *c)
+{
+    const struct tri_check_mesh *m = c->mesh;
+    check_begin(c, TRI_CHECK_ARRAYS);
+    for (int32_t h = 0; h < c->n_half_edges; h++) {
+        int32_t v = m->triangles[h];
+        if (v >= 0 && v < m->n_points)
+            continue;
+        check_fault(c, TRI_CHECK_ARRAYS, "triangle %ld has corner %ld, which is not a vertex", check_number(c, h / 3),
+                    check_number(c, v));
+    }
+    for (int32_t v = 0; v < m->n_points; v++) {
+        struct tri_point p = check_point(c, v);
+        if (tri_is_exact_coordinate(p.x) && tri_is_exact_coordinate(p.y))
+            continue;
+        check_fault(c, TRI_CHECK_ARRAYS, "vertex %ld at (%.17g, %.17g) is beyond the range of exact arithmetic",
+                    check_number(c, v), check_given(c, p.x), check_given(c, p.y));
+    }
+}
+
+static void check_orientation(struct checker *c)
+{
+    check_begin(c, TRI_CHECK_ORIENTATION);
+    for (int32_t t = 0; t < c->mesh->n_triangles; t++) {
+        const int32_t *v = c->mesh->triangles + 3 * (size_t)t;
+        double sign = tri_orient2d(check_point(c, v[0]), check_point(c, v[1]), check_point(c, v[2]));
+        if (sign > 0)
+            continue;
+        check_fault(c, TRI_CHECK_ORIENTATION, "triangle %ld (%ld %ld %ld) is %s", check_number(c, t),
+                    check_number(c, v[0]), check_number(c, v[1]), check_number(c, v[2]),
+                    sign < 0 ? "clockwise" : "flat");
+    }
+}
+
+/* The checks proper, each on what the earlier ones allow. */
+static enum tri_status run(struct checker *c)
+{
+    check_arrays(c);
+    if (!check_good(c, TRI_CHECK_ARRAYS))
+        return TRI_OK;
+    check_orientation(c);
+    enum tri_status status = check_edges(c);
+    if (status == TRI_OK)
+        status = check_subsegments(c);
+    if (status == TRI_OK)
+        status = check_input(c);
+    if (status == TRI_OK)
+        status = check_quality(c);
+    if (status != TRI_OK || !check_good(c, TRI_CHECK_ORIENTATION) || !check_good(c, TRI_CHECK_EDGES))
+        return status;
+    check_delaunay(c);
+    status = check_stars(c);
+    if (status == TRI_OK)
+        status = check_overlap(c);
+    if (status != TRI_OK || !check_good(c, TRI_CHECK_OVERLAP))
+        return status;
+    check_answers(c);
+    if (c->options->convex)
+        check_hull(c);
+    return TRI_OK;
+}
+
+static void release(struct checker *c)
+{
+    for (int i = 0; i < 3; i++)
+        free(c->scaled[i]);
+    free(c->first);
+    free(c->corner);
+    free(c->link);
+    free(c->own_segments);
+    free(c->constrained);
+    free(c->fan_first);
+    free(c->fan);
+    free(c->twin);
+    free(c->queries);
+}
+
+enum tri_status tri_check(const struct tri_check_mesh *mesh, const struct tri_pslg *input,
+                          const struct tri_check_options *options, struct tri_check_report *report,
+                          struct tri_error *error)
+{
+    assert(mesh->n_points >= 0 && mesh->n_triangles >= 0 && mesh->n_segments >= 0);
+    if (mesh->n_triangles > INT32_MAX / 3 || mesh->n_segments > INT32_MAX / 2) {
+        return tri_fail(error, TRI_TOO_LARGE, "", 0, "the mesh is too large to be checked");
+    }
+    memset(report, 0, sizeof *report);
+    struct checker c = {.mesh = mesh, .input = input, .options = options, .report = report};
+    c.n_half_edges = 3 * mesh->n_triangles;
+    enum tri_status status = check_scale(&c);
+    if (status == TRI_OK)
+        status = run(&c);
+    release(&c);
+    if (status == TRI_OK)
+        return TRI_OK;
+    return tri_fail(error, status, "", 0, status == TRI_NO_MEMORY ? "out of memory" : "the mesh is too large");
+}

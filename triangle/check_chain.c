@@ -1,0 +1,351 @@
+/* Input segments as chains of subsegments.
+ *
+ *   1. From the first end of the input segment, depth first along subsegments whose far end lies on its line within the
+ *      tolerance, further on and not beyond the end; the best aligned first. Each vertex is visited once per segment, for
+ *      what can be reached from it does not depend on the way there.
+ *   2. Should the second end not be reached, pieces may have been carved. Then all subsegment vertices on the line are fetched
+ *      from a grid and sorted along it; chains are followed from each that lies beyond what is covered so far.
+ *   3. Whatever stays uncovered must lie outside the mesh: the sweep is asked about points of it. */
+#include "triangle/check_chain.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+enum { MAX_GRID_SIDE = 2048 };
+
+struct line { /* the input segment in question */
+    int32_t id;
+    struct tri_point a, b;
+    double dx, dy, length;
+};
+
+struct stop {  /* a vertex on the line */
+    double at; /* distance from a, along the line */
+    int32_t vertex;
+};
+
+struct grid { /* vertices of subsegments by place; made when first needed */
+    struct tri_point low;
+    double width, height; /* of a cell */
+    int32_t side;         /* cells in a row, and in a column; 0: not made yet */
+    int32_t *first, *vertex;
+};
+
+struct chains {
+    struct checker *c;
+    uint32_t search;   /* number of the current search */
+    uint32_t *seen;    /* [n_points] last search that visited the vertex, 0: none */
+    int32_t *via;      /* [n_points] fan entry by which it came there, -1: it began there */
+    int32_t *stack;    /* [2 * n_segments + 1] each subsegment is pushed once from each end at most */
+    int32_t *marker;   /* [n_segments] first non-zero marker of the input segments on a subsegment */
+    struct stop *stop; /* [n_points at most] */
+    int32_t n_stops, stop_capacity;
+    struct grid grid;
+};
+
+static double along(const struct line *l, struct tri_point p)
+{
+    return ((p.x - l->a.x) * l->dx + (p.y - l->a.y) * l->dy) / l->length;
+}
+
+static double away(const struct line *l, struct tri_point p)
+{
+    return fabs((p.x - l->a.x) * l->dy - (p.y - l->a.y) * l->dx) / l->length;
+}
+
+static bool is_on(const struct chains *k, const struct line *l, struct tri_point p)
+{
+    double at = along(l, p), tolerance = k->c->tolerance;
+    return away(l, p) <= tolerance && at >= -tolerance && at <= l->length + tolerance;
+}
+
+static int32_t other_end(const struct chains *k, int32_t fan_entry)
+{
+    return k->c->segments[fan_entry ^ 1];
+}
+
+/* Pushes the ways on from vertex u, the best aligned on top. */
+static int32_t push_ways(struct chains *k, const struct line *l, int32_t u, int32_t top)
+{
+    const struct checker *c = k->c;
+    struct tri_point from = check_point(c, u);
+    double best = INFINITY;
+    for (int32_t i = c->fan_first[u]; i < c->fan_first[u + 1]; i++) {
+        int32_t w = other_end(k, c->fan[i]);
+        struct tri_point to = check_point(c, w);
+        bool onward = (to.x - from.x) * l->dx + (to.y - from.y) * l->dy > 0;
+        if (k->seen[w] == k->search || !onward || !is_on(k, l, to))
+            continue;
+        k->stack[top++] = c->fan[i];
+        double off = away(l, to);
+        if (off < best) {
+            best = off;
+        } else { /* keep the best on top */
+            int32_t other = k->stack[top - 2];
+            k->stack[top - 2] = k->stack[top - 1];
+            k->stack[top - 1] = other;
+        }
+    }
+    return top;
+}
+
+/* Step 1: from vertex u towards `goal`; returns it, or the vertex furthest on if it is out of reach. */
+static int32_t follow(struct chains *k, const struct line *l, int32_t u, int32_t goal)
+{
+    int32_t top = 0, furthest = u;
+    k->seen[u] = k->search;
+    k->via[u] = -1;
+    while (u != goal) {
+        top = push_ways(k, l, u, top);
+        do {
+            if (top == 0)
+                return furthest;
+            u = other_end(k, k->stack[--top]);
+        } while (k->seen[u] == k->search);
+        k->seen[u] = k->search;
+        k->via[u] = k->stack[top];
+        if (along(l, check_point(k->c, u)) > along(l, check_point(k->c, furthest)))
+            furthest = u;
+    }
+    return goal;
+}
+
+static void mark(struct chains *k, const struct line *l, int32_t u)
+{
+    int32_t marker = k->c->input->segment_markers != NULL ? k->c->input->segment_markers[l->id] : 0;
+    for (; marker != 0 && k->via[u] >= 0; u = k->c->segments[k->via[u]]) {
+        int32_t *known = &k->marker[k->via[u] >> 1];
+        if (*known == 0)
+            *known = marker;
+    }
+}
+
+static int32_t cell_index(double x, double low, double width, int32_t side)
+{
+    double i = width > 0 ? floor((x - low) / width) : 0;
+    return i < 0 ? 0 : i >= side ? side - 1 : (int32_t)i;
+}
+
+static size_t cell_of(const struct grid *g, struct tri_point p)
+{
+    return (size_t)cell_index(p.x, g->low.x, g->width, g->side) * (size_t)g->side +
+           (size_t)cell_index(p.y, g->low.y, g->height, g->side);
+}
+
+static bool has_subsegment(const struct checker *c, int32_t v)
+{
+    return c->fan_first[v] < c->fan_first[v + 1];
+}
+
+/* Bounding box of the vertices of subsegments; returns how many there are. */
+static int32_t measure(const struct checker *c, struct tri_point *low, struct tri_point *high)
+{
+    int32_t n = 0;
+    *low = (struct tri_point){INFINITY, INFINITY};
+    *high = (struct tri_point){-INFINITY, -INFINITY};
+    for (int32_t v = 0; v < c->mesh->n_points; v++) {
+        if (!has_subsegment(c, v))
+            continue;
+        struct tri_point p = check_point(c, v);
+        *low = (struct tri_point){fmin(low->x, p.x), fmin(low->y, p.y)};
+        *high = (struct tri_point){fmax(high->x, p.x), fmax(high->y, p.y)};
+        n++;
+    }
+    return n;
+}
+
+static enum tri_status make_grid(struct chains *k)
+{
+    const struct checker *c = k->c;
+    struct grid *g = &k->grid;
+    struct tri_point high;
+    int32_t n = measure(c, &g->low, &high);
+    g->side = 1 + (int32_t)fmin(MAX_GRID_SIDE - 1, sqrt(n));
+    g->width = n > 0 ? (high.x - g->low.x) / g->side : 0;
+    g->height = n > 0 ? (high.y - g->low.y) / g->side : 0;
+    size_t n_cells = (size_t)g->side * (size_t)g->side;
+    g->first = check_zeros((int64_t)n_cells + 1, sizeof *g->first);
+    g->vertex = check_array(n, sizeof *g->vertex);
+    if (g->first == NULL || g->vertex == NULL)
+        return TRI_NO_MEMORY;
+    for (int32_t v = 0; v < c->mesh->n_points; v++) {
+        if (has_subsegment(c, v))
+            g->first[cell_of(g, check_point(c, v)) + 1]++;
+    }
+    for (size_t i = 0; i < n_cells; i++)
+        g->first[i + 1] += g->first[i];
+    for (int32_t v = 0; v < c->mesh->n_points; v++) {
+        if (has_subsegment(c, v))
+            g->vertex[g->first[cell_of(g, check_point(c, v))]++] = v;
+    }
+    for (size_t i = n_cells; i > 0; i--)
+        g->first[i] = g->first[i - 1];
+    g->first[0] = 0;
+    return TRI_OK;
+}
+
+static enum tri_status add_stop(struct chains *k, double at, int32_t v)
+{
+    if (k->n_stops == k->stop_capacity) {
+        int32_t capacity = k->stop_capacity + k->stop_capacity / 2 + 16;
+        struct stop *stop = realloc(k->stop, (size_t)capacity * sizeof *stop);
+        if (stop == NULL)
+            return TRI_NO_MEMORY;
+        k->stop = stop;
+        k->stop_capacity = capacity;
+    }
+    k->stop[k->n_stops++] = (struct stop){at, v};
+    return TRI_OK;
+}
+
+static enum tri_status add_stops_of_cell(struct chains *k, const struct line *l, size_t cell)
+{
+    enum tri_status status = TRI_OK;
+    for (int32_t i = k->grid.first[cell]; i < k->grid.first[cell + 1] && status == TRI_OK; i++) {
+        struct tri_point p = check_point(k->c, k->grid.vertex[i]);
+        if (is_on(k, l, p))
+            status = add_stop(k, along(l, p), k->grid.vertex[i]);
+    }
+    return status;
+}
+
+static double clamp(double x, double low, double high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+/* Rows that the line passes in a column of the grid, with a margin for rounding. */
+static void rows_of(const struct chains *k, const struct line *l, int32_t column, int32_t *from, int32_t *to)
+{
+    const struct grid *g = &k->grid;
+    double margin = k->c->tolerance + 1e-9 * g->height, slope = l->dy / l->dx, y[2] = {l->a.y, l->b.y};
+    for (int i = 0; i < 2 && fabs(l->dx) > g->width * 1e-3; i++) {
+        double x = g->low.x + (column + i) * g->width + (2 * i - 1) * (k->c->tolerance + 1e-9 * g->width);
+        y[i] = clamp(l->a.y + (x - l->a.x) * slope, fmin(l->a.y, l->b.y), fmax(l->a.y, l->b.y));
+    }
+    *from = cell_index(fmin(y[0], y[1]) - margin, g->low.y, g->height, g->side);
+    *to = cell_index(fmax(y[0], y[1]) + margin, g->low.y, g->height, g->side);
+}
+
+static int compare_stops(const void *a, const void *b)
+{
+    const struct stop *s = a, *t = b;
+    if (s->at != t->at)
+        return s->at < t->at ? -1 : 1;
+    return (s->vertex > t->vertex) - (s->vertex < t->vertex);
+}
+
+/* Step 2, the vertices on the line. */
+static enum tri_status find_stops(struct chains *k, const struct line *l)
+{
+    const struct grid *g = &k->grid;
+    enum tri_status status = g->side == 0 ? make_grid(k) : TRI_OK;
+    double margin = k->c->tolerance + 1e-9 * g->width;
+    int32_t left = cell_index(fmin(l->a.x, l->b.x) - margin, g->low.x, g->width, g->side);
+    int32_t right = cell_index(fmax(l->a.x, l->b.x) + margin, g->low.x, g->width, g->side);
+    k->n_stops = 0;
+    for (int32_t i = left; i <= right && status == TRI_OK; i++) {
+        int32_t from, to;
+        rows_of(k, l, i, &from, &to);
+        for (int32_t j = from; j <= to && status == TRI_OK; j++) {
+            status = add_stops_of_cell(k, l, (size_t)i * (size_t)g->side + (size_t)j);
+        }
+    }
+    if (status == TRI_OK && k->n_stops > 1)
+        qsort(k->stop, (size_t)k->n_stops, sizeof *k->stop, compare_stops);
+    return status;
+}
+
+/* Step 3. Pieces as short as the tolerance are beneath notice. */
+static enum tri_status ask_about(struct chains *k, const struct line *l, double from, double to)
+{
+    enum tri_status status = TRI_OK;
+    if (to - from <= 4 * k->c->tolerance)
+        return TRI_OK;
+    for (int i = 1; i <= 3 && status == TRI_OK; i++) {
+        double s = (from + (to - from) * i / 4) / l->length;
+        struct tri_point p = {l->a.x + s * l->dx, l->a.y + s * l->dy};
+        status = check_ask(k->c, p, TRI_CHECK_INPUT_SEGMENTS, l->id);
+    }
+    return status;
+}
+
+/* Steps 2 and 3. */
+static enum tri_status cover(struct chains *k, const struct line *l)
+{
+    enum tri_status status = find_stops(k, l);
+    double covered = 0;
+    k->search++;
+    for (int32_t i = 0; i < k->n_stops && status == TRI_OK; i++) {
+        struct stop s = k->stop[i];
+        if (s.at < covered || k->seen[s.vertex] == k->search)
+            continue;
+        status = ask_about(k, l, covered, s.at);
+        int32_t end = follow(k, l, s.vertex, TRI_NONE);
+        mark(k, l, end);
+        covered = along(l, check_point(k->c, end));
+    }
+    return status == TRI_OK ? ask_about(k, l, covered, l->length) : status;
+}
+
+static enum tri_status check_line(struct chains *k, int32_t id)
+{
+    const struct tri_pslg *input = k->c->input;
+    int32_t a = input->segments[2 * (size_t)id], b = input->segments[2 * (size_t)id + 1];
+    if (a < 0 || a >= input->n_points || b < 0 || b >= input->n_points)
+        return TRI_OK; /* skipped by the mesher, too */
+    const double *p = input->points + 2 * (size_t)a, *q = input->points + 2 * (size_t)b;
+    struct line l = {id, {p[0], p[1]}, {q[0], q[1]}, q[0] - p[0], q[1] - p[1], hypot(q[0] - p[0], q[1] - p[1])};
+    if (!(l.length > 0) || !isfinite(l.length))
+        return TRI_OK;
+    int32_t from = k->c->twin[a], to = k->c->twin[b];
+    k->search++;
+    if (from >= 0 && to >= 0 && follow(k, &l, from, to) == to) {
+        mark(k, &l, to);
+        return TRI_OK;
+    }
+    return cover(k, &l);
+}
+
+static void check_markers(struct chains *k)
+{
+    struct checker *c = k->c;
+    check_begin(c, TRI_CHECK_MARKERS);
+    for (int32_t s = 0; s < c->n_segments; s++) {
+        int32_t a = c->segments[2 * (size_t)s], b = c->segments[2 * (size_t)s + 1], n = c->mesh->n_points;
+        if (a < 0 || a >= n || b < 0 || b >= n)
+            continue;
+        struct check_edge e = check_find_edge(c, a, b);
+        bool boundary = e.there < 0 || e.back < 0;
+        int32_t expected = k->marker[s] != 0 ? k->marker[s] : boundary;
+        if (c->mesh->segment_markers[s] == expected)
+            continue;
+        check_fault(c, TRI_CHECK_MARKERS, "subsegment %ld (%ld-%ld) has marker %ld, expected %ld", check_number(c, s),
+                    check_number(c, a), check_number(c, b), (long)c->mesh->segment_markers[s], (long)expected);
+    }
+}
+
+enum tri_status check_chains(struct checker *c)
+{
+    struct chains k = {.c = c};
+    k.seen = check_zeros(c->mesh->n_points, sizeof *k.seen);
+    k.via = check_array(c->mesh->n_points, sizeof *k.via);
+    k.stack = check_array(2 * (int64_t)c->n_segments, sizeof *k.stack);
+    k.marker = check_zeros(c->n_segments, sizeof *k.marker);
+    enum tri_status status = TRI_OK;
+    if (k.seen == NULL || k.via == NULL || k.stack == NULL || k.marker == NULL)
+        status = TRI_NO_MEMORY;
+    for (int32_t id = 0; id < c->input->n_segments && status == TRI_OK; id++)
+        status = check_line(&k, id);
+    if (status == TRI_OK && c->mesh->segment_markers != NULL)
+        check_markers(&k);
+    free(k.seen);
+    free(k.via);
+    free(k.stack);
+    free(k.marker);
+    free(k.stop);
+    free(k.grid.first);
+    free(k.grid.vertex);
+    return status;
+}

@@ -1,0 +1,158 @@
+/* What the files check_*.c share: the trial in progress. Private to them.
+ *
+ * A half-edge is named 3 * t + k: the edge of triangle t opposite its corner k, directed so that t lies on its left. A corner
+ * has the same name. */
+#ifndef TRIANGLE_CHECK_INTERNAL_H
+#define TRIANGLE_CHECK_INTERNAL_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "triangle/check.h"
+#include "triangle/mesh.h" /* struct tri_point only */
+#include "triangle/predicates.h"
+
+/* A point whose place, inside or outside the mesh, the sweep is to find out. */
+struct check_query {
+    struct tri_point at;
+    enum tri_check_kind kind; /* fault to report if it is inside */
+    int32_t id;               /* vertex, input segment or hole */
+    bool inside;              /* the sweep's answer: strictly inside the mesh's area */
+};
+
+/* A corner in the list of its vertex. */
+struct check_corner {
+    int32_t name;       /* 3 * t + k */
+    int32_t next, prev; /* vertices at the other corners of t, counter-clockwise */
+};
+
+/* The half-edges between two vertices a and b. */
+struct check_edge {
+    int32_t there, back; /* one from a to b, and from b to a; -1: none */
+    int n_there, n_back; /* how many there are */
+};
+
+struct checker {
+    const struct tri_check_mesh *mesh;
+    const struct tri_pslg *input; /* or NULL */
+    const struct tri_check_options *options;
+    struct tri_check_report *report;
+    int32_t n_half_edges; /* 3 * n_triangles */
+
+    /* check_scale.c */
+    int exponent; /* the coordinates seen are the given ones times 2^exponent */
+    struct tri_check_mesh scaled_mesh;
+    struct tri_pslg scaled_input;
+    double *scaled[3]; /* their points, the input's, its hole points; NULL: not scaled */
+
+    /* check_edges.c */
+    int32_t *first;              /* [n_points + 1] into corner */
+    struct check_corner *corner; /* [n_half_edges] grouped by vertex */
+    int32_t *link;               /* [n_half_edges] the same edge in the neighbour; -1: boundary */
+
+    /* check_segments.c; these are the listed subsegments, or where none are given the boundary edges */
+    int32_t n_segments;
+    const int32_t *segments; /* [n_segments][2] */
+    int32_t *own_segments;   /* segments, if made here */
+    uint8_t *constrained;    /* [n_half_edges] bits */
+    int32_t *fan_first;      /* [n_points + 1] into fan */
+    int32_t *fan; /* [2 * n_segments] 2 * s + end: subsegments, grouped by vertex, which is their given end */
+
+    /* check_input.c */
+    int32_t *twin;    /* [input->n_points] used vertex at the place of an input point, -1: none */
+    double tolerance; /* distance; see TRI_CHECK_ULPS */
+
+    struct check_query *queries; /* for the sweep */
+    int32_t n_queries, query_capacity;
+};
+
+enum tri_status check_edges(struct checker *c);       /* needs ARRAYS: pairs the half-edges, compares neighbours */
+enum tri_status check_stars(struct checker *c);       /* needs EDGES, ORIENTATION */
+enum tri_status check_overlap(struct checker *c);     /* needs the same; answers the queries */
+void check_hull(struct checker *c);                   /* needs OVERLAP */
+enum tri_status check_subsegments(struct checker *c); /* needs EDGES; fills the fields above */
+void check_delaunay(struct checker *c);               /* needs EDGES, ORIENTATION, subsegments */
+enum tri_status check_input(struct checker *c);       /* needs ARRAYS, subsegments; adds queries */
+void check_answers(struct checker *c);                /* after check_overlap has found nothing: judges the answers */
+enum tri_status check_quality(struct checker *c);     /* needs EDGES, subsegments */
+
+/* Where the mesh is out of the range of exact arithmetic, puts copies of mesh and input in its place whose coordinates are
+ * multiplied by a power of two; nothing else sees the originals. */
+enum tri_status check_scale(struct checker *c);
+
+/* Notes that the kind has been looked at; it stays good until a fault is reported. */
+void check_begin(struct checker *c, enum tri_check_kind kind);
+/* Counts a fault and keeps the text of the first one. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+void check_fault(struct checker *c, enum tri_check_kind kind, const char *format, ...);
+enum tri_status check_ask(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id);
+
+/* O(smaller number of triangles at a and b). */
+struct check_edge check_find_edge(const struct checker *c, int32_t a, int32_t b);
+
+/* n * size bytes, never a null pointer for n = 0. */
+void *check_array(int64_t n, size_t size);
+void *check_zeros(int64_t n, size_t size);
+
+static inline bool check_good(const struct checker *c, enum tri_check_kind kind)
+{
+    return c->report->item[kind].state == TRI_CHECK_OK;
+}
+
+static inline int32_t check_next(int32_t corner)
+{
+    return corner % 3 == 2 ? corner - 2 : corner + 1;
+}
+static inline int32_t check_prev(int32_t corner)
+{
+    return corner % 3 == 0 ? corner + 2 : corner - 1;
+}
+static inline int32_t check_org(const struct checker *c, int32_t half_edge)
+{
+    return c->mesh->triangles[check_next(half_edge)];
+}
+static inline int32_t check_dest(const struct checker *c, int32_t half_edge)
+{
+    return c->mesh->triangles[check_prev(half_edge)];
+}
+static inline int32_t check_apex(const struct checker *c, int32_t half_edge)
+{
+    return c->mesh->triangles[half_edge];
+}
+
+static inline struct tri_point check_point(const struct checker *c, int32_t v)
+{
+    const double *p = c->mesh->points + 2 * (size_t)v;
+    return (struct tri_point){p[0], p[1]};
+}
+static inline bool check_is_used(const struct checker *c, int32_t v)
+{
+    return c->first[v] < c->first[v + 1];
+}
+static inline bool check_same_place(struct tri_point p, struct tri_point q)
+{
+    return p.x == q.x && p.y == q.y;
+}
+
+static inline bool check_is_constrained(const struct checker *c, int32_t half_edge)
+{
+    return c->constrained[half_edge >> 3] >> (half_edge & 7) & 1;
+}
+
+/* A coordinate as it was given. */
+static inline double check_given(const struct checker *c, double x)
+{
+    return ldexp(x, -c->exponent);
+}
+
+/* Number that the report's texts use for vertex or triangle i. */
+static inline long check_number(const struct checker *c, int32_t i)
+{
+    return (long)i + c->options->base;
+}
+
+#endif

@@ -1,0 +1,452 @@
+/* Segment recovery by edge flips (Sloan 1993), then Lawson flips to the constrained Delaunay triangulation.
+ *
+ * A segment a -> b is laid piece by piece. From a the walk along the segment meets first either an edge that lies on it, a
+ * vertex on it, a subsegment across it, or b. What is met becomes the end of the piece; a subsegment across it is split
+ * first, at the crossing. So the channel of a piece holds neither vertices nor subsegments, and flips can clear it.
+ *
+ * INVARIANT: between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v] is a
+ * live triangle at v (TRI_NONE for points that are in no triangle). */
+#include "triangle/constrain.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "triangle/cavity.h"
+#include "triangle/interpolate.h"
+#include "triangle/predicates.h"
+
+enum { MAX_PIECES = 1 << 20, MAX_PASSES = 10000 };
+
+struct piece {
+    int32_t from, to;
+};
+
+struct layer {
+    struct tri_mesh *mesh;
+    struct tri_cavity cavity;
+    int32_t *corner; /* [vertex_capacity] */
+    int32_t corner_capacity;
+    struct piece *piece; /* stack of what remains of the current segment */
+    int32_t n_pieces, piece_capacity;
+    int32_t *touched; /* stack of edge codes to test for the Delaunay property */
+    int32_t n_touched, touched_capacity;
+    int32_t segment, marker;
+    struct tri_constrain_report *report;
+    struct tri_error *error;
+};
+
+/* The walk along a segment: the edge of triangle t that crosses it, between right (clockwise side) and left. */
+struct crossing {
+    int32_t t;
+    int e;
+};
+
+static enum tri_status no_memory(struct layer *l)
+{
+    return tri_fail(l->error, TRI_NO_MEMORY, NULL, 0, "out of memory for segment %d", (int)l->segment);
+}
+
+static bool reserve(void *array, int32_t *capacity, int32_t need, size_t item)
+{
+    if (need <= *capacity)
+        return true;
+    int32_t wanted = need + need / 2 + 64;
+    void **slot = array;
+    void *fresh = realloc(*slot, (size_t)wanted * item);
+    if (!fresh)
+        return false;
+    *slot = fresh;
+    *capacity = wanted;
+    return true;
+}
+
+static bool push_piece(struct layer *l, int32_t from, int32_t to)
+{
+    void *array = l->piece;
+    bool room = reserve(&array, &l->piece_capacity, l->n_pieces + 1, sizeof *l->piece);
+    l->piece = array;
+    if (room)
+        l->piece[l->n_pieces++] = (struct piece){from, to};
+    return room;
+}
+
+static bool touch(struct layer *l, int32_t t)
+{
+    void *array = l->touched;
+    bool room = reserve(&array, &l->touched_capacity, l->n_touched + 3, sizeof *l->touched);
+    l->touched = array;
+    for (int e = 0; room && e < 3; e++)
+        l->touched[l->n_touched++] = tri_code(t, e);
+    return room;
+}
+
+static int corner_of(const struct tri_triangle *t, int32_t v) { return t->v[0] == v ? 0 : t->v[1] == v ? 1 : 2; }
+
+/* The triangle on the other side of edge e of t, be it a subsegment or not; TRI_NONE outside. */
+static int32_t across(const struct tri_mesh *mesh, int32_t t, int e)
+{
+    int32_t link = mesh->tri[t].n[e];
+    if (link >= 0)
+        return link;
+    const struct tri_subsegment *s = &mesh->sub[~link];
+    return s->side[1 - tri_side(s, mesh->tri[t].v[tri_next[e]])];
+}
+
+/* The next triangle around v, counter-clockwise or clockwise; TRI_NONE at the boundary. */
+static int32_t turn(const struct tri_mesh *mesh, int32_t t, int32_t v, bool left)
+{
+    int k = corner_of(&mesh->tri[t], v);
+    int32_t code = across(mesh, t, left ? tri_next[k] : tri_prev[k]);
+    return code == TRI_NONE ? TRI_NONE : tri_of(code);
+}
+
+/* Does the ray from a (corner k of t) to q leave through t: right edge included, left edge not? */
+static bool leaves_through(const struct tri_mesh *mesh, int32_t t, int k, struct tri_point q)
+{
+    const struct tri_triangle *at = &mesh->tri[t];
+    struct tri_point a = mesh->xy[at->v[k]], right = mesh->xy[at->v[tri_next[k]]], left = mesh->xy[at->v[tri_prev[k]]];
+    double r = tri_orient2d(a, right, q), s = tri_orient2d(a, left, q);
+    if (r == 0) /* on the line of the right edge: ahead, not behind? */
+        return (right.x - a.x) * (q.x - a.x) + (right.y - a.y) * (q.y - a.y) > 0;
+    return r > 0 && s < 0;
+}
+
+static bool along_left(const struct tri_mesh *mesh, int32_t t, int k, struct tri_point q)
+{
+    const struct tri_triangle *at = &mesh->tri[t];
+    struct tri_point a = mesh->xy[at->v[k]], left = mesh->xy[at->v[tri_prev[k]]];
+    return tri_orient2d(a, left, q) == 0 && (left.x - a.x) * (q.x - a.x) + (left.y - a.y) * (q.y - a.y) > 0;
+}
+
+/* The triangle at vertex a through which the ray to q leaves; its left edge counts only where nothing lies beyond it.
+ * Remembered as a's corner, so that the spokes of a fan in order cost O(1) each. */
+static int32_t find_exit(struct layer *l, int32_t a, struct tri_point q)
+{
+    const struct tri_mesh *mesh = l->mesh;
+    int32_t start = l->corner[a], t = start;
+    for (int way = 1; way >= 0; way--) {
+        for (t = start; t != TRI_NONE;) {
+            int k = corner_of(&mesh->tri[t], a);
+            if (leaves_through(mesh, t, k, q) || along_left(mesh, t, k, q))
+                return l->corner[a] = t;
+            t = turn(mesh, t, a, way);
+            if (t == start)
+                return TRI_NONE;
+        }
+    }
+    return TRI_NONE;
+}
+
+static bool mark_edge(struct layer *l, int32_t t, int e)
+{
+    struct tri_mesh *mesh = l->mesh;
+    int32_t link = mesh->tri[t].n[e], from = mesh->tri[t].v[tri_next[e]], to = mesh->tri[t].v[tri_prev[e]];
+    if (link < 0) {
+        struct tri_subsegment *s = &mesh->sub[~link];
+        if (mesh->parents[s->parent].segment == TRI_NONE)
+            mesh->parents[s->parent].segment = l->segment;
+        if (s->marker == 0)
+            s->marker = l->marker;
+        return true;
+    }
+    if (tri_mesh_reserve_subs(mesh, 1, l->error))
+        return false;
+    int32_t s = tri_mesh_add_sub(mesh, from, to, l->marker, l->segment);
+    mesh->sub[s].side[0] = tri_code(t, e);
+    mesh->sub[s].side[1] = link;
+    mesh->tri[t].n[e] = ~s;
+    mesh->tri[tri_of(link)].n[tri_edge(link)] = ~s;
+    return true;
+}
+
+/* Flips edge e of t, whose quadrilateral is strictly convex. Near apex n, right r, far apex o, left s: t becomes (n, r, o),
+ * the neighbour (n, o, s). Returns the neighbour. */
+static int32_t flip(struct layer *l, int32_t t, int e)
+{
+    struct tri_mesh *mesh = l->mesh;
+    struct tri_triangle *near = &mesh->tri[t];
+    int32_t u = tri_of(near->n[e]);
+    int f = tri_edge(near->n[e]);
+    struct tri_triangle *far = &mesh->tri[u];
+    int32_t n = near->v[e], r = near->v[tri_next[e]], s = near->v[tri_prev[e]], o = far->v[f];
+    int32_t nr = near->n[tri_prev[e]], sn = near->n[tri_next[e]], ro = far->n[tri_next[f]], os = far->n[tri_prev[f]];
+    near->v[0] = n, near->v[1] = r, near->v[2] = o;
+    near->n[0] = ro, near->n[1] = tri_code(u, 2), near->n[2] = nr;
+    far->v[0] = n, far->v[1] = o, far->v[2] = s;
+    far->n[0] = os, far->n[1] = sn, far->n[2] = tri_code(t, 1);
+    tri_relink(mesh, ro, r, tri_code(t, 0));
+    tri_relink(mesh, nr, n, tri_code(t, 2));
+    tri_relink(mesh, os, o, tri_code(u, 0));
+    tri_relink(mesh, sn, s, tri_code(u, 1));
+    l->corner[n] = l->corner[r] = l->corner[o] = t;
+    l->corner[s] = u;
+    return u;
+}
+
+static bool is_convex(const struct tri_mesh *mesh, int32_t t, int e)
+{
+    const struct tri_triangle *near = &mesh->tri[t];
+    struct tri_point n = mesh->xy[near->v[e]], r = mesh->xy[near->v[tri_next[e]]], s = mesh->xy[near->v[tri_prev[e]]];
+    struct tri_point o = mesh->xy[mesh->tri[tri_of(near->n[e])].v[tri_edge(near->n[e])]];
+    return tri_orient2d(n, r, o) > 0 && tri_orient2d(n, o, s) > 0;
+}
+
+/* Lawson: flips what is not Delaunay until everything touched is. */
+static bool legalise(struct layer *l)
+{
+    struct tri_mesh *mesh = l->mesh;
+    while (l->n_touched > 0) {
+        int32_t code = l->touched[--l->n_touched], t = tri_of(code);
+        int e = tri_edge(code);
+        int32_t link = mesh->tri[t].n[e];
+        if (link < 0)
+            continue;
+        const int32_t *v = mesh->tri[t].v;
+        int32_t apex = mesh->tri[tri_of(link)].v[tri_edge(link)];
+        if (!tri_in_circle(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]], mesh->xy[apex]) || !is_convex(mesh, t, e))
+            continue;
+        int32_t u = flip(l, t, e);
+        if (!touch(l, t) || !touch(l, u))
+            return false;
+    }
+    return true;
+}
+
+/* One walk through the channel from a to b that flips every crossing edge it can. Returns 1 once edge ab exists, 0 if not yet,
+ * -1 where memory ran out. */
+static int clear_pass(struct layer *l, int32_t a, int32_t b)
+{
+    struct tri_mesh *mesh = l->mesh;
+    struct tri_point pa = mesh->xy[a], pb = mesh->xy[b];
+    int32_t t = find_exit(l, a, pb);
+    int e = corner_of(&mesh->tri[t], a);
+    if (mesh->tri[t].v[tri_next[e]] == b || mesh->tri[t].v[tri_prev[e]] == b)
+        return 1;
+    for (;;) {
+        int32_t n = mesh->tri[t].v[e], u = tri_of(mesh->tri[t].n[e]);
+        int f = tri_edge(mesh->tri[t].n[e]);
+        int32_t o = mesh->tri[u].v[f];
+        double side = o == b ? 0 : tri_orient2d(pa, pb, mesh->xy[o]);
+        if (is_convex(mesh, t, e)) {
+            u = flip(l, t, e);
+            if (!touch(l, t) || !touch(l, u))
+                return -1;
+            if (n == a && o == b)
+                return 1;
+            if (o == b)
+                return 0;
+            t = side > 0 ? t : u;
+            e = 0;
+        } else {
+            if (o == b)
+                return 0;
+            t = u;
+            e = side > 0 ? tri_next[f] : tri_prev[f]; /* the edge from right to o, or from o to left */
+        }
+    }
+}
+
+static int clear_channel(struct layer *l, int32_t a, int32_t b)
+{
+    for (int pass = 0; pass < MAX_PASSES; pass++) {
+        int done = clear_pass(l, a, b);
+        if (done)
+            return done;
+    }
+    return 0;
+}
+
+/* Makes the edge ab a subsegment after its channel is clear. */
+static bool mark_piece(struct layer *l, int32_t a, int32_t b)
+{
+    int32_t t = find_exit(l, a, l->mesh->xy[b]);
+    int k = corner_of(&l->mesh->tri[t], a);
+    bool right = l->mesh->tri[t].v[tri_next[k]] == b;
+    assert(right || l->mesh->tri[t].v[tri_prev[k]] == b);
+    return mark_edge(l, t, right ? tri_prev[k] : tri_next[k]);
+}
+
+static bool keep_corners(struct layer *l, int32_t v)
+{
+    void *array = l->corner;
+    bool room = reserve(&array, &l->corner_capacity, l->mesh->n_vertices, sizeof *l->corner);
+    l->corner = array;
+    if (!room)
+        return false;
+    for (int32_t i = 0; i < l->cavity.n_rim; i++) {
+        const struct tri_triangle *t = &l->mesh->tri[l->cavity.rim[i].slot];
+        for (int k = 0; k < 3; k++)
+            l->corner[t->v[k]] = l->cavity.rim[i].slot;
+    }
+    return l->corner[v] != TRI_NONE;
+}
+
+/* Where segment a -> b crosses subsegment s, as a fraction of s from its start. */
+static double crossing_fraction(const struct tri_mesh *mesh, struct tri_point a, struct tri_point b, int32_t s)
+{
+    double from = fabs(tri_orient2d(a, b, mesh->xy[mesh->sub[s].v[0]]));
+    double to = fabs(tri_orient2d(a, b, mesh->xy[mesh->sub[s].v[1]]));
+    return from / (from + to);
+}
+
+/* Splits subsegment s where a -> b crosses it. *end receives the new vertex or, where there is no room for one between
+ * existing vertices, the nearer end of s. */
+static enum tri_status cut(struct layer *l, int32_t a, int32_t b, int32_t s, int32_t *end)
+{
+    struct tri_mesh *mesh = l->mesh;
+    int32_t from = mesh->sub[s].v[0], to = mesh->sub[s].v[1], n_left;
+    double fraction = crossing_fraction(mesh, mesh->xy[a], mesh->xy[b], s);
+    struct tri_point c = mesh->xy[from], d = mesh->xy[to];
+    struct tri_point p = {c.x + fraction * (d.x - c.x), c.y + fraction * (d.y - c.y)};
+    enum tri_search found = tri_cavity_search_split(&l->cavity, mesh, p, s, &n_left);
+    if (found == TRI_SEARCH_NO_MEMORY)
+        return no_memory(l);
+    if (found != TRI_SEARCH_FOUND) {
+        l->report->bent++;
+        *end = fraction < 0.5 ? from : to;
+        return TRI_OK;
+    }
+    enum tri_status status = tri_mesh_reserve_vertices(mesh, 1, l->error);
+    status = status ? status : tri_mesh_reserve_triangles(mesh, 2, l->error);
+    status = status ? status : tri_mesh_reserve_subs(mesh, 1, l->error);
+    if (status)
+        return status;
+    int32_t v = mesh->n_vertices++;
+    mesh->xy[v] = p;
+    mesh->on[v] = TRI_VERTEX_INPUT;
+    mesh->vertex_markers[v] = mesh->sub[s].marker;
+    tri_interpolate_edge(mesh, from, to, fraction, v);
+    tri_cavity_fill_split(&l->cavity, mesh, v, s, n_left);
+    l->report->crossings++;
+    *end = v;
+    return keep_corners(l, v) ? TRI_OK : no_memory(l);
+}
+
+/* What the segment a -> b meets first: sets *end to the vertex that ends the first piece, *clear to false where a subsegment
+ * lies across, with *s that subsegment. Vertices on the segment end a piece. */
+static void look_ahead(struct layer *l, int32_t a, int32_t b, int32_t *end, int32_t *s)
+{
+    const struct tri_mesh *mesh = l->mesh;
+    struct tri_point pa = mesh->xy[a], pb = mesh->xy[b];
+    int32_t t = find_exit(l, a, pb);
+    *s = TRI_NONE;
+    *end = TRI_NONE;
+    if (t == TRI_NONE)
+        return;
+    int e = corner_of(&mesh->tri[t], a);
+    int32_t right = mesh->tri[t].v[tri_next[e]], left = mesh->tri[t].v[tri_prev[e]];
+    if (tri_orient2d(pa, mesh->xy[right], pb) == 0 || tri_orient2d(pa, mesh->xy[left], pb) == 0) {
+        *end = tri_orient2d(pa, mesh->xy[right], pb) == 0 ? right : left;
+        return;
+    }
+    for (;;) {
+        int32_t link = mesh->tri[t].n[e];
+        if (link < 0) {
+            *s = ~link;
+            return;
+        }
+        t = tri_of(link);
+        e = tri_edge(link);
+        int32_t o = mesh->tri[t].v[e];
+        double side = o == b ? 0 : tri_orient2d(pa, pb, mesh->xy[o]);
+        if (side == 0) {
+            *end = o;
+            return;
+        }
+        e = side > 0 ? tri_next[e] : tri_prev[e];
+    }
+}
+
+/* Lays the first piece of a -> b and puts the rest back on the stack. */
+static enum tri_status lay_piece(struct layer *l, int32_t a, int32_t b)
+{
+    int32_t end, s;
+    look_ahead(l, a, b, &end, &s);
+    if (s != TRI_NONE) {
+        enum tri_status status = cut(l, a, b, s, &end);
+        if (status)
+            return status;
+        /* The rest first: the stack hands out the piece from a next. */
+        bool room = (end == b || push_piece(l, end, b)) && (end == a || push_piece(l, a, end));
+        return room ? TRI_OK : no_memory(l);
+    }
+    if (end == TRI_NONE) {
+        l->report->lost++;
+        return TRI_OK;
+    }
+    int cleared = clear_channel(l, a, end);
+    if (cleared < 0)
+        return no_memory(l);
+    if (cleared == 0)
+        l->report->lost++;
+    if ((cleared && !mark_piece(l, a, end)) || !legalise(l) || (end != b && !push_piece(l, end, b)))
+        return no_memory(l);
+    return TRI_OK;
+}
+
+static enum tri_status lay_segment(struct layer *l, int32_t a, int32_t b)
+{
+    l->n_pieces = 0;
+    if (!push_piece(l, a, b))
+        return no_memory(l);
+    for (int32_t n = 0; l->n_pieces > 0; n++) {
+        struct piece next = l->piece[--l->n_pieces];
+        if (n >= MAX_PIECES) {
+            l->report->lost += l->n_pieces + 1;
+            break;
+        }
+        if (next.from == next.to || l->corner[next.from] == TRI_NONE || l->corner[next.to] == TRI_NONE)
+            continue;
+        enum tri_status status = lay_piece(l, next.from, next.to);
+        if (status)
+            return status;
+    }
+    return TRI_OK;
+}
+
+static enum tri_status lay_all(struct layer *l, const struct tri_pslg *pslg)
+{
+    const int32_t *twin = l->mesh->twin;
+    for (int32_t k = 0; k < pslg->n_segments; k++) {
+        int32_t a = pslg->segments[2 * k], b = pslg->segments[2 * k + 1];
+        bool valid = a >= 0 && a < pslg->n_points && b >= 0 && b < pslg->n_points;
+        if (valid && twin) {
+            a = twin[a];
+            b = twin[b];
+        }
+        if (!valid || a == b) {
+            l->report->skipped++;
+            continue;
+        }
+        l->segment = k;
+        l->marker = pslg->segment_markers ? pslg->segment_markers[k] : 0;
+        enum tri_status status = lay_segment(l, a, b);
+        if (status)
+            return status;
+    }
+    return TRI_OK;
+}
+
+enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_constrain_report *report,
+                              struct tri_error *error)
+{
+    struct layer l = {.mesh = mesh, .report = report, .error = error};
+    *report = (struct tri_constrain_report){0};
+    l.corner_capacity = mesh->n_vertices + 64;
+    l.corner = malloc((size_t)l.corner_capacity * sizeof *l.corner);
+    enum tri_status status = l.corner ? TRI_OK : no_memory(&l);
+    if (!status) {
+        for (int32_t v = 0; v < mesh->n_vertices; v++)
+            l.corner[v] = TRI_NONE;
+        for (int32_t t = 0; t < mesh->n_slots; t++)
+            for (int k = 0; k < 3; k++)
+                l.corner[mesh->tri[t].v[k]] = t;
+        status = lay_all(&l, pslg);
+    }
+    tri_cavity_free(&l.cavity);
+    free(l.corner);
+    free(l.piece);
+    free(l.touched);
+    return status;
+}

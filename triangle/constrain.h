@@ -1,0 +1,21 @@
+/* Segments into a Delaunay triangulation: the constrained Delaunay triangulation of a PSLG. */
+#ifndef TRIANGLE_CONSTRAIN_H
+#define TRIANGLE_CONSTRAIN_H
+
+#include "triangle/mesh.h"
+
+struct tri_constrain_report {
+    int32_t crossings; /* vertices made where segments cross */
+    int32_t bent;      /* times a crossing was too near to a vertex for a vertex of its own: the segment runs through that one */
+    int32_t lost;      /* pieces of segments that could not be made part of the mesh (precision) */
+    int32_t skipped;   /* segments with an end outside the points, or two equal ends */
+};
+
+/* Makes every segment of the PSLG (whose points are the mesh's first vertices) a chain of subsegments. Vertices on a segment
+ * split it; crossing segments are cut at a new vertex, which takes marker and interpolated attributes of the segment that came
+ * first; where segments overlap the first non-zero marker wins. The result is constrained Delaunay, ties broken by coordinates.
+ * Expected near O(crossed edges) per segment. */
+enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_constrain_report *report,
+                              struct tri_error *error);
+
+#endif

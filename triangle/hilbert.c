@@ -1,0 +1,129 @@
+/* Hilbert keys, and a radix sort by them.
+ *
+ * The key walks down the quadtree from the largest cell; a state of four orientations says how the curve runs through the
+ * four quadrants (table below). Three levels would fit one step of a bigger table; the sort costs more than the keys. */
+#include "triangle/hilbert.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BITS = 31, DIGIT = 11, BUCKETS = 1 << DIGIT };
+
+struct keyed {
+    uint64_t key;
+    int32_t index;
+};
+
+/* [orientation][2 * x bit + y bit]: rank of the quadrant on the curve, and the orientation inside it. */
+static const uint8_t rank_of[4][4] = {{0, 1, 3, 2}, {0, 3, 1, 2}, {2, 3, 1, 0}, {2, 1, 3, 0}};
+static const uint8_t next_of[4][4] = {{1, 0, 3, 0}, {0, 2, 1, 1}, {2, 1, 2, 3}, {3, 3, 0, 2}};
+
+uint64_t tri_hilbert(uint32_t x, uint32_t y)
+{
+    uint64_t key = 0;
+    unsigned orientation = 0;
+    for (int bit = BITS - 1; bit >= 0; bit--) {
+        unsigned quadrant = 2 * (x >> bit & 1) + (y >> bit & 1);
+        key = key << 2 | rank_of[orientation][quadrant];
+        orientation = next_of[orientation][quadrant];
+    }
+    return key;
+}
+
+static void key_points(const struct tri_point *xy, int32_t n, struct keyed *out)
+{
+    struct tri_point low = xy[0], high = xy[0];
+    for (int32_t i = 1; i < n; i++) {
+        low.x = xy[i].x < low.x ? xy[i].x : low.x;
+        low.y = xy[i].y < low.y ? xy[i].y : low.y;
+        high.x = xy[i].x > high.x ? xy[i].x : high.x;
+        high.y = xy[i].y > high.y ? xy[i].y : high.y;
+    }
+    double side = high.x - low.x > high.y - low.y ? high.x - low.x : high.y - low.y;
+    double scale = side > 0 ? (double)((UINT32_C(1) << BITS) - 1) / side : 0;
+    for (int32_t i = 0; i < n; i++)
+        out[i] = (struct keyed){tri_hilbert((uint32_t)((xy[i].x - low.x) * scale), (uint32_t)((xy[i].y - low.y) * scale)), i};
+}
+
+/* One stable pass; returns false, with nothing moved, where all keys agree in this digit. */
+static bool radix_pass(const struct keyed *from, struct keyed *to, int32_t n, int shift)
+{
+    int32_t start[BUCKETS] = {0}, sum = 0;
+    for (int32_t i = 0; i < n; i++)
+        start[from[i].key >> shift & (BUCKETS - 1)]++;
+    if (start[from[0].key >> shift & (BUCKETS - 1)] == n)
+        return false;
+    for (int b = 0; b < BUCKETS; b++) {
+        int32_t count = start[b];
+        start[b] = sum;
+        sum += count;
+    }
+    for (int32_t i = 0; i < n; i++)
+        to[start[from[i].key >> shift & (BUCKETS - 1)]++] = from[i];
+    return true;
+}
+
+/* A point with its index, to order the points of one cell. */
+struct placed {
+    struct tri_point q;
+    int32_t index;
+};
+
+static int compare_placed(const void *left, const void *right)
+{
+    const struct placed *a = left, *b = right;
+    if (a->q.x != b->q.x)
+        return a->q.x < b->q.x ? -1 : 1;
+    if (a->q.y != b->q.y)
+        return a->q.y < b->q.y ? -1 : 1;
+    return (a->index > b->index) - (a->index < b->index);
+}
+
+static bool order_cell(const struct tri_point *xy, int32_t *order, int32_t n)
+{
+    struct placed *cell = malloc((size_t)n * sizeof *cell);
+    if (!cell)
+        return false;
+    for (int32_t i = 0; i < n; i++)
+        cell[i] = (struct placed){xy[order[i]], order[i]};
+    qsort(cell, (size_t)n, sizeof *cell, compare_placed);
+    for (int32_t i = 0; i < n; i++)
+        order[i] = cell[i].index;
+    free(cell);
+    return true;
+}
+
+static bool emit_order(const struct tri_point *xy, const struct keyed *sorted, int32_t n, int32_t *order)
+{
+    for (int32_t i = 0; i < n; i++)
+        order[i] = sorted[i].index;
+    for (int32_t first = 0, end; first < n; first = end) {
+        for (end = first + 1; end < n && sorted[end].key == sorted[first].key;)
+            end++;
+        if (end - first > 1 && !order_cell(xy, order + first, end - first))
+            return false;
+    }
+    return true;
+}
+
+enum tri_status tri_hilbert_order(const struct tri_point *xy, int32_t n, int32_t *order, struct tri_error *error)
+{
+    if (n == 0)
+        return TRI_OK;
+    struct keyed *from = malloc((size_t)n * sizeof *from), *to = malloc((size_t)n * sizeof *to);
+    bool done = from && to;
+    if (done) {
+        key_points(xy, n, from);
+        for (int shift = 0; shift < 2 * BITS; shift += DIGIT)
+            if (radix_pass(from, to, n, shift)) {
+                struct keyed *swap = from;
+                from = to;
+                to = swap;
+            }
+        done = emit_order(xy, from, n, order);
+    }
+    free(from);
+    free(to);
+    return done ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sorting %d points", (int)n);
+}

@@ -1,0 +1,30 @@
+/* Linear interpolation of vertex attributes along an edge and over a triangle. */
+#include "triangle/interpolate.h"
+
+static double *attributes_of(const struct tri_mesh *mesh, int32_t v)
+{
+    return mesh->attributes + (size_t)v * (size_t)mesh->n_attributes;
+}
+
+void tri_interpolate_edge(struct tri_mesh *mesh, int32_t a, int32_t b, double fraction, int32_t to_vertex)
+{
+    for (int32_t k = 0; k < mesh->n_attributes; k++) {
+        double from = attributes_of(mesh, a)[k], to = attributes_of(mesh, b)[k];
+        attributes_of(mesh, to_vertex)[k] = from + fraction * (to - from);
+    }
+}
+
+void tri_interpolate_triangle(struct tri_mesh *mesh, const int32_t corners[3], int32_t v)
+{
+    if (mesh->n_attributes == 0)
+        return;
+    struct tri_point a = mesh->xy[corners[0]], b = mesh->xy[corners[1]], c = mesh->xy[corners[2]], p = mesh->xy[v];
+    double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y, px = p.x - a.x, py = p.y - a.y;
+    double area = bx * cy - by * cx;
+    double to_b = (px * cy - py * cx) / area, to_c = (bx * py - by * px) / area;
+    for (int32_t k = 0; k < mesh->n_attributes; k++) {
+        double at_a = attributes_of(mesh, corners[0])[k];
+        double at_b = attributes_of(mesh, corners[1])[k], at_c = attributes_of(mesh, corners[2])[k];
+        attributes_of(mesh, v)[k] = at_a + to_b * (at_b - at_a) + to_c * (at_c - at_a);
+    }
+}

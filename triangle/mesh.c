@@ -1,0 +1,241 @@
+/* Storage of the mesh: growth, links, compaction, and the check of its invariants.
+ *
+ * Growth is by half, through realloc: for large arrays the C library moves pages rather than bytes, so that the peak stays
+ * near what is used. The triangle array starts at a cache line, so that a triangle never straddles two. */
+#include "triangle/mesh.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LINE = 64 };
+
+_Static_assert(sizeof(struct tri_triangle) == 32, "two triangles fill a cache line");
+
+/* The raw block of an aligned array lies one pointer before it. */
+static void *raw_of(void *aligned)
+{
+    void *raw = NULL;
+    if (aligned)
+        memcpy(&raw, (char *)aligned - sizeof raw, sizeof raw);
+    return raw;
+}
+
+static void *grow_aligned(void *old, size_t used, size_t bytes)
+{
+    void *raw = raw_of(old);
+    size_t offset = old ? (size_t)((char *)old - (char *)raw) : 0;
+    char *block = realloc(raw, bytes + 2 * LINE);
+    if (!block)
+        return NULL;
+    uintptr_t start = (uintptr_t)block + sizeof(void *) + LINE - 1;
+    char *aligned = block + ((start & ~(uintptr_t)(LINE - 1)) - (uintptr_t)block);
+    if (old && (size_t)(aligned - block) != offset)
+        memmove(aligned, block + offset, used);
+    void *self = block;
+    memcpy(aligned - sizeof self, &self, sizeof self);
+    return aligned;
+}
+
+/* The capacity to take for `need` items: half as much again, at least 64; 0 where need is above the limit. */
+static int32_t next_capacity(int32_t capacity, int64_t need, int32_t limit)
+{
+    if (need > limit)
+        return 0;
+    int64_t wanted = capacity + (int64_t)capacity / 2;
+    wanted = wanted < need ? need : wanted;
+    wanted = wanted < 64 ? 64 : wanted;
+    return (int32_t)(wanted > limit ? limit : wanted);
+}
+
+static bool grow(void *array, int32_t capacity, size_t item)
+{
+    void *old, *fresh;
+    memcpy(&old, array, sizeof old);
+    fresh = realloc(old, (size_t)capacity * item);
+    if (!fresh)
+        return false;
+    memcpy(array, &fresh, sizeof fresh);
+    return true;
+}
+
+static enum tri_status no_memory(struct tri_error *error, const char *what, int32_t count)
+{
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d %s", (int)count, what);
+}
+
+static enum tri_status too_large(struct tri_error *error, const char *what)
+{
+    return tri_fail(error, TRI_TOO_LARGE, NULL, 0, "too many %s for one mesh", what);
+}
+
+enum tri_status tri_mesh_init(struct tri_mesh *mesh, struct tri_error *error)
+{
+    *mesh = (struct tri_mesh){0};
+    mesh->regions = calloc(1, sizeof *mesh->regions);
+    if (!mesh->regions)
+        return no_memory(error, "regions", 1);
+    mesh->n_regions = 1;
+    return TRI_OK;
+}
+
+void tri_mesh_free(struct tri_mesh *mesh)
+{
+    free(mesh->xy);
+    free(mesh->on);
+    free(mesh->vertex_markers);
+    free(mesh->attributes);
+    free(mesh->twin);
+    free(raw_of(mesh->tri));
+    free(mesh->sub);
+    free(mesh->parents);
+    free(mesh->spoke_start);
+    free(mesh->spokes);
+    free(mesh->regions);
+    *mesh = (struct tri_mesh){0};
+}
+
+enum tri_status tri_mesh_reserve_vertices(struct tri_mesh *mesh, int32_t more, struct tri_error *error)
+{
+    int64_t need = (int64_t)mesh->n_vertices + more;
+    if (need <= mesh->vertex_capacity)
+        return TRI_OK;
+    int32_t capacity = next_capacity(mesh->vertex_capacity, need, TRI_MAX_VERTICES);
+    if (!capacity)
+        return too_large(error, "vertices");
+    size_t attributes = (size_t)mesh->n_attributes * sizeof *mesh->attributes;
+    if (!grow(&mesh->xy, capacity, sizeof *mesh->xy) || !grow(&mesh->on, capacity, sizeof *mesh->on) ||
+        !grow(&mesh->vertex_markers, capacity, sizeof *mesh->vertex_markers) ||
+        (attributes && !grow(&mesh->attributes, capacity, attributes)))
+        return no_memory(error, "vertices", capacity);
+    mesh->vertex_capacity = capacity;
+    return TRI_OK;
+}
+
+enum tri_status tri_mesh_reserve_triangles(struct tri_mesh *mesh, int32_t more, struct tri_error *error)
+{
+    int64_t need = (int64_t)mesh->n_slots + more;
+    if (need <= mesh->slot_capacity)
+        return TRI_OK;
+    int32_t capacity = next_capacity(mesh->slot_capacity, need, TRI_MAX_TRIANGLES);
+    if (!capacity)
+        return too_large(error, "triangles");
+    struct tri_triangle *fresh = grow_aligned(mesh->tri, (size_t)mesh->n_slots * sizeof *fresh,
+                                              (size_t)capacity * sizeof *fresh);
+    if (!fresh)
+        return no_memory(error, "triangles", capacity);
+    mesh->tri = fresh;
+    mesh->slot_capacity = capacity;
+    return TRI_OK;
+}
+
+enum tri_status tri_mesh_reserve_subs(struct tri_mesh *mesh, int32_t more, struct tri_error *error)
+{
+    int64_t need = (int64_t)mesh->n_subs + more, parents = (int64_t)mesh->n_parents + more;
+    if (need > mesh->sub_capacity) {
+        int32_t capacity = next_capacity(mesh->sub_capacity, need, TRI_MAX_TRIANGLES);
+        if (!capacity)
+            return too_large(error, "subsegments");
+        if (!grow(&mesh->sub, capacity, sizeof *mesh->sub))
+            return no_memory(error, "subsegments", capacity);
+        mesh->sub_capacity = capacity;
+    }
+    if (parents > mesh->parent_capacity) {
+        int32_t capacity = next_capacity(mesh->parent_capacity, parents, TRI_MAX_TRIANGLES);
+        if (!capacity)
+            return too_large(error, "segments");
+        if (!grow(&mesh->parents, capacity, sizeof *mesh->parents))
+            return no_memory(error, "segments", capacity);
+        mesh->parent_capacity = capacity;
+    }
+    return TRI_OK;
+}
+
+enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_error *error)
+{
+    int32_t n = pslg->n_points, attributes = pslg->n_attributes;
+    assert(mesh->n_vertices == 0);
+    mesh->n_attributes = attributes;
+    enum tri_status status = tri_mesh_reserve_vertices(mesh, n, error);
+    if (status)
+        return status;
+    for (int32_t i = 0; i < n; i++) {
+        mesh->xy[i] = (struct tri_point){pslg->points[2 * i], pslg->points[2 * i + 1]};
+        mesh->on[i] = TRI_VERTEX_INPUT;
+        mesh->vertex_markers[i] = pslg->markers ? pslg->markers[i] : 0;
+    }
+    if (attributes)
+        memcpy(mesh->attributes, pslg->attributes, (size_t)n * (size_t)attributes * sizeof *mesh->attributes);
+    mesh->n_vertices = mesh->n_input = n;
+    return TRI_OK;
+}
+
+int32_t tri_mesh_add_sub(struct tri_mesh *mesh, int32_t from, int32_t to, int32_t marker, int32_t segment)
+{
+    int32_t s = mesh->n_subs++, parent = mesh->n_parents++;
+    assert(s < mesh->sub_capacity && parent < mesh->parent_capacity);
+    mesh->parents[parent] = (struct tri_parent){{from, to}, segment};
+    mesh->sub[s] = (struct tri_subsegment){{from, to}, {TRI_NONE, TRI_NONE}, marker, parent};
+    return s;
+}
+
+static void move_triangle(struct tri_mesh *mesh, int32_t from, int32_t to)
+{
+    struct tri_triangle *t = &mesh->tri[to];
+    *t = mesh->tri[from];
+    for (int e = 0; e < 3; e++)
+        tri_relink(mesh, t->n[e], t->v[tri_next[e]], tri_code(to, e));
+}
+
+void tri_mesh_compact(struct tri_mesh *mesh)
+{
+    int32_t hole = 0, last = mesh->n_slots - 1;
+    for (;;) {
+        while (hole <= last && tri_is_live(&mesh->tri[hole]))
+            hole++;
+        while (last > hole && !tri_is_live(&mesh->tri[last]))
+            last--;
+        if (hole >= last)
+            break;
+        move_triangle(mesh, last--, hole++);
+    }
+    mesh->n_slots = hole;
+}
+
+static bool edge_is_mutual(const struct tri_mesh *mesh, int32_t t, int e)
+{
+    int32_t link = mesh->tri[t].n[e], from = mesh->tri[t].v[tri_next[e]], to = mesh->tri[t].v[tri_prev[e]];
+    if (link >= 0) {
+        if (tri_of(link) >= mesh->n_slots || tri_edge(link) > 2)
+            return false;
+        const struct tri_triangle *other = &mesh->tri[tri_of(link)];
+        int f = tri_edge(link);
+        return other->n[f] == tri_code(t, e) && other->v[tri_next[f]] == to && other->v[tri_prev[f]] == from;
+    }
+    if (~link >= mesh->n_subs)
+        return false;
+    const struct tri_subsegment *s = &mesh->sub[~link];
+    int side = tri_side(s, from);
+    return s->v[side] == from && s->v[1 - side] == to && s->side[side] == tri_code(t, e);
+}
+
+enum tri_status tri_mesh_validate(const struct tri_mesh *mesh, struct tri_error *error)
+{
+    for (int32_t t = 0; t < mesh->n_slots; t++) {
+        if (!tri_is_live(&mesh->tri[t]))
+            continue;
+        for (int e = 0; e < 3; e++) {
+            if (mesh->tri[t].v[e] < 0 || mesh->tri[t].v[e] >= mesh->n_vertices)
+                return tri_fail(error, TRI_INTERNAL, NULL, 0, "triangle %d has no corner %d", (int)t, e);
+            if (!edge_is_mutual(mesh, t, e))
+                return tri_fail(error, TRI_INTERNAL, NULL, 0, "edge %d of triangle %d is not mutual", e, (int)t);
+        }
+    }
+    for (int32_t s = 0; s < mesh->n_subs; s++)
+        for (int k = 0; k < 2; k++) {
+            int32_t code = mesh->sub[s].side[k];
+            if (code != TRI_NONE && (tri_of(code) >= mesh->n_slots || mesh->tri[tri_of(code)].n[tri_edge(code)] != ~s))
+                return tri_fail(error, TRI_INTERNAL, NULL, 0, "side %d of subsegment %d is not mutual", k, (int)s);
+        }
+    return TRI_OK;
+}

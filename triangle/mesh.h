@@ -1,0 +1,133 @@
+/* The mesh: flat index arrays that every stage of the triangulator works on.
+ *
+ * A triangle is 32 bytes: three corners counter-clockwise, three links, a region, a state word. Link e lies opposite corner e.
+ *   link >= 0   code 4 * t + f: the neighbour is triangle t, and its edge f is the same edge seen from the other side;
+ *   link <  0   ~s: the edge is subsegment s, whose record names the triangle on either side.
+ * INVARIANT (links): for every live triangle t and edge e, either link(link(t, e)) == (t, e), or the subsegment behind the
+ * link has (t, e) on the side that its direction says. Every edge of the outer boundary is a subsegment.
+ * What the invariant buys: a search that must not cross constrained edges stops at a sign bit, loads nothing for it, and
+ * unconstrained triangles pay nothing for constraints, markers and parents.
+ *
+ * Vertices are x, y pairs; attributes, markers and parents lie apart, since only new vertices touch them.
+ *
+ * Corners are ids below 2^28, triangles below 2^29 (4 * t + e is a non-negative int32_t). */
+#ifndef TRIANGLE_MESH_H
+#define TRIANGLE_MESH_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "triangle/pslg.h"
+#include "triangle/status.h"
+
+enum {
+    TRI_NONE = -1,        /* no triangle on this side of a subsegment; no vertex; no parent */
+    TRI_MAX_VERTICES = 1 << 28,
+    TRI_MAX_TRIANGLES = 1 << 29
+};
+
+enum tri_vertex_kind { /* values of tri_mesh.on below 0 */
+    TRI_VERTEX_INPUT = -1, /* a point of the input, or a crossing of two of its segments */
+    TRI_VERTEX_FREE = -2,  /* made by refinement in the interior of a region */
+    TRI_VERTEX_ACUTE = -3  /* as TRI_VERTEX_INPUT, and two subsegments meet there at less than 60 degrees */
+    /* >= 0: made by refinement on the parent with that id */
+};
+
+struct tri_point {
+    double x, y;
+};
+
+struct tri_triangle {
+    int32_t v[3];   /* corners, counter-clockwise; v[0] == TRI_NONE: the slot is free */
+    int32_t n[3];   /* links, see above */
+    int32_t region; /* index into tri_mesh.regions */
+    uint32_t state; /* counts the lives of the slot, so that a queue entry can tell whether it still speaks of this one */
+};
+
+struct tri_subsegment {
+    int32_t v[2];    /* from, to */
+    int32_t side[2]; /* triangle code left of v[0] -> v[1], and right of it; TRI_NONE where there is no triangle */
+    int32_t marker;  /* marker of the input segment, 0 where it has none */
+    int32_t parent;  /* index into tri_mesh.parents, or TRI_NONE: an edge of the hull that the input does not ask for */
+};
+
+/* A subsegment as it was before refinement: what splitting, shells and small input angles refer to. */
+struct tri_parent {
+    int32_t v[2];
+    int32_t segment; /* input segment, or TRI_NONE */
+};
+
+struct tri_region {
+    double attribute;
+    double max_area; /* <= 0: none */
+};
+
+struct tri_mesh {
+    struct tri_point *xy;     /* [n_vertices] */
+    int32_t *on;              /* [n_vertices] kind or parent, see tri_vertex_kind */
+    int32_t *vertex_markers;  /* [n_vertices] */
+    double *attributes;       /* [n_vertices][n_attributes] */
+    int32_t n_attributes;
+    int32_t n_vertices, vertex_capacity;
+    int32_t n_input;          /* the first n_input vertices are the caller's points, in the caller's order */
+    int32_t *twin;            /* [n_input] lowest index of a point with equal coordinates; NULL: no duplicates */
+
+    struct tri_triangle *tri; /* [n_slots], aligned to a cache line; some slots may be free (v[0] == TRI_NONE) */
+    int32_t n_slots, slot_capacity;
+
+    struct tri_subsegment *sub; /* [n_subs] */
+    int32_t n_subs, sub_capacity;
+    struct tri_parent *parents; /* [n_parents] */
+    int32_t n_parents, parent_capacity;
+    int32_t *spoke_start;     /* [n_hubs + 1] parents that end at vertex v are spokes[spoke_start[v] .. spoke_start[v + 1]) */
+    int32_t *spokes;
+    int32_t n_hubs;           /* vertices there were when the parents were listed; 0: not listed yet */
+
+    struct tri_region *regions; /* [n_regions] regions[0] is "no region": attribute 0, no bound */
+    int32_t n_regions;
+};
+
+static const int tri_next[3] = {1, 2, 0}, tri_prev[3] = {2, 0, 1};
+
+static inline int32_t tri_code(int32_t t, int e) { return t << 2 | e; }
+static inline int32_t tri_of(int32_t code) { return code >> 2; }
+static inline int tri_edge(int32_t code) { return code & 3; }
+
+static inline bool tri_is_live(const struct tri_triangle *t) { return t->v[0] >= 0; }
+
+/* Makes an empty mesh; regions[0] exists. Frees everything and zeroes the struct. */
+enum tri_status tri_mesh_init(struct tri_mesh *mesh, struct tri_error *error);
+void tri_mesh_free(struct tri_mesh *mesh);
+
+/* Room for at least so many more items; amortised O(1) an item. Pointers into the arrays are stale afterwards. */
+enum tri_status tri_mesh_reserve_vertices(struct tri_mesh *mesh, int32_t more, struct tri_error *error);
+enum tri_status tri_mesh_reserve_triangles(struct tri_mesh *mesh, int32_t more, struct tri_error *error);
+enum tri_status tri_mesh_reserve_subs(struct tri_mesh *mesh, int32_t more, struct tri_error *error);
+
+/* Takes over points, attributes and markers of the PSLG as vertices 0 .. n_points - 1. */
+enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_error *error);
+
+/* Appends a subsegment between two vertices and a parent for it; the caller links its sides. Room must have been reserved. */
+int32_t tri_mesh_add_sub(struct tri_mesh *mesh, int32_t from, int32_t to, int32_t marker, int32_t segment);
+
+/* Which side of a subsegment's record belongs to the triangle that sees it as from -> to (counter-clockwise)? */
+static inline int tri_side(const struct tri_subsegment *s, int32_t from) { return s->v[0] == from ? 0 : 1; }
+
+/* Lets the triangle or subsegment behind `outer` know that its neighbour across that edge is now `code`. `from` is the
+ * corner at which the edge starts, counter-clockwise in the triangle of `code`. */
+static inline void tri_relink(struct tri_mesh *mesh, int32_t outer, int32_t from, int32_t code)
+{
+    if (outer >= 0)
+        mesh->tri[outer >> 2].n[outer & 3] = code;
+    else
+        mesh->sub[~outer].side[tri_side(&mesh->sub[~outer], from)] = code;
+}
+
+/* Fills the holes that free slots leave with triangles from the end. O(slots). */
+void tri_mesh_compact(struct tri_mesh *mesh);
+
+/* Checks the invariants of the links; what it finds first is told in *error. O(triangles). For asserts and tests. */
+enum tri_status tri_mesh_validate(const struct tri_mesh *mesh, struct tri_error *error);
+
+#endif

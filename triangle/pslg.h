@@ -1,0 +1,35 @@
+/* A planar straight line graph as the caller gives it: points, segments, holes, regions.
+ *
+ * Plain arrays, indices from 0. A PSLG may be of any kind: duplicate points, crossing or overlapping segments, points on
+ * segments are legal input; the triangulator sorts them out. tri_pslg_check refuses what has no meaning. */
+#ifndef TRIANGLE_PSLG_H
+#define TRIANGLE_PSLG_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "triangle/status.h"
+
+struct tri_pslg {
+    int32_t n_points;
+    double *points;         /* [n_points][2]: x, y; finite */
+    int32_t n_attributes;   /* per point, >= 0 */
+    double *attributes;     /* [n_points][n_attributes], or NULL where n_attributes is 0 */
+    int32_t *markers;       /* [n_points], or NULL: all 0 */
+    int32_t n_segments;
+    int32_t *segments;      /* [n_segments][2]: point indices; a segment with an index outside the points or two equal
+                               ends is skipped */
+    int32_t *segment_markers; /* [n_segments], or NULL: all 0 */
+    int32_t n_holes;
+    double *holes;          /* [n_holes][2] */
+    int32_t n_regions;
+    double *regions;        /* [n_regions][4]: x, y, attribute, area bound (<= 0: none) */
+};
+
+/* Fewer than three points, a coordinate that is not finite: TRI_BAD_INPUT. O(n). */
+enum tri_status tri_pslg_check(const struct tri_pslg *pslg, struct tri_error *error);
+
+/* Frees the arrays (malloc'ed) and zeroes the struct. */
+void tri_pslg_free(struct tri_pslg *pslg);
+
+#endif

@@ -1,0 +1,47 @@
+/* Bounds, and the placement of new points. */
+#include "triangle/quality.h"
+
+double tri_cos_degrees(double degrees)
+{
+    static const double radians = 0.017453292519943295769;
+    if (degrees > 90)
+        return -tri_cos_degrees(180 - degrees);
+    double x = degrees * radians, x2 = x * x, term = 1, sum = 1;
+    for (int k = 1; k <= 15; k++) {
+        term = -term * x2 / ((2 * k - 1) * (2 * k));
+        sum += term;
+    }
+    return sum;
+}
+
+struct tri_bounds tri_bounds_for(double min_angle, bool conforming)
+{
+    struct tri_bounds bounds = {0, conforming ? 0 : 1, 0};
+    if (!(min_angle > 0))
+        return bounds;
+    double cosine = tri_cos_degrees(min_angle < 60 ? min_angle : 60), twice = 2 * cosine * cosine - 1;
+    bounds.sin2 = 1 - cosine * cosine;
+    if (!conforming)
+        bounds.lens_cos2 = twice > 0 ? twice * twice : 0;
+    /* The exact off-centre sees its edge under the angle bound; Triangle stays 5% below it, so that rounding cannot make the
+     * new triangle bad (contract 5.6). */
+    bounds.off_centre = 0.475 * sqrt((1 + cosine) / (1 - cosine));
+    return bounds;
+}
+
+struct tri_point tri_place(const struct tri_point *xy, const int32_t v[3], const struct tri_shape *shape, double reach)
+{
+    int s = shape->shortest;
+    struct tri_point a = xy[v[tri_next[s]]], b = xy[v[tri_prev[s]]], c = xy[v[s]];
+    double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
+    double l = shape->l[s], lc = cx * cx + cy * cy;
+    double scale = 0.5 / shape->area2;
+    double x = (cy * l - by * lc) * scale, y = (bx * lc - cx * l) * scale; /* circumcentre from a */
+    double mx = 0.5 * bx, my = 0.5 * by, hx = x - mx, hy = y - my;
+    if (hx * hx + hy * hy > reach * reach) {
+        double height = reach / sqrt(l);
+        x = mx - height * by;
+        y = my + height * bx;
+    }
+    return (struct tri_point){a.x + x, a.y + y};
+}

@@ -1,0 +1,53 @@
+/* When is a triangle bad, and where does the point go that removes it?
+ *
+ * All decisions use + - * / and sqrt alone, so that they are the same on every machine. */
+#ifndef TRIANGLE_QUALITY_H
+#define TRIANGLE_QUALITY_H
+
+#include <math.h>
+
+#include "triangle/mesh.h"
+
+/* Cosine of an angle in degrees, 0 .. 180, by its power series: within 1e-15 of the true value everywhere. */
+double tri_cos_degrees(double degrees);
+
+/* The bounds in the form in which the inner loop compares them. */
+struct tri_bounds {
+    double sin2;       /* square of the sine of the angle bound; 0: no angle bound */
+    double lens_cos2;  /* a point that sees a subsegment under more than 180 - 2 * bound encroaches: dot < 0 and
+                          dot^2 > lens_cos2 * product of squared lengths */
+    double off_centre; /* height of an off-centre over its edge in units of the edge; 0: always circumcentres */
+};
+
+/* min_angle in degrees, 0 .. 60; conforming: the lens is the whole diametral disk. */
+struct tri_bounds tri_bounds_for(double min_angle, bool conforming);
+
+/* A triangle's shape: squared lengths opposite the corners, twice its area. */
+struct tri_shape {
+    double l[3], area2;
+    int shortest; /* index of the shortest edge, the one opposite the smallest angle */
+};
+
+static inline struct tri_shape tri_shape_of(const struct tri_point *xy, const int32_t v[3])
+{
+    double ax = xy[v[0]].x, ay = xy[v[0]].y;
+    double bx = xy[v[1]].x - ax, by = xy[v[1]].y - ay, cx = xy[v[2]].x - ax, cy = xy[v[2]].y - ay;
+    double dx = bx - cx, dy = by - cy;
+    struct tri_shape s = {{dx * dx + dy * dy, cx * cx + cy * cy, bx * bx + by * by}, bx * cy - by * cx, 0};
+    s.shortest = s.l[0] <= s.l[1] ? (s.l[0] <= s.l[2] ? 0 : 2) : (s.l[1] <= s.l[2] ? 1 : 2);
+    return s;
+}
+
+/* sin^2 of the smallest angle is area2^2 over the product of the two longer squared edges. */
+static inline double tri_longer_product(double a, double b, double c)
+{
+    double ab = a < b ? b : a, low = a < b ? a : b;
+    double high = ab < c ? c : ab, middle = ab < c ? ab : (low < c ? c : low);
+    return high * middle;
+}
+
+/* The point that replaces a bad triangle, on the bisector of its shortest edge: the circumcentre or, where that lies farther
+ * from the edge than `reach` (a height over the edge), the point at that height (off-centres: Uengoer 2004). */
+struct tri_point tri_place(const struct tri_point *xy, const int32_t v[3], const struct tri_shape *shape, double reach);
+
+#endif

@@ -1,0 +1,65 @@
+/* Reading the input files of Triangle: .node, .poly, .ele, .area.
+ *
+ * Numbers of records in the files are counted, not checked, except that the number of the first vertex decides whether
+ * all files count from 0 or from 1. Indices in the structs made here always count from 0. Strict where the format has
+ * no meaning: a count that the rest of the file cannot hold, a missing or unreadable or infinite coordinate, a missing
+ * section are one TRI_BAD_INPUT with file and line. Lenient where it has one: comments, blank lines, words between
+ * numbers, extra fields and records, missing trailing attributes and markers (0).
+ *
+ * Every function sets its output to empty first, and leaves it empty when it fails. Further errors of all:
+ * TRI_CANNOT_READ, TRI_NO_MEMORY, TRI_TOO_LARGE. Cost: linear, about 250 MB of text a second on each thread. */
+#ifndef TRIANGLE_READ_H
+#define TRIANGLE_READ_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "triangle/executor.h"
+#include "triangle/pslg.h"
+#include "triangle/status.h"
+
+struct tri_read_options {
+    int32_t default_base; /* number of the first vertex where the file says neither 0 nor 1: 1, or 0 with -z */
+    bool want_regions;    /* the .poly file must have its section of regions; else that is not looked at */
+    bool refining;        /* a segment that names no vertex is an error; else a warning */
+    size_t chunk_bytes;   /* of text for each task; 0: the default. The result does not depend on it */
+    const struct tri_executor *executor; /* NULL: one task after another */
+    /* Told of what is skipped, in the order of the lines, by the calling thread; text is one sentence. NULL: nobody. */
+    void (*warn)(void *user, const char *file, long line, const char *text);
+    void *warn_user;
+};
+
+/* Triangles as an .ele file gives them. */
+struct tri_elements {
+    int32_t n;
+    int32_t *corners;     /* [n][3]: point indices, all of them in range; orientation and shape are not checked */
+    int32_t n_nodes;      /* nodes of a triangle in the file, >= 3; those behind the third are not kept */
+    int32_t n_attributes; /* per triangle, >= 0 */
+    double *attributes;   /* [n][n_attributes], or NULL */
+};
+
+/* Reads points, attributes and markers (NULL where the header announces none). *base becomes 0 or 1. */
+enum tri_status tri_read_node(const char *path, const struct tri_read_options *options, struct tri_pslg *out,
+                              int32_t *base, struct tri_error *error);
+
+/* Reads a PSLG. Where the .poly file has 0 vertices they come from node_path, and *points_in_poly becomes false; a NULL
+ * node_path then is an error. A segment with a missing index is an error. One that names no vertex (kept as it is,
+ * moved to counting from 0 and limited to int32_t), has equal ends or ends at equal points gives a warning. Of a region
+ * with one value that is attribute and bound. */
+enum tri_status tri_read_poly(const char *poly_path, const char *node_path, const struct tri_read_options *options,
+                              struct tri_pslg *out, int32_t *base, bool *points_in_poly, struct tri_error *error);
+
+/* Reads triangles whose corners count from base and are below n_points. */
+enum tri_status tri_read_ele(const char *path, const struct tri_read_options *options, int32_t base, int32_t n_points,
+                             struct tri_elements *out, struct tri_error *error);
+
+/* Reads area bounds of n_triangles triangles, which must be as many as the file has. (*areas)[n_triangles] is
+ * malloc'ed; <= 0: none, as where the file has no value. */
+enum tri_status tri_read_area(const char *path, const struct tri_read_options *options, int32_t n_triangles,
+                              double **areas, struct tri_error *error);
+
+/* Frees the arrays and zeroes the struct. */
+void tri_elements_free(struct tri_elements *elements);
+
+#endif

@@ -1,0 +1,422 @@
+/* The refinement loop.
+ *
+ * A bad triangle proposes a point (off-centre or circumcentre, quality.h). Its cavity is searched; the walls of the cavity
+ * tell which subsegments the point would encroach. If there are any, one of them is split instead, and the triangle, if it
+ * still stands, is asked again. Nothing is changed before everything is known, so nothing is ever undone.
+ *
+ * Termination: see the rules in small_angle.h. */
+#include "triangle/refine.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "triangle/bad_queue.h"
+#include "triangle/interpolate.h"
+#include "triangle/predicates.h"
+#include "triangle/quality.h"
+#include "triangle/small_angle.h"
+
+/* 4 / sqrt(3): an equilateral triangle of area A has a squared edge of this times A. The point of a triangle that is only too
+ * large is placed as if to make an equilateral triangle of IDEAL of that edge, when that is nearer than the circumcentre:
+ * sizes then lie closer to the bound than with circumcentres alone. */
+static const double EQUILATERAL = 2.3094010767585030580, IDEAL = 0.81;
+
+struct refiner {
+    struct tri_mesh *mesh;
+    const struct tri_refine_options *options;
+    struct tri_refine_report *report;
+    struct tri_error *error;
+    struct tri_bounds bounds;
+    struct tri_resolution resolution;
+    struct tri_cavity cavity;
+    struct tri_bad_queue queue;
+    int32_t *crowded; /* stack of subsegments to test for encroachment (conforming only) */
+    int32_t n_crowded, crowded_capacity;
+};
+
+enum badness { GOOD, BAD_SIZE, BAD_ANGLE };
+
+enum outcome { DONE, AGAIN, REFUSED, FAILED };
+
+struct tri_refine_options tri_refine_defaults(void)
+{
+    return (struct tri_refine_options){.max_steiner = -1};
+}
+
+/* Twice the largest area allowed in a region; infinity where there is no bound. */
+static double area2_bound(const struct refiner *r, int32_t region)
+{
+    double bound = r->options->max_area > 0 ? r->options->max_area : HUGE_VAL;
+    if (r->options->region_areas) {
+        double own = r->mesh->regions[region].max_area;
+        bound = own > 0 && own < bound ? own : bound;
+    }
+    return 2 * bound;
+}
+
+static bool is_unsuitable(const struct refiner *r, const int32_t v[3], double area2)
+{
+    const struct tri_point *xy = r->mesh->xy;
+    double a[2] = {xy[v[0]].x, xy[v[0]].y}, b[2] = {xy[v[1]].x, xy[v[1]].y}, c[2] = {xy[v[2]].x, xy[v[2]].y};
+    return r->options->unsuitable(r->options->unsuitable_user, a, b, c, 0.5 * area2) != 0;
+}
+
+static enum badness judge(const struct refiner *r, const struct tri_triangle *t, const struct tri_shape *shape)
+{
+    double product = tri_longer_product(shape->l[0], shape->l[1], shape->l[2]);
+    if (shape->area2 * shape->area2 < r->bounds.sin2 * product)
+        return BAD_ANGLE;
+    if (shape->area2 > area2_bound(r, t->region))
+        return BAD_SIZE;
+    return r->options->unsuitable && is_unsuitable(r, t->v, shape->area2) ? BAD_SIZE : GOOD;
+}
+
+/* Worse angles first: the exponent of sin^2 falls with the angle, its mantissa tells half octaves apart. */
+static int bucket_of(double area2, double product)
+{
+    int exponent;
+    double ratio = area2 * area2 / product, mantissa = frexp(ratio, &exponent);
+    int bucket = -2 * exponent + (mantissa < 0.70710678118654752 ? 1 : 0);
+    return bucket < 0 ? 0 : bucket >= TRI_BUCKETS ? TRI_BUCKETS - 1 : bucket;
+}
+
+static bool push(struct refiner *r, int32_t slot, enum badness badness, double area2, double product)
+{
+    struct tri_entry entry = {slot, r->mesh->tri[slot].state};
+    return badness == BAD_ANGLE ? tri_bad_queue_push_angle(&r->queue, entry, bucket_of(area2, product))
+                                : tri_bad_queue_push_size(&r->queue, entry);
+}
+
+/* Judges the triangle of two rims' start points and the new vertex, from the coordinates the cavity search left. */
+static bool judge_rim(struct refiner *r, const struct tri_rim *rim, struct tri_relative rb, double bound2)
+{
+    struct tri_relative ra = rim->ra;
+    double area2 = tri_cross(ra, rb), x = ra.x - rb.x, y = ra.y - rb.y;
+    double product = tri_longer_product(ra.l, rb.l, x * x + y * y);
+    if (area2 * area2 < r->bounds.sin2 * product)
+        return push(r, rim->slot, BAD_ANGLE, area2, product);
+    if (area2 > bound2)
+        return push(r, rim->slot, BAD_SIZE, area2, product);
+    if (r->options->unsuitable && is_unsuitable(r, r->mesh->tri[rim->slot].v, area2))
+        return push(r, rim->slot, BAD_SIZE, area2, product);
+    return true;
+}
+
+/* Queues what is bad among the triangles of a chain of rims; `end` is the place of the chain's last point. */
+static bool judge_chain(struct refiner *r, int32_t first, int32_t last, struct tri_relative end)
+{
+    const struct tri_rim *rim = r->cavity.rim;
+    int32_t region = TRI_NONE;
+    double bound2 = 0;
+    for (int32_t i = first; i < last; i++) {
+        if (rim[i].region != region) {
+            region = rim[i].region;
+            bound2 = area2_bound(r, region);
+        }
+        if (!judge_rim(r, &rim[i], i + 1 < last ? rim[i + 1].ra : end, bound2))
+            return false;
+    }
+    return true;
+}
+
+static bool crowd(struct refiner *r, int32_t s)
+{
+    if (r->n_crowded == r->crowded_capacity) {
+        int32_t capacity = r->crowded_capacity ? 2 * r->crowded_capacity : 256;
+        int32_t *fresh = realloc(r->crowded, (size_t)capacity * sizeof *fresh);
+        if (!fresh)
+            return false;
+        r->crowded = fresh;
+        r->crowded_capacity = capacity;
+    }
+    r->crowded[r->n_crowded++] = s;
+    return true;
+}
+
+/* For conforming meshes: the new vertex may lie in the diametral circle of a wall. */
+static bool crowd_walls(struct refiner *r)
+{
+    for (int32_t i = 0; r->options->conforming && i < r->cavity.n_wall; i++)
+        if (!crowd(r, ~r->cavity.rim[r->cavity.wall[i]].outer))
+            return false;
+    return true;
+}
+
+static enum tri_status make_room(struct refiner *r)
+{
+    struct tri_mesh *m = r->mesh;
+    int32_t vertices = m->vertex_capacity - m->n_vertices, slots = m->slot_capacity - m->n_slots;
+    if (vertices >= 1 && slots >= 2 && m->sub_capacity > m->n_subs)
+        return TRI_OK;
+    if (r->options->more_room)
+        return r->options->more_room(r->options->more_room_user, m, r->error);
+    enum tri_status status = tri_mesh_reserve_vertices(m, 1, r->error);
+    status = status ? status : tri_mesh_reserve_triangles(m, 2, r->error);
+    return status ? status : tri_mesh_reserve_subs(m, 1, r->error);
+}
+
+static int32_t add_vertex(struct refiner *r, struct tri_point p, int32_t on, int32_t marker)
+{
+    struct tri_mesh *m = r->mesh;
+    int32_t v = m->n_vertices++;
+    m->xy[v] = p;
+    m->on[v] = on;
+    m->vertex_markers[v] = marker;
+    return v;
+}
+
+/* The corners of the cavity's triangle that holds the new point, for interpolation. */
+static const int32_t *corners_around(const struct refiner *r, struct tri_point p)
+{
+    for (int32_t i = 0; i < r->cavity.n_tri; i++) {
+        const int32_t *v = r->mesh->tri[r->cavity.tri[i]].v;
+        struct tri_point a = r->mesh->xy[v[0]], b = r->mesh->xy[v[1]], c = r->mesh->xy[v[2]];
+        if (tri_orient2d(a, b, p) >= 0 && tri_orient2d(b, c, p) >= 0 && tri_orient2d(c, a, p) >= 0)
+            return v;
+    }
+    return r->mesh->tri[r->cavity.tri[0]].v;
+}
+
+static enum outcome insert_free(struct refiner *r, struct tri_point p)
+{
+    if (make_room(r))
+        return FAILED;
+    int32_t v = add_vertex(r, p, TRI_VERTEX_FREE, 0);
+    if (r->mesh->n_attributes)
+        tri_interpolate_triangle(r->mesh, corners_around(r, p), v);
+    tri_cavity_fill(&r->cavity, r->mesh, v);
+    r->report->inserted_free++;
+    return judge_chain(r, 0, r->cavity.n_rim, r->cavity.rim[0].ra) && crowd_walls(r) ? DONE : FAILED;
+}
+
+static bool is_protected(const struct refiner *r, const struct tri_subsegment *s)
+{
+    bool boundary = s->side[0] == TRI_NONE || s->side[1] == TRI_NONE;
+    return r->options->protect >= 2 || (r->options->protect == 1 && boundary);
+}
+
+static enum outcome refuse(struct refiner *r, enum tri_excuse excuse)
+{
+    r->report->refused[excuse]++;
+    return REFUSED;
+}
+
+static enum outcome split(struct refiner *r, int32_t s)
+{
+    struct tri_mesh *m = r->mesh;
+    const struct tri_subsegment old = m->sub[s];
+    int32_t n_left;
+    if (is_protected(r, &old))
+        return refuse(r, TRI_EXCUSE_PROTECTED);
+    double fraction = tri_split_fraction(m, &old);
+    struct tri_point a = m->xy[old.v[0]], b = m->xy[old.v[1]];
+    struct tri_point p = {a.x + fraction * (b.x - a.x), a.y + fraction * (b.y - a.y)};
+    if (!tri_can_split(&r->resolution, a, b))
+        return refuse(r, TRI_EXCUSE_PRECISION);
+    enum tri_search found = tri_cavity_search_split(&r->cavity, m, tri_round_point(p), s, &n_left);
+    if (found == TRI_SEARCH_FENCED) {
+        r->report->deferred++;
+        return REFUSED;
+    }
+    if (found == TRI_SEARCH_OUTSIDE)
+        return refuse(r, TRI_EXCUSE_PRECISION);
+    if (found == TRI_SEARCH_NO_MEMORY || make_room(r))
+        return FAILED;
+    bool boundary = old.side[0] == TRI_NONE || old.side[1] == TRI_NONE;
+    int32_t v = add_vertex(r, r->cavity.p, old.parent, old.marker ? old.marker : boundary ? 1 : 0);
+    tri_interpolate_edge(m, old.v[0], old.v[1], fraction, v);
+    int32_t second = tri_cavity_fill_split(&r->cavity, m, v, s, n_left);
+    r->report->inserted_on_segments++;
+    struct tri_relative at_start = tri_relative(&m->xy[old.v[0]], r->cavity.p);
+    struct tri_relative at_end = tri_relative(&m->xy[old.v[1]], r->cavity.p);
+    bool room = judge_chain(r, 0, n_left, at_start) && judge_chain(r, n_left, r->cavity.n_rim, at_end) && crowd_walls(r);
+    if (room && r->options->conforming)
+        room = crowd(r, s) && crowd(r, second);
+    return room ? DONE : FAILED;
+}
+
+/* Does the new point lie on the wrong side of a wall, or see it under too wide an angle? Sets *beyond. */
+static bool encroaches(const struct refiner *r, int32_t i, bool *beyond)
+{
+    const struct tri_cavity *c = &r->cavity;
+    const struct tri_rim *rim = &c->rim[i], *next = &c->rim[i + 1 < c->n_rim ? i + 1 : 0];
+    double cross = tri_cross(rim->ra, next->ra), dot = rim->ra.x * next->ra.x + rim->ra.y * next->ra.y;
+    *beyond = false;
+    if (dot >= 0 && cross > 0)
+        return false;
+    if (dot < 0 && dot * dot > r->bounds.lens_cos2 * rim->ra.l * next->ra.l)
+        return true;
+    *beyond = tri_orient2d(c->p, r->mesh->xy[rim->a], r->mesh->xy[next->a]) <= 0;
+    return *beyond;
+}
+
+/* The subsegment to split instead of inserting the new point: one that hides it, else the first that it encroaches. */
+static int32_t find_encroached(const struct refiner *r)
+{
+    int32_t found = TRI_NONE;
+    for (int32_t i = 0; i < r->cavity.n_wall; i++) {
+        bool beyond;
+        if (!encroaches(r, r->cavity.wall[i], &beyond))
+            continue;
+        if (beyond)
+            return ~r->cavity.rim[r->cavity.wall[i]].outer;
+        if (found == TRI_NONE)
+            found = ~r->cavity.rim[r->cavity.wall[i]].outer;
+    }
+    return found;
+}
+
+/* How far from its shortest edge may the new point of this triangle lie? */
+static double reach_of(const struct refiner *r, const struct tri_triangle *t, const struct tri_shape *shape, enum badness badness)
+{
+    double l = shape->l[shape->shortest];
+    double reach = r->bounds.off_centre > 0 ? r->bounds.off_centre * sqrt(l) : HUGE_VAL;
+    double bound2 = area2_bound(r, t->region);
+    if (badness == BAD_SIZE && shape->area2 > bound2) {
+        double ideal2 = IDEAL * EQUILATERAL * 0.5 * bound2 - 0.25 * l;
+        double ideal = ideal2 > 0 ? sqrt(ideal2) : 0;
+        reach = ideal2 > 0.25 * l && ideal < reach ? ideal : reach;
+    }
+    return reach;
+}
+
+static enum outcome propose(struct refiner *r, int32_t slot, const struct tri_shape *shape, enum badness badness)
+{
+    const struct tri_triangle t = r->mesh->tri[slot];
+    struct tri_point p = tri_round_point(tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness)));
+    if (r->options->gate) {
+        double at[2] = {p.x, p.y};
+        if (!r->options->gate(r->options->gate_user, at)) {
+            r->report->gated++;
+            return REFUSED;
+        }
+    }
+    enum tri_search found = tri_cavity_search(&r->cavity, r->mesh, p, slot);
+    if (found == TRI_SEARCH_FOUND) {
+        int32_t s = find_encroached(r);
+        if (s == TRI_NONE)
+            return insert_free(r, p);
+        enum outcome outcome = split(r, s);
+        return outcome == DONE ? AGAIN : outcome;
+    }
+    if (found == TRI_SEARCH_FENCED) {
+        r->report->deferred++;
+        return REFUSED;
+    }
+    return found == TRI_SEARCH_OUTSIDE ? refuse(r, TRI_EXCUSE_PRECISION) : FAILED;
+}
+
+static bool at_limit(struct refiner *r)
+{
+    int64_t inserted = r->report->inserted_free + r->report->inserted_on_segments;
+    if (r->options->max_steiner < 0 || inserted < r->options->max_steiner)
+        return false;
+    return r->report->hit_limit = true;
+}
+
+/* Treats one bad triangle until it is gone or refused. */
+static enum outcome treat(struct refiner *r, struct tri_entry entry)
+{
+    for (;;) {
+        const struct tri_triangle *t = &r->mesh->tri[entry.t];
+        if (t->state != entry.state || !tri_is_live(t))
+            return DONE;
+        struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
+        enum badness badness = judge(r, t, &shape);
+        if (badness == GOOD)
+            return DONE;
+        if (badness == BAD_ANGLE && tri_is_hopeless(r->mesh, &r->resolution, entry.t, &shape)) {
+            if (shape.area2 <= area2_bound(r, t->region))
+                return refuse(r, TRI_EXCUSE_INPUT_ANGLE);
+        }
+        if (at_limit(r))
+            return refuse(r, TRI_EXCUSE_LIMIT);
+        enum outcome outcome = propose(r, entry.t, &shape, badness);
+        if (outcome != AGAIN)
+            return outcome;
+    }
+}
+
+/* Does the apex of a triangle beside the subsegment lie in its diametral circle? */
+static bool is_crowded(const struct refiner *r, const struct tri_subsegment *s)
+{
+    for (int side = 0; side < 2; side++) {
+        if (s->side[side] == TRI_NONE)
+            continue;
+        struct tri_point apex = r->mesh->xy[r->mesh->tri[tri_of(s->side[side])].v[tri_edge(s->side[side])]];
+        struct tri_relative a = tri_relative(&r->mesh->xy[s->v[0]], apex), b = tri_relative(&r->mesh->xy[s->v[1]], apex);
+        if (a.x * b.x + a.y * b.y < 0)
+            return true;
+    }
+    return false;
+}
+
+static bool split_crowded(struct refiner *r)
+{
+    while (r->n_crowded > 0) {
+        int32_t s = r->crowded[--r->n_crowded];
+        if (is_crowded(r, &r->mesh->sub[s]) && !at_limit(r) && split(r, s) == FAILED)
+            return false;
+    }
+    return true;
+}
+
+static bool work_off(struct refiner *r)
+{
+    struct tri_entry entry;
+    if (!split_crowded(r))
+        return false;
+    while (tri_bad_queue_pop(&r->queue, &entry))
+        if (treat(r, entry) == FAILED || (r->n_crowded > 0 && !split_crowded(r)))
+            return false;
+    return true;
+}
+
+static bool queue_bad(struct refiner *r, int32_t slot, bool sizes)
+{
+    const struct tri_triangle *t = &r->mesh->tri[slot];
+    if (!tri_is_live(t))
+        return true;
+    struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
+    enum badness badness = judge(r, t, &shape);
+    if (badness == GOOD || (badness == BAD_SIZE) != sizes)
+        return true;
+    return push(r, slot, badness, shape.area2, tri_longer_product(shape.l[0], shape.l[1], shape.l[2]));
+}
+
+/* Bad angles of the whole mesh compete with each other; what is only too large is taken place by place. */
+static bool refine_all(struct refiner *r)
+{
+    int32_t n = r->options->seeds ? r->options->n_seeds : r->mesh->n_slots;
+    for (int32_t s = 0; r->options->conforming && s < r->mesh->n_subs; s++)
+        if (!crowd(r, s))
+            return false;
+    for (int32_t i = 0; i < n; i++)
+        if (!queue_bad(r, r->options->seeds ? r->options->seeds[i] : i, false))
+            return false;
+    if (!work_off(r))
+        return false;
+    for (int32_t i = 0; i < n; i++)
+        if (!queue_bad(r, r->options->seeds ? r->options->seeds[i] : i, true) || !work_off(r))
+            return false;
+    return true;
+}
+
+enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,
+                           struct tri_refine_report *report, struct tri_error *error)
+{
+    struct tri_error own = {0};
+    struct refiner r = {.mesh = mesh, .options = options, .report = report, .error = error ? error : &own};
+    *report = (struct tri_refine_report){0};
+    r.error->status = TRI_OK;
+    r.bounds = tri_bounds_for(options->min_angle, options->conforming);
+    r.resolution = tri_resolution_of(mesh);
+    r.cavity.fence = options->fence;
+    bool done = tri_bad_queue_init(&r.queue) && refine_all(&r);
+    if (!done && r.error->status == TRI_OK)
+        tri_fail(r.error, TRI_NO_MEMORY, NULL, 0, "out of memory while refining");
+    tri_cavity_free(&r.cavity);
+    tri_bad_queue_free(&r.queue);
+    free(r.crowded);
+    return done ? TRI_OK : r.error->status;
+}

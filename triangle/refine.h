@@ -1,0 +1,74 @@
+/* Quality refinement: the one loop that inserts points until no triangle is bad.
+ *
+ * Its callers: the whole mesh (no gate, no fence), a coarser pre-refinement, one block of cells of a schedule (gate = is the
+ * new point in a cell that is active now?, fence = what may be touched). A bad triangle that the gate refuses, or whose cavity
+ * reaches beyond the fence, stays as it is and is counted; whoever calls again later finds it again.
+ *
+ * THEOREM (serialisation). A call with a fence changes only triangles whose three corners lie in the fence's half-open box,
+ * and the link across their border. Calls with disjoint boxes may run at the same time on views of one mesh: the result is
+ * that of running them one after the other, in any order. */
+#ifndef TRIANGLE_REFINE_H
+#define TRIANGLE_REFINE_H
+
+#include "triangle/cavity.h"
+
+/* Non-zero: the triangle a, b, c (counter-clockwise) must be refined. Called for triangles that satisfy all other size bounds. */
+typedef int tri_unsuitable(void *user, const double a[2], const double b[2], const double c[2], double area);
+
+/* May the bad triangle whose new point would be p (its circumcentre or off-centre) be refined now? */
+typedef bool tri_gate(void *user, const double p[2]);
+
+/* Makes room for at least 2 triangles, 1 vertex and 1 subsegment more in a mesh that is a view of shared arrays. */
+typedef enum tri_status tri_more_room(void *user, struct tri_mesh *mesh, struct tri_error *error);
+
+struct tri_refine_options {
+    double min_angle;      /* degrees; 0: no bound on angles */
+    double max_area;       /* <= 0: none */
+    bool region_areas;     /* mesh->regions[t.region].max_area applies too */
+    bool conforming;       /* -D: no vertex inside the diametral circle of a subsegment */
+    int protect;           /* 1: boundary subsegments are not split (-Y); 2: no subsegment is (-YY) */
+    int64_t max_steiner;   /* < 0: no limit on the points inserted */
+    tri_unsuitable *unsuitable;
+    void *unsuitable_user;
+    tri_gate *gate;        /* NULL: every bad triangle */
+    void *gate_user;
+    const struct tri_fence *fence; /* NULL: the whole mesh */
+    const int32_t *seeds;  /* [n_seeds] slots to look at first; NULL: all slots. The loop itself looks at all it makes */
+    int32_t n_seeds;
+    tri_more_room *more_room; /* NULL: the mesh's arrays grow */
+    void *more_room_user;
+};
+
+enum tri_excuse { /* why a triangle is still bad */
+    TRI_EXCUSE_INPUT_ANGLE, /* at, or across from, a small angle between input segments */
+    TRI_EXCUSE_PROTECTED,   /* -Y or -YY */
+    TRI_EXCUSE_LIMIT,       /* -S, or the cap on angle-driven points */
+    TRI_EXCUSE_PRECISION,   /* features nearer to each other than coordinates or the size of the mesh allow to resolve */
+    TRI_EXCUSE_DEFERRED,    /* gate or fence */
+    TRI_EXCUSES
+};
+
+struct tri_refine_report {
+    int64_t inserted_free, inserted_on_segments;
+    int64_t gated, deferred;          /* times the gate said no; times a cavity reached beyond the fence */
+    int64_t refused[TRI_EXCUSES];     /* bad triangles given up during the call, by reason; some vanish later */
+    bool hit_limit;                   /* max_steiner stopped the call */
+    bool hit_cap;                     /* angle-driven points ran away and were stopped */
+};
+
+struct tri_refine_options tri_refine_defaults(void);
+
+/* Refines until every bad triangle is refused, gated or deferred. On TRI_NO_MEMORY or TRI_TOO_LARGE the mesh is valid and
+ * as far as it got. Terminates for any PSLG and any bound. Amortised O(1) a point in practice. */
+enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,
+                           struct tri_refine_report *report, struct tri_error *error);
+
+/* Makes the mesh ready for refinement: lists the parents at each vertex, and marks the input vertices at which two subsegments
+ * meet at less than 60 degrees inside the mesh (TRI_VERTEX_ACUTE). To be called once, after carving. O(triangles). */
+enum tri_status tri_refine_prepare(struct tri_mesh *mesh, struct tri_error *error);
+
+/* Counts the triangles that violate the bounds, by reason. O(triangles). */
+void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                   const struct tri_refine_report *report, int64_t count[TRI_EXCUSES]);
+
+#endif

@@ -1,0 +1,31 @@
+/* Where refinement must stop: small input angles, and features that cannot be resolved. */
+#ifndef TRIANGLE_SMALL_ANGLE_H
+#define TRIANGLE_SMALL_ANGLE_H
+
+#include "triangle/quality.h"
+
+struct tri_resolution {
+    double shortest2; /* square of the shortest edge that coordinates of this size can carry */
+};
+
+struct tri_resolution tri_resolution_of(const struct tri_mesh *mesh);
+
+/* Where to split a subsegment, as a fraction from its start: in the middle or, beside an acute input vertex, at the power of
+ * two nearest to the middle from there. So subsegments that meet at a small angle are split on common circles (concentric
+ * shells: Ruppert 1995), and do not encroach each other for ever. */
+double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegment *s);
+
+bool tri_can_split(const struct tri_resolution *resolution, struct tri_point a, struct tri_point b);
+
+/* A bad angle that no point can mend, or that would only move it: see the rules in the .c file. */
+bool tri_is_hopeless(const struct tri_mesh *mesh, const struct tri_resolution *resolution, int32_t slot,
+                     const struct tri_shape *shape);
+
+/* Coordinates too small for exact predicates become 0. */
+static inline struct tri_point tri_round_point(struct tri_point p)
+{
+    const double least = 0x1p-216;
+    return (struct tri_point){fabs(p.x) < least ? 0 : p.x, fabs(p.y) < least ? 0 : p.y};
+}
+
+#endif

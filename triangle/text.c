@@ -1,0 +1,413 @@
+/* A text file in memory as a sequence of records: loading, indexing, and parsing tables by chunks.
+ *
+ * The file is read, not mapped: reading survives that somebody truncates it meanwhile, and goes in parallel as well. */
+#include "triangle/text.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { DEFAULT_CHUNK = 1 << 18 };
+
+static const size_t largest_pipe = (size_t)1 << 30; /* what has no size may have no end either: /dev/zero */
+
+#define J TRI_IS_JUNK
+#define S TRI_IS_START
+const uint8_t tri_character_kind[256] = {
+    /* 00 */ J, J, J, J, J, J, J, J, J, TRI_IS_BLANK, TRI_IS_NEWLINE, J, J, TRI_IS_BLANK, J, J,
+    /* 10 */ J, J, J, J, J, J, J, J, J, J, J, J, J, J, J, J,
+    /* 20 */ TRI_IS_BLANK, J, J, TRI_IS_HASH, J, J, J, J, J, J, J, S, J, S, S, J,
+    /* 30 */ S, S, S, S, S, S, S, S, S, S, J, J, J, J, J, J,
+    /* 40 */ J, J, J, J, J, J, J, J, J, J, J, J, J, J, J, J,
+    /* 50 */ J, J, J, J, J, J, J, J, J, J, J, J, J, J, J, J,
+    /* 60 */ J, J, J, J, J, J, J, J, J, J, J, J, J, J, J, J,
+    /* 70 */ J, J, J, J, J, J, J, J, J, J, J, J, J, J, J, J,
+    /* 80 */ J, J, J, J, J, J, J, J, J, J, J, J, J, J, J, J,
+    /* 90 */ J, J, J, J, J, J, J, J, J, J, J, J, J, J, J, J,
+    /* a0 */ J, J, J, J, J, J, J, J, J, J, J, J, J, J, J, J,
+    /* b0 */ J, J, J, J, J, J, J, J, J, J, J, J, J, J, J, J,
+    /* c0 */ J, J, J, J, J, J, J, J, J, J, J, J, J, J, J, J,
+    /* d0 */ J, J, J, J, J, J, J, J, J, J, J, J, J, J, J, J,
+    /* e0 */ J, J, J, J, J, J, J, J, J, J, J, J, J, J, J, J,
+    /* f0 */ J, J, J, J, J, J, J, J, J, J, J, J, J, J, J, J,
+};
+#undef J
+#undef S
+
+enum tri_status tri_fail_system(struct tri_error *error, enum tri_status status, const char *file, const char *what,
+                                int error_number)
+{
+    char reason[256];
+    if (strerror_r(error_number, reason, sizeof reason) != 0)
+        strcpy(reason, "unknown error");
+    return tri_fail(error, status, file, 0, "%s: %s", what, reason);
+}
+
+/* --- fields */
+
+static bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+static bool same_word(const char *word, size_t length, const char *lower)
+{
+    size_t i = 0;
+    while (i < length && lower[i] && (word[i] | 0x20) == lower[i])
+        i++;
+    return i == length && !lower[i];
+}
+
+static bool is_not_finite(const char *word, size_t length)
+{
+    return same_word(word, length, "nan") || same_word(word, length, "inf") || same_word(word, length, "infinity");
+}
+
+void tri_fields_skip_junk(struct tri_fields *fields)
+{
+    const char *at = fields->at;
+    while (tri_kind_at(at) == TRI_IS_JUNK || tri_kind_at(at) == TRI_IS_BLANK) {
+        const char *const word = at;
+        while (is_letter(*at))
+            at++;
+        const size_t length = (size_t)(at - word);
+        if (length == 0)
+            at++;
+        else if (is_not_finite(word, length))
+            fields->not_finite = true;
+    }
+    fields->at = at;
+}
+
+/* Begin of the line behind the one that `at` lies in. */
+static const char *next_line(const char *at, const char *end)
+{
+    if (*at == '\n')
+        return at + 1;
+    const char *const newline = memchr(at, '\n', (size_t)(end - at));
+    assert(newline);
+    return newline + 1;
+}
+
+/* --- loading */
+
+struct load {
+    struct tri_text *text;
+    int file;
+    size_t file_size;
+    int *errors; /* [n_chunks] error number of each chunk's read; -1: the file has become shorter */
+};
+
+/* Up to n bytes from offset; fewer only at the end of the file. -1 and errno on failure. */
+static ssize_t read_at(int file, char *at, size_t n, size_t offset)
+{
+    size_t done = 0;
+    while (done < n) {
+        const ssize_t got = pread(file, at + done, n - done, (off_t)(offset + done));
+        if (got == 0)
+            break;
+        if (got < 0 && errno != EINTR)
+            return -1;
+        if (got > 0)
+            done += (size_t)got;
+    }
+    return (ssize_t)done;
+}
+
+static void read_chunk(void *context, size_t i)
+{
+    struct load *const load = context;
+    const size_t begin = i * load->text->chunk_bytes;
+    const size_t left = load->file_size - begin;
+    const size_t n = left < load->text->chunk_bytes ? left : load->text->chunk_bytes;
+    const ssize_t got = read_at(load->file, load->text->data + begin, n, begin);
+    load->errors[i] = got < 0 ? errno : (size_t)got < n ? -1 : 0;
+}
+
+/* A file whose size is known, in parallel. */
+static enum tri_status read_sized(struct load *load, const struct tri_executor *executor, struct tri_error *error)
+{
+    struct tri_text *const text = load->text;
+    const size_t n_chunks = (load->file_size - 1) / text->chunk_bytes + 1;
+    text->data = malloc(load->file_size + 1);
+    load->errors = calloc(n_chunks, sizeof *load->errors);
+    if (!text->data || !load->errors)
+        return tri_fail(error, TRI_NO_MEMORY, text->name, 0, "no memory for %zu bytes of text", load->file_size);
+    tri_execute(executor, n_chunks, read_chunk, load);
+    for (size_t i = 0; i < n_chunks; i++)
+        if (load->errors[i] < 0)
+            return tri_fail(error, TRI_CANNOT_READ, text->name, 0, "the file became shorter while it was read");
+        else if (load->errors[i] > 0)
+            return tri_fail_system(error, TRI_CANNOT_READ, text->name, "cannot read", load->errors[i]);
+    text->size = load->file_size;
+    return TRI_OK;
+}
+
+/* Doubles the room for data; one byte of it is kept for a final newline. */
+static bool grow_data(struct tri_text *text, size_t *room)
+{
+    const size_t larger = *room ? 2 * *room : (size_t)1 << 16;
+    char *const data = realloc(text->data, larger);
+    if (!data)
+        return false;
+    text->data = data;
+    *room = larger;
+    return true;
+}
+
+/* A pipe, or a file that does not say its size, to its end. */
+static enum tri_status read_stream(struct tri_text *text, int file, struct tri_error *error)
+{
+    size_t room = 0;
+    for (;;) {
+        if (text->size + 1 >= room && !grow_data(text, &room))
+            return tri_fail(error, TRI_NO_MEMORY, text->name, 0, "no memory for the file");
+        const ssize_t got = read(file, text->data + text->size, room - 1 - text->size);
+        if (got == 0)
+            return TRI_OK;
+        if (got < 0 && errno != EINTR)
+            return tri_fail_system(error, TRI_CANNOT_READ, text->name, "cannot read", errno);
+        if (got > 0)
+            text->size += (size_t)got;
+        if (text->size > largest_pipe)
+            return tri_fail(error, TRI_CANNOT_READ, text->name, 0, "more than 1 GiB from what is no regular file");
+    }
+}
+
+static enum tri_status read_open_file(struct tri_text *text, int file, const struct tri_executor *executor,
+                                      struct tri_error *error)
+{
+    struct stat status;
+    if (fstat(file, &status) != 0)
+        return tri_fail_system(error, TRI_CANNOT_READ, text->name, "cannot read", errno);
+    if (S_ISDIR(status.st_mode))
+        return tri_fail(error, TRI_CANNOT_READ, text->name, 0, "cannot read: this is a directory");
+    if (!S_ISREG(status.st_mode) || status.st_size == 0)
+        return read_stream(text, file, error);
+    struct load load = {text, file, (size_t)status.st_size, NULL};
+    const enum tri_status result = read_sized(&load, executor, error);
+    free(load.errors);
+    return result;
+}
+
+static enum tri_status read_file(struct tri_text *text, const struct tri_executor *executor, struct tri_error *error)
+{
+    int file;
+    do
+        file = open(text->name, O_RDONLY | O_CLOEXEC);
+    while (file < 0 && errno == EINTR);
+    if (file < 0)
+        return tri_fail_system(error, TRI_CANNOT_READ, text->name, "cannot open", errno);
+    const enum tri_status result = read_open_file(text, file, executor, error);
+    close(file);
+    return result;
+}
+
+/* --- index */
+
+/* Begin of the first line that begins in chunk i, or NULL. Looks at the chunk's own bytes only, so that one endless
+ * line does not make the index quadratic. */
+static const char *first_line(const struct tri_text *text, size_t i)
+{
+    const size_t begin = i * text->chunk_bytes;
+    if (i == 0)
+        return text->data;
+    const size_t left = text->size - begin;
+    const size_t n = left < text->chunk_bytes ? left : text->chunk_bytes;
+    const char *const newline = memchr(text->data + begin - 1, '\n', n); /* of lines that begin in [begin, begin + n) */
+    return newline ? newline + 1 : NULL;
+}
+
+/* Puts into chunk i its begin, and its own numbers of lines and records. */
+static void count_chunk(void *context, size_t i)
+{
+    struct tri_text *const text = context;
+    struct tri_text_chunk *const chunk = &text->chunks[i];
+    const char *const end = text->data + text->size;
+    const char *const stop = i + 1 < text->n_chunks ? text->data + (i + 1) * text->chunk_bytes : end;
+    const char *line = first_line(text, i);
+    chunk->begin = line ? (size_t)(line - text->data) : SIZE_MAX;
+    while (line && line < stop) {
+        struct tri_fields fields;
+        chunk->record += tri_fields_open(&fields, line, end);
+        chunk->line++;
+        line = next_line(fields.at, end);
+    }
+}
+
+/* From numbers of lines and records in each chunk to numbers before it; chunks in which no line begins get the begin of
+ * the next. */
+static void accumulate(struct tri_text *text)
+{
+    struct tri_text_chunk before = {0, 0, 0};
+    for (size_t i = 0; i <= text->n_chunks; i++) {
+        struct tri_text_chunk *const chunk = &text->chunks[i];
+        const struct tri_text_chunk own = *chunk;
+        chunk->line = before.line;
+        chunk->record = before.record;
+        before.line += own.line;
+        before.record += own.record;
+    }
+    text->chunks[text->n_chunks].begin = text->size;
+    for (size_t i = text->n_chunks; i-- > 0;)
+        if (text->chunks[i].begin == SIZE_MAX)
+            text->chunks[i].begin = text->chunks[i + 1].begin;
+}
+
+static enum tri_status make_index(struct tri_text *text, const struct tri_executor *executor, struct tri_error *error)
+{
+    text->n_chunks = (text->size - 1) / text->chunk_bytes + 1;
+    text->chunks = calloc(text->n_chunks + 1, sizeof *text->chunks);
+    if (!text->chunks)
+        return tri_fail(error, TRI_NO_MEMORY, text->name, 0, "no memory for the index of the file");
+    tri_execute(executor, text->n_chunks, count_chunk, text);
+    accumulate(text);
+    return TRI_OK;
+}
+
+enum tri_status tri_text_load(struct tri_text *text, const char *path, size_t chunk_bytes,
+                              const struct tri_executor *executor, struct tri_error *error)
+{
+    *text = (struct tri_text){.name = path, .chunk_bytes = chunk_bytes ? chunk_bytes : DEFAULT_CHUNK};
+    const enum tri_status status = read_file(text, executor, error);
+    if (status != TRI_OK)
+        return status;
+    if (text->size == 0 || text->data[text->size - 1] != '\n')
+        text->data[text->size++] = '\n';
+    return make_index(text, executor, error);
+}
+
+void tri_text_free(struct tri_text *text)
+{
+    free(text->data);
+    free(text->chunks);
+    *text = (struct tri_text){0};
+}
+
+/* --- records */
+
+struct tri_cursor tri_cursor_begin(const struct tri_text *text)
+{
+    return (struct tri_cursor){text, text->data, 0, 0};
+}
+
+bool tri_cursor_next(struct tri_cursor *cursor, struct tri_fields *fields)
+{
+    const char *const end = cursor->text->data + cursor->text->size;
+    while (cursor->at < end) {
+        const bool is_record = tri_fields_open(fields, cursor->at, end);
+        cursor->at = next_line(fields->at, end);
+        cursor->line++;
+        if (is_record) {
+            cursor->record++;
+            return true;
+        }
+    }
+    return false;
+}
+
+size_t tri_cursor_remaining(const struct tri_cursor *cursor)
+{
+    return cursor->text->chunks[cursor->text->n_chunks].record - cursor->record;
+}
+
+/* What parsing the records of one chunk came to. */
+struct outcome {
+    struct tri_cursor cursor; /* behind the last record parsed */
+    const char *fault;        /* of that record, or NULL */
+};
+
+struct parse {
+    const struct tri_table *table;
+    struct tri_cursor begin;  /* of the table */
+    size_t first_chunk;
+    struct outcome *outcomes; /* one for each chunk of the table */
+};
+
+static void parse_chunk(void *context, size_t i)
+{
+    struct parse *const parse = context;
+    const struct tri_text *const text = parse->begin.text;
+    const struct tri_text_chunk *const chunk = &text->chunks[parse->first_chunk + i];
+    const char *const stop = text->data + chunk[1].begin;
+    struct tri_cursor cursor = {text, text->data + chunk->begin, chunk->line, chunk->record};
+    if (i == 0)
+        cursor = parse->begin;
+    const char *fault = NULL;
+    size_t row = cursor.record - parse->begin.record;
+    while (!fault && row < parse->table->n && cursor.at < stop) {
+        struct tri_fields fields;
+        const bool is_record = tri_fields_open(&fields, cursor.at, text->data + text->size);
+        if (is_record)
+            fault = parse->table->row(parse->table->user, row++, &fields);
+        cursor.at = next_line(fields.at, text->data + text->size);
+        cursor.line++;
+        cursor.record += is_record;
+    }
+    parse->outcomes[i] = (struct outcome){cursor, fault};
+}
+
+/* The last chunk that begins at or before the offset. */
+static size_t chunk_of(const struct tri_text *text, size_t offset)
+{
+    size_t low = 0, high = text->n_chunks; /* chunks[low].begin <= offset < chunks[high].begin, or high is the end */
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (text->chunks[middle].begin <= offset)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* The first chunk at or behind `first` with which n_records are read. */
+static size_t chunk_reaching(const struct tri_text *text, size_t first, size_t n_records)
+{
+    size_t low = first, high = text->n_chunks - 1;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (text->chunks[middle + 1].record >= n_records)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
+/* The fault of the first faulty record; else the cursor goes behind the table. */
+static enum tri_status conclude(const struct parse *parse, size_t n_outcomes, struct tri_cursor *cursor,
+                                struct tri_error *error)
+{
+    for (size_t i = 0; i < n_outcomes; i++) {
+        const struct outcome *const outcome = &parse->outcomes[i];
+        if (!outcome->fault)
+            continue;
+        const int64_t row = (int64_t)(outcome->cursor.record - 1 - parse->begin.record);
+        return tri_fail(error, TRI_BAD_INPUT, parse->begin.text->name, (long)outcome->cursor.line, "%s %lld %s",
+                        parse->table->noun, (long long)(row + parse->table->base), outcome->fault);
+    }
+    *cursor = parse->outcomes[n_outcomes - 1].cursor;
+    assert(cursor->record == parse->begin.record + parse->table->n);
+    return TRI_OK;
+}
+
+enum tri_status tri_cursor_table(struct tri_cursor *cursor, const struct tri_table *table,
+                                 const struct tri_executor *executor, struct tri_error *error)
+{
+    assert(table->n <= tri_cursor_remaining(cursor));
+    if (table->n == 0)
+        return TRI_OK;
+    struct parse parse = {table, *cursor, chunk_of(cursor->text, (size_t)(cursor->at - cursor->text->data)), NULL};
+    const size_t last = chunk_reaching(cursor->text, parse.first_chunk, cursor->record + table->n);
+    const size_t n_chunks = last - parse.first_chunk + 1;
+    parse.outcomes = calloc(n_chunks, sizeof *parse.outcomes);
+    if (!parse.outcomes)
+        return tri_fail(error, TRI_NO_MEMORY, cursor->text->name, 0, "no memory to read a table");
+    tri_execute(executor, n_chunks, parse_chunk, &parse);
+    const enum tri_status status = conclude(&parse, n_chunks, cursor, error);
+    free(parse.outcomes);
+    return status;
+}
