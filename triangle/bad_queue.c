@@ -9,7 +9,7 @@ enum { MASK = TRI_WINDOW - 1, HALF = TRI_WINDOW / 2, NIL = -1 };
 
 bool tri_bad_queue_init(struct tri_bad_queue *queue)
 {
-    *queue = (struct tri_bad_queue){.free_node = NIL, .top = NIL};
+    *queue = (struct tri_bad_queue){.free_node = NIL};
     for (int b = 0; b < TRI_BUCKETS; b++)
         queue->first[b] = queue->last[b] = NIL;
     queue->window = malloc(TRI_WINDOW * sizeof *queue->window);
@@ -54,7 +54,7 @@ bool tri_bad_queue_push_angle(struct tri_bad_queue *queue, struct tri_entry entr
     else
         queue->node[queue->last[bucket]].next = node;
     queue->last[bucket] = node;
-    queue->top = bucket > queue->top ? bucket : queue->top;
+    queue->filled[bucket / 64] |= UINT64_C(1) << bucket % 64;
     return true;
 }
 
@@ -89,20 +89,39 @@ static void refill(struct tri_bad_queue *queue)
         queue->window[queue->tail++ & MASK] = queue->cold[queue->n_cold + i];
 }
 
-bool tri_bad_queue_pop(struct tri_bad_queue *queue, struct tri_entry *entry)
+static int lowest_bit(uint64_t word)
 {
-    while (queue->top >= 0) {
-        int32_t node = queue->first[queue->top];
-        if (node == NIL) {
-            queue->top--;
-            continue;
+    int bit = 0;
+    for (int half = 32; half > 0; half /= 2)
+        if (!(word & ((UINT64_C(1) << half) - 1))) {
+            word >>= half;
+            bit += half;
         }
+    return bit;
+}
+
+static bool pop_angle(struct tri_bad_queue *queue, struct tri_entry *entry)
+{
+    for (int word = 0; word < TRI_BUCKETS / 64; word++) {
+        if (!queue->filled[word])
+            continue;
+        int bucket = 64 * word + lowest_bit(queue->filled[word]);
+        int32_t node = queue->first[bucket];
         *entry = queue->node[node].entry;
-        queue->first[queue->top] = queue->node[node].next;
+        queue->first[bucket] = queue->node[node].next;
+        if (queue->first[bucket] == NIL)
+            queue->filled[word] &= ~(UINT64_C(1) << bucket % 64);
         queue->node[node].next = queue->free_node;
         queue->free_node = node;
         return true;
     }
+    return false;
+}
+
+bool tri_bad_queue_pop(struct tri_bad_queue *queue, struct tri_entry *entry)
+{
+    if (pop_angle(queue, entry))
+        return true;
     if (queue->head == queue->tail && queue->n_cold > 0)
         refill(queue);
     if (queue->head == queue->tail)

@@ -93,7 +93,7 @@ static int32_t locate(struct flood *f, struct tri_point q)
 static void kill_holes(struct flood *f, const struct tri_pslg *pslg)
 {
     for (int32_t k = 0; k < pslg->n_holes; k++) {
-        struct tri_point q = {pslg->holes[2 * k], pslg->holes[2 * k + 1]};
+        struct tri_point q = tri_to_units(f->mesh, pslg->holes[2 * k], pslg->holes[2 * k + 1]);
         int32_t t = locate(f, q);
         if (t != TRI_NONE)
             kill_from(f, t);
@@ -130,7 +130,7 @@ static enum tri_status spread_regions(struct flood *f, const struct tri_pslg *ps
     for (int32_t k = 0; k < pslg->n_regions; k++) {
         const double *r = &pslg->regions[4 * k];
         regions[k + 1] = (struct tri_region){r[2], r[3]};
-        int32_t t = locate(f, (struct tri_point){r[0], r[1]});
+        int32_t t = locate(f, tri_to_units(mesh, r[0], r[1]));
         if (t != TRI_NONE && !f->dead[t])
             spread(f, t, k + 1);
     }

@@ -82,7 +82,7 @@ enum tri_check_kind {
     TRI_CHECK_LOCAL_DELAUNAY, /* (4) */
     TRI_CHECK_ENCROACHMENT,   /* (5), diametral circles */
     TRI_CHECK_INPUT_VERTICES, /* first vertices equal those of the input */
-    TRI_CHECK_LOST_VERTICES,  /* input vertex (without input: any vertex) that no triangle uses, inside the mesh */
+    TRI_CHECK_LOST_VERTICES,  /* input vertex (without input: any vertex) that no triangle uses, in the mesh's area */
     TRI_CHECK_INPUT_SEGMENTS,
     TRI_CHECK_MARKERS, /* subsegments carry the first non-zero marker of the input segments they lie on, else 1 on the
                                 boundary, else 0; only where input and markers are given */

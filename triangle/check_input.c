@@ -62,8 +62,8 @@ static enum tri_status find_twins(struct checker *c, struct reference *r)
         return TRI_NO_MEMORY;
     int32_t n_searched = 0;
     for (int32_t v = 0; v < r->n; v++) {
-        bool itself = !c->options->renumbered && v < c->mesh->n_points && check_is_used(c, v) &&
-                      check_same_place(check_point(c, v), point_of(r, v));
+        bool itself =
+            v < c->mesh->n_points && check_is_used(c, v) && check_same_place(check_point(c, v), point_of(r, v));
         c->twin[v] = itself ? v : -1;
         n_searched += !itself;
     }
@@ -174,7 +174,7 @@ static void report_inside(struct checker *c, const struct check_query *query)
     long id = check_number(c, query->id);
     struct tri_point p = {check_given(c, query->at.x), check_given(c, query->at.y)};
     if (query->kind == TRI_CHECK_LOST_VERTICES) {
-        check_fault(c, query->kind, "vertex %ld lies inside the mesh, but no triangle uses it", id);
+        check_fault(c, query->kind, "vertex %ld lies in the mesh's area, but no triangle uses it", id);
     } else if (query->kind == TRI_CHECK_HOLES) {
         check_fault(c, query->kind, "hole %ld at (%.17g, %.17g) lies inside the mesh", id, p.x, p.y);
     } else {

@@ -19,7 +19,7 @@ struct check_query {
     struct tri_point at;
     enum tri_check_kind kind; /* fault to report if it is inside */
     int32_t id;               /* vertex, input segment or hole */
-    bool inside;              /* the sweep's answer: strictly inside the mesh's area */
+    bool inside;              /* the sweep's answer: it is where it should not be */
 };
 
 /* A corner in the list of its vertex. */

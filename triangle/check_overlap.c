@@ -146,11 +146,13 @@ static bool insert_starting(struct sweep *w, int32_t n, int32_t below)
     return true;
 }
 
-static void answer(struct sweep *w, int32_t query)
+/* On an edge, a lost vertex is as lost as inside; a hole or what is missing of a segment is where it should be. */
+static void answer(struct sweep *w, int32_t number)
 {
-    int32_t below, s = find(w, w->c->queries[query].at, &below);
-    bool on_edge = s >= 0 && side(w, s, w->c->queries[query].at) == 0;
-    w->c->queries[query].inside = !on_edge && below >= 0 && w->edge[below].above;
+    struct check_query *q = &w->c->queries[number];
+    int32_t below, s = find(w, q->at, &below);
+    bool on_edge = s >= 0 && side(w, s, q->at) == 0;
+    q->inside = on_edge ? q->kind == TRI_CHECK_LOST_VERTICES : below >= 0 && w->edge[below].above;
 }
 
 static bool coincide(struct sweep *w, int32_t v, int32_t u)

@@ -297,8 +297,7 @@ static enum tri_status cut(struct layer *l, int32_t a, int32_t b, int32_t s, int
     struct tri_mesh *mesh = l->mesh;
     int32_t from = mesh->sub[s].v[0], to = mesh->sub[s].v[1], n_left;
     double fraction = crossing_fraction(mesh, mesh->xy[a], mesh->xy[b], s);
-    struct tri_point c = mesh->xy[from], d = mesh->xy[to];
-    struct tri_point p = {c.x + fraction * (d.x - c.x), c.y + fraction * (d.y - c.y)};
+    struct tri_point p = tri_point_between(mesh->xy[from], mesh->xy[to], fraction);
     enum tri_search found = tri_cavity_search_split(&l->cavity, mesh, p, s, &n_left);
     if (found == TRI_SEARCH_NO_MEMORY)
         return no_memory(l);

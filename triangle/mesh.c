@@ -5,6 +5,7 @@
 #include "triangle/mesh.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -76,6 +77,7 @@ enum tri_status tri_mesh_init(struct tri_mesh *mesh, struct tri_error *error)
     if (!mesh->regions)
         return no_memory(error, "regions", 1);
     mesh->n_regions = 1;
+    mesh->unit = 1;
     return TRI_OK;
 }
 
@@ -151,6 +153,19 @@ enum tri_status tri_mesh_reserve_subs(struct tri_mesh *mesh, int32_t more, struc
     return TRI_OK;
 }
 
+/* 1 for coordinates of ordinary size, else the power of two that brings the largest one to the order of 1. */
+static double unit_for(const struct tri_pslg *pslg)
+{
+    double size = 0;
+    int exponent;
+    for (int32_t i = 0; i < 2 * pslg->n_points; i++)
+        size = fabs(pslg->points[i]) > size ? fabs(pslg->points[i]) : size;
+    if (size == 0 || (size >= 0x1p-100 && size <= 0x1p199))
+        return 1;
+    frexp(size, &exponent);
+    return ldexp(1, exponent > -1000 ? exponent : -1000);
+}
+
 enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_error *error)
 {
     int32_t n = pslg->n_points, attributes = pslg->n_attributes;
@@ -159,8 +174,9 @@ enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_psl
     enum tri_status status = tri_mesh_reserve_vertices(mesh, n, error);
     if (status)
         return status;
+    mesh->unit = unit_for(pslg);
     for (int32_t i = 0; i < n; i++) {
-        mesh->xy[i] = (struct tri_point){pslg->points[2 * i], pslg->points[2 * i + 1]};
+        mesh->xy[i] = tri_to_units(mesh, pslg->points[2 * i], pslg->points[2 * i + 1]);
         mesh->on[i] = TRI_VERTEX_INPUT;
         mesh->vertex_markers[i] = pslg->markers ? pslg->markers[i] : 0;
     }

@@ -14,6 +14,7 @@
 #ifndef TRIANGLE_MESH_H
 #define TRIANGLE_MESH_H
 
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -86,6 +87,8 @@ struct tri_mesh {
 
     struct tri_region *regions; /* [n_regions] regions[0] is "no region": attribute 0, no bound */
     int32_t n_regions;
+
+    double unit;              /* a power of two: the caller's coordinates are xy * unit */
 };
 
 static const int tri_next[3] = {1, 2, 0}, tri_prev[3] = {2, 0, 1};
@@ -96,6 +99,21 @@ static inline int tri_edge(int32_t code) { return code & 3; }
 
 static inline bool tri_is_live(const struct tri_triangle *t) { return t->v[0] >= 0; }
 
+/* A coordinate that the exact predicates can carry: what is too small becomes 0. */
+static inline double tri_round_coordinate(double x) { return fabs(x) < 0x1p-216 ? 0 : x; }
+
+static inline struct tri_point tri_point_between(struct tri_point a, struct tri_point b, double fraction)
+{
+    return (struct tri_point){tri_round_coordinate(a.x + fraction * (b.x - a.x)),
+                              tri_round_coordinate(a.y + fraction * (b.y - a.y))};
+}
+
+/* A place given in the caller's coordinates. */
+static inline struct tri_point tri_to_units(const struct tri_mesh *mesh, double x, double y)
+{
+    return (struct tri_point){tri_round_coordinate(x / mesh->unit), tri_round_coordinate(y / mesh->unit)};
+}
+
 /* Makes an empty mesh; regions[0] exists. Frees everything and zeroes the struct. */
 enum tri_status tri_mesh_init(struct tri_mesh *mesh, struct tri_error *error);
 void tri_mesh_free(struct tri_mesh *mesh);
@@ -105,7 +123,8 @@ enum tri_status tri_mesh_reserve_vertices(struct tri_mesh *mesh, int32_t more, s
 enum tri_status tri_mesh_reserve_triangles(struct tri_mesh *mesh, int32_t more, struct tri_error *error);
 enum tri_status tri_mesh_reserve_subs(struct tri_mesh *mesh, int32_t more, struct tri_error *error);
 
-/* Takes over points, attributes and markers of the PSLG as vertices 0 .. n_points - 1. */
+/* Takes over points, attributes and markers of the PSLG as vertices 0 .. n_points - 1, and chooses mesh->unit so that
+ * all coordinates lie in the range of the exact predicates; what is smaller than 2^-216 units becomes 0. */
 enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_error *error);
 
 /* Appends a subsegment between two vertices and a parent for it; the caller links its sides. Room must have been reserved. */

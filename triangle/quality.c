@@ -43,5 +43,5 @@ struct tri_point tri_place(const struct tri_point *xy, const int32_t v[3], const
         x = mx - height * by;
         y = my + height * bx;
     }
-    return (struct tri_point){a.x + x, a.y + y};
+    return (struct tri_point){tri_round_coordinate(a.x + x), tri_round_coordinate(a.y + y)};
 }

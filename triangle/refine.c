@@ -28,6 +28,7 @@ struct refiner {
     struct tri_error *error;
     struct tri_bounds bounds;
     struct tri_resolution resolution;
+    int least_exponent; /* of the square of the shortest edge that can be resolved */
     struct tri_cavity cavity;
     struct tri_bad_queue queue;
     int32_t *crowded; /* stack of subsegments to test for encroachment (conforming only) */
@@ -51,14 +52,15 @@ static double area2_bound(const struct refiner *r, int32_t region)
         double own = r->mesh->regions[region].max_area;
         bound = own > 0 && own < bound ? own : bound;
     }
-    return 2 * bound;
+    return 2 * (bound / r->mesh->unit / r->mesh->unit);
 }
 
 static bool is_unsuitable(const struct refiner *r, const int32_t v[3], double area2)
 {
     const struct tri_point *xy = r->mesh->xy;
-    double a[2] = {xy[v[0]].x, xy[v[0]].y}, b[2] = {xy[v[1]].x, xy[v[1]].y}, c[2] = {xy[v[2]].x, xy[v[2]].y};
-    return r->options->unsuitable(r->options->unsuitable_user, a, b, c, 0.5 * area2) != 0;
+    double unit = r->mesh->unit, a[2] = {xy[v[0]].x * unit, xy[v[0]].y * unit};
+    double b[2] = {xy[v[1]].x * unit, xy[v[1]].y * unit}, c[2] = {xy[v[2]].x * unit, xy[v[2]].y * unit};
+    return r->options->unsuitable(r->options->unsuitable_user, a, b, c, 0.5 * area2 * unit * unit) != 0;
 }
 
 static enum badness judge(const struct refiner *r, const struct tri_triangle *t, const struct tri_shape *shape)
@@ -71,34 +73,39 @@ static enum badness judge(const struct refiner *r, const struct tri_triangle *t,
     return r->options->unsuitable && is_unsuitable(r, t->v, shape->area2) ? BAD_SIZE : GOOD;
 }
 
-/* Worse angles first: the exponent of sin^2 falls with the angle, its mantissa tells half octaves apart. */
-static int bucket_of(double area2, double product)
+/* Sixteen buckets an octave of the squared length, counted from the shortest edge that can be resolved. */
+static int bucket_of(const struct refiner *r, double shortest)
 {
     int exponent;
-    double ratio = area2 * area2 / product, mantissa = frexp(ratio, &exponent);
-    int bucket = -2 * exponent + (mantissa < 0.70710678118654752 ? 1 : 0);
+    double mantissa = frexp(shortest, &exponent);
+    int bucket = 16 * (exponent - r->least_exponent) + (int)(32 * mantissa) - 16;
     return bucket < 0 ? 0 : bucket >= TRI_BUCKETS ? TRI_BUCKETS - 1 : bucket;
 }
 
-static bool push(struct refiner *r, int32_t slot, enum badness badness, double area2, double product)
+static bool push(struct refiner *r, int32_t slot, enum badness badness, double shortest)
 {
     struct tri_entry entry = {slot, r->mesh->tri[slot].state};
-    return badness == BAD_ANGLE ? tri_bad_queue_push_angle(&r->queue, entry, bucket_of(area2, product))
+    return badness == BAD_ANGLE ? tri_bad_queue_push_angle(&r->queue, entry, bucket_of(r, shortest))
                                 : tri_bad_queue_push_size(&r->queue, entry);
+}
+
+static double least(double a, double b, double c)
+{
+    double least = a < b ? a : b;
+    return least < c ? least : c;
 }
 
 /* Judges the triangle of two rims' start points and the new vertex, from the coordinates the cavity search left. */
 static bool judge_rim(struct refiner *r, const struct tri_rim *rim, struct tri_relative rb, double bound2)
 {
     struct tri_relative ra = rim->ra;
-    double area2 = tri_cross(ra, rb), x = ra.x - rb.x, y = ra.y - rb.y;
-    double product = tri_longer_product(ra.l, rb.l, x * x + y * y);
-    if (area2 * area2 < r->bounds.sin2 * product)
-        return push(r, rim->slot, BAD_ANGLE, area2, product);
+    double area2 = tri_cross(ra, rb), x = ra.x - rb.x, y = ra.y - rb.y, l = x * x + y * y;
+    if (area2 * area2 < r->bounds.sin2 * tri_longer_product(ra.l, rb.l, l))
+        return push(r, rim->slot, BAD_ANGLE, least(ra.l, rb.l, l));
     if (area2 > bound2)
-        return push(r, rim->slot, BAD_SIZE, area2, product);
+        return push(r, rim->slot, BAD_SIZE, 0);
     if (r->options->unsuitable && is_unsuitable(r, r->mesh->tri[rim->slot].v, area2))
-        return push(r, rim->slot, BAD_SIZE, area2, product);
+        return push(r, rim->slot, BAD_SIZE, 0);
     return true;
 }
 
@@ -210,10 +217,10 @@ static enum outcome split(struct refiner *r, int32_t s)
         return refuse(r, TRI_EXCUSE_PROTECTED);
     double fraction = tri_split_fraction(m, &old);
     struct tri_point a = m->xy[old.v[0]], b = m->xy[old.v[1]];
-    struct tri_point p = {a.x + fraction * (b.x - a.x), a.y + fraction * (b.y - a.y)};
+    struct tri_point p = tri_point_between(a, b, fraction);
     if (!tri_can_split(&r->resolution, a, b))
         return refuse(r, TRI_EXCUSE_PRECISION);
-    enum tri_search found = tri_cavity_search_split(&r->cavity, m, tri_round_point(p), s, &n_left);
+    enum tri_search found = tri_cavity_search_split(&r->cavity, m, p, s, &n_left);
     if (found == TRI_SEARCH_FENCED) {
         r->report->deferred++;
         return REFUSED;
@@ -283,9 +290,9 @@ static double reach_of(const struct refiner *r, const struct tri_triangle *t, co
 static enum outcome propose(struct refiner *r, int32_t slot, const struct tri_shape *shape, enum badness badness)
 {
     const struct tri_triangle t = r->mesh->tri[slot];
-    struct tri_point p = tri_round_point(tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness)));
+    struct tri_point p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
     if (r->options->gate) {
-        double at[2] = {p.x, p.y};
+        double at[2] = {p.x * r->mesh->unit, p.y * r->mesh->unit};
         if (!r->options->gate(r->options->gate_user, at)) {
             r->report->gated++;
             return REFUSED;
@@ -381,7 +388,7 @@ static bool queue_bad(struct refiner *r, int32_t slot, bool sizes)
     enum badness badness = judge(r, t, &shape);
     if (badness == GOOD || (badness == BAD_SIZE) != sizes)
         return true;
-    return push(r, slot, badness, shape.area2, tri_longer_product(shape.l[0], shape.l[1], shape.l[2]));
+    return push(r, slot, badness, shape.l[shape.shortest]);
 }
 
 /* Bad angles of the whole mesh compete with each other; what is only too large is taken place by place. */
@@ -411,6 +418,7 @@ enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_option
     r.error->status = TRI_OK;
     r.bounds = tri_bounds_for(options->min_angle, options->conforming);
     r.resolution = tri_resolution_of(mesh);
+    frexp(r.resolution.shortest2, &r.least_exponent);
     r.cavity.fence = options->fence;
     bool done = tri_bad_queue_init(&r.queue) && refine_all(&r);
     if (!done && r.error->status == TRI_OK)

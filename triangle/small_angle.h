@@ -21,11 +21,4 @@ bool tri_can_split(const struct tri_resolution *resolution, struct tri_point a, 
 bool tri_is_hopeless(const struct tri_mesh *mesh, const struct tri_resolution *resolution, int32_t slot,
                      const struct tri_shape *shape);
 
-/* Coordinates too small for exact predicates become 0. */
-static inline struct tri_point tri_round_point(struct tri_point p)
-{
-    const double least = 0x1p-216;
-    return (struct tri_point){fabs(p.x) < least ? 0 : p.x, fabs(p.y) < least ? 0 : p.y};
-}
-
 #endif

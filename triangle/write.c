@@ -26,6 +26,8 @@ enum {
     NAME_BYTES = 64   /* of a temporary name */
 };
 
+_Static_assert((int)TRI_ROW_SLACK >= (int)TRI_REAL_ROOM, "a row may end with a real");
+
 static char *put(char *at, const char *text, size_t length)
 {
     memcpy(at, text, length);
@@ -330,7 +332,7 @@ enum tri_status tri_write_table(struct tri_output *output, size_t n_rows, size_t
     if (n_rows == 0)
         return TRI_OK;
     const size_t chunk_rows = max_row_bytes < CHUNK_BYTES ? CHUNK_BYTES / max_row_bytes : 1;
-    const size_t buffer_bytes = chunk_rows * max_row_bytes + TRI_REAL_ROOM;
+    const size_t buffer_bytes = chunk_rows * max_row_bytes + TRI_ROW_SLACK;
     const size_t all_chunks = (n_rows - 1) / chunk_rows + 1, most = executor ? WAVE_CHUNKS : 1;
     const size_t wave_chunks = all_chunks < most ? all_chunks : most;
     const int n_waves = all_chunks > wave_chunks ? 2 : 1;

@@ -1,0 +1,81 @@
+# How everything is compiled. ptriangle_flags(<target> [STRICT]) is called for each target; nothing is set globally but
+# the sanitizers, which must reach every object and every link. STRICT is for our own code; tests, which consist of
+# cmocka's macros, do without.
+
+option(PTRIANGLE_WERROR "Treat warnings as errors" OFF)
+option(PTRIANGLE_NATIVE "Compile for the processor of this machine (-march=native); results stay the same" OFF)
+set(PTRIANGLE_SANITIZE "" CACHE STRING "Sanitizers for the whole build, such as address,undefined or thread")
+
+# Debug keeps the asserts, and enough optimisation for the tests to end soon.
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug, RelWithDebInfo, MinSizeRel" FORCE)
+endif()
+set(PTRIANGLE_DEBUG_FLAGS $<$<CONFIG:Debug>:-O1>)
+
+if(PTRIANGLE_SANITIZE)
+    add_compile_options(-fsanitize=${PTRIANGLE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    add_link_options(-fsanitize=${PTRIANGLE_SANITIZE})
+endif()
+
+# Left out: -Wsign-conversion, which with 32-bit ids as indices asks for a cast in every line, and -Wdouble-promotion, which
+# takes exception to INFINITY.
+set(PTRIANGLE_WARNINGS -Wall -Wextra -Wshadow)
+set(PTRIANGLE_STRICT_WARNINGS
+    -Wpedantic -Wconversion -Wno-sign-conversion -Wvla -Wundef -Wwrite-strings
+    $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes>
+    $<$<COMPILE_LANGUAGE:C>:-Wmissing-prototypes>
+    $<$<COMPILE_LANGUAGE:C>:-Wold-style-definition>)
+
+# -ffp-contract=off is not a matter of taste: a fused multiply-add breaks the exact predicates, and meshes would differ
+# between compilers. It is private: a client's own arithmetic is the client's business. Hidden symbols let the compiler
+# inline position-independent code, and keep a client's shared library from exporting ours.
+function(ptriangle_flags target)
+    cmake_parse_arguments(PARSE_ARGV 1 arg "STRICT" "" "")
+    set_target_properties(${target} PROPERTIES
+        C_STANDARD 11 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF
+        CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF
+        C_VISIBILITY_PRESET hidden CXX_VISIBILITY_PRESET hidden)
+    target_compile_definitions(${target} PRIVATE $<$<COMPILE_LANGUAGE:C>:_POSIX_C_SOURCE=200809L>)
+    target_compile_options(${target} PRIVATE -ffp-contract=off ${PTRIANGLE_DEBUG_FLAGS} ${PTRIANGLE_WARNINGS})
+    if(arg_STRICT)
+        target_compile_options(${target} PRIVATE ${PTRIANGLE_STRICT_WARNINGS})
+    endif()
+    if(PTRIANGLE_WERROR)
+        target_compile_options(${target} PRIVATE -Werror)
+    endif()
+    if(PTRIANGLE_NATIVE)
+        target_compile_options(${target} PRIVATE -march=native)
+    endif()
+endfunction()
+
+# The C++ runtime goes into the executables, so that they run where no libstdc++ is installed. Sanitizers bring a runtime
+# of their own that expects the shared one.
+include(CheckCXXSourceCompiles)
+set(CMAKE_REQUIRED_LINK_OPTIONS -static-libstdc++ -static-libgcc)
+check_cxx_source_compiles("#include <string>\nint main(int n, char **) { return std::string(n, 'x').size() == 0; }"
+                          PTRIANGLE_STATIC_RUNTIME)
+unset(CMAKE_REQUIRED_LINK_OPTIONS)
+
+function(ptriangle_static_runtime target)
+    if(PTRIANGLE_STATIC_RUNTIME AND NOT PTRIANGLE_SANITIZE)
+        target_link_options(${target} PRIVATE -static-libstdc++ -static-libgcc)
+    endif()
+endfunction()
+
+# Numbers are read and written by <charconv>; with floating point since libstdc++ 11.
+set(CMAKE_REQUIRED_FLAGS -std=c++17)
+check_cxx_source_compiles("
+    #include <charconv>
+    int main()
+    {
+        char text[32] = \"1.5\";
+        double x = 0;
+        std::from_chars(text, text + 3, x);
+        std::to_chars(text, text + 32, x);
+        return x != 1.5;
+    }" PTRIANGLE_HAVE_CHARCONV)
+unset(CMAKE_REQUIRED_FLAGS)
+if(NOT PTRIANGLE_HAVE_CHARCONV)
+    message(FATAL_ERROR "The C++ compiler has no std::from_chars and std::to_chars for double: use GCC 11 or newer, or "
+                        "clang with the libstdc++ of GCC 11 or newer (Debian 12, Ubuntu 22.04).")
+endif()

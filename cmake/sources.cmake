@@ -1,0 +1,58 @@
+# What is built from what: explicit lists, in the order in which data flows. No globs: a stray file is found by the test
+# `house_rules`, which also reads this file on its own.
+
+# Room triangle/, the sequential mesher. C11 only.
+set(PTRIANGLE_MESHER_SOURCES
+    triangle/status.c
+    triangle/predicates.c
+    triangle/pslg.c
+    triangle/mesh.c
+    triangle/hilbert.c
+    triangle/delaunay.c
+    triangle/constrain.c
+    triangle/carve.c
+    triangle/cavity.c
+    triangle/interpolate.c
+    triangle/quality.c
+    triangle/small_angle.c
+    triangle/bad_queue.c
+    triangle/refine.c
+    triangle/stats.c
+    triangle/check.c
+    triangle/check_edges.c
+    triangle/check_sweep.c
+    triangle/check_overlap.c
+    triangle/check_delaunay.c
+    triangle/check_segments.c
+    triangle/check_chain.c
+    triangle/check_input.c
+    triangle/check_scale.c
+    triangle/check_quality.c
+    triangle/tri.c)
+
+# Room triangle/, text files. The one C++ file wraps std::from_chars and std::to_chars.
+set(PTRIANGLE_TEXT_SOURCES
+    triangle/number.cpp
+    triangle/text.c
+    triangle/read.c
+    triangle/write.c)
+
+# Room sched/, the parallel schedule: the only sources compiled with OpenMP.
+set(PTRIANGLE_SCHED_SOURCES)
+
+# Headers that are installed, below include/ptriangle/ at the same path.
+set(PTRIANGLE_PUBLIC_HEADERS
+    triangle/tri.h
+    triangle/status.h
+    triangle/pslg.h
+    triangle/mesh.h
+    triangle/check.h
+    triangle/executor.h
+    triangle/read.h
+    triangle/write.h)
+
+# Room drivers/: what the executables share, then the executables, each from drivers/<name>.c. The second list of programs
+# needs the room sched/ and its library.
+set(PTRIANGLE_DRIVER_SOURCES)
+set(PTRIANGLE_PROGRAMS triangle trianglecheck)
+set(PTRIANGLE_PARALLEL_PROGRAMS)

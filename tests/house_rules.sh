@@ -1,0 +1,75 @@
+#!/bin/sh
+# House rules that a command can see (CONTRIBUTING.md). Usage: house_rules.sh SOURCE_ROOT C_COMPILER
+# Prints one line per breach; exit code 1 if there is any.
+set -u
+root=$1
+cc=$2
+cd "$root" || exit 2
+breaches=0
+
+breach() {
+    echo "house rules: $*"
+    breaches=$((breaches + 1))
+}
+
+# Code without comments: what remains is what the compiler sees. Strings stay; a /* in a string would fool it.
+code_of() {
+    awk '{
+        line = $0; out = ""
+        while (line != "") {
+            if (inside) {
+                end = index(line, "*/")
+                if (!end) break
+                line = substr(line, end + 2); inside = 0
+            } else {
+                start = index(line, "/*"); slashes = index(line, "//")
+                if (slashes && (!start || slashes < start)) { out = out substr(line, 1, slashes - 1); break }
+                if (!start) { out = out line; break }
+                out = out substr(line, 1, start - 1) " "; line = substr(line, start + 2); inside = 1
+            }
+        }
+        print FNR ": " out
+    }' "$1"
+}
+
+# refuse PATTERN REASON FILE...
+refuse() {
+    pattern=$1
+    reason=$2
+    shift 2
+    for file; do
+        [ -f "$file" ] || continue
+        found=$(code_of "$file" | grep -v "format(printf" | grep -E "$pattern" | head -n 3)
+        [ -z "$found" ] || breach "$file: $reason: $found"
+    done
+}
+
+# 1. Every source file stands in a list, every list entry is a file.
+for file in triangle/*.c triangle/*.cpp sched/*.c; do
+    [ -f "$file" ] || continue
+    grep -qE "(^|[ (])$file([ )]|\$)" cmake/sources.cmake || breach "$file stands in no list of cmake/sources.cmake"
+done
+for file in tests/test_*.c; do
+    [ -f "$file" ] || continue
+    name=${file#tests/test_}
+    grep -qE "ptriangle_test\(${name%.c}[ )]" tests/CMakeLists.txt || breach "$file is not registered in tests/CMakeLists.txt"
+done
+
+# 2. drivers/ -> sched/ -> triangle/, never back; only sched/ knows threads.
+refuse '#[[:space:]]*include[[:space:]]*"(sched|drivers|tests)/' 'includes an upper room' triangle/*.[ch] triangle/*.cpp
+refuse '#[[:space:]]*include[[:space:]]*"(drivers|tests)/' 'includes an upper room' sched/*.[ch]
+refuse '#[[:space:]]*pragma[[:space:]]+omp|<(omp|pthread|threads)\.h>' 'knows threads' triangle/*.[ch] triangle/*.cpp
+
+# 3. Libraries neither print nor end the process nor touch the locale.
+refuse '(^|[^_a-zA-Z0-9])(printf|puts|putchar|perror|exit|_exit|abort|setlocale|std(out|err))([^_a-zA-Z0-9]|$)' \
+    'prints, exits or touches the locale' triangle/*.[ch] triangle/*.cpp sched/*.[ch]
+
+# 4. Each header compiles alone.
+for file in triangle/*.h sched/*.h; do
+    [ -f "$file" ] || continue
+    "$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Wno-unused -I . -fsyntax-only -x c \
+        -include "$file" /dev/null || breach "$file does not compile alone"
+done
+
+[ "$breaches" -eq 0 ] && echo "house rules: kept"
+[ "$breaches" -eq 0 ]

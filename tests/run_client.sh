@@ -1,0 +1,47 @@
+#!/bin/sh
+# Installs a build into a scratch prefix, moves the prefix, and builds and runs tests/client/ against it: as a C project
+# through find_package, and by hand through pkg-config.
+# Usage: run_client.sh BUILD_DIR WORK_DIR CMAKE C_COMPILER
+set -eu
+build=$1
+work=$2
+cmake=$3
+cc=$4
+client=$(cd "$(dirname "$0")/client" && pwd)
+square=$client/../../data/square.poly
+
+rm -rf "$work"
+mkdir -p "$work"
+"$cmake" --install "$build" --prefix "$work/staged" >"$work/install.log"
+mv "$work/staged" "$work/prefix"
+
+echo "== find_package"
+"$cmake" -S "$client" -B "$work/cmake" -DCMAKE_C_COMPILER="$cc" -DCMAKE_PREFIX_PATH="$work/prefix" \
+    -DCMAKE_BUILD_TYPE=Release
+"$cmake" --build "$work/cmake"
+"$work/cmake/client" "$square"
+
+echo "== pkg-config"
+if ! command -v pkg-config >/dev/null; then
+    echo "pkg-config is not installed: this half was not tested" >&2
+    exit 1
+fi
+if "$cc" -std=c11 "$client/client.c" -o "$work/unaided" 2>/dev/null; then
+    echo "the client compiles without pkg-config: this half would prove nothing" >&2
+    exit 1
+fi
+pc=$(find "$work/prefix" -name ptriangle.pc)
+PKG_CONFIG_PATH=$(dirname "$pc")
+export PKG_CONFIG_PATH
+# shellcheck disable=SC2046 # the words of pkg-config are meant to be split
+"$cc" -std=c11 "$client/client.c" -o "$work/by_hand" $(pkg-config --cflags --libs ptriangle)
+"$work/by_hand" "$square"
+
+echo "== executables"
+for program in "$build/bin/"*; do
+    installed=$work/prefix/bin/$(basename "$program")
+    [ ! -x "$program" ] || [ -x "$installed" ] || { echo "not installed: $program" >&2; exit 1; }
+done
+cp "$square" "$work/"
+"$work/prefix/bin/triangle" -pQ "$work/square.poly"
+"$work/prefix/bin/trianglecheck" "$work/square.1" --poly "$work/square.poly"

@@ -1,0 +1,1045 @@
+/* The judge on trial: valid meshes of every kind pass, and each way of breaking one is found and named.
+ *
+ * Meshes are written down by hand, or are a patch of slanted rows: point (i, j) at (i + 0.5 * (j odd), 0.8 * j), every edge
+ * strictly Delaunay. The judgement on overlap is compared with a naive twin on random heaps of triangles. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "triangle/check.h"
+#include "triangle/check_sweep.h"
+
+enum { ROOM = 4096 };
+
+/* A mesh with room to be changed, its input, and the outcome. */
+struct trial {
+    double points[2 * ROOM];
+    int32_t triangles[3 * ROOM], neighbors[3 * ROOM], segments[2 * ROOM], markers[ROOM];
+    double max_areas[ROOM];
+    struct tri_check_mesh mesh;
+    struct tri_pslg input;
+    bool has_input;
+    struct tri_check_options options;
+    struct tri_check_report report;
+};
+
+static struct trial trial; /* too large for the stack; begin() empties it */
+
+static void begin(void)
+{
+    memset(&trial, 0, sizeof trial);
+    trial.mesh.points = trial.points;
+    trial.mesh.triangles = trial.triangles;
+    trial.options.max_bad = -1;
+}
+
+static int32_t add_point(double x, double y)
+{
+    int32_t v = trial.mesh.n_points++;
+    assert_true(v < ROOM);
+    trial.points[2 * v] = x;
+    trial.points[2 * v + 1] = y;
+    return v;
+}
+
+static int32_t add_triangle(int32_t a, int32_t b, int32_t c)
+{
+    int32_t t = trial.mesh.n_triangles++;
+    assert_true(t < ROOM);
+    trial.triangles[3 * t] = a;
+    trial.triangles[3 * t + 1] = b;
+    trial.triangles[3 * t + 2] = c;
+    return t;
+}
+
+static int32_t add_segment(int32_t a, int32_t b)
+{
+    int32_t s = trial.mesh.n_segments++;
+    assert_true(s < ROOM);
+    trial.mesh.segments = trial.segments;
+    trial.segments[2 * s] = a;
+    trial.segments[2 * s + 1] = b;
+    return s;
+}
+
+static void remove_triangle(int32_t t)
+{
+    int32_t last = --trial.mesh.n_triangles;
+    memmove(&trial.triangles[3 * t], &trial.triangles[3 * last], 3 * sizeof(int32_t));
+}
+
+static void remove_segment(int32_t s)
+{
+    int32_t last = --trial.mesh.n_segments;
+    memmove(&trial.segments[2 * s], &trial.segments[2 * last], 2 * sizeof(int32_t));
+}
+
+/* Triangle with the directed edge a b, -1: none. *corner: the one opposite. */
+static int32_t find_edge(int32_t a, int32_t b, int *corner)
+{
+    for (int32_t t = 0; t < trial.mesh.n_triangles; t++) {
+        for (int k = 0; k < 3; k++) {
+            if (trial.triangles[3 * t + (k + 1) % 3] != a || trial.triangles[3 * t + (k + 2) % 3] != b)
+                continue;
+            if (corner != NULL)
+                *corner = k;
+            return t;
+        }
+    }
+    return -1;
+}
+
+static void list_boundary(void)
+{
+    for (int32_t t = 0; t < trial.mesh.n_triangles; t++) {
+        for (int k = 0; k < 3; k++) {
+            int32_t a = trial.triangles[3 * t + (k + 1) % 3], b = trial.triangles[3 * t + (k + 2) % 3];
+            if (find_edge(b, a, NULL) < 0)
+                add_segment(a, b);
+        }
+    }
+}
+
+static void list_neighbors(void)
+{
+    trial.mesh.neighbors = trial.neighbors;
+    for (int32_t t = 0; t < trial.mesh.n_triangles; t++) {
+        for (int k = 0; k < 3; k++) {
+            int32_t a = trial.triangles[3 * t + (k + 1) % 3], b = trial.triangles[3 * t + (k + 2) % 3];
+            trial.neighbors[3 * t + k] = find_edge(b, a, NULL);
+        }
+    }
+}
+
+/* Replaces edge a b by the other diagonal. */
+static void flip(int32_t a, int32_t b)
+{
+    int p, q;
+    int32_t t = find_edge(a, b, &p), u = find_edge(b, a, &q);
+    int32_t c = trial.triangles[3 * t + p], d = trial.triangles[3 * u + q];
+    memcpy(&trial.triangles[3 * t], (int32_t[3]){c, a, d}, 3 * sizeof(int32_t));
+    memcpy(&trial.triangles[3 * u], (int32_t[3]){d, b, c}, 3 * sizeof(int32_t));
+}
+
+enum { COLUMNS = 6, ROWS = 5 };
+
+static int32_t at(int32_t i, int32_t j)
+{
+    return j * COLUMNS + i;
+}
+
+static void add_patch_triangles(int32_t first, int32_t columns, int32_t rows)
+{
+    for (int32_t j = 0; j + 1 < rows; j++) {
+        for (int32_t i = 0; i + 1 < columns; i++) {
+            int32_t a = first + j * columns + i, b = a + 1, c = a + columns, d = c + 1;
+            if (j % 2 == 0) {
+                add_triangle(a, b, c);
+                add_triangle(b, d, c);
+            } else {
+                add_triangle(a, b, d);
+                add_triangle(a, d, c);
+            }
+        }
+    }
+}
+
+static void add_patch_points(int32_t columns, int32_t rows, double x, double y, double scale)
+{
+    for (int32_t j = 0; j < rows; j++) {
+        for (int32_t i = 0; i < columns; i++)
+            add_point(x + scale * (i + 0.5 * (j % 2)), y + scale * 0.8 * j);
+    }
+}
+
+/* The patch with neighbours, boundary subsegments, and itself as input. */
+static void begin_patch(void)
+{
+    begin();
+    add_patch_points(COLUMNS, ROWS, 0, 0, 1);
+    add_patch_triangles(0, COLUMNS, ROWS);
+    list_boundary();
+    list_neighbors();
+}
+
+/* The points and subsegments there are now, copied, become the input. */
+static void take_as_input(void)
+{
+    static double points[2 * ROOM];
+    static int32_t segments[2 * ROOM], markers[ROOM];
+    memcpy(points, trial.points, sizeof points);
+    memcpy(segments, trial.segments, sizeof segments);
+    memcpy(markers, trial.markers, sizeof markers);
+    trial.input = (struct tri_pslg){.n_points = trial.mesh.n_points,
+                                    .points = points,
+                                    .n_segments = trial.mesh.n_segments,
+                                    .segments = segments,
+                                    .segment_markers = markers};
+    trial.has_input = true;
+}
+
+static void judge(void)
+{
+    struct tri_error error = {0};
+    const struct tri_pslg *input = trial.has_input ? &trial.input : NULL;
+    assert_int_equal(tri_check(&trial.mesh, input, &trial.options, &trial.report, &error), TRI_OK);
+}
+
+static void expect_good(void)
+{
+    judge();
+    for (int k = 0; k < TRI_N_CHECKS; k++) {
+        if (trial.report.item[k].state == TRI_CHECK_FAILED) {
+            fail_msg("%s: %s", tri_check_name((enum tri_check_kind)k), trial.report.item[k].text);
+        }
+    }
+    assert_true(tri_check_passed(&trial.report));
+}
+
+/* The kind has so many faults and a witness; kinds that are not among `also` (-1: none) have none. */
+static void expect(enum tri_check_kind kind, int64_t count, int also)
+{
+    judge();
+    for (int k = 0; k < TRI_N_CHECKS; k++) {
+        const struct tri_check_item *item = &trial.report.item[k];
+        if (k != (int)kind && k != also && item->state == TRI_CHECK_FAILED) {
+            fail_msg("also %s: %s", tri_check_name((enum tri_check_kind)k), item->text);
+        }
+    }
+    assert_int_equal(trial.report.item[kind].state, TRI_CHECK_FAILED);
+    assert_int_equal(trial.report.item[kind].count, count);
+    assert_true(trial.report.item[kind].text[0] != '\0');
+    assert_false(tri_check_passed(&trial.report));
+}
+
+static bool failed(enum tri_check_kind kind)
+{
+    return trial.report.item[kind].state == TRI_CHECK_FAILED;
+}
+
+/* --- valid meshes */
+
+static void good_patch(void **state)
+{
+    (void)state;
+    begin_patch();
+    trial.mesh.segment_markers = trial.markers;
+    take_as_input();
+    for (int32_t s = 0; s < trial.mesh.n_segments; s++)
+        trial.markers[s] = 1;
+    trial.options.min_angle = 50;
+    trial.options.max_area = 0.4;
+    trial.options.delaunay = TRI_CHECK_CONFORMING;
+    expect_good();
+    const struct tri_check_report *r = &trial.report;
+    for (int k = 0; k < TRI_N_CHECKS; k++) {
+        if (k != TRI_CHECK_HULL)
+            assert_int_equal(r->item[k].state, TRI_CHECK_OK);
+    }
+    assert_int_equal(r->n_used_points, 30);
+    assert_int_equal(r->n_edges, 69);
+    assert_int_equal(r->n_boundary_edges, 18);
+    assert_float_equal(r->smallest_area, 0.4, 1e-12);
+    assert_float_equal(r->largest_area, 0.4, 1e-12);
+    assert_float_equal(r->total_area, 16, 1e-12);
+    double base = atan2(0.8, 0.5) * 180 / acos(-1);
+    assert_float_equal(r->smallest_angle, base, 1e-9);
+    assert_float_equal(r->largest_angle, 180 - 2 * base, 1e-9);
+}
+
+static void good_nothing(void **state)
+{
+    (void)state;
+    begin();
+    expect_good();
+    add_point(0, 0), add_point(1, 1), add_point(2, 2);
+    trial.mesh.segments = trial.segments;
+    trial.mesh.neighbors = trial.neighbors;
+    trial.input.segments = NULL;
+    take_as_input();
+    trial.input.n_segments = 1;
+    trial.input.segments[0] = 0, trial.input.segments[1] = 2;
+    trial.options.min_angle = 20;
+    trial.options.convex = true;
+    expect_good(); /* a PSLG that is not closed loses all */
+    assert_float_equal(trial.report.smallest_angle, 0, 0);
+}
+
+static void good_hole_and_island(void **state)
+{
+    (void)state;
+    begin_patch();
+    trial.mesh.n_segments = 0;
+    int32_t t = find_edge(at(2, 2), at(3, 2), NULL);
+    double hole[2] = {2.5, 1.8};
+    remove_triangle(t);
+    int32_t a = add_point(2.4, 1.7), b = add_point(2.6, 1.7), c = add_point(2.5, 1.8); /* an island in the hole */
+    add_triangle(a, b, c);
+    list_boundary();
+    list_neighbors();
+    take_as_input();
+    expect_good();
+    trial.input.n_holes = 1;
+    trial.input.holes = hole;
+    hole[1] = 1.65;
+    expect_good();
+    hole[1] = 1.7; /* on the island's edge */
+    expect_good();
+    hole[1] = 1.75; /* in the island */
+    expect(TRI_CHECK_HOLES, 1, -1);
+    trial.options.ignore_holes = true;
+    expect_good();
+}
+
+static void good_dangling_segment(void **state)
+{
+    (void)state;
+    begin_patch();
+    add_segment(at(1, 1), at(2, 1));
+    add_segment(at(2, 1), at(3, 1));
+    take_as_input();
+    expect_good();
+}
+
+static void good_components_that_touch(void **state)
+{
+    (void)state;
+    begin();
+    int32_t o = add_point(0, 0), a = add_point(1, 0), b = add_point(1, 1), c = add_point(-1, 0), d = add_point(-1, -1);
+    add_triangle(o, a, b);
+    add_triangle(o, c, d);
+    list_boundary();
+    list_neighbors();
+    take_as_input();
+    expect_good();
+    int32_t e = add_point(0, 1), f = add_point(0, 2), g = add_point(-1, 2); /* a vertical edge, apart */
+    add_triangle(e, f, g);
+    trial.mesh.n_segments = 0;
+    list_boundary();
+    list_neighbors();
+    take_as_input();
+    expect_good();
+    trial.options.convex = true;
+    expect(TRI_CHECK_HULL, 1, -1);
+}
+
+static void good_rounded_chain(void **state)
+{
+    (void)state;
+    begin();
+    double m = 1.0 / 3; /* on neither line exactly */
+    int32_t a = add_point(0.1, 0.1), b = add_point(1.3, 0.7), c = add_point(0, 2);
+    add_segment(a, b), add_segment(b, c), add_segment(c, a);
+    take_as_input();
+    int32_t p = add_point(0.1 + (1.3 - 0.1) * m, 0.1 + (0.7 - 0.1) * m);
+    add_triangle(a, p, c);
+    add_triangle(p, b, c);
+    trial.mesh.n_segments = 0;
+    list_boundary();
+    trial.options.delaunay = TRI_CHECK_NOT_DELAUNAY;
+    expect_good();
+    trial.points[2 * p] += 1e-9;
+    expect(TRI_CHECK_INPUT_SEGMENTS, 1, -1);
+}
+
+static void good_any_scale(void **state)
+{
+    (void)state;
+    const int exponents[] = {600, -900, 150};
+    for (int i = 0; i < 3; i++) {
+        begin_patch();
+        for (int32_t v = 0; v < 2 * trial.mesh.n_points; v++)
+            trial.points[v] = ldexp(trial.points[v], exponents[i]);
+        take_as_input();
+        trial.options.max_area = i == 2 ? ldexp(0.4, 300) : 0;
+        trial.options.min_angle = 50;
+        expect_good();
+        trial.options.max_area *= 0.99;
+        if (i == 2)
+            expect(TRI_CHECK_AREAS, 40, -1);
+    }
+}
+
+/* --- the mesh itself */
+
+static void broken_arrays(void **state)
+{
+    (void)state;
+    begin_patch();
+    trial.triangles[5] = trial.mesh.n_points;
+    trial.triangles[9] = -1;
+    trial.options.base = 1;
+    expect(TRI_CHECK_ARRAYS, 2, -1);
+    assert_string_equal(trial.report.item[TRI_CHECK_ARRAYS].text, "triangle 2 has corner 31, which is not a vertex");
+    assert_int_equal(trial.report.item[TRI_CHECK_EDGES].state, TRI_CHECK_SKIPPED);
+    begin_patch();
+    trial.points[7] = NAN;
+    expect(TRI_CHECK_ARRAYS, 1, -1);
+}
+
+static void broken_orientation(void **state)
+{
+    (void)state;
+    begin_patch();
+    int32_t a = trial.triangles[21];
+    trial.triangles[21] = trial.triangles[22];
+    trial.triangles[22] = a;
+    judge();
+    assert_int_equal(trial.report.item[TRI_CHECK_ORIENTATION].count, 1);
+    assert_non_null(strstr(trial.report.item[TRI_CHECK_ORIENTATION].text, "triangle 7 "));
+    assert_true(failed(TRI_CHECK_EDGES));
+    begin();
+    add_point(0, 0), add_point(1, 1), add_point(3, 3);
+    add_triangle(0, 1, 2);
+    judge();
+    assert_string_equal(trial.report.item[TRI_CHECK_ORIENTATION].text, "triangle 0 (0 1 2) is flat");
+    trial.points[5] = nextafter(3, 4); /* by a hair counter-clockwise */
+    expect_good();
+}
+
+static void broken_edges(void **state)
+{
+    (void)state;
+    begin_patch();
+    add_triangle(trial.triangles[30], trial.triangles[31], trial.triangles[32]); /* a triangle twice */
+    trial.mesh.neighbors = NULL;
+    judge();
+    assert_true(failed(TRI_CHECK_EDGES));
+    begin_patch();
+    int32_t v = add_point(2.5, -1); /* a second triangle on an edge of the inside */
+    add_triangle(at(2, 1), at(2, 2), v);
+    trial.mesh.neighbors = NULL;
+    judge();
+    assert_true(failed(TRI_CHECK_EDGES) || failed(TRI_CHECK_ORIENTATION));
+    begin();
+    add_point(0, 0), add_point(4, 0), add_point(1, 3), add_point(2, 2), add_point(3, 3), add_point(2, -2);
+    add_triangle(0, 1, 2), add_triangle(0, 1, 4); /* two on the same side, a third on the other */
+    add_triangle(1, 0, 5);
+    expect(TRI_CHECK_EDGES, 3, -1);
+}
+
+static void broken_neighbors(void **state)
+{
+    (void)state;
+    begin_patch();
+    assert_true(trial.neighbors[16] != 3);
+    trial.neighbors[16] = 3;
+    expect(TRI_CHECK_NEIGHBORS, 1, -1);
+    begin_patch();
+    for (int32_t i = 0; i < 3 * trial.mesh.n_triangles; i++) {
+        if (trial.neighbors[i] < 0)
+            trial.neighbors[i] = 0;
+    }
+    expect(TRI_CHECK_NEIGHBORS, 18, -1);
+}
+
+/* Eight points around a ninth, a quarter turn from each to the next: the star winds twice. */
+static void broken_star(void **state)
+{
+    (void)state;
+    begin();
+    const double x[] = {1, 0, -1, 0, 2, 0, -2, 0}, y[] = {0, 1, 0, -1, 0, 2, 0, -2};
+    for (int i = 0; i < 8; i++)
+        add_point(x[i], y[i]);
+    int32_t o = add_point(0, 0);
+    for (int32_t i = 0; i < 8; i++)
+        add_triangle(o, i, (i + 1) % 8);
+    expect(TRI_CHECK_STARS, 1, TRI_CHECK_OVERLAP);
+    assert_true(failed(TRI_CHECK_OVERLAP));
+    remove_triangle(5); /* open, but still more than once around */
+    judge();
+    assert_true(failed(TRI_CHECK_OVERLAP));
+}
+
+static void broken_overlap(void **state)
+{
+    (void)state;
+    begin_patch(); /* a second patch on top, boundaries apart */
+    trial.mesh.n_segments = 0;
+    trial.mesh.neighbors = NULL;
+    add_patch_points(3, 3, 1.01, 0.81, 0.5);
+    add_patch_triangles(COLUMNS * ROWS, 3, 3);
+    list_boundary();
+    expect(TRI_CHECK_OVERLAP, 1, -1);
+    begin(); /* two triangles that cross */
+    add_point(0, 0), add_point(4, 0), add_point(2, 4), add_point(0, 3), add_point(2, -1), add_point(4, 3);
+    add_triangle(0, 1, 2), add_triangle(3, 4, 5);
+    expect(TRI_CHECK_OVERLAP, 1, -1);
+    begin(); /* the same, vertices nowhere inside, one edge vertical */
+    add_point(0, 0), add_point(4, 0), add_point(2, 4), add_point(2, -1), add_point(6, 0), add_point(2, 9);
+    add_triangle(0, 1, 2), add_triangle(3, 4, 5);
+    expect(TRI_CHECK_OVERLAP, 1, -1);
+}
+
+static void broken_overlap_by_a_moved_vertex(void **state)
+{
+    (void)state;
+    begin_patch();
+    trial.points[2 * at(2, 2)] += 2; /* past its star */
+    judge();
+    assert_true(failed(TRI_CHECK_ORIENTATION));
+}
+
+static void broken_hanging_vertex(void **state)
+{
+    (void)state;
+    begin();
+    int32_t a = add_point(0, 0), b = add_point(4, 0), c = add_point(2, 3), d = add_point(2, -3), m = add_point(2, 0);
+    add_triangle(a, b, c);
+    add_triangle(m, a, d);
+    add_triangle(b, m, d);
+    expect(TRI_CHECK_OVERLAP, 1, -1);
+    assert_non_null(strstr(trial.report.item[TRI_CHECK_OVERLAP].text, "one runs along the other"));
+    begin(); /* the vertex just touches an edge */
+    add_point(0, 0), add_point(4, 0), add_point(2, 3), add_point(2, 0), add_point(3, -3), add_point(4, -3);
+    add_triangle(0, 1, 2), add_triangle(3, 4, 5);
+    expect(TRI_CHECK_OVERLAP, 1, -1);
+    assert_non_null(strstr(trial.report.item[TRI_CHECK_OVERLAP].text, "a vertex of one lies inside the other"));
+    trial.points[2 * 3 + 1] = -1e-300; /* apart by a hair: no overlap, but out of the range of the predicates */
+    expect(TRI_CHECK_ARRAYS, 1, -1);
+    trial.points[2 * 3 + 1] = -1e-60;
+    expect_good();
+}
+
+static void broken_coinciding_vertices(void **state)
+{
+    (void)state;
+    begin();
+    add_point(0, 0), add_point(1, 0), add_point(0, 1), add_point(0, 0), add_point(-1, 0), add_point(0, -1);
+    add_triangle(0, 1, 2), add_triangle(3, 4, 5);
+    expect(TRI_CHECK_OVERLAP, 1, -1);
+    assert_non_null(strstr(trial.report.item[TRI_CHECK_OVERLAP].text, "same place"));
+}
+
+/* --- twin of the overlap check: random heaps of triangles on a small grid of points */
+
+/* Exact: the coordinates are small integers. */
+static double turn(const double *p, const double *q, const double *r)
+{
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+}
+
+static const double *corner(int32_t t, int k)
+{
+    return &trial.points[2 * trial.triangles[3 * t + k]];
+}
+
+/* An edge line of t that all of u lies beyond. */
+static bool separates(int32_t t, int32_t u)
+{
+    for (int k = 0; k < 3; k++) {
+        int n = 0;
+        for (int m = 0; m < 3; m++)
+            n += turn(corner(t, k), corner(t, (k + 1) % 3), corner(u, m)) <= 0;
+        if (n == 3)
+            return true;
+    }
+    return false;
+}
+
+/* A corner of u lies in t without being a corner of it. */
+static bool intrudes(int32_t t, int32_t u)
+{
+    for (int m = 0; m < 3; m++) {
+        int inside = 0, same = 0;
+        for (int k = 0; k < 3; k++) {
+            inside += turn(corner(t, k), corner(t, (k + 1) % 3), corner(u, m)) >= 0;
+            same += trial.triangles[3 * t + k] == trial.triangles[3 * u + m];
+        }
+        if (inside == 3 && same == 0)
+            return true;
+    }
+    return false;
+}
+
+static bool naive_is_triangulation(void)
+{
+    for (int32_t t = 0; t < trial.mesh.n_triangles; t++) {
+        if (turn(corner(t, 0), corner(t, 1), corner(t, 2)) <= 0)
+            return false;
+        for (int32_t u = 0; u < t; u++) {
+            if (!(separates(t, u) || separates(u, t)) || intrudes(t, u) || intrudes(u, t))
+                return false;
+        }
+    }
+    return true;
+}
+
+static uint32_t random_below(uint32_t n)
+{
+    static uint32_t x = 12345;
+    x ^= x << 13, x ^= x >> 17, x ^= x << 5;
+    return x % n;
+}
+
+/* Random corners, turned counter-clockwise; rarely left as they are. */
+static void add_random_triangle(int32_t n_points)
+{
+    int32_t v[3];
+    for (int k = 0; k < 3; k++)
+        v[k] = (int32_t)random_below((uint32_t)n_points);
+    bool turned = turn(&trial.points[2 * v[0]], &trial.points[2 * v[1]], &trial.points[2 * v[2]]) < 0;
+    if (turned && random_below(50) > 0) {
+        add_triangle(v[0], v[2], v[1]);
+    } else if (turned || v[0] != v[1]) {
+        add_triangle(v[0], v[1], v[2]);
+    }
+}
+
+static void twin_of_overlap(void **state)
+{
+    (void)state;
+    int count[5][2] = {{0}};
+    for (int i = 0; i < 60000; i++) {
+        begin();
+        int32_t n = 4 + (int32_t)random_below(6), wanted = 1 + (int32_t)random_below(5);
+        uint32_t side = 3 + random_below(4);
+        for (int32_t v = 0; v < n; v++)
+            add_point(random_below(side), random_below(side));
+        for (int32_t k = 0; k < 60 && trial.mesh.n_triangles < wanted; k++) {
+            add_random_triangle(n);
+            /* a heap of random triangles is seldom valid: take most of the faulty ones back */
+            if (trial.mesh.n_triangles > 0 && random_below(12) > 0 && !naive_is_triangulation())
+                trial.mesh.n_triangles--;
+        }
+        if (trial.mesh.n_triangles == 0)
+            continue;
+        bool good = naive_is_triangulation();
+        count[trial.mesh.n_triangles - 1][good]++;
+        trial.options.delaunay = TRI_CHECK_NOT_DELAUNAY;
+        trial.options.ignore_lost = true;
+        judge();
+        if (tri_check_passed(&trial.report) != good)
+            fail_msg("heap %d: %s", i, good ? "good" : "bad");
+    }
+    for (int k = 0; k < 5; k++)
+        assert_true(count[k][0] > 50 && count[k][1] > 50);
+}
+
+/* --- Delaunay */
+
+static void broken_delaunay(void **state)
+{
+    (void)state;
+    begin_patch();
+    flip(at(2, 2), at(3, 2));
+    list_neighbors();
+    expect(TRI_CHECK_LOCAL_DELAUNAY, 1, -1);
+    trial.options.delaunay = TRI_CHECK_NOT_DELAUNAY;
+    expect_good();
+    trial.options.delaunay = TRI_CHECK_CONSTRAINED;
+    int p;
+    (void)find_edge(at(2, 1), at(2, 3), &p);
+    add_segment(at(2, 1), at(2, 3));
+    expect_good(); /* constrained, it may be there */
+    trial.options.delaunay = TRI_CHECK_CONFORMING;
+    expect(TRI_CHECK_LOCAL_DELAUNAY, 1, TRI_CHECK_ENCROACHMENT);
+    assert_int_equal(trial.report.item[TRI_CHECK_ENCROACHMENT].count, 2);
+}
+
+static void broken_diametral_circle(void **state)
+{
+    (void)state;
+    begin();
+    add_point(0, 0), add_point(2, 0), add_point(1, 1); /* a right angle: on the circle */
+    add_triangle(0, 1, 2);
+    trial.options.delaunay = TRI_CHECK_CONFORMING;
+    expect_good();
+    trial.points[5] = 1 - 0x1p-53;
+    expect(TRI_CHECK_ENCROACHMENT, 1, -1);
+    trial.points[5] = 1 + 0x1p-52;
+    expect_good();
+    begin(); /* the two products are 2^54 - 1 and -2^54: equal, once rounded */
+    add_point(0x1p27 + 1, -0x1p27), add_point(0x1p27 - 1, 0x1p27), add_point(0, 0);
+    add_triangle(0, 1, 2);
+    trial.options.delaunay = TRI_CHECK_CONFORMING;
+    expect(TRI_CHECK_ENCROACHMENT, 1, -1);
+}
+
+/* --- segments */
+
+static void broken_boundary(void **state)
+{
+    (void)state;
+    begin_patch();
+    take_as_input();
+    remove_segment(4);
+    judge();
+    assert_int_equal(trial.report.item[TRI_CHECK_BOUNDARY].count, 1);
+    begin_patch();
+    remove_triangle(find_edge(at(2, 2), at(3, 2), NULL)); /* a missing triangle is a hole without segments */
+    list_neighbors();
+    expect(TRI_CHECK_BOUNDARY, 3, -1);
+}
+
+static void broken_subsegments(void **state)
+{
+    (void)state;
+    begin_patch();
+    add_segment(at(0, 0), at(3, 3));
+    expect(TRI_CHECK_SUBSEGMENTS, 1, -1);
+    begin_patch();
+    add_segment(trial.segments[1], trial.segments[0]);
+    expect(TRI_CHECK_SUBSEGMENTS, 1, -1);
+    begin_patch();
+    add_segment(3, 3);
+    add_segment(0, 1000);
+    add_segment(-1, 0);
+    expect(TRI_CHECK_SUBSEGMENTS, 3, -1);
+}
+
+static void broken_input_segments(void **state)
+{
+    (void)state;
+    begin_patch();
+    add_segment(at(1, 1), at(2, 1));
+    take_as_input();
+    remove_segment(trial.mesh.n_segments - 1);
+    expect(TRI_CHECK_INPUT_SEGMENTS, 1, -1);
+    assert_non_null(strstr(trial.report.item[TRI_CHECK_INPUT_SEGMENTS].text, "segment 18 (7-8)"));
+    begin_patch(); /* a long one, of which one subsegment is missing */
+    take_as_input();
+    trial.input.segments[0] = at(0, 2), trial.input.segments[1] = at(5, 2);
+    for (int32_t i = 0; i < 5; i++)
+        add_segment(at(i, 2), at(i + 1, 2));
+    expect_good();
+    remove_segment(trial.mesh.n_segments - 3);
+    expect(TRI_CHECK_INPUT_SEGMENTS, 1, -1);
+    trial.input.segments[0] = -5; /* not a segment */
+    expect_good();
+}
+
+/* A strip of unit squares 0 .. 6; squares 1 and 4 are carved; one input segment runs along the middle line. */
+static void begin_strip(void)
+{
+    begin();
+    for (int32_t i = 0; i <= 7; i++) {
+        for (int32_t j = 0; j < 3; j++)
+            add_point(i, j - 1);
+    }
+    for (int32_t i = 0; i < 7; i++) {
+        if (i == 1 || i == 4)
+            continue;
+        for (int32_t j = 0; j < 2; j++) {
+            int32_t a = 3 * i + j, b = a + 3, c = a + 4, d = a + 1;
+            add_triangle(a, b, c);
+            add_triangle(a, c, d);
+        }
+    }
+    list_boundary();
+    take_as_input();
+    int32_t last = trial.input.n_segments++;
+    trial.input.segments[2 * last] = 1;
+    trial.input.segments[2 * last + 1] = 22;
+}
+
+static void carved_pieces_are_good(void **state)
+{
+    (void)state;
+    begin_strip();
+    const int32_t inside[] = {0, 2, 3, 5, 6};
+    int32_t first = trial.mesh.n_segments;
+    for (int k = 0; k < 5; k++)
+        add_segment(3 * inside[k] + 1, 3 * inside[k] + 4);
+    expect_good();
+    for (int32_t k = 0; k < 5; k++) { /* each of them is needed */
+        int32_t a = trial.segments[2 * (first + k)], b = trial.segments[2 * (first + k) + 1];
+        remove_segment(first + k);
+        expect(TRI_CHECK_INPUT_SEGMENTS, 1, -1);
+        (void)add_segment(a, b);
+        int32_t *moved = &trial.segments[2 * (first + k)], *end = &trial.segments[2 * (trial.mesh.n_segments - 1)];
+        end[0] = moved[0], end[1] = moved[1];
+        moved[0] = a, moved[1] = b;
+    }
+    int32_t far = trial.input.n_points++; /* the segment ends in the open */
+    trial.input.points[2 * far] = 30, trial.input.points[2 * far + 1] = 0;
+    trial.points[2 * far] = 30, trial.points[2 * far + 1] = 0;
+    trial.mesh.n_points++;
+    trial.input.segments[2 * trial.input.n_segments - 1] = far;
+    expect_good();
+}
+
+static void broken_markers(void **state)
+{
+    (void)state;
+    begin_patch();
+    int32_t s = add_segment(at(1, 1), at(2, 1));
+    add_segment(at(2, 1), at(3, 1));
+    trial.mesh.segment_markers = trial.markers;
+    trial.markers[2] = 7;
+    trial.markers[s] = -4;
+    take_as_input();
+    for (int32_t i = 0; i < s; i++)
+        trial.markers[i] = i == 2 ? 7 : 1;
+    expect_good();
+    trial.markers[s + 1] = 1;
+    expect(TRI_CHECK_MARKERS, 1, -1);
+    trial.markers[2] = 1;
+    expect(TRI_CHECK_MARKERS, 2, -1);
+    begin_patch(); /* overlapping input segments: the first marker that is not zero wins */
+    s = add_segment(at(1, 1), at(2, 1));
+    add_segment(at(1, 1), at(3, 1));
+    add_segment(at(2, 1), at(3, 1));
+    trial.markers[s + 1] = 5;
+    trial.markers[s + 2] = 6;
+    take_as_input();
+    trial.segments[2 * (s + 1)] = at(2, 1); /* in the mesh two subsegments */
+    remove_segment(s + 2);
+    trial.mesh.segment_markers = trial.markers;
+    for (int32_t k = 0; k < s; k++)
+        trial.markers[k] = 1;
+    trial.markers[s] = 5;
+    expect_good();
+}
+
+/* --- input vertices */
+
+static void broken_input_vertices(void **state)
+{
+    (void)state;
+    begin_patch();
+    take_as_input();
+    trial.points[2 * at(3, 1)] = nextafter(trial.points[2 * at(3, 1)], 10);
+    expect(TRI_CHECK_INPUT_VERTICES, 1, TRI_CHECK_LOST_VERTICES); /* nobody is at its place now */
+    begin_patch();
+    take_as_input();
+    trial.input.points[2 * trial.input.n_points] = 100; /* outside, but missing */
+    trial.input.n_points++;
+    expect(TRI_CHECK_INPUT_VERTICES, 1, -1);
+}
+
+static void broken_lost_vertex(void **state)
+{
+    (void)state;
+    begin_patch();
+    add_point(2.5, 1.8);
+    take_as_input();
+    expect(TRI_CHECK_LOST_VERTICES, 1, -1);
+    trial.options.ignore_lost = true;
+    expect_good();
+    trial.options.ignore_lost = false;
+    trial.points[2 * 30] = trial.input.points[2 * 30] = 2.25; /* on a boundary edge: it should have split that */
+    trial.points[2 * 30 + 1] = trial.input.points[2 * 30 + 1] = 0;
+    expect(TRI_CHECK_LOST_VERTICES, 1, -1);
+    trial.points[2 * 30] = trial.input.points[2 * 30] = 1.5; /* a duplicate of another vertex now */
+    trial.points[2 * 30 + 1] = trial.input.points[2 * 30 + 1] = trial.points[2 * at(1, 1) + 1];
+    expect_good();
+    trial.points[2 * 30] = trial.input.points[2 * 30] = 150; /* outside */
+    expect_good();
+    trial.options.convex = true;
+    judge();
+    assert_true(failed(TRI_CHECK_HULL));
+}
+
+static void duplicates_stand_for_each_other(void **state)
+{
+    (void)state;
+    begin_patch();
+    add_segment(at(1, 1), at(2, 1));
+    int32_t twin = add_point(trial.points[2 * at(1, 1)], trial.points[2 * at(1, 1) + 1]);
+    take_as_input();
+    trial.input.segments[2 * 18] = twin;
+    expect_good();
+    trial.mesh.n_points--; /* dropped from the output */
+    expect(TRI_CHECK_INPUT_VERTICES, 1, -1);
+    trial.options.renumbered = true;
+    expect_good();
+    memmove(trial.input.points + 2, trial.input.points, (size_t)trial.input.n_points * 2 * sizeof(double));
+    for (int32_t i = 0; i < 2 * trial.input.n_segments; i++)
+        trial.input.segments[i]++;
+    trial.input.n_points++;
+    trial.input.points[0] = -50;
+    expect_good();
+}
+
+/* --- quality */
+
+static void broken_angles(void **state)
+{
+    (void)state;
+    begin_patch();
+    trial.options.min_angle = 64.02;
+    trial.options.small_input_angle = 20;
+    expect(TRI_CHECK_ANGLES, 40, -1);
+    trial.options.max_bad = 40;
+    expect_good();
+    trial.options.max_bad = 39;
+    expect(TRI_CHECK_ANGLES, 1, -1);
+    begin();
+    add_point(0, 0), add_point(1, 0), add_point(0, 1);
+    add_triangle(0, 1, 2);
+    trial.options.min_angle = 45; /* met exactly, whatever the rounding */
+    trial.options.small_input_angle = 20;
+    expect_good();
+    assert_float_equal(trial.report.largest_angle, 90, 1e-9);
+    trial.options.min_angle = 45.000001;
+    expect(TRI_CHECK_ANGLES, 1, -1);
+    trial.options.small_input_angle = 0; /* the corners of the input are to blame */
+    expect_good();
+    assert_int_equal(trial.report.n_small_explained, 1);
+    assert_int_equal(trial.report.n_apexes, 2);
+}
+
+/* Equilateral, turned by any angle: met, whatever the rounding. */
+static void bounds_are_met_but_for_rounding(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 100; i++) {
+        begin();
+        for (int k = 0; k < 3; k++) {
+            double angle = i + k * 2 * acos(-1) / 3;
+            add_point(cos(angle), sin(angle));
+        }
+        add_triangle(0, 1, 2);
+        trial.options.min_angle = 60;
+        trial.options.small_input_angle = 20;
+        trial.options.max_area = 0.75 * sqrt(3);
+        expect_good();
+    }
+}
+
+/* A wedge of ten degrees whose triangles far from the apex have corners on both legs. */
+static void small_input_angles_explain(void **state)
+{
+    (void)state;
+    begin();
+    double x = cos(10 * acos(-1) / 180), y = sin(10 * acos(-1) / 180);
+    int32_t o = add_point(0, 0), before[2] = {o, o};
+    for (int i = 0; i < 6; i++) {
+        double r = ldexp(1, i);
+        int32_t a = add_point(r, 0), b = add_point(r * x, r * y);
+        if (i == 0) {
+            add_triangle(o, a, b);
+        } else {
+            add_triangle(before[0], a, b);
+            add_triangle(before[0], b, before[1]);
+        }
+        before[0] = a, before[1] = b;
+    }
+    int32_t p = add_point(40, -1), q = add_point(60, 1);
+    add_triangle(before[0], q, before[1]);
+    add_triangle(before[0], p, q); /* thin, and nobody's fault */
+    list_boundary();
+    trial.options.delaunay = TRI_CHECK_NOT_DELAUNAY;
+    trial.options.min_angle = 20;
+    trial.options.small_input_angle = 11; /* the ends of the wedge are not apexes */
+    expect(TRI_CHECK_ANGLES, 1, -1);
+    assert_int_equal(trial.report.n_small - trial.report.n_small_explained, 1);
+    assert_true(trial.report.n_small_explained >= 11);
+    assert_true(trial.report.largest_area > 100 * trial.report.smallest_area);
+    assert_non_null(strstr(trial.report.item[TRI_CHECK_ANGLES].text, "triangle 12 "));
+}
+
+static void broken_areas(void **state)
+{
+    (void)state;
+    begin_patch();
+    trial.options.max_area = 0.4; /* the area of each, but for rounding */
+    expect_good();
+    trial.options.max_area = 0.39999;
+    expect(TRI_CHECK_AREAS, 40, -1);
+    trial.options.max_area = 0;
+    trial.options.max_areas = trial.max_areas;
+    expect_good();
+    trial.max_areas[3] = 0.1;
+    trial.max_areas[4] = 0.5;
+    trial.max_areas[5] = -1;
+    expect(TRI_CHECK_AREAS, 1, -1);
+    assert_non_null(strstr(trial.report.item[TRI_CHECK_AREAS].text, "triangle 3 "));
+}
+
+static void broken_hull(void **state)
+{
+    (void)state;
+    begin();
+    add_point(0, 0), add_point(2, 0), add_point(2, 2), add_point(0, 2), add_point(1, 0);
+    add_triangle(0, 4, 3), add_triangle(4, 1, 2), add_triangle(4, 2, 3);
+    trial.options.convex = true;
+    expect_good();
+    remove_triangle(2);
+    expect(TRI_CHECK_HULL, 1, -1);
+    begin(); /* two hulls are none */
+    add_point(0, 0), add_point(1, 0), add_point(0, 1), add_point(5, 0), add_point(6, 0), add_point(5, 1);
+    add_triangle(0, 1, 2), add_triangle(3, 4, 5);
+    trial.options.convex = true;
+    expect(TRI_CHECK_HULL, 1, -1);
+}
+
+/* --- the order of the sweep */
+
+static int depth(const struct sweep_order *order, int32_t s)
+{
+    int n = 0;
+    for (; s >= 0; s = order->node[s].up)
+        n++;
+    return n;
+}
+
+static void order_is_kept_and_balanced(void **state)
+{
+    (void)state;
+    enum { N = 5000 };
+    struct sweep_order order;
+    assert_int_equal(sweep_order_init(&order, N), TRI_OK);
+    for (int32_t s = 0; s < N; s++)
+        sweep_order_insert(&order, s, s - 1); /* from bottom to top: the worst case of a plain tree */
+    for (int32_t s = 0; s < N; s += 2)
+        sweep_order_remove(&order, s);
+    int32_t above = -1;
+    for (int32_t s = 1; s < N; s += 2) {
+        above = sweep_order_above(&order, above);
+        assert_int_equal(above, s);
+        assert_true(depth(&order, s) < 60);
+    }
+    assert_int_equal(sweep_order_above(&order, above), -1);
+    for (int32_t s = N - 1; s >= 0; s -= 2)
+        sweep_order_remove(&order, s);
+    assert_int_equal(order.root, -1);
+    sweep_order_clear(&order);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(good_patch),
+        cmocka_unit_test(good_nothing),
+        cmocka_unit_test(good_hole_and_island),
+        cmocka_unit_test(good_dangling_segment),
+        cmocka_unit_test(good_components_that_touch),
+        cmocka_unit_test(good_rounded_chain),
+        cmocka_unit_test(good_any_scale),
+        cmocka_unit_test(broken_arrays),
+        cmocka_unit_test(broken_orientation),
+        cmocka_unit_test(broken_edges),
+        cmocka_unit_test(broken_neighbors),
+        cmocka_unit_test(broken_star),
+        cmocka_unit_test(broken_overlap),
+        cmocka_unit_test(broken_overlap_by_a_moved_vertex),
+        cmocka_unit_test(broken_hanging_vertex),
+        cmocka_unit_test(broken_coinciding_vertices),
+        cmocka_unit_test(twin_of_overlap),
+        cmocka_unit_test(broken_delaunay),
+        cmocka_unit_test(broken_diametral_circle),
+        cmocka_unit_test(broken_boundary),
+        cmocka_unit_test(broken_subsegments),
+        cmocka_unit_test(broken_input_segments),
+        cmocka_unit_test(carved_pieces_are_good),
+        cmocka_unit_test(broken_markers),
+        cmocka_unit_test(broken_input_vertices),
+        cmocka_unit_test(broken_lost_vertex),
+        cmocka_unit_test(duplicates_stand_for_each_other),
+        cmocka_unit_test(broken_angles),
+        cmocka_unit_test(bounds_are_met_but_for_rounding),
+        cmocka_unit_test(small_input_angles_explain),
+        cmocka_unit_test(broken_areas),
+        cmocka_unit_test(broken_hull),
+        cmocka_unit_test(order_is_kept_and_balanced),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

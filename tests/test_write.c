@@ -1,0 +1,551 @@
+/* Writing: layouts against printf and against expected bytes, tables in any order, and that a failure leaves nothing
+ * behind. */
+#include "triangle/write.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "triangle/read.h"
+
+#define LENGTH(array) (sizeof(array) / sizeof *(array))
+
+static char directory[64];
+
+static int set_up(void **state)
+{
+    (void)state;
+    strcpy(directory, "/tmp/test_write_XXXXXX");
+    return mkdtemp(directory) ? 0 : -1;
+}
+
+/* Empties the directory; returns how many entries it had. */
+static int empty_directory(void)
+{
+    DIR *const entries = opendir(directory);
+    assert_non_null(entries);
+    int n = 0;
+    for (struct dirent *entry = readdir(entries); entry; entry = readdir(entries)) {
+        if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0)
+            continue;
+        char path[400];
+        snprintf(path, sizeof path, "%s/%s", directory, entry->d_name);
+        assert_int_equal(remove(path), 0);
+        n++;
+    }
+    closedir(entries);
+    return n;
+}
+
+static int remove_directory(void **state)
+{
+    (void)state;
+    empty_directory();
+    return rmdir(directory);
+}
+
+static const char *in_directory(const char *name)
+{
+    static char paths[4][128];
+    static int next;
+    char *const path = paths[next++ % 4];
+    snprintf(path, sizeof paths[0], "%s/%s", directory, name);
+    return path;
+}
+
+/* The whole file, malloc'ed, with a final 0. */
+static char *contents(const char *path)
+{
+    FILE *const file = fopen(path, "rb");
+    assert_non_null(file);
+    fseek(file, 0, SEEK_END);
+    const long size = ftell(file);
+    rewind(file);
+    char *const text = malloc((size_t)size + 1);
+    assert_non_null(text);
+    assert_int_equal(fread(text, 1, (size_t)size, file), size);
+    text[size] = 0;
+    fclose(file);
+    return text;
+}
+
+static void assert_contents(const char *path, const char *expected)
+{
+    char *const text = contents(path);
+    assert_string_equal(text, expected);
+    free(text);
+}
+
+static void make_file(const char *path, const char *text)
+{
+    FILE *const file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static void run_backwards(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
+{
+    *(size_t *)self += n_tasks;
+    while (n_tasks > 0)
+        task(context, --n_tasks);
+}
+
+/* A set of one file. */
+static struct tri_output *open_one(struct tri_output_set *set, const char *path)
+{
+    struct tri_output *output;
+    tri_outputs_begin(set);
+    assert_int_equal(tri_output_open(set, path, &output, NULL), TRI_OK);
+    return output;
+}
+
+static void put_text(struct tri_output *output, const char *text)
+{
+    assert_int_equal(tri_output_write(output, text, strlen(text), NULL), TRI_OK);
+}
+
+/* --- layouts */
+
+static const struct tri_layout from_1 = {1, NULL}, from_0 = {0, NULL};
+static const double square[] = {0, 0, 10, 0, 0.1, 1e-7, -1.5, 123456.75};
+static const int32_t two_triangles[] = {0, 1, 2, 0, 2, 3}, markers[] = {1, 0, -3, 12345};
+
+static void layout_node(void **state)
+{
+    (void)state;
+    struct tri_output_set set;
+    struct tri_output *const output = open_one(&set, in_directory("a.node"));
+    const double attributes[] = {1, 2, 3, .5, 5, 6, 7, 8};
+    assert_int_equal(tri_write_node(output, &from_1, 4, square, 2, attributes, markers, NULL), TRI_OK);
+    assert_int_equal(tri_write_node(output, &from_0, 2, square, 0, NULL, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+    assert_contents(in_directory("a.node"), "4  2  2  1\n"
+                                            "   1    0  0  1  2    1\n"
+                                            "   2    10  0  3  0.5    0\n"
+                                            "   3    0.10000000000000001  9.9999999999999995e-08  5  6    -3\n"
+                                            "   4    -1.5  123456.75  7  8    12345\n"
+                                            "2  2  0  0\n"
+                                            "   0    0  0\n"
+                                            "   1    10  0\n");
+}
+
+static void layout_ele(void **state)
+{
+    (void)state;
+    struct tri_output_set set;
+    struct tri_output *const output = open_one(&set, in_directory("a.ele"));
+    const int32_t six[] = {0, 1, 2, 3, 4, 12345};
+    const double attribute = 3;
+    assert_int_equal(tri_write_ele(output, &from_1, 2, 3, two_triangles, 0, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_write_ele(output, &from_0, 1, 6, six, 1, &attribute, NULL), TRI_OK);
+    assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+    assert_contents(in_directory("a.ele"), "2  3  0\n"
+                                           "   1       1     2     3\n"
+                                           "   2       1     3     4\n"
+                                           "1  6  1\n"
+                                           "   0       0     1     2     3     4  12345  3\n");
+}
+
+static void layout_poly(void **state)
+{
+    (void)state;
+    struct tri_output_set set;
+    struct tri_output *const output = open_one(&set, in_directory("a.poly"));
+    int32_t segments[] = {0, 1, 1, 2}, segment_markers[] = {5, -1};
+    double holes[] = {.5, .25}, regions[] = {1, 2, 3, -1};
+    struct tri_pslg pslg = {.n_attributes = 1, .n_segments = 2, .segments = segments,
+                            .segment_markers = segment_markers, .n_holes = 1, .holes = holes};
+    assert_int_equal(tri_write_poly(output, &from_1, &pslg, true, NULL), TRI_OK);
+    pslg.segment_markers = NULL;
+    pslg.n_holes = 0;
+    pslg.n_regions = 1;
+    pslg.regions = regions;
+    assert_int_equal(tri_write_poly(output, &from_0, &pslg, false, NULL), TRI_OK);
+    assert_int_equal(tri_write_poly(output, &from_0, &pslg, true, NULL), TRI_OK);
+    assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+    assert_contents(in_directory("a.poly"), "0  2  1  1\n2  1\n"
+                                            "   1       1     2       5\n"
+                                            "   2       2     3      -1\n"
+                                            "1\n   1   0.5  0.25\n"
+                                            "0  2  1  0\n2  0\n"
+                                            "   0       0     1\n"
+                                            "   1       1     2\n"
+                                            "0\n1\n   0   1  2  3  -1\n"
+                                            "0  2  1  1\n2  1\n"
+                                            "   0       0     1       0\n"
+                                            "   1       1     2       0\n"
+                                            "0\n1\n   0   1  2  3  -1\n");
+}
+
+static void layout_edge_and_neighbors(void **state)
+{
+    (void)state;
+    struct tri_output_set set;
+    struct tri_output *const output = open_one(&set, in_directory("a.edge"));
+    const int32_t ends[] = {0, 1, 1, 12344}, neighbors[] = {-1, 1, -1, 0, -1, -1};
+    assert_int_equal(tri_write_edge(output, &from_1, 2, ends, markers, NULL), TRI_OK);
+    assert_int_equal(tri_write_edge(output, &from_0, 1, ends, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_write_neigh(output, &from_1, 2, neighbors, NULL), TRI_OK);
+    assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+    assert_contents(in_directory("a.edge"), "2  1\n   1   1  2  1\n   2   2  12345  0\n"
+                                            "1  0\n   0   0  1\n"
+                                            "2  3\n   1    -1  2  -1\n   2    1  -1  -1\n");
+}
+
+static void layout_voronoi_and_off(void **state)
+{
+    (void)state;
+    struct tri_output_set set;
+    struct tri_output *const output = open_one(&set, in_directory("a.v.edge"));
+    const int32_t ends[] = {0, 1, 1, -1};
+    const double directions[] = {0, 0, -2.5, 1};
+    assert_int_equal(tri_write_v_edge(output, &from_1, 2, ends, directions, NULL), TRI_OK);
+    assert_int_equal(tri_write_off(output, &from_1, 2, square, 2, 3, two_triangles, 5, NULL), TRI_OK);
+    assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+    assert_contents(in_directory("a.v.edge"), "2  0\n   1   1  2\n   2   2  -1   -2.5  1\n"
+                                              "OFF\n2  2  5\n 0  0  0\n 10  0  0\n"
+                                              " 3      0     1     2\n 3      0     2     3\n");
+}
+
+static void comment_names_the_command(void **state)
+{
+    (void)state;
+    struct tri_output_set set;
+    struct tri_output *const output = open_one(&set, in_directory("a"));
+    char program[] = "./triangle", word[] = "-pq", name[] = "two\nlines";
+    char *const argv[] = {program, word, name, NULL};
+    assert_int_equal(tri_write_comment(output, 3, argv, NULL), TRI_OK);
+    assert_int_equal(tri_write_comment(output, 0, argv, NULL), TRI_OK);
+    assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+    assert_contents(in_directory("a"), "# Generated by ./triangle -pq two lines\n# Generated by\n");
+}
+
+/* Numbers of every width, against printf with the templates of the format. */
+static void rows_like_printf(void **state)
+{
+    (void)state;
+    const int32_t values[] = {0, 7, 42, 999, 1000, 9999, 10000, 123456789, INT32_MAX - 1};
+    for (size_t i = 0; i < LENGTH(values); i++) {
+        const int32_t v = values[i], ends[] = {v, v / 3, -1}, marker = -v;
+        const double xy[] = {v / 7.0, -v * 1e30};
+        char text[256], expected[256];
+        *tri_row_node(text, v, xy, xy, 2, &marker) = 0;
+        snprintf(expected, sizeof expected, "%4d    %.17g  %.17g  %.17g  %.17g    %d\n", v, xy[0], xy[1], xy[0], xy[1],
+                 marker);
+        assert_string_equal(text, expected);
+        *tri_row_segment(text, v, 1, ends, &marker) = 0;
+        snprintf(expected, sizeof expected, "%4ld    %4d  %4d    %4d\n", (long)v, v + 1, v / 3 + 1, marker);
+        assert_string_equal(text, expected);
+        *tri_row_ele(text, v, 1, ends, 2, xy, 1) = 0;
+        snprintf(expected, sizeof expected, "%4ld    %4d  %4d  %.17g\n", (long)v, v + 1, v / 3 + 1, xy[0]);
+        assert_string_equal(text, expected);
+        *tri_row_neigh(text, v, 1, ends) = 0;
+        snprintf(expected, sizeof expected, "%4ld    %d  %d  %d\n", (long)v, v + 1, v / 3 + 1, -1);
+        assert_string_equal(text, expected);
+        *tri_row_v_edge(text, v, 1, ends + 1, xy) = 0;
+        snprintf(expected, sizeof expected, "%4ld   %d  %d   %.17g  %.17g\n", (long)v, v / 3 + 1, -1, xy[0], xy[1]);
+        assert_string_equal(text, expected);
+    }
+}
+
+/* The longest rows fit what their bounds say. */
+static void rows_fit_their_bounds(void **state)
+{
+    (void)state;
+    const double reals[] = {-1.2345678901234567e-308, -1.2345678901234567e-308};
+    const int32_t indices[] = {INT32_MAX, INT32_MAX, -1, INT32_MAX, INT32_MAX, INT32_MAX}, marker = INT32_MIN;
+    char text[512];
+    assert_in_range(tri_row_node(text, INT64_MIN, reals, reals, 2, &marker) - text, 90, tri_row_node_bytes(2));
+    assert_in_range(tri_row_ele(text, INT64_MIN, 1, indices, 6, reals, 2) - text, 90, tri_row_ele_bytes(6, 2));
+    assert_in_range(tri_row_segment(text, INT64_MIN, 1, indices, &marker) - text, 60, TRI_ROW_SEGMENT_BYTES);
+    assert_in_range(tri_row_edge(text, INT64_MIN, 1, indices, &marker) - text, 50, TRI_ROW_EDGE_BYTES);
+    assert_in_range(tri_row_neigh(text, INT64_MIN, 1, indices + 3) - text, 50, TRI_ROW_NEIGH_BYTES);
+    assert_in_range(tri_row_v_edge(text, INT64_MIN, 1, indices + 1, reals) - text, 80, TRI_ROW_V_EDGE_BYTES);
+}
+
+/* --- tables */
+
+static char *row_of_words(void *user, size_t i, char *at)
+{
+    const size_t max_bytes = *(const size_t *)user;
+    const size_t n = i % max_bytes;
+    memset(at, 'a' + (int)(i % 26), n);
+    at[n] = '\n';
+    return at + n + 1;
+}
+
+static void tables_in_any_order(void **state)
+{
+    (void)state;
+    const struct {
+        size_t n_rows, max_bytes;
+    } cases[] = {{0, 8}, {1, 8}, {32767, 8}, {32768, 8}, {32769, 8}, {100000, 300}, {3, 400000}, {70, 300000}};
+    for (size_t i = 0; i < LENGTH(cases); i++) {
+        size_t max_bytes = cases[i].max_bytes, n_tasks = 0;
+        const struct tri_executor backwards = {run_backwards, &n_tasks};
+        struct tri_output_set set;
+        struct tri_output *a, *b;
+        tri_outputs_begin(&set);
+        assert_int_equal(tri_output_open(&set, in_directory("a"), &a, NULL), TRI_OK);
+        assert_int_equal(tri_output_open(&set, in_directory("b"), &b, NULL), TRI_OK);
+        assert_int_equal(tri_write_table(a, cases[i].n_rows, max_bytes, row_of_words, &max_bytes, NULL, NULL), TRI_OK);
+        assert_int_equal(tri_write_table(b, cases[i].n_rows, max_bytes, row_of_words, &max_bytes, &backwards, NULL),
+                         TRI_OK);
+        assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+        assert_true(cases[i].n_rows == 0 || n_tasks > 1);
+        char *const text = contents(in_directory("a")), *const other = contents(in_directory("b"));
+        assert_string_equal(text, other);
+        const char *at = text;
+        for (size_t row = 0; row < cases[i].n_rows; row++, at++) {
+            assert_true(*at == '\n' || *at == 'a' + (int)(row % 26));
+            at += strcspn(at, "\n");
+        }
+        assert_int_equal(*at, 0);
+        free(text);
+        free(other);
+    }
+}
+
+/* What is written is read as the same numbers. */
+static void round_trip(void **state)
+{
+    (void)state;
+    enum { N = 5000 };
+    double points[2 * N], attributes[N];
+    int32_t point_markers[N];
+    for (int i = 0; i < N; i++) {
+        points[2 * i] = 1.0 / (i + 1) - .5;
+        points[2 * i + 1] = i * 1e300 / 7;
+        attributes[i] = -i / 3e200;
+        point_markers[i] = i * 429496 - 1000000;
+    }
+    struct tri_output_set set;
+    struct tri_output *const output = open_one(&set, in_directory("a.node"));
+    assert_int_equal(tri_write_node(output, &from_0, N, points, 1, attributes, point_markers, NULL), TRI_OK);
+    assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+    struct tri_pslg pslg;
+    int32_t base;
+    const struct tri_read_options options = {.default_base = 1};
+    assert_int_equal(tri_read_node(in_directory("a.node"), &options, &pslg, &base, NULL), TRI_OK);
+    assert_int_equal(base, 0);
+    assert_memory_equal(pslg.points, points, sizeof points);
+    assert_memory_equal(pslg.attributes, attributes, sizeof attributes);
+    assert_memory_equal(pslg.markers, point_markers, sizeof point_markers);
+    tri_pslg_free(&pslg);
+}
+
+/* --- outputs */
+
+static void names_appear_at_commit(void **state)
+{
+    (void)state;
+    empty_directory();
+    make_file(in_directory("a"), "old");
+    assert_int_equal(chmod(in_directory("a"), 0640), 0);
+    struct tri_output_set set;
+    struct tri_output *a, *b;
+    tri_outputs_begin(&set);
+    assert_int_equal(tri_output_open(&set, in_directory("a"), &a, NULL), TRI_OK);
+    assert_int_equal(tri_output_open(&set, in_directory("b"), &b, NULL), TRI_OK);
+    put_text(a, "new a");
+    put_text(b, "new b");
+    assert_contents(in_directory("a"), "old");
+    assert_int_equal(access(in_directory("b"), F_OK), -1);
+    assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+    assert_contents(in_directory("a"), "new a");
+    assert_contents(in_directory("b"), "new b");
+    struct stat status;
+    assert_int_equal(stat(in_directory("a"), &status), 0);
+    assert_int_equal(status.st_mode & 0777, 0640);
+    assert_int_equal(stat(in_directory("b"), &status), 0);
+    const mode_t mask = umask(0);
+    umask(mask);
+    assert_int_equal(status.st_mode & 0777, 0666 & ~mask);
+    assert_int_equal(empty_directory(), 2);
+}
+
+static void abort_leaves_nothing(void **state)
+{
+    (void)state;
+    empty_directory();
+    make_file(in_directory("a"), "old");
+    struct tri_output_set set;
+    struct tri_output *output = open_one(&set, in_directory("a"));
+    put_text(output, "new");
+    assert_int_equal(tri_output_open(&set, in_directory("b"), &output, NULL), TRI_OK);
+    tri_outputs_abort(&set);
+    tri_outputs_abort(&set);
+    assert_contents(in_directory("a"), "old");
+    assert_int_equal(empty_directory(), 1);
+}
+
+/* Two sets, as of two processes, write the same name: the last commit wins, whole. */
+static void two_writers_of_one_name(void **state)
+{
+    (void)state;
+    empty_directory();
+    struct tri_output_set first, second;
+    put_text(open_one(&first, in_directory("a")), "first");
+    put_text(open_one(&second, in_directory("a")), "second");
+    assert_int_equal(tri_outputs_commit(&second, NULL), TRI_OK);
+    assert_contents(in_directory("a"), "second");
+    assert_int_equal(tri_outputs_commit(&first, NULL), TRI_OK);
+    assert_contents(in_directory("a"), "first");
+    assert_int_equal(empty_directory(), 1);
+}
+
+static void links_stay_links(void **state)
+{
+    (void)state;
+    empty_directory();
+    assert_int_equal(symlink("target", in_directory("link")), 0); /* dangling at first */
+    assert_int_equal(symlink(in_directory("link"), in_directory("chain")), 0);
+    for (int i = 0; i < 2; i++) {
+        struct tri_output_set set;
+        put_text(open_one(&set, in_directory("chain")), i ? "second" : "first");
+        assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+        assert_contents(in_directory("target"), i ? "second" : "first");
+        struct stat status;
+        assert_int_equal(lstat(in_directory("link"), &status), 0);
+        assert_true(S_ISLNK(status.st_mode));
+    }
+    assert_int_equal(empty_directory(), 3);
+}
+
+static void refused_before_any_work(void **state)
+{
+    (void)state;
+    empty_directory();
+    make_file(in_directory("file"), "x");
+    assert_int_equal(mkdir(in_directory("sub"), 0700), 0);
+    assert_int_equal(symlink("loop", in_directory("loop")), 0);
+    char long_name[400];
+    memset(long_name, 'x', sizeof long_name - 1);
+    long_name[sizeof long_name - 1] = 0;
+    const char *const names[] = {"", "sub", "sub/", "none/a", "file/a", "loop", long_name};
+    for (size_t i = 0; i < LENGTH(names); i++) {
+        char path[512];
+        snprintf(path, sizeof path, "%s/%s", directory, names[i]);
+        struct tri_output_set set;
+        struct tri_output *output;
+        struct tri_error error = {.status = TRI_OK};
+        tri_outputs_begin(&set);
+        const enum tri_status status = tri_output_open(&set, path, &output, &error);
+        if (status == TRI_OK) /* the length of a name is checked last of all, by the system */
+            assert_int_equal(tri_outputs_commit(&set, &error), TRI_CANNOT_WRITE);
+        else
+            assert_int_equal(status, TRI_CANNOT_WRITE);
+        assert_int_equal(error.status, TRI_CANNOT_WRITE);
+        assert_non_null(strstr(error.text, "cannot create: "));
+        assert_string_equal(error.file, path);
+        assert_int_equal(set.n, 0);
+    }
+    assert_int_equal(empty_directory(), 3);
+}
+
+static void devices_are_written_in_place(void **state)
+{
+    (void)state;
+    struct tri_output_set set;
+    struct tri_error error;
+    put_text(open_one(&set, "/dev/null"), "nothing");
+    assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+    struct stat status;
+    assert_int_equal(stat("/dev/null", &status), 0);
+    assert_true(S_ISCHR(status.st_mode));
+    if (access("/dev/full", W_OK) != 0)
+        return;
+    struct tri_output *const output = open_one(&set, "/dev/full");
+    assert_int_equal(tri_write_node(output, &from_0, 4, square, 0, NULL, NULL, &error), TRI_CANNOT_WRITE);
+    assert_string_equal(error.file, "/dev/full");
+    assert_int_equal(tri_outputs_commit(&set, &error), TRI_CANNOT_WRITE);
+    assert_int_equal(access("/dev/full", W_OK), 0);
+}
+
+/* A disk without room, played by a limit on the size of files: neither name appears, and the old file stays. */
+static void full_disk_leaves_old_files(void **state)
+{
+    (void)state;
+    empty_directory();
+    make_file(in_directory("a"), "old");
+    struct rlimit before, limit;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    limit = before;
+    limit.rlim_cur = 1 << 20;
+    struct sigaction ignore = {.sa_handler = SIG_IGN}, old_action;
+    sigaction(SIGXFSZ, &ignore, &old_action);
+    struct tri_output_set set;
+    struct tri_output *a, *b;
+    struct tri_error error;
+    size_t max_bytes = 300, n_tasks = 0;
+    const struct tri_executor backwards = {run_backwards, &n_tasks};
+    tri_outputs_begin(&set);
+    assert_int_equal(tri_output_open(&set, in_directory("b"), &b, NULL), TRI_OK);
+    assert_int_equal(tri_output_open(&set, in_directory("a"), &a, NULL), TRI_OK);
+    put_text(b, "complete");
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    assert_int_equal(tri_write_table(a, 1000000, max_bytes, row_of_words, &max_bytes, &backwards, &error),
+                     TRI_CANNOT_WRITE);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    sigaction(SIGXFSZ, &old_action, NULL);
+    assert_string_equal(error.file, in_directory("a"));
+    assert_true(n_tasks < 1000); /* it did not go on formatting in vain */
+    assert_int_equal(tri_outputs_commit(&set, &error), TRI_CANNOT_WRITE);
+    assert_contents(in_directory("a"), "old");
+    assert_int_equal(empty_directory(), 1);
+}
+
+static void too_many_outputs(void **state)
+{
+    (void)state;
+    empty_directory();
+    struct tri_output_set set;
+    struct tri_output *output;
+    tri_outputs_begin(&set);
+    for (int i = 0; i < TRI_MAX_OUTPUTS; i++) {
+        char name[8];
+        snprintf(name, sizeof name, "%d", i);
+        assert_int_equal(tri_output_open(&set, in_directory(name), &output, NULL), TRI_OK);
+    }
+    assert_int_equal(tri_output_open(&set, in_directory("a"), &output, NULL), TRI_CANNOT_WRITE);
+    assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+    assert_int_equal(empty_directory(), TRI_MAX_OUTPUTS);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(layout_node),
+        cmocka_unit_test(layout_ele),
+        cmocka_unit_test(layout_poly),
+        cmocka_unit_test(layout_edge_and_neighbors),
+        cmocka_unit_test(layout_voronoi_and_off),
+        cmocka_unit_test(comment_names_the_command),
+        cmocka_unit_test(rows_like_printf),
+        cmocka_unit_test(rows_fit_their_bounds),
+        cmocka_unit_test(tables_in_any_order),
+        cmocka_unit_test(round_trip),
+        cmocka_unit_test(names_appear_at_commit),
+        cmocka_unit_test(abort_leaves_nothing),
+        cmocka_unit_test(two_writers_of_one_name),
+        cmocka_unit_test(links_stay_links),
+        cmocka_unit_test(refused_before_any_work),
+        cmocka_unit_test(devices_are_written_in_place),
+        cmocka_unit_test(full_disk_leaves_old_files),
+        cmocka_unit_test(too_many_outputs),
+    };
+    return cmocka_run_group_tests(tests, set_up, remove_directory);
+}

@@ -1,0 +1,31 @@
+#!/bin/sh
+# Builds the programs (installing what is missing first) and meshes a real coastline: the sea off Norway, with no angle
+# below 30 degrees but where the coast itself is sharper. Then the checker judges the mesh.
+# Usage: tools/mesh-coast.sh [OUTPUT_FOLDER]     default: out
+set -eu
+here=$(pwd)
+cd "$(dirname "$0")/.."
+case ${1:-} in
+"") out=out ;;
+/*) out=$1 ;;
+*) out=$here/$1 ;;
+esac
+angle=30
+programs=${PTRIANGLE_BUILD:-build}/release/bin
+
+tools/setup.sh build
+tools/build.sh release
+mkdir -p "$out"
+cp data/coast/norway_sea.poly "$out/"
+
+echo
+echo "triangle -pq$angle $out/norway_sea.poly"
+"$programs/triangle" "-pq$angle" "$out/norway_sea.poly"
+echo
+echo "trianglecheck $out/norway_sea.1 --poly $out/norway_sea.poly --min-angle $angle"
+"$programs/trianglecheck" "$out/norway_sea.1" --poly "$out/norway_sea.poly" --min-angle "$angle"
+
+echo
+echo "Wrote a mesh of $(awk '!/^#/ { print $1; exit }' "$out/norway_sea.1.ele") triangles and" \
+    "$(awk '!/^#/ { print $1; exit }' "$out/norway_sea.1.node") vertices:"
+ls -l "$out"/norway_sea.1.*

@@ -1,0 +1,93 @@
+#!/bin/sh
+# Installs what building needs and this machine lacks, through apt; where there is no apt, says what is needed.
+# Usage: tools/setup.sh [build|tests|ci]
+#   build  C and C++ compiler, make, CMake          (what the programs need)
+#   tests  and cmocka, GMP, pkg-config              (what tools/test.sh needs)
+#   ci     and clang with its OpenMP library        (what .ci/run needs)
+# Works as root or with sudo, asks nothing, and does not touch a machine that has everything.
+set -eu
+wanted=${1:-build}
+missing=""
+
+need() { # need PACKAGE CHECK...: PACKAGE is missing unless the check succeeds
+    package=$1
+    shift
+    "$@" >/dev/null 2>&1 || missing="$missing $package"
+}
+
+links() { # links HEADER LIBRARY: a C program with this header and library can be built
+    probe=$(mktemp)
+    printf '#include <stdarg.h>\n#include <stddef.h>\n#include <stdint.h>\n#include <setjmp.h>\n#include <%s>\n%s\n' \
+        "$1" 'int main(void) { return 0; }' | cc -x c - "-l$2" -o "$probe"
+    result=$?
+    rm -f "$probe"
+    return $result
+}
+
+openmp_with_clang() {
+    probe=$(mktemp)
+    printf '#include <omp.h>\nint main(void) { return omp_get_max_threads() < 1; }\n' |
+        clang -fopenmp -x c - -o "$probe"
+    result=$?
+    rm -f "$probe"
+    return $result
+}
+
+cmake_is_new_enough() {
+    cmake --version | head -n 1 |
+        awk '{ split($3, v, "."); exit !(v[1] > 3 || (v[1] == 3 && v[2] >= 22)) }'
+}
+
+compilers() { command -v cc && command -v c++ && command -v make; }
+
+list_missing() {
+    missing=""
+    need build-essential compilers
+    need cmake command -v cmake
+    [ "$wanted" = build ] && return
+    need libcmocka-dev links cmocka.h cmocka
+    need libgmp-dev links gmp.h gmp
+    need pkg-config command -v pkg-config
+    [ "$wanted" = tests ] && return
+    need clang command -v clang++
+    need libomp-dev openmp_with_clang
+}
+
+as_root() {
+    if [ "$(id -u)" -eq 0 ]; then
+        "$@"
+    elif command -v sudo >/dev/null; then
+        sudo "$@"
+    else
+        return 1
+    fi
+}
+
+apt() { as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@"; }
+
+case $wanted in
+build | tests | ci) ;;
+*)
+    echo "usage: tools/setup.sh [build|tests|ci]" >&2
+    exit 2
+    ;;
+esac
+
+list_missing
+if [ -n "$missing" ] && command -v apt-get >/dev/null; then
+    echo "setup: installing$missing"
+    apt update || echo "setup: apt-get update failed; trying with the package lists that are here" >&2
+    # shellcheck disable=SC2086 # one word a package
+    apt install -y --no-install-recommends $missing || true
+    list_missing
+fi
+if [ -n "$missing" ]; then
+    echo "setup: still missing (Debian and Ubuntu package names):$missing" >&2
+    echo "setup: needed are a C11 and C++17 compiler (GCC 11 or newer, or clang), make, CMake 3.22 or newer;" >&2
+    echo "setup: for the tests cmocka, GMP and pkg-config; for the full checks clang with libomp." >&2
+    exit 1
+fi
+if ! cmake_is_new_enough; then
+    echo "setup: $(cmake --version | head -n 1) is too old: 3.22 or newer is needed" >&2
+    exit 1
+fi

@@ -1,0 +1,52 @@
+/* The native API: from a planar straight line graph to a mesh.
+ *
+ * No global state, no printing, no exit: calls on different meshes may run at the same time. A mesh is made by
+ * tri_generate, looked at through triangle/mesh.h, refined further (wholly, or where a gate allows: triangle/refine.h) by
+ * tri_refine as often as wanted, and freed by tri_mesh_free.
+ *
+ * Coordinates in a mesh are those of the caller divided by mesh.unit, a power of two that is 1 for all inputs of ordinary
+ * size; tri_mesh_place gives a vertex in the caller's coordinates. Gates and size tests always get the caller's coordinates. */
+#ifndef TRIANGLE_TRI_H
+#define TRIANGLE_TRI_H
+
+#include "triangle/carve.h"
+#include "triangle/constrain.h"
+#include "triangle/mesh.h"
+#include "triangle/pslg.h"
+#include "triangle/refine.h"
+#include "triangle/status.h"
+
+enum tri_stage { TRI_STAGE_DELAUNAY, TRI_STAGE_SEGMENTS, TRI_STAGE_HOLES, TRI_STAGE_QUALITY, TRI_STAGE_DONE };
+
+struct tri_options {
+    bool use_segments;  /* the segments and holes of the PSLG are part of the input (-p); else its points alone */
+    bool keep_hull;     /* the convex hull stays whole (-c) */
+    bool ignore_holes;  /* (-O) */
+    bool spread_regions; /* triangles learn the region they are in (-A, or -a without number) */
+    bool refine;        /* the quality stage runs, with the options below */
+    struct tri_refine_options quality;
+    void (*stage)(void *user, enum tri_stage begins); /* told when a stage begins; NULL: nobody */
+    void *stage_user;
+};
+
+struct tri_report {
+    int32_t duplicates; /* points that have a twin of lower index */
+    struct tri_constrain_report constrain;
+    struct tri_refine_report quality;
+};
+
+struct tri_options tri_defaults(void);
+
+/* Makes *mesh from the PSLG. On failure *mesh is empty, except that what refinement had done when it ran out of memory
+ * (TRI_NO_MEMORY, TRI_TOO_LARGE) is a valid mesh. TRI_BAD_INPUT: see tri_pslg_check. The PSLG is only read. */
+enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
+                             struct tri_report *report, struct tri_error *error);
+
+/* A vertex in the caller's coordinates. */
+static inline void tri_mesh_place(const struct tri_mesh *mesh, int32_t v, double at[2])
+{
+    at[0] = mesh->xy[v].x * mesh->unit;
+    at[1] = mesh->xy[v].y * mesh->unit;
+}
+
+#endif
