@@ -1,7 +1,7 @@
 /* The judge: runs the checks in the order in which they lean on each other, and keeps the report.
  *
- * Each check lives in a check_*.c of its own. A check that needs the outcome of another is skipped when that one failed:
- * what it would say has no meaning then. */
+ * Each check lives in a check_*.c of its own. A check that needs the outcome of another is skipped when that one
+ * failed: what it would say has no meaning then. */
 #include "triangle/check.h"
 
 #include <assert.h>

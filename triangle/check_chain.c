@@ -1,10 +1,10 @@
 /* Input segments as chains of subsegments.
  *
- *   1. From the first end of the input segment, depth first along subsegments whose far end lies on its line within the
- *      tolerance, further on and not beyond the end; the best aligned first. Each vertex is visited once per segment, for
- *      what can be reached from it does not depend on the way there.
- *   2. Should the second end not be reached, pieces may have been carved. Then all subsegment vertices on the line are fetched
- *      from a grid and sorted along it; chains are followed from each that lies beyond what is covered so far.
+ *   1. From the first end of the input segment, depth first along subsegments whose far end lies on its line within
+ *      the tolerance, further on and not beyond the end; the best aligned first. Each vertex is visited once per
+ *      segment, for what can be reached from it does not depend on the way there.
+ *   2. Should the second end not be reached, pieces may have been carved. Then all subsegment vertices on the line are
+ *      fetched from a grid and sorted along it; chains are followed from each that lies beyond what is covered so far.
  *   3. Whatever stays uncovered must lie outside the mesh: the sweep is asked about points of it. */
 #include "triangle/check_chain.h"
 

@@ -1,7 +1,7 @@
 /* What the files check_*.c share: the trial in progress. Private to them.
  *
- * A half-edge is named 3 * t + k: the edge of triangle t opposite its corner k, directed so that t lies on its left. A corner
- * has the same name. */
+ * A half-edge is named 3 * t + k: the edge of triangle t opposite its corner k, directed so that t lies on its left. A
+ * corner has the same name. */
 #ifndef TRIANGLE_CHECK_INTERNAL_H
 #define TRIANGLE_CHECK_INTERNAL_H
 
@@ -78,8 +78,8 @@ enum tri_status check_input(struct checker *c);       /* needs ARRAYS, subsegmen
 void check_answers(struct checker *c);                /* after check_overlap has found nothing: judges the answers */
 enum tri_status check_quality(struct checker *c);     /* needs EDGES, subsegments */
 
-/* Where the mesh is out of the range of exact arithmetic, puts copies of mesh and input in its place whose coordinates are
- * multiplied by a power of two; nothing else sees the originals. */
+/* Where the mesh is out of the range of exact arithmetic, puts copies of mesh and input in its place whose coordinates
+ * are multiplied by a power of two; nothing else sees the originals. */
 enum tri_status check_scale(struct checker *c);
 
 /* Notes that the kind has been looked at; it stays good until a fault is reported. */

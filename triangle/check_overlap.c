@@ -4,8 +4,8 @@
  *   1. the edges of the order that pass through the event point are found by search; each must end there;
  *   2. they are removed, and the edges that start there inserted, sorted by direction;
  *   3. edges that have become neighbours must not meet before the earlier of their right ends;
- *   4. from bottom to top, edges must alternate: mesh above, mesh below, mesh above ... which says that the winding number is
- *      0, 1, 0, 1 ... everywhere.
+ *   4. from bottom to top, edges must alternate: mesh above, mesh below, mesh above ... which says that the winding
+ *      number is 0, 1, 0, 1 ... everywhere.
  * The leftmost point where two edges meet wrongly has two of them as neighbours just before, so 1 or 3 finds it.
  * Queries (is this point inside the mesh?) ride along as events. O(b log b). */
 #include <assert.h>

@@ -1,12 +1,12 @@
 /* Angles and areas, and which small angles the input is to blame for.
  *
- * In floating point: squared sines are good to a relative error of about 1e-14 (coordinate differences are correctly rounded,
- * and the cross product of a triangle with a smallest angle of x radians cancels by a factor of 1/x at most). A bound counts as
- * missed from a relative 1e-12 on.
+ * In floating point: squared sines are good to a relative error of about 1e-14 (coordinate differences are correctly
+ * rounded, and the cross product of a triangle with a smallest angle of x radians cancels by a factor of 1/x at most).
+ * A bound counts as missed from a relative 1e-12 on.
  *
- * An apex is a vertex where two subsegments meet at less than 60 degrees (or what the options say) with the mesh between them. Near it no mesher can
- * keep a bound: triangles at the apex, those that touch one at it, and those that span its legs further out (across two
- * concentric shells; Miller, Pav & Walkington 2003) are explained by it. */
+ * An apex is a vertex where two subsegments meet at less than 60 degrees (or what the options say) with the mesh
+ * between them. Near it no mesher can keep a bound: triangles at the apex, those that touch one at it, and those that
+ * span its legs further out (across two concentric shells; Miller, Pav & Walkington 2003) are explained by it. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* Coordinates of any size: multiplication by a power of two is exact as long as nothing becomes subnormal, and changes no
- * judgement but those on areas, which check_quality.c scales back. */
+/* Coordinates of any size: multiplication by a power of two is exact as long as nothing becomes subnormal, and changes
+ * no judgement but those on areas, which check_quality.c scales back. */
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
 /* The order of the sweep, a threaded treap. Seidel & Aragon 1996.
  *
- * INVARIANT: next[0] and next[1] are the neighbours in the in-order walk of the tree, and a parent's priority is never below
- * its children's. */
+ * INVARIANT: next[0] and next[1] are the neighbours in the in-order walk of the tree, and a parent's priority is never
+ * below its children's. */
 #include "triangle/check_sweep.h"
 
 #include <assert.h>

@@ -1,8 +1,8 @@
 /* The order of the sweep: non-crossing segments from bottom to top where the sweep line is.
  *
- * A treap over segment numbers, threaded from bottom to top. Priorities are a hash of the number, so that the shape is the
- * same in every run. "Below" means before in the order of y on the sweep line; the line is vertical, tilted by a hair so
- * that points of equal x are met from bottom to top, and vertical segments need no special case. */
+ * A treap over segment numbers, threaded from bottom to top. Priorities are a hash of the number, so that the shape is
+ * the same in every run. "Below" means before in the order of y on the sweep line; the line is vertical, tilted by a
+ * hair so that points of equal x are met from bottom to top, and vertical segments need no special case. */
 #ifndef TRIANGLE_CHECK_SWEEP_H
 #define TRIANGLE_CHECK_SWEEP_H
 

@@ -163,7 +163,7 @@ static double unit_for(const struct tri_pslg *pslg)
     if (size == 0 || (size >= 0x1p-100 && size <= 0x1p199))
         return 1;
     frexp(size, &exponent);
-    return ldexp(1, exponent > -1000 ? exponent : -1000);
+    return ldexp(1, exponent > -1000 ? exponent - 1 : -1000); /* the largest is in [1, 2) then */
 }
 
 enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_error *error)
@@ -235,6 +235,19 @@ static bool edge_is_mutual(const struct tri_mesh *mesh, int32_t t, int e)
     return s->v[side] == from && s->v[1 - side] == to && s->side[side] == tri_code(t, e);
 }
 
+static bool side_is_mutual(const struct tri_mesh *mesh, int32_t s, int k)
+{
+    int32_t code = mesh->sub[s].side[k];
+    if (code == TRI_NONE)
+        return true;
+    if (code < 0 || tri_edge(code) > 2 || tri_of(code) >= mesh->n_slots)
+        return false;
+    const struct tri_triangle *t = &mesh->tri[tri_of(code)];
+    int e = tri_edge(code);
+    return tri_is_live(t) && t->n[e] == ~s && t->v[tri_next[e]] == mesh->sub[s].v[k] &&
+           t->v[tri_prev[e]] == mesh->sub[s].v[1 - k];
+}
+
 enum tri_status tri_mesh_validate(const struct tri_mesh *mesh, struct tri_error *error)
 {
     for (int32_t t = 0; t < mesh->n_slots; t++) {
@@ -248,10 +261,8 @@ enum tri_status tri_mesh_validate(const struct tri_mesh *mesh, struct tri_error 
         }
     }
     for (int32_t s = 0; s < mesh->n_subs; s++)
-        for (int k = 0; k < 2; k++) {
-            int32_t code = mesh->sub[s].side[k];
-            if (code != TRI_NONE && (tri_of(code) >= mesh->n_slots || mesh->tri[tri_of(code)].n[tri_edge(code)] != ~s))
+        for (int k = 0; k < 2; k++)
+            if (!side_is_mutual(mesh, s, k))
                 return tri_fail(error, TRI_INTERNAL, NULL, 0, "side %d of subsegment %d is not mutual", k, (int)s);
-        }
     return TRI_OK;
 }

@@ -83,6 +83,7 @@ struct tri_mesh {
     int32_t n_parents, parent_capacity;
     int32_t *spoke_start;     /* [n_hubs + 1] parents that end at vertex v are spokes[spoke_start[v] .. spoke_start[v + 1]) */
     int32_t *spokes;
+    double dearest_channel;   /* narrow spaces between parents that would cost more points than this are not filled */
     int32_t n_hubs;           /* vertices there were when the parents were listed; 0: not listed yet */
 
     struct tri_region *regions; /* [n_regions] regions[0] is "no region": attribute 0, no bound */

@@ -73,12 +73,12 @@ static enum badness judge(const struct refiner *r, const struct tri_triangle *t,
     return r->options->unsuitable && is_unsuitable(r, t->v, shape->area2) ? BAD_SIZE : GOOD;
 }
 
-/* Sixteen buckets an octave of the squared length, counted from the shortest edge that can be resolved. */
+/* Four buckets an octave of the squared length, counted from the shortest edge that can be resolved. */
 static int bucket_of(const struct refiner *r, double shortest)
 {
     int exponent;
     double mantissa = frexp(shortest, &exponent);
-    int bucket = 16 * (exponent - r->least_exponent) + (int)(32 * mantissa) - 16;
+    int bucket = 4 * (exponent - r->least_exponent) + (int)(8 * mantissa) - 4;
     return bucket < 0 ? 0 : bucket >= TRI_BUCKETS ? TRI_BUCKETS - 1 : bucket;
 }
 

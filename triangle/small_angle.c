@@ -8,8 +8,6 @@
 #include "triangle/predicates.h"
 #include "triangle/refine.h"
 
-static const double NARROW = 1e4;
-
 struct tri_resolution tri_resolution_of(const struct tri_mesh *mesh)
 {
     double size = 0;
@@ -48,7 +46,7 @@ bool tri_can_split(const struct tri_resolution *resolution, struct tri_point a, 
 
 /* Both on subsegments of segments that meet at a common vertex, at the same distance from it? Then their distance is
  * dictated by the angle there (Miller, Pav & Walkington 2003). */
-static bool on_one_shell(const struct tri_mesh *mesh, int32_t u, int32_t v)
+static bool on_one_shell(const struct tri_mesh *mesh, int32_t u, int32_t v, double uv2)
 {
     int32_t pu = mesh->on[u], pv = mesh->on[v];
     if (pu < 0 || pv < 0 || pu == pv)
@@ -58,7 +56,7 @@ static bool on_one_shell(const struct tri_mesh *mesh, int32_t u, int32_t v)
             if (mesh->parents[pu].v[i] == mesh->parents[pv].v[k]) {
                 struct tri_point o = mesh->xy[mesh->parents[pu].v[i]];
                 double du = squared(o, mesh->xy[u]), dv = squared(o, mesh->xy[v]);
-                if (du < 1.001 * dv && dv < 1.001 * du)
+                if (du < 1.002 * dv && dv < 1.002 * du && uv2 < 0.99 * du)
                     return true;
             }
     return false;
@@ -78,25 +76,42 @@ static const int32_t *parents_of(const struct tri_mesh *mesh, int32_t v, int32_t
     return mesh->spokes + mesh->spoke_start[v];
 }
 
-/* Do the two parents run within 1 in 50 of the same direction, and are both longer than `long2` squared? */
-static bool is_channel(const struct tri_mesh *mesh, const struct tri_parent *p, const struct tri_parent *q, double long2)
+/* How many points, to the order, would it take to fill the space between two parents that are `width` apart at one place? At
+ * the far end of the shorter one, of length l, they are at most width + l * sine apart. */
+static double filling_cost(const struct tri_mesh *mesh, const struct tri_parent *p, const struct tri_parent *q, double width)
 {
     struct tri_point a = mesh->xy[p->v[0]], b = mesh->xy[p->v[1]], c = mesh->xy[q->v[0]], d = mesh->xy[q->v[1]];
     double px = b.x - a.x, py = b.y - a.y, qx = d.x - c.x, qy = d.y - c.y;
-    double lp = px * px + py * py, lq = qx * qx + qy * qy, cross = px * qy - py * qx;
-    return lp > long2 && lq > long2 && cross * cross < 4e-4 * lp * lq;
+    double lp = px * px + py * py, lq = qx * qx + qy * qy, cross = fabs(px * qy - py * qx);
+    double shorter = sqrt(lp < lq ? lp : lq), longer = sqrt(lp < lq ? lq : lp);
+    return shorter / (width + cross / longer); /* cross / longer = shorter * sine */
 }
 
-/* Does the edge uv bridge a channel: two parents of nearly one direction, NARROW times as long as it or more? */
-static bool bridges_channel(const struct tri_mesh *mesh, int32_t u, int32_t v, double uv2)
+/* Does w lie ahead of v on the parent, rather than behind the end that v is? */
+static bool is_ahead(const struct tri_mesh *mesh, const struct tri_parent *p, int32_t v, int32_t w)
+{
+    if (p->v[0] != v && p->v[1] != v)
+        return true;
+    struct tri_point o = mesh->xy[v], far = mesh->xy[p->v[p->v[0] == v]], q = mesh->xy[w];
+    return (far.x - o.x) * (q.x - o.x) + (far.y - o.y) * (q.y - o.y) > 0;
+}
+
+/* The cost of filling the dearest space between two parents that the edge uv bridges and the triangle with apex w lies in;
+ * 0 where uv does not bridge any. */
+static double channel_cost(const struct tri_mesh *mesh, int32_t u, int32_t v, int32_t w, double uv2)
 {
     int32_t nu, nv;
     const int32_t *pu = parents_of(mesh, u, &nu), *pv = parents_of(mesh, v, &nv);
+    double width = nu && nv ? sqrt(uv2) : 0, dearest = 0;
     for (int32_t i = 0; i < nu; i++)
-        for (int32_t k = 0; k < nv; k++)
-            if (pu[i] != pv[k] && is_channel(mesh, &mesh->parents[pu[i]], &mesh->parents[pv[k]], NARROW * NARROW * uv2))
-                return true;
-    return false;
+        for (int32_t k = 0; k < nv; k++) {
+            const struct tri_parent *p = &mesh->parents[pu[i]], *q = &mesh->parents[pv[k]];
+            if (pu[i] == pv[k] || !is_ahead(mesh, p, u, w) || !is_ahead(mesh, q, v, w))
+                continue;
+            double cost = filling_cost(mesh, p, q, width);
+            dearest = cost > dearest ? cost : dearest;
+        }
+    return dearest;
 }
 
 bool tri_is_hopeless(const struct tri_mesh *mesh, const struct tri_resolution *resolution, int32_t slot,
@@ -105,9 +120,39 @@ bool tri_is_hopeless(const struct tri_mesh *mesh, const struct tri_resolution *r
     const struct tri_triangle *t = &mesh->tri[slot];
     int k = shape->shortest;
     int32_t u = t->v[tri_next[k]], v = t->v[tri_prev[k]];
-    if (shape->l[k] < resolution->shortest2)
-        return true;
-    return on_one_shell(mesh, u, v) || bridges_channel(mesh, u, v, shape->l[k]);
+    return shape->l[k] < resolution->shortest2 || on_one_shell(mesh, u, v, shape->l[k]) ||
+           channel_cost(mesh, u, v, t->v[k], shape->l[k]) > mesh->dearest_channel;
+}
+
+/* The largest power of two, 2^10 or more, such that filling every narrow space as far as this cost goes takes no more than
+ * PER_VERTEX points for each vertex of the input and an ALLOWANCE. (A space dearer than that is still filled where it is wide.) */
+static double dearest_affordable(const struct tri_mesh *mesh)
+{
+    enum { CHEAP = 10, OCTAVES = 64 };
+    const double ALLOWANCE = 20000, PER_VERTEX = 4;
+    double cost_of[OCTAVES] = {0}, count_of[OCTAVES] = {0}, dearer = 0, cheaper = 0;
+    for (int32_t t = 0; t < mesh->n_slots; t++) {
+        const int32_t *v = mesh->tri[t].v;
+        struct tri_shape shape = tri_shape_of(mesh->xy, v);
+        int k = shape.shortest, octave; /* 2^(octave - 1) <= cost < 2^octave */
+        double cost = channel_cost(mesh, v[tri_next[k]], v[tri_prev[k]], v[k], shape.l[k]);
+        frexp(cost, &octave);
+        if (octave > CHEAP) {
+            octave = octave < OCTAVES ? octave : OCTAVES - 1;
+            cost_of[octave] += cost;
+            count_of[octave]++;
+            dearer++;
+        }
+    }
+    int limit = CHEAP;
+    for (int octave = CHEAP + 1; octave < OCTAVES; octave++) {
+        cheaper += cost_of[octave];
+        dearer -= count_of[octave];
+        if (cheaper + ldexp(dearer, octave) > ALLOWANCE + PER_VERTEX * mesh->n_input)
+            break;
+        limit = octave;
+    }
+    return ldexp(1, limit);
 }
 
 static bool is_input(int32_t on) { return on == TRI_VERTEX_INPUT || on == TRI_VERTEX_ACUTE; }
@@ -166,5 +211,8 @@ static enum tri_status list_spokes(struct tri_mesh *mesh, struct tri_error *erro
 enum tri_status tri_refine_prepare(struct tri_mesh *mesh, struct tri_error *error)
 {
     find_acute(mesh);
-    return list_spokes(mesh, error);
+    enum tri_status status = list_spokes(mesh, error);
+    if (!status)
+        mesh->dearest_channel = dearest_affordable(mesh);
+    return status;
 }

@@ -1,0 +1,312 @@
+/* Segments against the naive definition of a constrained Delaunay triangulation, and against what the input says. */
+#include "support.h"
+#include "triangle/delaunay.h"
+
+static struct tri_mesh constrain(const struct tri_pslg *pslg, struct tri_constrain_report *report)
+{
+    struct tri_mesh mesh;
+    struct tri_error error = {0};
+    assert_int_equal(tri_mesh_init(&mesh, &error), TRI_OK);
+    assert_int_equal(tri_mesh_take_points(&mesh, pslg, &error), TRI_OK);
+    assert_int_equal(tri_delaunay(&mesh, &error), TRI_OK);
+    if (tri_constrain(&mesh, pslg, report, &error) != TRI_OK)
+        fail_msg("%s", error.text);
+    if (tri_mesh_validate(&mesh, &error) != TRI_OK)
+        fail_msg("%s", error.text);
+    return mesh;
+}
+
+/* Judged with the whole hull kept, holes ignored. */
+static void judge(struct tri_mesh *mesh, const struct tri_pslg *pslg)
+{
+    struct tri_check_options options = {.max_bad = -1, .ignore_holes = true, .convex = !mesh->twin};
+    tri_mark_boundary(mesh);
+    support_judge(mesh, pslg, &options, false, NULL);
+}
+
+static void test_tangles_are_naively_constrained_delaunay(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < SUPPORT_KINDS; kind++)
+        for (uint64_t seed = 0; seed < 30; seed++) {
+            struct tri_constrain_report report;
+            struct tri_pslg pslg = support_tangle((enum support_kind)kind, 3 + (int32_t)(seed % 20), (int32_t)(seed % 12), seed);
+            struct tri_mesh mesh = constrain(&pslg, &report);
+            support_assert_cdt(&mesh, true);
+            judge(&mesh, &pslg);
+            assert_int_equal(report.lost, 0);
+            tri_mesh_free(&mesh);
+            tri_pslg_free(&pslg);
+        }
+}
+
+static void test_large_tangles_pass_the_judge(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < SUPPORT_KINDS; kind++) {
+        struct tri_constrain_report report;
+        struct tri_pslg pslg = support_tangle((enum support_kind)kind, 300, 100, 5);
+        struct tri_mesh mesh = constrain(&pslg, &report);
+        support_assert_cdt(&mesh, false);
+        judge(&mesh, &pslg);
+        assert_int_equal(report.lost, 0);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+    }
+}
+
+/* Without crossings the result depends on the set of segments alone. */
+static void test_order_of_segments_does_not_matter(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        struct tri_constrain_report report;
+        struct support_random random = {seed};
+        struct tri_pslg pslg = support_polygon(60, seed);
+        struct tri_mesh mesh = constrain(&pslg, &report);
+        struct support_set first = support_triangles(&mesh);
+        assert_int_equal(report.crossings + report.bent + report.lost + report.skipped, 0);
+        tri_mesh_free(&mesh);
+        for (int32_t i = 59; i > 0; i--) {
+            int32_t k = support_below(&random, i + 1), from = pslg.segments[2 * i], to = pslg.segments[2 * i + 1];
+            pslg.segments[2 * i] = pslg.segments[2 * k + 1]; /* turned round as well */
+            pslg.segments[2 * i + 1] = pslg.segments[2 * k];
+            pslg.segments[2 * k] = from;
+            pslg.segments[2 * k + 1] = to;
+        }
+        mesh = constrain(&pslg, &report);
+        struct support_set second = support_triangles(&mesh);
+        assert_true(support_same(&first, &second));
+        support_set_free(&first);
+        support_set_free(&second);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+    }
+}
+
+static int32_t count_subs(const struct tri_mesh *mesh, int32_t segment)
+{
+    int32_t n = 0;
+    for (int32_t s = 0; s < mesh->n_subs; s++)
+        n += mesh->parents[mesh->sub[s].parent].segment == segment;
+    return n;
+}
+
+static void test_crossing_makes_a_vertex(void **state)
+{
+    (void)state;
+    struct tri_constrain_report report;
+    struct tri_pslg pslg = support_square(4, 0, 1);
+    double attributes[4] = {1, 2, 3, 6};
+    int32_t segments[12] = {0, 1, 1, 2, 2, 3, 3, 0, 0, 2, 1, 3}, markers[6] = {0, 0, 0, 0, 7, 8};
+    pslg.n_attributes = 1;
+    pslg.attributes = attributes;
+    free(pslg.segments);
+    pslg.segments = segments;
+    pslg.segment_markers = markers;
+    pslg.n_segments = 6;
+    struct tri_mesh mesh = constrain(&pslg, &report);
+    assert_int_equal(report.crossings, 1);
+    assert_int_equal(mesh.n_vertices, 5);
+    assert_int_equal(mesh.n_slots, 4);
+    assert_true(mesh.xy[4].x == 2 && mesh.xy[4].y == 2);
+    assert_true(mesh.attributes[4] == 2);          /* along segment 0 - 2, which came first */
+    assert_int_equal(mesh.vertex_markers[4], 7);
+    assert_int_equal(mesh.on[4], TRI_VERTEX_INPUT);
+    assert_int_equal(count_subs(&mesh, 4), 2);
+    assert_int_equal(count_subs(&mesh, 5), 2);
+    tri_mesh_free(&mesh);
+    free(pslg.points);
+    free(pslg.holes);
+    free(pslg.regions);
+}
+
+static void test_vertices_on_a_segment_split_it(void **state)
+{
+    (void)state;
+    struct tri_constrain_report report;
+    struct tri_pslg pslg = support_pslg(20, 20, 0, 0);
+    for (int i = 0; i < 7; i++)
+        support_add_point(&pslg, 3 * i, i);
+    support_add_point(&pslg, 0, 10);
+    support_add_point(&pslg, 18, -10);
+    support_add_segment(&pslg, 0, 6);
+    struct tri_mesh mesh = constrain(&pslg, &report);
+    assert_int_equal(report.crossings, 0);
+    assert_int_equal(mesh.n_vertices, 9);
+    assert_int_equal(count_subs(&mesh, 0), 6);
+    judge(&mesh, &pslg);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+/* Where segments overlap each piece is one subsegment; the first non-zero marker wins. */
+static void test_overlap_keeps_the_first_marker(void **state)
+{
+    (void)state;
+    struct tri_constrain_report report;
+    struct tri_pslg pslg = support_pslg(20, 20, 0, 0);
+    int32_t markers[4] = {0, 5, 6, 0};
+    for (int i = 0; i < 5; i++)
+        support_add_point(&pslg, i, 0);
+    support_add_point(&pslg, 2, 3);
+    support_add_point(&pslg, 2, -3);
+    support_add_segment(&pslg, 0, 3);
+    support_add_segment(&pslg, 4, 1);
+    support_add_segment(&pslg, 2, 4);
+    support_add_segment(&pslg, 0, 4);
+    pslg.segment_markers = markers;
+    struct tri_mesh mesh = constrain(&pslg, &report);
+    int32_t seen = 0;
+    for (int32_t s = 0; s < mesh.n_subs; s++) {
+        int32_t a = mesh.sub[s].v[0], b = mesh.sub[s].v[1], low = a < b ? a : b;
+        if (a > 4 || b > 4)
+            continue;
+        assert_int_equal(abs(a - b), 1);
+        assert_int_equal(mesh.sub[s].marker, low == 0 ? 0 : 5);
+        seen |= 1 << low;
+    }
+    assert_int_equal(seen, 15);
+    tri_mesh_free(&mesh);
+    pslg.segment_markers = NULL;
+    tri_pslg_free(&pslg);
+}
+
+static void test_meaningless_segments_are_skipped(void **state)
+{
+    (void)state;
+    struct tri_constrain_report report;
+    struct tri_pslg pslg = support_square(1, 3, 1);
+    int32_t segments[14] = {0, 0, -1, 2, 3, 700, 0, 2, INT32_MIN, INT32_MAX, 0, 1, 1, 0};
+    free(pslg.segments);
+    pslg.segments = segments;
+    pslg.n_segments = 7;
+    struct tri_mesh mesh = constrain(&pslg, &report);
+    assert_int_equal(report.skipped, 4);
+    tri_mesh_free(&mesh);
+    free(pslg.points);
+    free(pslg.holes);
+    free(pslg.regions);
+}
+
+/* Segments that name later copies of a point are moved to its first copy. */
+static void test_segments_are_moved_to_the_lowest_copy(void **state)
+{
+    (void)state;
+    struct tri_constrain_report report;
+    struct tri_pslg pslg = support_pslg(20, 20, 0, 0);
+    for (int copy = 0; copy < 3; copy++)
+        for (int k = 0; k < 4; k++)
+            support_add_point(&pslg, k == 1 || k == 2, k >= 2);
+    support_add_segment(&pslg, 8, 6);
+    support_add_segment(&pslg, 4, 8); /* equal ends after that */
+    struct tri_mesh mesh = constrain(&pslg, &report);
+    assert_int_equal(report.skipped, 1);
+    assert_int_equal(count_subs(&mesh, 0), 1);
+    for (int32_t s = 0; s < mesh.n_subs; s++)
+        assert_true(mesh.sub[s].v[0] < 4 && mesh.sub[s].v[1] < 4);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+/* A fan of spokes from one vertex, in order and far apart in angle by an ulp or so. */
+static void test_many_spokes_and_long_channels(void **state)
+{
+    (void)state;
+    struct tri_constrain_report report;
+    struct tri_pslg pslg = support_pslg(500, 500, 0, 0);
+    support_add_point(&pslg, 0, 0);
+    for (int i = 0; i < 200; i++)
+        support_add_point(&pslg, 1000, i);
+    for (int i = 0; i < 200; i++)
+        support_add_point(&pslg, 1 + 4.9 * i, i % 2 ? 1.5 : -1.5); /* a channel of teeth around y = 0 */
+    for (int i = 0; i < 200; i++)
+        support_add_segment(&pslg, 0, 1 + i);
+    struct tri_mesh mesh = constrain(&pslg, &report);
+    assert_int_equal(report.lost, 0);
+    support_assert_cdt(&mesh, false);
+    judge(&mesh, &pslg);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+/* Crossings nearer to each other and to vertices than coordinates can tell apart: no loop, no loss, links intact. */
+static void test_crossings_below_resolution(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 60; seed++) {
+        struct support_random random = {seed};
+        struct tri_constrain_report report;
+        struct tri_pslg pslg = support_pslg(100, 100, 0, 0);
+        double offset = seed % 3 == 0 ? 0 : seed % 3 == 1 ? 1e6 : 0x1p44;
+        for (int i = 0; i < 24; i++) {
+            double x = support_unit(&random), y = 1e-9 * support_unit(&random);
+            support_add_point(&pslg, offset + x, offset + (seed % 2 ? x + y : y));
+        }
+        for (int i = 0; i < 16; i++)
+            support_add_segment(&pslg, support_below(&random, 24), support_below(&random, 24));
+        struct tri_mesh mesh = constrain(&pslg, &report);
+        for (int32_t t = 0; t < mesh.n_slots; t++)
+            assert_true(tri_orient2d(mesh.xy[mesh.tri[t].v[0]], mesh.xy[mesh.tri[t].v[1]], mesh.xy[mesh.tri[t].v[2]]) > 0);
+        support_assert_cdt(&mesh, false);
+        assert_int_equal(report.lost, 0);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+    }
+}
+
+static void test_no_triangles_no_segments(void **state)
+{
+    (void)state;
+    struct tri_constrain_report report;
+    struct tri_pslg pslg = support_pslg(20, 20, 0, 0);
+    for (int i = 0; i < 10; i++)
+        support_add_point(&pslg, i, 2 * i);
+    support_add_segment(&pslg, 0, 9);
+    struct tri_mesh mesh = constrain(&pslg, &report);
+    assert_int_equal(mesh.n_slots, 0);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+static void test_all_segment_files(void **state)
+{
+    (void)state;
+    static const char *const folders[] = {"", "nasty", "regress", "coast"};
+    for (int f = 0; f < 4; f++) {
+        char **names = support_names(folders[f]);
+        for (char **name = names; *name; name++) {
+            struct tri_pslg pslg;
+            struct tri_constrain_report report;
+            if (!support_read(*name, &pslg))
+                continue;
+            print_message("  %s\n", *name);
+            struct tri_mesh mesh = constrain(&pslg, &report);
+            support_assert_cdt(&mesh, false);
+            judge(&mesh, &pslg);
+            assert_int_equal(report.lost, 0);
+            tri_mesh_free(&mesh);
+            tri_pslg_free(&pslg);
+        }
+        support_free_names(names);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_tangles_are_naively_constrained_delaunay),
+        cmocka_unit_test(test_large_tangles_pass_the_judge),
+        cmocka_unit_test(test_order_of_segments_does_not_matter),
+        cmocka_unit_test(test_crossing_makes_a_vertex),
+        cmocka_unit_test(test_vertices_on_a_segment_split_it),
+        cmocka_unit_test(test_overlap_keeps_the_first_marker),
+        cmocka_unit_test(test_meaningless_segments_are_skipped),
+        cmocka_unit_test(test_segments_are_moved_to_the_lowest_copy),
+        cmocka_unit_test(test_many_spokes_and_long_channels),
+        cmocka_unit_test(test_crossings_below_resolution),
+        cmocka_unit_test(test_no_triangles_no_segments),
+        cmocka_unit_test(test_all_segment_files),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

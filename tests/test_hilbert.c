@@ -1,0 +1,139 @@
+/* The curve visits each cell once, neighbours in the order are neighbours in the plane, and the sort is a sort by it. */
+#include "support.h"
+#include "triangle/hilbert.h"
+
+/* On every power-of-two sub-grid at the origin the keys of the cells, in order, form one path of unit steps. */
+static void test_curve_is_a_path_through_all_cells(void **state)
+{
+    (void)state;
+    for (int bits = 1; bits <= 6; bits++) {
+        uint32_t side = UINT32_C(1) << bits;
+        int shift = 31 - bits; /* cells of the coarse grid are blocks of the fine one */
+        int32_t n = (int32_t)(side * side);
+        int32_t *at = malloc((size_t)n * sizeof *at);
+        for (int32_t i = 0; i < n; i++)
+            at[i] = -1;
+        for (uint32_t x = 0; x < side; x++)
+            for (uint32_t y = 0; y < side; y++) {
+                uint64_t rank = tri_hilbert(x << shift, y << shift) >> 2 * shift;
+                assert_true(rank < (uint64_t)n);
+                assert_int_equal(at[rank], -1);
+                at[rank] = (int32_t)(x * side + y);
+            }
+        for (int32_t i = 1; i < n; i++) {
+            int32_t dx = at[i] / (int32_t)side - at[i - 1] / (int32_t)side;
+            int32_t dy = at[i] % (int32_t)side - at[i - 1] % (int32_t)side;
+            assert_int_equal(dx * dx + dy * dy, 1);
+        }
+        free(at);
+    }
+}
+
+/* All cells of a block have keys in the block's interval: the curve is hierarchical down to the last bit. */
+static void test_curve_is_hierarchical(void **state)
+{
+    (void)state;
+    struct support_random random = {1};
+    for (int i = 0; i < 2000; i++) {
+        uint32_t x = (uint32_t)(support_bits(&random) >> 33), y = (uint32_t)(support_bits(&random) >> 33);
+        int shift = 1 + support_below(&random, 30);
+        uint32_t mask = ~((UINT32_C(1) << shift) - 1);
+        assert_true(tri_hilbert(x, y) >> 2 * shift == tri_hilbert(x & mask, y & mask) >> 2 * shift);
+        assert_true(tri_hilbert(x, y) != tri_hilbert(x ^ 1, y) && tri_hilbert(x, y) != tri_hilbert(x, y ^ 1));
+    }
+}
+
+static void assert_permutation(const int32_t *order, int32_t n)
+{
+    bool *seen = calloc((size_t)n, sizeof *seen);
+    for (int32_t i = 0; i < n; i++) {
+        assert_in_range(order[i], 0, n - 1);
+        assert_false(seen[order[i]]);
+        seen[order[i]] = true;
+    }
+    free(seen);
+}
+
+static void test_order_of_a_grid_is_a_path(void **state)
+{
+    (void)state;
+    struct tri_point xy[4096];
+    int32_t order[4096];
+    for (int i = 0; i < 4096; i++)
+        xy[(i * 1031) % 4096] = (struct tri_point){i / 64, i % 64};
+    assert_int_equal(tri_hilbert_order(xy, 4096, order, NULL), TRI_OK);
+    assert_permutation(order, 4096);
+    double length = 0;
+    for (int i = 1; i < 4096; i++) {
+        struct tri_point p = xy[order[i - 1]], q = xy[order[i]];
+        length += fabs(p.x - q.x) + fabs(p.y - q.y);
+    }
+    assert_true(length <= 1.5 * 4095); /* the box does not divide evenly by 64: nearly all steps are 1 */
+}
+
+static void test_equal_points_are_neighbours_in_increasing_index(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        struct tri_pslg pslg = support_points(SUPPORT_LATTICE, 500, seed);
+        int32_t order[500];
+        const struct tri_point *xy = (const struct tri_point *)pslg.points;
+        assert_int_equal(tri_hilbert_order(xy, 500, order, NULL), TRI_OK);
+        assert_permutation(order, 500);
+        int places = 0;
+        for (int i = 0; i < 500; i++) {
+            bool same = i && xy[order[i]].x == xy[order[i - 1]].x && xy[order[i]].y == xy[order[i - 1]].y;
+            places += !same;
+            assert_true(!same || order[i] > order[i - 1]);
+        }
+        assert_true(places <= 36);
+        tri_pslg_free(&pslg);
+    }
+}
+
+/* Different points in one cell (the box is 2^60 times larger): equal ones must still be neighbours. */
+static void test_crowded_cells_are_sorted(void **state)
+{
+    (void)state;
+    struct tri_point xy[64];
+    int32_t order[64];
+    for (int i = 0; i < 63; i++)
+        xy[i] = (struct tri_point){ldexp(i * 5 % 7, -60), ldexp(i % 3, -60)};
+    xy[63] = (struct tri_point){1, 1};
+    assert_int_equal(tri_hilbert_order(xy, 64, order, NULL), TRI_OK);
+    assert_permutation(order, 64);
+    int places = 0;
+    for (int i = 0; i < 64; i++)
+        places += i == 0 || xy[order[i]].x != xy[order[i - 1]].x || xy[order[i]].y != xy[order[i - 1]].y;
+    assert_int_equal(places, 22);
+}
+
+static void test_degenerate_boxes(void **state)
+{
+    (void)state;
+    struct tri_point xy[5] = {{1, 2}, {1, 2}, {1, 2}, {1, 2}, {1, 2}};
+    int32_t order[5];
+    assert_int_equal(tri_hilbert_order(xy, 0, order, NULL), TRI_OK);
+    assert_int_equal(tri_hilbert_order(xy, 1, order, NULL), TRI_OK);
+    assert_int_equal(order[0], 0);
+    assert_int_equal(tri_hilbert_order(xy, 5, order, NULL), TRI_OK);
+    for (int i = 0; i < 5; i++)
+        assert_int_equal(order[i], i);
+    for (int i = 0; i < 5; i++)
+        xy[i] = (struct tri_point){i % 2 ? 0x1p200 : -0x1p200, i * 0x1p-216};
+    assert_int_equal(tri_hilbert_order(xy, 5, order, NULL), TRI_OK);
+    assert_permutation(order, 5);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_curve_is_a_path_through_all_cells),
+        cmocka_unit_test(test_curve_is_hierarchical),
+        cmocka_unit_test(test_order_of_a_grid_is_a_path),
+        cmocka_unit_test(test_equal_points_are_neighbours_in_increasing_index),
+        cmocka_unit_test(test_crowded_cells_are_sorted),
+        cmocka_unit_test(test_degenerate_boxes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

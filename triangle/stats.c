@@ -1,0 +1,112 @@
+/* One pass over the triangles for each question.
+ *
+ * Extremes are kept as squares and cosines, and turned into lengths and degrees once at the end. The cosine falls as the
+ * angle grows, so the smallest angle has the largest cosine. */
+#include "triangle/stats.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "triangle/quality.h"
+
+const double tri_aspect_limits[TRI_ASPECT_BINS] = {1.1547, 1.5, 2,  2.5, 3,   4,   6,    10,
+                                                   15,     25,  50, 100, 300, 1000, 10000, 100000};
+
+static const double DEGREES = 57.295779513082320877;
+
+enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh *mesh, struct tri_error *error)
+{
+    *counts = (struct tri_counts){.triangles = mesh->n_slots, .subsegments = mesh->n_subs};
+    uint8_t *used = calloc((size_t)mesh->n_vertices + 1, 1);
+    if (!used)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to count %d vertices", (int)mesh->n_vertices);
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        for (int k = 0; k < 3; k++)
+            used[mesh->tri[t].v[k]] = 1;
+    for (int32_t v = 0; v < mesh->n_vertices; v++)
+        counts->vertices += used[v];
+    free(used);
+    for (int32_t s = 0; s < mesh->n_subs; s++) {
+        bool inner = mesh->sub[s].side[0] != TRI_NONE && mesh->sub[s].side[1] != TRI_NONE;
+        *(inner ? &counts->interior : &counts->exterior) += 1;
+    }
+    counts->edges = (3 * counts->triangles + counts->exterior) / 2; /* every boundary edge is a subsegment */
+    return TRI_OK;
+}
+
+/* Extremes in the mesh's units: least, greatest. */
+struct extremes {
+    double area2[2], length2[2];
+    double least_altitude2, greatest_aspect;
+    double least_sine2;  /* squared sine of the smallest angle, at most 60 degrees, so that the sine tells all */
+    double least_cosine; /* of the largest angle, at least 60 degrees */
+};
+
+static void widen(double range[2], double value)
+{
+    range[0] = value < range[0] ? value : range[0];
+    range[1] = value > range[1] ? value : range[1];
+}
+
+static int aspect_bin(double aspect)
+{
+    int bin = 0;
+    while (bin + 1 < TRI_ASPECT_BINS && aspect >= tri_aspect_limits[bin + 1])
+        bin++;
+    return bin;
+}
+
+static int angle_bin(double cosine, const double limits[TRI_ANGLE_BINS])
+{
+    int bin = 0;
+    while (bin + 1 < TRI_ANGLE_BINS && cosine <= limits[bin + 1])
+        bin++;
+    return bin;
+}
+
+static void measure(struct tri_shapes *shapes, struct extremes *x, const struct tri_shape *s, const double limits[])
+{
+    double longest2 = fmax(s->l[0], fmax(s->l[1], s->l[2])), aspect = longest2 / s->area2;
+    widen(x->area2, s->area2);
+    x->least_altitude2 = fmin(x->least_altitude2, s->area2 / longest2 * s->area2);
+    x->greatest_aspect = fmax(x->greatest_aspect, aspect);
+    x->least_sine2 = fmin(x->least_sine2, s->area2 / tri_longer_product(s->l[0], s->l[1], s->l[2]) * s->area2);
+    shapes->aspects[aspect_bin(aspect)]++;
+    for (int k = 0; k < 3; k++) {
+        double a = s->l[tri_next[k]], b = s->l[tri_prev[k]];
+        double cosine = (a + b - s->l[k]) / (2 * sqrt(a) * sqrt(b));
+        widen(x->length2, s->l[k]);
+        x->least_cosine = fmin(x->least_cosine, cosine);
+        shapes->angles[angle_bin(cosine, limits)]++;
+    }
+}
+
+static void convert(struct tri_shapes *shapes, const struct extremes *x, double unit)
+{
+    shapes->smallest_area = 0.5 * x->area2[0] * unit * unit;
+    shapes->largest_area = 0.5 * x->area2[1] * unit * unit;
+    shapes->shortest_edge = sqrt(x->length2[0]) * unit;
+    shapes->longest_edge = sqrt(x->length2[1]) * unit;
+    shapes->shortest_altitude = sqrt(x->least_altitude2) * unit;
+    shapes->largest_aspect = x->greatest_aspect;
+    shapes->smallest_angle = DEGREES * asin(sqrt(fmin(x->least_sine2, 1)));
+    shapes->largest_angle = DEGREES * acos(fmax(x->least_cosine, -1));
+}
+
+void tri_measure_shapes(struct tri_shapes *shapes, const struct tri_mesh *mesh)
+{
+    struct extremes x = {{HUGE_VAL, 0}, {HUGE_VAL, 0}, HUGE_VAL, 0, 1, 1};
+    double limits[TRI_ANGLE_BINS];
+    *shapes = (struct tri_shapes){0};
+    if (mesh->n_slots == 0)
+        return;
+    for (int k = 0; k < TRI_ANGLE_BINS; k++)
+        limits[k] = tri_cos_degrees(10 * k);
+    for (int32_t t = 0; t < mesh->n_slots; t++) {
+        assert(tri_is_live(&mesh->tri[t]));
+        struct tri_shape s = tri_shape_of(mesh->xy, mesh->tri[t].v);
+        measure(shapes, &x, &s, limits);
+    }
+    convert(shapes, &x, mesh->unit);
+}

@@ -1,0 +1,37 @@
+/* What is printed about a mesh: its counts, and the shapes of its triangles. */
+#ifndef TRIANGLE_STATS_H
+#define TRIANGLE_STATS_H
+
+#include "triangle/mesh.h"
+
+struct tri_counts {
+    int64_t vertices; /* that are corners of triangles */
+    int64_t triangles, edges;
+    int64_t exterior; /* edges of one triangle, those of holes included */
+    int64_t interior; /* subsegments between two triangles */
+    int64_t subsegments;
+};
+
+/* O(triangles); one byte a vertex while it runs. The mesh has no free slots. TRI_NO_MEMORY. */
+enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh *mesh, struct tri_error *error);
+
+enum { TRI_ASPECT_BINS = 16, TRI_ANGLE_BINS = 18 };
+
+/* Limits of the bins of aspect ratios: bin k holds tri_aspect_limits[k] up to, not including, [k + 1]; the last is open. */
+extern const double tri_aspect_limits[TRI_ASPECT_BINS];
+
+/* Lengths and areas in the caller's coordinates, angles in degrees. All 0 without triangles. */
+struct tri_shapes {
+    double smallest_area, largest_area;
+    double shortest_edge, longest_edge;
+    double shortest_altitude;
+    double largest_aspect; /* longest edge over shortest altitude; infinite where an area is lost to rounding */
+    double smallest_angle, largest_angle;
+    int64_t aspects[TRI_ASPECT_BINS]; /* triangles by aspect ratio */
+    int64_t angles[TRI_ANGLE_BINS];   /* angles by tens of degrees, three a triangle */
+};
+
+/* O(triangles). The mesh has no free slots. */
+void tri_measure_shapes(struct tri_shapes *shapes, const struct tri_mesh *mesh);
+
+#endif

@@ -1,0 +1,150 @@
+/* Edges are told once by a rule that looks at two triangles alone: the one with the lower number tells. */
+#include "triangle/topology.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "triangle/predicates.h"
+
+/* Edges of a triangle in the order of the list, by their opposite corners. */
+static const int edge_order[3] = {2, 0, 1};
+
+void tri_neighbors(const struct tri_mesh *mesh, int32_t t, int32_t neighbors[3])
+{
+    for (int e = 0; e < 3; e++) {
+        int32_t other = tri_across(mesh, tri_code(t, e));
+        neighbors[e] = other == TRI_NONE ? TRI_NONE : tri_of(other);
+    }
+}
+
+/* Does this triangle come first at the edge? `other` is the edge seen from beyond. */
+static bool is_first(int32_t code, int32_t other) { return other == TRI_NONE || other > code; }
+
+static int32_t count_edges(const struct tri_mesh *mesh)
+{
+    int32_t n = 0;
+    for (int32_t t = 0; t < mesh->n_slots; t++) {
+        assert(tri_is_live(&mesh->tri[t]));
+        for (int e = 0; e < 3; e++)
+            n += is_first(tri_code(t, e), tri_across(mesh, tri_code(t, e)));
+    }
+    return n;
+}
+
+static void list_edges(struct tri_edge_list *list, const struct tri_mesh *mesh)
+{
+    int32_t n = 0;
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        for (int k = 0; k < 3; k++) {
+            int32_t code = tri_code(t, edge_order[k]), other = tri_across(mesh, code);
+            if (!is_first(code, other))
+                continue;
+            if (list->number) {
+                list->number[3 * (size_t)t + tri_edge(code)] = n;
+                if (other != TRI_NONE)
+                    list->number[3 * (size_t)tri_of(other) + tri_edge(other)] = n;
+            }
+            list->codes[n++] = code;
+        }
+    assert(n == list->n);
+}
+
+enum tri_status tri_edge_list_make(struct tri_edge_list *list, const struct tri_mesh *mesh, bool with_numbers,
+                                   struct tri_error *error)
+{
+    *list = (struct tri_edge_list){.n = count_edges(mesh)};
+    list->codes = malloc(((size_t)list->n + 1) * sizeof *list->codes);
+    if (with_numbers)
+        list->number = malloc(3 * ((size_t)mesh->n_slots + 1) * sizeof *list->number);
+    if (!list->codes || (with_numbers && !list->number)) {
+        tri_edge_list_free(list);
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the edges of %d triangles", (int)mesh->n_slots);
+    }
+    list_edges(list, mesh);
+    return TRI_OK;
+}
+
+void tri_edge_list_free(struct tri_edge_list *list)
+{
+    free(list->codes);
+    free(list->number);
+    *list = (struct tri_edge_list){0};
+}
+
+void tri_middle_nodes(const struct tri_mesh *mesh, const struct tri_edge_list *edges, int32_t t, int32_t nodes[3])
+{
+    assert(edges->number);
+    for (int e = 0; e < 3; e++)
+        nodes[e] = mesh->n_vertices + edges->number[3 * (size_t)t + e];
+}
+
+double tri_blend_attribute(const struct tri_mesh *mesh, const struct tri_blend *blend, int32_t attribute)
+{
+    double corner[3];
+    for (int k = 0; k < 3; k++)
+        corner[k] = mesh->attributes[(size_t)blend->v[k] * (size_t)mesh->n_attributes + (size_t)attribute];
+    return corner[0] + blend->weight[0] * (corner[1] - corner[0]) + blend->weight[1] * (corner[2] - corner[0]);
+}
+
+struct tri_blend tri_edge_middle(const struct tri_mesh *mesh, int32_t code)
+{
+    int32_t ends[2];
+    tri_edge_ends(mesh, code, ends);
+    struct tri_point p = tri_point_between(mesh->xy[ends[0]], mesh->xy[ends[1]], 0.5);
+    return (struct tri_blend){{p.x * mesh->unit, p.y * mesh->unit}, {ends[0], ends[1], ends[0]}, {0.5, 0}};
+}
+
+/* The orientation predicate approximates the area well even where plain arithmetic has lost it. */
+struct tri_blend tri_voronoi_vertex(const struct tri_mesh *mesh, int32_t t)
+{
+    const int32_t *v = mesh->tri[t].v;
+    struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
+    double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
+    double b2 = bx * bx + by * by, c2 = cx * cx + cy * cy, area2 = tri_orient2d(a, b, c);
+    double x = (cy * b2 - by * c2) / (2 * area2), y = (bx * c2 - cx * b2) / (2 * area2);
+    struct tri_blend blend = {{(a.x + x) * mesh->unit, (a.y + y) * mesh->unit}, {v[0], v[1], v[2]}, {0, 0}};
+    blend.weight[0] = (x * cy - y * cx) / area2;
+    blend.weight[1] = (bx * y - by * x) / area2;
+    return blend;
+}
+
+void tri_voronoi_edge(const struct tri_mesh *mesh, int32_t code, int32_t ends[2], double direction[2])
+{
+    int32_t other = tri_across(mesh, code), edge[2];
+    ends[0] = tri_of(code);
+    ends[1] = other == TRI_NONE ? TRI_NONE : tri_of(other);
+    direction[0] = direction[1] = 0;
+    if (other != TRI_NONE)
+        return;
+    tri_edge_ends(mesh, code, edge);
+    direction[0] = (mesh->xy[edge[1]].y - mesh->xy[edge[0]].y) * mesh->unit;
+    direction[1] = (mesh->xy[edge[0]].x - mesh->xy[edge[1]].x) * mesh->unit;
+}
+
+enum tri_status tri_used_make(struct tri_used *used, const struct tri_mesh *mesh, struct tri_error *error)
+{
+    size_t size = (size_t)mesh->n_vertices + 1;
+    *used = (struct tri_used){0, malloc(size * sizeof *used->vertex), malloc(size * sizeof *used->number)};
+    if (!used->vertex || !used->number) {
+        tri_used_free(used);
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to number %d vertices", (int)mesh->n_vertices);
+    }
+    for (int32_t v = 0; v < mesh->n_vertices; v++)
+        used->number[v] = TRI_NONE;
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        for (int k = 0; k < 3; k++)
+            used->number[mesh->tri[t].v[k]] = 0;
+    for (int32_t v = 0; v < mesh->n_vertices; v++)
+        if (used->number[v] != TRI_NONE) {
+            used->number[v] = used->n;
+            used->vertex[used->n++] = v;
+        }
+    return TRI_OK;
+}
+
+void tri_used_free(struct tri_used *used)
+{
+    free(used->vertex);
+    free(used->number);
+    *used = (struct tri_used){0};
+}

@@ -1,0 +1,88 @@
+/* What a mesh means to its users beside corners: edges, neighbours, Voronoi diagram, midpoints, vertices in use.
+ *
+ * All of it is worked out from struct tri_mesh item by item, so that nobody needs a copy of the whole: arrays are made only
+ * where an order has to be counted out. The mesh has no free slots (tri_mesh_compact).
+ *
+ * ORDER OF EDGES: triangles in their order; in each the edges from its first to its second, second to third, third to first
+ * corner; each edge where it is met first. So an edge is known by the code (4 * triangle + opposite corner) of its first
+ * triangle, which lies on its left, and edge i of the list is dual to edge i of the Voronoi diagram. */
+#ifndef TRIANGLE_TOPOLOGY_H
+#define TRIANGLE_TOPOLOGY_H
+
+#include "triangle/mesh.h"
+
+/* The same edge as its other triangle sees it, subsegment or not; TRI_NONE at the boundary. */
+static inline int32_t tri_across(const struct tri_mesh *mesh, int32_t code)
+{
+    const struct tri_triangle *t = &mesh->tri[tri_of(code)];
+    int32_t link = t->n[tri_edge(code)];
+    if (link >= 0)
+        return link;
+    const struct tri_subsegment *s = &mesh->sub[~link];
+    return s->side[1 - tri_side(s, t->v[tri_next[tri_edge(code)]])];
+}
+
+/* Triangles opposite the corners of t; TRI_NONE: none. */
+void tri_neighbors(const struct tri_mesh *mesh, int32_t t, int32_t neighbors[3]);
+
+/* From and to of the edge, its triangle on the left. */
+static inline void tri_edge_ends(const struct tri_mesh *mesh, int32_t code, int32_t ends[2])
+{
+    const int32_t *v = mesh->tri[tri_of(code)].v;
+    ends[0] = v[tri_next[tri_edge(code)]];
+    ends[1] = v[tri_prev[tri_edge(code)]];
+}
+
+/* Marker of the subsegment that the edge is, else 0. (tri_generate gives boundary edges the marker 1 where they have none.) */
+static inline int32_t tri_edge_marker(const struct tri_mesh *mesh, int32_t code)
+{
+    int32_t link = mesh->tri[tri_of(code)].n[tri_edge(code)];
+    return link < 0 ? mesh->sub[~link].marker : 0;
+}
+
+struct tri_edge_list {
+    int32_t n;
+    int32_t *codes;  /* [n] */
+    int32_t *number; /* [n_slots][3] number of the edge opposite each corner; NULL: not asked for */
+};
+
+/* Lists the edges. O(triangles); 6 bytes a triangle, with numbers 12 more. TRI_NO_MEMORY. */
+enum tri_status tri_edge_list_make(struct tri_edge_list *list, const struct tri_mesh *mesh, bool with_numbers,
+                                   struct tri_error *error);
+void tri_edge_list_free(struct tri_edge_list *list);
+
+/* Second-order triangles: the node amid edge i is node n_vertices + i. Those opposite the corners of t, in their order. */
+void tri_middle_nodes(const struct tri_mesh *mesh, const struct tri_edge_list *edges, int32_t t, int32_t nodes[3]);
+
+/* A place, and how attributes are interpolated there: that of corner 0, plus weight[k - 1] times the way to that of corner k.
+ * The weights may lie outside 0 .. 1: extrapolation. */
+struct tri_blend {
+    double at[2]; /* the caller's coordinates */
+    int32_t v[3];
+    double weight[2];
+};
+
+double tri_blend_attribute(const struct tri_mesh *mesh, const struct tri_blend *blend, int32_t attribute);
+
+/* The middle of an edge. */
+struct tri_blend tri_edge_middle(const struct tri_mesh *mesh, int32_t code);
+
+/* Voronoi vertex t: the circumcentre of triangle t. */
+struct tri_blend tri_voronoi_vertex(const struct tri_mesh *mesh, int32_t t);
+
+/* The Voronoi edge dual to an edge: ends[0] is the triangle on its left, ends[1] that on its right or, for a ray, TRI_NONE.
+ * The direction of a ray is that of the edge turned right, as long as the edge; 0, 0 for an edge with two ends. */
+void tri_voronoi_edge(const struct tri_mesh *mesh, int32_t code, int32_t ends[2], double direction[2]);
+
+/* Vertices that are corners of triangles. */
+struct tri_used {
+    int32_t n;
+    int32_t *vertex; /* [n] ascending */
+    int32_t *number; /* [n_vertices] place in `vertex`, or TRI_NONE */
+};
+
+/* O(vertices + triangles). TRI_NO_MEMORY. */
+enum tri_status tri_used_make(struct tri_used *used, const struct tri_mesh *mesh, struct tri_error *error);
+void tri_used_free(struct tri_used *used);
+
+#endif
