@@ -22,7 +22,7 @@
 static const double EQUILATERAL = 2.3094010767585030580, IDEAL = 0.81;
 
 struct refiner {
-    struct tri_mesh *mesh;
+    struct tri_mesh *mesh; /* only read by tri_count_bad */
     const struct tri_refine_options *options;
     struct tri_refine_report *report;
     struct tri_error *error;
@@ -31,12 +31,16 @@ struct refiner {
     int least_exponent; /* of the square of the shortest edge that can be resolved */
     struct tri_cavity cavity;
     struct tri_bad_queue queue;
+    int64_t for_angles, for_sizes; /* points inserted for bad angles, and for bad sizes */
+    int64_t angle_cap;
+    int relaxed;      /* how many times the angle bound has been lowered, see relax */
     int32_t *crowded; /* stack of subsegments to test for encroachment (conforming only) */
     int32_t n_crowded, crowded_capacity;
 };
 
 enum badness { GOOD, BAD_SIZE, BAD_ANGLE };
 
+/* DONE: a point was inserted, or the triangle is gone; AGAIN: a subsegment was split instead, the triangle may still stand. */
 enum outcome { DONE, AGAIN, REFUSED, FAILED };
 
 struct tri_refine_options tri_refine_defaults(void)
@@ -313,6 +317,36 @@ static enum outcome propose(struct refiner *r, int32_t slot, const struct tri_sh
     return found == TRI_SEARCH_OUTSIDE ? refuse(r, TRI_EXCUSE_PRECISION) : FAILED;
 }
 
+/* Lowers the angle bound that the loop works for; what is already bad by the old one stays. */
+static void lower_bound(struct refiner *r, double degrees)
+{
+    double lens_cos2 = r->bounds.lens_cos2;
+    r->bounds = tri_bounds_for(degrees, r->options->conforming);
+    r->bounds.lens_cos2 = degrees > 0 ? r->bounds.lens_cos2 : lens_cos2;
+}
+
+/* Points for bad angles run away: on with the bound for which refinement ends in practice, then with one for which it
+ * provably does, at last with none. */
+static void relax(struct refiner *r)
+{
+    static const double bound[] = {TRI_USUAL_ANGLE, 25, 0};
+    while (r->relaxed < 3 && bound[r->relaxed] >= r->options->min_angle)
+        r->relaxed++;
+    if (r->relaxed == 3)
+        return;
+    lower_bound(r, bound[r->relaxed++]);
+    r->angle_cap *= 2;
+    r->report->hit_cap = true;
+}
+
+static void count_point(struct refiner *r, enum badness badness)
+{
+    if (badness == BAD_SIZE)
+        r->for_sizes++;
+    else if (++r->for_angles > r->angle_cap + 4 * r->for_sizes)
+        relax(r);
+}
+
 static bool at_limit(struct refiner *r)
 {
     int64_t inserted = r->report->inserted_free + r->report->inserted_on_segments;
@@ -339,6 +373,8 @@ static enum outcome treat(struct refiner *r, struct tri_entry entry)
         if (at_limit(r))
             return refuse(r, TRI_EXCUSE_LIMIT);
         enum outcome outcome = propose(r, entry.t, &shape, badness);
+        if (outcome == DONE || outcome == AGAIN)
+            count_point(r, badness);
         if (outcome != AGAIN)
             return outcome;
     }
@@ -409,6 +445,34 @@ static bool refine_all(struct refiner *r)
     return true;
 }
 
+/* Square of a quarter of the shortest edge in the mesh. */
+static double quarter_of_shortest2(const struct tri_mesh *mesh)
+{
+    double shortest2 = HUGE_VAL;
+    for (int32_t t = 0; t < mesh->n_slots; t++) {
+        if (!tri_is_live(&mesh->tri[t]))
+            continue;
+        struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
+        shortest2 = shape.l[shape.shortest] < shortest2 ? shape.l[shape.shortest] : shortest2;
+    }
+    return shortest2 / 16;
+}
+
+/* Above TRI_USUAL_ANGLE refinement may feed on itself, with ever shorter edges. So the whole mesh is refined for the usual
+ * angle first; then for more, as long as that adds less than half as many points again and no edge is much shorter than
+ * what is there. */
+static bool refine_beyond_usual(struct refiner *r)
+{
+    lower_bound(r, TRI_USUAL_ANGLE);
+    if (!refine_all(r))
+        return false;
+    double floor2 = quarter_of_shortest2(r->mesh);
+    r->resolution.shortest2 = floor2 > r->resolution.shortest2 ? floor2 : r->resolution.shortest2;
+    lower_bound(r, r->options->min_angle);
+    r->angle_cap = 1000 + r->for_angles + r->mesh->n_slots / 4;
+    return refine_all(r);
+}
+
 enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,
                            struct tri_refine_report *report, struct tri_error *error)
 {
@@ -420,11 +484,62 @@ enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_option
     r.resolution = tri_resolution_of(mesh);
     frexp(r.resolution.shortest2, &r.least_exponent);
     r.cavity.fence = options->fence;
-    bool done = tri_bad_queue_init(&r.queue) && refine_all(&r);
+    r.angle_cap = 20000 + 50 * (int64_t)(options->seeds ? options->n_seeds : mesh->n_slots);
+    bool done = tri_bad_queue_init(&r.queue) &&
+                (options->min_angle > TRI_USUAL_ANGLE ? refine_beyond_usual(&r) : refine_all(&r));
     if (!done && r.error->status == TRI_OK)
         tri_fail(r.error, TRI_NO_MEMORY, NULL, 0, "out of memory while refining");
     tri_cavity_free(&r.cavity);
     tri_bad_queue_free(&r.queue);
     free(r.crowded);
     return done ? TRI_OK : r.error->status;
+}
+
+/* May a corner of the triangle be an end of a subsegment that must not be split? */
+static bool is_beside_protected(const struct refiner *r, const struct tri_triangle *t)
+{
+    for (int e = 0; e < 3; e++) {
+        if (t->n[e] < 0 && is_protected(r, &r->mesh->sub[~t->n[e]]))
+            return true;
+        const struct tri_triangle *other = t->n[e] < 0 ? t : &r->mesh->tri[tri_of(t->n[e])];
+        for (int f = 0; f < 3; f++)
+            if (other->n[f] < 0 && is_protected(r, &r->mesh->sub[~other->n[f]]))
+                return true;
+    }
+    return false;
+}
+
+static enum tri_excuse excuse_for(const struct refiner *r, int32_t slot, const struct tri_shape *shape, enum badness badness,
+                                  const struct tri_refine_report *report)
+{
+    const struct tri_triangle *t = &r->mesh->tri[slot];
+    if (badness == BAD_ANGLE && tri_is_hopeless(r->mesh, &r->resolution, slot, shape))
+        return shape->l[shape->shortest] < r->resolution.shortest2 ? TRI_EXCUSE_PRECISION
+               : tri_is_channel(r->mesh, slot, shape)              ? TRI_EXCUSE_CHANNEL
+                                                                   : TRI_EXCUSE_INPUT_ANGLE;
+    if (report->hit_limit)
+        return TRI_EXCUSE_LIMIT;
+    if (r->options->protect > 0 && is_beside_protected(r, t))
+        return TRI_EXCUSE_PROTECTED;
+    if (report->hit_cap && badness == BAD_ANGLE)
+        return TRI_EXCUSE_LIMIT;
+    return report->gated + report->deferred > 0 ? TRI_EXCUSE_DEFERRED : TRI_EXCUSE_PRECISION;
+}
+
+void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                   const struct tri_refine_report *report, int64_t count[TRI_EXCUSES])
+{
+    struct refiner r = {.mesh = (struct tri_mesh *)mesh, .options = options};
+    r.bounds = tri_bounds_for(options->min_angle, options->conforming);
+    r.resolution = tri_resolution_of(mesh);
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        count[k] = 0;
+    for (int32_t t = 0; t < mesh->n_slots; t++) {
+        if (!tri_is_live(&mesh->tri[t]))
+            continue;
+        struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
+        enum badness badness = judge(&r, &mesh->tri[t], &shape);
+        if (badness != GOOD)
+            count[excuse_for(&r, t, &shape, badness, report)]++;
+    }
 }

@@ -41,9 +41,10 @@ struct tri_refine_options {
 
 enum tri_excuse { /* why a triangle is still bad */
     TRI_EXCUSE_INPUT_ANGLE, /* at, or across from, a small angle between input segments */
+    TRI_EXCUSE_CHANNEL,     /* between two segments so near to each other that filling the space would cost too much */
     TRI_EXCUSE_PROTECTED,   /* -Y or -YY */
     TRI_EXCUSE_LIMIT,       /* -S, or the cap on angle-driven points */
-    TRI_EXCUSE_PRECISION,   /* features nearer to each other than coordinates or the size of the mesh allow to resolve */
+    TRI_EXCUSE_PRECISION,   /* features nearer to each other than coordinates can resolve */
     TRI_EXCUSE_DEFERRED,    /* gate or fence */
     TRI_EXCUSES
 };

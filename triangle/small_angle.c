@@ -114,6 +114,13 @@ static double channel_cost(const struct tri_mesh *mesh, int32_t u, int32_t v, in
     return dearest;
 }
 
+bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape)
+{
+    const int32_t *v = mesh->tri[slot].v;
+    int k = shape->shortest;
+    return channel_cost(mesh, v[tri_next[k]], v[tri_prev[k]], v[k], shape->l[k]) > mesh->dearest_channel;
+}
+
 bool tri_is_hopeless(const struct tri_mesh *mesh, const struct tri_resolution *resolution, int32_t slot,
                      const struct tri_shape *shape)
 {
@@ -121,7 +128,7 @@ bool tri_is_hopeless(const struct tri_mesh *mesh, const struct tri_resolution *r
     int k = shape->shortest;
     int32_t u = t->v[tri_next[k]], v = t->v[tri_prev[k]];
     return shape->l[k] < resolution->shortest2 || on_one_shell(mesh, u, v, shape->l[k]) ||
-           channel_cost(mesh, u, v, t->v[k], shape->l[k]) > mesh->dearest_channel;
+           tri_is_channel(mesh, slot, shape);
 }
 
 /* The largest power of two, 2^10 or more, such that filling every narrow space as far as this cost goes takes no more than

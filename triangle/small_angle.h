@@ -21,4 +21,7 @@ bool tri_can_split(const struct tri_resolution *resolution, struct tri_point a, 
 bool tri_is_hopeless(const struct tri_mesh *mesh, const struct tri_resolution *resolution, int32_t slot,
                      const struct tri_shape *shape);
 
+/* Does the shortest edge of the triangle bridge a space between two parents that is too dear to fill? */
+bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape);
+
 #endif
