@@ -175,10 +175,24 @@ static bool sees_rims(const struct tri_cavity *c, const struct tri_mesh *mesh, i
     return true;
 }
 
+/* A split point that rounding has put beside a dangling end may be seen by one side's search around that end. */
+static bool sides_overlap(const struct tri_cavity *c, int32_t s, int32_t n_left_tri)
+{
+    for (int32_t i = 0; i < c->n_wall; i++)
+        if (c->rim[c->wall[i]].outer == ~s)
+            return true;
+    for (int32_t i = 0; i < n_left_tri; i++)
+        for (int32_t k = n_left_tri; k < c->n_tri; k++)
+            if (c->tri[i] == c->tri[k])
+                return true;
+    return false;
+}
+
 enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p, int32_t s,
                                         int32_t *n_left)
 {
     const struct tri_subsegment *sub = &mesh->sub[s];
+    int32_t n_left_tri = 0;
     *n_left = 0;
     if (!begin(c, p))
         return TRI_SEARCH_NO_MEMORY;
@@ -191,10 +205,12 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
             return found;
         if (!sees_rims(c, mesh, first, c->n_rim, last))
             return TRI_SEARCH_OUTSIDE;
-        if (side == 0)
+        if (side == 0) {
             *n_left = c->n_rim;
+            n_left_tri = c->n_tri;
+        }
     }
-    return TRI_SEARCH_FOUND;
+    return sides_overlap(c, s, n_left_tri) ? TRI_SEARCH_OUTSIDE : TRI_SEARCH_FOUND;
 }
 
 /* A slot for the next new triangle: first those of the cavity, then fresh ones. A fan has at least as many triangles as its

@@ -19,7 +19,7 @@
 enum { MAX_PIECES = 1 << 20, MAX_PASSES = 10000 };
 
 struct piece {
-    int32_t from, to;
+    int32_t from, to, segment, marker;
 };
 
 struct layer {
@@ -27,7 +27,7 @@ struct layer {
     struct tri_cavity cavity;
     int32_t *corner; /* [vertex_capacity] */
     int32_t corner_capacity;
-    struct piece *piece; /* stack of what remains of the current segment */
+    struct piece *piece; /* stack of what remains of the current segment, and of earlier ones that had to be taken up */
     int32_t n_pieces, piece_capacity;
     int32_t *touched; /* stack of edge codes to test for the Delaunay property */
     int32_t n_touched, touched_capacity;
@@ -61,13 +61,15 @@ static bool reserve(void *array, int32_t *capacity, int32_t need, size_t item)
     return true;
 }
 
-static bool push_piece(struct layer *l, int32_t from, int32_t to)
+static bool push_piece(struct layer *l, int32_t from, int32_t to, int32_t segment, int32_t marker)
 {
+    if (from == to)
+        return true;
     void *array = l->piece;
     bool room = reserve(&array, &l->piece_capacity, l->n_pieces + 1, sizeof *l->piece);
     l->piece = array;
     if (room)
-        l->piece[l->n_pieces++] = (struct piece){from, to};
+        l->piece[l->n_pieces++] = (struct piece){from, to, segment, marker};
     return room;
 }
 
@@ -290,8 +292,52 @@ static double crossing_fraction(const struct tri_mesh *mesh, struct tri_point a,
     return from / (from + to);
 }
 
+/* Takes subsegment s, which has triangles on both sides, out of the mesh; the last one takes its number. */
+static bool take_up(struct layer *l, int32_t s)
+{
+    struct tri_mesh *mesh = l->mesh;
+    int32_t left = mesh->sub[s].side[0], right = mesh->sub[s].side[1];
+    mesh->tri[tri_of(left)].n[tri_edge(left)] = right;
+    mesh->tri[tri_of(right)].n[tri_edge(right)] = left;
+    int32_t last = --mesh->n_subs;
+    mesh->sub[s] = mesh->sub[last];
+    for (int side = 0; s != last && side < 2; side++)
+        if (mesh->sub[s].side[side] != TRI_NONE)
+            mesh->tri[tri_of(mesh->sub[s].side[side])].n[tri_edge(mesh->sub[s].side[side])] = ~s;
+    return touch(l, tri_of(left)) && touch(l, tri_of(right)) && legalise(l);
+}
+
+static double squared(struct tri_point a, struct tri_point b)
+{
+    double x = b.x - a.x, y = b.y - a.y;
+    return x * x + y * y;
+}
+
+/* There is no room for a vertex at p, where subsegment s is crossed: of the corners of the two triangles beside s, the one
+ * nearest to p takes its place. If that is not an end of s, s itself is laid anew through it. */
+static enum tri_status bend(struct layer *l, int32_t s, struct tri_point p, int32_t *end)
+{
+    const struct tri_mesh *mesh = l->mesh;
+    const struct tri_subsegment old = mesh->sub[s];
+    int32_t segment = mesh->parents[old.parent].segment;
+    *end = old.v[0];
+    l->report->bent++;
+    for (int side = 0; side < 2; side++) {
+        const int32_t *v = old.side[side] == TRI_NONE ? NULL : mesh->tri[tri_of(old.side[side])].v;
+        for (int k = 0; v && k < 3; k++)
+            if (squared(mesh->xy[v[k]], p) < squared(mesh->xy[*end], p))
+                *end = v[k];
+    }
+    if (*end == old.v[0] || *end == old.v[1])
+        return TRI_OK;
+    assert(old.side[0] != TRI_NONE && old.side[1] != TRI_NONE); /* nothing crosses an edge of the hull */
+    bool room = take_up(l, s) && push_piece(l, old.v[0], *end, segment, old.marker) &&
+                push_piece(l, *end, old.v[1], segment, old.marker);
+    return room ? TRI_OK : no_memory(l);
+}
+
 /* Splits subsegment s where a -> b crosses it. *end receives the new vertex or, where there is no room for one between
- * existing vertices, the nearer end of s. */
+ * existing vertices, the nearest of those. */
 static enum tri_status cut(struct layer *l, int32_t a, int32_t b, int32_t s, int32_t *end)
 {
     struct tri_mesh *mesh = l->mesh;
@@ -301,11 +347,8 @@ static enum tri_status cut(struct layer *l, int32_t a, int32_t b, int32_t s, int
     enum tri_search found = tri_cavity_search_split(&l->cavity, mesh, p, s, &n_left);
     if (found == TRI_SEARCH_NO_MEMORY)
         return no_memory(l);
-    if (found != TRI_SEARCH_FOUND) {
-        l->report->bent++;
-        *end = fraction < 0.5 ? from : to;
-        return TRI_OK;
-    }
+    if (found != TRI_SEARCH_FOUND)
+        return bend(l, s, p, end);
     enum tri_status status = tri_mesh_reserve_vertices(mesh, 1, l->error);
     status = status ? status : tri_mesh_reserve_triangles(mesh, 2, l->error);
     status = status ? status : tri_mesh_reserve_subs(mesh, 1, l->error);
@@ -357,17 +400,18 @@ static void look_ahead(struct layer *l, int32_t a, int32_t b, int32_t *end, int3
     }
 }
 
-/* Lays the first piece of a -> b and puts the rest back on the stack. */
-static enum tri_status lay_piece(struct layer *l, int32_t a, int32_t b)
+/* Lays the first part of a piece and puts the rest back on the stack. */
+static enum tri_status lay_piece(struct layer *l, const struct piece *piece)
 {
-    int32_t end, s;
+    int32_t a = piece->from, b = piece->to, end, s;
     look_ahead(l, a, b, &end, &s);
     if (s != TRI_NONE) {
         enum tri_status status = cut(l, a, b, s, &end);
         if (status)
             return status;
-        /* The rest first: the stack hands out the piece from a next. */
-        bool room = (end == b || push_piece(l, end, b)) && (end == a || push_piece(l, a, end));
+        /* The rest first: the stack hands out the part from a next. */
+        bool room = push_piece(l, end, b, piece->segment, piece->marker) &&
+                    push_piece(l, a, end, piece->segment, piece->marker);
         return room ? TRI_OK : no_memory(l);
     }
     if (end == TRI_NONE) {
@@ -379,15 +423,15 @@ static enum tri_status lay_piece(struct layer *l, int32_t a, int32_t b)
         return no_memory(l);
     if (cleared == 0)
         l->report->lost++;
-    if ((cleared && !mark_piece(l, a, end)) || !legalise(l) || (end != b && !push_piece(l, end, b)))
+    if ((cleared && !mark_piece(l, a, end)) || !legalise(l) || !push_piece(l, end, b, piece->segment, piece->marker))
         return no_memory(l);
     return TRI_OK;
 }
 
-static enum tri_status lay_segment(struct layer *l, int32_t a, int32_t b)
+static enum tri_status lay_segment(struct layer *l, int32_t a, int32_t b, int32_t segment, int32_t marker)
 {
     l->n_pieces = 0;
-    if (!push_piece(l, a, b))
+    if (!push_piece(l, a, b, segment, marker))
         return no_memory(l);
     for (int32_t n = 0; l->n_pieces > 0; n++) {
         struct piece next = l->piece[--l->n_pieces];
@@ -395,9 +439,11 @@ static enum tri_status lay_segment(struct layer *l, int32_t a, int32_t b)
             l->report->lost += l->n_pieces + 1;
             break;
         }
-        if (next.from == next.to || l->corner[next.from] == TRI_NONE || l->corner[next.to] == TRI_NONE)
+        if (l->corner[next.from] == TRI_NONE || l->corner[next.to] == TRI_NONE)
             continue;
-        enum tri_status status = lay_piece(l, next.from, next.to);
+        l->segment = next.segment;
+        l->marker = next.marker;
+        enum tri_status status = lay_piece(l, &next);
         if (status)
             return status;
     }
@@ -418,9 +464,7 @@ static enum tri_status lay_all(struct layer *l, const struct tri_pslg *pslg)
             l->report->skipped++;
             continue;
         }
-        l->segment = k;
-        l->marker = pslg->segment_markers ? pslg->segment_markers[k] : 0;
-        enum tri_status status = lay_segment(l, a, b);
+        enum tri_status status = lay_segment(l, a, b, k, pslg->segment_markers ? pslg->segment_markers[k] : 0);
         if (status)
             return status;
     }

@@ -16,9 +16,12 @@ double tri_cos_degrees(double degrees)
 
 struct tri_bounds tri_bounds_for(double min_angle, bool conforming)
 {
-    struct tri_bounds bounds = {0, conforming ? 0 : 1, 0};
-    if (!(min_angle > 0))
+    struct tri_bounds bounds = {0, 0, 0};
+    if (!(min_angle > 0)) { /* no bound: still keep away from subsegments, or triangles come out flat */
+        double lens = 2 * tri_cos_degrees(20) * tri_cos_degrees(20) - 1;
+        bounds.lens_cos2 = conforming ? 0 : lens * lens;
         return bounds;
+    }
     double cosine = tri_cos_degrees(min_angle < 60 ? min_angle : 60), twice = 2 * cosine * cosine - 1;
     bounds.sin2 = 1 - cosine * cosine;
     if (!conforming)
