@@ -215,16 +215,21 @@ static bool legalise(struct layer *l)
     return true;
 }
 
-/* One walk through the channel from a to b that flips every crossing edge it can. Returns 1 once edge ab exists, 0 if not yet,
- * -1 where memory ran out. */
-static int clear_pass(struct layer *l, int32_t a, int32_t b)
+/* What became of clearing a channel. */
+enum clearing { CLEARED, NOT_YET, CLEARING_FAILED };
+
+/* One walk through the channel from a to b that flips every crossing edge it can. CLEARED once edge ab exists;
+ * CLEARING_FAILED where memory ran out. */
+static enum clearing clear_pass(struct layer *l, int32_t a, int32_t b)
 {
     struct tri_mesh *mesh = l->mesh;
     struct tri_point pa = mesh->xy[a], pb = mesh->xy[b];
     int32_t t = find_exit(l, a, pb);
+    if (t == TRI_NONE)
+        return NOT_YET;
     int e = corner_of(&mesh->tri[t], a);
     if (mesh->tri[t].v[tri_next[e]] == b || mesh->tri[t].v[tri_prev[e]] == b)
-        return 1;
+        return CLEARED;
     for (;;) {
         int32_t n = mesh->tri[t].v[e], u = tri_of(mesh->tri[t].n[e]);
         int f = tri_edge(mesh->tri[t].n[e]);
@@ -233,30 +238,30 @@ static int clear_pass(struct layer *l, int32_t a, int32_t b)
         if (is_convex(mesh, t, e)) {
             u = flip(l, t, e);
             if (!touch(l, t) || !touch(l, u))
-                return -1;
+                return CLEARING_FAILED;
             if (n == a && o == b)
-                return 1;
+                return CLEARED;
             if (o == b)
-                return 0;
+                return NOT_YET;
             t = side > 0 ? t : u;
             e = 0;
         } else {
             if (o == b)
-                return 0;
+                return NOT_YET;
             t = u;
             e = side > 0 ? tri_next[f] : tri_prev[f]; /* the edge from right to o, or from o to left */
         }
     }
 }
 
-static int clear_channel(struct layer *l, int32_t a, int32_t b)
+static enum clearing clear_channel(struct layer *l, int32_t a, int32_t b)
 {
     for (int pass = 0; pass < MAX_PASSES; pass++) {
-        int done = clear_pass(l, a, b);
-        if (done)
+        enum clearing done = clear_pass(l, a, b);
+        if (done != NOT_YET)
             return done;
     }
-    return 0;
+    return NOT_YET;
 }
 
 /* Makes the edge ab a subsegment after its channel is clear. */
@@ -418,12 +423,12 @@ static enum tri_status lay_piece(struct layer *l, const struct piece *piece)
         l->report->lost++;
         return TRI_OK;
     }
-    int cleared = clear_channel(l, a, end);
-    if (cleared < 0)
+    enum clearing cleared = clear_channel(l, a, end);
+    if (cleared == CLEARING_FAILED)
         return no_memory(l);
-    if (cleared == 0)
+    if (cleared == NOT_YET)
         l->report->lost++;
-    if ((cleared && !mark_piece(l, a, end)) || !legalise(l) || !push_piece(l, end, b, piece->segment, piece->marker))
+    if ((cleared == CLEARED && !mark_piece(l, a, end)) || !legalise(l) || !push_piece(l, end, b, piece->segment, piece->marker))
         return no_memory(l);
     return TRI_OK;
 }

@@ -83,6 +83,7 @@ struct tri_mesh {
     int32_t n_parents, parent_capacity;
     int32_t *spoke_start;     /* [n_hubs + 1] parents that end at vertex v are spokes[spoke_start[v] .. spoke_start[v + 1]) */
     int32_t *spokes;
+    double shortest2;         /* square of the shortest edge that coordinates of this size can carry */
     double dearest_channel;   /* narrow spaces between parents that would cost more points than this are not filled */
     int32_t n_hubs;           /* vertices there were when the parents were listed; 0: not listed yet */
 

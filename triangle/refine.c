@@ -21,19 +21,24 @@
  * sizes then lie closer to the bound than with circumcentres alone. */
 static const double EQUILATERAL = 2.3094010767585030580, IDEAL = 0.81;
 
-struct refiner {
+struct tri_refiner {
     struct tri_mesh *mesh; /* only read by tri_count_bad */
     const struct tri_refine_options *options;
     struct tri_refine_report *report;
     struct tri_error *error;
     struct tri_bounds bounds;
-    struct tri_resolution resolution;
-    int least_exponent; /* of the square of the shortest edge that can be resolved */
+    double shortest2;   /* square of the shortest edge to make */
+    int least_exponent; /* of it */
     struct tri_cavity cavity;
     struct tri_bad_queue queue;
     int64_t for_angles, for_sizes; /* points inserted for bad angles, and for bad sizes */
     int64_t angle_cap;
     int relaxed;      /* how many times the angle bound has been lowered, see relax */
+    int step;         /* of run_steps: which list of seeds is being looked at */
+    int32_t next_seed, n_seeds;
+    bool beyond;      /* the usual angle is reached, now for more */
+    bool in_hand;     /* `hand` was being treated when there was no room */
+    struct tri_entry hand;
     int32_t *crowded; /* stack of subsegments to test for encroachment (conforming only) */
     int32_t n_crowded, crowded_capacity;
 };
@@ -49,7 +54,7 @@ struct tri_refine_options tri_refine_defaults(void)
 }
 
 /* Twice the largest area allowed in a region; infinity where there is no bound. */
-static double area2_bound(const struct refiner *r, int32_t region)
+static double area2_bound(const struct tri_refiner *r, int32_t region)
 {
     double bound = r->options->max_area > 0 ? r->options->max_area : HUGE_VAL;
     if (r->options->region_areas) {
@@ -59,7 +64,7 @@ static double area2_bound(const struct refiner *r, int32_t region)
     return 2 * (bound / r->mesh->unit / r->mesh->unit);
 }
 
-static bool is_unsuitable(const struct refiner *r, const int32_t v[3], double area2)
+static bool is_unsuitable(const struct tri_refiner *r, const int32_t v[3], double area2)
 {
     const struct tri_point *xy = r->mesh->xy;
     double unit = r->mesh->unit, a[2] = {xy[v[0]].x * unit, xy[v[0]].y * unit};
@@ -67,7 +72,7 @@ static bool is_unsuitable(const struct refiner *r, const int32_t v[3], double ar
     return r->options->unsuitable(r->options->unsuitable_user, a, b, c, 0.5 * area2 * unit * unit) != 0;
 }
 
-static enum badness judge(const struct refiner *r, const struct tri_triangle *t, const struct tri_shape *shape)
+static enum badness judge(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape)
 {
     double product = tri_longer_product(shape->l[0], shape->l[1], shape->l[2]);
     if (shape->area2 * shape->area2 < r->bounds.sin2 * product)
@@ -78,7 +83,7 @@ static enum badness judge(const struct refiner *r, const struct tri_triangle *t,
 }
 
 /* Four buckets an octave of the squared length, counted from the shortest edge that can be resolved. */
-static int bucket_of(const struct refiner *r, double shortest)
+static int bucket_of(const struct tri_refiner *r, double shortest)
 {
     int exponent;
     double mantissa = frexp(shortest, &exponent);
@@ -86,7 +91,7 @@ static int bucket_of(const struct refiner *r, double shortest)
     return bucket < 0 ? 0 : bucket >= TRI_BUCKETS ? TRI_BUCKETS - 1 : bucket;
 }
 
-static bool push(struct refiner *r, int32_t slot, enum badness badness, double shortest)
+static bool push(struct tri_refiner *r, int32_t slot, enum badness badness, double shortest)
 {
     struct tri_entry entry = {slot, r->mesh->tri[slot].state};
     return badness == BAD_ANGLE ? tri_bad_queue_push_angle(&r->queue, entry, bucket_of(r, shortest))
@@ -100,7 +105,7 @@ static double least(double a, double b, double c)
 }
 
 /* Judges the triangle of two rims' start points and the new vertex, from the coordinates the cavity search left. */
-static bool judge_rim(struct refiner *r, const struct tri_rim *rim, struct tri_relative rb, double bound2)
+static bool judge_rim(struct tri_refiner *r, const struct tri_rim *rim, struct tri_relative rb, double bound2)
 {
     struct tri_relative ra = rim->ra;
     double area2 = tri_cross(ra, rb), x = ra.x - rb.x, y = ra.y - rb.y, l = x * x + y * y;
@@ -114,7 +119,7 @@ static bool judge_rim(struct refiner *r, const struct tri_rim *rim, struct tri_r
 }
 
 /* Queues what is bad among the triangles of a chain of rims; `end` is the place of the chain's last point. */
-static bool judge_chain(struct refiner *r, int32_t first, int32_t last, struct tri_relative end)
+static bool judge_chain(struct tri_refiner *r, int32_t first, int32_t last, struct tri_relative end)
 {
     const struct tri_rim *rim = r->cavity.rim;
     int32_t region = TRI_NONE;
@@ -130,7 +135,7 @@ static bool judge_chain(struct refiner *r, int32_t first, int32_t last, struct t
     return true;
 }
 
-static bool crowd(struct refiner *r, int32_t s)
+static bool crowd(struct tri_refiner *r, int32_t s)
 {
     if (r->n_crowded == r->crowded_capacity) {
         int32_t capacity = r->crowded_capacity ? 2 * r->crowded_capacity : 256;
@@ -145,7 +150,7 @@ static bool crowd(struct refiner *r, int32_t s)
 }
 
 /* For conforming meshes: the new vertex may lie in the diametral circle of a wall. */
-static bool crowd_walls(struct refiner *r)
+static bool crowd_walls(struct tri_refiner *r)
 {
     for (int32_t i = 0; r->options->conforming && i < r->cavity.n_wall; i++)
         if (!crowd(r, ~r->cavity.rim[r->cavity.wall[i]].outer))
@@ -153,7 +158,7 @@ static bool crowd_walls(struct refiner *r)
     return true;
 }
 
-static enum tri_status make_room(struct refiner *r)
+static enum tri_status make_room(struct tri_refiner *r)
 {
     struct tri_mesh *m = r->mesh;
     int32_t vertices = m->vertex_capacity - m->n_vertices, slots = m->slot_capacity - m->n_slots;
@@ -166,7 +171,7 @@ static enum tri_status make_room(struct refiner *r)
     return status ? status : tri_mesh_reserve_subs(m, 1, r->error);
 }
 
-static int32_t add_vertex(struct refiner *r, struct tri_point p, int32_t on, int32_t marker)
+static int32_t add_vertex(struct tri_refiner *r, struct tri_point p, int32_t on, int32_t marker)
 {
     struct tri_mesh *m = r->mesh;
     int32_t v = m->n_vertices++;
@@ -177,7 +182,7 @@ static int32_t add_vertex(struct refiner *r, struct tri_point p, int32_t on, int
 }
 
 /* The corners of the cavity's triangle that holds the new point, for interpolation. */
-static const int32_t *corners_around(const struct refiner *r, struct tri_point p)
+static const int32_t *corners_around(const struct tri_refiner *r, struct tri_point p)
 {
     for (int32_t i = 0; i < r->cavity.n_tri; i++) {
         const int32_t *v = r->mesh->tri[r->cavity.tri[i]].v;
@@ -188,7 +193,7 @@ static const int32_t *corners_around(const struct refiner *r, struct tri_point p
     return r->mesh->tri[r->cavity.tri[0]].v;
 }
 
-static enum outcome insert_free(struct refiner *r, struct tri_point p)
+static enum outcome insert_free(struct tri_refiner *r, struct tri_point p)
 {
     if (make_room(r))
         return FAILED;
@@ -200,19 +205,29 @@ static enum outcome insert_free(struct refiner *r, struct tri_point p)
     return judge_chain(r, 0, r->cavity.n_rim, r->cavity.rim[0].ra) && crowd_walls(r) ? DONE : FAILED;
 }
 
-static bool is_protected(const struct refiner *r, const struct tri_subsegment *s)
+static bool is_protected(const struct tri_refiner *r, const struct tri_subsegment *s)
 {
     bool boundary = s->side[0] == TRI_NONE || s->side[1] == TRI_NONE;
     return r->options->protect >= 2 || (r->options->protect == 1 && boundary);
 }
 
-static enum outcome refuse(struct refiner *r, enum tri_excuse excuse)
+/* The gate or the fence stands before this triangle: somebody else's. */
+static enum outcome leave(struct tri_refiner *r, int32_t slot, int64_t *counter)
+{
+    ++*counter;
+    if (r->options->left)
+        r->options->left(r->options->left_user, slot);
+    return REFUSED;
+}
+
+static enum outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
 {
     r->report->refused[excuse]++;
     return REFUSED;
 }
 
-static enum outcome split(struct refiner *r, int32_t s)
+/* Splits subsegment s for the sake of the triangle in a slot. */
+static enum outcome split(struct tri_refiner *r, int32_t s, int32_t slot)
 {
     struct tri_mesh *m = r->mesh;
     const struct tri_subsegment old = m->sub[s];
@@ -222,13 +237,11 @@ static enum outcome split(struct refiner *r, int32_t s)
     double fraction = tri_split_fraction(m, &old);
     struct tri_point a = m->xy[old.v[0]], b = m->xy[old.v[1]];
     struct tri_point p = tri_point_between(a, b, fraction);
-    if (!tri_can_split(&r->resolution, a, b))
+    if (!tri_can_split(r->shortest2, a, b))
         return refuse(r, TRI_EXCUSE_PRECISION);
     enum tri_search found = tri_cavity_search_split(&r->cavity, m, p, s, &n_left);
-    if (found == TRI_SEARCH_FENCED) {
-        r->report->deferred++;
-        return REFUSED;
-    }
+    if (found == TRI_SEARCH_FENCED)
+        return leave(r, slot, &r->report->deferred);
     if (found == TRI_SEARCH_OUTSIDE)
         return refuse(r, TRI_EXCUSE_PRECISION);
     if (found == TRI_SEARCH_NO_MEMORY || make_room(r))
@@ -247,7 +260,7 @@ static enum outcome split(struct refiner *r, int32_t s)
 }
 
 /* Does the new point lie on the wrong side of a wall, or see it under too wide an angle? Sets *beyond. */
-static bool encroaches(const struct refiner *r, int32_t i, bool *beyond)
+static bool encroaches(const struct tri_refiner *r, int32_t i, bool *beyond)
 {
     const struct tri_cavity *c = &r->cavity;
     const struct tri_rim *rim = &c->rim[i], *next = &c->rim[i + 1 < c->n_rim ? i + 1 : 0];
@@ -262,7 +275,7 @@ static bool encroaches(const struct refiner *r, int32_t i, bool *beyond)
 }
 
 /* The subsegment to split instead of inserting the new point: one that hides it, else the first that it encroaches. */
-static int32_t find_encroached(const struct refiner *r)
+static int32_t find_encroached(const struct tri_refiner *r)
 {
     int32_t found = TRI_NONE;
     for (int32_t i = 0; i < r->cavity.n_wall; i++) {
@@ -278,7 +291,7 @@ static int32_t find_encroached(const struct refiner *r)
 }
 
 /* How far from its shortest edge may the new point of this triangle lie? */
-static double reach_of(const struct refiner *r, const struct tri_triangle *t, const struct tri_shape *shape, enum badness badness)
+static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape, enum badness badness)
 {
     double l = shape->l[shape->shortest];
     double reach = r->bounds.off_centre > 0 ? r->bounds.off_centre * sqrt(l) : HUGE_VAL;
@@ -291,34 +304,30 @@ static double reach_of(const struct refiner *r, const struct tri_triangle *t, co
     return reach;
 }
 
-static enum outcome propose(struct refiner *r, int32_t slot, const struct tri_shape *shape, enum badness badness)
+static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tri_shape *shape, enum badness badness)
 {
     const struct tri_triangle t = r->mesh->tri[slot];
     struct tri_point p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
     if (r->options->gate) {
         double at[2] = {p.x * r->mesh->unit, p.y * r->mesh->unit};
-        if (!r->options->gate(r->options->gate_user, at)) {
-            r->report->gated++;
-            return REFUSED;
-        }
+        if (!r->options->gate(r->options->gate_user, at))
+            return leave(r, slot, &r->report->gated);
     }
     enum tri_search found = tri_cavity_search(&r->cavity, r->mesh, p, slot);
     if (found == TRI_SEARCH_FOUND) {
         int32_t s = find_encroached(r);
         if (s == TRI_NONE)
             return insert_free(r, p);
-        enum outcome outcome = split(r, s);
+        enum outcome outcome = split(r, s, slot);
         return outcome == DONE ? AGAIN : outcome;
     }
-    if (found == TRI_SEARCH_FENCED) {
-        r->report->deferred++;
-        return REFUSED;
-    }
+    if (found == TRI_SEARCH_FENCED)
+        return leave(r, slot, &r->report->deferred);
     return found == TRI_SEARCH_OUTSIDE ? refuse(r, TRI_EXCUSE_PRECISION) : FAILED;
 }
 
 /* Lowers the angle bound that the loop works for; what is already bad by the old one stays. */
-static void lower_bound(struct refiner *r, double degrees)
+static void lower_bound(struct tri_refiner *r, double degrees)
 {
     double lens_cos2 = r->bounds.lens_cos2;
     r->bounds = tri_bounds_for(degrees, r->options->conforming);
@@ -327,7 +336,7 @@ static void lower_bound(struct refiner *r, double degrees)
 
 /* Points for bad angles run away: on with the bound for which refinement ends in practice, then with one for which it
  * provably does, at last with none. */
-static void relax(struct refiner *r)
+static void relax(struct tri_refiner *r)
 {
     static const double bound[] = {TRI_USUAL_ANGLE, 25, 0};
     while (r->relaxed < 3 && bound[r->relaxed] >= r->options->min_angle)
@@ -339,7 +348,7 @@ static void relax(struct refiner *r)
     r->report->hit_cap = true;
 }
 
-static void count_point(struct refiner *r, enum badness badness)
+static void count_point(struct tri_refiner *r, enum badness badness)
 {
     if (badness == BAD_SIZE)
         r->for_sizes++;
@@ -347,7 +356,7 @@ static void count_point(struct refiner *r, enum badness badness)
         relax(r);
 }
 
-static bool at_limit(struct refiner *r)
+static bool at_limit(struct tri_refiner *r)
 {
     int64_t inserted = r->report->inserted_free + r->report->inserted_on_segments;
     if (r->options->max_steiner < 0 || inserted < r->options->max_steiner)
@@ -356,7 +365,7 @@ static bool at_limit(struct refiner *r)
 }
 
 /* Treats one bad triangle until it is gone or refused. */
-static enum outcome treat(struct refiner *r, struct tri_entry entry)
+static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
 {
     for (;;) {
         const struct tri_triangle *t = &r->mesh->tri[entry.t];
@@ -366,7 +375,7 @@ static enum outcome treat(struct refiner *r, struct tri_entry entry)
         enum badness badness = judge(r, t, &shape);
         if (badness == GOOD)
             return DONE;
-        if (badness == BAD_ANGLE && tri_is_hopeless(r->mesh, &r->resolution, entry.t, &shape)) {
+        if (badness == BAD_ANGLE && tri_is_hopeless(r->mesh, r->shortest2, entry.t, &shape)) {
             if (shape.area2 <= area2_bound(r, t->region))
                 return refuse(r, TRI_EXCUSE_INPUT_ANGLE);
         }
@@ -381,7 +390,7 @@ static enum outcome treat(struct refiner *r, struct tri_entry entry)
 }
 
 /* Does the apex of a triangle beside the subsegment lie in its diametral circle? */
-static bool is_crowded(const struct refiner *r, const struct tri_subsegment *s)
+static bool is_crowded(const struct tri_refiner *r, const struct tri_subsegment *s)
 {
     for (int side = 0; side < 2; side++) {
         if (s->side[side] == TRI_NONE)
@@ -394,28 +403,36 @@ static bool is_crowded(const struct refiner *r, const struct tri_subsegment *s)
     return false;
 }
 
-static bool split_crowded(struct refiner *r)
+static bool split_crowded(struct tri_refiner *r)
 {
     while (r->n_crowded > 0) {
-        int32_t s = r->crowded[--r->n_crowded];
-        if (is_crowded(r, &r->mesh->sub[s]) && !at_limit(r) && split(r, s) == FAILED)
+        int32_t s = r->crowded[r->n_crowded - 1];
+        const struct tri_subsegment *sub = &r->mesh->sub[s];
+        int32_t beside = tri_of(sub->side[sub->side[0] == TRI_NONE]);
+        r->n_crowded--;
+        if (is_crowded(r, sub) && !at_limit(r) && split(r, s, beside) == FAILED) {
+            r->crowded[r->n_crowded++] = s; /* there is room: it was there a moment ago */
             return false;
+        }
     }
     return true;
 }
 
-static bool work_off(struct refiner *r)
+static bool work_off(struct tri_refiner *r)
 {
-    struct tri_entry entry;
-    if (!split_crowded(r))
-        return false;
-    while (tri_bad_queue_pop(&r->queue, &entry))
-        if (treat(r, entry) == FAILED || (r->n_crowded > 0 && !split_crowded(r)))
+    for (;;) {
+        if (!split_crowded(r))
             return false;
-    return true;
+        if (!r->in_hand && !tri_bad_queue_pop(&r->queue, &r->hand))
+            return true;
+        r->in_hand = true;
+        if (treat(r, r->hand) == FAILED)
+            return false;
+        r->in_hand = false;
+    }
 }
 
-static bool queue_bad(struct refiner *r, int32_t slot, bool sizes)
+static bool queue_bad(struct tri_refiner *r, int32_t slot, bool sizes)
 {
     const struct tri_triangle *t = &r->mesh->tri[slot];
     if (!tri_is_live(t))
@@ -427,20 +444,39 @@ static bool queue_bad(struct refiner *r, int32_t slot, bool sizes)
     return push(r, slot, badness, shape.l[shape.shortest]);
 }
 
-/* Bad angles of the whole mesh compete with each other; what is only too large is taken place by place. */
-static bool refine_all(struct refiner *r)
+static int32_t seed(const struct tri_refiner *r, int32_t i) { return r->options->seeds ? r->options->seeds[i] : i; }
+
+static int32_t seed_count(const struct tri_refiner *r)
 {
-    int32_t n = r->options->seeds ? r->options->n_seeds : r->mesh->n_slots;
-    for (int32_t s = 0; r->options->conforming && s < r->mesh->n_subs; s++)
-        if (!crowd(r, s))
+    return r->options->seeds ? r->options->n_seeds : r->mesh->n_slots;
+}
+
+/* The subsegments beside a triangle. */
+static bool crowd_beside(struct tri_refiner *r, int32_t slot)
+{
+    const struct tri_triangle *t = &r->mesh->tri[slot];
+    for (int e = 0; tri_is_live(t) && e < 3; e++)
+        if (t->n[e] < 0 && !crowd(r, ~t->n[e]))
             return false;
-    for (int32_t i = 0; i < n; i++)
-        if (!queue_bad(r, r->options->seeds ? r->options->seeds[i] : i, false))
-            return false;
+    return true;
+}
+
+/* Bad angles of all seeds compete with each other; what is only too large is taken place by place. Resumable: false means
+ * that something failed or that there was no room. */
+static bool refine_seeds(struct tri_refiner *r)
+{
+    if (r->step == 0) {
+        for (int32_t i = 0, n = seed_count(r); i < n; i++)
+            if ((r->options->conforming && !crowd_beside(r, seed(r, i))) || !queue_bad(r, seed(r, i), false))
+                return false;
+        r->step = 1;
+        r->next_seed = 0;
+        r->n_seeds = seed_count(r);
+    }
     if (!work_off(r))
         return false;
-    for (int32_t i = 0; i < n; i++)
-        if (!queue_bad(r, r->options->seeds ? r->options->seeds[i] : i, true) || !work_off(r))
+    while (r->next_seed < r->n_seeds)
+        if (!queue_bad(r, seed(r, r->next_seed++), true) || !work_off(r))
             return false;
     return true;
 }
@@ -461,42 +497,107 @@ static double quarter_of_shortest2(const struct tri_mesh *mesh)
 /* Above TRI_USUAL_ANGLE refinement may feed on itself, with ever shorter edges. So the whole mesh is refined for the usual
  * angle first; then for more, as long as that adds less than half as many points again and no edge is much shorter than
  * what is there. */
-static bool refine_beyond_usual(struct refiner *r)
+static bool refine_beyond_usual(struct tri_refiner *r)
 {
-    lower_bound(r, TRI_USUAL_ANGLE);
-    if (!refine_all(r))
-        return false;
-    double floor2 = quarter_of_shortest2(r->mesh);
-    r->resolution.shortest2 = floor2 > r->resolution.shortest2 ? floor2 : r->resolution.shortest2;
-    lower_bound(r, r->options->min_angle);
-    r->angle_cap = 1000 + r->for_angles + r->mesh->n_slots / 4;
-    return refine_all(r);
+    if (!r->beyond) {
+        if (!refine_seeds(r))
+            return false;
+        double floor2 = quarter_of_shortest2(r->mesh);
+        r->shortest2 = floor2 > r->shortest2 ? floor2 : r->shortest2;
+        lower_bound(r, r->options->min_angle);
+        r->angle_cap = 1000 + r->for_angles + r->mesh->n_slots / 4;
+        r->step = 0;
+        r->beyond = true;
+    }
+    return refine_seeds(r);
+}
+
+enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *mesh,
+                                const struct tri_refine_options *options, struct tri_refine_report *report,
+                                struct tri_error *error)
+{
+    struct tri_refiner *r = calloc(1, sizeof *r);
+    *refiner = r;
+    *report = (struct tri_refine_report){0};
+    if (!r || !tri_bad_queue_init(&r->queue)) {
+        free(r);
+        *refiner = NULL;
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for refinement");
+    }
+    r->mesh = mesh;
+    r->options = options;
+    r->report = report;
+    bool beyond = options->min_angle > TRI_USUAL_ANGLE;
+    r->bounds = tri_bounds_for(beyond ? TRI_USUAL_ANGLE : options->min_angle, options->conforming);
+    r->shortest2 = mesh->shortest2;
+    frexp(r->shortest2, &r->least_exponent);
+    r->cavity.fence = options->fence;
+    r->angle_cap = 20000 + 50 * (int64_t)seed_count(r);
+    return TRI_OK;
+}
+
+enum tri_status tri_refiner_run(struct tri_refiner *r, struct tri_error *error)
+{
+    struct tri_error own;
+    r->error = error ? error : &own;
+    r->error->status = TRI_OK;
+    if (r->options->min_angle > TRI_USUAL_ANGLE ? refine_beyond_usual(r) : refine_seeds(r))
+        return TRI_OK;
+    if (r->error->status == TRI_OK)
+        tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "out of memory while refining");
+    return r->error->status;
+}
+
+void tri_refiner_free(struct tri_refiner *r)
+{
+    if (!r)
+        return;
+    tri_cavity_free(&r->cavity);
+    tri_bad_queue_free(&r->queue);
+    free(r->crowded);
+    free(r);
 }
 
 enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,
                            struct tri_refine_report *report, struct tri_error *error)
 {
-    struct tri_error own = {0};
-    struct refiner r = {.mesh = mesh, .options = options, .report = report, .error = error ? error : &own};
-    *report = (struct tri_refine_report){0};
-    r.error->status = TRI_OK;
-    r.bounds = tri_bounds_for(options->min_angle, options->conforming);
-    r.resolution = tri_resolution_of(mesh);
-    frexp(r.resolution.shortest2, &r.least_exponent);
-    r.cavity.fence = options->fence;
-    r.angle_cap = 20000 + 50 * (int64_t)(options->seeds ? options->n_seeds : mesh->n_slots);
-    bool done = tri_bad_queue_init(&r.queue) &&
-                (options->min_angle > TRI_USUAL_ANGLE ? refine_beyond_usual(&r) : refine_all(&r));
-    if (!done && r.error->status == TRI_OK)
-        tri_fail(r.error, TRI_NO_MEMORY, NULL, 0, "out of memory while refining");
-    tri_cavity_free(&r.cavity);
-    tri_bad_queue_free(&r.queue);
-    free(r.crowded);
-    return done ? TRI_OK : r.error->status;
+    struct tri_refiner *refiner;
+    enum tri_status status = tri_refiner_new(&refiner, mesh, options, report, error);
+    if (!status)
+        status = tri_refiner_run(refiner, error);
+    tri_refiner_free(refiner);
+    return status;
+}
+
+static bool needs_work(const struct tri_refiner *r, int32_t slot)
+{
+    const struct tri_triangle *t = &r->mesh->tri[slot];
+    if (!tri_is_live(t))
+        return false;
+    struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
+    if (judge(r, t, &shape) != GOOD)
+        return true;
+    for (int e = 0; r->options->conforming && e < 3; e++)
+        if (t->n[e] < 0 && is_crowded(r, &r->mesh->sub[~t->n[e]]))
+            return true;
+    return false;
+}
+
+int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t first, int32_t last,
+                      int32_t *found)
+{
+    const struct tri_refiner r = {.mesh = (struct tri_mesh *)mesh,
+                                  .options = options,
+                                  .bounds = tri_bounds_for(options->min_angle, options->conforming)};
+    int32_t n = 0;
+    for (int32_t slot = first; slot < last; slot++)
+        if (needs_work(&r, slot))
+            found[n++] = slot;
+    return n;
 }
 
 /* May a corner of the triangle be an end of a subsegment that must not be split? */
-static bool is_beside_protected(const struct refiner *r, const struct tri_triangle *t)
+static bool is_beside_protected(const struct tri_refiner *r, const struct tri_triangle *t)
 {
     for (int e = 0; e < 3; e++) {
         if (t->n[e] < 0 && is_protected(r, &r->mesh->sub[~t->n[e]]))
@@ -509,12 +610,12 @@ static bool is_beside_protected(const struct refiner *r, const struct tri_triang
     return false;
 }
 
-static enum tri_excuse excuse_for(const struct refiner *r, int32_t slot, const struct tri_shape *shape, enum badness badness,
+static enum tri_excuse excuse_for(const struct tri_refiner *r, int32_t slot, const struct tri_shape *shape, enum badness badness,
                                   const struct tri_refine_report *report)
 {
     const struct tri_triangle *t = &r->mesh->tri[slot];
-    if (badness == BAD_ANGLE && tri_is_hopeless(r->mesh, &r->resolution, slot, shape))
-        return shape->l[shape->shortest] < r->resolution.shortest2 ? TRI_EXCUSE_PRECISION
+    if (badness == BAD_ANGLE && tri_is_hopeless(r->mesh, r->shortest2, slot, shape))
+        return shape->l[shape->shortest] < r->shortest2 ? TRI_EXCUSE_PRECISION
                : tri_is_channel(r->mesh, slot, shape)              ? TRI_EXCUSE_CHANNEL
                                                                    : TRI_EXCUSE_INPUT_ANGLE;
     if (report->hit_limit)
@@ -529,9 +630,9 @@ static enum tri_excuse excuse_for(const struct refiner *r, int32_t slot, const s
 void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                    const struct tri_refine_report *report, int64_t count[TRI_EXCUSES])
 {
-    struct refiner r = {.mesh = (struct tri_mesh *)mesh, .options = options};
+    struct tri_refiner r = {.mesh = (struct tri_mesh *)mesh, .options = options};
     r.bounds = tri_bounds_for(options->min_angle, options->conforming);
-    r.resolution = tri_resolution_of(mesh);
+    r.shortest2 = mesh->shortest2;
     for (int k = 0; k < TRI_EXCUSES; k++)
         count[k] = 0;
     for (int32_t t = 0; t < mesh->n_slots; t++) {

@@ -18,7 +18,11 @@ typedef int tri_unsuitable(void *user, const double a[2], const double b[2], con
 /* May the bad triangle whose new point would be p (its circumcentre or off-centre) be refined now? */
 typedef bool tri_gate(void *user, const double p[2]);
 
-/* Makes room for at least 2 triangles, 1 vertex and 1 subsegment more in a mesh that is a view of shared arrays. */
+/* Told of each triangle that the gate or the fence left as it is; its slot may live another life before the call ends. */
+typedef void tri_left(void *user, int32_t slot);
+
+/* Makes room for at least 2 triangles, 1 vertex and 1 subsegment more in a mesh that is a view of shared arrays: moves its
+ * counts and capacities to an unused range. TRI_NO_ROOM: not now. */
 typedef enum tri_status tri_more_room(void *user, struct tri_mesh *mesh, struct tri_error *error);
 
 struct tri_refine_options {
@@ -33,8 +37,10 @@ struct tri_refine_options {
     tri_gate *gate;        /* NULL: every bad triangle */
     void *gate_user;
     const struct tri_fence *fence; /* NULL: the whole mesh */
-    const int32_t *seeds;  /* [n_seeds] slots to look at first; NULL: all slots. The loop itself looks at all it makes */
+    const int32_t *seeds;  /* [n_seeds] slots to look at first; NULL: all slots. The loop looks at all it makes, too */
     int32_t n_seeds;
+    tri_left *left;        /* NULL: nobody */
+    void *left_user;
     tri_more_room *more_room; /* NULL: the mesh's arrays grow */
     void *more_room_user;
 };
@@ -63,6 +69,20 @@ struct tri_refine_options tri_refine_defaults(void);
  * as far as it got. Terminates for any PSLG and any bound. Amortised O(1) a point in practice. */
 enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,
                            struct tri_refine_report *report, struct tri_error *error);
+
+/* The same in pieces, for callers whose more_room may say TRI_NO_ROOM: run returns it with everything in order, and goes on
+ * where it was when called again, as if there had been no pause. The mesh's pointers may change meanwhile. */
+struct tri_refiner;
+enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *mesh,
+                                const struct tri_refine_options *options, struct tri_refine_report *report,
+                                struct tri_error *error);
+enum tri_status tri_refiner_run(struct tri_refiner *refiner, struct tri_error *error);
+void tri_refiner_free(struct tri_refiner *refiner);
+
+/* found[last - first] receives the slots from first to last - 1 at which there is something for the loop to do (a bad angle or
+ * size; a crowded subsegment if conforming), in order; returns how many. */
+int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t first, int32_t last,
+                      int32_t *found);
 
 /* Makes the mesh ready for refinement: lists the parents at each vertex, and marks the input vertices at which two subsegments
  * meet at less than 60 degrees inside the mesh (TRI_VERTEX_ACUTE). To be called once, after carving. O(triangles). */

@@ -8,17 +8,6 @@
 #include "triangle/predicates.h"
 #include "triangle/refine.h"
 
-struct tri_resolution tri_resolution_of(const struct tri_mesh *mesh)
-{
-    double size = 0;
-    for (int32_t v = 0; v < mesh->n_input; v++) {
-        size = fabs(mesh->xy[v].x) > size ? fabs(mesh->xy[v].x) : size;
-        size = fabs(mesh->xy[v].y) > size ? fabs(mesh->xy[v].y) : size;
-    }
-    double shortest = size * 0x1p-45;
-    return (struct tri_resolution){shortest * shortest};
-}
-
 static bool is_acute(const struct tri_mesh *mesh, int32_t v) { return mesh->on[v] == TRI_VERTEX_ACUTE; }
 
 static double squared(struct tri_point a, struct tri_point b)
@@ -39,9 +28,9 @@ double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegme
     return at_start ? shell / length : 1 - shell / length;
 }
 
-bool tri_can_split(const struct tri_resolution *resolution, struct tri_point a, struct tri_point b)
+bool tri_can_split(double shortest2, struct tri_point a, struct tri_point b)
 {
-    return squared(a, b) > 4 * resolution->shortest2;
+    return squared(a, b) > 4 * shortest2;
 }
 
 /* Both on subsegments of segments that meet at a common vertex, at the same distance from it? Then their distance is
@@ -121,13 +110,12 @@ bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_
     return channel_cost(mesh, v[tri_next[k]], v[tri_prev[k]], v[k], shape->l[k]) > mesh->dearest_channel;
 }
 
-bool tri_is_hopeless(const struct tri_mesh *mesh, const struct tri_resolution *resolution, int32_t slot,
-                     const struct tri_shape *shape)
+bool tri_is_hopeless(const struct tri_mesh *mesh, double shortest2, int32_t slot, const struct tri_shape *shape)
 {
     const struct tri_triangle *t = &mesh->tri[slot];
     int k = shape->shortest;
     int32_t u = t->v[tri_next[k]], v = t->v[tri_prev[k]];
-    return shape->l[k] < resolution->shortest2 || on_one_shell(mesh, u, v, shape->l[k]) ||
+    return shape->l[k] < shortest2 || on_one_shell(mesh, u, v, shape->l[k]) ||
            tri_is_channel(mesh, slot, shape);
 }
 
@@ -215,8 +203,20 @@ static enum tri_status list_spokes(struct tri_mesh *mesh, struct tri_error *erro
     return TRI_OK;
 }
 
+/* New points lie about 100 units in the last place apart at least: nearer, rounding would decide on shapes. */
+static double shortest_edge2(const struct tri_mesh *mesh)
+{
+    double size = 0;
+    for (int32_t v = 0; v < mesh->n_input; v++) {
+        size = fabs(mesh->xy[v].x) > size ? fabs(mesh->xy[v].x) : size;
+        size = fabs(mesh->xy[v].y) > size ? fabs(mesh->xy[v].y) : size;
+    }
+    return size * 0x1p-45 * (size * 0x1p-45);
+}
+
 enum tri_status tri_refine_prepare(struct tri_mesh *mesh, struct tri_error *error)
 {
+    mesh->shortest2 = shortest_edge2(mesh);
     find_acute(mesh);
     enum tri_status status = list_spokes(mesh, error);
     if (!status)

@@ -1,7 +1,7 @@
 /* One pass over the triangles for each question.
  *
- * Extremes are kept as squares and cosines, and turned into lengths and degrees once at the end. The cosine falls as the
- * angle grows, so the smallest angle has the largest cosine. */
+ * Extremes are kept as squares and cosines, and turned into lengths and degrees once at the end. The cosine falls as
+ * the angle grows, so the smallest angle has the largest cosine. */
 #include "triangle/stats.h"
 
 #include <assert.h>

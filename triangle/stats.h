@@ -17,7 +17,8 @@ enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh 
 
 enum { TRI_ASPECT_BINS = 16, TRI_ANGLE_BINS = 18 };
 
-/* Limits of the bins of aspect ratios: bin k holds tri_aspect_limits[k] up to, not including, [k + 1]; the last is open. */
+/* Limits of the bins of aspect ratios: bin k holds tri_aspect_limits[k] up to, not including, [k + 1]; the last is
+ * open. */
 extern const double tri_aspect_limits[TRI_ASPECT_BINS];
 
 /* Lengths and areas in the caller's coordinates, angles in degrees. All 0 without triangles. */

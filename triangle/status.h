@@ -12,6 +12,7 @@ enum tri_status {
     TRI_BAD_INPUT,    /* the input's content is at fault; the text says what and where */
     TRI_CANNOT_READ,  /* a file cannot be opened or read */
     TRI_CANNOT_WRITE, /* a file cannot be created, written or renamed */
+    TRI_NO_ROOM,      /* a view of shared arrays is full; not a failure: make room and call again */
     TRI_INTERNAL      /* an invariant does not hold: a defect of this library */
 };
 

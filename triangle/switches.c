@@ -15,8 +15,8 @@ static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 struct tri_switches tri_switches_none(void) { return (struct tri_switches){.max_steiner = -1}; }
 
-/* The value of a run of digits and dots up to its second dot. Handed to strtod as an integer with an exponent, since the
- * character that it takes for a decimal point depends on the locale. */
+/* The value of a run of digits and dots up to its second dot. Handed to strtod as an integer with an exponent, since
+ * the character that it takes for a decimal point depends on the locale. */
 static double value_of(const char *run, const char *end)
 {
     char text[MAX_DIGITS + 32];
@@ -193,7 +193,8 @@ struct tri_options tri_switches_options(const struct tri_switches *s)
     options.ignore_holes = s->ignore_holes;
     options.spread_regions = tri_switches_use_regions(s);
     options.refine = tri_switches_refine(s);
-    /* No triangle has three angles of 180 degrees; Triangle, which compares squared cosines, takes that for no bound. */
+    /* No triangle has three angles of 180 degrees; Triangle, which compares squared cosines, takes that for no
+     * bound. */
     options.quality.min_angle = s->angle && s->min_angle < 180 ? s->min_angle : 0;
     options.quality.max_area = s->area ? s->max_area : 0;
     options.quality.region_areas = s->segments && !s->mesh && s->area_lists;

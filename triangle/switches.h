@@ -1,11 +1,12 @@
 /* Switches of Triangle: strings of one-letter switches, some followed by a number, such as pq30a0.5e.
  *
- * The parser only records what was said; what follows from it is asked of the functions below. Letters that are no switches,
- * digits, dashes, blanks and brackets are skipped, so that every string has a meaning. Independent of the locale.
+ * The parser only records what was said; what follows from it is asked of the functions below. Letters that are no
+ * switches, digits, dashes, blanks and brackets are skipped, so that every string has a meaning. Independent of the
+ * locale.
  *
- * Numbers: q and a take the longest run of digits and dots right behind them, read as strtod would; S takes digits. There are
- * no signs and no exponents: a1e-6 is area 1, switch e, and a rest that is skipped. Since hardly anyone means that, it is
- * noted. */
+ * Numbers: q and a take the longest run of digits and dots right behind them, read as strtod would; S takes digits.
+ * There are no signs and no exponents: a1e-6 is area 1, switch e, and a rest that is skipped. Since hardly anyone
+ * means that, it is noted. */
 #ifndef TRIANGLE_SWITCHES_H
 #define TRIANGLE_SWITCHES_H
 

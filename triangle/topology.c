@@ -58,7 +58,8 @@ enum tri_status tri_edge_list_make(struct tri_edge_list *list, const struct tri_
         list->number = malloc(3 * ((size_t)mesh->n_slots + 1) * sizeof *list->number);
     if (!list->codes || (with_numbers && !list->number)) {
         tri_edge_list_free(list);
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the edges of %d triangles", (int)mesh->n_slots);
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the edges of %d triangles",
+                        (int)mesh->n_slots);
     }
     list_edges(list, mesh);
     return TRI_OK;

@@ -1,11 +1,11 @@
 /* What a mesh means to its users beside corners: edges, neighbours, Voronoi diagram, midpoints, vertices in use.
  *
- * All of it is worked out from struct tri_mesh item by item, so that nobody needs a copy of the whole: arrays are made only
- * where an order has to be counted out. The mesh has no free slots (tri_mesh_compact).
+ * All of it is worked out from struct tri_mesh item by item, so that nobody needs a copy of the whole: arrays are
+ * made only where an order has to be counted out. The mesh has no free slots (tri_mesh_compact).
  *
- * ORDER OF EDGES: triangles in their order; in each the edges from its first to its second, second to third, third to first
- * corner; each edge where it is met first. So an edge is known by the code (4 * triangle + opposite corner) of its first
- * triangle, which lies on its left, and edge i of the list is dual to edge i of the Voronoi diagram. */
+ * ORDER OF EDGES: triangles in their order; in each the edges from its first to its second, second to third, third
+ * to first corner; each edge where it is met first. So an edge is known by the code (4 * triangle + opposite corner)
+ * of its first triangle, which lies on its left, and edge i of the list is dual to edge i of the Voronoi diagram. */
 #ifndef TRIANGLE_TOPOLOGY_H
 #define TRIANGLE_TOPOLOGY_H
 
@@ -33,7 +33,8 @@ static inline void tri_edge_ends(const struct tri_mesh *mesh, int32_t code, int3
     ends[1] = v[tri_prev[tri_edge(code)]];
 }
 
-/* Marker of the subsegment that the edge is, else 0. (tri_generate gives boundary edges the marker 1 where they have none.) */
+/* Marker of the subsegment that the edge is, else 0. (tri_generate gives boundary edges the marker 1 where they have
+ * none.) */
 static inline int32_t tri_edge_marker(const struct tri_mesh *mesh, int32_t code)
 {
     int32_t link = mesh->tri[tri_of(code)].n[tri_edge(code)];
@@ -51,11 +52,12 @@ enum tri_status tri_edge_list_make(struct tri_edge_list *list, const struct tri_
                                    struct tri_error *error);
 void tri_edge_list_free(struct tri_edge_list *list);
 
-/* Second-order triangles: the node amid edge i is node n_vertices + i. Those opposite the corners of t, in their order. */
+/* Second-order triangles: the node amid edge i is node n_vertices + i. Those opposite the corners of t, in their
+ * order. */
 void tri_middle_nodes(const struct tri_mesh *mesh, const struct tri_edge_list *edges, int32_t t, int32_t nodes[3]);
 
-/* A place, and how attributes are interpolated there: that of corner 0, plus weight[k - 1] times the way to that of corner k.
- * The weights may lie outside 0 .. 1: extrapolation. */
+/* A place, and how attributes are interpolated there: that of corner 0, plus weight[k - 1] times the way to that of
+ * corner k. The weights may lie outside 0 .. 1: extrapolation. */
 struct tri_blend {
     double at[2]; /* the caller's coordinates */
     int32_t v[3];
@@ -70,8 +72,9 @@ struct tri_blend tri_edge_middle(const struct tri_mesh *mesh, int32_t code);
 /* Voronoi vertex t: the circumcentre of triangle t. */
 struct tri_blend tri_voronoi_vertex(const struct tri_mesh *mesh, int32_t t);
 
-/* The Voronoi edge dual to an edge: ends[0] is the triangle on its left, ends[1] that on its right or, for a ray, TRI_NONE.
- * The direction of a ray is that of the edge turned right, as long as the edge; 0, 0 for an edge with two ends. */
+/* The Voronoi edge dual to an edge: ends[0] is the triangle on its left, ends[1] that on its right or, for a ray,
+ * TRI_NONE. The direction of a ray is that of the edge turned right, as long as the edge; 0, 0 for an edge with two
+ * ends. */
 void tri_voronoi_edge(const struct tri_mesh *mesh, int32_t code, int32_t ends[2], double direction[2]);
 
 /* Vertices that are corners of triangles. */
