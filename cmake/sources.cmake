@@ -28,7 +28,9 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/check_input.c
     triangle/check_scale.c
     triangle/check_quality.c
-    triangle/tri.c)
+    triangle/tri.c
+    triangle/switches.c
+    triangle/topology.c)
 
 # Room triangle/, text files. The one C++ file wraps std::from_chars and std::to_chars.
 set(PTRIANGLE_TEXT_SOURCES
@@ -46,6 +48,10 @@ set(PTRIANGLE_PUBLIC_HEADERS
     triangle/status.h
     triangle/pslg.h
     triangle/mesh.h
+    triangle/carve.h
+    triangle/constrain.h
+    triangle/cavity.h
+    triangle/refine.h
     triangle/check.h
     triangle/executor.h
     triangle/read.h
@@ -56,3 +62,22 @@ set(PTRIANGLE_PUBLIC_HEADERS
 set(PTRIANGLE_DRIVER_SOURCES)
 set(PTRIANGLE_PROGRAMS triangle trianglecheck)
 set(PTRIANGLE_PARALLEL_PROGRAMS)
+
+# meshplot, built where cairo is found.
+set(PTRIANGLE_PLOT_SOURCES
+    drivers/plot_colour.c
+    drivers/plot_shade.c
+    drivers/plot_field.c
+    drivers/plot_draw.c)
+
+# The command line of Triangle, for the mesh generators among the programs.
+set(PTRIANGLE_RUN_SOURCES
+    drivers/arguments.c
+    drivers/console.c
+    drivers/help.c
+    drivers/interrupt.c
+    drivers/mesh_files.c
+    drivers/summary.c
+    drivers/self_check.c
+    drivers/run.c)
+set(PTRIANGLE_RUN_PROGRAMS triangle)

@@ -1,5 +1,5 @@
-/* trianglecheck: judges a mesh from its files, whoever made it. All judgement is triangle/check.h's; here are arguments, files
- * and lines of text. Exit code 0: no fault, 1: faults, 2: wrong usage, or files that cannot be read. */
+/* trianglecheck: judges a mesh from its files, whoever made it. All judgement is triangle/check.h's; here are
+ * arguments, files and lines of text. Exit code 0: no fault, 1: faults, 2: wrong usage or unreadable files. */
 #include <errno.h>
 #include <getopt.h>
 #include <inttypes.h>

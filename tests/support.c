@@ -4,6 +4,7 @@
 #include <dirent.h>
 #include <stdio.h>
 
+#include "triangle/delaunay.h"
 #include "triangle/read.h"
 
 uint64_t support_bits(struct support_random *random)
@@ -136,8 +137,10 @@ struct tri_pslg support_tangle(enum support_kind kind, int32_t n, int32_t m, uin
     add_square(&pslg, -2 * ceil(size), 2 * ceil(size));
     for (int32_t i = 0; i < n; i++)
         support_add_point(&pslg, points.points[2 * i], points.points[2 * i + 1]);
-    for (int32_t k = 0; k < m; k++)
-        support_add_segment(&pslg, support_below(&random, n + 4), support_below(&random, n + 4));
+    for (int32_t k = 0; k < m; k++) {
+        int32_t a = support_below(&random, n + 4), b = support_below(&random, n + 4);
+        support_add_segment(&pslg, a, b);
+    }
     tri_pslg_free(&points);
     return pslg;
 }
@@ -267,6 +270,20 @@ struct tri_mesh support_generate(const struct tri_pslg *pslg, const struct tri_o
     struct tri_report own;
     if (tri_generate(&mesh, pslg, options, report ? report : &own, &error) != TRI_OK)
         fail_msg("tri_generate: %s", error.text);
+    return mesh;
+}
+
+struct tri_mesh support_constrained(const struct tri_pslg *pslg, struct tri_constrain_report *report)
+{
+    struct tri_mesh mesh;
+    struct tri_error error = {0};
+    assert_int_equal(tri_mesh_init(&mesh, &error), TRI_OK);
+    assert_int_equal(tri_mesh_take_points(&mesh, pslg, &error), TRI_OK);
+    assert_int_equal(tri_delaunay(&mesh, &error), TRI_OK);
+    if (tri_constrain(&mesh, pslg, report, &error) != TRI_OK)
+        fail_msg("tri_constrain: %s", error.text);
+    if (tri_mesh_validate(&mesh, &error) != TRI_OK)
+        fail_msg("%s", error.text);
     return mesh;
 }
 

@@ -1,20 +1,5 @@
 /* Segments against the naive definition of a constrained Delaunay triangulation, and against what the input says. */
 #include "support.h"
-#include "triangle/delaunay.h"
-
-static struct tri_mesh constrain(const struct tri_pslg *pslg, struct tri_constrain_report *report)
-{
-    struct tri_mesh mesh;
-    struct tri_error error = {0};
-    assert_int_equal(tri_mesh_init(&mesh, &error), TRI_OK);
-    assert_int_equal(tri_mesh_take_points(&mesh, pslg, &error), TRI_OK);
-    assert_int_equal(tri_delaunay(&mesh, &error), TRI_OK);
-    if (tri_constrain(&mesh, pslg, report, &error) != TRI_OK)
-        fail_msg("%s", error.text);
-    if (tri_mesh_validate(&mesh, &error) != TRI_OK)
-        fail_msg("%s", error.text);
-    return mesh;
-}
 
 /* Judged with the whole hull kept, holes ignored. */
 static void judge(struct tri_mesh *mesh, const struct tri_pslg *pslg)
@@ -31,7 +16,7 @@ static void test_tangles_are_naively_constrained_delaunay(void **state)
         for (uint64_t seed = 0; seed < 30; seed++) {
             struct tri_constrain_report report;
             struct tri_pslg pslg = support_tangle((enum support_kind)kind, 3 + (int32_t)(seed % 20), (int32_t)(seed % 12), seed);
-            struct tri_mesh mesh = constrain(&pslg, &report);
+            struct tri_mesh mesh = support_constrained(&pslg, &report);
             support_assert_cdt(&mesh, true);
             judge(&mesh, &pslg);
             assert_int_equal(report.lost, 0);
@@ -46,7 +31,7 @@ static void test_large_tangles_pass_the_judge(void **state)
     for (int kind = 0; kind < SUPPORT_KINDS; kind++) {
         struct tri_constrain_report report;
         struct tri_pslg pslg = support_tangle((enum support_kind)kind, 300, 100, 5);
-        struct tri_mesh mesh = constrain(&pslg, &report);
+        struct tri_mesh mesh = support_constrained(&pslg, &report);
         support_assert_cdt(&mesh, false);
         judge(&mesh, &pslg);
         assert_int_equal(report.lost, 0);
@@ -63,7 +48,7 @@ static void test_order_of_segments_does_not_matter(void **state)
         struct tri_constrain_report report;
         struct support_random random = {seed};
         struct tri_pslg pslg = support_polygon(60, seed);
-        struct tri_mesh mesh = constrain(&pslg, &report);
+        struct tri_mesh mesh = support_constrained(&pslg, &report);
         struct support_set first = support_triangles(&mesh);
         assert_int_equal(report.crossings + report.bent + report.lost + report.skipped, 0);
         tri_mesh_free(&mesh);
@@ -74,7 +59,7 @@ static void test_order_of_segments_does_not_matter(void **state)
             pslg.segments[2 * k] = from;
             pslg.segments[2 * k + 1] = to;
         }
-        mesh = constrain(&pslg, &report);
+        mesh = support_constrained(&pslg, &report);
         struct support_set second = support_triangles(&mesh);
         assert_true(support_same(&first, &second));
         support_set_free(&first);
@@ -105,7 +90,7 @@ static void test_crossing_makes_a_vertex(void **state)
     pslg.segments = segments;
     pslg.segment_markers = markers;
     pslg.n_segments = 6;
-    struct tri_mesh mesh = constrain(&pslg, &report);
+    struct tri_mesh mesh = support_constrained(&pslg, &report);
     assert_int_equal(report.crossings, 1);
     assert_int_equal(mesh.n_vertices, 5);
     assert_int_equal(mesh.n_slots, 4);
@@ -131,7 +116,7 @@ static void test_vertices_on_a_segment_split_it(void **state)
     support_add_point(&pslg, 0, 10);
     support_add_point(&pslg, 18, -10);
     support_add_segment(&pslg, 0, 6);
-    struct tri_mesh mesh = constrain(&pslg, &report);
+    struct tri_mesh mesh = support_constrained(&pslg, &report);
     assert_int_equal(report.crossings, 0);
     assert_int_equal(mesh.n_vertices, 9);
     assert_int_equal(count_subs(&mesh, 0), 6);
@@ -156,7 +141,7 @@ static void test_overlap_keeps_the_first_marker(void **state)
     support_add_segment(&pslg, 2, 4);
     support_add_segment(&pslg, 0, 4);
     pslg.segment_markers = markers;
-    struct tri_mesh mesh = constrain(&pslg, &report);
+    struct tri_mesh mesh = support_constrained(&pslg, &report);
     int32_t seen = 0;
     for (int32_t s = 0; s < mesh.n_subs; s++) {
         int32_t a = mesh.sub[s].v[0], b = mesh.sub[s].v[1], low = a < b ? a : b;
@@ -181,7 +166,7 @@ static void test_meaningless_segments_are_skipped(void **state)
     free(pslg.segments);
     pslg.segments = segments;
     pslg.n_segments = 7;
-    struct tri_mesh mesh = constrain(&pslg, &report);
+    struct tri_mesh mesh = support_constrained(&pslg, &report);
     assert_int_equal(report.skipped, 4);
     tri_mesh_free(&mesh);
     free(pslg.points);
@@ -200,7 +185,7 @@ static void test_segments_are_moved_to_the_lowest_copy(void **state)
             support_add_point(&pslg, k == 1 || k == 2, k >= 2);
     support_add_segment(&pslg, 8, 6);
     support_add_segment(&pslg, 4, 8); /* equal ends after that */
-    struct tri_mesh mesh = constrain(&pslg, &report);
+    struct tri_mesh mesh = support_constrained(&pslg, &report);
     assert_int_equal(report.skipped, 1);
     assert_int_equal(count_subs(&mesh, 0), 1);
     for (int32_t s = 0; s < mesh.n_subs; s++)
@@ -222,7 +207,7 @@ static void test_many_spokes_and_long_channels(void **state)
         support_add_point(&pslg, 1 + 4.9 * i, i % 2 ? 1.5 : -1.5); /* a channel of teeth around y = 0 */
     for (int i = 0; i < 200; i++)
         support_add_segment(&pslg, 0, 1 + i);
-    struct tri_mesh mesh = constrain(&pslg, &report);
+    struct tri_mesh mesh = support_constrained(&pslg, &report);
     assert_int_equal(report.lost, 0);
     support_assert_cdt(&mesh, false);
     judge(&mesh, &pslg);
@@ -243,9 +228,11 @@ static void test_crossings_below_resolution(void **state)
             double x = support_unit(&random), y = 1e-9 * support_unit(&random);
             support_add_point(&pslg, offset + x, offset + (seed % 2 ? x + y : y));
         }
-        for (int i = 0; i < 16; i++)
-            support_add_segment(&pslg, support_below(&random, 24), support_below(&random, 24));
-        struct tri_mesh mesh = constrain(&pslg, &report);
+        for (int i = 0; i < 16; i++) {
+            int32_t a = support_below(&random, 24), b = support_below(&random, 24);
+            support_add_segment(&pslg, a, b);
+        }
+        struct tri_mesh mesh = support_constrained(&pslg, &report);
         for (int32_t t = 0; t < mesh.n_slots; t++)
             assert_true(tri_orient2d(mesh.xy[mesh.tri[t].v[0]], mesh.xy[mesh.tri[t].v[1]], mesh.xy[mesh.tri[t].v[2]]) > 0);
         support_assert_cdt(&mesh, false);
@@ -263,7 +250,7 @@ static void test_no_triangles_no_segments(void **state)
     for (int i = 0; i < 10; i++)
         support_add_point(&pslg, i, 2 * i);
     support_add_segment(&pslg, 0, 9);
-    struct tri_mesh mesh = constrain(&pslg, &report);
+    struct tri_mesh mesh = support_constrained(&pslg, &report);
     assert_int_equal(mesh.n_slots, 0);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
@@ -281,7 +268,7 @@ static void test_all_segment_files(void **state)
             if (!support_read(*name, &pslg))
                 continue;
             print_message("  %s\n", *name);
-            struct tri_mesh mesh = constrain(&pslg, &report);
+            struct tri_mesh mesh = support_constrained(&pslg, &report);
             support_assert_cdt(&mesh, false);
             judge(&mesh, &pslg);
             assert_int_equal(report.lost, 0);

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Builds the programs (installing what is missing first) and meshes a real coastline: the sea off Norway, with no angle
-# below 30 degrees but where the coast itself is sharper. Then the checker judges the mesh.
+# below 30 degrees but where the coast itself is sharper. Then the checker judges the mesh, and it is drawn.
 # Usage: tools/mesh-coast.sh [OUTPUT_FOLDER]     default: out
 set -eu
 here=$(pwd)
@@ -24,6 +24,12 @@ echo "triangle -pq$angle $out/norway_sea.poly"
 echo
 echo "trianglecheck $out/norway_sea.1 --poly $out/norway_sea.poly --min-angle $angle"
 "$programs/trianglecheck" "$out/norway_sea.1" --poly "$out/norway_sea.poly" --min-angle "$angle"
+
+if [ -x "$programs/meshplot" ]; then
+    echo
+    echo "meshplot $out/norway_sea.1 -o $out/norway_sea.1.png"
+    "$programs/meshplot" "$out/norway_sea.1" -o "$out/norway_sea.1.png"
+fi
 
 echo
 echo "Wrote a mesh of $(awk '!/^#/ { print $1; exit }' "$out/norway_sea.1.ele") triangles and" \

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Installs what building needs and this machine lacks, through apt; where there is no apt, says what is needed.
 # Usage: tools/setup.sh [build|tests|ci]
-#   build  C and C++ compiler, make, CMake          (what the programs need)
+#   build  C and C++ compiler, make, CMake          (what the programs need), and cairo (meshplot; can be done without)
 #   tests  and cmocka, GMP, pkg-config              (what tools/test.sh needs)
 #   ci     and clang with its OpenMP library        (what .ci/run needs)
 # Works as root or with sudo, asks nothing, and does not touch a machine that has everything.
@@ -42,6 +42,8 @@ compilers() { command -v cc && command -v c++ && command -v make; }
 
 list_missing() {
     missing=""
+    wished=""
+    links cairo/cairo.h cairo >/dev/null 2>&1 || wished=libcairo2-dev
     need build-essential compilers
     need cmake command -v cmake
     [ "$wanted" = build ] && return
@@ -74,11 +76,19 @@ build | tests | ci) ;;
 esac
 
 list_missing
-if [ -n "$missing" ] && command -v apt-get >/dev/null; then
-    echo "setup: installing$missing"
+# What can be done without must not be the reason for asking a password.
+if [ -n "$wished" ] && [ -z "$missing" ] && [ "$(id -u)" -ne 0 ] && ! sudo -n true 2>/dev/null; then
+    wished=""
+    echo "setup: without cairo (libcairo2-dev), so meshplot, which draws meshes, is not built" >&2
+fi
+if [ -n "$missing$wished" ] && command -v apt-get >/dev/null; then
+    echo "setup: installing$missing${wished:+ $wished}"
     apt update || echo "setup: apt-get update failed; trying with the package lists that are here" >&2
     # shellcheck disable=SC2086 # one word a package
-    apt install -y --no-install-recommends $missing || true
+    [ -z "$missing" ] || apt install -y --no-install-recommends $missing || true
+    # shellcheck disable=SC2086
+    [ -z "$wished" ] || apt install -y --no-install-recommends $wished ||
+        echo "setup: no $wished, so meshplot, which draws meshes, is not built" >&2
     list_missing
 fi
 if [ -n "$missing" ]; then

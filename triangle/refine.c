@@ -61,6 +61,7 @@ static double area2_bound(const struct tri_refiner *r, int32_t region)
         double own = r->mesh->regions[region].max_area;
         bound = own > 0 && own < bound ? own : bound;
     }
+    bound *= r->options->area_scale > 0 ? r->options->area_scale : 1;
     return 2 * (bound / r->mesh->unit / r->mesh->unit);
 }
 

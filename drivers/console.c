@@ -1,0 +1,101 @@
+/* Printing to people and to scripts that search for lines. */
+#include "drivers/console.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+void console_open(void)
+{
+    for (int file = 0; file <= STDERR_FILENO; file++)
+        if (fcntl(file, F_GETFD) < 0 && errno == EBADF)
+            (void)!open("/dev/null", O_RDWR); /* takes the lowest number that is free */
+}
+
+void console_say(const struct console *console, const char *format, ...)
+{
+    if (console->quiet)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    vprintf(format, arguments);
+    va_end(arguments);
+}
+
+void console_detail(const struct console *console, int verbosity, const char *format, ...)
+{
+    if (console->verbosity < verbosity)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    vprintf(format, arguments);
+    va_end(arguments);
+}
+
+void console_warn(const struct console *console, const char *format, ...)
+{
+    if (console->quiet)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    fputs("Warning:  ", stdout);
+    vprintf(format, arguments);
+    va_end(arguments);
+}
+
+bool console_series_add(struct console_series *series) { return series->n++ < CONSOLE_SERIES_LINES; }
+
+void console_series_end(const struct console *console, const struct console_series *series, const char *what)
+{
+    if (series->n > CONSOLE_SERIES_LINES)
+        console_warn(console, "and %" PRId64 " more %s.\n", series->n - CONSOLE_SERIES_LINES, what);
+}
+
+void console_remark(const struct console *console, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    fflush(stdout);
+    fprintf(stderr, "%s: ", console->program);
+    vfprintf(stderr, format, arguments);
+    va_end(arguments);
+}
+
+static bool are_one_place(int a, int b)
+{
+    struct stat at_a, at_b;
+    return fstat(a, &at_a) == 0 && fstat(b, &at_b) == 0 && at_a.st_dev == at_b.st_dev && at_a.st_ino == at_b.st_ino;
+}
+
+static void print_error(FILE *stream, const char *before, const struct tri_error *error)
+{
+    fputs(before, stream);
+    if (error->file[0] && error->line > 0)
+        fprintf(stream, "%s:%ld: ", error->file, error->line);
+    else if (error->file[0])
+        fprintf(stream, "%s: ", error->file);
+    fprintf(stream, "%s\n", error->text);
+}
+
+void console_error(const struct console *console, const struct tri_error *error)
+{
+    print_error(stdout, "Error:  ", error);
+    fflush(stdout);
+    if (are_one_place(STDOUT_FILENO, STDERR_FILENO))
+        return;
+    if (!error->file[0])
+        fprintf(stderr, "%s: ", console->program);
+    print_error(stderr, "", error);
+}
+
+bool console_close(const struct console *console)
+{
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return true;
+    fprintf(stderr, "%s: cannot write to standard output\n", console->program);
+    return false;
+}

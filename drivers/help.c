@@ -1,0 +1,74 @@
+/* Texts of help. Kept in paragraphs, since a compiler need not take strings of any length. */
+#include "drivers/help.h"
+
+#include <stdio.h>
+
+static const char *const paragraphs[] = {
+    "Makes triangle meshes of plane figures: Delaunay triangulations of points, constrained Delaunay\n"
+    "triangulations of points and segments, and meshes whose angles and areas keep bounds.\n"
+    "Switches may be joined (-pq30a0.5e) and may stand before or behind the file.\n",
+
+    "Input\n"
+    "  file.node   points              file.poly   points, segments, holes, regions (sets -p)\n"
+    "  file.ele    triangles (sets -r) file.area   area bound of each triangle (sets -r and -a)\n"
+    "Output goes to file.1.node, file.1.ele and so on; the next run of file.1 writes file.2.\n",
+
+    "What to make\n"
+    "  -p      the input is a planar straight line graph (.poly): keep its segments, empty its holes\n"
+    "  -r      the input is a mesh (.node, .ele): refine it\n"
+    "  -c      keep everything inside the convex hull; its edges become segments\n"
+    "  -D      conforming: every triangle is Delaunay, not only constrained Delaunay\n"
+    "  -O      ignore the holes\n"
+    "  -A      give triangles the attribute of the region they lie in\n"
+    "  -s      accepted; segments are recovered without further vertices in any case\n",
+
+    "Bounds\n"
+    "  -q      no angle below 20 degrees; -q30: below 30. Up to 28 is always reached except next to\n"
+    "          small angles of the input; above 34 perhaps not\n"
+    "  -a0.5   no triangle larger than 0.5. The number has no exponent: -a1e-3 means -a1 -e\n"
+    "  -a      areas are bounded by the regions of the .poly file or, with -r, by the .area file\n"
+    "  -u      a test of the caller's own; without effect on the command line\n"
+    "  -Y      do not put vertices on the boundary; -YY: nor on any segment\n"
+    "  -S100   at most 100 new vertices (segments that cross get theirs beyond that)\n",
+
+    "Output\n"
+    "  -e -n   also edges (.edge); neighbours of triangles (.neigh)\n"
+    "  -v -g   also the Voronoi diagram (.v.node, .v.edge); an Object File Format file (.off)\n"
+    "  -o2     six nodes a triangle: the corners and the middles of the edges\n"
+    "  -z      count from 0 where the input file does not say\n"
+    "  -j      leave out vertices that no triangle uses\n"
+    "  -B      no boundary markers\n"
+    "  -P -N -E  no .poly, .node, .ele file\n"
+    "  -I      no iteration number: results are called like the input, which is never overwritten\n",
+
+    "Other\n"
+    "  -Q -V   print nothing but errors; print more (-VV: still more)\n"
+    "  -C      check the mesh, and say what came of it\n"
+    "  -h      this help\n"
+    "  -i -F -l -X -w   accepted; the result does not depend on them\n",
+
+    "Exit code: 0, or 1 after an error; then no file has been touched.\n",
+};
+
+static void print_usage(const char *program)
+{
+    printf("usage: %s [-prq__a__uAcDjevngBPNEIOXzo_YS__iFlsCQVh] input_file\n", program);
+}
+
+void help_usage(const char *program)
+{
+    print_usage(program);
+    puts("  -p  a .poly file: segments and holes   -q  bound on angles      -a  bound on areas\n"
+         "  -c  keep the convex hull               -D  conforming Delaunay  -A  region attributes\n"
+         "  -e  edges   -n  neighbours             -v  Voronoi diagram      -o2 six-node triangles\n"
+         "  -Q  quiet   -V  verbose                -h  all switches");
+}
+
+void help_full(const char *program)
+{
+    print_usage(program);
+    for (size_t i = 0; i < sizeof paragraphs / sizeof *paragraphs; i++) {
+        putchar('\n');
+        fputs(paragraphs[i], stdout);
+    }
+}

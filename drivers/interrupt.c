@@ -1,0 +1,55 @@
+/* The handler does nothing but unlink() and raise(), which POSIX allows in handlers.
+ *
+ * INVARIANT: outside hold .. release, every temporary file there is stands in the set. */
+#include "drivers/interrupt.h"
+
+#include <signal.h>
+#include <stddef.h>
+#include <unistd.h>
+
+static const struct tri_output_set *guarded;
+static volatile sig_atomic_t held, waiting;
+
+static void end_by(int number)
+{
+    for (int i = 0; i < guarded->n; i++)
+        if (guarded->outputs[i].temporary)
+            unlink(guarded->outputs[i].temporary);
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+static void handle(int number)
+{
+    if (held)
+        waiting = number;
+    else
+        end_by(number);
+}
+
+static void catch(int number)
+{
+    struct sigaction action = {.sa_handler = handle}, old;
+    sigemptyset(&action.sa_mask);
+    if (sigaction(number, NULL, &old) == 0 && old.sa_handler != SIG_IGN)
+        sigaction(number, &action, NULL); /* no SA_RESTART: opening a pipe that nobody reads must end */
+}
+
+void interrupt_guard(const struct tri_output_set *set)
+{
+    guarded = set;
+    catch(SIGINT);
+    catch(SIGTERM);
+    catch(SIGHUP);
+    signal(SIGXFSZ, SIG_IGN);
+    signal(SIGPIPE, SIG_IGN);
+}
+
+void interrupt_hold(void) { held = 1; }
+
+void interrupt_release(void)
+{
+    held = 0;
+    if (waiting)
+        end_by(waiting);
+}

@@ -1,0 +1,32 @@
+/* Writing a mesh: which of Triangle's files are made, and their rows, straight from the mesh. */
+#ifndef DRIVERS_MESH_FILES_H
+#define DRIVERS_MESH_FILES_H
+
+#include "drivers/arguments.h"
+#include "drivers/console.h"
+#include "triangle/executor.h"
+#include "triangle/mesh.h"
+#include "triangle/pslg.h"
+
+/* What is written, and how. All borrowed. */
+struct mesh_files {
+    const struct arguments *arguments;
+    const struct console *console;
+    const struct tri_executor *executor; /* NULL: one task after another */
+    const struct tri_mesh *mesh;         /* without free slots */
+    const struct tri_pslg *pslg;         /* the input: its points are written bit by bit as they were read */
+    bool points_in_poly;                 /* the points came from a .poly file */
+    int32_t base;                        /* 0 or 1 */
+};
+
+/* Looks whether all files could be created, so that nobody waits for a mesh that cannot be kept; changes nothing.
+ * Only the arguments and points_in_poly must be set. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
+enum tri_status mesh_files_check(const struct mesh_files *files, struct tri_error *error);
+
+/* Writes all of them, or none. Says a line for each. */
+enum tri_status mesh_files_write(const struct mesh_files *files, struct tri_error *error);
+
+/* Columns of triangle attributes in the .ele file: with -A and regions one, else none. */
+int mesh_files_attributes(const struct tri_switches *switches, const struct tri_pslg *pslg);
+
+#endif

@@ -1,0 +1,341 @@
+/* The stages in their order, and the lines that are printed between them. */
+#include "drivers/run.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "drivers/console.h"
+#include "drivers/help.h"
+#include "drivers/mesh_files.h"
+#include "drivers/self_check.h"
+#include "drivers/summary.h"
+#include "triangle/quality.h"
+
+/* A run and its clock. */
+struct runner {
+    struct run run;
+    struct console console;
+    struct console_series input_warnings;
+    double mark; /* when the stage began */
+    struct tri_error *error;
+};
+
+static double now(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+/* Ends a stage; the next one begins. */
+static void end_stage(struct runner *r, enum run_stage stage)
+{
+    double time = now();
+    r->run.seconds[stage] += time - r->mark;
+    r->mark = time;
+}
+
+static void say_milliseconds(const struct runner *r, const char *what, double seconds)
+{
+    console_say(&r->console, "%s milliseconds:  %.0f\n", what, floor(1000 * seconds));
+}
+
+/* --- arguments */
+
+static enum tri_status check_switches(struct runner *r)
+{
+    const struct tri_switches *s = &r->run.arguments->switches;
+    for (int i = 0; i < s->n_notes; i++)
+        console_remark(&r->console, "warning: -%s: numbers of switches have no exponent; the e is taken for a switch\n",
+                       s->notes[i]);
+    if (s->bad_area)
+        return tri_fail(r->error, TRI_BAD_INPUT, NULL, 0, "the maximum area (-a) must be > 0");
+    if (s->mesh && s->no_iteration)
+        return tri_fail(r->error, TRI_BAD_INPUT, NULL, 0,
+                        "-I cannot be used when refining (-r): it would overwrite the input");
+    if (s->jettison && s->no_node)
+        console_warn(&r->console, "-j and -N: vertices are renumbered, and no file tells how.\n");
+    if (s->weighted && (s->segments || s->mesh || tri_switches_refine(s)))
+        console_warn(&r->console, "weighted triangulations (-w, -W) are not made with -p, -q, -a, -u or -r.\n"
+                                  "  The switch is ignored.\n");
+    if (s->angle && s->min_angle > TRI_USUAL_ANGLE && s->min_angle < 180)
+        console_warn(&r->console, "an angle bound of %g degrees is above %g: it may not be reached everywhere.\n",
+                     s->min_angle, TRI_USUAL_ANGLE);
+    return TRI_OK;
+}
+
+/* --- input */
+
+static void warn_of_input(void *user, const char *file, long line, const char *text)
+{
+    struct runner *r = user;
+    if (console_series_add(&r->input_warnings))
+        console_warn(&r->console, "%s:%ld: %s.\n", file, line, text);
+}
+
+/* What the functions below read: B.poly, B.node and so on. */
+struct names {
+    char *node, *poly, *ele, *area;
+};
+
+static void free_names(struct names *names)
+{
+    free(names->node);
+    free(names->poly);
+    free(names->ele);
+    free(names->area);
+}
+
+static enum tri_status make_names(struct names *names, const char *stem, struct tri_error *error)
+{
+    *names = (struct names){joined(stem, ".node"), joined(stem, ".poly"), joined(stem, ".ele"), joined(stem, ".area")};
+    if (names->node && names->poly && names->ele && names->area)
+        return TRI_OK;
+    free_names(names);
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
+}
+
+static enum tri_status read_pslg(struct runner *r, const struct names *names, const struct tri_read_options *options)
+{
+    struct run *run = &r->run;
+    if (!run->arguments->switches.segments) {
+        console_say(&r->console, "Opening %s.\n", names->node);
+        return tri_read_node(names->node, options, &run->pslg, &run->base, r->error);
+    }
+    console_say(&r->console, "Opening %s.\n", names->poly);
+    enum tri_status status = tri_read_poly(names->poly, names->node, options, &run->pslg, &run->base,
+                                           &run->points_in_poly, r->error);
+    if (!status && !run->points_in_poly)
+        console_say(&r->console, "Opening %s.\n", names->node);
+    return status;
+}
+
+/* The triangles of a mesh that is to be refined, and their area bounds. */
+static enum tri_status read_mesh(struct runner *r, const struct names *names, const struct tri_read_options *options)
+{
+    struct run *run = &r->run;
+    console_say(&r->console, "Opening %s.\n", names->ele);
+    enum tri_status status =
+        tri_read_ele(names->ele, options, run->base, run->pslg.n_points, &run->elements, r->error);
+    if (status || !run->arguments->switches.area_lists)
+        return status;
+    console_say(&r->console, "Opening %s.\n", names->area);
+    return tri_read_area(names->area, options, run->elements.n, &run->areas, r->error);
+}
+
+static enum tri_status read_input(struct runner *r)
+{
+    const struct tri_switches *s = &r->run.arguments->switches;
+    struct tri_read_options options = {.default_base = s->from_zero ? 0 : 1,
+                                       .want_regions = tri_switches_use_regions(s),
+                                       .refining = s->mesh,
+                                       .executor = r->run.hooks->executor,
+                                       .warn = warn_of_input,
+                                       .warn_user = r};
+    struct names names;
+    enum tri_status status = make_names(&names, r->run.arguments->input, r->error);
+    if (status)
+        return status;
+    status = read_pslg(r, &names, &options);
+    if (!status && s->mesh)
+        status = read_mesh(r, &names, &options);
+    free_names(&names);
+    console_series_end(&r->console, &r->input_warnings, "of this kind");
+    end_stage(r, RUN_READ);
+    return status;
+}
+
+/* --- mesh */
+
+static void say_carving(const struct runner *r)
+{
+    const struct tri_switches *s = &r->run.arguments->switches;
+    const struct tri_pslg *pslg = &r->run.pslg;
+    if (!s->segments)
+        return;
+    if (!s->keep_hull || (pslg->n_holes > 0 && !s->ignore_holes))
+        console_say(&r->console, "Removing triangles outside and in holes.\n");
+    if (r->run.options.spread_regions && pslg->n_regions > 0)
+        console_say(&r->console, "Spreading %s%s%s of regions.\n", s->regions ? "attributes" : "",
+                    s->regions && s->area_lists ? " and " : "", s->area_lists ? "area bounds" : "");
+}
+
+/* Called when a stage begins: the lines that end the one before, then those of the new one. */
+static void follow_stage(void *user, enum tri_stage begins)
+{
+    struct runner *r = user;
+    const struct tri_switches *s = &r->run.arguments->switches;
+    switch (begins) {
+    case TRI_STAGE_DELAUNAY:
+        console_say(&r->console, "Building the Delaunay triangulation by incremental insertion.\n");
+        break;
+    case TRI_STAGE_SEGMENTS:
+        end_stage(r, RUN_DELAUNAY);
+        say_milliseconds(r, "Delaunay", r->run.seconds[RUN_DELAUNAY]);
+        if (s->segments)
+            console_say(&r->console, "Recovering segments.\n");
+        break;
+    case TRI_STAGE_HOLES:
+        end_stage(r, RUN_SEGMENTS);
+        if (s->segments || s->keep_hull)
+            say_milliseconds(r, "Segment", r->run.seconds[RUN_SEGMENTS]);
+        say_carving(r);
+        break;
+    default:
+        break;
+    }
+}
+
+/* A triangulation needs three points that differ; that they are collinear is no error. */
+static enum tri_status check_points(const struct tri_pslg *pslg, const char *file, struct tri_error *error)
+{
+    for (int32_t i = 1; i < pslg->n_points; i++)
+        if (pslg->points[2 * (size_t)i] != pslg->points[0] || pslg->points[2 * (size_t)i + 1] != pslg->points[1])
+            return TRI_OK;
+    return pslg->n_points < 3 ? TRI_OK : tri_fail(error, TRI_BAD_INPUT, file, 0, "all vertices are at the same place");
+}
+
+/* The input as a mesh that keeps no bounds yet. */
+static enum tri_status build(struct runner *r)
+{
+    struct run *run = &r->run;
+    if (run->arguments->switches.mesh) /* what is missing is a mesh made of run->elements and run->areas */
+        return tri_fail(r->error, TRI_BAD_INPUT, NULL, 0, "refining a mesh (-r) is not supported yet");
+    enum tri_status status = check_points(&run->pslg, run->arguments->file, r->error);
+    if (status)
+        return status;
+    struct tri_options options = run->options;
+    options.refine = false; /* is a stage of its own here */
+    options.stage = follow_stage;
+    options.stage_user = r;
+    status = tri_generate(&run->mesh, &run->pslg, &options, &run->report, r->error);
+    end_stage(r, RUN_HOLES);
+    if (status)
+        return status;
+    if (run->arguments->switches.segments)
+        say_milliseconds(r, "Hole", run->seconds[RUN_HOLES]);
+    summary_duplicates(&r->console, &run->mesh, &run->pslg);
+    summary_segments(&r->console, &run->report.constrain);
+    return TRI_OK;
+}
+
+static enum tri_status refine(struct runner *r)
+{
+    struct run *run = &r->run;
+    const struct tri_refine_options *quality = &run->options.quality;
+    struct tri_refine_report *report = &run->report.quality;
+    if (!run->options.refine)
+        return TRI_OK;
+    console_say(&r->console, "Adding vertices until the bounds are kept.\n");
+    enum tri_status status = run->hooks->refine
+                                 ? run->hooks->refine(run->hooks->user, &run->mesh, quality, report, r->error)
+                                 : tri_refine(&run->mesh, quality, report, r->error);
+    end_stage(r, RUN_QUALITY);
+    if (status)
+        return status;
+    say_milliseconds(r, "Quality", run->seconds[RUN_QUALITY]);
+    if (report->hit_limit && quality->conforming)
+        console_warn(&r->console, "the limit of -S was reached before the mesh was conforming.\n");
+    if (!r->console.quiet) /* a pass over all triangles */
+        summary_bounds(&r->console, &run->mesh, quality, report);
+    return TRI_OK;
+}
+
+/* --- output */
+
+static enum tri_status write_output(struct runner *r, const struct mesh_files *files)
+{
+    struct run *run = &r->run;
+    if (run->arguments->switches.second_order)
+        console_say(&r->console, "Adding nodes amid edges.\n");
+    console_say(&r->console, "\n");
+    r->mark = now();
+    enum tri_status status = mesh_files_write(files, r->error);
+    end_stage(r, RUN_WRITE);
+    if (status)
+        return status;
+    console_say(&r->console, "\n");
+    say_milliseconds(r, "Output", run->seconds[RUN_WRITE]);
+    return TRI_OK;
+}
+
+static enum tri_status tell(struct runner *r, double begin)
+{
+    struct run *run = &r->run;
+    const struct tri_switches *s = &run->arguments->switches;
+    enum tri_status status = tri_count_mesh(&run->counts, &run->mesh, r->error);
+    run->total_seconds = now() - begin;
+    if (status)
+        return status;
+    say_milliseconds(r, "Total running", run->total_seconds);
+    summary_counts(&r->console, s, &run->pslg, run->elements.n, &run->counts);
+    if (s->verbosity > 0)
+        summary_shapes(&r->console, &run->mesh, &run->report);
+    if (s->check)
+        status = self_check(&r->console, s, &run->mesh, run->base, r->error);
+    if (!status && run->hooks->done)
+        status = run->hooks->done(run->hooks->user, run, r->error);
+    return status;
+}
+
+/* --- all together */
+
+static enum tri_status run_stages(struct runner *r)
+{
+    struct run *run = &r->run;
+    double begin = r->mark = now();
+    enum tri_status status = check_switches(r);
+    status = status ? status : read_input(r);
+    if (status)
+        return status;
+    struct mesh_files files = {run->arguments, &r->console, run->hooks->executor, &run->mesh, &run->pslg,
+                               run->points_in_poly, run->base};
+    status = mesh_files_check(&files, r->error);
+    status = status ? status : build(r);
+    status = status ? status : refine(r);
+    if (status)
+        return status;
+    tri_mesh_compact(&run->mesh);
+    status = write_output(r, &files);
+    return status ? status : tell(r, begin);
+}
+
+int run_arguments(const struct arguments *arguments, const struct run_hooks *hooks)
+{
+    const struct tri_switches *s = &arguments->switches;
+    struct tri_error error = {0};
+    struct runner r = {.run = {.hooks = hooks, .arguments = arguments, .options = tri_switches_options(s)},
+                       .console = {hooks->program, s->quiet, s->verbosity}, .error = &error};
+    enum tri_status status = TRI_OK;
+    if (s->help)
+        help_full(hooks->program);
+    else if (!arguments->file)
+        help_usage(hooks->program);
+    else
+        status = run_stages(&r);
+    if (status)
+        console_error(&r.console, &error);
+    tri_mesh_free(&r.run.mesh);
+    tri_pslg_free(&r.run.pslg);
+    tri_elements_free(&r.run.elements);
+    free(r.run.areas);
+    return console_close(&r.console) && !status ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+int run_words(int argc, char **argv, const struct run_hooks *hooks)
+{
+    struct arguments arguments = arguments_begin(argc, argv);
+    struct tri_error error = {0};
+    console_open();
+    for (int i = 1; i < argc; i++)
+        arguments_word(&arguments, argv[i]);
+    if (arguments_end(&arguments, &error)) {
+        console_error(&(struct console){.program = hooks->program}, &error);
+        return EXIT_FAILURE;
+    }
+    int code = run_arguments(&arguments, hooks);
+    arguments_free(&arguments);
+    return code;
+}

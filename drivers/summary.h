@@ -1,0 +1,28 @@
+/* What is told about a finished mesh: the lines that scripts search for, and what people want to know. */
+#ifndef DRIVERS_SUMMARY_H
+#define DRIVERS_SUMMARY_H
+
+#include "drivers/console.h"
+#include "triangle/pslg.h"
+#include "triangle/stats.h"
+#include "triangle/switches.h"
+#include "triangle/tri.h"
+
+/* What went otherwise than the input asks: crossings, segments bent or lost. */
+void summary_segments(const struct console *console, const struct tri_constrain_report *report);
+
+/* A warning for each point that has a twin of lower index. */
+void summary_duplicates(const struct console *console, const struct tri_mesh *mesh, const struct tri_pslg *pslg);
+
+/* One line: how many triangles stay below the bounds, and why. */
+void summary_bounds(const struct console *console, const struct tri_mesh *mesh,
+                    const struct tri_refine_options *options, const struct tri_refine_report *report);
+
+/* The block "Statistics:". n_input_triangles is told with -r. */
+void summary_counts(const struct console *console, const struct tri_switches *switches, const struct tri_pslg *pslg,
+                    int32_t n_input_triangles, const struct tri_counts *counts);
+
+/* The blocks of -V: shapes, memory, work done. */
+void summary_shapes(const struct console *console, const struct tri_mesh *mesh, const struct tri_report *report);
+
+#endif

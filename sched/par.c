@@ -1,0 +1,309 @@
+/* The schedule: pre-refinement, rounds of four phases, what is left over.
+ *
+ * Levels. The pre-refinement of a large mesh is itself large; it is then refined by the same schedule, with a coarser one
+ * before it, and so on until a level is small enough for one sequential call. */
+#include "sched/par.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#include "sched/clock.h"
+#include "sched/phase.h"
+#include "sched/theory.h"
+#include "triangle/quality.h"
+
+/* Blocks: cells of so many final triangles; in the phase of the first colour a fence holds four cells, which fits the
+ * second-level cache, or nearly. Coarse triangles a cell has after pre-refinement: enough for seams to be narrow, few enough
+ * for pre-refinement to take a hundredth of the time. (docs/performance.md) */
+static const double BLOCK_TRIANGLES = 16384, COARSE_PER_CELL = 64;
+
+enum { FEWEST_BLOCKS = 4, MAX_ROUNDS = 24 };
+
+struct par_options par_defaults(void) { return (struct par_options){0}; }
+
+void par_report_free(struct par_report *report)
+{
+    free(report->blocks);
+    report->blocks = NULL;
+    report->n_blocks = 0;
+}
+
+static int threads_for(const struct par_options *options)
+{
+#ifdef _OPENMP
+    return options->threads > 0 ? options->threads : omp_get_max_threads();
+#else
+    (void)options;
+    return 1;
+#endif
+}
+
+static void run_in_parallel(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
+{
+    int threads = *(int *)self;
+    (void)threads; /* without OpenMP */
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 1)
+    for (size_t i = 0; i < n_tasks; i++)
+        task(context, i);
+}
+
+struct tri_executor par_executor(int *threads) { return (struct tri_executor){run_in_parallel, threads}; }
+
+static void tell(const struct par_state *state, int phase)
+{
+    if (state->options->progress)
+        state->options->progress(state->options->progress_user, state->round, phase,
+                                 state->mesh->n_slots);
+}
+
+/* The size test of a graded pre-refinement: no edge longer than a share of the cell it lies in. */
+struct coarse_test {
+    const struct par_partition *partition;
+    double share2;   /* square of it */
+    double least2;   /* no edge shorter than the root of this is too long in any cell */
+    double unit;
+};
+
+static int is_too_long(void *user, const double a[2], const double b[2], const double c[2], double area)
+{
+    const struct coarse_test *test = user;
+    double abx = b[0] - a[0], aby = b[1] - a[1], bcx = c[0] - b[0], bcy = c[1] - b[1], cax = a[0] - c[0], cay = a[1] - c[1];
+    double ab = abx * abx + aby * aby, bc = bcx * bcx + bcy * bcy, ca = cax * cax + cay * cay;
+    double longest = ab > bc ? (ab > ca ? ab : ca) : (bc > ca ? bc : ca);
+    (void)area;
+    if (longest <= test->least2)
+        return 0;
+    struct tri_point centre = {(a[0] + b[0] + c[0]) / 3 / test->unit, (a[1] + b[1] + c[1]) / 3 / test->unit};
+    double size = par_cell_size(test->partition, centre) * test->unit;
+    return longest > test->share2 * size * size;
+}
+
+static double smallest_cell(const struct par_partition *p)
+{
+    double least = HUGE_VAL;
+    for (int32_t c = 0; c < p->n_columns; c++) {
+        const double *y = p->y + (size_t)c * ((size_t)p->n_rows + 1);
+        double width = p->x[c + 1] - p->x[c];
+        least = width < least ? width : least;
+        for (int32_t r = 0; r < p->n_rows; r++)
+            least = y[r + 1] - y[r] < least ? y[r + 1] - y[r] : least;
+    }
+    return least > 0 ? least : 0;
+}
+
+static enum tri_status refine_level(struct par_state *state, const struct tri_refine_options *quality, int level,
+                                    struct tri_error *error);
+
+/* Pre-refinement where the input is coarse against the mesh to come: the same bounds with areas scaled up, as the paper has
+ * it, for the area that makes COARSE_PER_CELL triangles in a cell. */
+static enum tri_status prerefine_uniform(struct par_state *state, const struct tri_refine_options *quality, int level,
+                                         struct tri_error *error)
+{
+    struct tri_refine_options coarse = *quality;
+    double block = state->options->block_triangles > 0 ? state->options->block_triangles : BLOCK_TRIANGLES;
+    coarse.area_scale = (quality->area_scale > 0 ? quality->area_scale : 1) * (block / COARSE_PER_CELL);
+    coarse.unsuitable = NULL;
+    return refine_level(state, &coarse, level + 1, error);
+}
+
+/* Pre-refinement where the input is already fine in places: only edges that are long against their cell are cut. */
+static enum tri_status prerefine_graded(struct par_state *state, const struct par_partition *partition,
+                                        struct tri_error *error)
+{
+    struct tri_refine_options coarse = tri_refine_defaults();
+    struct tri_refine_report report;
+    double unit = state->mesh->unit, least = smallest_cell(partition) * unit;
+    struct coarse_test test = {partition, 1.0 / 16, least * least / 16, unit};
+    coarse.unsuitable = is_too_long;
+    coarse.unsuitable_user = &test;
+    coarse.protect = state->quality->protect;
+    coarse.max_steiner = (int64_t)(partition->estimate / 100) + 1000;
+    enum tri_status status = tri_refine(state->mesh, &coarse, &report, error);
+    state->report->total.inserted_free += report.inserted_free;
+    state->report->total.inserted_on_segments += report.inserted_on_segments;
+    return status;
+}
+
+/* The bad triangles of the whole mesh in the order of their slots, and the largest circumradius among them. */
+static enum tri_status fill_pool(struct par_state *state, struct tri_error *error)
+{
+    enum { CHUNK = 1 << 14 };
+    struct tri_mesh *mesh = state->mesh;
+    int32_t n = mesh->n_slots, n_chunks = n / CHUNK + 1;
+    int32_t *found = malloc(((size_t)n + 1) * sizeof *found), *count = calloc((size_t)n_chunks, sizeof *count);
+    double *radius2 = calloc((size_t)n_chunks, sizeof *radius2);
+    if (!found || !count || !radius2) {
+        free(found);
+        free(count);
+        free(radius2);
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)n);
+    }
+#pragma omp parallel for num_threads(state->threads) schedule(dynamic, 1)
+    for (int32_t chunk = 0; chunk < n_chunks; chunk++) {
+        int32_t first = chunk * CHUNK, last = first + CHUNK < n ? first + CHUNK : n;
+        count[chunk] = tri_find_work(mesh, state->quality, first, last, found + first);
+        for (int32_t i = first; i < first + count[chunk]; i++) {
+            const int32_t *v = mesh->tri[found[i]].v;
+            double r2 = par_radius2(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]);
+            radius2[chunk] = r2 > radius2[chunk] ? r2 : radius2[chunk];
+        }
+    }
+    double largest2 = 0;
+    state->pool.n = 0;
+    for (int32_t chunk = 0; chunk < n_chunks; chunk++) {
+        largest2 = radius2[chunk] > largest2 ? radius2[chunk] : largest2;
+        for (int32_t i = 0; i < count[chunk]; i++)
+            found[state->pool.n++] = found[chunk * CHUNK + i];
+    }
+    free(state->pool.item);
+    state->pool.item = found;
+    state->pool.capacity = n + 1;
+    state->radius = sqrt(largest2);
+    free(count);
+    free(radius2);
+    return TRI_OK;
+}
+
+/* One sequential call of the same loop, for what the pool holds (all: for the whole mesh). */
+static enum tri_status refine_rest(struct par_state *state, const struct tri_refine_options *quality, bool all,
+                                   struct tri_error *error)
+{
+    struct tri_refine_options options = *quality;
+    struct tri_refine_report report;
+    if (!all) {
+        options.seeds = state->pool.item;
+        options.n_seeds = state->pool.n;
+        if (state->pool.n == 0)
+            return TRI_OK;
+    }
+    enum tri_status status = tri_refine(state->mesh, &options, &report, error);
+    struct tri_refine_report *total = &state->report->total;
+    total->inserted_free += report.inserted_free;
+    total->inserted_on_segments += report.inserted_on_segments;
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        total->refused[k] += report.refused[k];
+    total->hit_limit |= report.hit_limit;
+    total->hit_cap |= report.hit_cap;
+    return status;
+}
+
+/* Rounds of four phases until nothing is left to do, each round on blocks four times as large. */
+static enum tri_status run_rounds(struct par_state *state, struct par_partition *partition, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (state->round = 0; !status && state->round < MAX_ROUNDS; state->round++) {
+        for (int colour = 0; !status && colour < PAR_COLOURS && state->pool.n > 0; colour++) {
+            tell(state, colour + 1);
+            status = par_phase(state, partition, colour, error);
+        }
+        state->report->rounds++;
+        if (state->pool.n == 0 || par_blocks(partition) < FEWEST_BLOCKS * FEWEST_BLOCKS)
+            break;
+        par_partition_coarsen(partition);
+    }
+    state->report->deferred = state->report->total.deferred;
+    return status;
+}
+
+/* The phases of one level, on a mesh that has been pre-refined. */
+static enum tri_status run_schedule(struct par_state *state, const struct tri_refine_options *quality,
+                                    struct par_partition *partition, bool top, struct tri_error *error)
+{
+    struct par_report *report = state->report;
+    double began = par_seconds();
+    state->quality = quality;
+    enum tri_status status = fill_pool(state, error);
+    report->seconds_seeds += par_seconds() - began;
+    if (top) {
+        report->columns = partition->n_columns;
+        report->rows = partition->n_rows;
+        report->radius_measured = state->radius * state->mesh->unit;
+        report->prerefined = state->mesh->n_slots;
+    }
+    status = status ? status : run_rounds(state, partition, error);
+    double closing = par_seconds();
+    /* Slots move: what is left over must be found again. */
+    bool left_over = state->pool.n > 0;
+    enum tri_status closed = par_room_close(&state->spare, state->mesh, state->threads, error);
+    status = status ? status : closed;
+    report->seconds_number += par_seconds() - closing;
+    double last = par_seconds();
+    if (!status && left_over)
+        status = fill_pool(state, error);
+    if (top)
+        report->left_over = left_over ? state->pool.n : 0;
+    if (!status && left_over)
+        status = refine_rest(state, quality, false, error);
+    report->seconds_last += par_seconds() - last;
+    return status;
+}
+
+/* Refines to these bounds: sequentially if that is little work, else by the schedule after a pre-refinement. */
+static enum tri_status refine_level(struct par_state *state, const struct tri_refine_options *quality, int level,
+                                    struct tri_error *error)
+{
+    struct par_partition partition;
+    double began = par_seconds(), block = state->options->block_triangles;
+    enum tri_status status =
+        par_partition_make(&partition, state->mesh, quality, block > 0 ? block : BLOCK_TRIANGLES, error);
+    state->report->seconds_partition += par_seconds() - began;
+    if (status)
+        return status;
+    double input_work = 8.0 * state->mesh->n_slots;
+    began = par_seconds();
+    if (par_blocks(&partition) < FEWEST_BLOCKS) {
+        state->quality = quality;
+        status = refine_rest(state, quality, true, error);
+        if (level > 0)
+            state->report->seconds_prerefine += par_seconds() - began;
+        else
+            state->report->seconds_last += par_seconds() - began;
+    } else {
+        state->report->levels = level + 1 > state->report->levels ? level + 1 : state->report->levels;
+        tell(state, 0);
+        bool uniform = input_work * (BLOCK_TRIANGLES / COARSE_PER_CELL) < 4 * partition.estimate;
+        status = uniform ? prerefine_uniform(state, quality, level, error) : prerefine_graded(state, &partition, error);
+        if (!uniform)
+            state->report->seconds_prerefine += par_seconds() - began;
+        if (!status)
+            status = run_schedule(state, quality, &partition, level == 0, error);
+    }
+    par_partition_free(&partition);
+    return status;
+}
+
+/* What a schedule cannot do, one call does. */
+static bool must_be_sequential(const struct tri_refine_options *quality, const struct par_options *options)
+{
+    return quality->max_steiner >= 0 || quality->gate || quality->fence || quality->seeds || quality->more_room ||
+           quality->left || (quality->unsuitable && !options->size_test_in_parallel);
+}
+
+enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality, const struct par_options *options,
+                           struct par_report *report, struct tri_error *error)
+{
+    double began = par_seconds();
+    *report = (struct par_report){.threads = threads_for(options)};
+    struct par_state state = {.mesh = mesh, .options = options, .threads = report->threads, .report = report};
+    struct tri_refine_options usual = *quality;
+    enum tri_status status = TRI_OK;
+    if (quality->min_angle > 0 && quality->max_area > 0)
+        report->radius_theory = par_radius_tight(quality->max_area, quality->min_angle < 44 ? quality->min_angle : 44);
+    if (must_be_sequential(quality, options)) {
+        state.quality = quality;
+        status = refine_rest(&state, quality, true, error);
+        report->seconds_last += par_seconds() - began;
+    } else {
+        usual.min_angle = quality->min_angle < TRI_USUAL_ANGLE ? quality->min_angle : TRI_USUAL_ANGLE;
+        status = refine_level(&state, &usual, 0, error);
+        if (!status && quality->min_angle > TRI_USUAL_ANGLE)
+            status = refine_rest(&state, quality, true, error);
+    }
+    free(state.pool.item);
+    par_room_free(&state.spare);
+    report->seconds_total = par_seconds() - began;
+    return status;
+}

@@ -1,0 +1,62 @@
+/* Parallel refinement: the four-phase schedule, for any PSLG.
+ *
+ * The mesh that comes out depends on the mesh and the bounds that go in, never on the number of threads, the machine or the
+ * order in which blocks happen to be done.
+ *
+ * Source: A. N. Chernikov and N. P. Chrisochoides, ICS 2004 (see sched/theory.h); segments, grading and ownership: see
+ * triangle/refine.h and sched/partition.h. */
+#ifndef SCHED_PAR_H
+#define SCHED_PAR_H
+
+#include "triangle/executor.h"
+#include "triangle/tri.h"
+
+struct par_options {
+    int threads;             /* 0: what OpenMP would use (OMP_NUM_THREADS, else all cores) */
+    double block_triangles;  /* final triangles in a block, to the order; 0: the default. Part of the decomposition */
+    bool size_test_in_parallel; /* quality.unsuitable may be called by several threads at once; else, where there is a size
+                                   test, the mesh is refined sequentially */
+    unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
+    int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, so that they pause often */
+    /* Told now and then by the calling thread: the phase that begins (0: pre-refinement, then 1 ..), triangles so far. */
+    void (*progress)(void *user, int round, int phase, int64_t triangles);
+    void *progress_user;
+};
+
+struct par_block_report {
+    int32_t round, phase, block;
+    int64_t seeds, inserted, deferred;
+    double seconds;
+};
+
+struct par_report {
+    struct tri_refine_report total;
+    int threads;
+    int rounds, levels;           /* rounds of four phases; levels of pre-refinement */
+    int32_t columns, rows;        /* of blocks in the first round */
+    double radius_theory;         /* tight bound for the area and angle bounds; 0 where one is missing */
+    double radius_measured;       /* largest circumradius when the first phase began */
+    int64_t prerefined;           /* triangles when the first phase began */
+    int64_t deferred, left_over;  /* refused by fences in all phases; bad triangles that the last sequential call got */
+    int64_t pauses;               /* times a block waited for room */
+    double seconds_prerefine, seconds_partition, seconds_seeds, seconds_room, seconds_refine, seconds_merge, seconds_last,
+        seconds_number, seconds_total; /* refine: wall time of the phases' parallel parts */
+    double phase_seconds[4];      /* refine, by colour, over all rounds */
+    struct par_block_report *blocks; /* [n_blocks] in canonical order; owned by the report */
+    int32_t n_blocks;
+};
+
+struct par_options par_defaults(void);
+
+/* Refines as tri_refine does, with several threads. Where the bounds do not allow a schedule (max_steiner, a gate or a fence of
+ * the caller's, a size test that must not run in parallel, a small mesh) it is one sequential call. Safe to call from
+ * several threads on different meshes, and inside a parallel region. Errors as tri_refine. */
+enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality, const struct par_options *options,
+                           struct par_report *report, struct tri_error *error);
+
+void par_report_free(struct par_report *report);
+
+/* An executor for reading and writing that runs tasks on this many threads; it lives as long as *threads. */
+struct tri_executor par_executor(int *threads);
+
+#endif

@@ -1,0 +1,316 @@
+/* Tasks of a phase: deal out seeds and room, run, collect. */
+#include "sched/phase.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "sched/clock.h"
+#include "triangle/quality.h"
+
+/* A block at work. Every field is its own while the phase runs; others read it before and after. */
+struct task {
+    int32_t block;
+    int32_t *seeds;         /* part of the phase's list */
+    int32_t n_seeds;
+    struct tri_fence fence, active;
+    struct par_room room;
+    struct tri_mesh view;
+    struct tri_refine_options options;
+    struct tri_refine_report report;
+    struct tri_refiner *refiner;
+    struct par_slots left;  /* what gate and fence left */
+    bool left_lost;         /* no memory for `left` */
+    bool pausing;
+    enum tri_status status;
+    struct tri_error error;
+    double seconds;
+    double unit;
+};
+
+struct phase {
+    struct par_state *state;
+    const struct par_partition *partition;
+    int colour;
+    int32_t *block_of;  /* [pool.n] */
+    int32_t *seeds;     /* [pool.n] by block */
+    struct task *tasks;
+    int32_t n_tasks;
+    int32_t *order;     /* [n_tasks] in which tasks are started */
+};
+
+bool par_slots_add(struct par_slots *slots, int32_t slot)
+{
+    if (slots->n == slots->capacity) {
+        int32_t capacity = slots->capacity ? 2 * slots->capacity : 64;
+        int32_t *fresh = realloc(slots->item, (size_t)capacity * sizeof *fresh);
+        if (!fresh)
+            return false;
+        slots->item = fresh;
+        slots->capacity = capacity;
+    }
+    slots->item[slots->n++] = slot;
+    return true;
+}
+
+static void leave_triangle(void *user, int32_t slot)
+{
+    struct task *task = user;
+    if (!par_slots_add(&task->left, slot))
+        task->left_lost = true;
+}
+
+/* The paper's test: is the new point in the cells that are active now? */
+static bool is_active(void *user, const double p[2])
+{
+    const struct task *task = user;
+    const struct tri_fence *a = &task->active;
+    return p[0] >= a->x_min && p[0] < a->x_max && p[1] >= a->y_min && p[1] < a->y_max;
+}
+
+static void assign_blocks(struct phase *p)
+{
+    const struct tri_mesh *mesh = p->state->mesh;
+    const struct par_slots *pool = &p->state->pool;
+#pragma omp parallel for num_threads(p->state->threads) schedule(static)
+    for (int32_t i = 0; i < pool->n; i++) {
+        const struct tri_triangle *t = &mesh->tri[pool->item[i]];
+        p->block_of[i] = tri_is_live(t) ? par_block_at(p->partition, p->colour, mesh->xy[t->v[0]]) : -2;
+    }
+}
+
+/* Counting sort of the pool by block; what no block of this colour takes stays in the pool, what has gone is dropped. */
+static bool deal_seeds(struct phase *p)
+{
+    struct par_slots *pool = &p->state->pool;
+    int32_t n_blocks = par_blocks(p->partition), kept = 0, used = 0;
+    int32_t *start = calloc((size_t)n_blocks + 1, sizeof *start);
+    if (!start)
+        return false;
+    for (int32_t i = 0; i < pool->n; i++)
+        if (p->block_of[i] >= 0)
+            start[p->block_of[i] + 1]++;
+    for (int32_t b = 0; b < n_blocks; b++) {
+        used += start[b + 1] > 0;
+        start[b + 1] += start[b];
+    }
+    p->tasks = calloc((size_t)used + 1, sizeof *p->tasks);
+    if (p->tasks)
+        for (int32_t b = 0; b < n_blocks; b++)
+            if (start[b + 1] > start[b])
+                p->tasks[p->n_tasks++] = (struct task){
+                    .block = b, .seeds = p->seeds + start[b], .n_seeds = start[b + 1] - start[b], .pausing = true};
+    for (int32_t i = 0; i < pool->n; i++) {
+        int32_t slot = pool->item[i];
+        if (p->block_of[i] >= 0)
+            p->seeds[start[p->block_of[i]]++] = slot;
+        else if (p->block_of[i] == TRI_NONE)
+            pool->item[kept++] = slot;
+    }
+    pool->n = kept;
+    free(start);
+    return p->tasks;
+}
+
+/* The active box of a fence: 2 r less on every side, so that no cavity of a point in it reaches beyond the fence
+ * (Definition 3); the whole fence where the largest circumradius is too large for that. */
+static struct tri_fence active_of(const struct tri_fence *f, double radius)
+{
+    double margin = 2 * radius, width = f->x_max - f->x_min, height = f->y_max - f->y_min;
+    if (!(width >= 6 * margin && height >= 6 * margin))
+        return *f;
+    return (struct tri_fence){f->x_min + margin, f->y_min + margin, f->x_max - margin, f->y_max - margin};
+}
+
+static void set_up(struct phase *p, struct task *task)
+{
+    const struct par_state *state = p->state;
+    double unit = state->mesh->unit;
+    task->fence = par_fence(p->partition, task->block / p->partition->n_rows, task->block % p->partition->n_rows);
+    task->active = active_of(&task->fence, state->radius);
+    task->active = (struct tri_fence){task->active.x_min * unit, task->active.y_min * unit, task->active.x_max * unit,
+                                      task->active.y_max * unit};
+    task->options = *state->quality;
+    task->options.gate = is_active;
+    task->options.gate_user = task;
+    task->options.fence = &task->fence;
+    task->options.seeds = task->seeds;
+    task->options.n_seeds = task->n_seeds;
+    task->options.left = leave_triangle;
+    task->options.left_user = task;
+    task->options.more_room = par_more_room;
+    task->options.more_room_user = &task->room;
+}
+
+/* Triangles that the seeds of a task will become, to the order. */
+static int32_t expected(const struct phase *p, const struct task *task)
+{
+    double sum = 0;
+    for (int32_t i = 0; i < task->n_seeds; i++)
+        sum += par_work_of(p->state->mesh, p->state->quality, task->seeds[i]);
+    sum = 1.02 * sum + 128;
+    if (p->state->options->tight_room > 0)
+        return p->state->options->tight_room;
+    return sum < 1e7 ? (int32_t)sum : 10000000;
+}
+
+/* More room for the paused tasks, in canonical order. The first time for what is expected, then half as much again. */
+static enum tri_status deal_room(struct phase *p, bool first, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (int32_t i = 0; !status && i < p->n_tasks; i++) {
+        struct task *task = &p->tasks[i];
+        if (!task->pausing)
+            continue;
+        int32_t more = first ? expected(p, task) : (int32_t)(task->report.inserted_free + task->n_seeds) + 512;
+        if (!first && p->state->options->tight_room > 0)
+            more = p->state->options->tight_room;
+        p->state->report->pauses += !first;
+        status = par_room_extend(&task->room, &p->state->spare, p->state->mesh, more, error);
+    }
+    return status;
+}
+
+static void run_task(struct phase *p, struct task *task)
+{
+    double began = par_seconds();
+    par_room_enter(&task->room, &task->view, p->state->mesh);
+    task->status = TRI_OK;
+    if (!task->refiner)
+        task->status = tri_refiner_new(&task->refiner, &task->view, &task->options, &task->report, &task->error);
+    if (!task->status)
+        task->status = tri_refiner_run(task->refiner, &task->error);
+    par_room_leave(&task->room, &task->view);
+    task->pausing = task->status == TRI_NO_ROOM;
+    if (!task->pausing) {
+        tri_refiner_free(task->refiner);
+        task->refiner = NULL;
+    }
+    task->seconds += par_seconds() - began;
+}
+
+/* Runs every task that is not done; returns whether any waits for room. */
+static bool run_tasks(struct phase *p)
+{
+    double began = par_seconds();
+    bool waiting = false;
+#pragma omp parallel for num_threads(p->state->threads) schedule(dynamic, 1)
+    for (int32_t i = 0; i < p->n_tasks; i++) {
+        struct task *task = &p->tasks[p->order[i]];
+        if (task->pausing)
+            run_task(p, task);
+    }
+    for (int32_t i = 0; i < p->n_tasks; i++)
+        waiting |= p->tasks[i].pausing;
+    double seconds = par_seconds() - began;
+    p->state->report->seconds_refine += seconds;
+    p->state->report->phase_seconds[p->colour] += seconds;
+    return waiting;
+}
+
+/* In canonical order or, for tests, at random. Blocks hold about equal work: there is no largest to start with. */
+static void order_tasks(struct phase *p)
+{
+    unsigned draw = p->state->options->shuffle;
+    for (int32_t i = 0; i < p->n_tasks; i++)
+        p->order[i] = i;
+    for (int32_t i = p->n_tasks - 1; draw && i > 0; i--) {
+        draw = draw * 1664525u + 1013904223u;
+        int32_t k = (int32_t)((draw >> 8) % (unsigned)(i + 1)), swap = p->order[i];
+        p->order[i] = p->order[k];
+        p->order[k] = swap;
+    }
+}
+
+static bool report_block(const struct phase *p, const struct task *task)
+{
+    struct par_report *report = p->state->report;
+    if (report->n_blocks % 256 == 0) {
+        struct par_block_report *fresh = realloc(report->blocks, ((size_t)report->n_blocks + 256) * sizeof *fresh);
+        if (!fresh)
+            return false;
+        report->blocks = fresh;
+    }
+    report->blocks[report->n_blocks++] = (struct par_block_report){
+        p->state->round, p->colour, task->block, task->n_seeds,
+        task->report.inserted_free + task->report.inserted_on_segments, task->report.deferred, task->seconds};
+    return true;
+}
+
+static void add_up(struct tri_refine_report *sum, const struct tri_refine_report *add)
+{
+    sum->inserted_free += add->inserted_free;
+    sum->inserted_on_segments += add->inserted_on_segments;
+    sum->gated += add->gated;
+    sum->deferred += add->deferred;
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        sum->refused[k] += add->refused[k];
+    sum->hit_limit |= add->hit_limit;
+    sum->hit_cap |= add->hit_cap;
+}
+
+/* In canonical order: room and left triangles of each task go back, and its report is added up. */
+static enum tri_status collect(struct phase *p, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    bool memory = true;
+    for (int32_t i = 0; i < p->n_tasks; i++) {
+        struct task *task = &p->tasks[i];
+        if (!status && task->status) {
+            status = task->status;
+            tri_fail(error, status, task->error.file, task->error.line, "%s", task->error.text);
+        }
+        memory = memory && !task->left_lost;
+        for (int32_t k = 0; memory && k < task->left.n; k++)
+            memory = par_slots_add(&p->state->pool, task->left.item[k]);
+        add_up(&p->state->report->total, &task->report);
+        memory = memory && report_block(p, task);
+        enum tri_status returned = par_room_return(&task->room, &p->state->spare, error);
+        status = status ? status : returned;
+        free(task->left.item);
+        tri_refiner_free(task->refiner);
+    }
+    return status || memory ? status : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for bad triangles");
+}
+
+static enum tri_status run_phase(struct phase *p, struct tri_error *error)
+{
+    struct par_report *report = p->state->report;
+    double began = par_seconds();
+    assign_blocks(p);
+    p->order = deal_seeds(p) ? malloc(((size_t)p->n_tasks + 1) * sizeof *p->order) : NULL;
+    if (!p->order)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks of a phase");
+    for (int32_t i = 0; i < p->n_tasks; i++)
+        set_up(p, &p->tasks[i]);
+    order_tasks(p);
+    report->seconds_seeds += par_seconds() - began;
+    enum tri_status status = TRI_OK;
+    for (bool first = true, waiting = true; waiting && !status; first = false) {
+        double dealing = par_seconds();
+        status = deal_room(p, first, error);
+        report->seconds_room += par_seconds() - dealing;
+        waiting = !status && run_tasks(p);
+    }
+    double merging = par_seconds();
+    enum tri_status collected = collect(p, error);
+    report->seconds_merge += par_seconds() - merging;
+    return status ? status : collected;
+}
+
+enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int colour, struct tri_error *error)
+{
+    size_t n = (size_t)state->pool.n + 1;
+    struct phase p = {.state = state, .partition = partition, .colour = colour};
+    p.block_of = malloc(n * sizeof *p.block_of);
+    p.seeds = malloc(n * sizeof *p.seeds);
+    enum tri_status status = TRI_OK;
+    if (!p.block_of || !p.seeds)
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the seeds of a phase");
+    else
+        status = run_phase(&p, error);
+    free(p.block_of);
+    free(p.seeds);
+    free(p.tasks);
+    free(p.order);
+    return status;
+}

@@ -1,0 +1,37 @@
+/* One phase: all blocks of one colour, refined at once on views of the mesh.
+ *
+ * THEOREM. The result of a phase is that of running its blocks one after the other, in any order (triangle/refine.h,
+ * serialisation): their fences are disjoint. And what a block does, it does in an order of its own: so the mesh does not depend
+ * on the number of threads. */
+#ifndef SCHED_PHASE_H
+#define SCHED_PHASE_H
+
+#include "sched/par.h"
+#include "sched/partition.h"
+#include "sched/room.h"
+
+struct par_slots {
+    int32_t *item;
+    int32_t n, capacity;
+};
+
+bool par_slots_add(struct par_slots *slots, int32_t slot);
+
+/* What the phases of a schedule hand on. */
+struct par_state {
+    struct tri_mesh *mesh;
+    const struct tri_refine_options *quality;
+    const struct par_options *options;
+    int threads;
+    struct par_slots pool;   /* triangles that may be bad, in canonical order; some may have gone since */
+    struct par_room spare;   /* unused ranges of the arrays */
+    double radius;           /* largest circumradius when the first phase began */
+    struct par_report *report;
+    int round;
+};
+
+/* Refines the blocks of one colour; takes from the pool what they can take and puts back what they leave. */
+enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int colour,
+                          struct tri_error *error);
+
+#endif

@@ -1,0 +1,274 @@
+/* Ranges of the shared arrays. */
+#include "sched/room.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LEAST_RANGE = 64 };
+
+static enum tri_status no_memory(struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the ranges of a block");
+}
+
+static bool add_range(struct par_ranges *ranges, struct par_range range)
+{
+    if (range.next == range.end)
+        return true;
+    if (ranges->n == ranges->capacity) {
+        int32_t capacity = ranges->capacity ? 2 * ranges->capacity : 8;
+        struct par_range *fresh = realloc(ranges->item, (size_t)capacity * sizeof *fresh);
+        if (!fresh)
+            return false;
+        ranges->item = fresh;
+        ranges->capacity = capacity;
+    }
+    ranges->item[ranges->n++] = range;
+    return true;
+}
+
+/* The view's count and capacity of a kind, as pointers. */
+static void counts_of(struct tri_mesh *view, enum par_kind kind, int32_t **count, int32_t **capacity)
+{
+    switch (kind) {
+    case PAR_VERTICES:
+        *count = &view->n_vertices;
+        *capacity = &view->vertex_capacity;
+        return;
+    case PAR_SLOTS:
+        *count = &view->n_slots;
+        *capacity = &view->slot_capacity;
+        return;
+    default:
+        *count = &view->n_subs;
+        *capacity = &view->sub_capacity;
+    }
+}
+
+static void enter(struct par_room *room, struct tri_mesh *view, enum par_kind kind)
+{
+    int32_t *count, *capacity, current = room->current[kind];
+    bool any = current < room->ranges[kind].n;
+    counts_of(view, kind, &count, &capacity);
+    *count = any ? room->ranges[kind].item[current].next : 0;
+    *capacity = any ? room->ranges[kind].item[current].end : 0;
+}
+
+static void leave(struct par_room *room, const struct tri_mesh *view, enum par_kind kind)
+{
+    int32_t *count, *capacity, current = room->current[kind];
+    counts_of((struct tri_mesh *)view, kind, &count, &capacity);
+    if (current < room->ranges[kind].n)
+        room->ranges[kind].item[current].next = *count;
+}
+
+enum tri_status par_more_room(void *user, struct tri_mesh *view, struct tri_error *error)
+{
+    static const int32_t need[PAR_KINDS] = {1, 2, 1};
+    struct par_room *room = user;
+    for (int kind = 0; kind < PAR_KINDS; kind++) {
+        int32_t *count, *capacity;
+        counts_of(view, (enum par_kind)kind, &count, &capacity);
+        while (*capacity - *count < need[kind]) {
+            leave(room, view, (enum par_kind)kind);
+            if (room->current[kind] + 1 >= room->ranges[kind].n)
+                return tri_fail(error, TRI_NO_ROOM, NULL, 0, "the block's room is full");
+            room->current[kind]++;
+            enter(room, view, (enum par_kind)kind);
+        }
+    }
+    return TRI_OK;
+}
+
+void par_room_enter(struct par_room *room, struct tri_mesh *view, const struct tri_mesh *shared)
+{
+    *view = *shared;
+    for (int kind = 0; kind < PAR_KINDS; kind++)
+        enter(room, view, (enum par_kind)kind);
+}
+
+void par_room_leave(struct par_room *room, const struct tri_mesh *view)
+{
+    for (int kind = 0; kind < PAR_KINDS; kind++)
+        leave(room, view, (enum par_kind)kind);
+}
+
+/* Takes ranges from the end of spare's list until they hold `need` items; returns what is still missing. */
+static int32_t take_spare(struct par_ranges *to, struct par_ranges *spare, int32_t need, bool *room)
+{
+    while (*room && need > 0 && spare->n > 0) {
+        struct par_range range = spare->item[--spare->n];
+        need -= range.end - range.next;
+        *room = add_range(to, range);
+    }
+    return need > 0 ? need : 0;
+}
+
+static enum tri_status extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared, enum par_kind kind,
+                              int32_t need, struct tri_error *error)
+{
+    bool memory = true;
+    need = take_spare(&room->ranges[kind], &spare->ranges[kind], need, &memory);
+    if (!memory)
+        return no_memory(error);
+    if (need == 0)
+        return TRI_OK;
+    need = need < LEAST_RANGE ? LEAST_RANGE : need;
+    enum tri_status status = kind == PAR_VERTICES ? tri_mesh_reserve_vertices(shared, need, error)
+                             : kind == PAR_SLOTS  ? tri_mesh_reserve_triangles(shared, need, error)
+                                                  : tri_mesh_reserve_subs(shared, need, error);
+    if (status)
+        return status;
+    int32_t *count, *capacity;
+    counts_of(shared, kind, &count, &capacity);
+    struct par_range range = {*count, *count + need};
+    *count += need;
+    return add_range(&room->ranges[kind], range) ? TRI_OK : no_memory(error);
+}
+
+enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared, int32_t triangles,
+                                struct tri_error *error)
+{
+    enum tri_status status = extend(room, spare, shared, PAR_SLOTS, triangles, error);
+    status = status ? status : extend(room, spare, shared, PAR_VERTICES, triangles / 2 + triangles / 64 + 16, error);
+    return status ? status : extend(room, spare, shared, PAR_SUBS, triangles / 16 + 64, error);
+}
+
+enum tri_status par_room_return(struct par_room *room, struct par_room *spare, struct tri_error *error)
+{
+    bool memory = true;
+    for (int kind = 0; kind < PAR_KINDS; kind++)
+        for (int32_t i = room->current[kind]; memory && i < room->ranges[kind].n; i++)
+            memory = add_range(&spare->ranges[kind], room->ranges[kind].item[i]);
+    /* Ranges passed by with an odd item left. */
+    for (int kind = 0; kind < PAR_KINDS; kind++)
+        for (int32_t i = 0; memory && i < room->current[kind] && i < room->ranges[kind].n; i++)
+            memory = add_range(&spare->ranges[kind], room->ranges[kind].item[i]);
+    par_room_free(room);
+    return memory ? TRI_OK : no_memory(error);
+}
+
+void par_room_free(struct par_room *room)
+{
+    for (int kind = 0; kind < PAR_KINDS; kind++)
+        free(room->ranges[kind].item);
+    *room = (struct par_room){0};
+}
+
+static int by_start(const void *left, const void *right)
+{
+    const struct par_range *a = left, *b = right;
+    return (a->next > b->next) - (a->next < b->next);
+}
+
+/* Gaps sorted by place; the walk over holes from below and items from above. */
+struct closing {
+    struct par_ranges *gaps;
+    int32_t low, high;   /* gaps low .. high - 1 are not dealt with */
+    int32_t last;        /* items above this one are gone */
+};
+
+static struct closing closing_of(struct par_ranges *gaps, int32_t count)
+{
+    if (gaps->n)
+        qsort(gaps->item, (size_t)gaps->n, sizeof *gaps->item, by_start);
+    return (struct closing){gaps, 0, gaps->n, count - 1};
+}
+
+/* The next hole to fill and the item to fill it with; false at the end, when *last + 1 is the new count. */
+static bool next_move(struct closing *c, int32_t *hole, int32_t *item)
+{
+    for (;;) {
+        while (c->high > c->low && c->gaps->item[c->high - 1].end == c->last + 1) /* a gap at the end vanishes */
+            c->last = c->gaps->item[--c->high].next - 1;
+        if (c->low == c->high)
+            return false;
+        struct par_range *gap = &c->gaps->item[c->low];
+        if (gap->next == gap->end) {
+            c->low++;
+            continue;
+        }
+        *hole = gap->next++;
+        *item = c->last--;
+        assert(*hole < *item);
+        return true;
+    }
+}
+
+static void close_slots(struct par_ranges *gaps, struct tri_mesh *mesh)
+{
+    struct closing c = closing_of(gaps, mesh->n_slots);
+    int32_t hole, item;
+    while (next_move(&c, &hole, &item)) {
+        struct tri_triangle *t = &mesh->tri[hole];
+        *t = mesh->tri[item];
+        for (int e = 0; e < 3; e++)
+            tri_relink(mesh, t->n[e], t->v[tri_next[e]], tri_code(hole, e));
+    }
+    mesh->n_slots = c.last + 1;
+}
+
+static void close_subs(struct par_ranges *gaps, struct tri_mesh *mesh)
+{
+    struct closing c = closing_of(gaps, mesh->n_subs);
+    int32_t hole, item;
+    while (next_move(&c, &hole, &item)) {
+        struct tri_subsegment *s = &mesh->sub[hole];
+        *s = mesh->sub[item];
+        for (int side = 0; side < 2; side++)
+            if (s->side[side] != TRI_NONE)
+                mesh->tri[tri_of(s->side[side])].n[tri_edge(s->side[side])] = ~hole;
+    }
+    mesh->n_subs = c.last + 1;
+}
+
+static void move_vertex(struct tri_mesh *mesh, int32_t from, int32_t to)
+{
+    size_t n = (size_t)mesh->n_attributes;
+    mesh->xy[to] = mesh->xy[from];
+    mesh->on[to] = mesh->on[from];
+    mesh->vertex_markers[to] = mesh->vertex_markers[from];
+    if (n)
+        memcpy(mesh->attributes + (size_t)to * n, mesh->attributes + (size_t)from * n, n * sizeof *mesh->attributes);
+}
+
+/* Moves vertices into gaps; moved[v - new count] tells where v went. */
+static bool close_vertices(struct par_ranges *gaps, struct tri_mesh *mesh, int threads)
+{
+    int64_t room = 0;
+    for (int32_t i = 0; i < gaps->n; i++)
+        room += gaps->item[i].end - gaps->item[i].next;
+    int32_t kept = (int32_t)(mesh->n_vertices - room), hole, item;
+    int32_t *moved = malloc(((size_t)room + 1) * sizeof *moved);
+    if (!moved)
+        return false;
+    struct closing c = closing_of(gaps, mesh->n_vertices);
+    while (next_move(&c, &hole, &item)) {
+        move_vertex(mesh, item, hole);
+        moved[item - kept] = hole;
+    }
+    assert(c.last + 1 == kept);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        for (int k = 0; k < 3; k++)
+            if (mesh->tri[t].v[k] >= kept)
+                mesh->tri[t].v[k] = moved[mesh->tri[t].v[k] - kept];
+    for (int32_t s = 0; s < mesh->n_subs; s++)
+        for (int k = 0; k < 2; k++)
+            if (mesh->sub[s].v[k] >= kept)
+                mesh->sub[s].v[k] = moved[mesh->sub[s].v[k] - kept];
+    mesh->n_vertices = kept;
+    free(moved);
+    return true;
+}
+
+enum tri_status par_room_close(struct par_room *spare, struct tri_mesh *shared, int threads, struct tri_error *error)
+{
+    (void)threads; /* without OpenMP */
+    close_slots(&spare->ranges[PAR_SLOTS], shared);
+    close_subs(&spare->ranges[PAR_SUBS], shared);
+    bool done = close_vertices(&spare->ranges[PAR_VERTICES], shared, threads);
+    par_room_free(spare);
+    return done ? TRI_OK : no_memory(error);
+}

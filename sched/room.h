@@ -1,0 +1,53 @@
+/* Room for what blocks add: ranges of vertices, triangle slots and subsegments in the shared arrays.
+ *
+ * A block works on a view of the mesh: the shared arrays, with counts and capacities of its own that point into a range that
+ * nobody else uses. When a range is full the view moves to the block's next one; when there is none the block pauses until
+ * all others have paused or ended, and goes on after the arrays have grown. Ranges are dealt out between phases, by one thread
+ * and in canonical order: so the ids that a block uses do not depend on who runs when. What a block leaves unused goes to the
+ * blocks of the next phase; what is unused at the end is filled with the last items of the arrays (par_room_close). */
+#ifndef SCHED_ROOM_H
+#define SCHED_ROOM_H
+
+#include "triangle/mesh.h"
+
+enum par_kind { PAR_VERTICES, PAR_SLOTS, PAR_SUBS, PAR_KINDS };
+
+struct par_range {
+    int32_t next, end; /* unused: next .. end - 1 */
+};
+
+struct par_ranges {
+    struct par_range *item;
+    int32_t n, capacity;
+};
+
+/* What one block has. The current range of each kind lives in the view while the block runs. */
+struct par_room {
+    struct par_ranges ranges[PAR_KINDS];
+    int32_t current[PAR_KINDS];
+};
+
+/* A tri_more_room: user is the view's struct par_room. */
+enum tri_status par_more_room(void *user, struct tri_mesh *view, struct tri_error *error);
+
+/* Points the view at the shared arrays, which may have moved, and at the room's current ranges. */
+void par_room_enter(struct par_room *room, struct tri_mesh *view, const struct tri_mesh *shared);
+
+/* Remembers in the room how far the view's ranges have been used. */
+void par_room_leave(struct par_room *room, const struct tri_mesh *view);
+
+/* Gives the room at least `triangles` slots more, and vertices and subsegments to match: from `spare` first, else from the end
+ * of the shared arrays, which grow. */
+enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared, int32_t triangles,
+                                struct tri_error *error);
+
+/* Moves what is unused to `spare`, and frees the room. */
+enum tri_status par_room_return(struct par_room *room, struct par_room *spare, struct tri_error *error);
+
+/* Closes the gaps that `spare` lists in the shared arrays with the last items there; afterwards every vertex and slot below
+ * the mesh's counts is used, as before the first phase. O(gaps), and one parallel pass over the triangles. Frees spare. */
+enum tri_status par_room_close(struct par_room *spare, struct tri_mesh *shared, int threads, struct tri_error *error);
+
+void par_room_free(struct par_room *room);
+
+#endif

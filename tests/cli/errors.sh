@@ -1,0 +1,113 @@
+# What is wrong gets one clear line, exit code 1, and no file is touched.
+fresh letter.poly
+run 1 -pa0 letter
+complains "area"
+matches "^Error:  "
+run 1 -rI letter
+complains "-I"
+run 1 -p nothing
+complains "^nothing\.poly: cannot open"
+run 1 nothing.node
+complains "^nothing\.node: "
+run 1 ""
+complains "^\.node: "
+run 1 -r letter
+wrote
+run 0 -pa1e-6 letter
+complains "a1e-6.*exponent"
+
+fresh nasty/truncated.poly nasty/rubbish.poly nasty/nan.node nasty/identical.node nasty/region_no_value.poly \
+    nasty/badindex.poly
+run 1 -p truncated
+complains "^truncated\.poly:[0-9]+: "
+matches "^Error:  truncated\.poly:[0-9]+: "
+check "one line" sh -c 'test "$(wc -l <.err)" -eq 1'
+run 1 -p rubbish
+complains "^rubbish\.poly:[0-9]+: "
+run 1 nan
+complains "^nan\.node:[0-9]+: "
+run 1 -pA region_no_value
+complains "^region_no_value\.poly:[0-9]+: "
+run 1 -Q identical
+complains "same place"
+check "errors on standard output too" grep -q "^Error:  " .out
+run 0 -p badindex
+check "four warnings with file and line" sh -c 'test "$(grep -cE "^Warning:  badindex\.poly:[0-9]+: " .out)" -eq 4'
+rm -f badindex.1.*
+wrote
+
+# both streams in one place: the error is told once
+"$bin/triangle" -p truncated >.out 2>&1
+check "told once" sh -c 'test "$(grep -c truncated.poly: .out)" -eq 1'
+
+# --- outputs that cannot be
+fresh letter.poly
+mkdir letter.1.ele
+run 1 -p letter
+complains "^letter\.1\.ele: cannot create"
+wrote letter.1.ele
+fresh letter.poly
+if [ -e /dev/full ]; then
+    ln -s /dev/full letter.1.ele
+    run 1 -p letter
+    complains "/dev/full|letter\.1\.ele"
+    wrote letter.1.ele
+fi
+fresh letter.poly
+echo old >letter.1.node
+what="ulimit -f"
+(
+    ulimit -f 20
+    "$bin/triangle" -pqa.01 letter >.out 2>.err
+)
+check "a file too large is an error" test $? -eq 1
+check "the old file is there" grep -qx old letter.1.node
+complains "cannot write"
+wrote letter.1.node
+
+# --- a signal while files are being written: nothing stays. A pipe that nobody reads holds the program there.
+for signal in TERM INT HUP; do
+    fresh letter.poly
+    echo old >letter.1.node
+    mkfifo letter.1.ele
+    ls >.before
+    what="SIG$signal"
+    # a shell lets its background jobs ignore SIGINT; env puts that right where it can
+    if [ $signal = INT ]; then
+        env --default-signal=INT true 2>/dev/null || continue
+        env --default-signal=INT "$bin/triangle" -p letter >.out 2>.err &
+    else
+        "$bin/triangle" -p letter >.out 2>.err &
+    fi
+    job=$!
+    tries=0
+    until ls .tri-* >/dev/null 2>&1 || [ $tries -ge 100 ]; do
+        tries=$((tries + 1))
+        sleep 0.05
+    done
+    check "a temporary file" ls .tri-*
+    kill -$signal $job
+    wait $job 2>/dev/null
+    check "ended by the signal" test $? -gt 128
+    wrote
+    check "the old file is there" grep -qx old letter.1.node
+done
+
+# --- standard output
+fresh letter.poly
+what="standard output closed"
+"$bin/triangle" -pqV letter >&- 2>.err
+check "exit code" test $? -eq 0
+judge letter.1 --poly letter.poly --min-angle 20
+fresh letter.poly
+"$bin/triangle" -pqV letter >&- 2>&- <&-
+check "all closed" test $? -eq 0
+judge letter.1 --poly letter.poly --min-angle 20
+if [ -e /dev/full ]; then
+    fresh letter.poly
+    what="standard output full"
+    "$bin/triangle" -p letter >/dev/full 2>.err
+    check "exit code" test $? -eq 1
+    complains "standard output"
+    judge letter.1 --poly letter.poly
+fi

@@ -1,0 +1,71 @@
+# What the command line tests share. Each test script is sourced by run.sh with these variables set, in an empty folder
+# of its own: $bin (programs), $data (data/ of the tree), $shared (more inputs, or empty).
+
+faults=0
+checks=0
+what=""
+
+fault() {
+    echo "cli: $what: $*"
+    faults=$((faults + 1))
+}
+
+check() { # check DESCRIPTION COMMAND...: the command must succeed
+    description=$1
+    shift
+    checks=$((checks + 1))
+    "$@" >/dev/null 2>&1 || fault "$description"
+}
+
+fresh() { # an empty folder with the named inputs of data/ in it
+    rm -rf ./* ./.tri-*
+    for input; do
+        cp "$data/$input" .
+    done
+    ls >.before
+}
+
+run() { # run CODE WORDS...: triangle must end with the exit code; out and err keep what it printed
+    code=$1
+    shift
+    what="triangle $*"
+    checks=$((checks + 1))
+    "$bin/triangle" "$@" >.out 2>.err
+    found=$?
+    [ "$found" -eq "$code" ] || fault "exit code $found instead of $code: $(head -n 1 .err)"
+}
+
+says() { check "does not say: $1" grep -qxF -e "$1" .out; }      # a whole line of standard output
+matches() { check "no line matches: $1" grep -qE -e "$1" .out; } # a part of one
+silent_on() { check "says: $1" sh -c "! grep -qE -e \"\$1\" .out" sh "$1"; }
+complains() { check "no error matches: $1 but: $(head -n 1 .err)" grep -qE -e "$1" .err; }
+calm() { check "standard error: $(head -n 1 .err)" test ! -s .err; }
+
+new_files() { ls -A | grep -v '^\.\(before\|out\|err\|found\|expected\)$' | grep -vxF -f .before | tr '\n' ' '; }
+
+wrote() { # wrote NAMES...: these files are new, no others
+    expected=$(printf '%s\n' "$@" | grep . | LC_ALL=C sort | tr '\n' ' ')
+    found=$(new_files | tr ' ' '\n' | grep . | LC_ALL=C sort | tr '\n' ' ')
+    checks=$((checks + 1))
+    [ "$found" = "$expected" ] || fault "wrote: $found instead of: $expected"
+}
+
+header() { # header FILE TEXT: the first record
+    found=$(awk '!/^[ \t]*(#|$)/ { $1 = $1; print; exit }' "$1")
+    checks=$((checks + 1))
+    [ "$found" = "$2" ] || fault "$1 begins with $found instead of $2"
+}
+
+records() { awk '!/^[ \t]*(#|$)/ { $1 = $1; print }' "$1"; } # without comments, one blank between fields
+
+judge() { check "trianglecheck $*" "$bin/trianglecheck" --quiet "$@"; }
+
+counts() { # counts V T E EXTERIOR INTERIOR SUBSEGMENTS: the statistics; a dot: not compared
+    found=$(awk '/Mesh vertices:/ { v = $NF } /Mesh triangles:/ { t = $NF } /Mesh edges:/ { e = $NF }
+                 /exterior boundary/ { x = $NF } /interior boundary/ { i = $NF } /Mesh subsegments/ { s = $NF }
+                 END { print v, t, e, x, i, s }' .out)
+    checks=$((checks + 1))
+    same=$(echo "$found" | awk -v expected="$*" '{ n = split(expected, e, " ")
+        for (k = 1; k <= n; k++) if (e[k] != "." && e[k] != $k) { print "no"; exit } print "yes" }')
+    [ "$same" = yes ] || fault "counts $found instead of $*"
+}

@@ -1,0 +1,77 @@
+#!/bin/sh
+# Draws a mesh of two triangles in every way, and sees to it that colours, sizes, refusals and exit codes are right.
+# Usage: run_meshplot.sh BIN_DIR WORK_DIR
+set -u
+plot=$1/meshplot
+work=$2
+faults=0
+
+fault() {
+    echo "meshplot: $*"
+    faults=$((faults + 1))
+}
+
+draws() { # draws OPTION...: exit code 0
+    "$plot" mesh.1 "$@" >out.txt 2>&1 || fault "$*: exit code $?: $(head -n 1 out.txt)"
+}
+
+refuses() { # refuses CODE OPTION...: that exit code, a word on stderr, no picture
+    wanted=$1
+    shift
+    rm -f no.*
+    "$plot" "$@" >out.txt 2>err.txt
+    code=$?
+    [ $code -eq "$wanted" ] || fault "$*: exit code $code instead of $wanted"
+    [ -s err.txt ] || fault "$*: nothing on stderr"
+    left=$(ls no.* 2>/dev/null)
+    [ -z "$left" ] || fault "$*: left $left"
+}
+
+fills() { # fills FILE: different fill colours of the polygons in an SVG
+    grep '<path' "$1" | grep -o 'fill[:=]"*rgb([^)]*)' | sort -u | wc -l
+}
+
+rm -rf "$work"
+mkdir -p "$work"
+cd "$work" || exit 2
+echo leak:libfontconfig >suppressions.txt # what LeakSanitizer finds there is not ours
+export LSAN_OPTIONS="suppressions=$work/suppressions.txt:print_suppressions=0"
+printf '4 2 0 0\n1 0 0\n2 4 0\n3 4 1\n4 0 3\n' >mesh.1.node
+printf '2 3 1\n1 1 2 3 7\n2 1 3 4 9\n' >mesh.1.ele
+printf '0 2 0 1\n4 1\n1 1 2 1\n2 2 3 1\n3 3 4 1\n4 4 1 1\n0\n' >mesh.1.poly
+printf '0 2\n1 -1\n' >blocks.txt
+printf '0 2\n' >short.txt
+
+for colour in quality area region none; do
+    draws -o "$colour.png" --color $colour --size 300
+    draws -o "$colour.svg" --color $colour --edges off --segments off --legend off
+done
+draws -o block.svg --color block --blocks blocks.txt --edges off --segments off --legend off
+for colour in quality area region block; do
+    [ "$(fills $colour.svg)" -eq 2 ] || fault "$colour.svg has $(fills $colour.svg) colours instead of 2"
+done
+[ "$(fills none.svg)" -eq 1 ] || fault "none.svg has $(fills none.svg) colours instead of 1"
+
+# The header of a PNG gives its width in bytes 16 to 19.
+width=$(od -An -tu1 -j16 -N4 quality.png | awk '{ print $1 * 16777216 + $2 * 65536 + $3 * 256 + $4 }')
+[ "$width" = 300 ] || fault "quality.png is $width pixels wide instead of 300"
+
+# A window that shows the upper triangle alone, deep inside it.
+draws -o window.svg --window 0.4,1.4,0.5,1.5 --edges off --segments off --legend off
+[ "$(fills window.svg)" -eq 1 ] || fault "window.svg has $(fills window.svg) colours instead of 1"
+draws -o deep.png --window 0.4,1.4,0.400000000001,1.400000000001 --edges on --mark 0,0,1,1 --title deep
+cp mesh.1.node points.node
+"$plot" points -o points.png >out.txt 2>&1 || fault "points alone: $(head -n 1 out.txt)"
+
+refuses 2 mesh.1
+refuses 2 mesh.1 -o no.gif
+refuses 2 mesh.1 -o no.png --window 1,0,0,1
+refuses 2 mesh.1 -o no.png --color block
+refuses 1 mesh.1 -o no.png --color block --blocks short.txt
+refuses 1 mesh.1 -o no/where.png
+refuses 1 missing -o no.png
+printf '2 3 0\n1 1 2 3\n' >mesh.1.ele
+refuses 1 mesh.1 -o no.png
+
+echo "meshplot: $faults faults"
+[ "$faults" -eq 0 ]

@@ -1,0 +1,256 @@
+/* Carving and regions against a naive twin that paints components of the mesh minus its segments. */
+#include "support.h"
+#include "triangle/carve.h"
+
+/* paint[t]: the least number of a triangle that t reaches without crossing a subsegment. Sweeps until nothing changes. */
+static int32_t *paint_components(const struct tri_mesh *mesh)
+{
+    int32_t *paint = calloc((size_t)mesh->n_slots + 1, sizeof *paint);
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        paint[t] = t;
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (int32_t t = 0; t < mesh->n_slots; t++)
+            for (int e = 0; e < 3; e++) {
+                int32_t link = mesh->tri[t].n[e];
+                if (link >= 0 && paint[tri_of(link)] < paint[t]) {
+                    paint[t] = paint[tri_of(link)];
+                    changed = true;
+                }
+            }
+    }
+    return paint;
+}
+
+static bool holds(const struct tri_mesh *mesh, int32_t t, double x, double y)
+{
+    const int32_t *v = mesh->tri[t].v;
+    struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]], q = {x, y};
+    return tri_orient2d(a, b, q) > 0 && tri_orient2d(b, c, q) > 0 && tri_orient2d(c, a, q) > 0;
+}
+
+static void mark_component(const struct tri_mesh *mesh, const int32_t *paint, int32_t of, int32_t value, int32_t *out)
+{
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        if (paint[t] == paint[of])
+            out[t] = value;
+}
+
+/* region[t] becomes TRI_NONE where t goes, else the number of its region. */
+static int32_t *naive_regions(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_carve_options *options)
+{
+    int32_t *paint = paint_components(mesh), *region = calloc((size_t)mesh->n_slots + 1, sizeof *region);
+    for (int32_t k = 0; options->spread_regions && k < pslg->n_regions; k++)
+        for (int32_t t = 0; t < mesh->n_slots; t++)
+            if (holds(mesh, t, pslg->regions[4 * k], pslg->regions[4 * k + 1]))
+                mark_component(mesh, paint, t, k + 1, region);
+    for (int32_t k = 0; !options->ignore_holes && k < pslg->n_holes; k++)
+        for (int32_t t = 0; t < mesh->n_slots; t++)
+            if (holds(mesh, t, pslg->holes[2 * k], pslg->holes[2 * k + 1]))
+                mark_component(mesh, paint, t, TRI_NONE, region);
+    for (int32_t s = 0; !options->keep_hull && s < mesh->n_subs; s++)
+        for (int side = 0; side < 2; side++)
+            if (mesh->parents[mesh->sub[s].parent].segment == TRI_NONE && mesh->sub[s].side[side] != TRI_NONE)
+                mark_component(mesh, paint, tri_of(mesh->sub[s].side[side]), TRI_NONE, region);
+    free(paint);
+    return region;
+}
+
+/* The triangles that stay, of the naive twin, with their regions in a parallel array by position in the sorted set. */
+static struct support_set survivors(const struct tri_mesh *mesh, const int32_t *region, int32_t wanted)
+{
+    struct support_set set = {0, calloc((size_t)mesh->n_slots + 1, sizeof *set.v)};
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        if (region[t] != TRI_NONE && (wanted == TRI_NONE || region[t] == wanted))
+            memcpy(set.v[set.n++], mesh->tri[t].v, sizeof *set.v);
+    support_sort(&set);
+    return set;
+}
+
+static void assert_same_triangles(const struct tri_mesh *before, const int32_t *wanted, const struct tri_mesh *after, int32_t region)
+{
+    int32_t *found = calloc((size_t)after->n_slots + 1, sizeof *found);
+    for (int32_t t = 0; t < after->n_slots; t++)
+        found[t] = after->tri[t].region;
+    struct support_set a = survivors(before, wanted, region), b = survivors(after, found, region);
+    assert_int_equal(a.n, b.n);
+    assert_true(support_same(&a, &b));
+    support_set_free(&a);
+    support_set_free(&b);
+    free(found);
+}
+
+static void assert_compact(const struct tri_mesh *mesh, int32_t n_segments)
+{
+    int32_t last = -1;
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        assert_true(tri_is_live(&mesh->tri[t]));
+    assert_int_equal(mesh->n_parents, mesh->n_subs);
+    for (int32_t s = 0; s < mesh->n_subs; s++) {
+        int32_t segment = mesh->parents[mesh->sub[s].parent].segment;
+        assert_int_equal(mesh->sub[s].parent, s);
+        assert_true(mesh->sub[s].side[0] != TRI_NONE || mesh->sub[s].side[1] != TRI_NONE);
+        assert_memory_equal(mesh->parents[s].v, mesh->sub[s].v, sizeof mesh->sub[s].v);
+        segment = segment == TRI_NONE ? n_segments : segment;
+        assert_true(segment >= last); /* hull edges last */
+        last = segment;
+    }
+}
+
+static void compare_with_twin(struct tri_pslg *pslg, const struct tri_carve_options *options)
+{
+    struct tri_constrain_report report;
+    struct tri_error error = {0};
+    struct tri_mesh before = support_constrained(pslg, &report), mesh = support_constrained(pslg, &report);
+    int32_t *wanted = naive_regions(&before, pslg, options);
+    assert_int_equal(tri_carve(&mesh, pslg, options, &error), TRI_OK);
+    if (tri_mesh_validate(&mesh, &error) != TRI_OK)
+        fail_msg("%s", error.text);
+    assert_compact(&mesh, pslg->n_segments);
+    assert_same_triangles(&before, wanted, &mesh, TRI_NONE);
+    for (int32_t k = 0; options->spread_regions && k <= pslg->n_regions; k++) {
+        assert_same_triangles(&before, wanted, &mesh, k);
+        assert_true(k == 0 || mesh.regions[k].attribute == pslg->regions[4 * k - 2]);
+        assert_true(k == 0 || mesh.regions[k].max_area == pslg->regions[4 * k - 1]);
+    }
+    free(wanted);
+    tri_mesh_free(&before);
+    tri_mesh_free(&mesh);
+}
+
+static void add_places(struct tri_pslg *pslg, int32_t n, uint64_t seed, double size)
+{
+    struct support_random random = {seed};
+    pslg->n_holes = pslg->n_regions = n;
+    for (int32_t i = 0; i < 2 * n; i++)
+        pslg->holes[i] = size * (2.4 * support_unit(&random) - 1.2); /* some outside */
+    for (int32_t i = 0; i < 4 * n; i++)
+        pslg->regions[i] = i % 4 < 2 ? size * (2.4 * support_unit(&random) - 1.2) : i;
+}
+
+static void test_tangles_equal_naive_twin(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 8; which++)
+        for (uint64_t seed = 0; seed < 25; seed++) {
+            struct tri_carve_options options = {which & 1, which & 2, which & 4};
+            struct tri_pslg pslg = support_tangle(seed % 2 ? SUPPORT_RANDOM : SUPPORT_LATTICE, 25, 30, seed);
+            if (seed % 3)
+                memmove(pslg.segments, pslg.segments + 8, (size_t)(pslg.n_segments -= 4) * 8); /* an open hull */
+            add_places(&pslg, 4, seed, seed % 2 ? 2 : 12);
+            compare_with_twin(&pslg, &options);
+            tri_pslg_free(&pslg);
+        }
+}
+
+static void test_polygons_equal_naive_twin(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 30; seed++) {
+        struct tri_carve_options options = {.spread_regions = true};
+        struct tri_pslg pslg = support_polygon(40, seed);
+        pslg.n_holes = 0;
+        compare_with_twin(&pslg, &options);
+        add_places(&pslg, 1, seed, 1);
+        pslg.n_holes = 0;
+        compare_with_twin(&pslg, &options);
+        tri_pslg_free(&pslg);
+    }
+}
+
+/* Inside nested squares: the region that comes last wins; holes stop at rings; a hole on the outside is ignored. */
+static void test_nested_rings(void **state)
+{
+    (void)state;
+    struct tri_carve_options options = {.spread_regions = true};
+    struct tri_pslg pslg = support_pslg(20, 20, 5, 5);
+    struct tri_constrain_report report;
+    for (int ring = 0; ring < 3; ring++) {
+        double r = 1 << ring;
+        int32_t first = pslg.n_points;
+        support_add_point(&pslg, -r, -r);
+        support_add_point(&pslg, r, -r);
+        support_add_point(&pslg, r, r);
+        support_add_point(&pslg, -r, r);
+        for (int k = 0; k < 4; k++)
+            support_add_segment(&pslg, first + k, first + (k + 1) % 4);
+    }
+    double holes[4] = {1.5, 0, 50, 50}, regions[12] = {0, 0, 1, 0, 3, 0.5, 2, 0, 0, 0.5, 3, 0.25};
+    memcpy(pslg.holes, holes, sizeof holes);
+    memcpy(pslg.regions, regions, sizeof regions);
+    pslg.n_holes = 2;
+    pslg.n_regions = 3;
+    compare_with_twin(&pslg, &options);
+    struct tri_mesh mesh = support_constrained(&pslg, &report);
+    assert_int_equal(tri_carve(&mesh, &pslg, &options, NULL), TRI_OK);
+    assert_int_equal(mesh.n_slots, 2 + 8);
+    int count[4] = {0};
+    for (int32_t t = 0; t < mesh.n_slots; t++)
+        count[mesh.tri[t].region]++;
+    assert_true(count[0] == 0 && count[1] == 0 && count[2] == 8 && count[3] == 2);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+/* A hole point on a vertex, on a segment, and on an edge without segment: nothing breaks, the hull stays convex or empty. */
+static void test_hole_points_in_odd_places(void **state)
+{
+    (void)state;
+    static const double at[][2] = {{0, 0}, {0.5, 0}, {0.5, 0.5}, {1, 1}, {1.5, 1}, {-0.0, 0.25}, {1e300, 0}, {0.25, 1e-300}};
+    for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
+        struct tri_pslg pslg = support_square(1, 0, 1);
+        struct tri_options options = tri_defaults();
+        pslg.n_holes = 1;
+        free(pslg.holes);
+        pslg.holes = calloc(2, sizeof *pslg.holes);
+        memcpy(pslg.holes, at[i], sizeof at[i]);
+        options.use_segments = true;
+        struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+        assert_true(mesh.n_slots == 0 || mesh.n_slots == 2);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+    }
+}
+
+static void test_boundary_markers(void **state)
+{
+    (void)state;
+    struct tri_carve_options options = {0};
+    struct tri_constrain_report report;
+    struct tri_pslg pslg = support_square(4, 0, 1);
+    int32_t markers[8] = {0, 7, 0, 0}, vertex_markers[5] = {0, 0, 3, 0, 0};
+    free(pslg.points);
+    pslg.points = calloc(10, sizeof(double));
+    pslg.n_points = 0;
+    support_add_point(&pslg, 0, 0);
+    support_add_point(&pslg, 4, 0);
+    support_add_point(&pslg, 4, 4);
+    support_add_point(&pslg, 0, 4);
+    support_add_point(&pslg, 2, 2);
+    pslg.segment_markers = markers;
+    pslg.markers = vertex_markers;
+    struct tri_mesh mesh = support_constrained(&pslg, &report);
+    assert_int_equal(tri_carve(&mesh, &pslg, &options, NULL), TRI_OK);
+    tri_mark_boundary(&mesh);
+    static const int32_t want_vertex[5] = {1, 7, 3, 1, 0}, want_sub[4] = {1, 7, 1, 1};
+    for (int k = 0; k < 5; k++)
+        assert_int_equal(mesh.vertex_markers[k], want_vertex[k]);
+    assert_int_equal(mesh.n_subs, 4);
+    for (int k = 0; k < 4; k++)
+        assert_int_equal(mesh.sub[k].marker, want_sub[k]);
+    tri_mesh_free(&mesh);
+    pslg.markers = pslg.segment_markers = NULL;
+    tri_pslg_free(&pslg);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_tangles_equal_naive_twin),
+        cmocka_unit_test(test_polygons_equal_naive_twin),
+        cmocka_unit_test(test_nested_rings),
+        cmocka_unit_test(test_hole_points_in_odd_places),
+        cmocka_unit_test(test_boundary_markers),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,152 @@
+/* Counts and shapes: known meshes, Euler's formula, and the judge's own measurements. */
+#include "triangle/stats.h"
+
+#include "tests/support.h"
+
+static struct tri_counts counted(const struct tri_mesh *mesh)
+{
+    struct tri_counts counts;
+    assert_int_equal(tri_count_mesh(&counts, mesh, NULL), TRI_OK);
+    return counts;
+}
+
+/* An equilateral triangle with a right-angled one on its base. */
+static struct tri_mesh two_triangles(double scale)
+{
+    struct tri_pslg pslg = support_pslg(4, 5, 0, 0);
+    support_add_point(&pslg, 0, 0);
+    support_add_point(&pslg, 2 * scale, 0);
+    support_add_point(&pslg, scale, sqrt(3) * scale);
+    support_add_point(&pslg, 0, -0.01 * scale);
+    support_add_segment(&pslg, 0, 1);
+    support_add_segment(&pslg, 1, 2);
+    support_add_segment(&pslg, 2, 0);
+    support_add_segment(&pslg, 0, 3);
+    support_add_segment(&pslg, 3, 1);
+    struct tri_options options = tri_defaults();
+    options.use_segments = true;
+    struct tri_report report;
+    struct tri_mesh mesh = support_generate(&pslg, &options, &report);
+    tri_pslg_free(&pslg);
+    return mesh;
+}
+
+static void test_counts(void **state)
+{
+    (void)state;
+    struct tri_mesh mesh = two_triangles(1);
+    struct tri_counts counts = counted(&mesh);
+    assert_int_equal(counts.vertices, 4);
+    assert_int_equal(counts.triangles, 2);
+    assert_int_equal(counts.edges, 5);
+    assert_int_equal(counts.exterior, 4);
+    assert_int_equal(counts.interior, 1);
+    assert_int_equal(counts.subsegments, 5);
+    tri_mesh_free(&mesh);
+}
+
+/* Vertices that no triangle uses do not count; edges by Euler's formula for a disc. */
+static void test_unused(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = support_points(SUPPORT_LATTICE, 500, 1);
+    struct tri_options options = tri_defaults();
+    struct tri_report report;
+    struct tri_mesh mesh = support_generate(&pslg, &options, &report);
+    struct tri_counts counts = counted(&mesh);
+    assert_true(report.duplicates > 0);
+    assert_int_equal(counts.vertices, 500 - report.duplicates);
+    assert_int_equal(counts.vertices - counts.edges + counts.triangles, 1);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+static bool is_near(double a, double b) { return fabs(a - b) <= 1e-12 * fabs(b); }
+
+static void test_shapes(void **state)
+{
+    (void)state;
+    static const double scales[] = {1, 1e-300, 1e150};
+    for (int i = 0; i < 3; i++) {
+        double scale = scales[i], hypotenuse = sqrt(4.0001);
+        struct tri_mesh mesh = two_triangles(scale);
+        struct tri_shapes s;
+        tri_measure_shapes(&s, &mesh);
+        if (i != 1) { /* areas of 1e-602 are no doubles */
+            assert_true(is_near(s.smallest_area, 0.01 * scale * scale));
+            assert_true(is_near(s.largest_area, sqrt(3) * scale * scale));
+        }
+        assert_true(is_near(s.shortest_edge, 0.01 * scale));
+        assert_true(is_near(s.longest_edge, hypotenuse * scale));
+        assert_true(is_near(s.shortest_altitude, 0.02 / hypotenuse * scale));
+        assert_true(is_near(s.largest_aspect, 4.0001 / 0.02));
+        assert_true(is_near(s.smallest_angle, atan(0.005) * 180 / acos(-1)));
+        assert_true(is_near(s.largest_angle, 90));
+        assert_int_equal(s.aspects[0], 1); /* 2 / sqrt(3) is just above 1.1547 */
+        assert_int_equal(s.aspects[11], 1); /* 100 to 300 */
+        assert_int_equal(s.angles[0], 1);
+        assert_int_equal(s.angles[5] + s.angles[6], 3); /* 60 degrees */
+        assert_int_equal(s.angles[8] + s.angles[9], 2); /* 89.7 and 90 */
+        tri_mesh_free(&mesh);
+    }
+}
+
+/* Bins add up, and extremes are those that the judge finds on its own way. */
+static void test_against_judge(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = support_polygon(80, 9);
+    struct tri_options options = support_quality(25, 0.01);
+    struct tri_report report;
+    struct tri_check_report judged;
+    struct tri_mesh mesh = support_generate(&pslg, &options, &report);
+    const struct tri_check_options judge = {.max_bad = INT64_MAX};
+    support_judge(&mesh, &pslg, &judge, false, &judged);
+    tri_mesh_compact(&mesh);
+    struct tri_counts counts = counted(&mesh);
+    struct tri_shapes s;
+    tri_measure_shapes(&s, &mesh);
+    int64_t triangles = 0, angles = 0;
+    for (int k = 0; k < TRI_ASPECT_BINS; k++)
+        triangles += s.aspects[k];
+    for (int k = 0; k < TRI_ANGLE_BINS; k++)
+        angles += s.angles[k];
+    assert_int_equal(triangles, counts.triangles);
+    assert_int_equal(angles, 3 * counts.triangles);
+    assert_int_equal(counts.edges, judged.n_edges);
+    assert_int_equal(counts.exterior, judged.n_boundary_edges);
+    assert_int_equal(counts.vertices, judged.n_used_points);
+    assert_true(fabs(s.smallest_angle - judged.smallest_angle) < 1e-9);
+    assert_true(fabs(s.largest_angle - judged.largest_angle) < 1e-9);
+    assert_true(is_near(s.smallest_area, judged.smallest_area));
+    assert_true(is_near(s.largest_area, judged.largest_area));
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+static void test_empty(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = support_points(SUPPORT_LINE, 3, 1);
+    for (int32_t i = 0; i < 3; i++)
+        pslg.points[2 * i] = pslg.points[2 * i + 1] = i;
+    struct tri_options options = tri_defaults();
+    struct tri_report report;
+    struct tri_mesh mesh = support_generate(&pslg, &options, &report);
+    struct tri_counts counts = counted(&mesh);
+    struct tri_shapes s;
+    tri_measure_shapes(&s, &mesh);
+    assert_int_equal(counts.vertices + counts.triangles + counts.edges + counts.exterior, 0);
+    assert_true(s.smallest_area == 0 && s.largest_angle == 0 && s.angles[0] == 0);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_counts), cmocka_unit_test(test_unused), cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_against_judge), cmocka_unit_test(test_empty),
+    };
+    return cmocka_run_group_tests_name("stats", tests, NULL, NULL);
+}
