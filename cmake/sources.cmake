@@ -61,6 +61,7 @@ set(PTRIANGLE_PUBLIC_HEADERS
 # needs the room sched/ and its library.
 set(PTRIANGLE_DRIVER_SOURCES)
 set(PTRIANGLE_PROGRAMS triangle trianglecheck)
+set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed
 set(PTRIANGLE_PARALLEL_PROGRAMS)
 
 # meshplot, built where cairo is found.

@@ -15,12 +15,13 @@
 #include "sched/theory.h"
 #include "triangle/quality.h"
 
-/* Blocks: cells of so many final triangles; in the phase of the first colour a fence holds four cells, which fits the
- * second-level cache, or nearly. Coarse triangles a cell has after pre-refinement: enough for seams to be narrow, few enough
- * for pre-refinement to take a hundredth of the time. (docs/performance.md) */
-static const double BLOCK_TRIANGLES = 16384, COARSE_PER_CELL = 64;
+/* Blocks hold one in BLOCKS of the final triangles, within limits: small blocks keep many threads busy, large ones have
+ * fewer seams (a fence of the first colour holds four blocks' worth). Coarse triangles a block has after pre-refinement:
+ * enough for seams to be narrow, few enough for pre-refinement to take a few thousandths of the time.
+ * (docs/performance.md) */
+static const double BLOCKS = 256, SMALLEST_BLOCK = 16384, LARGEST_BLOCK = 65536, COARSE_PER_BLOCK = 64;
 
-enum { FEWEST_BLOCKS = 4, MAX_ROUNDS = 24 };
+enum { FEWEST_BLOCKS = 4, FEWEST_COARSE_BLOCKS = 32, MAX_ROUNDS = 24 };
 
 struct par_options par_defaults(void) { return (struct par_options){0}; }
 
@@ -98,20 +99,19 @@ static enum tri_status refine_level(struct par_state *state, const struct tri_re
                                     struct tri_error *error);
 
 /* Pre-refinement where the input is coarse against the mesh to come: the same bounds with areas scaled up, as the paper has
- * it, for the area that makes COARSE_PER_CELL triangles in a cell. */
-static enum tri_status prerefine_uniform(struct par_state *state, const struct tri_refine_options *quality, int level,
-                                         struct tri_error *error)
+ * it, for the area that makes COARSE_PER_BLOCK triangles in a cell. */
+static enum tri_status prerefine_uniform(struct par_state *state, const struct tri_refine_options *quality, double block,
+                                         int level, struct tri_error *error)
 {
     struct tri_refine_options coarse = *quality;
-    double block = state->options->block_triangles > 0 ? state->options->block_triangles : BLOCK_TRIANGLES;
-    coarse.area_scale = (quality->area_scale > 0 ? quality->area_scale : 1) * (block / COARSE_PER_CELL);
+    coarse.area_scale = (quality->area_scale > 0 ? quality->area_scale : 1) * (block / COARSE_PER_BLOCK);
     coarse.unsuitable = NULL;
     return refine_level(state, &coarse, level + 1, error);
 }
 
 /* Pre-refinement where the input is already fine in places: only edges that are long against their cell are cut. */
-static enum tri_status prerefine_graded(struct par_state *state, const struct par_partition *partition,
-                                        struct tri_error *error)
+static enum tri_status prerefine_graded(struct par_state *state, const struct tri_refine_options *quality,
+                                        const struct par_partition *partition, struct tri_error *error)
 {
     struct tri_refine_options coarse = tri_refine_defaults();
     struct tri_refine_report report;
@@ -119,7 +119,7 @@ static enum tri_status prerefine_graded(struct par_state *state, const struct pa
     struct coarse_test test = {partition, 1.0 / 16, least * least / 16, unit};
     coarse.unsuitable = is_too_long;
     coarse.unsuitable_user = &test;
-    coarse.protect = state->quality->protect;
+    coarse.protect = quality->protect;
     coarse.max_steiner = (int64_t)(partition->estimate / 100) + 1000;
     enum tri_status status = tri_refine(state->mesh, &coarse, &report, error);
     state->report->total.inserted_free += report.inserted_free;
@@ -241,20 +241,27 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     return status;
 }
 
+static double block_size(const struct par_state *state, double estimate)
+{
+    double block = estimate / BLOCKS;
+    if (state->options->block_triangles > 0)
+        return state->options->block_triangles;
+    return block < SMALLEST_BLOCK ? SMALLEST_BLOCK : block > LARGEST_BLOCK ? LARGEST_BLOCK : block;
+}
+
 /* Refines to these bounds: sequentially if that is little work, else by the schedule after a pre-refinement. */
 static enum tri_status refine_level(struct par_state *state, const struct tri_refine_options *quality, int level,
                                     struct tri_error *error)
 {
     struct par_partition partition;
-    double began = par_seconds(), block = state->options->block_triangles;
-    enum tri_status status =
-        par_partition_make(&partition, state->mesh, quality, block > 0 ? block : BLOCK_TRIANGLES, error);
+    double began = par_seconds(), block = block_size(state, par_estimate(state->mesh, quality));
+    enum tri_status status = par_partition_make(&partition, state->mesh, quality, block, error);
     state->report->seconds_partition += par_seconds() - began;
     if (status)
         return status;
     double input_work = 8.0 * state->mesh->n_slots;
     began = par_seconds();
-    if (par_blocks(&partition) < FEWEST_BLOCKS) {
+    if (par_blocks(&partition) < (level == 0 ? FEWEST_BLOCKS : FEWEST_COARSE_BLOCKS)) {
         state->quality = quality;
         status = refine_rest(state, quality, true, error);
         if (level > 0)
@@ -264,8 +271,8 @@ static enum tri_status refine_level(struct par_state *state, const struct tri_re
     } else {
         state->report->levels = level + 1 > state->report->levels ? level + 1 : state->report->levels;
         tell(state, 0);
-        bool uniform = input_work * (BLOCK_TRIANGLES / COARSE_PER_CELL) < 4 * partition.estimate;
-        status = uniform ? prerefine_uniform(state, quality, level, error) : prerefine_graded(state, &partition, error);
+        bool uniform = input_work * (block / COARSE_PER_BLOCK) < 4 * partition.estimate;
+        status = uniform ? prerefine_uniform(state, quality, block, level, error) : prerefine_graded(state, quality, &partition, error);
         if (!uniform)
             state->report->seconds_prerefine += par_seconds() - began;
         if (!status)

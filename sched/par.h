@@ -14,6 +14,9 @@
 struct par_options {
     int threads;             /* 0: what OpenMP would use (OMP_NUM_THREADS, else all cores) */
     double block_triangles;  /* final triangles in a block, to the order; 0: the default. Part of the decomposition */
+    bool margin;             /* the paper's margin: a block inserts no point within 2 r of its fence, where that leaves
+                                two thirds of it. Then no cavity is ever refused; without it, each is asked. Part of the
+                                decomposition */
     bool size_test_in_parallel; /* quality.unsuitable may be called by several threads at once; else, where there is a size
                                    test, the mesh is refined sequentially */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */

@@ -12,6 +12,7 @@ struct task {
     int32_t block;
     int32_t *seeds;         /* part of the phase's list */
     int32_t n_seeds;
+    int32_t expected;       /* triangles, to the order */
     struct tri_fence fence, active;
     struct par_room room;
     struct tri_mesh view;
@@ -111,8 +112,8 @@ static bool deal_seeds(struct phase *p)
     return p->tasks;
 }
 
-/* The active box of a fence: 2 r less on every side, so that no cavity of a point in it reaches beyond the fence
- * (Definition 3); the whole fence where the largest circumradius is too large for that. */
+/* The active box of a fence with the paper's margin: 2 r less on every side, so that no cavity of a point in it reaches beyond
+ * the fence (Definition 3); the whole fence where the largest circumradius is too large for that. */
 static struct tri_fence active_of(const struct tri_fence *f, double radius)
 {
     double margin = 2 * radius, width = f->x_max - f->x_min, height = f->y_max - f->y_min;
@@ -126,9 +127,8 @@ static void set_up(struct phase *p, struct task *task)
     const struct par_state *state = p->state;
     double unit = state->mesh->unit;
     task->fence = par_fence(p->partition, task->block / p->partition->n_rows, task->block % p->partition->n_rows);
-    task->active = active_of(&task->fence, state->radius);
-    task->active = (struct tri_fence){task->active.x_min * unit, task->active.y_min * unit, task->active.x_max * unit,
-                                      task->active.y_max * unit};
+    struct tri_fence active = state->options->margin ? active_of(&task->fence, state->radius) : task->fence;
+    task->active = (struct tri_fence){active.x_min * unit, active.y_min * unit, active.x_max * unit, active.y_max * unit};
     task->options = *state->quality;
     task->options.gate = is_active;
     task->options.gate_user = task;
@@ -142,14 +142,17 @@ static void set_up(struct phase *p, struct task *task)
 }
 
 /* Triangles that the seeds of a task will become, to the order. */
-static int32_t expected(const struct phase *p, const struct task *task)
+static int32_t expect(const struct phase *p, const struct task *task)
 {
+    const struct tri_mesh *mesh = p->state->mesh;
     double sum = 0;
-    for (int32_t i = 0; i < task->n_seeds; i++)
-        sum += par_work_of(p->state->mesh, p->state->quality, task->seeds[i]);
+    for (int32_t i = 0; i < task->n_seeds; i++) {
+        double at[2];
+        tri_mesh_place(mesh, mesh->tri[task->seeds[i]].v[0], at);
+        if (is_active((void *)task, at))
+            sum += par_work_of(mesh, p->state->quality, task->seeds[i]);
+    }
     sum = 1.02 * sum + 128;
-    if (p->state->options->tight_room > 0)
-        return p->state->options->tight_room;
     return sum < 1e7 ? (int32_t)sum : 10000000;
 }
 
@@ -161,8 +164,8 @@ static enum tri_status deal_room(struct phase *p, bool first, struct tri_error *
         struct task *task = &p->tasks[i];
         if (!task->pausing)
             continue;
-        int32_t more = first ? expected(p, task) : (int32_t)(task->report.inserted_free + task->n_seeds) + 512;
-        if (!first && p->state->options->tight_room > 0)
+        int32_t more = first ? task->expected : (int32_t)task->report.inserted_free + task->n_seeds + 512;
+        if (p->state->options->tight_room > 0)
             more = p->state->options->tight_room;
         p->state->report->pauses += !first;
         status = par_room_extend(&task->room, &p->state->spare, p->state->mesh, more, error);
@@ -207,18 +210,36 @@ static bool run_tasks(struct phase *p)
     return waiting;
 }
 
-/* In canonical order or, for tests, at random. Blocks hold about equal work: there is no largest to start with. */
-static void order_tasks(struct phase *p)
+struct ranked {
+    int32_t expected, task;
+};
+
+static int by_expected(const void *left, const void *right)
+{
+    const struct ranked *a = left, *b = right;
+    if (a->expected != b->expected)
+        return a->expected > b->expected ? -1 : 1;
+    return (a->task > b->task) - (a->task < b->task);
+}
+
+/* The largest first, so that the last to end are small; or, for tests, at random. */
+static bool order_tasks(struct phase *p)
 {
     unsigned draw = p->state->options->shuffle;
-    for (int32_t i = 0; i < p->n_tasks; i++)
-        p->order[i] = i;
-    for (int32_t i = p->n_tasks - 1; draw && i > 0; i--) {
-        draw = draw * 1664525u + 1013904223u;
-        int32_t k = (int32_t)((draw >> 8) % (unsigned)(i + 1)), swap = p->order[i];
-        p->order[i] = p->order[k];
-        p->order[k] = swap;
+    struct ranked *ranked = malloc(((size_t)p->n_tasks + 1) * sizeof *ranked);
+    p->order = malloc(((size_t)p->n_tasks + 1) * sizeof *p->order);
+    if (ranked && p->order) {
+        for (int32_t i = 0; i < p->n_tasks; i++) {
+            draw = draw * 1664525u + 1013904223u;
+            ranked[i] = (struct ranked){p->state->options->shuffle ? (int32_t)(draw >> 8) : p->tasks[i].expected, i};
+        }
+        qsort(ranked, (size_t)p->n_tasks, sizeof *ranked, by_expected);
+        for (int32_t i = 0; i < p->n_tasks; i++)
+            p->order[i] = ranked[i].task;
     }
+    bool done = ranked && p->order;
+    free(ranked);
+    return done;
 }
 
 static bool report_block(const struct phase *p, const struct task *task)
@@ -277,12 +298,13 @@ static enum tri_status run_phase(struct phase *p, struct tri_error *error)
     struct par_report *report = p->state->report;
     double began = par_seconds();
     assign_blocks(p);
-    p->order = deal_seeds(p) ? malloc(((size_t)p->n_tasks + 1) * sizeof *p->order) : NULL;
-    if (!p->order)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks of a phase");
-    for (int32_t i = 0; i < p->n_tasks; i++)
+    bool memory = deal_seeds(p);
+    for (int32_t i = 0; memory && i < p->n_tasks; i++) {
         set_up(p, &p->tasks[i]);
-    order_tasks(p);
+        p->tasks[i].expected = expect(p, &p->tasks[i]);
+    }
+    if (!memory || !order_tasks(p))
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks of a phase");
     report->seconds_seeds += par_seconds() - began;
     enum tri_status status = TRI_OK;
     for (bool first = true, waiting = true; waiting && !status; first = false) {

@@ -1,0 +1,127 @@
+/* checkerboard: an example of the hook. Refines the cells of a checkerboard, first the black ones, then the white ones,
+ * from outside the library: through tri_generate, and tri_refine with a gate.
+ *
+ * A gate is asked for each bad triangle, with the point that would remove it. Where it says no, the triangle stays as it is;
+ * the next call finds it again. So a schedule of one's own needs nothing but the public headers. What the gate decides is
+ * where points go, not which triangles change: a cavity may reach across the border of a cell by a triangle or two, and a
+ * segment that a new point would encroach is split wherever it lies. (To confine changes as well, set a fence.)
+ *
+ * Usage: checkerboard [CELLS [MAX_AREA]]. Exit code 0: at the end all triangles satisfy the bounds. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "triangle/tri.h"
+
+enum colour { BLACK, WHITE };
+
+/* A unit square of cells x cells; the gate lets points into cells of one colour. */
+struct board {
+    int cells;
+    enum colour open;
+};
+
+static enum colour colour_at(const struct board *board, const double p[2])
+{
+    int column = (int)(p[0] * board->cells), row = (int)(p[1] * board->cells);
+    return (column + row) % 2 ? WHITE : BLACK;
+}
+
+/* The hook: user is the board. */
+static bool is_open(void *user, const double p[2])
+{
+    const struct board *board = user;
+    return colour_at(board, p) == board->open;
+}
+
+/* The unit square and nothing else, as plain arrays. */
+static enum tri_status make_square(struct tri_mesh *mesh, struct tri_error *error)
+{
+    double points[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+    int32_t segments[8] = {0, 1, 1, 2, 2, 3, 3, 0};
+    struct tri_pslg square = {.n_points = 4, .points = points, .n_segments = 4, .segments = segments};
+    struct tri_options options = tri_defaults();
+    struct tri_report report;
+    options.use_segments = true;
+    return tri_generate(mesh, &square, &options, &report, error);
+}
+
+/* Triangles by the colour of the cell that holds their centroid. */
+static void count_colours(const struct tri_mesh *mesh, const struct board *board, long count[2])
+{
+    count[BLACK] = count[WHITE] = 0;
+    for (int32_t t = 0; t < mesh->n_slots; t++) {
+        double centroid[2] = {0, 0}, corner[2];
+        if (!tri_is_live(&mesh->tri[t]))
+            continue;
+        for (int k = 0; k < 3; k++) {
+            tri_mesh_place(mesh, mesh->tri[t].v[k], corner);
+            centroid[0] += corner[0] / 3;
+            centroid[1] += corner[1] / 3;
+        }
+        count[colour_at(board, centroid)]++;
+    }
+}
+
+static int64_t count_bad(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                         const struct tri_refine_report *report)
+{
+    int64_t count[TRI_EXCUSES], sum = 0;
+    tri_count_bad(mesh, options, report, count);
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        sum += count[k];
+    return sum;
+}
+
+/* One call of the refinement loop; says what it did. *bad: triangles that still violate the bounds. */
+static enum tri_status refine(const char *what, struct tri_mesh *mesh, const struct tri_refine_options *options,
+                              const struct board *board, int64_t *bad, struct tri_error *error)
+{
+    struct tri_refine_report report;
+    long count[2];
+    enum tri_status status = tri_refine(mesh, options, &report, error);
+    if (status)
+        return status;
+    *bad = count_bad(mesh, options, &report);
+    count_colours(mesh, board, count);
+    printf("%-14s %8lld points inserted, %8lld times refused; triangles: %8ld in black cells, %8ld in white, %8lld bad\n", what,
+           (long long)(report.inserted_free + report.inserted_on_segments), (long long)report.gated, count[BLACK], count[WHITE],
+           (long long)*bad);
+    return TRI_OK;
+}
+
+static enum tri_status play(struct tri_mesh *mesh, struct board *board, double max_area, int64_t *bad, struct tri_error *error)
+{
+    struct tri_refine_options options = tri_refine_defaults();
+    options.min_angle = 30;
+    /* Coarse everywhere first: a triangle larger than a cell belongs to no cell. */
+    options.max_area = 0.1 / ((double)board->cells * board->cells);
+    enum tri_status status = refine("coarse", mesh, &options, board, bad, error);
+    options.max_area = max_area;
+    options.gate = is_open;
+    options.gate_user = board;
+    board->open = BLACK;
+    status = status ? status : refine("black cells", mesh, &options, board, bad, error);
+    board->open = WHITE;
+    status = status ? status : refine("white cells", mesh, &options, board, bad, error);
+    options.gate = NULL; /* what the white cells have made bad in the black ones, if anything */
+    return status ? status : refine("without gate", mesh, &options, board, bad, error);
+}
+
+int main(int argc, char **argv)
+{
+    struct board board = {argc > 1 ? atoi(argv[1]) : 8, BLACK};
+    double max_area = argc > 2 ? atof(argv[2]) : 1e-5;
+    struct tri_mesh mesh;
+    struct tri_error error;
+    int64_t bad = 0;
+    if (argc > 3 || board.cells < 1 || board.cells > 1000 || !(max_area > 0)) {
+        fprintf(stderr, "Usage: checkerboard [CELLS [MAX_AREA]]\n");
+        return 2;
+    }
+    enum tri_status status = make_square(&mesh, &error);
+    status = status ? status : play(&mesh, &board, max_area, &bad, &error);
+    if (status)
+        fprintf(stderr, "checkerboard: %s\n", error.text);
+    tri_mesh_free(&mesh);
+    return status || bad ? 1 : 0;
+}
