@@ -175,16 +175,20 @@ static bool sees_rims(const struct tri_cavity *c, const struct tri_mesh *mesh, i
     return true;
 }
 
-/* A split point that rounding has put beside a dangling end may be seen by one side's search around that end. */
-static bool sides_overlap(const struct tri_cavity *c, int32_t s, int32_t n_left_tri)
+/* Rounding may put a split point beside a vertex, around which the search then comes back to where it has been. */
+static bool overlaps_itself(const struct tri_cavity *c, int32_t s)
 {
     for (int32_t i = 0; i < c->n_wall; i++)
         if (c->rim[c->wall[i]].outer == ~s)
             return true;
-    for (int32_t i = 0; i < n_left_tri; i++)
-        for (int32_t k = n_left_tri; k < c->n_tri; k++)
+    for (int32_t i = 0; i < c->n_tri; i++) {
+        for (int32_t k = 0; k < i; k++)
             if (c->tri[i] == c->tri[k])
                 return true;
+        for (int32_t k = 0; k < c->n_rim; k++)
+            if (c->rim[k].outer >= 0 && c->rim[k].outer >> 2 == c->tri[i])
+                return true;
+    }
     return false;
 }
 
@@ -192,7 +196,6 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
                                         int32_t *n_left)
 {
     const struct tri_subsegment *sub = &mesh->sub[s];
-    int32_t n_left_tri = 0;
     *n_left = 0;
     if (!begin(c, p))
         return TRI_SEARCH_NO_MEMORY;
@@ -205,12 +208,10 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
             return found;
         if (!sees_rims(c, mesh, first, c->n_rim, last))
             return TRI_SEARCH_OUTSIDE;
-        if (side == 0) {
+        if (side == 0)
             *n_left = c->n_rim;
-            n_left_tri = c->n_tri;
-        }
     }
-    return sides_overlap(c, s, n_left_tri) ? TRI_SEARCH_OUTSIDE : TRI_SEARCH_FOUND;
+    return overlaps_itself(c, s) ? TRI_SEARCH_OUTSIDE : TRI_SEARCH_FOUND;
 }
 
 /* A slot for the next new triangle: first those of the cavity, then fresh ones. A fan has at least as many triangles as its

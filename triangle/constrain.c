@@ -318,27 +318,71 @@ static double squared(struct tri_point a, struct tri_point b)
     return x * x + y * y;
 }
 
-/* There is no room for a vertex at p, where subsegment s is crossed: of the corners of the two triangles beside s, the one
- * nearest to p takes its place. If that is not an end of s, s itself is laid anew through it. */
-static enum tri_status bend(struct layer *l, int32_t s, struct tri_point p, int32_t *end)
+/* Square of the distance up to which places on the segment from a to b count as one. */
+static double rounding2(struct tri_point a, struct tri_point b)
+{
+    double size = fmax(fmax(fabs(a.x), fabs(a.y)), fmax(fabs(b.x), fabs(b.y)));
+    return size * size * 0x1p-96;
+}
+
+static void try_nearer(const struct layer *l, int32_t v, struct tri_point p, int32_t *best)
+{
+    if (v != TRI_NONE && squared(l->mesh->xy[v], p) < squared(l->mesh->xy[*best], p))
+        *best = v;
+}
+
+static int32_t apex_beside(const struct tri_mesh *mesh, const struct tri_subsegment *s, int side)
+{
+    return s->side[side] == TRI_NONE ? TRI_NONE : mesh->tri[tri_of(s->side[side])].v[tri_edge(s->side[side])];
+}
+
+/* Takes up s and lays it anew through vertex v. */
+static enum tri_status lay_through(struct layer *l, int32_t s, int32_t v)
+{
+    const struct tri_subsegment old = l->mesh->sub[s];
+    int32_t segment = l->mesh->parents[old.parent].segment;
+    if (old.side[0] == TRI_NONE || old.side[1] == TRI_NONE)
+        return TRI_OK;
+    bool room = take_up(l, s) && push_piece(l, old.v[0], v, segment, old.marker) && push_piece(l, v, old.v[1], segment, old.marker);
+    return room ? TRI_OK : no_memory(l);
+}
+
+/* There is no room for a vertex at p, where a -> b crosses subsegment s. Either a vertex is as good as there: both segments
+ * run through it. Or a triangle beside s is so flat that p, rounded, lies beyond it: then s runs through its apex, and a -> b
+ * is laid again. */
+static enum tri_status bend(struct layer *l, int32_t a, int32_t b, int32_t s, struct tri_point p, int32_t *end)
 {
     const struct tri_mesh *mesh = l->mesh;
-    const struct tri_subsegment old = mesh->sub[s];
-    int32_t segment = mesh->parents[old.parent].segment;
-    *end = old.v[0];
+    const struct tri_subsegment *sub = &mesh->sub[s];
+    int32_t near = sub->v[0], left = apex_beside(mesh, sub, 0), right = apex_beside(mesh, sub, 1);
     l->report->bent++;
-    for (int side = 0; side < 2; side++) {
-        const int32_t *v = old.side[side] == TRI_NONE ? NULL : mesh->tri[tri_of(old.side[side])].v;
-        for (int k = 0; v && k < 3; k++)
-            if (squared(mesh->xy[v[k]], p) < squared(mesh->xy[*end], p))
-                *end = v[k];
-    }
-    if (*end == old.v[0] || *end == old.v[1])
+    try_nearer(l, sub->v[1], p, &near);
+    try_nearer(l, left, p, &near);
+    try_nearer(l, right, p, &near);
+    try_nearer(l, a, p, &near);
+    try_nearer(l, b, p, &near);
+    for (int32_t i = 0; i < l->cavity.n_rim; i++)
+        try_nearer(l, l->cavity.rim[i].a, p, &near);
+    *end = near;
+    struct tri_point from = mesh->xy[sub->v[0]], to = mesh->xy[sub->v[1]];
+    bool is_there = squared(mesh->xy[near], p) <= 4 * rounding2(from, to) || left == TRI_NONE || right == TRI_NONE;
+    if (near == sub->v[0] || near == sub->v[1])
         return TRI_OK;
-    assert(old.side[0] != TRI_NONE && old.side[1] != TRI_NONE); /* nothing crosses an edge of the hull */
-    bool room = take_up(l, s) && push_piece(l, old.v[0], *end, segment, old.marker) &&
-                push_piece(l, *end, old.v[1], segment, old.marker);
-    return room ? TRI_OK : no_memory(l);
+    if (is_there)
+        return lay_through(l, s, near);
+    *end = b;
+    bool flat_left = fabs(tri_orient2d(from, to, mesh->xy[left])) < fabs(tri_orient2d(from, to, mesh->xy[right]));
+    return lay_through(l, s, flat_left ? left : right);
+}
+
+/* Is p so near to a corner of its cavity that an edge between them would be all rounding? */
+static bool is_crammed(const struct layer *l, int32_t s, struct tri_point p)
+{
+    const struct tri_mesh *mesh = l->mesh;
+    double nearest = HUGE_VAL;
+    for (int32_t i = 0; i < l->cavity.n_rim; i++)
+        nearest = fmin(nearest, squared(mesh->xy[l->cavity.rim[i].a], p));
+    return nearest <= rounding2(mesh->xy[mesh->sub[s].v[0]], mesh->xy[mesh->sub[s].v[1]]);
 }
 
 /* Splits subsegment s where a -> b crosses it. *end receives the new vertex or, where there is no room for one between
@@ -352,8 +396,8 @@ static enum tri_status cut(struct layer *l, int32_t a, int32_t b, int32_t s, int
     enum tri_search found = tri_cavity_search_split(&l->cavity, mesh, p, s, &n_left);
     if (found == TRI_SEARCH_NO_MEMORY)
         return no_memory(l);
-    if (found != TRI_SEARCH_FOUND)
-        return bend(l, s, p, end);
+    if (found != TRI_SEARCH_FOUND || is_crammed(l, s, p))
+        return bend(l, a, b, s, p, end);
     enum tri_status status = tri_mesh_reserve_vertices(mesh, 1, l->error);
     status = status ? status : tri_mesh_reserve_triangles(mesh, 2, l->error);
     status = status ? status : tri_mesh_reserve_subs(mesh, 1, l->error);
@@ -367,7 +411,12 @@ static enum tri_status cut(struct layer *l, int32_t a, int32_t b, int32_t s, int
     tri_cavity_fill_split(&l->cavity, mesh, v, s, n_left);
     l->report->crossings++;
     *end = v;
-    return keep_corners(l, v) ? TRI_OK : no_memory(l);
+    if (!keep_corners(l, v))
+        return no_memory(l);
+    for (int32_t i = 0; i < l->cavity.n_rim; i++)
+        if (!touch(l, l->cavity.rim[i].slot))
+            return no_memory(l);
+    return legalise(l) ? TRI_OK : no_memory(l);
 }
 
 /* What the segment a -> b meets first: sets *end to the vertex that ends the first piece, *clear to false where a subsegment

@@ -36,7 +36,7 @@ struct tri_refiner {
     int relaxed;      /* how many times the angle bound has been lowered, see relax */
     int step;         /* of run_steps: which list of seeds is being looked at */
     int32_t next_seed, n_seeds;
-    bool beyond;      /* the usual angle is reached, now for more */
+    int beyond;       /* 0: on the way to the usual angle; 1: to more; 2: back to the usual one where that failed */
     bool in_hand;     /* `hand` was being treated when there was no room */
     struct tri_entry hand;
     int32_t *crowded; /* stack of subsegments to test for encroachment (conforming only) */
@@ -305,6 +305,13 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
     return reach;
 }
 
+/* Lower than the shortest edge that coordinates can carry: splitting a subsegment beside it would chase the rounding. */
+static bool is_flat(const struct tri_refiner *r, const struct tri_shape *shape)
+{
+    double longest2 = fmax(shape->l[0], fmax(shape->l[1], shape->l[2]));
+    return shape->area2 * shape->area2 < r->mesh->shortest2 * longest2;
+}
+
 static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tri_shape *shape, enum badness badness)
 {
     const struct tri_triangle t = r->mesh->tri[slot];
@@ -319,6 +326,8 @@ static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tr
         int32_t s = find_encroached(r);
         if (s == TRI_NONE)
             return insert_free(r, p);
+        if (is_flat(r, shape))
+            return refuse(r, TRI_EXCUSE_PRECISION);
         enum outcome outcome = split(r, s, slot);
         return outcome == DONE ? AGAIN : outcome;
     }
@@ -500,7 +509,7 @@ static double quarter_of_shortest2(const struct tri_mesh *mesh)
  * what is there. */
 static bool refine_beyond_usual(struct tri_refiner *r)
 {
-    if (!r->beyond) {
+    if (r->beyond == 0) {
         if (!refine_seeds(r))
             return false;
         double floor2 = quarter_of_shortest2(r->mesh);
@@ -508,9 +517,18 @@ static bool refine_beyond_usual(struct tri_refiner *r)
         lower_bound(r, r->options->min_angle);
         r->angle_cap = 1000 + r->for_angles + r->mesh->n_slots / 4;
         r->step = 0;
-        r->beyond = true;
+        r->beyond = 1;
     }
-    return refine_seeds(r);
+    if (r->beyond == 1) {
+        if (!refine_seeds(r))
+            return false;
+        r->beyond = 2;
+        r->step = 0;
+        r->shortest2 = r->mesh->shortest2;
+        if (r->report->hit_cap)
+            lower_bound(r, TRI_USUAL_ANGLE);
+    }
+    return !r->report->hit_cap || refine_seeds(r); /* the usual angle everywhere, whatever the attempt has left */
 }
 
 enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *mesh,
@@ -528,12 +546,12 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
     r->mesh = mesh;
     r->options = options;
     r->report = report;
-    bool beyond = options->min_angle > TRI_USUAL_ANGLE;
-    r->bounds = tri_bounds_for(beyond ? TRI_USUAL_ANGLE : options->min_angle, options->conforming);
+    double angle = options->min_angle < TRI_USUAL_ANGLE ? options->min_angle : TRI_USUAL_ANGLE;
+    r->bounds = tri_bounds_for(angle, options->conforming);
     r->shortest2 = mesh->shortest2;
     frexp(r->shortest2, &r->least_exponent);
     r->cavity.fence = options->fence;
-    r->angle_cap = 20000 + 50 * (int64_t)seed_count(r);
+    r->angle_cap = 50000 + 100 * (int64_t)seed_count(r);
     return TRI_OK;
 }
 
@@ -542,7 +560,8 @@ enum tri_status tri_refiner_run(struct tri_refiner *r, struct tri_error *error)
     struct tri_error own;
     r->error = error ? error : &own;
     r->error->status = TRI_OK;
-    if (r->options->min_angle > TRI_USUAL_ANGLE ? refine_beyond_usual(r) : refine_seeds(r))
+    bool beyond = r->options->min_angle > TRI_USUAL_ANGLE && !r->options->fence;
+    if (beyond ? refine_beyond_usual(r) : refine_seeds(r))
         return TRI_OK;
     if (r->error->status == TRI_OK)
         tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "out of memory while refining");

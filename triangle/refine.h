@@ -26,7 +26,7 @@ typedef void tri_left(void *user, int32_t slot);
 typedef enum tri_status tri_more_room(void *user, struct tri_mesh *mesh, struct tri_error *error);
 
 struct tri_refine_options {
-    double min_angle;      /* degrees; 0: no bound on angles */
+    double min_angle;      /* degrees; 0: no bound on angles; above 34 best effort, and no more than 34 within a fence */
     double max_area;       /* <= 0: none */
     bool region_areas;     /* mesh->regions[t.region].max_area applies too */
     double area_scale;     /* > 0: all area bounds are multiplied by this, for pre-refinement; 0: as they are */

@@ -65,14 +65,16 @@ static const int32_t *parents_of(const struct tri_mesh *mesh, int32_t v, int32_t
     return mesh->spokes + mesh->spoke_start[v];
 }
 
-/* How many points, to the order, would it take to fill the space between two parents that are `width` apart at one place? At
- * the far end of the shorter one, of length l, they are at most width + l * sine apart. */
-static double filling_cost(const struct tri_mesh *mesh, const struct tri_parent *p, const struct tri_parent *q, double width)
+/* How many points, to the order, would it take to fill the space between two parents that are as far apart at one place as v
+ * is from the line of p through u? At the far end of the shorter one, of length l, they are at most width + l * sine apart. */
+static double filling_cost(const struct tri_mesh *mesh, const struct tri_parent *p, const struct tri_parent *q,
+                           struct tri_point u, struct tri_point v)
 {
     struct tri_point a = mesh->xy[p->v[0]], b = mesh->xy[p->v[1]], c = mesh->xy[q->v[0]], d = mesh->xy[q->v[1]];
     double px = b.x - a.x, py = b.y - a.y, qx = d.x - c.x, qy = d.y - c.y;
     double lp = px * px + py * py, lq = qx * qx + qy * qy, cross = fabs(px * qy - py * qx);
     double shorter = sqrt(lp < lq ? lp : lq), longer = sqrt(lp < lq ? lq : lp);
+    double width = fabs(px * (v.y - u.y) - py * (v.x - u.x)) / sqrt(lp);
     return shorter / (width + cross / longer); /* cross / longer = shorter * sine */
 }
 
@@ -87,17 +89,17 @@ static bool is_ahead(const struct tri_mesh *mesh, const struct tri_parent *p, in
 
 /* The cost of filling the dearest space between two parents that the edge uv bridges and the triangle with apex w lies in;
  * 0 where uv does not bridge any. */
-static double channel_cost(const struct tri_mesh *mesh, int32_t u, int32_t v, int32_t w, double uv2)
+static double channel_cost(const struct tri_mesh *mesh, int32_t u, int32_t v, int32_t w)
 {
     int32_t nu, nv;
     const int32_t *pu = parents_of(mesh, u, &nu), *pv = parents_of(mesh, v, &nv);
-    double width = nu && nv ? sqrt(uv2) : 0, dearest = 0;
+    double dearest = 0;
     for (int32_t i = 0; i < nu; i++)
         for (int32_t k = 0; k < nv; k++) {
             const struct tri_parent *p = &mesh->parents[pu[i]], *q = &mesh->parents[pv[k]];
             if (pu[i] == pv[k] || !is_ahead(mesh, p, u, w) || !is_ahead(mesh, q, v, w))
                 continue;
-            double cost = filling_cost(mesh, p, q, width);
+            double cost = filling_cost(mesh, p, q, mesh->xy[u], mesh->xy[v]);
             dearest = cost > dearest ? cost : dearest;
         }
     return dearest;
@@ -107,7 +109,7 @@ bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_
 {
     const int32_t *v = mesh->tri[slot].v;
     int k = shape->shortest;
-    return channel_cost(mesh, v[tri_next[k]], v[tri_prev[k]], v[k], shape->l[k]) > mesh->dearest_channel;
+    return channel_cost(mesh, v[tri_next[k]], v[tri_prev[k]], v[k]) > mesh->dearest_channel;
 }
 
 bool tri_is_hopeless(const struct tri_mesh *mesh, double shortest2, int32_t slot, const struct tri_shape *shape)
@@ -130,7 +132,7 @@ static double dearest_affordable(const struct tri_mesh *mesh)
         const int32_t *v = mesh->tri[t].v;
         struct tri_shape shape = tri_shape_of(mesh->xy, v);
         int k = shape.shortest, octave; /* 2^(octave - 1) <= cost < 2^octave */
-        double cost = channel_cost(mesh, v[tri_next[k]], v[tri_prev[k]], v[k], shape.l[k]);
+        double cost = channel_cost(mesh, v[tri_next[k]], v[tri_prev[k]], v[k]);
         frexp(cost, &octave);
         if (octave > CHEAP) {
             octave = octave < OCTAVES ? octave : OCTAVES - 1;
