@@ -19,7 +19,7 @@
  * fewer seams (a fence of the first colour holds four blocks' worth). Coarse triangles a block has after pre-refinement:
  * enough for seams to be narrow, few enough for pre-refinement to take a few thousandths of the time.
  * (docs/performance.md) */
-static const double BLOCKS = 256, SMALLEST_BLOCK = 16384, LARGEST_BLOCK = 65536, COARSE_PER_BLOCK = 64;
+static const double BLOCKS = 128, SMALLEST_BLOCK = 16384, LARGEST_BLOCK = 65536, COARSE_PER_BLOCK = 64;
 
 enum { FEWEST_BLOCKS = 4, FEWEST_COARSE_BLOCKS = 32, MAX_ROUNDS = 24 };
 

@@ -2,7 +2,7 @@
  *
  * The work is sampled: vertices stand for the triangles that an angle bound will ask for around them, triangles for those that
  * an area bound will ask for inside them; large triangles are cut into small ones first, so that their work lies where it is.
- * There are some 64 samples for a block: enough for shares equal within an eighth, few enough to sort in no time. */
+ * There are some 32 samples for a block: enough for shares equal within a sixth, few enough to sort in no time. */
 #include "sched/partition.h"
 
 #include <assert.h>
@@ -10,7 +10,7 @@
 
 #include "triangle/quality.h"
 
-enum { SAMPLES_PER_BLOCK = 64 };
+enum { SAMPLES_PER_BLOCK = 32 };
 
 /* Measured: mean area over bound, and triangles around each vertex of the input for bounds of 20 to 34 degrees. */
 static const double MEAN_OVER_BOUND = 0.655, TRIANGLES_PER_VERTEX = 5;

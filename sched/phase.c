@@ -141,9 +141,11 @@ static void set_up(struct phase *p, struct task *task)
     task->options.more_room_user = &task->room;
 }
 
-/* Triangles that the seeds of a task will become, to the order. */
+/* Triangles that the seeds of a task will become in this phase, to the order: a little less than they do become, since a pause
+ * costs less than gaps do. Measured: the rest is left at the seams. */
 static int32_t expect(const struct phase *p, const struct task *task)
 {
+    static const double share[PAR_COLOURS] = {0.72, 0.5, 0.5, 0.8};
     const struct tri_mesh *mesh = p->state->mesh;
     double sum = 0;
     for (int32_t i = 0; i < task->n_seeds; i++) {
@@ -152,7 +154,7 @@ static int32_t expect(const struct phase *p, const struct task *task)
         if (is_active((void *)task, at))
             sum += par_work_of(mesh, p->state->quality, task->seeds[i]);
     }
-    sum = 1.02 * sum + 128;
+    sum = share[p->colour] * sum + 128;
     return sum < 1e7 ? (int32_t)sum : 10000000;
 }
 
@@ -164,7 +166,7 @@ static enum tri_status deal_room(struct phase *p, bool first, struct tri_error *
         struct task *task = &p->tasks[i];
         if (!task->pausing)
             continue;
-        int32_t more = first ? task->expected : (int32_t)task->report.inserted_free + task->n_seeds + 512;
+        int32_t more = first ? task->expected : task->expected / 8 + (int32_t)task->report.inserted_free / 4 + 512;
         if (p->state->options->tight_room > 0)
             more = p->state->options->tight_room;
         p->state->report->pauses += !first;

@@ -219,6 +219,27 @@ static void test_link_to_a_free_slot_is_seen(void **state)
     tri_mesh_free(&mesh);
 }
 
+/* A second copy of a triangle has the right corners behind each link, but its neighbours do not know of it. */
+static void test_copy_of_a_triangle_is_seen(void **state)
+{
+    (void)state;
+    struct tri_mesh mesh = two_triangles();
+    assert_int_equal(tri_mesh_reserve_triangles(&mesh, 1, NULL), TRI_OK);
+    mesh.tri[mesh.n_slots] = mesh.tri[1];
+    mesh.n_slots++;
+    assert_broken(&mesh);
+    for (int e = 0; e < 3; e++) /* nor if only the link to the other triangle is left */
+        if (mesh.tri[2].n[e] < 0) {
+            assert_int_equal(tri_mesh_reserve_subs(&mesh, 1, NULL), TRI_OK);
+            int32_t from = mesh.tri[2].v[tri_next[e]], to = mesh.tri[2].v[tri_prev[e]];
+            int32_t s = tri_mesh_add_sub(&mesh, from, to, 0, TRI_NONE);
+            mesh.sub[s].side[0] = tri_code(2, e);
+            mesh.tri[2].n[e] = ~s;
+        }
+    assert_broken(&mesh);
+    tri_mesh_free(&mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -231,6 +252,7 @@ int main(void)
         cmocka_unit_test(test_each_broken_link_is_seen),
         cmocka_unit_test(test_each_broken_subsegment_is_seen),
         cmocka_unit_test(test_link_to_a_free_slot_is_seen),
+        cmocka_unit_test(test_copy_of_a_triangle_is_seen),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
