@@ -37,6 +37,7 @@ struct phase {
     struct task *tasks;
     int32_t n_tasks;
     int32_t *order;     /* [n_tasks] in which tasks are started */
+    size_t n_owners;    /* debug builds: length of mesh->owner */
 };
 
 bool par_slots_add(struct par_slots *slots, int32_t slot)
@@ -175,10 +176,30 @@ static enum tri_status deal_room(struct phase *p, bool first, struct tri_error *
     return status;
 }
 
+/* In debug builds every block marks the triangles that it changes; two blocks at one triangle fail an assert (cavity.c). */
+static bool watch_owners(struct phase *p, bool first)
+{
+#ifdef NDEBUG
+    (void)p, (void)first;
+#else
+    struct tri_mesh *mesh = p->state->mesh;
+    size_t n = (size_t)mesh->slot_capacity + 1, before = first ? 0 : p->n_owners;
+    int32_t *owner = realloc(mesh->owner, n * sizeof *owner);
+    if (!owner)
+        return false;
+    for (size_t i = before; i < n; i++)
+        owner[i] = 0;
+    mesh->owner = owner;
+    p->n_owners = n;
+#endif
+    return true;
+}
+
 static void run_task(struct phase *p, struct task *task)
 {
     double began = par_seconds();
     par_room_enter(&task->room, &task->view, p->state->mesh);
+    task->view.owner_id = task->block + 1;
     task->status = TRI_OK;
     if (!task->refiner)
         task->status = tri_refiner_new(&task->refiner, &task->view, &task->options, &task->report, &task->error);
@@ -312,9 +333,13 @@ static enum tri_status run_phase(struct phase *p, struct tri_error *error)
     for (bool first = true, waiting = true; waiting && !status; first = false) {
         double dealing = par_seconds();
         status = deal_room(p, first, error);
+        if (!status && !watch_owners(p, first))
+            status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the owners of triangles");
         report->seconds_room += par_seconds() - dealing;
         waiting = !status && run_tasks(p);
     }
+    free(p->state->mesh->owner);
+    p->state->mesh->owner = NULL;
     double merging = par_seconds();
     enum tri_status collected = collect(p, error);
     report->seconds_merge += par_seconds() - merging;

@@ -225,6 +225,20 @@ static inline int32_t take_slot(const struct tri_cavity *c, struct tri_mesh *mes
     return mesh->n_slots++;
 }
 
+#ifndef NDEBUG
+/* Every triangle of the cavity belongs to whoever works on this view, and to nobody else. */
+static bool claim(const struct tri_cavity *c, const struct tri_mesh *mesh)
+{
+    for (int32_t i = 0; mesh->owner && i < c->n_tri; i++) {
+        int32_t *owner = &mesh->owner[c->tri[i]];
+        if (*owner != 0 && *owner != mesh->owner_id)
+            return false;
+        *owner = mesh->owner_id;
+    }
+    return true;
+}
+#endif
+
 /* Makes the triangles of rims first .. end - 1, linked with each other; the chain ends at vertex `last`. */
 static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v, int32_t first, int32_t end, int32_t last)
 {
@@ -252,6 +266,7 @@ static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v, i
 void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v)
 {
     assert(c->n_rim >= 3 && c->n_rim >= c->n_tri);
+    assert(claim(c, mesh));
     fill_chain(c, mesh, v, 0, c->n_rim, c->rim[0].a);
     int32_t first = c->rim[0].slot, last = c->rim[c->n_rim - 1].slot;
     mesh->tri[first].n[2] = tri_code(last, 1);
@@ -263,6 +278,7 @@ int32_t tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, int32
     const struct tri_subsegment old = mesh->sub[s];
     int32_t second = mesh->n_subs++, ends[2] = {0, n_left};
     assert(mesh->n_subs <= mesh->sub_capacity && c->n_rim >= c->n_tri);
+    assert(claim(c, mesh));
     mesh->sub[s] = (struct tri_subsegment){{old.v[0], v}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
     mesh->sub[second] = (struct tri_subsegment){{v, old.v[1]}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
     for (int side = 0; side < 2; side++) {

@@ -90,6 +90,10 @@ struct tri_mesh {
     struct tri_region *regions; /* [n_regions] regions[0] is "no region": attribute 0, no bound */
     int32_t n_regions;
 
+    int32_t *owner;           /* [slot_capacity] or NULL; for proofs in debug builds: who changed a triangle since the array
+                                 was cleared (0: nobody). Views of one mesh share it */
+    int32_t owner_id;         /* > 0: who works on this view */
+
     double unit;              /* a power of two: the caller's coordinates are xy * unit */
 };
 
