@@ -39,8 +39,14 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/read.c
     triangle/write.c)
 
-# Room sched/, the parallel schedule: the only sources compiled with OpenMP.
-set(PTRIANGLE_SCHED_SOURCES)
+# Room sched/, the parallel schedule: with drivers/ptriangle.c, which asks for the number of threads, the only sources
+# compiled with OpenMP.
+set(PTRIANGLE_SCHED_SOURCES
+    sched/theory.c
+    sched/partition.c
+    sched/room.c
+    sched/phase.c
+    sched/par.c)
 
 # Headers that are installed, below include/ptriangle/ at the same path.
 set(PTRIANGLE_PUBLIC_HEADERS
@@ -55,14 +61,15 @@ set(PTRIANGLE_PUBLIC_HEADERS
     triangle/check.h
     triangle/executor.h
     triangle/read.h
-    triangle/write.h)
+    triangle/write.h
+    sched/par.h)
 
 # Room drivers/: what the executables share, then the executables, each from drivers/<name>.c. The second list of programs
 # needs the room sched/ and its library.
 set(PTRIANGLE_DRIVER_SOURCES)
 set(PTRIANGLE_PROGRAMS triangle trianglecheck)
 set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed
-set(PTRIANGLE_PARALLEL_PROGRAMS)
+set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
 
 # meshplot, built where cairo is found.
 set(PTRIANGLE_PLOT_SOURCES
@@ -81,4 +88,12 @@ set(PTRIANGLE_RUN_SOURCES
     drivers/summary.c
     drivers/self_check.c
     drivers/run.c)
-set(PTRIANGLE_RUN_PROGRAMS triangle)
+set(PTRIANGLE_RUN_PROGRAMS triangle ptriangle)
+
+# What the parallel program has beside that. Its report is written with jansson; without, the last file stands in.
+set(PTRIANGLE_PARALLEL_SOURCES
+    drivers/long_options.c
+    drivers/progress.c
+    drivers/prediction.c)
+set(PTRIANGLE_REPORT_SOURCE drivers/report_json.c)
+set(PTRIANGLE_NO_REPORT_SOURCE drivers/report_none.c)

@@ -41,14 +41,14 @@ static double area_work(const struct tri_mesh *mesh, const struct tri_refine_opt
     return 0.5 * tri_shape_of(mesh->xy, v).area2 * density(mesh, options, mesh->tri[t].region);
 }
 
-double par_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
-{
-    return tri_is_live(&mesh->tri[t]) ? area_work(mesh, options, t) + 1 : 0;
-}
-
 static double vertex_work(const struct tri_refine_options *options)
 {
     return options->min_angle > 0 || options->conforming ? TRIANGLES_PER_VERTEX : 2;
+}
+
+double par_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
+{
+    return tri_is_live(&mesh->tri[t]) ? area_work(mesh, options, t) + vertex_work(options) : 0;
 }
 
 double par_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options)

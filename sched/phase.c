@@ -159,7 +159,14 @@ static int32_t expect(const struct phase *p, const struct task *task)
     return sum < 1e7 ? (int32_t)sum : 10000000;
 }
 
-/* More room for the paused tasks, in canonical order. The first time for what is expected, then half as much again. */
+/* Room for a task that is full: a little where the expectation was about right, as much again where it was not. */
+static int32_t more_for(const struct task *task)
+{
+    int32_t inserted = (int32_t)(task->report.inserted_free + task->report.inserted_on_segments);
+    return inserted < task->expected ? task->expected / 8 + inserted / 4 + 256 : 2 * inserted;
+}
+
+/* Room for the paused tasks, in canonical order. */
 static enum tri_status deal_room(struct phase *p, bool first, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -167,7 +174,7 @@ static enum tri_status deal_room(struct phase *p, bool first, struct tri_error *
         struct task *task = &p->tasks[i];
         if (!task->pausing)
             continue;
-        int32_t more = first ? task->expected : task->expected / 8 + (int32_t)task->report.inserted_free / 4 + 512;
+        int32_t more = first ? task->expected : more_for(task);
         if (p->state->options->tight_room > 0)
             more = p->state->options->tight_room;
         p->state->report->pauses += !first;

@@ -1,7 +1,8 @@
 #!/bin/sh
 # Installs what building needs and this machine lacks, through apt; where there is no apt, says what is needed.
 # Usage: tools/setup.sh [build|tests|ci]
-#   build  C and C++ compiler, make, CMake          (what the programs need), and cairo (meshplot; can be done without)
+#   build  C and C++ compiler, make, CMake          (what the programs need), and cairo (for meshplot) and jansson (for
+#          ptriangle --report), which can be done without
 #   tests  and cmocka, GMP, pkg-config              (what tools/test.sh needs)
 #   ci     and clang with its OpenMP library        (what .ci/run needs)
 # Works as root or with sudo, asks nothing, and does not touch a machine that has everything.
@@ -44,6 +45,7 @@ list_missing() {
     missing=""
     wished=""
     links cairo/cairo.h cairo >/dev/null 2>&1 || wished=libcairo2-dev
+    links jansson.h jansson >/dev/null 2>&1 || wished="${wished:+$wished }libjansson-dev"
     need build-essential compilers
     need cmake command -v cmake
     [ "$wanted" = build ] && return
@@ -53,6 +55,12 @@ list_missing() {
     [ "$wanted" = tests ] && return
     need clang command -v clang++
     need libomp-dev openmp_with_clang
+}
+
+consequence() { # what a machine without $wished does without
+    case $wished in *cairo*) printf 'meshplot, which draws meshes, is not built; ' ;; esac
+    case $wished in *jansson*) printf 'ptriangle has no --report; ' ;; esac
+    echo "all else is"
 }
 
 as_root() {
@@ -78,8 +86,8 @@ esac
 list_missing
 # What can be done without must not be the reason for asking a password.
 if [ -n "$wished" ] && [ -z "$missing" ] && [ "$(id -u)" -ne 0 ] && ! sudo -n true 2>/dev/null; then
+    echo "setup: without $wished: $(consequence)" >&2
     wished=""
-    echo "setup: without cairo (libcairo2-dev), so meshplot, which draws meshes, is not built" >&2
 fi
 if [ -n "$missing$wished" ] && command -v apt-get >/dev/null; then
     echo "setup: installing$missing${wished:+ $wished}"
@@ -88,7 +96,7 @@ if [ -n "$missing$wished" ] && command -v apt-get >/dev/null; then
     [ -z "$missing" ] || apt install -y --no-install-recommends $missing || true
     # shellcheck disable=SC2086
     [ -z "$wished" ] || apt install -y --no-install-recommends $wished ||
-        echo "setup: no $wished, so meshplot, which draws meshes, is not built" >&2
+        echo "setup: without $wished: $(consequence)" >&2
     list_missing
 fi
 if [ -n "$missing" ]; then

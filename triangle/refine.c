@@ -166,7 +166,7 @@ static enum tri_status make_room(struct tri_refiner *r)
     if (vertices >= 1 && slots >= 2 && m->sub_capacity > m->n_subs)
         return TRI_OK;
     if (r->options->more_room)
-        return r->options->more_room(r->options->more_room_user, m, r->error);
+        return r->error->status = r->options->more_room(r->options->more_room_user, m, r->error);
     enum tri_status status = tri_mesh_reserve_vertices(m, 1, r->error);
     status = status ? status : tri_mesh_reserve_triangles(m, 2, r->error);
     return status ? status : tri_mesh_reserve_subs(m, 1, r->error);

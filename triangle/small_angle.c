@@ -1,6 +1,16 @@
-/* Rules that make refinement end on any PSLG.
+/* Rules that make refinement end on any PSLG, beside those of the loop.
  *
- * 1. Input angle: the smallest angle lies between two subsegments, and the other two satisfy the bound or ... */
+ * THEORY. Refinement with bounds up to 28.6 degrees ends where segments meet at 60 degrees or more (Chew 1993; Shewchuk 2002;
+ * Rand 2011), since every new point is about as far from all others as the features around it. Three things break that:
+ *   1. Two segments at a small angle would split each other for ever. They are split on common circles around the vertex where
+ *      they meet (concentric shells: Ruppert 1995), and a triangle whose shortest edge joins two of them on one circle stays
+ *      (Miller, Pav & Walkington 2003): its length is dictated by the input angle, so nothing smaller is made because of it.
+ *   2. Two segments side by side, nearer to each other than rounding, or than anyone could want to fill: spikes of no width, slits,
+ *      borders that were digitised twice. The theory holds, but asks for length / width triangles. Such a channel is filled
+ *      only if the mesh can afford it (dearest_affordable); a triangle whose shortest edge bridges one that is too dear stays.
+ *   3. Rounding: points nearer than about 100 units in the last place, flat triangles, split points beside their segment. An edge
+ *      or height below mesh.shortest2 stays; a point that does not see its whole cavity is not inserted (cavity.h).
+ * What stays is counted by reason (tri_count_bad). */
 #include "triangle/small_angle.h"
 
 #include <stdlib.h>
@@ -78,13 +88,23 @@ static double filling_cost(const struct tri_mesh *mesh, const struct tri_parent 
     return shorter / (width + cross / longer); /* cross / longer = shorter * sine */
 }
 
+static bool is_end(const struct tri_parent *p, int32_t v) { return p->v[0] == v || p->v[1] == v; }
+
 /* Does w lie ahead of v on the parent, rather than behind the end that v is? */
 static bool is_ahead(const struct tri_mesh *mesh, const struct tri_parent *p, int32_t v, int32_t w)
 {
-    if (p->v[0] != v && p->v[1] != v)
+    if (!is_end(p, v))
         return true;
     struct tri_point o = mesh->xy[v], far = mesh->xy[p->v[p->v[0] == v]], q = mesh->xy[w];
     return (far.x - o.x) * (q.x - o.x) + (far.y - o.y) * (q.y - o.y) > 0;
+}
+
+/* Does q lie beside the parent, rather than before its start or beyond its end? */
+static bool is_beside(const struct tri_mesh *mesh, const struct tri_parent *p, int32_t q)
+{
+    struct tri_point a = mesh->xy[p->v[0]], b = mesh->xy[p->v[1]], at = mesh->xy[q];
+    double x = b.x - a.x, y = b.y - a.y, along = x * (at.x - a.x) + y * (at.y - a.y);
+    return along >= 0 && along <= x * x + y * y;
 }
 
 /* The cost of filling the dearest space between two parents that the edge uv bridges and the triangle with apex w lies in;
@@ -97,8 +117,10 @@ static double channel_cost(const struct tri_mesh *mesh, int32_t u, int32_t v, in
     for (int32_t i = 0; i < nu; i++)
         for (int32_t k = 0; k < nv; k++) {
             const struct tri_parent *p = &mesh->parents[pu[i]], *q = &mesh->parents[pv[k]];
-            if (pu[i] == pv[k] || !is_ahead(mesh, p, u, w) || !is_ahead(mesh, q, v, w))
+            if (pu[i] == pv[k] || is_end(p, v) || is_end(q, u) || !is_ahead(mesh, p, u, w) || !is_ahead(mesh, q, v, w))
                 continue;
+            if (!is_beside(mesh, p, v) && !is_beside(mesh, q, u))
+                continue; /* one behind the other, as in a smooth curve */
             double cost = filling_cost(mesh, p, q, mesh->xy[u], mesh->xy[v]);
             dearest = cost > dearest ? cost : dearest;
         }

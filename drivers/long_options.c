@@ -1,0 +1,122 @@
+/* One table of names; a value is read by the option that asks for it. */
+#include "drivers/long_options.h"
+
+#include <string.h>
+
+#include "triangle/number.h"
+
+const char long_options_help[] =
+    "Long options (--name VALUE or --name=VALUE; numbers may have exponents)\n"
+    "  --threads N        threads to work with. Default: OMP_NUM_THREADS, else all cores. The mesh is the\n"
+    "                     same for any number\n"
+    "  --max-area X       as -aX: no triangle larger than X\n"
+    "  --min-angle X      as -qX: no angle below X degrees\n"
+    "  --output BASE      results are called BASE.node, BASE.ele, BASE.poly and so on\n"
+    "  --report FILE      seconds, blocks, memory and mesh statistics, as JSON\n"
+    "  --progress         say on standard error how far the work is: one line on a terminal (there by\n"
+    "  --no-progress      default), else a line for each stage. Never with -Q\n"
+    "  --version, --help\n";
+
+enum id { THREADS, MAX_AREA, MIN_ANGLE, OUTPUT, REPORT, PROGRESS, NO_PROGRESS, VERSION, HELP };
+
+static const struct kind {
+    const char *name;
+    enum id id;
+    bool has_value;
+} kinds[] = {
+    {"threads", THREADS, true},   {"max-area", MAX_AREA, true}, {"min-angle", MIN_ANGLE, true},
+    {"output", OUTPUT, true},     {"report", REPORT, true},     {"progress", PROGRESS, false},
+    {"no-progress", NO_PROGRESS, false}, {"version", VERSION, false}, {"help", HELP, false},
+};
+
+static const struct kind *find_kind(const char *name, size_t length)
+{
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+        if (strlen(kinds[i].name) == length && memcmp(kinds[i].name, name, length) == 0)
+            return &kinds[i];
+    return NULL;
+}
+
+/* The whole text is a number. */
+static bool is_real(const char *text, double *value)
+{
+    const char *end = text + strlen(text);
+    return end > text && tri_scan_real(text, end, value) == end;
+}
+
+static enum tri_status take_threads(struct long_options *options, const char *value, struct tri_error *error)
+{
+    int64_t threads;
+    const char *end = value + strlen(value);
+    if (end == value || tri_scan_integer(value, end, &threads) != end || threads < 1 || threads > LONG_OPTIONS_MAX_THREADS)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--threads: \"%.40s\" is not a whole number from 1 to %d", value,
+                        LONG_OPTIONS_MAX_THREADS);
+    options->threads = (int)threads;
+    return TRI_OK;
+}
+
+static enum tri_status take_area(struct tri_switches *switches, const char *value, struct tri_error *error)
+{
+    double area;
+    if (!is_real(value, &area) || !(area > 0 && area <= 1.7976931348623157e308))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--max-area: \"%.40s\" is not a number > 0", value);
+    switches->area = true;
+    switches->max_area = area;
+    return TRI_OK;
+}
+
+/* No triangle has three angles above 60 degrees. */
+static enum tri_status take_angle(struct tri_switches *switches, const char *value, struct tri_error *error)
+{
+    double angle;
+    if (!is_real(value, &angle) || !(angle >= 0 && angle <= 60))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--min-angle: \"%.40s\" is not a number from 0 to 60", value);
+    switches->angle = true;
+    switches->min_angle = angle;
+    return TRI_OK;
+}
+
+static enum tri_status take_name(const char **name, const struct kind *kind, const char *value, struct tri_error *error)
+{
+    if (!*value)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--%s: the name is empty", kind->name);
+    *name = value;
+    return TRI_OK;
+}
+
+static enum tri_status apply(struct long_options *options, struct tri_switches *switches, const struct kind *kind,
+                             const char *value, struct tri_error *error)
+{
+    switch (kind->id) {
+    case THREADS: return take_threads(options, value, error);
+    case MAX_AREA: return take_area(switches, value, error);
+    case MIN_ANGLE: return take_angle(switches, value, error);
+    case OUTPUT: return take_name(&options->output, kind, value, error);
+    case REPORT: return take_name(&options->report, kind, value, error);
+    case PROGRESS: options->progress = PROGRESS_YES; break;
+    case NO_PROGRESS: options->progress = PROGRESS_NO; break;
+    case VERSION: options->version = true; break;
+    case HELP: options->help = true; break;
+    }
+    return TRI_OK;
+}
+
+enum tri_status long_options_take(struct long_options *options, struct tri_switches *switches, int argc, char *const *argv,
+                                  int *at, struct tri_error *error)
+{
+    const char *name = argv[*at] + 2, *equals = strchr(name, '=');
+    size_t length = equals ? (size_t)(equals - name) : strlen(name);
+    const struct kind *kind = find_kind(name, length);
+    const char *value = equals ? equals + 1 : NULL;
+    if (!kind)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "there is no option --%.*s (see --help)",
+                        (int)(length < 40 ? length : 40), name);
+    if (value && !kind->has_value)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--%s takes no value", kind->name);
+    if (!value && kind->has_value) {
+        if (*at + 1 >= argc)
+            return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--%s needs a value", kind->name);
+        value = argv[++*at];
+    }
+    return apply(options, switches, kind, value, error);
+}

@@ -1,0 +1,32 @@
+/* The long options of ptriangle: words that begin with two dashes. All other words belong to the grammar of Triangle. */
+#ifndef DRIVERS_LONG_OPTIONS_H
+#define DRIVERS_LONG_OPTIONS_H
+
+#include <stdbool.h>
+
+#include "triangle/status.h"
+#include "triangle/switches.h"
+
+enum { LONG_OPTIONS_MAX_THREADS = 1024 }; /* more is a slip of the finger, and the system may refuse them */
+
+enum long_options_progress { PROGRESS_DEFAULT, PROGRESS_YES, PROGRESS_NO };
+
+struct long_options {
+    int threads;        /* 0: not given */
+    const char *output; /* BASE of --output; NULL: not given. Words are borrowed from argv */
+    const char *report; /* file; NULL: none */
+    enum long_options_progress progress;
+    bool version, help;
+};
+
+/* Takes argv[*at], which begins with two dashes, and the next word too where that is its value (--name value; or
+ * --name=value in one word); *at becomes the index of the last word taken. --max-area and --min-angle set the switches -a
+ * and -q, but take exponents. What comes later replaces what came before. TRI_BAD_INPUT: an unknown option, a value too many,
+ * too few or out of range. */
+enum tri_status long_options_take(struct long_options *options, struct tri_switches *switches, int argc, char *const *argv,
+                                  int *at, struct tri_error *error);
+
+/* A paragraph about them, for the help. */
+extern const char long_options_help[];
+
+#endif

@@ -1,0 +1,68 @@
+/* Graham's list scheduling of measured seconds. */
+#include "drivers/prediction.h"
+
+#include <stdlib.h>
+
+/* Blocks are in canonical order, so their numbers grow within a phase; the phases of a pre-refinement and those of the mesh
+ * itself may bear the same numbers, one behind the other. */
+static int32_t end_of_phase(const struct par_block_report *blocks, int32_t n_blocks, int32_t first)
+{
+    int32_t end = first + 1;
+    while (end < n_blocks && blocks[end].round == blocks[first].round && blocks[end].phase == blocks[first].phase &&
+           blocks[end].block > blocks[end - 1].block)
+        end++;
+    return end;
+}
+
+static int largest_first(const void *left, const void *right)
+{
+    const double *a = left, *b = right;
+    return (*a < *b) - (*a > *b);
+}
+
+/* Each piece goes to the thread that is free first. Sorts `seconds`; `load` [threads] is scratch. */
+static double makespan(double *seconds, int32_t n, double *load, int threads)
+{
+    double longest = 0;
+    qsort(seconds, (size_t)n, sizeof *seconds, largest_first);
+    for (int k = 0; k < threads; k++)
+        load[k] = 0;
+    for (int32_t i = 0; i < n; i++) {
+        int free_first = 0;
+        for (int k = 1; k < threads; k++)
+            free_first = load[k] < load[free_first] ? k : free_first;
+        load[free_first] += seconds[i];
+        longest = load[free_first] > longest ? load[free_first] : longest;
+    }
+    return longest;
+}
+
+double prediction_refine(const struct par_block_report *blocks, int32_t n_blocks, int first_round, int threads)
+{
+    double *seconds = malloc(((size_t)n_blocks + 1) * sizeof *seconds), *load = malloc((size_t)threads * sizeof *load);
+    double sum = seconds && load ? 0 : -1;
+    for (int32_t first = 0, end; sum >= 0 && first < n_blocks; first = end) {
+        end = end_of_phase(blocks, n_blocks, first);
+        for (int32_t i = first; i < end; i++)
+            seconds[i - first] = blocks[i].seconds;
+        if (blocks[first].round >= first_round)
+            sum += makespan(seconds, end - first, load, threads);
+    }
+    free(seconds);
+    free(load);
+    return sum;
+}
+
+double prediction_sequential(const struct par_report *report)
+{
+    double rest = report->seconds_total - report->seconds_refine;
+    return rest > 0 ? rest : 0;
+}
+
+double prediction_overhead(const struct par_report *report)
+{
+    double rest = report->seconds_total - report->seconds_prerefine - report->seconds_refine;
+    if (report->levels == 0 || !(report->seconds_total > 0) || rest < 0)
+        return 0;
+    return 100 * rest / report->seconds_total;
+}

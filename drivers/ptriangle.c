@@ -1,0 +1,154 @@
+/* ptriangle: the mesh generator on all cores, with the command line, the files and the printed lines of Triangle, and long
+ * options. */
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "drivers/console.h"
+#include "drivers/help.h"
+#include "drivers/long_options.h"
+#include "drivers/progress.h"
+#include "drivers/report_json.h"
+#include "drivers/run.h"
+#include "sched/par.h"
+
+static const char PROGRAM[] = "ptriangle";
+
+/* What the hooks share. */
+struct program {
+    struct long_options options;
+    int threads;
+    struct progress progress;
+    bool refined;              /* the schedule has run: its report is filled */
+    struct par_report schedule;
+};
+
+/* --- hooks */
+
+static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                              struct tri_refine_report *report, struct tri_error *error)
+{
+    struct program *p = user;
+    struct par_options options = par_defaults();
+    options.threads = p->threads;
+    options.progress = progress_step;
+    options.progress_user = &p->progress;
+    progress_begin(&p->progress, mesh->n_slots, p->threads);
+    enum tri_status status = par_refine(mesh, quality, &options, &p->schedule, error);
+    progress_end(&p->progress, mesh->n_slots);
+    if (!status)
+        progress_stage(&p->progress, "writing");
+    *report = p->schedule.total;
+    p->refined = true;
+    return status;
+}
+
+static enum tri_status done(void *user, const struct run *run, struct tri_error *error)
+{
+    struct program *p = user;
+    char text[96];
+    snprintf(text, sizeof text, "done in %.2f s", run->total_seconds);
+    progress_stage(&p->progress, text);
+    if (!p->options.report)
+        return TRI_OK;
+    return report_write(p->options.report, run, p->refined ? &p->schedule : NULL, p->threads, error);
+}
+
+/* --- arguments */
+
+static bool is_same_file(const char *a, const char *b)
+{
+    struct stat at_a, at_b;
+    return stat(a, &at_a) == 0 && stat(b, &at_b) == 0 && at_a.st_dev == at_b.st_dev && at_a.st_ino == at_b.st_ino;
+}
+
+/* Triangle never overwrites what it has read, and neither does --output. */
+static enum tri_status spare_input(const struct arguments *arguments, struct tri_error *error)
+{
+    static const char *const suffixes[] = {".node", ".ele", ".poly"};
+    enum tri_status status = TRI_OK;
+    for (size_t i = 0; !status && i < sizeof suffixes / sizeof *suffixes; i++) {
+        char *read = joined(arguments->input, suffixes[i]), *written = joined(arguments->output, suffixes[i]);
+        if (!read || !written)
+            status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
+        else if (is_same_file(read, written))
+            status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--output: %s would be overwritten, a file of the input",
+                              written);
+        free(read);
+        free(written);
+    }
+    return status;
+}
+
+/* --output names the files whatever -I says. */
+static enum tri_status name_output(struct arguments *arguments, const char *base, struct tri_error *error)
+{
+    if (!base || !arguments->file)
+        return TRI_OK;
+    char *output = joined(base, "");
+    if (!output)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
+    free(arguments->output);
+    arguments->output = output;
+    arguments->switches.no_iteration = false;
+    return spare_input(arguments, error);
+}
+
+static enum tri_status take_words(struct program *p, struct arguments *arguments, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (int i = 1; !status && i < arguments->argc; i++) {
+        const char *word = arguments->argv[i];
+        if (strncmp(word, "--", 2) == 0)
+            status = long_options_take(&p->options, &arguments->switches, arguments->argc, arguments->argv, &i, error);
+        else
+            arguments_word(arguments, word);
+    }
+    if (status || p->options.version || p->options.help || arguments->switches.help)
+        return status;
+    status = arguments_end(arguments, error);
+    status = status ? status : name_output(arguments, p->options.output, error);
+    if (!status && p->options.report && arguments->file)
+        status = report_check(p->options.report, error);
+    return status;
+}
+
+/* --- all together */
+
+static int run_program(struct program *p, const struct arguments *arguments)
+{
+    p->threads = p->options.threads > 0 ? p->options.threads : omp_get_max_threads();
+    p->progress = progress_start(PROGRAM, p->options.progress, arguments->switches.quiet);
+    const struct tri_executor executor = par_executor(&p->threads);
+    const struct run_hooks hooks = {PROGRAM, &executor, refine, done, p};
+    if (arguments->file)
+        progress_stage(&p->progress, "reading and triangulating");
+    int code = run_arguments(arguments, &hooks);
+    par_report_free(&p->schedule);
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    struct program program = {0};
+    struct tri_error error = {0};
+    const struct console console = {.program = PROGRAM};
+    console_open();
+    struct arguments arguments = arguments_begin(argc, argv);
+    int code = EXIT_SUCCESS;
+    if (take_words(&program, &arguments, &error)) {
+        console_error(&console, &error);
+        code = EXIT_FAILURE;
+    } else if (program.options.version) {
+        printf("%s %s\n", PROGRAM, PTRIANGLE_VERSION);
+    } else if (program.options.help || arguments.switches.help) {
+        help_full(PROGRAM);
+        printf("\n%s", long_options_help);
+    } else {
+        code = run_program(&program, &arguments);
+    }
+    arguments_free(&arguments);
+    return console_close(&console) ? code : EXIT_FAILURE;
+}

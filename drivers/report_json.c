@@ -1,0 +1,216 @@
+/* The report: one object, built with jansson from what the run and the schedule have counted.
+ *
+ * A library call that runs out of memory gives NULL, which the calls around it pass on: it is looked for once, at the end. */
+#include "drivers/report_json.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+#include "drivers/interrupt.h"
+#include "drivers/prediction.h"
+#include "triangle/write.h"
+
+/* JSON has no infinity and no NaN: null stands for them. */
+static json_t *real(double value) { return isfinite(value) ? json_real(value) : json_null(); }
+
+static json_t *whole(int64_t value) { return json_integer((json_int_t)value); }
+
+/* --- stages */
+
+static json_t *stages_of(const struct run *run)
+{
+    const double *s = run->seconds;
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "read", real(s[RUN_READ]), "delaunay", real(s[RUN_DELAUNAY]),
+                     "segments", real(s[RUN_SEGMENTS]), "holes", real(s[RUN_HOLES]), "quality", real(s[RUN_QUALITY]),
+                     "write", real(s[RUN_WRITE]), "total", real(run->total_seconds));
+}
+
+static json_t *command_of(const struct arguments *arguments)
+{
+    json_t *words = json_array();
+    for (int i = 0; i < arguments->argc; i++) /* words need not be UTF-8 */
+        if (json_array_append_new(words, json_string(arguments->argv[i])))
+            json_array_append_new(words, json_null());
+    return words;
+}
+
+/* --- the schedule */
+
+static json_t *parts_of(const struct par_report *r)
+{
+    json_t *phases = json_array();
+    for (int colour = 0; colour < 4; colour++)
+        json_array_append_new(phases, real(r->phase_seconds[colour]));
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "total", real(r->seconds_total), "prerefine",
+                     real(r->seconds_prerefine), "partition", real(r->seconds_partition), "seeds", real(r->seconds_seeds),
+                     "room", real(r->seconds_room), "refine", real(r->seconds_refine), "merge", real(r->seconds_merge),
+                     "last", real(r->seconds_last), "number", real(r->seconds_number), "phases", phases);
+}
+
+static json_t *blocks_of(const struct par_report *r)
+{
+    json_t *blocks = json_array();
+    for (int32_t i = 0; i < r->n_blocks; i++) {
+        const struct par_block_report *b = &r->blocks[i];
+        json_t *block = json_pack("{s:i, s:i, s:i, s:o, s:o, s:o, s:o}", "round", (int)b->round, "phase", (int)b->phase,
+                                  "block", (int)b->block, "seeds", whole(b->seeds), "inserted", whole(b->inserted),
+                                  "deferred", whole(b->deferred), "seconds", real(b->seconds));
+        if (json_array_append_new(blocks, block)) {
+            json_decref(blocks);
+            return NULL;
+        }
+    }
+    return blocks;
+}
+
+static json_t *predictions_of(const struct par_report *r)
+{
+    json_t *list = json_array();
+    double sequential = prediction_sequential(r);
+    for (int threads = 1; threads <= 256; threads *= 2) {
+        double refine = prediction_refine(r->blocks, r->n_blocks, 0, threads), total = sequential + refine;
+        if (refine < 0)
+            continue;
+        json_array_append_new(list, json_pack("{s:i, s:o, s:o, s:o}", "threads", threads, "refine_seconds", real(refine),
+                                              "quality_seconds", real(total), "sequential_share",
+                                              real(total > 0 ? sequential / total : 1)));
+    }
+    return list;
+}
+
+static json_t *refused_of(const struct tri_refine_report *r)
+{
+    return json_pack("{s:o, s:o, s:o, s:o, s:o}", "input_angle", whole(r->refused[TRI_EXCUSE_INPUT_ANGLE]), "channel",
+                     whole(r->refused[TRI_EXCUSE_CHANNEL]), "protected", whole(r->refused[TRI_EXCUSE_PROTECTED]), "limit",
+                     whole(r->refused[TRI_EXCUSE_LIMIT]), "precision", whole(r->refused[TRI_EXCUSE_PRECISION]));
+}
+
+static json_t *schedule_of(const struct par_report *r)
+{
+    json_t *inserted = json_pack("{s:o, s:o}", "free", whole(r->total.inserted_free), "on_segments",
+                                 whole(r->total.inserted_on_segments));
+    json_t *counts = json_pack(
+        "{s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "levels", r->levels, "rounds", r->rounds, "columns",
+        (int)r->columns, "rows", (int)r->rows, "prerefined", whole(r->prerefined), "inserted", inserted, "deferred",
+        whole(r->deferred), "left_over", whole(r->left_over), "refused", refused_of(&r->total), "pauses", whole(r->pauses),
+        "radius_theory", real(r->radius_theory), "radius_measured", real(r->radius_measured));
+    json_t *times = json_pack("{s:o, s:o, s:o, s:o, s:o}", "seconds", parts_of(r), "overhead_percent",
+                              real(prediction_overhead(r)), "later_rounds_seconds_estimate",
+                              real(prediction_refine(r->blocks, r->n_blocks, 1, r->threads)), "prediction",
+                              predictions_of(r), "blocks", blocks_of(r));
+    if (json_object_update(counts, times)) {
+        json_decref(counts);
+        counts = NULL;
+    }
+    json_decref(times);
+    return counts;
+}
+
+/* --- the mesh */
+
+static double mean_area(const struct tri_mesh *mesh)
+{
+    double sum = 0;
+    for (int32_t t = 0; t < mesh->n_slots; t++) {
+        const int32_t *v = mesh->tri[t].v;
+        struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
+        sum += 0.5 * ((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y));
+    }
+    return mesh->n_slots > 0 ? sum / mesh->n_slots * mesh->unit * mesh->unit : 0;
+}
+
+static json_t *histogram_of(const int64_t *count, int n)
+{
+    json_t *list = json_array();
+    for (int i = 0; i < n; i++)
+        json_array_append_new(list, whole(count[i]));
+    return list;
+}
+
+static json_t *mesh_of(const struct run *run)
+{
+    const struct tri_counts *c = &run->counts;
+    const struct tri_refine_options *bounds = &run->options.quality;
+    struct tri_shapes shapes;
+    tri_measure_shapes(&shapes, &run->mesh);
+    double mean = mean_area(&run->mesh);
+    json_t *over = run->options.refine && bounds->max_area > 0 ? real(mean / bounds->max_area) : json_null();
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "vertices", whole(c->vertices),
+                     "triangles", whole(c->triangles), "edges", whole(c->edges), "subsegments", whole(c->subsegments),
+                     "smallest_angle", real(shapes.smallest_angle), "largest_angle", real(shapes.largest_angle),
+                     "smallest_area", real(shapes.smallest_area), "largest_area", real(shapes.largest_area), "mean_area",
+                     real(mean), "mean_area_over_bound", over, "shortest_edge", real(shapes.shortest_edge), "longest_edge",
+                     real(shapes.longest_edge), "angles_by_ten_degrees", histogram_of(shapes.angles, TRI_ANGLE_BINS));
+}
+
+/* --- all of it */
+
+/* ru_maxrss counts units of 1024 bytes, but bytes where Darwin is the system. */
+static int64_t peak_memory(void)
+{
+    struct rusage usage;
+    if (getrusage(RUSAGE_SELF, &usage))
+        return 0;
+#ifdef __APPLE__
+    return (int64_t)usage.ru_maxrss;
+#else
+    return (int64_t)usage.ru_maxrss * 1024;
+#endif
+}
+
+static json_t *report_of(const struct run *run, const struct par_report *schedule, int threads)
+{
+    int64_t memory = peak_memory(); /* before the report needs some */
+    const struct tri_refine_options *q = &run->options.quality;
+    json_t *bounds = json_pack("{s:o, s:o}", "min_angle", q->min_angle > 0 ? real(q->min_angle) : json_null(), "max_area",
+                               q->max_area > 0 ? real(q->max_area) : json_null());
+    return json_pack("{s:s, s:s, s:o, s:i, s:o, s:o, s:o, s:o, s:o}", "program", run->hooks->program, "version",
+                     PTRIANGLE_VERSION, "command", command_of(run->arguments), "threads", threads, "peak_memory_bytes",
+                     whole(memory), "bounds", bounds, "seconds", stages_of(run), "mesh", mesh_of(run), "schedule",
+                     schedule ? schedule_of(schedule) : json_null());
+}
+
+enum tri_status report_check(const char *path, struct tri_error *error)
+{
+    struct tri_output_set set;
+    struct tri_output *output;
+    tri_outputs_begin(&set);
+    enum tri_status status = tri_output_open(&set, path, &output, error);
+    tri_outputs_abort(&set);
+    return status;
+}
+
+static enum tri_status write_text(const char *path, const char *text, struct tri_error *error)
+{
+    static struct tri_output_set set; /* outlives this call, since signals look at it */
+    struct tri_output *output;
+    tri_outputs_begin(&set);
+    interrupt_guard(&set);
+    interrupt_hold();
+    enum tri_status status = tri_output_open(&set, path, &output, error);
+    interrupt_release();
+    status = status ? status : tri_output_write(output, text, strlen(text), error);
+    status = status ? status : tri_output_write(output, "\n", 1, error);
+    interrupt_hold();
+    if (status)
+        tri_outputs_abort(&set);
+    else
+        status = tri_outputs_commit(&set, error);
+    interrupt_release();
+    return status;
+}
+
+enum tri_status report_write(const char *path, const struct run *run, const struct par_report *schedule, int threads,
+                             struct tri_error *error)
+{
+    json_t *report = report_of(run, schedule, threads);
+    char *text = report ? json_dumps(report, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) : NULL;
+    enum tri_status status = text ? write_text(path, text, error)
+                                  : tri_fail(error, TRI_NO_MEMORY, path, 0, "out of memory for the report");
+    free(text);
+    json_decref(report);
+    return status;
+}

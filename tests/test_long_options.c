@@ -1,0 +1,100 @@
+/* Words that begin with two dashes. */
+#include "drivers/long_options.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+struct taken {
+    struct long_options options;
+    struct tri_switches switches;
+    struct tri_error error;
+    int at;
+};
+
+/* Takes one option, which stands at word 1. second NULL: there is no further word. */
+static enum tri_status take(struct taken *t, char *first, char *second)
+{
+    char program[] = "ptriangle";
+    char *argv[] = {program, first, second};
+    t->at = 1;
+    return long_options_take(&t->options, &t->switches, second ? 3 : 2, argv, &t->at, &t->error);
+}
+
+#define TAKE(t, first, second) take(t, (char[]){first}, (char[]){second})
+#define TAKE_ALONE(t, first) take(t, (char[]){first}, NULL)
+
+static struct taken nothing(void) { return (struct taken){.switches = tri_switches_none()}; }
+
+static void test_both_forms(void **state)
+{
+    (void)state;
+    struct taken t = nothing();
+    assert_int_equal(TAKE(&t, "--threads", "7"), TRI_OK);
+    assert_int_equal(t.options.threads, 7);
+    assert_int_equal(t.at, 2);
+    assert_int_equal(TAKE(&t, "--threads=8", "9"), TRI_OK);
+    assert_int_equal(t.options.threads, 8);
+    assert_int_equal(t.at, 1);
+    char name[] = "--output=a=b";
+    assert_int_equal(take(&t, name, NULL), TRI_OK);
+    assert_string_equal(t.options.output, "a=b");
+    assert_int_equal(TAKE_ALONE(&t, "--no-progress"), TRI_OK);
+    assert_int_equal(t.options.progress, PROGRESS_NO);
+    assert_int_equal(TAKE(&t, "--progress", "letter"), TRI_OK);
+    assert_int_equal(t.options.progress, PROGRESS_YES);
+    assert_int_equal(t.at, 1);
+    assert_false(t.options.help || t.options.version);
+}
+
+/* Bounds become switches, exponents and all. */
+static void test_bounds(void **state)
+{
+    (void)state;
+    struct taken t = nothing();
+    tri_switches_add(&t.switches, "pq20a5");
+    assert_int_equal(TAKE(&t, "--max-area", "1e-6"), TRI_OK);
+    assert_int_equal(TAKE_ALONE(&t, "--min-angle=2.85e1"), TRI_OK);
+    assert_true(t.switches.area && t.switches.max_area == 1e-6);
+    assert_true(t.switches.angle && t.switches.min_angle == 28.5);
+    assert_int_equal(t.switches.n_notes, 0);
+    tri_switches_add(&t.switches, "a3");
+    assert_true(t.switches.max_area == 3);
+}
+
+static void test_refused(void **state)
+{
+    (void)state;
+    static const char *const words[][2] = {
+        {"--threads", "0"},       {"--threads", "1025"},    {"--threads", "2x"},      {"--threads", ""},
+        {"--threads", NULL},      {"--threads=", NULL},     {"--max-area", "0"},      {"--max-area", "-1"},
+        {"--max-area", "inf"},    {"--max-area", "nan"},    {"--max-area", "1e999"},  {"--max-area=", NULL},
+        {"--max-area", "1 "},     {"--min-angle", "60.1"},  {"--min-angle", "-0.1"},  {"--min-angle", "nan"},
+        {"--output", ""},         {"--report", NULL},       {"--progress=1", NULL},   {"--help=", NULL},
+        {"--thread", "2"},        {"--threadss", "2"},      {"--", "letter"},         {"--=1", NULL},
+    };
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        struct taken t = nothing(), before = nothing();
+        char first[32], second[32];
+        strcpy(first, words[i][0]);
+        strcpy(second, words[i][1] ? words[i][1] : "");
+        assert_int_equal(take(&t, first, words[i][1] ? second : NULL), TRI_BAD_INPUT);
+        assert_true(strlen(t.error.text) > 10 && !strchr(t.error.text, '\n'));
+        assert_int_equal(t.options.threads, 0);
+        assert_null(t.options.output);
+        assert_memory_equal(&t.switches, &before.switches, sizeof t.switches);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_both_forms),
+        cmocka_unit_test(test_bounds),
+        cmocka_unit_test(test_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

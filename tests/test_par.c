@@ -1,0 +1,721 @@
+/* The whole schedule against the sequential loop: the same bounds, nearly the same size, and one mesh for any number of
+ * threads, any order of the blocks.
+ *
+ * Blocks are made small, so that small inputs have many. This program may be linked with --wrap for malloc, calloc, realloc
+ * and free (SUPPORT_WRAP): the library's calls then come to the functions below, which count what is held and fail the call
+ * that a test has chosen. */
+#include "support.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+#include "sched/par.h"
+#include "triangle/quality.h"
+
+#ifdef SUPPORT_WRAP
+void *__real_malloc(size_t bytes);
+void *__real_calloc(size_t n, size_t bytes);
+void *__real_realloc(void *block, size_t bytes);
+void __real_free(void *block);
+void *__wrap_malloc(size_t bytes);
+void *__wrap_calloc(size_t n, size_t bytes);
+void *__wrap_realloc(void *block, size_t bytes);
+void __wrap_free(void *block);
+
+static atomic_llong calls, fail_at = INT64_MAX, held;
+static atomic_bool fail_ever_after;
+
+static bool must_fail(void)
+{
+    long long call = atomic_fetch_add(&calls, 1) + 1;
+    return fail_ever_after ? call >= fail_at : call == fail_at;
+}
+
+void *__wrap_malloc(size_t bytes)
+{
+    void *block = must_fail() ? NULL : __real_malloc(bytes);
+    held += block != NULL;
+    return block;
+}
+
+void *__wrap_calloc(size_t n, size_t bytes)
+{
+    void *block = must_fail() ? NULL : __real_calloc(n, bytes);
+    held += block != NULL;
+    return block;
+}
+
+void *__wrap_realloc(void *block, size_t bytes)
+{
+    void *fresh = must_fail() ? NULL : __real_realloc(block, bytes);
+    held += fresh != NULL && block == NULL;
+    return fresh;
+}
+
+void __wrap_free(void *block)
+{
+    held -= block != NULL;
+    __real_free(block);
+}
+#endif
+
+/* An input and bounds; `target` triangles to the order, from which the area bound is drawn (0: none). */
+struct trial {
+    const char *file;
+    double angle, target, block;
+    bool conforming, regions;
+    int protect;
+};
+
+/* The first twelve are run by every test that looks for differences; the rest are inputs of the unkind sort. */
+static const struct trial trials[] = {
+    {"letter.poly", 30, 20000, 500, false, false, 0},
+    {"square_random1000.poly", 20, 20000, 700, false, false, 0},
+    {"square_random1000.poly", 33, 0, 256, false, false, 0},
+    {"section.poly", 28, 0, 400, false, true, 0},
+    {"gear.poly", 30, 10000, 256, false, false, 0},
+    {"koch_lake.poly", 30, 0, 600, false, false, 0},
+    {"coast/norway_sea.poly", 25, 0, 2000, false, false, 0},
+    {"coast/borders.poly", 20, 30000, 1500, false, false, 0},
+    {"coast/islands.poly", 34, 15000, 500, true, false, 0},
+    {"perforated.poly", 30, 25000, 1000, true, false, 0},
+    {"naca2412_box.poly", 32, 10000, 256, false, false, 0},
+    {"cracked_plate.poly", 28, 15000, 400, false, false, 1},
+    {"section.poly", 35, 20000, 500, true, true, 0},
+    {"box_hole.poly", 0, 10000, 256, false, false, 0},
+    {"nasty/crossing_random.poly", 25, 10000, 256, false, false, 0},
+    {"nasty/dense_parallel.poly", 20, 5000, 256, false, false, 2},
+    {"nasty/fan_1deg.poly", 25, 10000, 256, false, false, 0},
+    {"nasty/spike.poly", 30, 10000, 256, true, false, 0},
+    {"nasty/tiny_feature.poly", 30, 10000, 256, false, false, 0},
+    {"nasty/nested_holes.poly", 30, 10000, 256, false, false, 0},
+    {"nasty/aspect_1e8.poly", 20, 10000, 256, false, false, 0},
+    {"nasty/needle_1e-9.poly", 20, 4000, 256, false, false, 0},
+    {"nasty/slit_1e-9.poly", 20, 10000, 256, false, false, 0},
+    {"nasty/huge_offset.poly", 20, 10000, 256, false, false, 0},
+    {"nasty/huge_scale.poly", 30, 10000, 256, false, false, 0},
+    {"nasty/tiny_scale.poly", 30, 10000, 256, false, false, 0},
+    {"nasty/cocircular_grid.node", 20, 40000, 700, false, false, 0},
+};
+
+enum { N_TRIALS = sizeof trials / sizeof *trials, N_USUAL = 12 };
+
+/* What a trial starts from: the constrained triangulation and the options of refinement. */
+struct start {
+    struct tri_pslg pslg;
+    struct tri_options options;
+};
+
+static double total_area(const struct tri_mesh *mesh)
+{
+    double sum = 0;
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        sum += 0.5 * tri_shape_of(mesh->xy, mesh->tri[t].v).area2;
+    return sum * mesh->unit * mesh->unit;
+}
+
+static struct tri_mesh coarse_mesh(const struct start *start)
+{
+    struct tri_options options = start->options;
+    options.refine = false;
+    return support_generate(&start->pslg, &options, NULL);
+}
+
+static struct start start_of(const struct trial *trial)
+{
+    struct start start = {.options = support_quality(trial->angle, 0)};
+    if (!support_read(trial->file, &start.pslg))
+        fail_msg("cannot read %s", trial->file);
+    start.options.keep_hull = start.pslg.n_segments == 0;
+    start.options.spread_regions = start.options.quality.region_areas = trial->regions;
+    start.options.quality.conforming = trial->conforming;
+    start.options.quality.protect = trial->protect;
+    struct tri_mesh mesh = coarse_mesh(&start);
+    if (trial->target > 0)
+        start.options.quality.max_area = total_area(&mesh) / (0.65 * trial->target);
+    tri_mesh_free(&mesh);
+    return start;
+}
+
+static struct tri_mesh refine(const struct start *start, const struct par_options *options, struct par_report *report)
+{
+    struct tri_error error = {0};
+    struct tri_mesh mesh = coarse_mesh(start);
+    if (par_refine(&mesh, &start->options.quality, options, report, &error) != TRI_OK)
+        fail_msg("par_refine: %s", error.text);
+    return mesh;
+}
+
+static struct par_options small_blocks(double block, int threads)
+{
+    struct par_options options = par_defaults();
+    options.block_triangles = block;
+    options.threads = threads;
+    return options;
+}
+
+static void assert_same_bytes(const struct tri_mesh *a, const struct tri_mesh *b)
+{
+    assert_int_equal(a->n_vertices, b->n_vertices);
+    assert_int_equal(a->n_slots, b->n_slots);
+    assert_int_equal(a->n_subs, b->n_subs);
+    assert_memory_equal(a->xy, b->xy, (size_t)a->n_vertices * sizeof *a->xy);
+    assert_memory_equal(a->on, b->on, (size_t)a->n_vertices * sizeof *a->on);
+    assert_memory_equal(a->vertex_markers, b->vertex_markers, (size_t)a->n_vertices * sizeof *a->vertex_markers);
+    assert_memory_equal(a->sub, b->sub, (size_t)a->n_subs * sizeof *a->sub);
+    for (int32_t t = 0; t < a->n_slots; t++) {
+        assert_memory_equal(a->tri[t].v, b->tri[t].v, sizeof a->tri[t].v);
+        assert_memory_equal(a->tri[t].n, b->tri[t].n, sizeof a->tri[t].n);
+        assert_int_equal(a->tri[t].region, b->tri[t].region);
+    }
+}
+
+static int64_t sum_bad(const struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                       const struct tri_refine_report *report)
+{
+    int64_t count[TRI_EXCUSES], sum = 0;
+    tri_count_bad(mesh, quality, report, count);
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        sum += count[k];
+    return sum;
+}
+
+static void judge(const struct start *start, const struct tri_mesh *mesh, int64_t max_bad)
+{
+    const struct tri_refine_options *quality = &start->options.quality;
+    struct tri_check_options check = {.max_bad = max_bad, .min_angle = quality->min_angle, .ignore_lost = true};
+    check.max_area = quality->protect || max_bad > 0 ? 0 : quality->max_area;
+    check.delaunay = quality->conforming ? TRI_CHECK_CONFORMING : TRI_CHECK_CONSTRAINED;
+    support_judge(mesh, &start->pslg, &check, quality->region_areas && max_bad == 0, NULL);
+}
+
+/* A legal mesh; what is bad in it is about what the sequential loop could not do either. */
+static void compare_with_sequential(const struct trial *trial, const struct start *start, const struct tri_mesh *mesh,
+                                    const struct par_report *report)
+{
+    struct tri_report sequential;
+    struct tri_mesh plain = support_generate(&start->pslg, &start->options, &sequential);
+    int64_t bad = sum_bad(mesh, &start->options.quality, &report->total);
+    int64_t plain_bad = sum_bad(&plain, &start->options.quality, &sequential.quality);
+    print_message("  %-28s %7d triangles, sequential %7d (%+.1f %%), bad %d / %d, blocks %d x %d, levels %d, rounds %d, "
+                  "deferred %lld, left over %lld\n",
+                  trial->file, (int)mesh->n_slots, (int)plain.n_slots, 100.0 * mesh->n_slots / plain.n_slots - 100, (int)bad,
+                  (int)plain_bad, (int)report->columns, (int)report->rows, report->levels, report->rounds,
+                  (long long)report->deferred, (long long)report->left_over);
+    judge(start, mesh, bad);
+    assert_true(bad <= plain_bad + plain_bad / 5 + 10 * (plain_bad > 0));
+    assert_true(report->columns * report->rows >= 9);
+    assert_true(mesh->n_slots < 1.08 * plain.n_slots);
+    assert_int_equal(mesh->n_vertices, start->pslg.n_points + sequential.constrain.crossings +
+                                           report->total.inserted_free + report->total.inserted_on_segments);
+    tri_mesh_free(&plain);
+}
+
+static void test_bounds_and_size_are_those_of_the_sequential_loop(void **state)
+{
+    (void)state;
+    for (int i = 0; i < N_TRIALS; i++) {
+        struct start start = start_of(&trials[i]);
+        struct par_options options = small_blocks(trials[i].block, 2);
+        struct par_report report;
+        struct tri_mesh mesh = refine(&start, &options, &report);
+        compare_with_sequential(&trials[i], &start, &mesh, &report);
+        par_report_free(&report);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&start.pslg);
+    }
+}
+
+/* The reports tell the same but for the times. */
+static void assert_same_report(const struct par_report *a, const struct par_report *b)
+{
+    assert_memory_equal(&a->total, &b->total, sizeof a->total);
+    assert_int_equal(a->n_blocks, b->n_blocks);
+    assert_int_equal(a->pauses, b->pauses);
+    for (int32_t i = 0; i < a->n_blocks; i++) {
+        assert_int_equal(a->blocks[i].block, b->blocks[i].block);
+        assert_int_equal(a->blocks[i].seeds, b->blocks[i].seeds);
+        assert_int_equal(a->blocks[i].inserted, b->blocks[i].inserted);
+    }
+}
+
+static void test_any_number_of_threads_and_order_of_blocks_make_one_mesh(void **state)
+{
+    (void)state;
+    static const struct {
+        int threads;
+        unsigned shuffle;
+    } runs[] = {{2, 0}, {3, 0}, {4, 0}, {8, 0}, {1, 1}, {2, 77}, {3, 4711}};
+    for (int i = 0; i < N_TRIALS; i++) {
+        struct start start = start_of(&trials[i]);
+        struct par_options options = small_blocks(trials[i].block, 1);
+        struct par_report first_report, report;
+        struct tri_mesh first = refine(&start, &options, &first_report);
+        for (int k = 0; k < (i < N_USUAL ? 7 : 2); k++) {
+            options.threads = runs[k].threads;
+            options.shuffle = runs[k].shuffle;
+            struct tri_mesh mesh = refine(&start, &options, &report);
+            assert_same_bytes(&first, &mesh);
+            assert_same_report(&first_report, &report);
+            par_report_free(&report);
+            tri_mesh_free(&mesh);
+        }
+        par_report_free(&first_report);
+        tri_mesh_free(&first);
+        tri_pslg_free(&start.pslg);
+    }
+}
+
+/* Ids tell from which room a block took them; places do not, where one round of phases does everything. */
+static void test_room_moves_ids_alone(void **state)
+{
+    (void)state;
+    static const int32_t rooms[] = {1, 50, 333};
+    for (int i = 0; i < N_USUAL; i++) {
+        struct start start = start_of(&trials[i]);
+        struct par_options options = small_blocks(trials[i].block, 2);
+        struct par_report report, tight;
+        struct tri_mesh mesh = refine(&start, &options, &report);
+        struct support_places places = support_places(&mesh);
+        for (int k = 0; k < 3; k++) {
+            options.tight_room = rooms[k];
+            options.shuffle = (unsigned)k;
+            struct tri_mesh other = refine(&start, &options, &tight);
+            struct support_places others = support_places(&other);
+            bool same = support_same_places(&places, &others);
+            assert_true(tight.pauses > report.pauses);
+            if (report.levels == 1 && report.left_over == 0)
+                assert_true(same);
+            print_message("  %-28s room %d: levels %d, left over %lld, %s\n", trials[i].file, (int)rooms[k], report.levels,
+                          (long long)report.left_over, same ? "same" : "other");
+            judge(&start, &other, sum_bad(&other, &start.options.quality, &tight.total));
+            support_places_free(&others);
+            par_report_free(&tight);
+            tri_mesh_free(&other);
+        }
+        support_places_free(&places);
+        par_report_free(&report);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&start.pslg);
+    }
+}
+
+static struct start square(int32_t points, double angle, double max_area)
+{
+    return (struct start){support_square(1, points, 5), support_quality(angle, max_area)};
+}
+
+/* Definition 3: with the paper's margin, and fences that are wide against the radii, no cavity meets a fence. */
+static void test_nothing_is_deferred_with_the_margin(void **state)
+{
+    (void)state;
+    struct start start = square(100, 25, 1e-3);
+    for (int margin = 0; margin < 2; margin++) {
+        struct par_options options = small_blocks(1000, 2);
+        struct tri_error error = {0};
+        struct par_report report;
+        struct tri_mesh mesh = support_generate(&start.pslg, &start.options, NULL); /* so the radii are small */
+        struct tri_refine_options finer = start.options.quality;
+        finer.max_area = 5e-5;
+        options.margin = margin;
+        assert_int_equal(par_refine(&mesh, &finer, &options, &report, &error), TRI_OK);
+        print_message("  margin %d: %d triangles, deferred %lld, left over %lld, r %g, blocks %d x %d\n", margin,
+                      (int)mesh.n_slots, (long long)report.deferred, (long long)report.left_over, report.radius_measured,
+                      (int)report.columns, (int)report.rows);
+        assert_true(report.columns * report.rows >= 16);
+        assert_true(margin ? report.deferred == 0 : report.deferred > 0);
+        par_report_free(&report);
+        tri_mesh_free(&mesh);
+    }
+    tri_pslg_free(&start.pslg);
+}
+
+/* Blocks of the usual size: the mesh is no larger than the sequential one, but for two per cent. */
+static void test_default_blocks_cost_no_triangles(void **state)
+{
+    (void)state;
+    static const double angles[] = {20, 33};
+    for (int k = 0; k < 2; k++) {
+        struct start start = square(1000, angles[k], 5e-6);
+        struct par_options options = par_defaults();
+        struct par_report report;
+        options.threads = 2;
+        struct tri_mesh mesh = refine(&start, &options, &report);
+        struct tri_mesh plain = support_generate(&start.pslg, &start.options, NULL);
+        print_message("  %d triangles, sequential %d (%+.2f %%), blocks %d x %d\n", (int)mesh.n_slots, (int)plain.n_slots,
+                      100.0 * mesh.n_slots / plain.n_slots - 100, (int)report.columns, (int)report.rows);
+        assert_true(report.columns * report.rows >= 9);
+        assert_true(mesh.n_slots < 1.02 * plain.n_slots);
+        assert_int_equal(sum_bad(&mesh, &start.options.quality, &report.total), 0);
+        par_report_free(&report);
+        tri_mesh_free(&plain);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&start.pslg);
+    }
+}
+
+/* Fine along a line. */
+static int is_unsuitable(void *user, const double a[2], const double b[2], const double c[2], double area)
+{
+    double x = (a[0] + b[0] + c[0]) / 3, y = (a[1] + b[1] + c[1]) / 3, away = fabs(y - x);
+    atomic_fetch_add((atomic_llong *)user, 1);
+    return area > 2e-6 + 2e-3 * away * away;
+}
+
+static void test_a_size_test_runs_in_parallel_only_where_allowed(void **state)
+{
+    (void)state;
+    atomic_llong asked = 0;
+    struct start start = square(50, 25, 1e-3);
+    start.options.quality.unsuitable = is_unsuitable;
+    start.options.quality.unsuitable_user = &asked;
+    struct tri_mesh plain = support_generate(&start.pslg, &start.options, NULL), first = {0};
+    for (int threads = 1; threads <= 3; threads++) {
+        struct par_options options = small_blocks(256, threads);
+        struct par_report report;
+        struct tri_mesh mesh = refine(&start, &options, &report);
+        assert_int_equal(report.n_blocks, 0);
+        assert_same_bytes(&mesh, &plain);
+        par_report_free(&report);
+        tri_mesh_free(&mesh);
+        options.size_test_in_parallel = true;
+        mesh = refine(&start, &options, &report);
+        assert_true(report.n_blocks > 9);
+        assert_int_equal(sum_bad(&mesh, &start.options.quality, &report.total), 0);
+        assert_true(mesh.n_slots < 1.1 * plain.n_slots);
+        judge(&start, &mesh, 0);
+        if (threads == 1) {
+            first = mesh;
+        } else {
+            assert_same_bytes(&first, &mesh);
+            tri_mesh_free(&mesh);
+        }
+        par_report_free(&report);
+    }
+    assert_true(asked > 1000);
+    tri_mesh_free(&first);
+    tri_mesh_free(&plain);
+    tri_pslg_free(&start.pslg);
+}
+
+static bool open_gate(void *user, const double p[2])
+{
+    (void)user;
+    return p[0] == p[0];
+}
+
+/* What a schedule cannot do is one sequential call. */
+static void test_limits_and_gates_go_the_sequential_way(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        struct start start = square(20, 25, 1e-4);
+        struct par_options options = small_blocks(256, 3);
+        struct par_report report;
+        start.options.quality.max_steiner = k ? -1 : 3000;
+        start.options.quality.gate = k ? open_gate : NULL;
+        struct tri_mesh mesh = refine(&start, &options, &report), plain = support_generate(&start.pslg, &start.options, NULL);
+        assert_same_bytes(&mesh, &plain);
+        assert_int_equal(report.n_blocks, 0);
+        assert_true(report.total.hit_limit == (k == 0));
+        assert_true(k || report.total.inserted_free + report.total.inserted_on_segments <= 3000);
+        par_report_free(&report);
+        tri_mesh_free(&plain);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&start.pslg);
+    }
+}
+
+/* -Y leaves the boundary as it is, -YY all segments. */
+static void test_protected_segments_stay_whole(void **state)
+{
+    (void)state;
+    for (int protect = 1; protect <= 2; protect++) {
+        struct trial trial = {"section.poly", 25, 20000, 400, false, true, protect};
+        struct start start = start_of(&trial);
+        struct par_options options = small_blocks(trial.block, 2);
+        struct par_report report;
+        struct tri_mesh before = coarse_mesh(&start), mesh = refine(&start, &options, &report);
+        int32_t old_rim = 0, rim = 0;
+        for (int32_t s = 0; s < before.n_subs; s++)
+            old_rim += before.sub[s].side[0] == TRI_NONE || before.sub[s].side[1] == TRI_NONE;
+        for (int32_t s = 0; s < mesh.n_subs; s++)
+            rim += mesh.sub[s].side[0] == TRI_NONE || mesh.sub[s].side[1] == TRI_NONE;
+        assert_int_equal(rim, old_rim);
+        assert_true(protect == 2 ? mesh.n_subs == before.n_subs : mesh.n_subs > before.n_subs);
+        assert_true(report.n_blocks > 9);
+        par_report_free(&report);
+        tri_mesh_free(&before);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&start.pslg);
+    }
+}
+
+/* Coordinates times 2^k, areas times 4^k: the same mesh by numbers, whatever the unit inside. */
+static void test_any_unit_makes_the_same_mesh(void **state)
+{
+    (void)state;
+    static const int exponents[] = {300, -300, 1000, -1000};
+    for (int angle_only = 0; angle_only < 2; angle_only++) {
+        struct start start = square(angle_only ? 5000 : 50, 30, angle_only ? 0 : 1e-4);
+        struct par_options options = small_blocks(500, 2);
+        struct par_report report;
+        struct tri_mesh plain = refine(&start, &options, &report);
+        par_report_free(&report);
+        for (int i = 0; i < 4; i++) {
+            struct tri_error error = {0};
+            struct start other = square(angle_only ? 5000 : 50, 30, 0);
+            if (!angle_only && abs(exponents[i]) > 300)
+                continue; /* the area bound itself is no double there */
+            other.options.quality.max_area = ldexp(start.options.quality.max_area, 2 * exponents[i]);
+            for (int32_t k = 0; k < 2 * other.pslg.n_points; k++)
+                other.pslg.points[k] = ldexp(other.pslg.points[k], exponents[i]);
+            struct tri_mesh mesh = coarse_mesh(&other);
+            assert_int_equal(par_refine(&mesh, &other.options.quality, &options, &report, &error), TRI_OK);
+            struct support_set a = support_triangles(&plain), b = support_triangles(&mesh);
+            if (!support_same(&a, &b))
+                fail_msg("2^%d: %d triangles, not %d", exponents[i], (int)b.n, (int)a.n);
+            support_set_free(&a);
+            support_set_free(&b);
+            par_report_free(&report);
+            tri_mesh_free(&mesh);
+            tri_pslg_free(&other.pslg);
+        }
+        tri_mesh_free(&plain);
+        tri_pslg_free(&start.pslg);
+    }
+}
+
+/* Nothing to do, nothing to do it with, nothing left: every mesh is a legal start. */
+static void test_small_and_empty_meshes(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"nasty/hole_eats_all.poly", "nasty/collinear.poly", "square.poly"};
+    for (int i = 0; i < 3; i++) {
+        struct trial trial = {names[i], 20, 0, 1, false, false, 0};
+        struct start start = start_of(&trial);
+        struct par_options options = small_blocks(trial.block, 2);
+        struct par_report report;
+        struct tri_mesh mesh = refine(&start, &options, &report);
+        judge(&start, &mesh, 0);
+        struct tri_mesh again = refine(&start, &options, &report);
+        assert_same_bytes(&mesh, &again);
+        assert_int_equal(par_refine(&mesh, &start.options.quality, &options, &report, NULL), TRI_OK);
+        assert_int_equal(report.total.inserted_free + report.total.inserted_on_segments, 0);
+        assert_int_equal(mesh.n_slots, again.n_slots);
+        par_report_free(&report);
+        tri_mesh_free(&again);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&start.pslg);
+    }
+}
+
+/* A second call with the same bounds finds nothing to do; one with finer bounds refines further. */
+static void test_calls_can_follow_each_other(void **state)
+{
+    (void)state;
+    struct start start = square(100, 30, 1e-3);
+    struct par_options options = small_blocks(300, 2);
+    struct par_report report;
+    struct tri_error error = {0};
+    struct tri_mesh mesh = refine(&start, &options, &report);
+    par_report_free(&report);
+    int32_t n = mesh.n_slots;
+    assert_int_equal(par_refine(&mesh, &start.options.quality, &options, &report, &error), TRI_OK);
+    assert_int_equal(mesh.n_slots, n);
+    par_report_free(&report);
+    start.options.quality.max_area = 1e-4;
+    assert_int_equal(par_refine(&mesh, &start.options.quality, &options, &report, &error), TRI_OK);
+    assert_true(mesh.n_slots > 5 * n && report.n_blocks > 9);
+    judge(&start, &mesh, 0);
+    par_report_free(&report);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&start.pslg);
+}
+
+struct told {
+    pthread_t thread;
+    int round, phase;
+    int64_t triangles;
+    int n;
+};
+
+static void tell(void *user, int round, int phase, int64_t triangles)
+{
+    struct told *told = user;
+    assert_true(pthread_equal(told->thread, pthread_self()));
+    assert_true(phase >= 0 && phase <= 4 && round >= 0);
+    assert_true(phase == 0 || round > told->round || phase > told->phase || told->phase == 0);
+    told->round = round;
+    told->phase = phase;
+    told->triangles = triangles;
+    told->n++;
+}
+
+static void test_progress_is_told_by_the_caller(void **state)
+{
+    (void)state;
+    struct told told = {.thread = pthread_self()};
+    struct start start = square(100, 30, 1e-4);
+    struct par_options options = small_blocks(300, 3);
+    struct par_report report;
+    options.progress = tell;
+    options.progress_user = &told;
+    struct tri_mesh mesh = refine(&start, &options, &report);
+    assert_true(told.n >= 5 && told.triangles > 1000);
+    par_report_free(&report);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&start.pslg);
+}
+
+/* One caller among several: refines a trial of its own with threads of its own. cmocka's asserts belong to the main thread,
+ * so a caller only notes what came out. */
+struct caller {
+    struct start start;
+    struct par_options options;
+    struct tri_mesh mesh;
+    enum tri_status status;
+};
+
+static void *call(void *user)
+{
+    struct caller *caller = user;
+    struct par_report report;
+    caller->status = par_refine(&caller->mesh, &caller->start.options.quality, &caller->options, &report, NULL);
+    par_report_free(&report);
+    return NULL;
+}
+
+enum { CALLERS = 3 };
+
+static void start_callers(struct caller caller[CALLERS])
+{
+    for (int i = 0; i < CALLERS; i++) {
+        caller[i] = (struct caller){.start = start_of(&trials[i]), .options = small_blocks(trials[i].block, 2)};
+        caller[i].mesh = coarse_mesh(&caller[i].start);
+    }
+}
+
+static void end_callers(struct caller caller[CALLERS])
+{
+    for (int i = 0; i < CALLERS; i++) {
+        struct par_report report;
+        struct tri_mesh alone = refine(&caller[i].start, &caller[i].options, &report);
+        assert_int_equal(caller[i].status, TRI_OK);
+        assert_same_bytes(&alone, &caller[i].mesh);
+        par_report_free(&report);
+        tri_mesh_free(&alone);
+        tri_mesh_free(&caller[i].mesh);
+        tri_pslg_free(&caller[i].start.pslg);
+    }
+}
+
+static void test_callers_on_threads_of_their_own(void **state)
+{
+    (void)state;
+    struct caller caller[CALLERS];
+    pthread_t thread[CALLERS];
+    start_callers(caller);
+    for (int i = 0; i < CALLERS; i++)
+        assert_int_equal(pthread_create(&thread[i], NULL, call, &caller[i]), 0);
+    for (int i = 0; i < CALLERS; i++)
+        assert_int_equal(pthread_join(thread[i], NULL), 0);
+    end_callers(caller);
+}
+
+static void test_callers_in_a_parallel_region(void **state)
+{
+    (void)state;
+    struct caller caller[CALLERS];
+    start_callers(caller);
+#pragma omp parallel for num_threads(CALLERS) schedule(static, 1)
+    for (int i = 0; i < CALLERS; i++)
+        call(&caller[i]);
+    end_callers(caller);
+}
+
+static void count_task(void *context, size_t index) { atomic_fetch_add((atomic_int *)context + index, 1); }
+
+static void test_executor_runs_each_task_once(void **state)
+{
+    (void)state;
+    for (int threads = 1; threads < 5; threads++) {
+        atomic_int times[1000] = {0};
+        struct tri_executor executor = par_executor(&threads);
+        tri_execute(&executor, 1000, count_task, times);
+        for (int i = 0; i < 1000; i++)
+            assert_int_equal(times[i], 1);
+        tri_execute(&executor, 0, count_task, times);
+    }
+}
+
+#ifdef SUPPORT_WRAP
+/* One run in which the k-th allocation fails, alone or with all that follow; returns whether it was reached. */
+static bool fail_once(const struct start *start, const struct par_options *options, int64_t k, bool ever_after)
+{
+    struct tri_error error = {0}, fault = {0};
+    struct par_report report;
+    long long before = held;
+    struct tri_mesh mesh = coarse_mesh(start);
+    calls = 0;
+    fail_ever_after = ever_after;
+    fail_at = k;
+    enum tri_status status = par_refine(&mesh, &start->options.quality, options, &report, &error);
+    bool failed = calls >= k;
+    fail_at = INT64_MAX;
+    if (status == TRI_OK) {
+        assert_true(!failed || !ever_after);
+    } else {
+        assert_int_equal(status, TRI_NO_MEMORY);
+        assert_int_equal(error.status, TRI_NO_MEMORY);
+        assert_true(error.text[0] != 0);
+    }
+    if (tri_mesh_validate(&mesh, &fault) != TRI_OK)
+        fail_msg("allocation %d%s: %s", (int)k, ever_after ? " and later" : "", fault.text);
+    judge(start, &mesh, INT64_MAX); /* whatever is bad: a legal mesh */
+    par_report_free(&report);
+    tri_mesh_free(&mesh);
+    assert_int_equal(held, before);
+    return failed;
+}
+
+static void test_every_allocation_may_fail(void **state)
+{
+    (void)state;
+    for (int run = 0; run < 4; run++) {
+        struct start start = square(60, 25, 2e-3);
+        struct par_options options = small_blocks(40, run < 2 ? 1 : 2);
+        int64_t k = 1, step = run % 2 ? 7 : 3;
+        options.tight_room = run % 2 ? 20 : 0;
+        while (fail_once(&start, &options, k, run % 2))
+            k += step;
+        assert_true(k > 100);
+        tri_pslg_free(&start.pslg);
+    }
+}
+#endif
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+#ifdef SUPPORT_WRAP
+        cmocka_unit_test(test_every_allocation_may_fail),
+#endif
+        cmocka_unit_test(test_bounds_and_size_are_those_of_the_sequential_loop),
+        cmocka_unit_test(test_any_number_of_threads_and_order_of_blocks_make_one_mesh),
+        cmocka_unit_test(test_room_moves_ids_alone),
+        cmocka_unit_test(test_nothing_is_deferred_with_the_margin),
+        cmocka_unit_test(test_default_blocks_cost_no_triangles),
+        cmocka_unit_test(test_a_size_test_runs_in_parallel_only_where_allowed),
+        cmocka_unit_test(test_limits_and_gates_go_the_sequential_way),
+        cmocka_unit_test(test_protected_segments_stay_whole),
+        cmocka_unit_test(test_any_unit_makes_the_same_mesh),
+        cmocka_unit_test(test_small_and_empty_meshes),
+        cmocka_unit_test(test_calls_can_follow_each_other),
+        cmocka_unit_test(test_progress_is_told_by_the_caller),
+        cmocka_unit_test(test_callers_on_threads_of_their_own),
+        cmocka_unit_test(test_callers_in_a_parallel_region),
+        cmocka_unit_test(test_executor_runs_each_task_once),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
