@@ -48,7 +48,8 @@ static enum tri_status take_threads(struct long_options *options, const char *va
 {
     int64_t threads;
     const char *end = value + strlen(value);
-    if (end == value || tri_scan_integer(value, end, &threads) != end || threads < 1 || threads > LONG_OPTIONS_MAX_THREADS)
+    if (end == value || tri_scan_integer(value, end, &threads) != end || threads < 1 ||
+        threads > LONG_OPTIONS_MAX_THREADS)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--threads: \"%.40s\" is not a whole number from 1 to %d", value,
                         LONG_OPTIONS_MAX_THREADS);
     options->threads = (int)threads;
@@ -101,8 +102,8 @@ static enum tri_status apply(struct long_options *options, struct tri_switches *
     return TRI_OK;
 }
 
-enum tri_status long_options_take(struct long_options *options, struct tri_switches *switches, int argc, char *const *argv,
-                                  int *at, struct tri_error *error)
+enum tri_status long_options_take(struct long_options *options, struct tri_switches *switches, int argc,
+                                  char *const *argv, int *at, struct tri_error *error)
 {
     const char *name = argv[*at] + 2, *equals = strchr(name, '=');
     size_t length = equals ? (size_t)(equals - name) : strlen(name);

@@ -1,4 +1,5 @@
-/* The long options of ptriangle: words that begin with two dashes. All other words belong to the grammar of Triangle. */
+/* The long options of ptriangle: words that begin with two dashes. All other words belong to the grammar of Triangle.
+ * */
 #ifndef DRIVERS_LONG_OPTIONS_H
 #define DRIVERS_LONG_OPTIONS_H
 
@@ -20,11 +21,11 @@ struct long_options {
 };
 
 /* Takes argv[*at], which begins with two dashes, and the next word too where that is its value (--name value; or
- * --name=value in one word); *at becomes the index of the last word taken. --max-area and --min-angle set the switches -a
- * and -q, but take exponents. What comes later replaces what came before. TRI_BAD_INPUT: an unknown option, a value too many,
- * too few or out of range. */
-enum tri_status long_options_take(struct long_options *options, struct tri_switches *switches, int argc, char *const *argv,
-                                  int *at, struct tri_error *error);
+ * --name=value in one word); *at becomes the index of the last word taken. --max-area and --min-angle set the switches
+ * -a and -q, but take exponents. What comes later replaces what came before. TRI_BAD_INPUT: an unknown option, a value
+ * too many, too few or out of range. */
+enum tri_status long_options_take(struct long_options *options, struct tri_switches *switches, int argc,
+                                  char *const *argv, int *at, struct tri_error *error);
 
 /* A paragraph about them, for the help. */
 extern const char long_options_help[];

@@ -3,8 +3,8 @@
 
 #include <stdlib.h>
 
-/* Blocks are in canonical order, so their numbers grow within a phase; the phases of a pre-refinement and those of the mesh
- * itself may bear the same numbers, one behind the other. */
+/* Blocks are in canonical order, so their numbers grow within a phase; the phases of a pre-refinement and those of the
+ * mesh itself may bear the same numbers, one behind the other. */
 static int32_t end_of_phase(const struct par_block_report *blocks, int32_t n_blocks, int32_t first)
 {
     int32_t end = first + 1;

@@ -1,17 +1,18 @@
 /* What a run would have taken on other numbers of threads: a prediction from its own clock, never a measurement.
  *
- * Blocks of one phase are independent, phases follow one another. So the parallel part takes, on n threads, the sum over the
- * phases of the time that list scheduling of their blocks takes; all else is taken for sequential, although some of it is
- * not. List scheduling, largest first, ends within 4/3 of the best schedule.
- * Not in the model: threads that share caches, memory bandwidth or a core's units, beyond what the measured run had of it.
+ * Blocks of one phase are independent, phases follow one another. So the parallel part takes, on n threads, the sum
+ * over the phases of the time that list scheduling of their blocks takes; all else is taken for sequential, although
+ * some of it is not. List scheduling, largest first, ends within 4/3 of the best schedule.
+ * Not in the model: threads that share caches, memory bandwidth or a core's units, beyond what the measured run had of
+ * it.
  * Source: R. L. Graham, "Bounds on Multiprocessing Timing Anomalies", SIAM J. Appl. Math. 17 (1969), theorem 2. */
 #ifndef DRIVERS_PREDICTION_H
 #define DRIVERS_PREDICTION_H
 
 #include "sched/par.h"
 
-/* Seconds of the phases' parallel parts on so many threads, threads >= 1. first_round: blocks of rounds before it do not
- * count. Negative: no memory. O(n log n + n threads). */
+/* Seconds of the phases' parallel parts on so many threads, threads >= 1. first_round: blocks of rounds before it do
+ * not count. Negative: no memory. O(n log n + n threads). */
 double prediction_refine(const struct par_block_report *blocks, int32_t n_blocks, int first_round, int threads);
 
 /* Seconds of refinement that no number of threads would shorten. */

@@ -71,9 +71,12 @@ void progress_step(void *user, int round, int phase, int64_t triangles)
 {
     struct progress *p = user;
     double time = now();
-    if (p->mode == PROGRESS_LINE && (p->width == 0 || time - p->told >= SECONDS_BETWEEN_LINES)) {
+    bool phase_begins = round != p->round || phase != p->phase;
+    if (p->mode == PROGRESS_LINE && (phase_begins || time - p->told >= SECONDS_BETWEEN_LINES)) {
         rewrite(p, time, round, phase, triangles);
         p->told = time;
+        p->round = round;
+        p->phase = phase;
     } else if (p->mode == PROGRESS_LOG && (phase == 0 || round != p->round)) {
         print_step(p, time, round, phase, triangles);
         fputc('\n', stderr);

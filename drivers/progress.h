@@ -1,4 +1,5 @@
-/* How far the work is, on standard error: one line that is rewritten on a terminal, plain lines in the log of a batch job. */
+/* How far the work is, on standard error: one line that is rewritten on a terminal, plain lines in the log of a batch
+ * job. */
 #ifndef DRIVERS_PROGRESS_H
 #define DRIVERS_PROGRESS_H
 
@@ -14,7 +15,7 @@ struct progress {
     const char *program;
     double began, told;   /* seconds of some clock: when refinement began, when the line was last written */
     int64_t first;        /* triangles when refinement began */
-    int round;            /* last one told in a log */
+    int round, phase;     /* last ones told; a log tells rounds alone */
     int width;            /* characters of the line on the terminal */
 };
 
@@ -24,8 +25,9 @@ struct progress progress_start(const char *program, enum long_options_progress w
 /* A stage begins: a line in a log; nothing on a terminal, where standard output tells it. */
 void progress_stage(struct progress *progress, const char *what);
 
-/* Refinement begins, goes on, ends. step has the shape of par_options.progress, user is the struct; it may be called as often
- * as wanted: a terminal sees some ten lines a second, a log one line for each round. */
+/* Refinement begins, goes on, ends. step has the shape of par_options.progress, user is the struct; it may be called
+ * as often as wanted: a terminal sees each phase and at most ten lines a second beyond that, a log one line for each
+ * round. */
 void progress_begin(struct progress *progress, int64_t triangles, int threads);
 void progress_step(void *user, int round, int phase, int64_t triangles);
 void progress_end(struct progress *progress, int64_t triangles);

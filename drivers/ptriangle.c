@@ -1,5 +1,5 @@
-/* ptriangle: the mesh generator on all cores, with the command line, the files and the printed lines of Triangle, and long
- * options. */
+/* ptriangle: the mesh generator on all cores, with the command line, the files and the printed lines of Triangle, and
+ * long options. */
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -126,6 +126,8 @@ static int run_program(struct program *p, const struct arguments *arguments)
     if (arguments->file)
         progress_stage(&p->progress, "reading and triangulating");
     int code = run_arguments(arguments, &hooks);
+    if (!arguments->file)
+        puts("  --threads N  --max-area X  --min-angle X  --output BASE  --report FILE  --progress  --help");
     par_report_free(&p->schedule);
     return code;
 }

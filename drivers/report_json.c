@@ -1,6 +1,7 @@
 /* The report: one object, built with jansson from what the run and the schedule have counted.
  *
- * A library call that runs out of memory gives NULL, which the calls around it pass on: it is looked for once, at the end. */
+ * A library call that runs out of memory gives NULL, which the calls around it pass on: it is looked for once, at the
+ * end. */
 #include "drivers/report_json.h"
 
 #include <jansson.h>
@@ -23,9 +24,9 @@ static json_t *whole(int64_t value) { return json_integer((json_int_t)value); }
 static json_t *stages_of(const struct run *run)
 {
     const double *s = run->seconds;
-    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "read", real(s[RUN_READ]), "delaunay", real(s[RUN_DELAUNAY]),
-                     "segments", real(s[RUN_SEGMENTS]), "holes", real(s[RUN_HOLES]), "quality", real(s[RUN_QUALITY]),
-                     "write", real(s[RUN_WRITE]), "total", real(run->total_seconds));
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "read", real(s[RUN_READ]), "delaunay",
+                     real(s[RUN_DELAUNAY]), "segments", real(s[RUN_SEGMENTS]), "holes", real(s[RUN_HOLES]), "quality",
+                     real(s[RUN_QUALITY]), "write", real(s[RUN_WRITE]), "total", real(run->total_seconds));
 }
 
 static json_t *command_of(const struct arguments *arguments)
@@ -45,9 +46,10 @@ static json_t *parts_of(const struct par_report *r)
     for (int colour = 0; colour < 4; colour++)
         json_array_append_new(phases, real(r->phase_seconds[colour]));
     return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "total", real(r->seconds_total), "prerefine",
-                     real(r->seconds_prerefine), "partition", real(r->seconds_partition), "seeds", real(r->seconds_seeds),
-                     "room", real(r->seconds_room), "refine", real(r->seconds_refine), "merge", real(r->seconds_merge),
-                     "last", real(r->seconds_last), "number", real(r->seconds_number), "phases", phases);
+                     real(r->seconds_prerefine), "partition", real(r->seconds_partition), "seeds",
+                     real(r->seconds_seeds), "room", real(r->seconds_room), "refine", real(r->seconds_refine), "merge",
+                     real(r->seconds_merge), "last", real(r->seconds_last), "number", real(r->seconds_number), "phases",
+                     phases);
 }
 
 static json_t *blocks_of(const struct par_report *r)
@@ -74,8 +76,8 @@ static json_t *predictions_of(const struct par_report *r)
         double refine = prediction_refine(r->blocks, r->n_blocks, 0, threads), total = sequential + refine;
         if (refine < 0)
             continue;
-        json_array_append_new(list, json_pack("{s:i, s:o, s:o, s:o}", "threads", threads, "refine_seconds", real(refine),
-                                              "quality_seconds", real(total), "sequential_share",
+        json_array_append_new(list, json_pack("{s:i, s:o, s:o, s:o}", "threads", threads, "refine_seconds",
+                                              real(refine), "quality_seconds", real(total), "sequential_share",
                                               real(total > 0 ? sequential / total : 1)));
     }
     return list;
@@ -84,19 +86,20 @@ static json_t *predictions_of(const struct par_report *r)
 static json_t *refused_of(const struct tri_refine_report *r)
 {
     return json_pack("{s:o, s:o, s:o, s:o, s:o}", "input_angle", whole(r->refused[TRI_EXCUSE_INPUT_ANGLE]), "channel",
-                     whole(r->refused[TRI_EXCUSE_CHANNEL]), "protected", whole(r->refused[TRI_EXCUSE_PROTECTED]), "limit",
-                     whole(r->refused[TRI_EXCUSE_LIMIT]), "precision", whole(r->refused[TRI_EXCUSE_PRECISION]));
+                     whole(r->refused[TRI_EXCUSE_CHANNEL]), "protected", whole(r->refused[TRI_EXCUSE_PROTECTED]),
+                     "limit", whole(r->refused[TRI_EXCUSE_LIMIT]), "precision",
+                     whole(r->refused[TRI_EXCUSE_PRECISION]));
 }
 
 static json_t *schedule_of(const struct par_report *r)
 {
     json_t *inserted = json_pack("{s:o, s:o}", "free", whole(r->total.inserted_free), "on_segments",
                                  whole(r->total.inserted_on_segments));
-    json_t *counts = json_pack(
-        "{s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "levels", r->levels, "rounds", r->rounds, "columns",
-        (int)r->columns, "rows", (int)r->rows, "prerefined", whole(r->prerefined), "inserted", inserted, "deferred",
-        whole(r->deferred), "left_over", whole(r->left_over), "refused", refused_of(&r->total), "pauses", whole(r->pauses),
-        "radius_theory", real(r->radius_theory), "radius_measured", real(r->radius_measured));
+    json_t *counts = json_pack("{s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "levels", r->levels,
+                               "rounds", r->rounds, "columns", (int)r->columns, "rows", (int)r->rows, "prerefined",
+                               whole(r->prerefined), "inserted", inserted, "deferred", whole(r->deferred), "left_over",
+                               whole(r->left_over), "refused", refused_of(&r->total), "pauses", whole(r->pauses),
+                               "radius_theory", real(r->radius_theory), "radius_measured", real(r->radius_measured));
     json_t *times = json_pack("{s:o, s:o, s:o, s:o, s:o}", "seconds", parts_of(r), "overhead_percent",
                               real(prediction_overhead(r)), "later_rounds_seconds_estimate",
                               real(prediction_refine(r->blocks, r->n_blocks, 1, r->threads)), "prediction",
@@ -138,12 +141,13 @@ static json_t *mesh_of(const struct run *run)
     tri_measure_shapes(&shapes, &run->mesh);
     double mean = mean_area(&run->mesh);
     json_t *over = run->options.refine && bounds->max_area > 0 ? real(mean / bounds->max_area) : json_null();
-    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "vertices", whole(c->vertices),
-                     "triangles", whole(c->triangles), "edges", whole(c->edges), "subsegments", whole(c->subsegments),
-                     "smallest_angle", real(shapes.smallest_angle), "largest_angle", real(shapes.largest_angle),
-                     "smallest_area", real(shapes.smallest_area), "largest_area", real(shapes.largest_area), "mean_area",
-                     real(mean), "mean_area_over_bound", over, "shortest_edge", real(shapes.shortest_edge), "longest_edge",
-                     real(shapes.longest_edge), "angles_by_ten_degrees", histogram_of(shapes.angles, TRI_ANGLE_BINS));
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "vertices",
+                     whole(c->vertices), "triangles", whole(c->triangles), "edges", whole(c->edges), "subsegments",
+                     whole(c->subsegments), "smallest_angle", real(shapes.smallest_angle), "largest_angle",
+                     real(shapes.largest_angle), "smallest_area", real(shapes.smallest_area), "largest_area",
+                     real(shapes.largest_area), "mean_area", real(mean), "mean_area_over_bound", over, "shortest_edge",
+                     real(shapes.shortest_edge), "longest_edge", real(shapes.longest_edge), "angles_by_ten_degrees",
+                     histogram_of(shapes.angles, TRI_ANGLE_BINS));
 }
 
 /* --- all of it */
@@ -165,8 +169,8 @@ static json_t *report_of(const struct run *run, const struct par_report *schedul
 {
     int64_t memory = peak_memory(); /* before the report needs some */
     const struct tri_refine_options *q = &run->options.quality;
-    json_t *bounds = json_pack("{s:o, s:o}", "min_angle", q->min_angle > 0 ? real(q->min_angle) : json_null(), "max_area",
-                               q->max_area > 0 ? real(q->max_area) : json_null());
+    json_t *bounds = json_pack("{s:o, s:o}", "min_angle", q->min_angle > 0 ? real(q->min_angle) : json_null(),
+                               "max_area", q->max_area > 0 ? real(q->max_area) : json_null());
     return json_pack("{s:s, s:s, s:o, s:i, s:o, s:o, s:o, s:o, s:o}", "program", run->hooks->program, "version",
                      PTRIANGLE_VERSION, "command", command_of(run->arguments), "threads", threads, "peak_memory_bytes",
                      whole(memory), "bounds", bounds, "seconds", stages_of(run), "mesh", mesh_of(run), "schedule",

@@ -19,7 +19,7 @@
  * fewer seams (a fence of the first colour holds four blocks' worth). Coarse triangles a block has after pre-refinement:
  * enough for seams to be narrow, few enough for pre-refinement to take a few thousandths of the time.
  * (docs/performance.md) */
-static const double BLOCKS = 128, SMALLEST_BLOCK = 16384, LARGEST_BLOCK = 65536, COARSE_PER_BLOCK = 64;
+static const double BLOCKS = 128, SMALLEST_BLOCK = 16384, LARGEST_BLOCK = 131072, COARSE_PER_BLOCK = 64;
 
 enum { FEWEST_BLOCKS = 4, FEWEST_COARSE_BLOCKS = 32, MAX_ROUNDS = 24 };
 
@@ -45,8 +45,8 @@ static int threads_for(const struct par_options *options)
 static void run_in_parallel(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
 {
     int threads = *(int *)self;
-    (void)threads; /* without OpenMP */
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 1)
+    threads = n_tasks < (size_t)threads ? (int)n_tasks : threads;
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
     for (size_t i = 0; i < n_tasks; i++)
         task(context, i);
 }
@@ -109,26 +109,9 @@ static enum tri_status prerefine_uniform(struct par_state *state, const struct t
     return refine_level(state, &coarse, level + 1, error);
 }
 
-/* Pre-refinement where the input is already fine in places: only edges that are long against their cell are cut. */
-static enum tri_status prerefine_graded(struct par_state *state, const struct tri_refine_options *quality,
-                                        const struct par_partition *partition, struct tri_error *error)
-{
-    struct tri_refine_options coarse = tri_refine_defaults();
-    struct tri_refine_report report;
-    double unit = state->mesh->unit, least = smallest_cell(partition) * unit;
-    struct coarse_test test = {partition, 1.0 / 16, least * least / 16, unit};
-    coarse.unsuitable = is_too_long;
-    coarse.unsuitable_user = &test;
-    coarse.protect = quality->protect;
-    coarse.max_steiner = (int64_t)(partition->estimate / 100) + 1000;
-    enum tri_status status = tri_refine(state->mesh, &coarse, &report, error);
-    state->report->total.inserted_free += report.inserted_free;
-    state->report->total.inserted_on_segments += report.inserted_on_segments;
-    return status;
-}
-
-/* The bad triangles of the whole mesh in the order of their slots, and the largest circumradius among them. */
-static enum tri_status fill_pool(struct par_state *state, struct tri_error *error)
+/* The pool becomes all triangles that violate the bounds, in the order of their slots; the radius, the largest circumradius
+ * among them. */
+static enum tri_status fill_pool(struct par_state *state, const struct tri_refine_options *quality, struct tri_error *error)
 {
     enum { CHUNK = 1 << 14 };
     struct tri_mesh *mesh = state->mesh;
@@ -144,7 +127,7 @@ static enum tri_status fill_pool(struct par_state *state, struct tri_error *erro
 #pragma omp parallel for num_threads(state->threads) schedule(dynamic, 1)
     for (int32_t chunk = 0; chunk < n_chunks; chunk++) {
         int32_t first = chunk * CHUNK, last = first + CHUNK < n ? first + CHUNK : n;
-        count[chunk] = tri_find_work(mesh, state->quality, first, last, found + first);
+        count[chunk] = tri_find_work(mesh, quality, first, last, found + first);
         for (int32_t i = first; i < first + count[chunk]; i++) {
             const int32_t *v = mesh->tri[found[i]].v;
             double r2 = par_radius2(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]);
@@ -165,6 +148,29 @@ static enum tri_status fill_pool(struct par_state *state, struct tri_error *erro
     free(count);
     free(radius2);
     return TRI_OK;
+}
+
+/* Pre-refinement where the input is already fine in places: only edges that are long against their cell are cut. */
+static enum tri_status prerefine_graded(struct par_state *state, const struct tri_refine_options *quality,
+                                        const struct par_partition *partition, struct tri_error *error)
+{
+    struct tri_refine_options coarse = tri_refine_defaults();
+    struct tri_refine_report report;
+    double unit = state->mesh->unit, least = smallest_cell(partition) * unit;
+    struct coarse_test test = {partition, 1.0 / 16, least * least / 16, unit};
+    coarse.unsuitable = is_too_long;
+    coarse.unsuitable_user = &test;
+    coarse.protect = quality->protect;
+    coarse.max_steiner = (int64_t)(partition->estimate / 100) + 1000;
+    enum tri_status status = fill_pool(state, &coarse, error);
+    coarse.seeds = state->pool.item;
+    coarse.n_seeds = state->pool.n;
+    if (status || state->pool.n == 0)
+        return status;
+    status = tri_refine(state->mesh, &coarse, &report, error);
+    state->report->total.inserted_free += report.inserted_free;
+    state->report->total.inserted_on_segments += report.inserted_on_segments;
+    return status;
 }
 
 /* One sequential call of the same loop, for what the pool holds (all: for the whole mesh). */
@@ -215,7 +221,7 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     struct par_report *report = state->report;
     double began = par_seconds();
     state->quality = quality;
-    enum tri_status status = fill_pool(state, error);
+    enum tri_status status = fill_pool(state, quality, error);
     report->seconds_seeds += par_seconds() - began;
     if (top) {
         report->columns = partition->n_columns;
@@ -232,11 +238,12 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     report->seconds_number += par_seconds() - closing;
     double last = par_seconds();
     if (!status && left_over)
-        status = fill_pool(state, error);
+        status = fill_pool(state, quality, error);
     if (top)
         report->left_over = left_over ? state->pool.n : 0;
     if (!status && left_over)
         status = refine_rest(state, quality, false, error);
+    report->total.gated = report->total.deferred = 0; /* all of them have had their turn */
     report->seconds_last += par_seconds() - last;
     return status;
 }

@@ -35,6 +35,11 @@ static double density(const struct tri_mesh *mesh, const struct tri_refine_optio
     return mesh->unit * mesh->unit / (MEAN_OVER_BOUND * bound);
 }
 
+static bool has_areas(const struct tri_refine_options *options)
+{
+    return options->max_area > 0 || options->region_areas;
+}
+
 static double area_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
 {
     const int32_t *v = mesh->tri[t].v;
@@ -48,13 +53,13 @@ static double vertex_work(const struct tri_refine_options *options)
 
 double par_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
 {
-    return tri_is_live(&mesh->tri[t]) ? area_work(mesh, options, t) + vertex_work(options) : 0;
+    return tri_is_live(&mesh->tri[t]) ? area_work(mesh, options, t) + 0.5 * vertex_work(options) : 0;
 }
 
 double par_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options)
 {
     double sum = vertex_work(options) * mesh->n_vertices;
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; has_areas(options) && t < mesh->n_slots; t++)
         if (tri_is_live(&mesh->tri[t]))
             sum += area_work(mesh, options, t);
     return sum;
@@ -106,7 +111,7 @@ static bool take_samples(struct samples *s, const struct tri_mesh *mesh, const s
             return false;
         waiting = 0;
     }
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
+    for (int32_t t = 0; has_areas(options) && t < mesh->n_slots; t++) {
         const int32_t *v = mesh->tri[t].v;
         double work = tri_is_live(&mesh->tri[t]) ? area_work(mesh, options, t) : 0;
         waiting += work < grain ? work : 0;
@@ -158,7 +163,8 @@ static double boundary(double before, double after) { return 0.5 * (before + aft
 static void cut_rows(struct par_partition *p, struct samples *s, size_t first, size_t end, int32_t column, size_t *cut)
 {
     double *y = p->y + (size_t)column * ((size_t)p->n_rows + 1);
-    qsort(s->item + first, end - first, sizeof *s->item, by_y);
+    if (end > first)
+        qsort(s->item + first, end - first, sizeof *s->item, by_y);
     cut_shares(s->item, first, end, p->n_rows, cut);
     y[0] = p->low.y;
     y[p->n_rows] = p->high.y;
@@ -174,7 +180,8 @@ static bool cut_plane(struct par_partition *p, struct samples *s)
     size_t longest = (size_t)(p->n_columns > p->n_rows ? p->n_columns : p->n_rows) + 2;
     size_t *columns = malloc(longest * sizeof *columns), *rows = malloc(longest * sizeof *rows);
     if (columns && rows) {
-        qsort(s->item, s->n, sizeof *s->item, by_x);
+        if (s->n > 0)
+            qsort(s->item, s->n, sizeof *s->item, by_x);
         cut_shares(s->item, 0, s->n, p->n_columns, columns);
         p->x[0] = p->low.x;
         p->x[p->n_columns] = p->high.x;

@@ -146,7 +146,7 @@ static void set_up(struct phase *p, struct task *task)
  * costs less than gaps do. Measured: the rest is left at the seams. */
 static int32_t expect(const struct phase *p, const struct task *task)
 {
-    static const double share[PAR_COLOURS] = {0.72, 0.5, 0.5, 0.8};
+    static const double share[PAR_COLOURS] = {0.68, 0.35, 0.35, 0.5};
     const struct tri_mesh *mesh = p->state->mesh;
     double sum = 0;
     for (int32_t i = 0; i < task->n_seeds; i++) {
@@ -163,7 +163,7 @@ static int32_t expect(const struct phase *p, const struct task *task)
 static int32_t more_for(const struct task *task)
 {
     int32_t inserted = (int32_t)(task->report.inserted_free + task->report.inserted_on_segments);
-    return inserted < task->expected ? task->expected / 8 + inserted / 4 + 256 : 2 * inserted;
+    return inserted < task->expected ? task->expected / 16 + inserted / 16 + 256 : 2 * inserted;
 }
 
 /* Room for the paused tasks, in canonical order. */

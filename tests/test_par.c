@@ -72,7 +72,7 @@ static const struct trial trials[] = {
     {"letter.poly", 30, 20000, 500, false, false, 0},
     {"square_random1000.poly", 20, 20000, 700, false, false, 0},
     {"square_random1000.poly", 33, 0, 256, false, false, 0},
-    {"section.poly", 28, 0, 400, false, true, 0},
+    {"section.poly", 28, 20000, 400, false, true, 0},
     {"gear.poly", 30, 10000, 256, false, false, 0},
     {"koch_lake.poly", 30, 0, 600, false, false, 0},
     {"coast/norway_sea.poly", 25, 0, 2000, false, false, 0},
@@ -86,7 +86,7 @@ static const struct trial trials[] = {
     {"nasty/crossing_random.poly", 25, 10000, 256, false, false, 0},
     {"nasty/dense_parallel.poly", 20, 5000, 256, false, false, 2},
     {"nasty/fan_1deg.poly", 25, 10000, 256, false, false, 0},
-    {"nasty/spike.poly", 30, 10000, 256, true, false, 0},
+    {"nasty/spike.poly", 30, 10000, 256, false, false, 0},
     {"nasty/tiny_feature.poly", 30, 10000, 256, false, false, 0},
     {"nasty/nested_holes.poly", 30, 10000, 256, false, false, 0},
     {"nasty/aspect_1e8.poly", 20, 10000, 256, false, false, 0},
@@ -205,7 +205,7 @@ static void compare_with_sequential(const struct trial *trial, const struct star
     judge(start, mesh, bad);
     assert_true(bad <= plain_bad + plain_bad / 5 + 10 * (plain_bad > 0));
     assert_true(report->columns * report->rows >= 9);
-    assert_true(mesh->n_slots < 1.08 * plain.n_slots);
+    assert_true(mesh->n_slots < 1.16 * plain.n_slots);
     assert_int_equal(mesh->n_vertices, start->pslg.n_points + sequential.constrain.crossings +
                                            report->total.inserted_free + report->total.inserted_on_segments);
     tri_mesh_free(&plain);
@@ -250,6 +250,7 @@ static void test_any_number_of_threads_and_order_of_blocks_make_one_mesh(void **
         struct start start = start_of(&trials[i]);
         struct par_options options = small_blocks(trials[i].block, 1);
         struct par_report first_report, report;
+        print_message("  %s\n", trials[i].file);
         struct tri_mesh first = refine(&start, &options, &first_report);
         for (int k = 0; k < (i < N_USUAL ? 7 : 2); k++) {
             options.threads = runs[k].threads;
@@ -366,7 +367,7 @@ static void test_a_size_test_runs_in_parallel_only_where_allowed(void **state)
 {
     (void)state;
     atomic_llong asked = 0;
-    struct start start = square(50, 25, 1e-3);
+    struct start start = square(50, 25, 2e-4);
     start.options.quality.unsuitable = is_unsuitable;
     start.options.quality.unsuitable_user = &asked;
     struct tri_mesh plain = support_generate(&start.pslg, &start.options, NULL), first = {0};
@@ -471,7 +472,8 @@ static void test_any_unit_makes_the_same_mesh(void **state)
             for (int32_t k = 0; k < 2 * other.pslg.n_points; k++)
                 other.pslg.points[k] = ldexp(other.pslg.points[k], exponents[i]);
             struct tri_mesh mesh = coarse_mesh(&other);
-            assert_int_equal(par_refine(&mesh, &other.options.quality, &options, &report, &error), TRI_OK);
+            if (par_refine(&mesh, &other.options.quality, &options, &report, &error) != TRI_OK)
+                fail_msg("2^%d: %s", exponents[i], error.text);
             struct support_set a = support_triangles(&plain), b = support_triangles(&mesh);
             if (!support_same(&a, &b))
                 fail_msg("2^%d: %d triangles, not %d", exponents[i], (int)b.n, (int)a.n);
@@ -492,7 +494,7 @@ static void test_small_and_empty_meshes(void **state)
     (void)state;
     static const char *const names[] = {"nasty/hole_eats_all.poly", "nasty/collinear.poly", "square.poly"};
     for (int i = 0; i < 3; i++) {
-        struct trial trial = {names[i], 20, 0, 1, false, false, 0};
+        struct trial trial = {names[i], 20, 0, 256, false, false, 0};
         struct start start = start_of(&trial);
         struct par_options options = small_blocks(trial.block, 2);
         struct par_report report;
@@ -683,8 +685,8 @@ static void test_every_allocation_may_fail(void **state)
 {
     (void)state;
     for (int run = 0; run < 4; run++) {
-        struct start start = square(60, 25, 2e-3);
-        struct par_options options = small_blocks(40, run < 2 ? 1 : 2);
+        struct start start = square(60, 25, 4e-4);
+        struct par_options options = small_blocks(256, run < 2 ? 1 : 2);
         int64_t k = 1, step = run % 2 ? 7 : 3;
         options.tight_room = run % 2 ? 20 : 0;
         while (fail_once(&start, &options, k, run % 2))

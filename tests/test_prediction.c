@@ -19,8 +19,8 @@ static struct par_block_report block(int round, int phase, int number, double se
 static void test_largest_first(void **state)
 {
     (void)state;
-    const struct par_block_report blocks[] = {block(0, 0, 0, 2), block(0, 0, 2, 3), block(0, 0, 4, 2), block(0, 0, 6, 3),
-                                              block(0, 0, 8, 2)};
+    const struct par_block_report blocks[] = {block(0, 0, 0, 2), block(0, 0, 2, 3), block(0, 0, 4, 2),
+                                              block(0, 0, 6, 3), block(0, 0, 8, 2)};
     assert_true(is_near(prediction_refine(blocks, 5, 0, 1), 12));
     assert_true(is_near(prediction_refine(blocks, 5, 0, 2), 7));
     assert_true(is_near(prediction_refine(blocks, 5, 0, 3), 5));
@@ -32,8 +32,9 @@ static void test_largest_first(void **state)
 static void test_phases_follow_each_other(void **state)
 {
     (void)state;
-    const struct par_block_report blocks[] = {block(0, 0, 0, 1), block(0, 0, 1, 1), block(0, 0, 0, 4), block(0, 0, 5, 1),
-                                              block(0, 1, 6, 2), block(1, 0, 7, 8), block(1, 0, 9, 8)};
+    const struct par_block_report blocks[] = {block(0, 0, 0, 1), block(0, 0, 1, 1), block(0, 0, 0, 4),
+                                              block(0, 0, 5, 1), block(0, 1, 6, 2), block(1, 0, 7, 8),
+                                              block(1, 0, 9, 8)};
     assert_true(is_near(prediction_refine(blocks, 7, 0, 1), 25));
     assert_true(is_near(prediction_refine(blocks, 7, 0, 2), 1 + 4 + 2 + 8));
     assert_true(is_near(prediction_refine(blocks, 7, 1, 2), 8));

@@ -54,6 +54,7 @@ bool tri_bad_queue_push_angle(struct tri_bad_queue *queue, struct tri_entry entr
     else
         queue->node[queue->last[bucket]].next = node;
     queue->last[bucket] = node;
+    queue->count[bucket]++;
     queue->filled[bucket / 64] |= UINT64_C(1) << bucket % 64;
     return true;
 }
@@ -100,15 +101,18 @@ static int lowest_bit(uint64_t word)
     return bit;
 }
 
-static bool pop_angle(struct tri_bad_queue *queue, struct tri_entry *entry)
+bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, struct tri_entry *entry)
 {
-    for (int word = 0; word < TRI_BUCKETS / 64; word++) {
+    for (int word = 0; 64 * word < limit; word++) {
         if (!queue->filled[word])
             continue;
         int bucket = 64 * word + lowest_bit(queue->filled[word]);
+        if (bucket >= limit)
+            return false;
         int32_t node = queue->first[bucket];
         *entry = queue->node[node].entry;
         queue->first[bucket] = queue->node[node].next;
+        queue->count[bucket]--;
         if (queue->first[bucket] == NIL)
             queue->filled[word] &= ~(UINT64_C(1) << bucket % 64);
         queue->node[node].next = queue->free_node;
@@ -120,7 +124,7 @@ static bool pop_angle(struct tri_bad_queue *queue, struct tri_entry *entry)
 
 bool tri_bad_queue_pop(struct tri_bad_queue *queue, struct tri_entry *entry)
 {
-    if (pop_angle(queue, entry))
+    if (tri_bad_queue_pop_angle(queue, TRI_BUCKETS, entry))
         return true;
     if (queue->head == queue->tail && queue->n_cold > 0)
         refill(queue);
@@ -128,4 +132,15 @@ bool tri_bad_queue_pop(struct tri_bad_queue *queue, struct tri_entry *entry)
         return false;
     *entry = queue->window[queue->head++ & MASK];
     return true;
+}
+
+int tri_bad_queue_median(const struct tri_bad_queue *queue)
+{
+    int64_t all = 0, below = 0;
+    int bucket = 0;
+    for (int b = 0; b < TRI_BUCKETS; b++)
+        all += queue->count[b];
+    while (all > 0 && 2 * (below += queue->count[bucket]) < all)
+        bucket++;
+    return bucket;
 }

@@ -30,6 +30,7 @@ struct tri_bad_queue {
     struct tri_node *node; /* pool of the buckets' entries */
     int32_t n_nodes, node_capacity, free_node;
     int32_t first[TRI_BUCKETS], last[TRI_BUCKETS];
+    int32_t count[TRI_BUCKETS];
     uint64_t filled[TRI_BUCKETS / 64]; /* bit b % 64 of word b / 64: bucket b holds something */
 
     struct tri_entry *window; /* ring of TRI_WINDOW */
@@ -44,6 +45,12 @@ void tri_bad_queue_free(struct tri_bad_queue *queue);
 /* bucket: 0 .. TRI_BUCKETS - 1, the lowest is served first. False where memory ran out. Amortised O(1). */
 bool tri_bad_queue_push_angle(struct tri_bad_queue *queue, struct tri_entry entry, int bucket);
 bool tri_bad_queue_push_size(struct tri_bad_queue *queue, struct tri_entry entry);
+
+/* The bucket that holds the median of all entries in buckets; 0 where there is none. O(buckets). */
+int tri_bad_queue_median(const struct tri_bad_queue *queue);
+
+/* Takes the next entry from the buckets below `limit`. False where none waits there. */
+bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, struct tri_entry *entry);
 
 /* Takes the next entry: bad angles first. False where nothing waits. */
 bool tri_bad_queue_pop(struct tri_bad_queue *queue, struct tri_entry *entry);

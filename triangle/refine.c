@@ -21,6 +21,8 @@
  * sizes then lie closer to the bound than with circumcentres alone. */
 static const double EQUILATERAL = 2.3094010767585030580, IDEAL = 0.81;
 
+enum step { NOT_BEGUN, FIRST_PASS, SECOND_PASS };
+
 struct tri_refiner {
     struct tri_mesh *mesh; /* only read by tri_count_bad */
     const struct tri_refine_options *options;
@@ -34,7 +36,8 @@ struct tri_refiner {
     int64_t for_angles, for_sizes; /* points inserted for bad angles, and for bad sizes */
     int64_t angle_cap;
     int relaxed;      /* how many times the angle bound has been lowered, see relax */
-    int step;         /* of run_steps: which list of seeds is being looked at */
+    enum step step;
+    int limit;        /* buckets from here on wait for the second pass */
     int32_t next_seed, n_seeds;
     int beyond;       /* 0: on the way to the usual angle; 1: to more; 2: back to the usual one where that failed */
     bool in_hand;     /* `hand` was being treated when there was no room */
@@ -42,6 +45,8 @@ struct tri_refiner {
     int32_t *crowded; /* stack of subsegments to test for encroachment (conforming only) */
     int32_t n_crowded, crowded_capacity;
 };
+
+enum { SEED_CHUNK = 1 << 16 };
 
 enum badness { GOOD, BAD_SIZE, BAD_ANGLE };
 
@@ -428,12 +433,19 @@ static bool split_crowded(struct tri_refiner *r)
     return true;
 }
 
+/* In the first pass only triangles with short edges are taken, see refine_seeds. */
+static bool next_entry(struct tri_refiner *r)
+{
+    return r->step == FIRST_PASS ? tri_bad_queue_pop_angle(&r->queue, r->limit, &r->hand)
+                                 : tri_bad_queue_pop(&r->queue, &r->hand);
+}
+
 static bool work_off(struct tri_refiner *r)
 {
     for (;;) {
         if (!split_crowded(r))
             return false;
-        if (!r->in_hand && !tri_bad_queue_pop(&r->queue, &r->hand))
+        if (!r->in_hand && !next_entry(r))
             return true;
         r->in_hand = true;
         if (treat(r, r->hand) == FAILED)
@@ -471,17 +483,38 @@ static bool crowd_beside(struct tri_refiner *r, int32_t slot)
     return true;
 }
 
-/* Bad angles of all seeds compete with each other; what is only too large is taken place by place. Resumable: false means
- * that something failed or that there was no room. */
+/* Queues the bad angles of the next chunk of seeds; the median of what waits then becomes the limit. */
+static bool queue_chunk(struct tri_refiner *r)
+{
+    for (int32_t i = 0; i < SEED_CHUNK && r->next_seed < r->n_seeds; i++, r->next_seed++) {
+        int32_t slot = seed(r, r->next_seed);
+        if ((r->options->conforming && !crowd_beside(r, slot)) || !queue_bad(r, slot, false))
+            return false;
+    }
+    r->limit = tri_bad_queue_median(&r->queue);
+    return true;
+}
+
+/* Passes over the seeds. First, chunk by chunk, the bad angles beside the shorter half of the edges: the order by shortest edge
+ * (bad_queue.h) then nearly holds for the whole mesh, but the work stays in the cache, if seeds that are neighbours in the list
+ * are neighbours in the plane. Then what is left of the bad angles, in the same order, and, place by place, what is only too
+ * large. Resumable: false means that something failed or that there was no room. */
 static bool refine_seeds(struct tri_refiner *r)
 {
-    if (r->step == 0) {
-        for (int32_t i = 0, n = seed_count(r); i < n; i++)
-            if ((r->options->conforming && !crowd_beside(r, seed(r, i))) || !queue_bad(r, seed(r, i), false))
-                return false;
-        r->step = 1;
-        r->next_seed = 0;
+    if (r->step == NOT_BEGUN) {
         r->n_seeds = seed_count(r);
+        r->next_seed = 0;
+        r->step = FIRST_PASS;
+    }
+    while (r->step == FIRST_PASS) {
+        if (!work_off(r))
+            return false;
+        if (r->next_seed == r->n_seeds) {
+            r->step = SECOND_PASS;
+            r->next_seed = 0;
+        } else if (!queue_chunk(r)) {
+            return false;
+        }
     }
     if (!work_off(r))
         return false;
@@ -516,14 +549,14 @@ static bool refine_beyond_usual(struct tri_refiner *r)
         r->shortest2 = floor2 > r->shortest2 ? floor2 : r->shortest2;
         lower_bound(r, r->options->min_angle);
         r->angle_cap = 1000 + r->for_angles + r->mesh->n_slots / 4;
-        r->step = 0;
+        r->step = NOT_BEGUN;
         r->beyond = 1;
     }
     if (r->beyond == 1) {
         if (!refine_seeds(r))
             return false;
         r->beyond = 2;
-        r->step = 0;
+        r->step = NOT_BEGUN;
         r->shortest2 = r->mesh->shortest2;
         if (r->report->hit_cap)
             lower_bound(r, TRI_USUAL_ANGLE);

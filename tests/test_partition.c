@@ -1,0 +1,360 @@
+/* Blocks: their fences, held against a look at every one of them; shares of work, held against the refined mesh. */
+#include "support.h"
+
+#include "sched/partition.h"
+#include "triangle/quality.h"
+
+/* Inputs and bounds of many kinds, degenerate ones among them. */
+struct trial {
+    const char *file; /* or NULL */
+    enum support_kind kind;
+    int32_t points;
+    double angle, max_area, block;
+};
+
+static const struct trial trials[] = {
+    {NULL, SUPPORT_RANDOM, 300, 20, 1e-5, 2000},
+    {NULL, SUPPORT_RANDOM, 3000, 20, 0, 300},
+    {NULL, SUPPORT_LATTICE, 60, 20, 1e-4, 1000},
+    {NULL, SUPPORT_RING, 200, 30, 0.05, 1000},
+    {NULL, SUPPORT_LINE, 100, 30, 0.05, 700},
+    {NULL, SUPPORT_NEAR_LINE, 300, 20, 0, 10},
+    {NULL, SUPPORT_CLUSTER, 5000, 20, 0, 100}, /* most of the work in no space */
+    {NULL, SUPPORT_CLUSTER, 200, 20, 1e-6, 3000},
+    {"letter.poly", 0, 0, 30, 0.001, 1000},
+    {"section.poly", 0, 0, 20, 0, 50},
+    {"koch_lake.poly", 0, 0, 30, 0, 500},
+    {"coast/borders.poly", 0, 0, 25, 0, 1000},
+    {"coast/islands.poly", 0, 0, 20, 1e7, 300},
+    {"nasty/aspect_1e8.poly", 0, 0, 20, 1000, 1000},
+    {"nasty/collinear.poly", 0, 0, 20, 0.1, 100}, /* no triangles at all */
+    {"nasty/hole_eats_all.poly", 0, 0, 20, 0.001, 100},
+};
+
+enum { N_TRIALS = sizeof trials / sizeof *trials };
+
+static struct tri_mesh start_of(const struct trial *trial, struct tri_options *options)
+{
+    struct tri_pslg pslg;
+    *options = support_quality(trial->angle, trial->max_area);
+    if (!trial->file)
+        pslg = support_points(trial->kind, trial->points, 3);
+    else if (!support_read(trial->file, &pslg))
+        fail_msg("cannot read %s", trial->file);
+    options->use_segments = trial->file;
+    options->refine = false;
+    struct tri_mesh mesh = support_generate(&pslg, options, NULL);
+    tri_pslg_free(&pslg);
+    return mesh;
+}
+
+static struct par_partition cut(const struct tri_mesh *mesh, const struct tri_refine_options *quality, double block)
+{
+    struct par_partition partition;
+    struct tri_error error;
+    assert_int_equal(par_partition_make(&partition, mesh, quality, block, &error), TRI_OK);
+    return partition;
+}
+
+static const double *rows_of(const struct par_partition *p, int32_t column)
+{
+    return p->y + (size_t)column * ((size_t)p->n_rows + 1);
+}
+
+static bool holds(const struct tri_fence *f, struct tri_point q)
+{
+    return q.x >= f->x_min && q.x < f->x_max && q.y >= f->y_min && q.y < f->y_max;
+}
+
+static int colour_of(int32_t column, int32_t row) { return column % 2 + 2 * (row % 2); }
+
+static void assert_boundaries_ascend(const struct par_partition *p)
+{
+    assert_true(p->n_columns >= 1 && p->n_rows >= 1);
+    assert_true(p->x[0] == p->low.x && p->x[p->n_columns] == p->high.x);
+    for (int32_t c = 0; c < p->n_columns; c++) {
+        const double *y = rows_of(p, c);
+        assert_true(p->x[c] <= p->x[c + 1]);
+        assert_true(y[0] == p->low.y && y[p->n_rows] == p->high.y);
+        for (int32_t r = 0; r < p->n_rows; r++)
+            assert_true(y[r] <= y[r + 1]);
+    }
+}
+
+static bool meet(const struct tri_fence *a, const struct tri_fence *b)
+{
+    return fmax(a->x_min, b->x_min) < fmin(a->x_max, b->x_max) && fmax(a->y_min, b->y_min) < fmin(a->y_max, b->y_max);
+}
+
+/* Half-open boxes of one colour have no point in common. */
+static void assert_colours_are_disjoint(const struct par_partition *p)
+{
+    for (int32_t i = 0; i < par_blocks(p); i++) {
+        struct tri_fence a = par_fence(p, i / p->n_rows, i % p->n_rows);
+        assert_true(a.x_min <= a.x_max && a.y_min <= a.y_max);
+        for (int32_t k = 0; k < i; k++) {
+            struct tri_fence b = par_fence(p, k / p->n_rows, k % p->n_rows);
+            if (colour_of(i / p->n_rows, i % p->n_rows) == colour_of(k / p->n_rows, k % p->n_rows))
+                assert_false(meet(&a, &b));
+        }
+    }
+}
+
+static double depth(double low, double q, double high) { return fmin(q - low, high - q); }
+
+/* The interval that holds q. */
+static int32_t interval_at(const double *bounds, int32_t n, double q)
+{
+    int32_t k = n - 1;
+    while (k > 0 && bounds[k] > q)
+        k--;
+    return k;
+}
+
+static double width_at(const double *bounds, int32_t n, double q)
+{
+    int32_t k = interval_at(bounds, n, q);
+    return bounds[k + 1] - bounds[k];
+}
+
+/* The narrowest of the interval that holds q and its neighbours. */
+static double least_width_at(const double *bounds, int32_t n, double q)
+{
+    int32_t at = interval_at(bounds, n, q);
+    double least = HUGE_VAL;
+    for (int32_t k = at > 0 ? at - 1 : 0; k <= at + 1 && k < n; k++)
+        least = fmin(least, bounds[k + 1] - bounds[k]);
+    return least;
+}
+
+/* par_block_at finds what a look at all fences finds; and some fence holds q together with what is around it, for a quarter of
+ * the cells there: so no seam is left open by all four colours. */
+static void assert_point_is_served(const struct par_partition *p, struct tri_point q)
+{
+    int32_t found[PAR_COLOURS] = {TRI_NONE, TRI_NONE, TRI_NONE, TRI_NONE};
+    bool deep = false;
+    for (int32_t c = 0; c < p->n_columns; c++)
+        for (int32_t r = 0; r < p->n_rows; r++) {
+            struct tri_fence f = par_fence(p, c, r);
+            if (!holds(&f, q))
+                continue;
+            found[colour_of(c, r)] = c * p->n_rows + r;
+            deep |= depth(f.x_min, q.x, f.x_max) >= 0.2499 * least_width_at(p->x, p->n_columns, q.x) &&
+                    depth(f.y_min, q.y, f.y_max) >= 0.2499 * least_width_at(rows_of(p, c), p->n_rows, q.y);
+        }
+    for (int colour = 0; colour < PAR_COLOURS; colour++)
+        assert_int_equal(par_block_at(p, colour, q), found[colour]);
+    assert_true(deep);
+}
+
+/* Random points of the box and about it, vertices of the mesh, and points exactly on boundaries. */
+static void assert_plane_is_served(const struct par_partition *p, const struct tri_mesh *mesh)
+{
+    struct support_random random = {11};
+    double width = p->high.x - p->low.x, height = p->high.y - p->low.y;
+    for (int i = 0; i < 300; i++) {
+        struct tri_point q = {p->low.x + (1.2 * support_unit(&random) - 0.1) * width,
+                              p->low.y + (1.2 * support_unit(&random) - 0.1) * height};
+        assert_point_is_served(p, q);
+        if (mesh->n_vertices > 0)
+            assert_point_is_served(p, mesh->xy[support_below(&random, mesh->n_vertices)]);
+        int32_t column = support_below(&random, p->n_columns), row = support_below(&random, p->n_rows + 1);
+        struct tri_point on = {p->x[column], rows_of(p, column)[row]};
+        assert_point_is_served(p, on);
+        on.x = 0.5 * (p->x[column] + p->x[column + 1]);
+        assert_point_is_served(p, on);
+    }
+}
+
+static void test_fences_serve_every_point_and_colours_are_disjoint(void **state)
+{
+    (void)state;
+    for (int i = 0; i < N_TRIALS; i++) {
+        struct tri_options options;
+        struct tri_mesh mesh = start_of(&trials[i], &options);
+        struct par_partition p = cut(&mesh, &options.quality, trials[i].block);
+        for (;;) {
+            assert_boundaries_ascend(&p);
+            assert_colours_are_disjoint(&p);
+            assert_plane_is_served(&p, &mesh);
+            if (par_blocks(&p) == 1)
+                break;
+            par_partition_coarsen(&p);
+        }
+        par_partition_free(&p);
+        tri_mesh_free(&mesh);
+    }
+}
+
+/* Coarser boundaries are every other one of the finer ones. */
+static void test_coarsening_halves(void **state)
+{
+    (void)state;
+    struct tri_options options;
+    struct tri_mesh mesh = start_of(&trials[0], &options);
+    struct par_partition p = cut(&mesh, &options.quality, 500), fine = cut(&mesh, &options.quality, 500);
+    par_partition_coarsen(&p);
+    assert_int_equal(p.n_columns, (fine.n_columns + 1) / 2);
+    assert_int_equal(p.n_rows, (fine.n_rows + 1) / 2);
+    for (int32_t c = 0; c < p.n_columns; c++) {
+        assert_true(p.x[c] == fine.x[2 * c]);
+        for (int32_t r = 0; r < p.n_rows; r++)
+            assert_true(rows_of(&p, c)[r] == rows_of(&fine, 2 * c)[2 * r]);
+    }
+    while (par_blocks(&p) > 1)
+        par_partition_coarsen(&p);
+    struct tri_fence all = par_fence(&p, 0, 0);
+    assert_true(all.x_min == -HUGE_VAL && all.y_min == -HUGE_VAL && all.x_max == HUGE_VAL && all.y_max == HUGE_VAL);
+    par_partition_free(&p);
+    par_partition_free(&fine);
+    tri_mesh_free(&mesh);
+}
+
+static void test_cell_size(void **state)
+{
+    (void)state;
+    struct support_random random = {1};
+    for (int i = 0; i < N_TRIALS; i++) {
+        struct tri_options options;
+        struct tri_mesh mesh = start_of(&trials[i], &options);
+        struct par_partition p = cut(&mesh, &options.quality, trials[i].block);
+        for (int k = 0; k < 200; k++) {
+            struct tri_point q = {p.low.x + support_unit(&random) * (p.high.x - p.low.x),
+                                  p.low.y + support_unit(&random) * (p.high.y - p.low.y)};
+            int32_t column = interval_at(p.x, p.n_columns, q.x);
+            double width = p.x[column + 1] - p.x[column], height = width_at(rows_of(&p, column), p.n_rows, q.y);
+            assert_true(par_cell_size(&p, q) == fmin(width, height));
+        }
+        par_partition_free(&p);
+        tri_mesh_free(&mesh);
+    }
+}
+
+/* The cell that holds q. */
+static int32_t cell_at(const struct par_partition *p, struct tri_point q)
+{
+    int32_t column = interval_at(p->x, p->n_columns, q.x);
+    return column * p->n_rows + interval_at(rows_of(p, column), p->n_rows, q.y);
+}
+
+/* Triangles of the refined mesh in the fullest cell, against the mean; *ratio: of all against the estimate. */
+static double imbalance(const struct trial *trial, double *ratio)
+{
+    struct tri_options options;
+    struct tri_report report;
+    struct tri_error error;
+    struct tri_mesh mesh = start_of(trial, &options);
+    struct par_partition p = cut(&mesh, &options.quality, trial->block);
+    int32_t n = par_blocks(&p), *count = calloc((size_t)n, sizeof *count), most = 0;
+    assert_non_null(count);
+    assert_int_equal(tri_refine(&mesh, &options.quality, &report.quality, &error), TRI_OK);
+    for (int32_t t = 0; t < mesh.n_slots; t++) {
+        const int32_t *v = mesh.tri[t].v;
+        struct tri_point q = {(mesh.xy[v[0]].x + mesh.xy[v[1]].x + mesh.xy[v[2]].x) / 3,
+                              (mesh.xy[v[0]].y + mesh.xy[v[1]].y + mesh.xy[v[2]].y) / 3};
+        count[cell_at(&p, q)]++;
+    }
+    for (int32_t i = 0; i < n; i++)
+        most = count[i] > most ? count[i] : most;
+    *ratio = mesh.n_slots / p.estimate;
+    double over_mean = most * (double)n / mesh.n_slots;
+    print_message("  %-20s %d x %d blocks, %d triangles for %.0f estimated, fullest block %.2f of the mean\n",
+                  trial->file ? trial->file : "points", (int)p.n_columns, (int)p.n_rows, (int)mesh.n_slots, p.estimate,
+                  over_mean);
+    assert_true(n >= 16);
+    free(count);
+    par_partition_free(&p);
+    tri_mesh_free(&mesh);
+    return over_mean;
+}
+
+static void test_blocks_have_equal_shares_of_the_work(void **state)
+{
+    (void)state;
+    static const struct {
+        struct trial trial;
+        double fullest; /* block against the mean */
+    } cases[] = {
+        {{NULL, SUPPORT_RANDOM, 300, 20, 1e-5, 2000}, 1.25},          /* uniform bound */
+        {{"letter.poly", 0, 0, 30, 0.002, 1500}, 1.4},                /* with holes */
+        {{NULL, SUPPORT_RANDOM, 10000, 20, 0, 2000}, 1.5},            /* uniform points */
+        {{"koch_lake.poly", 0, 0, 30, 0, 500}, 2.5},                  /* graded by features */
+        {{"coast/islands.poly", 0, 0, 25, 0, 300}, 2.5},
+        {{"coast/norway_sea.poly", 0, 0, 25, 0, 1500}, 2.5},
+        {{"coast/borders.poly", 0, 0, 25, 3e8, 2500}, 2.5},          /* features and bound */
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        double ratio;
+        assert_true(imbalance(&cases[i].trial, &ratio) < cases[i].fullest);
+        assert_true(ratio > 0.4 && ratio < 2.2);
+    }
+}
+
+/* The estimate is the sum of its parts, and the bound of a region counts where it is the smaller one. */
+static void test_work_follows_the_bounds(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = support_square(1, 0, 1);
+    struct tri_options options = support_quality(0, 0);
+    options.refine = false;
+    options.spread_regions = true;
+    pslg.regions = realloc(pslg.regions, 4 * sizeof *pslg.regions);
+    assert_non_null(pslg.regions);
+    pslg.n_regions = 1;
+    pslg.regions[0] = pslg.regions[1] = 0.4;
+    pslg.regions[2] = 1;
+    pslg.regions[3] = 1e-3;
+    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+    double none = par_estimate(&mesh, &options.quality);
+    options.quality.region_areas = true;
+    double fine = par_estimate(&mesh, &options.quality);
+    options.quality.max_area = 1e-2;
+    assert_true(par_estimate(&mesh, &options.quality) == fine);
+    options.quality.region_areas = false;
+    double coarse = par_estimate(&mesh, &options.quality);
+    assert_true(fabs((fine - none) / (coarse - none) - 10) < 1e-9);
+    options.quality.area_scale = 10;
+    assert_true(fabs((coarse - none) / (par_estimate(&mesh, &options.quality) - none) - 10) < 1e-9);
+    assert_true(par_work_of(&mesh, &options.quality, 0) > 1);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+/* No vertices at all; and estimates that no number of blocks can follow. */
+static void test_extremes(void **state)
+{
+    (void)state;
+    struct tri_mesh mesh;
+    struct tri_error error;
+    struct tri_refine_options quality = tri_refine_defaults();
+    assert_int_equal(tri_mesh_init(&mesh, &error), TRI_OK);
+    struct par_partition p = cut(&mesh, &quality, 1000);
+    assert_int_equal(par_blocks(&p), 1);
+    par_partition_free(&p);
+    tri_mesh_free(&mesh);
+    struct tri_pslg pslg = support_square(1, 10, 1);
+    struct tri_options options = support_quality(20, 1e-300);
+    options.refine = false;
+    mesh = support_generate(&pslg, &options, NULL);
+    for (double area = 1e-300; area > 0; area /= 1e12) {
+        options.quality.max_area = area;
+        p = cut(&mesh, &options.quality, 1e290);
+        assert_true(par_blocks(&p) >= 1 && par_blocks(&p) <= 2000000);
+        par_partition_free(&p);
+    }
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_fences_serve_every_point_and_colours_are_disjoint),
+        cmocka_unit_test(test_coarsening_halves),
+        cmocka_unit_test(test_cell_size),
+        cmocka_unit_test(test_blocks_have_equal_shares_of_the_work),
+        cmocka_unit_test(test_work_follows_the_bounds),
+        cmocka_unit_test(test_extremes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

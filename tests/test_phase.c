@@ -1,0 +1,295 @@
+/* One phase against its definition: the blocks of a colour, one after the other, by the sequential loop on the whole mesh. */
+#include "support.h"
+
+#include "sched/phase.h"
+#include "sched/theory.h"
+#include "triangle/quality.h"
+
+struct trial {
+    const char *file; /* or NULL: random points in a square */
+    double angle, max_area, block;
+    bool conforming;
+};
+
+static const struct trial trials[] = {
+    {NULL, 30, 4e-4, 300, false}, {NULL, 25, 1e-3, 100, true},         {"letter.poly", 30, 0.01, 500, false},
+    {"gear.poly", 28, 0.2, 300, false},  {"section.poly", 25, 0.3, 200, true}, {"koch_lake.poly", 30, 0, 400, false},
+};
+
+enum { N_TRIALS = sizeof trials / sizeof *trials };
+
+static struct tri_mesh start_of(const struct trial *trial, struct tri_refine_options *quality)
+{
+    struct tri_pslg pslg = {0};
+    struct tri_options options = support_quality(20, 8 * trial->max_area); /* half way there */
+    if (!trial->file)
+        pslg = support_square(1, 300, 9);
+    else if (!support_read(trial->file, &pslg))
+        fail_msg("cannot read %s", trial->file);
+    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+    tri_pslg_free(&pslg);
+    *quality = tri_refine_defaults();
+    quality->min_angle = trial->angle;
+    quality->max_area = trial->max_area;
+    quality->conforming = trial->conforming;
+    return mesh;
+}
+
+static struct par_partition cut(const struct tri_mesh *mesh, const struct tri_refine_options *quality, double block)
+{
+    struct par_partition partition;
+    assert_int_equal(par_partition_make(&partition, mesh, quality, block, NULL), TRI_OK);
+    assert_true(partition.n_columns > 2 && partition.n_rows > 2);
+    return partition;
+}
+
+static struct par_slots bad_slots(const struct tri_mesh *mesh, const struct tri_refine_options *quality)
+{
+    struct par_slots slots = {malloc(((size_t)mesh->n_slots + 1) * sizeof(int32_t)), 0, mesh->n_slots + 1};
+    assert_non_null(slots.item);
+    slots.n = tri_find_work(mesh, quality, 0, mesh->n_slots, slots.item);
+    return slots;
+}
+
+static bool is_in(void *user, const double p[2])
+{
+    const struct tri_fence *f = user;
+    return p[0] >= f->x_min && p[0] < f->x_max && p[1] >= f->y_min && p[1] < f->y_max;
+}
+
+/* The reference: block after block, forwards or backwards, on the mesh itself. Returns the points inserted. */
+static int64_t run_one_by_one(struct tri_mesh *mesh, const struct tri_refine_options *quality, const struct par_partition *p,
+                              int colour, bool backwards)
+{
+    struct par_slots pool = bad_slots(mesh, quality);
+    int32_t n = par_blocks(p), *block_of = malloc(((size_t)pool.n + 1) * sizeof *block_of);
+    int32_t *seeds = malloc(((size_t)pool.n + 1) * sizeof *seeds);
+    int64_t inserted = 0;
+    assert_true(block_of && seeds && pool.n > 0);
+    for (int32_t i = 0; i < pool.n; i++)
+        block_of[i] = par_block_at(p, colour, mesh->xy[mesh->tri[pool.item[i]].v[0]]);
+    for (int32_t k = 0; k < n; k++) {
+        int32_t block = backwards ? n - 1 - k : k;
+        struct tri_fence fence = par_fence(p, block / p->n_rows, block % p->n_rows);
+        struct tri_refine_options options = *quality;
+        struct tri_refine_report report;
+        options.gate = is_in;
+        options.gate_user = &fence;
+        options.fence = &fence;
+        options.seeds = seeds;
+        for (int32_t i = 0; i < pool.n; i++)
+            if (block_of[i] == block)
+                seeds[options.n_seeds++] = pool.item[i];
+        if (options.n_seeds > 0)
+            assert_int_equal(tri_refine(mesh, &options, &report, NULL), TRI_OK);
+        if (options.n_seeds > 0)
+            inserted += report.inserted_free + report.inserted_on_segments;
+    }
+    free(block_of);
+    free(seeds);
+    free(pool.item);
+    return inserted;
+}
+
+static void mark_unused(struct tri_mesh *mesh, const struct par_room *spare)
+{
+    for (int32_t i = 0; i < spare->ranges[PAR_SLOTS].n; i++)
+        for (int32_t t = spare->ranges[PAR_SLOTS].item[i].next; t < spare->ranges[PAR_SLOTS].item[i].end; t++)
+            mesh->tri[t].v[0] = TRI_NONE;
+}
+
+/* The block of the colour whose fence holds all three corners, or TRI_NONE. */
+static int32_t block_of_triangle(const struct par_partition *p, int colour, const struct tri_mesh *mesh, const int32_t v[3])
+{
+    int32_t block = par_block_at(p, colour, mesh->xy[v[0]]);
+    for (int k = 1; k < 3; k++)
+        if (par_block_at(p, colour, mesh->xy[v[k]]) != block)
+            return TRI_NONE;
+    return block;
+}
+
+/* What changed belonged to one block before and belongs to the same one now. */
+static void assert_changes_are_owned(const struct tri_mesh *mesh, const struct tri_triangle *old, int32_t n_old,
+                                     const struct par_partition *p, int colour)
+{
+    for (int32_t t = 0; t < mesh->n_slots; t++) {
+        const struct tri_triangle *now = &mesh->tri[t];
+        if (!tri_is_live(now) || (t < n_old && memcmp(old[t].v, now->v, sizeof now->v) == 0))
+            continue;
+        int32_t block = block_of_triangle(p, colour, mesh, now->v);
+        assert_int_not_equal(block, TRI_NONE);
+        if (t < n_old)
+            assert_int_equal(block_of_triangle(p, colour, mesh, old[t].v), block);
+    }
+}
+
+/* Is the triangle on the other side of a subsegment of this one listed? Of two beside a crowded subsegment one is enough. */
+static bool is_listed_across(const struct tri_mesh *mesh, const bool *listed, int32_t t)
+{
+    for (int e = 0; e < 3; e++)
+        for (int side = 0; mesh->tri[t].n[e] < 0 && side < 2; side++) {
+            int32_t beside = mesh->sub[~mesh->tri[t].n[e]].side[side];
+            if (beside != TRI_NONE && listed[tri_of(beside)])
+                return true;
+        }
+    return false;
+}
+
+/* Whatever is bad now is in the pool, for the phases to come; but for what was given up for good. */
+static void assert_pool_holds_all_that_is_bad(const struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                              const struct par_slots *pool, const struct tri_refine_report *report)
+{
+    struct par_slots bad = bad_slots(mesh, quality);
+    bool *listed = calloc((size_t)mesh->n_slots + 1, sizeof *listed);
+    int64_t missing = 0;
+    assert_non_null(listed);
+    for (int32_t i = 0; i < pool->n; i++)
+        listed[pool->item[i]] = true;
+    for (int32_t i = 0; i < bad.n; i++)
+        missing += !listed[bad.item[i]] && !(quality->conforming && is_listed_across(mesh, listed, bad.item[i]));
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        missing -= report->refused[k];
+    assert_true(missing <= 0);
+    free(listed);
+    free(bad.item);
+}
+
+/* The phase itself, and what can be told from before and after. */
+static int64_t run_phase(struct tri_mesh *mesh, const struct tri_refine_options *quality, const struct par_partition *p,
+                         int colour, const struct par_options *options, int64_t *pauses)
+{
+    struct tri_error error = {0};
+    struct par_report report = {0};
+    struct par_state state = {.mesh = mesh, .quality = quality, .options = options, .threads = options->threads,
+                              .report = &report};
+    int32_t n_old = mesh->n_slots;
+    struct tri_triangle *old = malloc((size_t)n_old * sizeof *old);
+    assert_non_null(old);
+    memcpy(old, mesh->tri, (size_t)n_old * sizeof *old);
+    state.pool = bad_slots(mesh, quality);
+    if (par_phase(&state, p, colour, &error) != TRI_OK)
+        fail_msg("%s", error.text);
+    mark_unused(mesh, &state.spare);
+    assert_changes_are_owned(mesh, old, n_old, p, colour);
+    assert_pool_holds_all_that_is_bad(mesh, quality, &state.pool, &report.total);
+    *pauses += report.pauses;
+    assert_int_equal(par_room_close(&state.spare, mesh, options->threads, &error), TRI_OK);
+    assert_int_equal(tri_mesh_validate(mesh, &error), TRI_OK);
+    int64_t inserted = report.total.inserted_free + report.total.inserted_on_segments;
+    for (int32_t i = 0; i < report.n_blocks; i++)
+        assert_true(report.blocks[i].block >= 0 && report.blocks[i].block < par_blocks(p));
+    par_report_free(&report);
+    free(state.pool.item);
+    free(old);
+    return inserted;
+}
+
+/* Serialisation: threads, order of blocks and pauses for room do not show in the mesh. */
+static void test_a_phase_is_its_blocks_one_by_one(void **state)
+{
+    (void)state;
+    static const struct par_options options[] = {
+        {.threads = 1}, {.threads = 3, .shuffle = 5}, {.threads = 2, .tight_room = 20}, {.threads = 4, .tight_room = 1, .shuffle = 9}};
+    int64_t pauses = 0;
+    for (int i = 0; i < N_TRIALS; i++)
+        for (int colour = 0; colour < PAR_COLOURS; colour++) {
+            struct tri_refine_options quality;
+            struct tri_mesh first = start_of(&trials[i], &quality), second = start_of(&trials[i], &quality);
+            struct par_partition partition = cut(&first, &quality, trials[i].block);
+            int64_t inserted = run_one_by_one(&first, &quality, &partition, colour, false);
+            assert_true(inserted > 100);
+            assert_int_equal(run_one_by_one(&second, &quality, &partition, colour, true), inserted);
+            struct support_places forwards = support_places(&first), backwards = support_places(&second);
+            assert_true(support_same_places(&forwards, &backwards));
+            for (int k = 0; k < 4; k++) {
+                struct tri_mesh mesh = start_of(&trials[i], &quality);
+                assert_int_equal(run_phase(&mesh, &quality, &partition, colour, &options[k], &pauses), inserted);
+                struct support_places places = support_places(&mesh);
+                assert_true(support_same_places(&forwards, &places));
+                support_places_free(&places);
+                tri_mesh_free(&mesh);
+            }
+            support_places_free(&forwards);
+            support_places_free(&backwards);
+            par_partition_free(&partition);
+            tri_mesh_free(&first);
+            tri_mesh_free(&second);
+        }
+    assert_true(pauses > 1000);
+}
+
+/* Four phases leave little, and all that they leave is in the pool; triangles that have gone are dropped from it. */
+static void test_four_phases_in_turn(void **state)
+{
+    (void)state;
+    for (int i = 0; i < N_TRIALS; i++) {
+        struct tri_refine_options quality;
+        struct par_options options = {.threads = 2};
+        struct par_report report = {0};
+        struct tri_mesh mesh = start_of(&trials[i], &quality);
+        struct par_partition partition = cut(&mesh, &quality, trials[i].block);
+        struct par_state phases = {.mesh = &mesh, .quality = &quality, .options = &options, .threads = 2, .report = &report};
+        phases.pool = bad_slots(&mesh, &quality);
+        for (int colour = 0; colour < PAR_COLOURS; colour++) {
+            assert_int_equal(par_phase(&phases, &partition, colour, NULL), TRI_OK);
+            mark_unused(&mesh, &phases.spare);
+            assert_pool_holds_all_that_is_bad(&mesh, &quality, &phases.pool, &report.total);
+        }
+        print_message("  %-16s %d left of %lld inserted\n", trials[i].file ? trials[i].file : "square", (int)phases.pool.n,
+                      (long long)report.total.inserted_free);
+        assert_true(phases.pool.n < report.total.inserted_free / 10);
+        assert_int_equal(par_room_close(&phases.spare, &mesh, 2, NULL), TRI_OK);
+        assert_int_equal(tri_mesh_validate(&mesh, NULL), TRI_OK);
+        support_assert_cdt(&mesh, false);
+        par_report_free(&report);
+        free(phases.pool.item);
+        par_partition_free(&partition);
+        tri_mesh_free(&mesh);
+    }
+}
+
+/* The margin: each block keeps 2 r away from its fence, so that no cavity is refused. */
+static void test_margin_keeps_cavities_inside(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = support_square(1, 20, 2);
+    struct tri_options fine = support_quality(25, 4e-5);
+    struct tri_mesh coarse = support_generate(&pslg, &fine, NULL);
+    struct tri_refine_options quality = fine.quality;
+    quality.max_area = 1e-5;
+    struct par_partition partition = cut(&coarse, &quality, 8000);
+    double largest2 = 0;
+    for (int32_t t = 0; t < coarse.n_slots; t++) {
+        const int32_t *v = coarse.tri[t].v;
+        largest2 = fmax(largest2, par_radius2(coarse.xy[v[0]], coarse.xy[v[1]], coarse.xy[v[2]]));
+    }
+    for (int colour = 0; colour < PAR_COLOURS; colour++)
+        for (int margin = 0; margin < 2; margin++) {
+            struct par_options options = {.threads = 2, .margin = margin};
+            struct par_report report = {0};
+            struct tri_mesh mesh = support_generate(&pslg, &fine, NULL);
+            struct par_state phase = {.mesh = &mesh, .quality = &quality, .options = &options, .threads = 2,
+                                      .report = &report, .radius = sqrt(largest2)};
+            phase.pool = bad_slots(&mesh, &quality);
+            assert_int_equal(par_phase(&phase, &partition, colour, NULL), TRI_OK);
+            assert_true(report.total.inserted_free > 1000);
+            assert_true(margin ? report.total.deferred == 0 : report.total.deferred > 0);
+            assert_int_equal(par_room_close(&phase.spare, &mesh, 2, NULL), TRI_OK);
+            par_report_free(&report);
+            free(phase.pool.item);
+            tri_mesh_free(&mesh);
+        }
+    par_partition_free(&partition);
+    tri_mesh_free(&coarse);
+    tri_pslg_free(&pslg);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_phase_is_its_blocks_one_by_one),
+        cmocka_unit_test(test_four_phases_in_turn),
+        cmocka_unit_test(test_margin_keeps_cavities_inside),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,296 @@
+/* Ranges of the shared arrays: dealt out, used, given back and closed up, against a table that says whose each item is. */
+#include "support.h"
+
+#include "sched/room.h"
+
+enum { ROOMS = 6, NOBODY = -1, SPARE = -2, USED = -3 };
+
+/* Whose is each item of each kind? */
+struct table {
+    int32_t *owner[PAR_KINDS];
+    int32_t n[PAR_KINDS], capacity[PAR_KINDS];
+};
+
+static int32_t count_of(const struct tri_mesh *mesh, int kind)
+{
+    return kind == PAR_VERTICES ? mesh->n_vertices : kind == PAR_SLOTS ? mesh->n_slots : mesh->n_subs;
+}
+
+static void table_grow(struct table *table, const struct tri_mesh *shared)
+{
+    for (int kind = 0; kind < PAR_KINDS; kind++) {
+        int32_t n = count_of(shared, kind);
+        assert_true(n >= table->n[kind]);
+        if (n > table->capacity[kind]) {
+            table->capacity[kind] = 2 * n;
+            table->owner[kind] = realloc(table->owner[kind], (size_t)table->capacity[kind] * sizeof(int32_t));
+            assert_non_null(table->owner[kind]);
+        }
+        while (table->n[kind] < n)
+            table->owner[kind][table->n[kind]++] = NOBODY;
+    }
+}
+
+/* Everything that a room lists belongs to it from now on; it must have been its own, or free to take. */
+static void table_claim(struct table *table, const struct par_room *room, int32_t who)
+{
+    for (int kind = 0; kind < PAR_KINDS; kind++)
+        for (int32_t i = 0; i < room->ranges[kind].n; i++) {
+            struct par_range range = room->ranges[kind].item[i];
+            assert_true(range.next <= range.end && range.end <= table->n[kind]);
+            for (int32_t at = range.next; at < range.end; at++) {
+                int32_t *owner = &table->owner[kind][at];
+                assert_true(*owner == who || *owner == NOBODY || *owner == SPARE);
+                *owner = who;
+            }
+        }
+}
+
+static int32_t table_count(const struct table *table, int kind, int32_t who)
+{
+    int32_t n = 0;
+    for (int32_t i = 0; i < table->n[kind]; i++)
+        n += table->owner[kind][i] == who;
+    return n;
+}
+
+static int32_t room_left(const struct par_room *room, int kind)
+{
+    int32_t n = 0;
+    for (int32_t i = 0; i < room->ranges[kind].n; i++)
+        n += room->ranges[kind].item[i].end - room->ranges[kind].item[i].next;
+    return n;
+}
+
+static void table_free(struct table *table)
+{
+    for (int kind = 0; kind < PAR_KINDS; kind++)
+        free(table->owner[kind]);
+}
+
+/* Uses up to n points' worth of room, as the refinement loop does; false where the room was full before. */
+static bool use_room(struct table *table, struct par_room *room, const struct tri_mesh *shared, int32_t who, int32_t n,
+                     struct support_random *random)
+{
+    struct tri_mesh view;
+    bool enough = true;
+    par_room_enter(room, &view, shared);
+    for (int32_t i = 0; i < n && enough; i++) {
+        bool need = view.vertex_capacity - view.n_vertices < 1 || view.slot_capacity - view.n_slots < 2 ||
+                    view.sub_capacity - view.n_subs < 1;
+        enum tri_status status = need ? par_more_room(room, &view, NULL) : TRI_OK;
+        assert_true(status == TRI_OK || status == TRI_NO_ROOM);
+        enough = status == TRI_OK;
+        if (!enough)
+            break;
+        int32_t taken[4][2] = {{PAR_VERTICES, view.n_vertices++}, {PAR_SLOTS, view.n_slots++}, {PAR_SLOTS, view.n_slots++}};
+        int n_taken = 3;
+        if (support_below(random, 4) == 0) {
+            taken[3][0] = PAR_SUBS;
+            taken[3][1] = view.n_subs++;
+            n_taken = 4;
+        }
+        for (int k = 0; k < n_taken; k++) {
+            int32_t *owner = &table->owner[taken[k][0]][taken[k][1]];
+            assert_int_equal(*owner, who);
+            *owner = USED;
+        }
+    }
+    par_room_leave(room, &view);
+    return enough;
+}
+
+static void give_back(struct table *table, struct par_room *room, struct par_room *spare)
+{
+    assert_int_equal(par_room_return(room, spare, NULL), TRI_OK);
+    assert_true(!room->ranges[PAR_SLOTS].item && !room->ranges[PAR_VERTICES].item && !room->ranges[PAR_SUBS].item);
+    for (int kind = 0; kind < PAR_KINDS; kind++)
+        for (int32_t i = 0; i < spare->ranges[kind].n; i++)
+            for (int32_t at = spare->ranges[kind].item[i].next; at < spare->ranges[kind].item[i].end; at++)
+                table->owner[kind][at] = SPARE;
+}
+
+/* No item belongs to two rooms, none is lost, and what was asked for is there. */
+static void test_random_dealings(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 40; seed++) {
+        struct support_random random = {seed};
+        struct tri_mesh shared;
+        struct table table = {0};
+        struct par_room room[ROOMS] = {0}, spare = {0};
+        assert_int_equal(tri_mesh_init(&shared, NULL), TRI_OK);
+        for (int step = 0; step < 300; step++) {
+            int32_t who = support_below(&random, ROOMS), action = support_below(&random, 8);
+            if (action == 0) {
+                give_back(&table, &room[who], &spare);
+                assert_int_equal(table_count(&table, PAR_SLOTS, who), 0);
+                assert_int_equal(table_count(&table, PAR_SLOTS, SPARE), room_left(&spare, PAR_SLOTS));
+            } else if (action < 3) {
+                int32_t more = support_below(&random, seed % 2 ? 12 : 400) + 1, before = room_left(&room[who], PAR_SLOTS);
+                assert_int_equal(par_room_extend(&room[who], &spare, &shared, more, NULL), TRI_OK);
+                assert_true(room_left(&room[who], PAR_SLOTS) >= before + more);
+                assert_true(room_left(&room[who], PAR_VERTICES) >= more / 2);
+                table_grow(&table, &shared);
+                table_claim(&table, &room[who], who);
+            } else {
+                use_room(&table, &room[who], &shared, who, support_below(&random, seed % 2 ? 8 : 150), &random);
+            }
+            for (int kind = 0; kind < PAR_KINDS; kind++)
+                assert_int_equal(table_count(&table, kind, who), room_left(&room[who], kind));
+        }
+        for (int32_t who = 0; who < ROOMS; who++)
+            give_back(&table, &room[who], &spare);
+        for (int kind = 0; kind < PAR_KINDS; kind++) { /* each item is used or spare */
+            assert_int_equal(table_count(&table, kind, NOBODY), 0);
+            assert_int_equal(table_count(&table, kind, USED) + room_left(&spare, kind), count_of(&shared, kind));
+        }
+        par_room_free(&spare);
+        table_free(&table);
+        tri_mesh_free(&shared);
+    }
+}
+
+static double plane(int k, struct tri_point p) { return k ? p.x - 3 * p.y : 2 * p.x + p.y; }
+
+/* Attributes that are linear in the plane, so that interpolated ones can be recognised. */
+static struct tri_mesh mesh_with_attributes(void)
+{
+    struct tri_pslg pslg = support_square(1, 30, 1);
+    struct tri_options options = support_quality(0, 0);
+    options.refine = false;
+    support_add_segment(&pslg, 0, 2);
+    pslg.n_attributes = 2;
+    pslg.attributes = malloc(2 * (size_t)pslg.n_points * sizeof *pslg.attributes);
+    assert_non_null(pslg.attributes);
+    for (int32_t i = 0; i < 2 * pslg.n_points; i++)
+        pslg.attributes[i] = plane(i % 2, (struct tri_point){pslg.points[i / 2 * 2], pslg.points[i / 2 * 2 + 1]});
+    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+    tri_pslg_free(&pslg);
+    return mesh;
+}
+
+/* Refines some more on a view, until it is done, or its limit is reached, or it has no more room. */
+static int64_t refine_in_room(struct tri_mesh *shared, struct par_room *room, int64_t limit, double max_area)
+{
+    struct tri_mesh view;
+    struct tri_refine_options options = tri_refine_defaults();
+    struct tri_refine_report report;
+    int32_t n = shared->n_slots, *seeds = malloc((size_t)n * sizeof *seeds);
+    assert_non_null(seeds);
+    options.min_angle = 30;
+    options.max_area = max_area;
+    options.max_steiner = limit;
+    options.more_room = par_more_room;
+    options.more_room_user = room;
+    options.seeds = seeds;
+    for (int32_t i = 0; i < n; i++)
+        if (tri_is_live(&shared->tri[i]))
+            seeds[options.n_seeds++] = i;
+    par_room_enter(room, &view, shared);
+    enum tri_status status = tri_refine(&view, &options, &report, NULL);
+    assert_true(status == TRI_OK || status == TRI_NO_ROOM);
+    par_room_leave(room, &view);
+    free(seeds);
+    return report.inserted_free + report.inserted_on_segments;
+}
+
+/* Slots that nobody has used yet hold anything; here they are marked free, so that the mesh can be looked at. */
+static void mark_unused(struct tri_mesh *mesh, const struct par_room *room)
+{
+    for (int32_t i = 0; i < room->ranges[PAR_SLOTS].n; i++)
+        for (int32_t t = room->ranges[PAR_SLOTS].item[i].next; t < room->ranges[PAR_SLOTS].item[i].end; t++)
+            mesh->tri[t].v[0] = TRI_NONE;
+}
+
+/* After closing: no gap, valid links, the same triangles at the same places, and what belongs to a vertex came with it. */
+static void assert_closed(const struct tri_mesh *mesh, const struct support_places *before, int64_t vertices)
+{
+    struct tri_error error = {0};
+    struct support_places after = support_places(mesh);
+    assert_int_equal(mesh->n_vertices, vertices);
+    assert_int_equal(mesh->n_slots, before->n);
+    assert_true(support_same_places(before, &after));
+    support_places_free(&after);
+    if (tri_mesh_validate(mesh, &error) != TRI_OK)
+        fail_msg("%s", error.text);
+    support_assert_cdt(mesh, false);
+    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+        for (int k = 0; k < 2; k++)
+            assert_true(fabs(mesh->attributes[2 * v + k] - plane(k, mesh->xy[v])) < 1e-9);
+        if (mesh->on[v] < 0)
+            continue;
+        const struct tri_parent *parent = &mesh->parents[mesh->on[v]];
+        assert_true(fabs(tri_orient2d(mesh->xy[parent->v[0]], mesh->xy[parent->v[1]], mesh->xy[v])) < 1e-12);
+        bool rim = mesh->xy[v].x == 0 || mesh->xy[v].x == 1 || mesh->xy[v].y == 0 || mesh->xy[v].y == 1;
+        assert_int_equal(mesh->vertex_markers[v], rim);
+    }
+    for (int32_t s = 0; s < mesh->n_subs; s++)
+        for (int side = 0; side < 2; side++)
+            if (mesh->sub[s].side[side] != TRI_NONE)
+                assert_int_equal(mesh->tri[tri_of(mesh->sub[s].side[side])].n[tri_edge(mesh->sub[s].side[side])], ~s);
+}
+
+/* Views that take turns, with more or less room than they need, in random order. */
+static void test_closing_keeps_the_mesh(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 30; seed++) {
+        struct support_random random = {seed};
+        struct tri_mesh mesh = mesh_with_attributes();
+        struct par_room room[ROOMS] = {0}, spare = {0};
+        int64_t vertices = mesh.n_vertices;
+        for (int step = 0; step < 40; step++) {
+            int32_t who = support_below(&random, ROOMS), action = support_below(&random, 4);
+            if (action == 0) {
+                assert_int_equal(par_room_return(&room[who], &spare, NULL), TRI_OK);
+            } else if (action == 1) {
+                assert_int_equal(par_room_extend(&room[who], &spare, &mesh, 1 + support_below(&random, 300), NULL), TRI_OK);
+                mark_unused(&mesh, &room[who]);
+            } else {
+                vertices += refine_in_room(&mesh, &room[who], support_below(&random, 60), 2e-4);
+            }
+        }
+        for (int32_t who = 0; who < ROOMS; who++)
+            assert_int_equal(par_room_return(&room[who], &spare, NULL), TRI_OK);
+        mark_unused(&mesh, &spare);
+        struct support_places places = support_places(&mesh);
+        assert_true(vertices > mesh.n_input || seed > 0);
+        assert_int_equal(par_room_close(&spare, &mesh, 1 + (int)(seed % 3), NULL), TRI_OK);
+        assert_closed(&mesh, &places, vertices);
+        support_places_free(&places);
+        tri_mesh_free(&mesh);
+    }
+}
+
+/* Nothing was used: the counts are those of before; everything was used: nothing moves. */
+static void test_closing_extremes(void **state)
+{
+    (void)state;
+    struct tri_mesh mesh = mesh_with_attributes();
+    struct par_room room = {0}, spare = {0};
+    struct support_places places = support_places(&mesh);
+    int32_t vertices = mesh.n_vertices, subs = mesh.n_subs;
+    assert_int_equal(par_room_close(&spare, &mesh, 2, NULL), TRI_OK); /* no gaps at all */
+    assert_closed(&mesh, &places, vertices);
+    for (int i = 0; i < 5; i++) {
+        assert_int_equal(par_room_extend(&room, &spare, &mesh, 1000, NULL), TRI_OK);
+        assert_int_equal(par_room_return(&room, &spare, NULL), TRI_OK);
+    }
+    assert_true(mesh.n_slots >= 1000 && mesh.n_slots < 3000); /* what is given back is dealt again */
+    assert_int_equal(par_room_close(&spare, &mesh, 2, NULL), TRI_OK);
+    assert_closed(&mesh, &places, vertices);
+    assert_int_equal(mesh.n_subs, subs);
+    support_places_free(&places);
+    tri_mesh_free(&mesh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_random_dealings),
+        cmocka_unit_test(test_closing_keeps_the_mesh),
+        cmocka_unit_test(test_closing_extremes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,323 @@
+/* The lemmas of the paper, as formulas and on random meshes. */
+#include "support.h"
+
+#include "sched/theory.h"
+#include "triangle/cavity.h"
+#include "triangle/quality.h"
+
+static const double RADIAN = 3.14159265358979324 / 180;
+
+static void assert_near(double a, double b) { assert_true(fabs(a - b) <= 1e-12 * fabs(b)); }
+
+static void test_rho_is_the_inverse_of_the_angle(void **state)
+{
+    (void)state;
+    assert_near(par_rho(30), 1);
+    assert_near(par_rho(60), 1 / sqrt(3));
+    for (double angle = 0.5; angle <= 60; angle += 0.5)
+        assert_near(1 / (2 * par_rho(angle)), sin(angle * RADIAN));
+}
+
+static void test_circumradius(void **state)
+{
+    (void)state;
+    struct tri_point a = {1, 1}, b = {4, 1}, c = {1, 5};
+    assert_near(par_radius2(a, b, c), 6.25);
+    assert_near(par_radius2(b, c, a), 6.25);
+    assert_near(par_radius2(a, c, b), 6.25); /* whatever the orientation */
+}
+
+/* A triangle with these two angles (degrees) and this area. */
+static void make_triangle(double alpha, double beta, double area, struct tri_point v[3])
+{
+    double ta = tan(alpha * RADIAN), tb = tan(beta * RADIAN), x = tb / (ta + tb), y = x * ta;
+    double scale = sqrt(2 * area / y);
+    v[0] = (struct tri_point){0, 0};
+    v[1] = (struct tri_point){scale, 0};
+    v[2] = (struct tri_point){scale * x, scale * y};
+}
+
+static double radius_of(const struct tri_point v[3]) { return sqrt(par_radius2(v[0], v[1], v[2])); }
+
+/* Lemma 7 and the tight bound: no triangle with angles and area within their bounds has a larger circumradius. */
+static void test_radius_bounds_hold(void **state)
+{
+    (void)state;
+    struct support_random random = {7};
+    for (int i = 0; i < 20000; i++) {
+        double least = 1 + 59 * support_unit(&random), bound = ldexp(0.5 + support_unit(&random), support_below(&random, 40) - 20);
+        double alpha = least + (180 - 3 * least) * support_unit(&random);
+        double beta = least + (180 - 2 * least - alpha) * support_unit(&random);
+        struct tri_point v[3];
+        if (fabs(alpha - 90) < 1e-3 || fabs(beta - 90) < 1e-3) /* the tangent is no help there */
+            continue;
+        make_triangle(alpha, beta, bound * support_unit(&random) + 1e-300, v);
+        double tight = par_radius_tight(bound, least);
+        assert_true(radius_of(v) <= tight * (1 + 1e-9));
+        assert_true(tight <= par_radius_lemma7(bound, par_rho(least)) * (1 + 1e-12));
+    }
+}
+
+/* The extremal triangle has two angles at the bound, and the whole area: the tight bound is its circumradius. */
+static void test_tight_bound_is_attained(void **state)
+{
+    (void)state;
+    for (double angle = 1; angle <= 60; angle++) {
+        struct tri_point v[3];
+        make_triangle(angle, angle, 3, v);
+        assert_true(fabs(radius_of(v) - par_radius_tight(3, angle)) < 1e-9 * radius_of(v));
+        /* A hundredth more of area, or less of angle, is beyond it: the bound depends on both. */
+        assert_true(par_radius_tight(3.03, angle) > radius_of(v) && par_radius_tight(3, 0.99 * angle) > radius_of(v));
+    }
+    assert_true(fabs(par_radius_tight(1, 20) - 2.58) < 0.005 && fabs(par_radius_lemma7(1, par_rho(20)) - 3.54) < 0.005);
+    assert_near(par_radius_tight(1, 60), par_radius_lemma7(1, par_rho(60))); /* one and the same for the equilateral */
+}
+
+static void test_area_for_radius_is_the_inverse_of_lemma_7(void **state)
+{
+    (void)state;
+    for (double angle = 1; angle <= 34; angle++)
+        for (double radius = 1e-6; radius < 1e6; radius *= 7) {
+            double area = par_area_for_radius(radius, par_rho(angle));
+            assert_near(par_radius_lemma7(area, par_rho(angle)), radius);
+            assert_true(par_radius_tight(area, angle) <= radius); /* so a mesh within this area has radii below */
+        }
+}
+
+static void test_distances_decide(void **state)
+{
+    (void)state;
+    struct tri_point o = {0, 0}, four = {0, 4}, less = {0, 3.9999}, two = {2, 0}, within = {1.9999, 0};
+    assert_true(par_independent(o, four, 1) && par_independent(four, o, 1));
+    assert_false(par_independent(o, less, 1));
+    assert_false(par_independent(o, four, 1.0001));
+    assert_true(par_in_buffer_zone(o, within, 1));
+    assert_false(par_in_buffer_zone(o, two, 1));
+}
+
+/* A mesh with radii of about one size, or (graded) of several. */
+static struct tri_mesh make_mesh(bool graded, uint64_t seed)
+{
+    struct tri_pslg pslg = support_square(1, graded ? 60 : 10, seed);
+    for (int32_t i = 8; graded && i < 2 * pslg.n_points; i++)
+        pslg.points[i] *= pslg.points[i]; /* denser towards a corner */
+    struct tri_options options = support_quality(25, graded ? 4e-3 : 8e-4);
+    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+    tri_pslg_free(&pslg);
+    return mesh;
+}
+
+static struct tri_mesh copy_of(const struct tri_mesh *mesh)
+{
+    struct tri_mesh copy;
+    struct tri_error error;
+    assert_int_equal(tri_mesh_init(&copy, &error), TRI_OK);
+    assert_int_equal(tri_mesh_reserve_vertices(&copy, mesh->n_vertices + 8, &error), TRI_OK);
+    assert_int_equal(tri_mesh_reserve_triangles(&copy, mesh->n_slots + 16, &error), TRI_OK);
+    assert_int_equal(tri_mesh_reserve_subs(&copy, mesh->n_subs, &error), TRI_OK);
+    memcpy(copy.xy, mesh->xy, (size_t)mesh->n_vertices * sizeof *mesh->xy);
+    memcpy(copy.on, mesh->on, (size_t)mesh->n_vertices * sizeof *mesh->on);
+    memcpy(copy.tri, mesh->tri, (size_t)mesh->n_slots * sizeof *mesh->tri);
+    memcpy(copy.sub, mesh->sub, (size_t)mesh->n_subs * sizeof *mesh->sub);
+    copy.n_vertices = mesh->n_vertices;
+    copy.n_slots = mesh->n_slots;
+    copy.n_subs = mesh->n_subs;
+    copy.unit = mesh->unit;
+    return copy;
+}
+
+static struct tri_point centre_of(const struct tri_mesh *mesh, int32_t t)
+{
+    struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
+    return tri_place(mesh->xy, mesh->tri[t].v, &shape, HUGE_VAL);
+}
+
+static double radius2_at(const struct tri_mesh *mesh, int32_t t)
+{
+    const int32_t *v = mesh->tri[t].v;
+    return par_radius2(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]);
+}
+
+static double largest_radius(const struct tri_mesh *mesh)
+{
+    double largest2 = 0;
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        largest2 = fmax(largest2, radius2_at(mesh, t));
+    return sqrt(largest2);
+}
+
+static bool has(const struct tri_cavity *cavity, int32_t t)
+{
+    for (int32_t i = 0; i < cavity->n_tri; i++)
+        if (cavity->tri[i] == t)
+            return true;
+    return false;
+}
+
+/* Do two cavities have a triangle in common, or a triangle each on the two sides of one edge? */
+static bool are_apart(const struct tri_mesh *mesh, const struct tri_cavity *a, const struct tri_cavity *b)
+{
+    for (int32_t i = 0; i < a->n_tri; i++) {
+        if (has(b, a->tri[i]))
+            return false;
+        for (int e = 0; e < 3; e++)
+            if (mesh->tri[a->tri[i]].n[e] >= 0 && has(b, tri_of(mesh->tri[a->tri[i]].n[e])))
+                return false;
+    }
+    return true;
+}
+
+/* The cavity of the circumcentre of a random triangle; only those that no subsegment bounds. */
+static bool find_cavity(struct tri_cavity *cavity, const struct tri_mesh *mesh, struct support_random *random, int32_t *t)
+{
+    *t = support_below(random, mesh->n_slots);
+    return tri_cavity_search(cavity, mesh, centre_of(mesh, *t), *t) == TRI_SEARCH_FOUND && cavity->n_wall == 0;
+}
+
+static void fill(struct tri_mesh *mesh, struct tri_cavity *cavity)
+{
+    int32_t v = mesh->n_vertices++;
+    mesh->xy[v] = cavity->p;
+    mesh->on[v] = TRI_VERTEX_FREE;
+    tri_cavity_fill(cavity, mesh, v);
+}
+
+static void insert(struct tri_mesh *mesh, struct tri_point p, int32_t t)
+{
+    struct tri_cavity cavity = {0};
+    assert_int_equal(tri_cavity_search(&cavity, mesh, p, t), TRI_SEARCH_FOUND);
+    fill(mesh, &cavity);
+    tri_cavity_free(&cavity);
+}
+
+static void assert_same_mesh(const struct tri_mesh *a, const struct tri_mesh *b)
+{
+    struct support_places here = support_places(a), there = support_places(b);
+    assert_true(support_same_places(&here, &there));
+    support_places_free(&here);
+    support_places_free(&there);
+}
+
+/* Lemma 1: p then q, q then p, and both at once (both cavities found before either is filled) make one Delaunay mesh. */
+static void assert_order_does_not_matter(const struct tri_mesh *mesh, struct tri_cavity *p, int32_t tp, struct tri_cavity *q,
+                                         int32_t tq)
+{
+    struct tri_mesh first = copy_of(mesh), second = copy_of(mesh), both = copy_of(mesh);
+    struct tri_error error = {0};
+    insert(&first, p->p, tp);
+    insert(&first, q->p, tq);
+    insert(&second, q->p, tq);
+    insert(&second, p->p, tp);
+    fill(&both, p);
+    fill(&both, q);
+    assert_int_equal(tri_mesh_validate(&both, &error), TRI_OK);
+    support_assert_cdt(&both, false);
+    assert_same_mesh(&first, &second);
+    assert_same_mesh(&first, &both);
+    tri_mesh_free(&first);
+    tri_mesh_free(&second);
+    tri_mesh_free(&both);
+}
+
+/* Lemma 2: what par_independent accepts is independent. And the test says something: nearer pairs do get into each other's
+ * way. */
+static void test_independent_points_have_cavities_apart(void **state)
+{
+    (void)state;
+    struct tri_cavity p = {0}, q = {0};
+    for (uint64_t seed = 0; seed < 6; seed++) {
+        struct support_random random = {seed};
+        struct tri_mesh mesh = make_mesh(seed % 2, seed);
+        double radius = largest_radius(&mesh);
+        int independent = 0, in_the_way = 0, tp, tq;
+        for (int i = 0; i < 20000; i++) {
+            if (!find_cavity(&p, &mesh, &random, &tp) || !find_cavity(&q, &mesh, &random, &tq) || tp == tq)
+                continue;
+            bool apart = are_apart(&mesh, &p, &q);
+            assert_true(apart == are_apart(&mesh, &q, &p));
+            in_the_way += !apart;
+            if (!par_independent(p.p, q.p, radius))
+                continue;
+            assert_true(apart);
+            if (independent++ < 30)
+                assert_order_does_not_matter(&mesh, &p, tp, &q, tq);
+        }
+        assert_true(independent > 100 && in_the_way > 10);
+        tri_mesh_free(&mesh);
+    }
+    tri_cavity_free(&p);
+    tri_cavity_free(&q);
+}
+
+/* Definition 3: the cavity lies in the buffer zone; and all of it within 2 r of the point, corners included, which is what
+ * the margin of a fence relies on. */
+static void test_cavities_lie_in_the_buffer_zone(void **state)
+{
+    (void)state;
+    struct tri_cavity p = {0};
+    for (uint64_t seed = 10; seed < 14; seed++) {
+        struct support_random random = {seed};
+        struct tri_mesh mesh = make_mesh(seed % 2, seed);
+        double radius = largest_radius(&mesh);
+        int32_t t;
+        for (int i = 0; i < 3000; i++) {
+            if (!find_cavity(&p, &mesh, &random, &t))
+                continue;
+            for (int32_t k = 0; k < p.n_tri; k++) {
+                assert_true(par_in_buffer_zone(p.p, centre_of(&mesh, p.tri[k]), radius));
+                for (int c = 0; c < 3; c++)
+                    assert_true(tri_relative(&mesh.xy[mesh.tri[p.tri[k]].v[c]], p.p).l < 4 * radius * radius);
+            }
+        }
+        tri_mesh_free(&mesh);
+    }
+    tri_cavity_free(&p);
+}
+
+/* Lemmas 3 and 4: each new triangle has a smaller circumradius than one of the two old ones at its rim; hence the largest
+ * circumradius never grows. */
+static void test_radius_never_grows(void **state)
+{
+    (void)state;
+    struct tri_cavity p = {0};
+    for (uint64_t seed = 20; seed < 24; seed++) {
+        struct support_random random = {seed};
+        struct tri_mesh mesh = make_mesh(seed % 2, seed);
+        struct tri_error error;
+        double bound = largest_radius(&mesh);
+        int32_t t;
+        for (int i = 0; i < 4000; i++) {
+            if (!find_cavity(&p, &mesh, &random, &t))
+                continue;
+            double before2 = 0; /* of the cavity and what surrounds it */
+            for (int32_t k = 0; k < p.n_tri; k++)
+                before2 = fmax(before2, radius2_at(&mesh, p.tri[k]));
+            for (int32_t k = 0; k < p.n_rim; k++)
+                before2 = fmax(before2, radius2_at(&mesh, tri_of(p.rim[k].outer)));
+            assert_int_equal(tri_mesh_reserve_vertices(&mesh, 1, &error), TRI_OK);
+            assert_int_equal(tri_mesh_reserve_triangles(&mesh, 2, &error), TRI_OK);
+            fill(&mesh, &p);
+            for (int32_t k = 0; k < p.n_rim; k++)
+                assert_true(radius2_at(&mesh, p.rim[k].slot) <= before2 * (1 + 1e-9));
+        }
+        assert_true(largest_radius(&mesh) <= bound * (1 + 1e-9));
+        tri_mesh_free(&mesh);
+    }
+    tri_cavity_free(&p);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rho_is_the_inverse_of_the_angle),
+        cmocka_unit_test(test_circumradius),
+        cmocka_unit_test(test_radius_bounds_hold),
+        cmocka_unit_test(test_tight_bound_is_attained),
+        cmocka_unit_test(test_area_for_radius_is_the_inverse_of_lemma_7),
+        cmocka_unit_test(test_distances_decide),
+        cmocka_unit_test(test_independent_points_have_cavities_apart),
+        cmocka_unit_test(test_cavities_lie_in_the_buffer_zone),
+        cmocka_unit_test(test_radius_never_grows),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
