@@ -60,25 +60,31 @@ static void tell(const struct par_state *state, int phase)
                                  state->mesh->n_slots);
 }
 
-/* The size test of a graded pre-refinement: no edge longer than a share of the cell it lies in. */
+/* The size test of a graded pre-refinement: no edge longer than a share of the cell it lies in. In the mesh's units, where
+ * squares neither overflow nor underflow. */
 struct coarse_test {
     const struct par_partition *partition;
-    double share2;   /* square of it */
-    double least2;   /* no edge shorter than the root of this is too long in any cell */
+    double share2; /* square of it */
+    double least2; /* no edge shorter than the root of this is too long in any cell */
     double unit;
 };
+
+static double squared_edge(const double a[2], const double b[2], double unit)
+{
+    double x = b[0] / unit - a[0] / unit, y = b[1] / unit - a[1] / unit;
+    return x * x + y * y;
+}
 
 static int is_too_long(void *user, const double a[2], const double b[2], const double c[2], double area)
 {
     const struct coarse_test *test = user;
-    double abx = b[0] - a[0], aby = b[1] - a[1], bcx = c[0] - b[0], bcy = c[1] - b[1], cax = a[0] - c[0], cay = a[1] - c[1];
-    double ab = abx * abx + aby * aby, bc = bcx * bcx + bcy * bcy, ca = cax * cax + cay * cay;
-    double longest = ab > bc ? (ab > ca ? ab : ca) : (bc > ca ? bc : ca);
+    double unit = test->unit;
+    double longest = fmax(squared_edge(a, b, unit), fmax(squared_edge(b, c, unit), squared_edge(c, a, unit)));
     (void)area;
     if (longest <= test->least2)
         return 0;
-    struct tri_point centre = {(a[0] + b[0] + c[0]) / 3 / test->unit, (a[1] + b[1] + c[1]) / 3 / test->unit};
-    double size = par_cell_size(test->partition, centre) * test->unit;
+    struct tri_point centre = {(a[0] / unit + b[0] / unit + c[0] / unit) / 3, (a[1] / unit + b[1] / unit + c[1] / unit) / 3};
+    double size = par_cell_size(test->partition, centre);
     return longest > test->share2 * size * size;
 }
 
@@ -150,23 +156,44 @@ static enum tri_status fill_pool(struct par_state *state, const struct tri_refin
     return TRI_OK;
 }
 
-/* Pre-refinement where the input is already fine in places: only edges that are long against their cell are cut. */
+/* Keeps those triangles of the pool that violate other bounds, in order. */
+static void filter_pool(struct par_state *state, const struct tri_refine_options *bounds)
+{
+    struct par_slots *pool = &state->pool;
+    int32_t kept = 0;
+#pragma omp parallel for num_threads(state->threads) schedule(dynamic, 4096)
+    for (int32_t i = 0; i < pool->n; i++) {
+        int32_t slot = pool->item[i], found;
+        if (tri_find_work(state->mesh, bounds, slot, slot + 1, &found) == 0)
+            pool->item[i] = TRI_NONE;
+    }
+    for (int32_t i = 0; i < pool->n; i++)
+        if (pool->item[i] != TRI_NONE)
+            pool->item[kept++] = pool->item[i];
+    pool->n = kept;
+}
+
+/* Pre-refinement where the input is already fine in places: only bad triangles with edges that are long against their cell
+ * are cut, with no more than one point for 400 triangles of the mesh to come. */
 static enum tri_status prerefine_graded(struct par_state *state, const struct tri_refine_options *quality,
                                         const struct par_partition *partition, struct tri_error *error)
 {
     struct tri_refine_options coarse = tri_refine_defaults();
     struct tri_refine_report report;
-    double unit = state->mesh->unit, least = smallest_cell(partition) * unit;
-    struct coarse_test test = {partition, 1.0 / 16, least * least / 16, unit};
+    double least = smallest_cell(partition);
+    struct coarse_test test = {partition, 1.0 / 16, least * least / 16, state->mesh->unit};
     coarse.unsuitable = is_too_long;
     coarse.unsuitable_user = &test;
     coarse.protect = quality->protect;
-    coarse.max_steiner = (int64_t)(partition->estimate / 100) + 1000;
-    enum tri_status status = fill_pool(state, &coarse, error);
+    coarse.max_steiner = (int64_t)(partition->estimate / 400);
+    enum tri_status status = fill_pool(state, quality, error);
+    if (status)
+        return status;
+    filter_pool(state, &coarse);
+    if (state->pool.n == 0)
+        return TRI_OK;
     coarse.seeds = state->pool.item;
     coarse.n_seeds = state->pool.n;
-    if (status || state->pool.n == 0)
-        return status;
     status = tri_refine(state->mesh, &coarse, &report, error);
     state->report->total.inserted_free += report.inserted_free;
     state->report->total.inserted_on_segments += report.inserted_on_segments;
@@ -233,8 +260,7 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     double closing = par_seconds();
     /* Slots move: what is left over must be found again. */
     bool left_over = state->pool.n > 0;
-    enum tri_status closed = par_room_close(&state->spare, state->mesh, state->threads, error);
-    status = status ? status : closed;
+    par_room_close(&state->spare, state->mesh, state->threads);
     report->seconds_number += par_seconds() - closing;
     double last = par_seconds();
     if (!status && left_over)
@@ -251,8 +277,8 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
 static double block_size(const struct par_state *state, double estimate)
 {
     double block = estimate / BLOCKS;
-    if (state->options->block_triangles > 0)
-        return state->options->block_triangles;
+    if (state->options->block_triangles > 0) /* more than the coarse triangles of a block, or levels would not end */
+        return fmax(state->options->block_triangles, 4 * COARSE_PER_BLOCK);
     return block < SMALLEST_BLOCK ? SMALLEST_BLOCK : block > LARGEST_BLOCK ? LARGEST_BLOCK : block;
 }
 
@@ -278,7 +304,8 @@ static enum tri_status refine_level(struct par_state *state, const struct tri_re
     } else {
         state->report->levels = level + 1 > state->report->levels ? level + 1 : state->report->levels;
         tell(state, 0);
-        bool uniform = input_work * (block / COARSE_PER_BLOCK) < 4 * partition.estimate;
+        bool areas = quality->max_area > 0 || quality->region_areas;
+        bool uniform = areas && input_work * (block / COARSE_PER_BLOCK) < 4 * partition.estimate;
         status = uniform ? prerefine_uniform(state, quality, block, level, error) : prerefine_graded(state, quality, &partition, error);
         if (!uniform)
             state->report->seconds_prerefine += par_seconds() - began;

@@ -32,7 +32,7 @@ static double density(const struct tri_mesh *mesh, const struct tri_refine_optio
     double own = options->region_areas ? mesh->regions[region].max_area : 0;
     bound = own > 0 && own < bound ? own : bound;
     bound *= options->area_scale > 0 ? options->area_scale : 1;
-    return mesh->unit * mesh->unit / (MEAN_OVER_BOUND * bound);
+    return bound < HUGE_VAL ? mesh->unit / (MEAN_OVER_BOUND * bound) * mesh->unit : 0;
 }
 
 static bool has_areas(const struct tri_refine_options *options)
@@ -62,7 +62,7 @@ double par_estimate(const struct tri_mesh *mesh, const struct tri_refine_options
     for (int32_t t = 0; has_areas(options) && t < mesh->n_slots; t++)
         if (tri_is_live(&mesh->tri[t]))
             sum += area_work(mesh, options, t);
-    return sum;
+    return sum < TRI_MAX_TRIANGLES ? sum : TRI_MAX_TRIANGLES; /* no mesh is larger */
 }
 
 static bool add_sample(struct samples *s, struct tri_point q, double work)
@@ -236,7 +236,7 @@ enum tri_status par_partition_make(struct par_partition *p, const struct tri_mes
     }
     p->x = malloc(((size_t)p->n_columns + 1) * sizeof *p->x);
     p->y = malloc((size_t)p->n_columns * ((size_t)p->n_rows + 1) * sizeof *p->y);
-    bool done = p->x && p->y && take_samples(&s, mesh, options, block_triangles / SAMPLES_PER_BLOCK) && cut_plane(p, &s);
+    bool done = p->x && p->y && take_samples(&s, mesh, options, p->estimate / par_blocks(p) / SAMPLES_PER_BLOCK) && cut_plane(p, &s);
     free(s.item);
     if (done)
         return TRI_OK;

@@ -7,6 +7,8 @@
 #include "sched/clock.h"
 #include "triangle/quality.h"
 
+enum { GONE = -2 }; /* in phase.block_of: the triangle is no more */
+
 /* A block at work. Every field is its own while the phase runs; others read it before and after. */
 struct task {
     int32_t block;
@@ -69,6 +71,17 @@ static bool is_active(void *user, const double p[2])
     return p[0] >= a->x_min && p[0] < a->x_max && p[1] >= a->y_min && p[1] < a->y_max;
 }
 
+/* The block whose fence holds all corners, or TRI_NONE. */
+static int32_t owner_of(const struct phase *p, const struct tri_triangle *t)
+{
+    const struct tri_point *xy = p->state->mesh->xy;
+    int32_t block = par_block_at(p->partition, p->colour, xy[t->v[0]]);
+    for (int k = 1; k < 3 && block != TRI_NONE; k++)
+        if (par_block_at(p->partition, p->colour, xy[t->v[k]]) != block)
+            block = TRI_NONE;
+    return block;
+}
+
 static void assign_blocks(struct phase *p)
 {
     const struct tri_mesh *mesh = p->state->mesh;
@@ -76,7 +89,7 @@ static void assign_blocks(struct phase *p)
 #pragma omp parallel for num_threads(p->state->threads) schedule(static)
     for (int32_t i = 0; i < pool->n; i++) {
         const struct tri_triangle *t = &mesh->tri[pool->item[i]];
-        p->block_of[i] = tri_is_live(t) ? par_block_at(p->partition, p->colour, mesh->xy[t->v[0]]) : -2;
+        p->block_of[i] = tri_is_live(t) ? owner_of(p, t) : GONE;
     }
 }
 
@@ -315,8 +328,7 @@ static enum tri_status collect(struct phase *p, struct tri_error *error)
             memory = par_slots_add(&p->state->pool, task->left.item[k]);
         add_up(&p->state->report->total, &task->report);
         memory = memory && report_block(p, task);
-        enum tri_status returned = par_room_return(&task->room, &p->state->spare, error);
-        status = status ? status : returned;
+        par_room_return(&task->room, &p->state->spare);
         free(task->left.item);
         tri_refiner_free(task->refiner);
     }

@@ -12,19 +12,16 @@ static enum tri_status no_memory(struct tri_error *error)
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the ranges of a block");
 }
 
-static bool add_range(struct par_ranges *ranges, struct par_range range)
+static bool reserve_ranges(struct par_ranges *ranges, int32_t need)
 {
-    if (range.next == range.end)
+    if (need <= ranges->capacity)
         return true;
-    if (ranges->n == ranges->capacity) {
-        int32_t capacity = ranges->capacity ? 2 * ranges->capacity : 8;
-        struct par_range *fresh = realloc(ranges->item, (size_t)capacity * sizeof *fresh);
-        if (!fresh)
-            return false;
-        ranges->item = fresh;
-        ranges->capacity = capacity;
-    }
-    ranges->item[ranges->n++] = range;
+    int32_t capacity = need + need / 2 + 8;
+    struct par_range *fresh = realloc(ranges->item, (size_t)capacity * sizeof *fresh);
+    if (!fresh)
+        return false;
+    ranges->item = fresh;
+    ranges->capacity = capacity;
     return true;
 }
 
@@ -94,27 +91,35 @@ void par_room_leave(struct par_room *room, const struct tri_mesh *view)
         leave(room, view, (enum par_kind)kind);
 }
 
-/* Takes ranges from the end of spare's list until they hold `need` items; returns what is still missing. */
-static int32_t take_spare(struct par_ranges *to, struct par_ranges *spare, int32_t need, bool *room)
+/* Room in both lists for one more range in a block's hands: to take it now, and to give it back later. */
+static bool reserve_deal(struct par_ranges *to, struct par_ranges *spare)
 {
-    while (*room && need > 0 && spare->n > 0) {
-        struct par_range range = spare->item[--spare->n];
-        need -= range.end - range.next;
-        *room = add_range(to, range);
-    }
-    return need > 0 ? need : 0;
+    return reserve_ranges(to, to->n + 1) && reserve_ranges(spare, spare->n + spare->dealt + 1);
 }
 
+static void deal(struct par_ranges *to, struct par_ranges *spare, struct par_range range)
+{
+    to->item[to->n++] = range;
+    spare->dealt++;
+}
+
+/* Nothing is taken or counted before there is room for it in the lists: no range is ever lost. */
 static enum tri_status extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared, enum par_kind kind,
                               int32_t need, struct tri_error *error)
 {
-    bool memory = true;
-    need = take_spare(&room->ranges[kind], &spare->ranges[kind], need, &memory);
-    if (!memory)
-        return no_memory(error);
-    if (need == 0)
+    struct par_ranges *to = &room->ranges[kind], *from = &spare->ranges[kind];
+    while (need > 0 && from->n > 0) {
+        if (!reserve_deal(to, from))
+            return no_memory(error);
+        struct par_range range = from->item[--from->n];
+        need -= range.end - range.next;
+        deal(to, from, range);
+    }
+    if (need <= 0)
         return TRI_OK;
     need = need < LEAST_RANGE ? LEAST_RANGE : need;
+    if (!reserve_deal(to, from))
+        return no_memory(error);
     enum tri_status status = kind == PAR_VERTICES ? tri_mesh_reserve_vertices(shared, need, error)
                              : kind == PAR_SLOTS  ? tri_mesh_reserve_triangles(shared, need, error)
                                                   : tri_mesh_reserve_subs(shared, need, error);
@@ -122,9 +127,9 @@ static enum tri_status extend(struct par_room *room, struct par_room *spare, str
         return status;
     int32_t *count, *capacity;
     counts_of(shared, kind, &count, &capacity);
-    struct par_range range = {*count, *count + need};
+    deal(to, from, (struct par_range){*count, *count + need});
     *count += need;
-    return add_range(&room->ranges[kind], range) ? TRI_OK : no_memory(error);
+    return TRI_OK;
 }
 
 enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared, int32_t triangles,
@@ -135,18 +140,18 @@ enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, s
     return status ? status : extend(room, spare, shared, PAR_SUBS, triangles / 16 + 64, error);
 }
 
-enum tri_status par_room_return(struct par_room *room, struct par_room *spare, struct tri_error *error)
+void par_room_return(struct par_room *room, struct par_room *spare)
 {
-    bool memory = true;
-    for (int kind = 0; kind < PAR_KINDS; kind++)
-        for (int32_t i = room->current[kind]; memory && i < room->ranges[kind].n; i++)
-            memory = add_range(&spare->ranges[kind], room->ranges[kind].item[i]);
-    /* Ranges passed by with an odd item left. */
-    for (int kind = 0; kind < PAR_KINDS; kind++)
-        for (int32_t i = 0; memory && i < room->current[kind] && i < room->ranges[kind].n; i++)
-            memory = add_range(&spare->ranges[kind], room->ranges[kind].item[i]);
+    for (int kind = 0; kind < PAR_KINDS; kind++) {
+        struct par_ranges *from = &room->ranges[kind], *to = &spare->ranges[kind];
+        for (int32_t i = 0; i < from->n; i++) {
+            to->dealt--;
+            if (from->item[i].next < from->item[i].end)
+                to->item[to->n++] = from->item[i];
+        }
+        assert(to->n + to->dealt <= to->capacity);
+    }
     par_room_free(room);
-    return memory ? TRI_OK : no_memory(error);
 }
 
 void par_room_free(struct par_room *room)
@@ -233,42 +238,33 @@ static void move_vertex(struct tri_mesh *mesh, int32_t from, int32_t to)
         memcpy(mesh->attributes + (size_t)to * n, mesh->attributes + (size_t)from * n, n * sizeof *mesh->attributes);
 }
 
-/* Moves vertices into gaps; moved[v - new count] tells where v went. */
-static bool close_vertices(struct par_ranges *gaps, struct tri_mesh *mesh, int threads)
+/* Moves vertices into gaps. The old place of a vertex remembers the new one until all corners have learnt it. */
+static void close_vertices(struct par_ranges *gaps, struct tri_mesh *mesh, int threads)
 {
-    int64_t room = 0;
-    for (int32_t i = 0; i < gaps->n; i++)
-        room += gaps->item[i].end - gaps->item[i].next;
-    int32_t kept = (int32_t)(mesh->n_vertices - room), hole, item;
-    int32_t *moved = malloc(((size_t)room + 1) * sizeof *moved);
-    if (!moved)
-        return false;
     struct closing c = closing_of(gaps, mesh->n_vertices);
+    int32_t hole, item, *moved = mesh->on;
     while (next_move(&c, &hole, &item)) {
         move_vertex(mesh, item, hole);
-        moved[item - kept] = hole;
+        moved[item] = hole;
     }
-    assert(c.last + 1 == kept);
+    int32_t kept = c.last + 1;
+    (void)threads; /* without OpenMP */
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int32_t t = 0; t < mesh->n_slots; t++)
         for (int k = 0; k < 3; k++)
             if (mesh->tri[t].v[k] >= kept)
-                mesh->tri[t].v[k] = moved[mesh->tri[t].v[k] - kept];
+                mesh->tri[t].v[k] = moved[mesh->tri[t].v[k]];
     for (int32_t s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2; k++)
             if (mesh->sub[s].v[k] >= kept)
-                mesh->sub[s].v[k] = moved[mesh->sub[s].v[k] - kept];
+                mesh->sub[s].v[k] = moved[mesh->sub[s].v[k]];
     mesh->n_vertices = kept;
-    free(moved);
-    return true;
 }
 
-enum tri_status par_room_close(struct par_room *spare, struct tri_mesh *shared, int threads, struct tri_error *error)
+void par_room_close(struct par_room *spare, struct tri_mesh *shared, int threads)
 {
-    (void)threads; /* without OpenMP */
     close_slots(&spare->ranges[PAR_SLOTS], shared);
     close_subs(&spare->ranges[PAR_SUBS], shared);
-    bool done = close_vertices(&spare->ranges[PAR_VERTICES], shared, threads);
+    close_vertices(&spare->ranges[PAR_VERTICES], shared, threads);
     par_room_free(spare);
-    return done ? TRI_OK : no_memory(error);
 }

@@ -19,6 +19,7 @@ struct par_range {
 struct par_ranges {
     struct par_range *item;
     int32_t n, capacity;
+    int32_t dealt; /* of spare: ranges that blocks have and will return; there is always room for them here */
 };
 
 /* What one block has. The current range of each kind lives in the view while the block runs. */
@@ -41,12 +42,12 @@ void par_room_leave(struct par_room *room, const struct tri_mesh *view);
 enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared, int32_t triangles,
                                 struct tri_error *error);
 
-/* Moves what is unused to `spare`, and frees the room. */
-enum tri_status par_room_return(struct par_room *room, struct par_room *spare, struct tri_error *error);
+/* Moves what is unused to `spare`, and frees the room. Cannot fail. */
+void par_room_return(struct par_room *room, struct par_room *spare);
 
 /* Closes the gaps that `spare` lists in the shared arrays with the last items there; afterwards every vertex and slot below
- * the mesh's counts is used, as before the first phase. O(gaps), and one parallel pass over the triangles. Frees spare. */
-enum tri_status par_room_close(struct par_room *spare, struct tri_mesh *shared, int threads, struct tri_error *error);
+ * the mesh's counts is used, as before the first phase. O(gaps), and one parallel pass over the triangles. Frees spare. Cannot fail. */
+void par_room_close(struct par_room *spare, struct tri_mesh *shared, int threads);
 
 void par_room_free(struct par_room *room);
 

@@ -404,18 +404,22 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
     }
 }
 
-/* Does the apex of a triangle beside the subsegment lie in its diametral circle? */
+/* Does the apex of a triangle beside the subsegment lie in its diametral circle, and can that be mended? */
+static bool is_crowded_from(const struct tri_refiner *r, const struct tri_subsegment *s, int32_t code)
+{
+    const int32_t *v = r->mesh->tri[tri_of(code)].v;
+    struct tri_point apex = r->mesh->xy[v[tri_edge(code)]];
+    struct tri_relative a = tri_relative(&r->mesh->xy[s->v[0]], apex), b = tri_relative(&r->mesh->xy[s->v[1]], apex);
+    if (a.x * b.x + a.y * b.y >= 0)
+        return false;
+    struct tri_shape shape = tri_shape_of(r->mesh->xy, v);
+    return !tri_is_hopeless(r->mesh, r->mesh->shortest2, tri_of(code), &shape) && !is_flat(r, &shape);
+}
+
 static bool is_crowded(const struct tri_refiner *r, const struct tri_subsegment *s)
 {
-    for (int side = 0; side < 2; side++) {
-        if (s->side[side] == TRI_NONE)
-            continue;
-        struct tri_point apex = r->mesh->xy[r->mesh->tri[tri_of(s->side[side])].v[tri_edge(s->side[side])]];
-        struct tri_relative a = tri_relative(&r->mesh->xy[s->v[0]], apex), b = tri_relative(&r->mesh->xy[s->v[1]], apex);
-        if (a.x * b.x + a.y * b.y < 0)
-            return true;
-    }
-    return false;
+    return (s->side[0] != TRI_NONE && is_crowded_from(r, s, s->side[0])) ||
+           (s->side[1] != TRI_NONE && is_crowded_from(r, s, s->side[1]));
 }
 
 static bool split_crowded(struct tri_refiner *r)
@@ -425,10 +429,15 @@ static bool split_crowded(struct tri_refiner *r)
         const struct tri_subsegment *sub = &r->mesh->sub[s];
         int32_t beside = tri_of(sub->side[sub->side[0] == TRI_NONE]);
         r->n_crowded--;
-        if (is_crowded(r, sub) && !at_limit(r) && split(r, s, beside) == FAILED) {
+        if (!is_crowded(r, sub) || at_limit(r) || r->relaxed == 3)
+            continue;
+        enum outcome outcome = split(r, s, beside);
+        if (outcome == FAILED) {
             r->crowded[r->n_crowded++] = s; /* there is room: it was there a moment ago */
             return false;
         }
+        if (outcome == DONE)
+            count_point(r, BAD_ANGLE);
     }
     return true;
 }
