@@ -309,14 +309,14 @@ static struct start square(int32_t points, double angle, double max_area)
 static void test_nothing_is_deferred_with_the_margin(void **state)
 {
     (void)state;
-    struct start start = square(100, 25, 1e-3);
+    struct start start = square(100, 25, 1e-4);
     for (int margin = 0; margin < 2; margin++) {
-        struct par_options options = small_blocks(1000, 2);
+        struct par_options options = small_blocks(2000, 2);
         struct tri_error error = {0};
         struct par_report report;
         struct tri_mesh mesh = support_generate(&start.pslg, &start.options, NULL); /* so the radii are small */
         struct tri_refine_options finer = start.options.quality;
-        finer.max_area = 5e-5;
+        finer.max_area = 2e-5;
         options.margin = margin;
         assert_int_equal(par_refine(&mesh, &finer, &options, &report, &error), TRI_OK);
         print_message("  margin %d: %d triangles, deferred %lld, left over %lld, r %g, blocks %d x %d\n", margin,
@@ -493,7 +493,7 @@ static void test_small_and_empty_meshes(void **state)
     (void)state;
     static const char *const names[] = {"nasty/hole_eats_all.poly", "nasty/collinear.poly", "square.poly"};
     for (int i = 0; i < 3; i++) {
-        struct trial trial = {names[i], 20, 0, 256, false, false, 0};
+        struct trial trial = {names[i], 20, 0, 1, false, false, 0};
         struct start start = start_of(&trial);
         struct par_options options = small_blocks(trial.block, 2);
         struct par_report report;

@@ -19,7 +19,7 @@
 /* 4 / sqrt(3): an equilateral triangle of area A has a squared edge of this times A. The point of a triangle that is only too
  * large is placed as if to make an equilateral triangle of IDEAL of that edge, when that is nearer than the circumcentre:
  * sizes then lie closer to the bound than with circumcentres alone. */
-static const double EQUILATERAL = 2.3094010767585030580, IDEAL = 0.81;
+static const double EQUILATERAL = 2.3094010767585030580, IDEAL = 0.85;
 
 enum step { NOT_BEGUN, FIRST_PASS, SECOND_PASS };
 

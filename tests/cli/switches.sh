@@ -86,8 +86,8 @@ run 0 -pqaA section
 check "one column" test "$(records section.1.ele | head -n 1 | cut -d " " -f 2-)" = "3 1"
 check "attributes are those of regions" \
     test "$(records section.1.ele | tail -n +2 | awk '{ print $5 }' | sort -n | uniq | tr "\n" " ")" \
-    = "0 1 2 3 4 5 6 7 8 9 "
-check "regions are echoed" test "$(records section.1.poly | tail -n 10 | head -n 1)" = 9
+    = "1 2 3 4 5 6 7 8 9 "
+check "regions are echoed" test "$(records section.1.poly | tail -n 11 | head -n 1)" = 10
 matches "^Spreading attributes and area bounds of regions\.$"
 judge section.1 --poly section.poly --min-angle 20
 fresh letter.poly
