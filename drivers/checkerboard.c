@@ -1,10 +1,11 @@
 /* checkerboard: an example of the hook. Refines the cells of a checkerboard, first the black ones, then the white ones,
  * from outside the library: through tri_generate, and tri_refine with a gate.
  *
- * A gate is asked for each bad triangle, with the point that would remove it. Where it says no, the triangle stays as it is;
- * the next call finds it again. So a schedule of one's own needs nothing but the public headers. What the gate decides is
- * where points go, not which triangles change: a cavity may reach across the border of a cell by a triangle or two, and a
- * segment that a new point would encroach is split wherever it lies. (To confine changes as well, set a fence.)
+ * A gate is asked for each bad triangle, with the point that would remove it. Where it says no, the triangle stays as
+ * it is; the next call finds it again. So a schedule of one's own needs nothing but the public headers. What the gate
+ * decides is where points go, not which triangles change: a cavity may reach across the border of a cell by a triangle
+ * or two, and a segment that a new point would encroach is split wherever it lies. (To confine changes as well, set a
+ * fence.)
  *
  * Usage: checkerboard [CELLS [MAX_AREA]]. Exit code 0: at the end all triangles satisfy the bounds. */
 #include <stdio.h>

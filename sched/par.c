@@ -1,7 +1,7 @@
 /* The schedule: pre-refinement, rounds of four phases, what is left over.
  *
- * Levels. The pre-refinement of a large mesh is itself large; it is then refined by the same schedule, with a coarser one
- * before it, and so on until a level is small enough for one sequential call. */
+ * Levels. The pre-refinement of a large mesh is itself large; it is then refined by the same schedule, with a coarser
+ * one before it, and so on until a level is small enough for one sequential call. */
 #include "sched/par.h"
 
 #include <assert.h>
@@ -16,8 +16,8 @@
 #include "triangle/quality.h"
 
 /* Blocks hold one in BLOCKS of the final triangles, within limits: small blocks keep many threads busy, large ones have
- * fewer seams (a fence of the first colour holds four blocks' worth). Coarse triangles a block has after pre-refinement:
- * enough for seams to be narrow, few enough for pre-refinement to take a few thousandths of the time.
+ * fewer seams (a fence of the first colour holds four blocks' worth). Coarse triangles a block has after
+ * pre-refinement: enough for seams to be narrow, few enough for pre-refinement to take a few thousandths of the time.
  * (docs/performance.md) */
 static const double BLOCKS = 128, SMALLEST_BLOCK = 16384, LARGEST_BLOCK = 131072, COARSE_PER_BLOCK = 64;
 
@@ -60,8 +60,8 @@ static void tell(const struct par_state *state, int phase)
                                  state->mesh->n_slots);
 }
 
-/* The size test of a graded pre-refinement: no edge longer than a share of the cell it lies in. In the mesh's units, where
- * squares neither overflow nor underflow. */
+/* The size test of a graded pre-refinement: no edge longer than a share of the cell it lies in. In the mesh's units,
+ * where squares neither overflow nor underflow. */
 struct coarse_test {
     const struct par_partition *partition;
     double share2; /* square of it */
@@ -104,8 +104,8 @@ static double smallest_cell(const struct par_partition *p)
 static enum tri_status refine_level(struct par_state *state, const struct tri_refine_options *quality, int level,
                                     struct tri_error *error);
 
-/* Pre-refinement where the input is coarse against the mesh to come: the same bounds with areas scaled up, as the paper has
- * it, for the area that makes COARSE_PER_BLOCK triangles in a cell. */
+/* Pre-refinement where the input is coarse against the mesh to come: the same bounds with areas scaled up, as the paper
+ * has it, for the area that makes COARSE_PER_BLOCK triangles in a cell. */
 static enum tri_status prerefine_uniform(struct par_state *state, const struct tri_refine_options *quality, double block,
                                          int level, struct tri_error *error)
 {
@@ -115,8 +115,8 @@ static enum tri_status prerefine_uniform(struct par_state *state, const struct t
     return refine_level(state, &coarse, level + 1, error);
 }
 
-/* The pool becomes all triangles that violate the bounds, in the order of their slots; the radius, the largest circumradius
- * among them. */
+/* The pool becomes all triangles that violate the bounds, in the order of their slots; the radius, the largest
+ * circumradius among them. */
 static enum tri_status fill_pool(struct par_state *state, const struct tri_refine_options *quality, struct tri_error *error)
 {
     enum { CHUNK = 1 << 14 };
@@ -173,8 +173,8 @@ static void filter_pool(struct par_state *state, const struct tri_refine_options
     pool->n = kept;
 }
 
-/* Pre-refinement where the input is already fine in places: only bad triangles with edges that are long against their cell
- * are cut, with no more than one point for 400 triangles of the mesh to come. */
+/* Pre-refinement where the input is already fine in places: only bad triangles with edges that are long against their
+ * cell are cut, with no more than one point for 400 triangles of the mesh to come. */
 static enum tri_status prerefine_graded(struct par_state *state, const struct tri_refine_options *quality,
                                         const struct par_partition *partition, struct tri_error *error)
 {

@@ -1,7 +1,7 @@
 /* Parallel refinement: the four-phase schedule, for any PSLG.
  *
- * The mesh that comes out depends on the mesh and the bounds that go in, never on the number of threads, the machine or the
- * order in which blocks happen to be done.
+ * The mesh that comes out depends on the mesh and the bounds that go in, never on the number of threads, the machine or
+ * the order in which blocks happen to be done.
  *
  * Source: A. N. Chernikov and N. P. Chrisochoides, ICS 2004 (see sched/theory.h); segments, grading and ownership: see
  * triangle/refine.h and sched/partition.h. */
@@ -21,7 +21,8 @@ struct par_options {
                                    test, the mesh is refined sequentially */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
     int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, so that they pause often */
-    /* Told now and then by the calling thread: the phase that begins (0: pre-refinement, then 1 ..), triangles so far. */
+    /* Told now and then by the calling thread: the phase that begins (0: pre-refinement, then 1 ..), triangles so
+     * far. */
     void (*progress)(void *user, int round, int phase, int64_t triangles);
     void *progress_user;
 };
@@ -51,9 +52,9 @@ struct par_report {
 
 struct par_options par_defaults(void);
 
-/* Refines as tri_refine does, with several threads. Where the bounds do not allow a schedule (max_steiner, a gate or a fence of
- * the caller's, a size test that must not run in parallel, a small mesh) it is one sequential call. Safe to call from
- * several threads on different meshes, and inside a parallel region. Errors as tri_refine. */
+/* Refines as tri_refine does, with several threads. Where the bounds do not allow a schedule (max_steiner, a gate or a
+ * fence of the caller's, a size test that must not run in parallel, a small mesh) it is one sequential call. Safe to
+ * call from several threads on different meshes, and inside a parallel region. Errors as tri_refine. */
 enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality, const struct par_options *options,
                            struct par_report *report, struct tri_error *error);
 

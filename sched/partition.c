@@ -1,8 +1,9 @@
 /* Quantiles of the estimated work, first along x, then along y in each column.
  *
- * The work is sampled: vertices stand for the triangles that an angle bound will ask for around them, triangles for those that
- * an area bound will ask for inside them; large triangles are cut into small ones first, so that their work lies where it is.
- * There are some 32 samples for a block: enough for shares equal within a sixth, few enough to sort in no time. */
+ * The work is sampled: vertices stand for the triangles that an angle bound will ask for around them, triangles for
+ * those that an area bound will ask for inside them; large triangles are cut into small ones first, so that their work
+ * lies where it is. There are some 32 samples for a block: enough for shares equal within a sixth, few enough to sort
+ * in no time. */
 #include "sched/partition.h"
 
 #include <assert.h>

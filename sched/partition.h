@@ -1,14 +1,16 @@
 /* The plane cut into blocks of about equal work, in four colours.
  *
- * Columns hold equal shares of the estimated final triangles, and so do the rows inside each column, whatever the grading. A
- * block's colour is the parity of its column and of its row. The fence of a block reaches half way into its neighbours:
+ * Columns hold equal shares of the estimated final triangles, and so do the rows inside each column, whatever the
+ * grading. A block's colour is the parity of its column and of its row. The fence of a block reaches half way into its
+ * neighbours:
  *
  *      column      0       1       2       3             boundaries of columns:  |
  *              |.......|...:...|.......|...:...|         fences of even columns: from : to : (half of 1, 3, ...)
  *
- * INVARIANT: fences of one colour are disjoint half-open boxes and, with those at the rim reaching to infinity, nearly tile
- * the plane; a fence of the next colour covers the seams of the last one. So the phase of the first colour does most of the
- * work and the other three close the seams, and a triangle smaller than half a block lies in some fence of some colour.
+ * INVARIANT: fences of one colour are disjoint half-open boxes and, with those at the rim reaching to infinity, nearly
+ * tile the plane; a fence of the next colour covers the seams of the last one. So the phase of the first colour does
+ * most of the work and the other three close the seams, and a triangle smaller than half a block lies in some fence of
+ * some colour.
  *
  * The partition depends on the mesh and the bounds alone, never on the number of threads. */
 #ifndef SCHED_PARTITION_H
@@ -27,8 +29,8 @@ struct par_partition {
     double estimate; /* of final triangles in all */
 };
 
-/* Estimates the number of triangles that refinement will end with: for bounded areas from the areas, for a bounded angle from
- * the number of vertices; what a size test will ask for cannot be known. O(triangles). */
+/* Estimates the number of triangles that refinement will end with: for bounded areas from the areas, for a bounded
+ * angle from the number of vertices; what a size test will ask for cannot be known. O(triangles). */
 double par_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options);
 
 /* The share of one triangle in that. */
@@ -49,8 +51,8 @@ static inline int32_t par_blocks(const struct par_partition *p) { return p->n_co
 /* The fence of block (column, row), for its own colour. */
 struct tri_fence par_fence(const struct par_partition *partition, int32_t column, int32_t row);
 
-/* The block of a colour (bit 0: parity of the column, bit 1: of the row) whose fence holds q, as column * n_rows + row, or
- * TRI_NONE. O(log blocks). */
+/* The block of a colour (bit 0: parity of the column, bit 1: of the row) whose fence holds q, as column * n_rows + row,
+ * or TRI_NONE. O(log blocks). */
 int32_t par_block_at(const struct par_partition *partition, int colour, struct tri_point q);
 
 /* The smaller side of the cell (not fence) that holds q. O(log blocks). */

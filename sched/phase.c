@@ -93,7 +93,8 @@ static void assign_blocks(struct phase *p)
     }
 }
 
-/* Counting sort of the pool by block; what no block of this colour takes stays in the pool, what has gone is dropped. */
+/* Counting sort of the pool by block; what no block of this colour takes stays in the pool, what has gone is
+ * dropped. */
 static bool deal_seeds(struct phase *p)
 {
     struct par_slots *pool = &p->state->pool;
@@ -126,8 +127,8 @@ static bool deal_seeds(struct phase *p)
     return p->tasks;
 }
 
-/* The active box of a fence with the paper's margin: 2 r less on every side, so that no cavity of a point in it reaches beyond
- * the fence (Definition 3); the whole fence where the largest circumradius is too large for that. */
+/* The active box of a fence with the paper's margin: 2 r less on every side, so that no cavity of a point in it reaches
+ * beyond the fence (Definition 3); the whole fence where the largest circumradius is too large for that. */
 static struct tri_fence active_of(const struct tri_fence *f, double radius)
 {
     double margin = 2 * radius, width = f->x_max - f->x_min, height = f->y_max - f->y_min;
@@ -155,8 +156,8 @@ static void set_up(struct phase *p, struct task *task)
     task->options.more_room_user = &task->room;
 }
 
-/* Triangles that the seeds of a task will become in this phase, to the order: a little less than they do become, since a pause
- * costs less than gaps do. Measured: the rest is left at the seams. */
+/* Triangles that the seeds of a task will become in this phase, to the order: a little less than they do become, since
+ * a pause costs less than gaps do. Measured: the rest is left at the seams. */
 static int32_t expect(const struct phase *p, const struct task *task)
 {
     static const double share[PAR_COLOURS] = {0.68, 0.35, 0.35, 0.5};
@@ -196,7 +197,8 @@ static enum tri_status deal_room(struct phase *p, bool first, struct tri_error *
     return status;
 }
 
-/* In debug builds every block marks the triangles that it changes; two blocks at one triangle fail an assert (cavity.c). */
+/* In debug builds every block marks the triangles that it changes; two blocks at one triangle fail an assert
+ * (cavity.c). */
 static bool watch_owners(struct phase *p, bool first)
 {
 #ifdef NDEBUG

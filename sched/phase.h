@@ -1,8 +1,8 @@
 /* One phase: all blocks of one colour, refined at once on views of the mesh.
  *
  * THEOREM. The result of a phase is that of running its blocks one after the other, in any order (triangle/refine.h,
- * serialisation): their fences are disjoint. And what a block does, it does in an order of its own: so the mesh does not depend
- * on the number of threads. */
+ * serialisation): their fences are disjoint. And what a block does, it does in an order of its own: so the mesh does
+ * not depend on the number of threads. */
 #ifndef SCHED_PHASE_H
 #define SCHED_PHASE_H
 

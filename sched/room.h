@@ -1,10 +1,11 @@
 /* Room for what blocks add: ranges of vertices, triangle slots and subsegments in the shared arrays.
  *
- * A block works on a view of the mesh: the shared arrays, with counts and capacities of its own that point into a range that
- * nobody else uses. When a range is full the view moves to the block's next one; when there is none the block pauses until
- * all others have paused or ended, and goes on after the arrays have grown. Ranges are dealt out between phases, by one thread
- * and in canonical order: so the ids that a block uses do not depend on who runs when. What a block leaves unused goes to the
- * blocks of the next phase; what is unused at the end is filled with the last items of the arrays (par_room_close). */
+ * A block works on a view of the mesh: the shared arrays, with counts and capacities of its own that point into a range
+ * that nobody else uses. When a range is full the view moves to the block's next one; when there is none the block
+ * pauses until all others have paused or ended, and goes on after the arrays have grown. Ranges are dealt out between
+ * phases, by one thread and in canonical order: so the ids that a block uses do not depend on who runs when. What a
+ * block leaves unused goes to the blocks of the next phase; what is unused at the end is filled with the last items of
+ * the arrays (par_room_close). */
 #ifndef SCHED_ROOM_H
 #define SCHED_ROOM_H
 
@@ -37,16 +38,17 @@ void par_room_enter(struct par_room *room, struct tri_mesh *view, const struct t
 /* Remembers in the room how far the view's ranges have been used. */
 void par_room_leave(struct par_room *room, const struct tri_mesh *view);
 
-/* Gives the room at least `triangles` slots more, and vertices and subsegments to match: from `spare` first, else from the end
- * of the shared arrays, which grow. */
+/* Gives the room at least `triangles` slots more, and vertices and subsegments to match: from `spare` first, else from
+ * the end of the shared arrays, which grow. */
 enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared, int32_t triangles,
                                 struct tri_error *error);
 
 /* Moves what is unused to `spare`, and frees the room. Cannot fail. */
 void par_room_return(struct par_room *room, struct par_room *spare);
 
-/* Closes the gaps that `spare` lists in the shared arrays with the last items there; afterwards every vertex and slot below
- * the mesh's counts is used, as before the first phase. O(gaps), and one parallel pass over the triangles. Frees spare. Cannot fail. */
+/* Closes the gaps that `spare` lists in the shared arrays with the last items there; afterwards every vertex and slot
+ * below the mesh's counts is used, as before the first phase. O(gaps), and one parallel pass over the triangles. Frees
+ * spare. Cannot fail. */
 void par_room_close(struct par_room *spare, struct tri_mesh *shared, int threads);
 
 void par_room_free(struct par_room *room);

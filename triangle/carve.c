@@ -1,7 +1,7 @@
 /* Floods over triangles that stop at segments.
  *
- * INVARIANT: a flood marks whole components of the mesh minus its segments, so a dead and a live triangle only ever meet at
- * a subsegment; removing the dead ones needs to tell subsegments alone. */
+ * INVARIANT: a flood marks whole components of the mesh minus its segments, so a dead and a live triangle only ever
+ * meet at a subsegment; removing the dead ones needs to tell subsegments alone. */
 #include "triangle/carve.h"
 
 #include <assert.h>
@@ -60,8 +60,8 @@ static int32_t step_over(const struct tri_mesh *mesh, int32_t t, int e)
     return code == TRI_NONE ? TRI_NONE : tri_of(code);
 }
 
-/* The triangle that holds q, TRI_NONE outside the hull. A visibility walk over a constrained triangulation may cycle; the edge
- * it tries first turns with the number of steps, and after too many steps every triangle is looked at. */
+/* The triangle that holds q, TRI_NONE outside the hull. A visibility walk over a constrained triangulation may cycle;
+ * the edge it tries first turns with the number of steps, and after too many steps every triangle is looked at. */
 static int32_t locate(struct flood *f, struct tri_point q)
 {
     const struct tri_mesh *mesh = f->mesh;

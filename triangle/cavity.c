@@ -6,9 +6,9 @@
 
 #include "triangle/predicates.h"
 
-/* |error of the determinant| <= (10 + 96 u) u * permanent, u = 2^-53 (Shewchuk 1997, section 4.4). The permanent, the sum of
- * l_a (|b_x c_y| + |b_y c_x|), is at most l_a l_b + l_b l_c + l_c l_a by Cauchy-Schwarz and 2 s t <= s^2 + t^2; the factor is
- * rounded up to pay for the rounding of that sum. Nothing underflows in the range of predicates.h. */
+/* |error of the determinant| <= (10 + 96 u) u * permanent, u = 2^-53 (Shewchuk 1997, section 4.4). The permanent, the
+ * sum of l_a (|b_x c_y| + |b_y c_x|), is at most l_a l_b + l_b l_c + l_c l_a by Cauchy-Schwarz and 2 s t <= s^2 + t^2;
+ * the factor is rounded up to pay for the rounding of that sum. Nothing underflows in the range of predicates.h. */
 static const double DOUBT = 1.2e-15;
 
 void tri_cavity_free(struct tri_cavity *cavity)
@@ -214,8 +214,8 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
     return overlaps_itself(c, s) ? TRI_SEARCH_OUTSIDE : TRI_SEARCH_FOUND;
 }
 
-/* A slot for the next new triangle: first those of the cavity, then fresh ones. A fan has at least as many triangles as its
- * cavity (Euler), so no slot is ever left over. */
+/* A slot for the next new triangle: first those of the cavity, then fresh ones. A fan has at least as many triangles as
+ * its cavity (Euler), so no slot is ever left over. */
 static inline int32_t take_slot(const struct tri_cavity *c, struct tri_mesh *mesh, int32_t i)
 {
     if (i < c->n_tri)

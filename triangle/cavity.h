@@ -1,18 +1,21 @@
 /* Cavity insertion: what a new point would replace, found completely before anything is changed.
  *
- * The cavity of a point p is the set of triangles whose circumdisk holds p, connected without crossing a subsegment. Its
- * border, seen from p, is a closed chain of rims in counter-clockwise order.
+ * The cavity of a point p is the set of triangles whose circumdisk holds p, connected without crossing a subsegment.
+ * Its border, seen from p, is a closed chain of rims in counter-clockwise order.
  *
- * THEOREM (star shape, no point location). Start at a triangle t with p in its circumdisk. Whenever the search crosses an
- * edge ab with p on the near side into a triangle abc whose circumdisk holds p, p lies in the cap of that disk beyond ab,
- * hence strictly left of a -> c and c -> b. So every rim is seen counter-clockwise from p, except rims reached from t itself
- * across an edge that has p beyond it: in a Delaunay triangulation such an edge is crossed (the cap of the disk of t beyond
- * it lies in its neighbour's disk), unless it is a subsegment. A subsegment on the rim is a wall; the caller tests its side.
+ * THEOREM (star shape, no point location). Start at a triangle t with p in its circumdisk. Whenever the search crosses
+ * an edge ab with p on the near side into a triangle abc whose circumdisk holds p, p lies in the cap of that disk
+ * beyond ab, hence strictly left of a -> c and c -> b. So every rim is seen counter-clockwise from p, except rims
+ * reached from t itself across an edge that has p beyond it: in a Delaunay triangulation such an edge is crossed (the
+ * cap of the disk of t beyond it lies in its neighbour's disk), unless it is a subsegment. A subsegment on the rim is a
+ * wall; the caller tests its side.
  *
- * THEOREM (encroachment is local; design: Segments). Every subsegment that p encroaches and sees is a wall of its own cavity.
+ * THEOREM (encroachment is local; design: Segments). Every subsegment that p encroaches and sees is a wall of its own
+ * cavity.
  *
- * The search carries coordinates relative to p, so each step loads one triangle and one vertex; the filter for incircle is
- * the bound (10 + 96 u) u of Shewchuk (1997) with the permanent overestimated by Cauchy-Schwarz, decided exactly in doubt. */
+ * The search carries coordinates relative to p, so each step loads one triangle and one vertex; the filter for incircle
+ * is the bound (10 + 96 u) u of Shewchuk (1997) with the permanent overestimated by Cauchy-Schwarz, decided exactly in
+ * doubt. */
 #ifndef TRIANGLE_CAVITY_H
 #define TRIANGLE_CAVITY_H
 
@@ -62,18 +65,18 @@ void tri_cavity_free(struct tri_cavity *cavity);
 /* Finds the cavity of p from triangle t. Reads the mesh only. Expected O(1) in a good mesh; O(cavity) always. */
 enum tri_search tri_cavity_search(struct tri_cavity *cavity, const struct tri_mesh *mesh, struct tri_point p, int32_t t);
 
-/* The same for a point on (within rounding of) subsegment s, which is to be split there: the chain is the rims left of it
- * from its end to its start, then, where there is a triangle on the right, those right of it from start to end.
+/* The same for a point on (within rounding of) subsegment s, which is to be split there: the chain is the rims left of
+ * it from its end to its start, then, where there is a triangle on the right, those right of it from start to end.
  * *n_left receives the number of rims on the left. TRI_SEARCH_OUTSIDE also where p does not see every rim. */
 enum tri_search tri_cavity_search_split(struct tri_cavity *cavity, const struct tri_mesh *mesh, struct tri_point p,
                                         int32_t s, int32_t *n_left);
 
-/* Replaces the cavity by the fan of vertex v (already stored, at cavity->p). Rims learn their slots; corner 0 of each new
- * triangle is v, corner 1 the start of its rim. Room for two more triangles must exist. */
+/* Replaces the cavity by the fan of vertex v (already stored, at cavity->p). Rims learn their slots; corner 0 of each
+ * new triangle is v, corner 1 the start of its rim. Room for two more triangles must exist. */
 void tri_cavity_fill(struct tri_cavity *cavity, struct tri_mesh *mesh, int32_t v);
 
-/* The same after tri_cavity_search_split: subsegment s becomes (v[0], v), a new one (v, v[1]) is appended. Room for one more
- * subsegment must exist. Returns the new subsegment. */
+/* The same after tri_cavity_search_split: subsegment s becomes (v[0], v), a new one (v, v[1]) is appended. Room for one
+ * more subsegment must exist. Returns the new subsegment. */
 int32_t tri_cavity_fill_split(struct tri_cavity *cavity, struct tri_mesh *mesh, int32_t v, int32_t s, int32_t n_left);
 
 static inline struct tri_relative tri_relative(const struct tri_point *q, struct tri_point p)

@@ -1,11 +1,12 @@
 /* Segment recovery by edge flips (Sloan 1993), then Lawson flips to the constrained Delaunay triangulation.
  *
- * A segment a -> b is laid piece by piece. From a the walk along the segment meets first either an edge that lies on it, a
- * vertex on it, a subsegment across it, or b. What is met becomes the end of the piece; a subsegment across it is split
- * first, at the crossing. So the channel of a piece holds neither vertices nor subsegments, and flips can clear it.
+ * A segment a -> b is laid piece by piece. From a the walk along the segment meets first either an edge that lies on
+ * it, a vertex on it, a subsegment across it, or b. What is met becomes the end of the piece; a subsegment across it is
+ * split first, at the crossing. So the channel of a piece holds neither vertices nor subsegments, and flips can clear
+ * it.
  *
- * INVARIANT: between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v] is a
- * live triangle at v (TRI_NONE for points that are in no triangle). */
+ * INVARIANT: between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v]
+ * is a live triangle at v (TRI_NONE for points that are in no triangle). */
 #include "triangle/constrain.h"
 
 #include <assert.h>
@@ -162,8 +163,8 @@ static bool mark_edge(struct layer *l, int32_t t, int e)
     return true;
 }
 
-/* Flips edge e of t, whose quadrilateral is strictly convex. Near apex n, right r, far apex o, left s: t becomes (n, r, o),
- * the neighbour (n, o, s). Returns the neighbour. */
+/* Flips edge e of t, whose quadrilateral is strictly convex. Near apex n, right r, far apex o, left s: t becomes (n, r,
+ * o), the neighbour (n, o, s). Returns the neighbour. */
 static int32_t flip(struct layer *l, int32_t t, int e)
 {
     struct tri_mesh *mesh = l->mesh;
@@ -347,9 +348,9 @@ static enum tri_status lay_through(struct layer *l, int32_t s, int32_t v)
     return room ? TRI_OK : no_memory(l);
 }
 
-/* There is no room for a vertex at p, where a -> b crosses subsegment s. Either a vertex is as good as there: both segments
- * run through it. Or a triangle beside s is so flat that p, rounded, lies beyond it: then s runs through its apex, and a -> b
- * is laid again. */
+/* There is no room for a vertex at p, where a -> b crosses subsegment s. Either a vertex is as good as there: both
+ * segments run through it. Or a triangle beside s is so flat that p, rounded, lies beyond it: then s runs through its
+ * apex, and a -> b is laid again. */
 static enum tri_status bend(struct layer *l, int32_t a, int32_t b, int32_t s, struct tri_point p, int32_t *end)
 {
     const struct tri_mesh *mesh = l->mesh;
@@ -419,8 +420,8 @@ static enum tri_status cut(struct layer *l, int32_t a, int32_t b, int32_t s, int
     return legalise(l) ? TRI_OK : no_memory(l);
 }
 
-/* What the segment a -> b meets first: sets *end to the vertex that ends the first piece, *clear to false where a subsegment
- * lies across, with *s that subsegment. Vertices on the segment end a piece. */
+/* What the segment a -> b meets first: sets *end to the vertex that ends the first piece, *clear to false where a
+ * subsegment lies across, with *s that subsegment. Vertices on the segment end a piece. */
 static void look_ahead(struct layer *l, int32_t a, int32_t b, int32_t *end, int32_t *s)
 {
     const struct tri_mesh *mesh = l->mesh;

@@ -11,10 +11,10 @@ struct tri_constrain_report {
     int32_t skipped;   /* segments with an end outside the points, or two equal ends */
 };
 
-/* Makes every segment of the PSLG (whose points are the mesh's first vertices) a chain of subsegments. Vertices on a segment
- * split it; crossing segments are cut at a new vertex, which takes marker and interpolated attributes of the segment that came
- * first; where segments overlap the first non-zero marker wins. The result is constrained Delaunay, ties broken by coordinates.
- * Expected near O(crossed edges) per segment. */
+/* Makes every segment of the PSLG (whose points are the mesh's first vertices) a chain of subsegments. Vertices on a
+ * segment split it; crossing segments are cut at a new vertex, which takes marker and interpolated attributes of the
+ * segment that came first; where segments overlap the first non-zero marker wins. The result is constrained Delaunay,
+ * ties broken by coordinates. Expected near O(crossed edges) per segment. */
 enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_constrain_report *report,
                               struct tri_error *error);
 

@@ -1,12 +1,13 @@
 /* Incremental Delaunay triangulation in biased randomised Hilbert order.
  *
- * Rounds of geometrically growing random samples, each along the Hilbert curve (Amenta, Choi & Rote 2003): the next point
- * lies near the last one, so location is a walk of few steps, and no order of input makes cavities large on average.
+ * Rounds of geometrically growing random samples, each along the Hilbert curve (Amenta, Choi & Rote 2003): the next
+ * point lies near the last one, so location is a walk of few steps, and no order of input makes cavities large on
+ * average.
  *
- * The plane outside the hull is tiled by ghosts: triangles of a hull edge and a vertex at infinity (GHOST). The "circumdisk"
- * of a ghost is the open half plane beyond its hull edge, and the open edge itself; with that, insertion knows no special
- * case outside the hull. INVARIANT: every edge of every triangle, real or ghost, has a neighbour. At the end ghosts become
- * subsegments of the hull.
+ * The plane outside the hull is tiled by ghosts: triangles of a hull edge and a vertex at infinity (GHOST). The
+ * "circumdisk" of a ghost is the open half plane beyond its hull edge, and the open edge itself; with that, insertion
+ * knows no special case outside the hull. INVARIANT: every edge of every triangle, real or ghost, has a neighbour. At
+ * the end ghosts become subsegments of the hull.
  *
  * Work is done on a copy of the points in insertion order, so that what is near in the plane is near in memory. */
 #include "triangle/delaunay.h"
@@ -83,8 +84,8 @@ static inline bool in_disk(const struct builder *b, const struct tri_triangle *t
     return tri_in_circle(b->xy[t->v[0]], b->xy[t->v[1]], b->xy[t->v[2]], q);
 }
 
-/* Walks by visibility from a real triangle to one whose disk holds q: it contains q, or is a ghost beyond the hull edge that
- * the walk leaves through. Exact orientations: the walk cannot cycle in a Delaunay triangulation. */
+/* Walks by visibility from a real triangle to one whose disk holds q: it contains q, or is a ghost beyond the hull edge
+ * that the walk leaves through. Exact orientations: the walk cannot cycle in a Delaunay triangulation. */
 static int32_t locate(const struct builder *b, struct tri_point q)
 {
     int32_t t = b->last;
@@ -166,8 +167,9 @@ static bool insert(struct builder *b, int32_t v)
     return true;
 }
 
-/* The first triangle and its three ghosts, from vertices i, j, k counter-clockwise. Ghost e + 1 sees edge e the other way
- * round; its edge from the hull edge's far end to infinity is shared with the ghost of the edge that starts there. */
+/* The first triangle and its three ghosts, from vertices i, j, k counter-clockwise. Ghost e + 1 sees edge e the other
+ * way round; its edge from the hull edge's far end to infinity is shared with the ghost of the edge that starts
+ * there. */
 static void begin(struct builder *b, int32_t i, int32_t j, int32_t k)
 {
     int32_t v[3] = {i, j, k};
@@ -284,7 +286,8 @@ static enum tri_status finish(struct tri_mesh *mesh, struct builder *b, const in
     return TRI_OK;
 }
 
-/* A triangle's place on the curve is that of its shortest edge: there is the work of refinement, however far the rest reaches. */
+/* A triangle's place on the curve is that of its shortest edge: there is the work of refinement, however far the rest
+ * reaches. */
 static int32_t rank_of(const struct tri_mesh *mesh, int32_t t, const int32_t *rank)
 {
     const int32_t *v = mesh->tri[t].v;
@@ -294,7 +297,8 @@ static int32_t rank_of(const struct tri_mesh *mesh, int32_t t, const int32_t *ra
 }
 
 /* Sorts the triangles by their place on the curve (rank of a vertex: its place there). Insertion has left them
- * where cavities of all rounds were; every later stage runs faster where neighbours are near in memory. Counting sort, O(n). */
+ * where cavities of all rounds were; every later stage runs faster where neighbours are near in memory. Counting sort,
+ * O(n). */
 static enum tri_status sort_triangles(struct tri_mesh *mesh, const int32_t *rank, struct tri_error *error)
 {
     int32_t n = mesh->n_slots;

@@ -1,7 +1,8 @@
 /* Hilbert keys, and a radix sort by them.
  *
- * The key walks down the quadtree from the largest cell; a state of four orientations says how the curve runs through the
- * four quadrants (table below). Three levels would fit one step of a bigger table; the sort costs more than the keys. */
+ * The key walks down the quadtree from the largest cell; a state of four orientations says how the curve runs through
+ * the four quadrants (table below). Three levels would fit one step of a bigger table; the sort costs more than the
+ * keys. */
 #include "triangle/hilbert.h"
 
 #include <assert.h>

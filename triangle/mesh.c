@@ -1,7 +1,7 @@
 /* Storage of the mesh: growth, links, compaction, and the check of its invariants.
  *
- * Growth is by half, through realloc: for large arrays the C library moves pages rather than bytes, so that the peak stays
- * near what is used. The triangle array starts at a cache line, so that a triangle never straddles two. */
+ * Growth is by half, through realloc: for large arrays the C library moves pages rather than bytes, so that the peak
+ * stays near what is used. The triangle array starts at a cache line, so that a triangle never straddles two. */
 #include "triangle/mesh.h"
 
 #include <assert.h>

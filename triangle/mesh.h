@@ -1,11 +1,12 @@
 /* The mesh: flat index arrays that every stage of the triangulator works on.
  *
- * A triangle is 32 bytes: three corners counter-clockwise, three links, a region, a state word. Link e lies opposite corner e.
+ * A triangle is 32 bytes: three corners counter-clockwise, three links, a region, a state word. Link e lies opposite
+ * corner e.
  *   link >= 0   code 4 * t + f: the neighbour is triangle t, and its edge f is the same edge seen from the other side;
  *   link <  0   ~s: the edge is subsegment s, whose record names the triangle on either side.
- * INVARIANT (links): for every live triangle t and edge e, either link(link(t, e)) == (t, e), or the subsegment behind the
- * link has (t, e) on the side that its direction says. Every edge of the outer boundary is a subsegment.
- * What the invariant buys: a search that must not cross constrained edges stops at a sign bit, loads nothing for it, and
+ * INVARIANT (links): for every live triangle t and edge e, either link(link(t, e)) == (t, e), or the subsegment behind
+ * the link has (t, e) on the side that its direction says. Every edge of the outer boundary is a subsegment. What the
+ * invariant buys: a search that must not cross constrained edges stops at a sign bit, loads nothing for it, and
  * unconstrained triangles pay nothing for constraints, markers and parents.
  *
  * Vertices are x, y pairs; attributes, markers and parents lie apart, since only new vertices touch them.
@@ -133,7 +134,8 @@ enum tri_status tri_mesh_reserve_subs(struct tri_mesh *mesh, int32_t more, struc
  * all coordinates lie in the range of the exact predicates; what is smaller than 2^-216 units becomes 0. */
 enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_error *error);
 
-/* Appends a subsegment between two vertices and a parent for it; the caller links its sides. Room must have been reserved. */
+/* Appends a subsegment between two vertices and a parent for it; the caller links its sides. Room must have been
+ * reserved. */
 int32_t tri_mesh_add_sub(struct tri_mesh *mesh, int32_t from, int32_t to, int32_t marker, int32_t segment);
 
 /* Which side of a subsegment's record belongs to the triangle that sees it as from -> to (counter-clockwise)? */

@@ -1,7 +1,7 @@
 /* A planar straight line graph as the caller gives it: points, segments, holes, regions.
  *
- * Plain arrays, indices from 0. A PSLG may be of any kind: duplicate points, crossing or overlapping segments, points on
- * segments are legal input; the triangulator sorts them out. tri_pslg_check refuses what has no meaning. */
+ * Plain arrays, indices from 0. A PSLG may be of any kind: duplicate points, crossing or overlapping segments, points
+ * on segments are legal input; the triangulator sorts them out. tri_pslg_check refuses what has no meaning. */
 #ifndef TRIANGLE_PSLG_H
 #define TRIANGLE_PSLG_H
 

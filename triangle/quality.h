@@ -49,8 +49,8 @@ static inline double tri_longer_product(double a, double b, double c)
     return high * middle;
 }
 
-/* The point that replaces a bad triangle, on the bisector of its shortest edge: the circumcentre or, where that lies farther
- * from the edge than `reach` (a height over the edge), the point at that height (off-centres: Uengoer 2004). */
+/* The point that replaces a bad triangle, on the bisector of its shortest edge: the circumcentre or, where that lies
+ * farther from the edge than `reach` (a height over the edge), the point at that height (off-centres: Uengoer 2004). */
 struct tri_point tri_place(const struct tri_point *xy, const int32_t v[3], const struct tri_shape *shape, double reach);
 
 #endif

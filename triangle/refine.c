@@ -1,8 +1,9 @@
 /* The refinement loop.
  *
- * A bad triangle proposes a point (off-centre or circumcentre, quality.h). Its cavity is searched; the walls of the cavity
- * tell which subsegments the point would encroach. If there are any, one of them is split instead, and the triangle, if it
- * still stands, is asked again. Nothing is changed before everything is known, so nothing is ever undone.
+ * A bad triangle proposes a point (off-centre or circumcentre, quality.h). Its cavity is searched; the walls of the
+ * cavity tell which subsegments the point would encroach. If there are any, one of them is split instead, and the
+ * triangle, if it still stands, is asked again. Nothing is changed before everything is known, so nothing is ever
+ * undone.
  *
  * Termination: see the rules in small_angle.h. */
 #include "triangle/refine.h"
@@ -16,9 +17,9 @@
 #include "triangle/quality.h"
 #include "triangle/small_angle.h"
 
-/* 4 / sqrt(3): an equilateral triangle of area A has a squared edge of this times A. The point of a triangle that is only too
- * large is placed as if to make an equilateral triangle of IDEAL of that edge, when that is nearer than the circumcentre:
- * sizes then lie closer to the bound than with circumcentres alone. */
+/* 4 / sqrt(3): an equilateral triangle of area A has a squared edge of this times A. The point of a triangle that is
+ * only too large is placed as if to make an equilateral triangle of IDEAL of that edge, when that is nearer than the
+ * circumcentre: sizes then lie closer to the bound than with circumcentres alone. */
 static const double EQUILATERAL = 2.3094010767585030580, IDEAL = 0.85;
 
 enum step { NOT_BEGUN, FIRST_PASS, SECOND_PASS };
@@ -50,7 +51,8 @@ enum { SEED_CHUNK = 1 << 16 };
 
 enum badness { GOOD, BAD_SIZE, BAD_ANGLE };
 
-/* DONE: a point was inserted, or the triangle is gone; AGAIN: a subsegment was split instead, the triangle may still stand. */
+/* DONE: a point was inserted, or the triangle is gone; AGAIN: a subsegment was split instead, the triangle may still
+ * stand. */
 enum outcome { DONE, AGAIN, REFUSED, FAILED };
 
 struct tri_refine_options tri_refine_defaults(void)
@@ -310,7 +312,8 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
     return reach;
 }
 
-/* Lower than the shortest edge that coordinates can carry: splitting a subsegment beside it would chase the rounding. */
+/* Lower than the shortest edge that coordinates can carry: splitting a subsegment beside it would chase the
+ * rounding. */
 static bool is_flat(const struct tri_refiner *r, const struct tri_shape *shape)
 {
     double longest2 = fmax(shape->l[0], fmax(shape->l[1], shape->l[2]));
@@ -504,10 +507,10 @@ static bool queue_chunk(struct tri_refiner *r)
     return true;
 }
 
-/* Passes over the seeds. First, chunk by chunk, the bad angles beside the shorter half of the edges: the order by shortest edge
- * (bad_queue.h) then nearly holds for the whole mesh, but the work stays in the cache, if seeds that are neighbours in the list
- * are neighbours in the plane. Then what is left of the bad angles, in the same order, and, place by place, what is only too
- * large. Resumable: false means that something failed or that there was no room. */
+/* Passes over the seeds. First, chunk by chunk, the bad angles beside the shorter half of the edges: the order by
+ * shortest edge (bad_queue.h) then nearly holds for the whole mesh, but the work stays in the cache, if seeds that are
+ * neighbours in the list are neighbours in the plane. Then what is left of the bad angles, in the same order, and,
+ * place by place, what is only too large. Resumable: false means that something failed or that there was no room. */
 static bool refine_seeds(struct tri_refiner *r)
 {
     if (r->step == NOT_BEGUN) {
@@ -546,9 +549,9 @@ static double quarter_of_shortest2(const struct tri_mesh *mesh)
     return shortest2 / 16;
 }
 
-/* Above TRI_USUAL_ANGLE refinement may feed on itself, with ever shorter edges. So the whole mesh is refined for the usual
- * angle first; then for more, as long as that adds less than half as many points again and no edge is much shorter than
- * what is there. */
+/* Above TRI_USUAL_ANGLE refinement may feed on itself, with ever shorter edges. So the whole mesh is refined for the
+ * usual angle first; then for more, as long as that adds less than half as many points again and no edge is much
+ * shorter than what is there. */
 static bool refine_beyond_usual(struct tri_refiner *r)
 {
     if (r->beyond == 0) {

@@ -1,28 +1,30 @@
 /* Quality refinement: the one loop that inserts points until no triangle is bad.
  *
- * Its callers: the whole mesh (no gate, no fence), a coarser pre-refinement, one block of cells of a schedule (gate = is the
- * new point in a cell that is active now?, fence = what may be touched). A bad triangle that the gate refuses, or whose cavity
- * reaches beyond the fence, stays as it is and is counted; whoever calls again later finds it again.
+ * Its callers: the whole mesh (no gate, no fence), a coarser pre-refinement, one block of cells of a schedule (gate =
+ * is the new point in a cell that is active now?, fence = what may be touched). A bad triangle that the gate refuses,
+ * or whose cavity reaches beyond the fence, stays as it is and is counted; whoever calls again later finds it again.
  *
- * THEOREM (serialisation). A call with a fence changes only triangles whose three corners lie in the fence's half-open box,
- * and the link across their border. Calls with disjoint boxes may run at the same time on views of one mesh: the result is
- * that of running them one after the other, in any order. */
+ * THEOREM (serialisation). A call with a fence changes only triangles whose three corners lie in the fence's half-open
+ * box, and the link across their border. Calls with disjoint boxes may run at the same time on views of one mesh: the
+ * result is that of running them one after the other, in any order. */
 #ifndef TRIANGLE_REFINE_H
 #define TRIANGLE_REFINE_H
 
 #include "triangle/cavity.h"
 
-/* Non-zero: the triangle a, b, c (counter-clockwise) must be refined. Called for triangles that satisfy all other size bounds. */
+/* Non-zero: the triangle a, b, c (counter-clockwise) must be refined. Called for triangles that satisfy all other size
+ * bounds. */
 typedef int tri_unsuitable(void *user, const double a[2], const double b[2], const double c[2], double area);
 
 /* May the bad triangle whose new point would be p (its circumcentre or off-centre) be refined now? */
 typedef bool tri_gate(void *user, const double p[2]);
 
-/* Told of each triangle that the gate or the fence left as it is; its slot may live another life before the call ends. */
+/* Told of each triangle that the gate or the fence left as it is; its slot may live another life before the call
+ * ends. */
 typedef void tri_left(void *user, int32_t slot);
 
-/* Makes room for at least 2 triangles, 1 vertex and 1 subsegment more in a mesh that is a view of shared arrays: moves its
- * counts and capacities to an unused range. TRI_NO_ROOM: not now. */
+/* Makes room for at least 2 triangles, 1 vertex and 1 subsegment more in a mesh that is a view of shared arrays: moves
+ * its counts and capacities to an unused range. TRI_NO_ROOM: not now. */
 typedef enum tri_status tri_more_room(void *user, struct tri_mesh *mesh, struct tri_error *error);
 
 struct tri_refine_options {
@@ -66,13 +68,13 @@ struct tri_refine_report {
 
 struct tri_refine_options tri_refine_defaults(void);
 
-/* Refines until every bad triangle is refused, gated or deferred. On TRI_NO_MEMORY or TRI_TOO_LARGE the mesh is valid and
- * as far as it got. Terminates for any PSLG and any bound. Amortised O(1) a point in practice. */
+/* Refines until every bad triangle is refused, gated or deferred. On TRI_NO_MEMORY or TRI_TOO_LARGE the mesh is valid
+ * and as far as it got. Terminates for any PSLG and any bound. Amortised O(1) a point in practice. */
 enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,
                            struct tri_refine_report *report, struct tri_error *error);
 
-/* The same in pieces, for callers whose more_room may say TRI_NO_ROOM: run returns it with everything in order, and goes on
- * where it was when called again, as if there had been no pause. The mesh's pointers may change meanwhile. */
+/* The same in pieces, for callers whose more_room may say TRI_NO_ROOM: run returns it with everything in order, and
+ * goes on where it was when called again, as if there had been no pause. The mesh's pointers may change meanwhile. */
 struct tri_refiner;
 enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *mesh,
                                 const struct tri_refine_options *options, struct tri_refine_report *report,
@@ -80,13 +82,14 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
 enum tri_status tri_refiner_run(struct tri_refiner *refiner, struct tri_error *error);
 void tri_refiner_free(struct tri_refiner *refiner);
 
-/* found[last - first] receives the slots from first to last - 1 at which there is something for the loop to do (a bad angle or
- * size; a crowded subsegment if conforming), in order; returns how many. */
+/* found[last - first] receives the slots from first to last - 1 at which there is something for the loop to do (a bad
+ * angle or size; a crowded subsegment if conforming), in order; returns how many. */
 int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t first, int32_t last,
                       int32_t *found);
 
-/* Makes the mesh ready for refinement: lists the parents at each vertex, and marks the input vertices at which two subsegments
- * meet at less than 60 degrees inside the mesh (TRI_VERTEX_ACUTE). To be called once, after carving. O(triangles). */
+/* Makes the mesh ready for refinement: lists the parents at each vertex, and marks the input vertices at which two
+ * subsegments meet at less than 60 degrees inside the mesh (TRI_VERTEX_ACUTE). To be called once, after carving.
+ * O(triangles). */
 enum tri_status tri_refine_prepare(struct tri_mesh *mesh, struct tri_error *error);
 
 /* Counts the triangles that violate the bounds, by reason. O(triangles). */

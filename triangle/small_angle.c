@@ -1,15 +1,19 @@
 /* Rules that make refinement end on any PSLG, beside those of the loop.
  *
- * THEORY. Refinement with bounds up to 28.6 degrees ends where segments meet at 60 degrees or more (Chew 1993; Shewchuk 2002;
- * Rand 2011), since every new point is about as far from all others as the features around it. Three things break that:
- *   1. Two segments at a small angle would split each other for ever. They are split on common circles around the vertex where
- *      they meet (concentric shells: Ruppert 1995), and a triangle whose shortest edge joins two of them on one circle stays
- *      (Miller, Pav & Walkington 2003): its length is dictated by the input angle, so nothing smaller is made because of it.
- *   2. Two segments side by side, nearer to each other than rounding, or than anyone could want to fill: spikes of no width, slits,
- *      borders that were digitised twice. The theory holds, but asks for length / width triangles. Such a channel is filled
- *      only if the mesh can afford it (dearest_affordable); a triangle whose shortest edge bridges one that is too dear stays.
- *   3. Rounding: points nearer than about 100 units in the last place, flat triangles, split points beside their segment. An edge
- *      or height below mesh.shortest2 stays; a point that does not see its whole cavity is not inserted (cavity.h).
+ * THEORY. Refinement with bounds up to 28.6 degrees ends where segments meet at 60 degrees or more (Chew 1993; Shewchuk
+ * 2002; Rand 2011), since every new point is about as far from all others as the features around it. Three things break
+ * that:
+ *   1. Two segments at a small angle would split each other for ever. They are split on common circles around the
+ *      vertex where they meet (concentric shells: Ruppert 1995), and a triangle whose shortest edge joins two of them
+ *      on one circle stays (Miller, Pav & Walkington 2003): its length is dictated by the input angle, so nothing
+ *      smaller is made because of it.
+ *   2. Two segments side by side, nearer to each other than rounding, or than anyone could want to fill: spikes of no
+ *      width, slits, borders that were digitised twice. The theory holds, but asks for length / width triangles. Such a
+ *      channel is filled only if the mesh can afford it (dearest_affordable); a triangle whose shortest edge bridges
+ *      one that is too dear stays.
+ *   3. Rounding: points nearer than about 100 units in the last place, flat triangles, split points beside their
+ *      segment. An edge or height below mesh.shortest2 stays; a point that does not see its whole cavity is not
+ *      inserted (cavity.h).
  * What stays is counted by reason (tri_count_bad). */
 #include "triangle/small_angle.h"
 
@@ -75,8 +79,9 @@ static const int32_t *parents_of(const struct tri_mesh *mesh, int32_t v, int32_t
     return mesh->spokes + mesh->spoke_start[v];
 }
 
-/* How many points, to the order, would it take to fill the space between two parents that are as far apart at one place as v
- * is from the line of p through u? At the far end of the shorter one, of length l, they are at most width + l * sine apart. */
+/* How many points, to the order, would it take to fill the space between two parents that are as far apart at one place
+ * as v is from the line of p through u? At the far end of the shorter one, of length l, they are at most width + l *
+ * sine apart. */
 static double filling_cost(const struct tri_mesh *mesh, const struct tri_parent *p, const struct tri_parent *q,
                            struct tri_point u, struct tri_point v)
 {
@@ -107,8 +112,8 @@ static bool is_beside(const struct tri_mesh *mesh, const struct tri_parent *p, i
     return along >= 0 && along <= x * x + y * y;
 }
 
-/* The cost of filling the dearest space between two parents that the edge uv bridges and the triangle with apex w lies in;
- * 0 where uv does not bridge any. */
+/* The cost of filling the dearest space between two parents that the edge uv bridges and the triangle with apex w lies
+ * in; 0 where uv does not bridge any. */
 static double channel_cost(const struct tri_mesh *mesh, int32_t u, int32_t v, int32_t w)
 {
     int32_t nu, nv;
@@ -143,8 +148,9 @@ bool tri_is_hopeless(const struct tri_mesh *mesh, double shortest2, int32_t slot
            tri_is_channel(mesh, slot, shape);
 }
 
-/* The largest power of two, 2^10 or more, such that filling every narrow space as far as this cost goes takes no more than
- * PER_VERTEX points for each vertex of the input and an ALLOWANCE. (A space dearer than that is still filled where it is wide.) */
+/* The largest power of two, 2^10 or more, such that filling every narrow space as far as this cost goes takes no more
+ * than PER_VERTEX points for each vertex of the input and an ALLOWANCE. (A space dearer than that is still filled where
+ * it is wide.) */
 static double dearest_affordable(const struct tri_mesh *mesh)
 {
     enum { CHEAP = 10, OCTAVES = 64 };
@@ -176,8 +182,8 @@ static double dearest_affordable(const struct tri_mesh *mesh)
 
 static bool is_input(int32_t on) { return on == TRI_VERTEX_INPUT || on == TRI_VERTEX_ACUTE; }
 
-/* The subsegment that comes next counter-clockwise after subsegment s around its end k, inside the mesh; TRI_NONE where the
- * outside comes first. */
+/* The subsegment that comes next counter-clockwise after subsegment s around its end k, inside the mesh; TRI_NONE where
+ * the outside comes first. */
 static int32_t next_around(const struct tri_mesh *mesh, int32_t s, int k)
 {
     int32_t code = mesh->sub[s].side[k];

@@ -4,9 +4,9 @@
 
 #include "triangle/quality.h"
 
-/* Where to split a subsegment, as a fraction from its start: in the middle or, beside an acute input vertex, at the power of
- * two nearest to the middle from there. So subsegments that meet at a small angle are split on common circles (concentric
- * shells: Ruppert 1995), and do not encroach each other for ever. */
+/* Where to split a subsegment, as a fraction from its start: in the middle or, beside an acute input vertex, at the
+ * power of two nearest to the middle from there. So subsegments that meet at a small angle are split on common circles
+ * (concentric shells: Ruppert 1995), and do not encroach each other for ever. */
 double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegment *s);
 
 /* Is the subsegment from a to b long enough to be split, where no edge shall be shorter than the root of shortest2? */

@@ -1,7 +1,7 @@
 /* Status codes and error detail of every fallible call.
  *
- * Libraries return a status and never print or exit; the detail travels in a caller-owned struct tri_error, which may be
- * NULL where the caller does not care. After TRI_OK the error is untouched. */
+ * Libraries return a status and never print or exit; the detail travels in a caller-owned struct tri_error, which may
+ * be NULL where the caller does not care. After TRI_OK the error is untouched. */
 #ifndef TRIANGLE_STATUS_H
 #define TRIANGLE_STATUS_H
 

@@ -1,11 +1,12 @@
 /* The native API: from a planar straight line graph to a mesh.
  *
  * No global state, no printing, no exit: calls on different meshes may run at the same time. A mesh is made by
- * tri_generate, looked at through triangle/mesh.h, refined further (wholly, or where a gate allows: triangle/refine.h) by
- * tri_refine as often as wanted, and freed by tri_mesh_free.
+ * tri_generate, looked at through triangle/mesh.h, refined further (wholly, or where a gate allows: triangle/refine.h)
+ * by tri_refine as often as wanted, and freed by tri_mesh_free.
  *
- * Coordinates in a mesh are those of the caller divided by mesh.unit, a power of two that is 1 for all inputs of ordinary
- * size; tri_mesh_place gives a vertex in the caller's coordinates. Gates and size tests always get the caller's coordinates. */
+ * Coordinates in a mesh are those of the caller divided by mesh.unit, a power of two that is 1 for all inputs of
+ * ordinary size; tri_mesh_place gives a vertex in the caller's coordinates. Gates and size tests always get the
+ * caller's coordinates. */
 #ifndef TRIANGLE_TRI_H
 #define TRIANGLE_TRI_H
 
