@@ -62,7 +62,8 @@ set(PTRIANGLE_PUBLIC_HEADERS
     triangle/executor.h
     triangle/read.h
     triangle/write.h
-    sched/par.h)
+    sched/par.h
+    sched/partition.h)
 
 # Room drivers/: what the executables share, then the executables, each from drivers/<name>.c. The second list of programs
 # needs the room sched/ and its library.
@@ -92,6 +93,7 @@ set(PTRIANGLE_RUN_PROGRAMS triangle ptriangle)
 
 # What the parallel program has beside that. Its report is written with jansson; without, the last file stands in.
 set(PTRIANGLE_PARALLEL_SOURCES
+    drivers/blocks_file.c
     drivers/long_options.c
     drivers/progress.c
     drivers/prediction.c)

@@ -9,7 +9,6 @@
  *
  * Usage: checkerboard [CELLS [MAX_AREA]]. Exit code 0: at the end all triangles satisfy the bounds. */
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "triangle/tri.h"
 
@@ -84,13 +83,14 @@ static enum tri_status refine(const char *what, struct tri_mesh *mesh, const str
         return status;
     *bad = count_bad(mesh, options, &report);
     count_colours(mesh, board, count);
-    printf("%-14s %8lld points inserted, %8lld times refused; triangles: %8ld in black cells, %8ld in white, %8lld bad\n", what,
-           (long long)(report.inserted_free + report.inserted_on_segments), (long long)report.gated, count[BLACK], count[WHITE],
-           (long long)*bad);
+    printf("%-14s %8lld points inserted, %8lld times refused; ", what,
+           (long long)(report.inserted_free + report.inserted_on_segments), (long long)report.gated);
+    printf("triangles: %8ld in black cells, %8ld in white, %8lld bad\n", count[BLACK], count[WHITE], (long long)*bad);
     return TRI_OK;
 }
 
-static enum tri_status play(struct tri_mesh *mesh, struct board *board, double max_area, int64_t *bad, struct tri_error *error)
+static enum tri_status play(struct tri_mesh *mesh, struct board *board, double max_area, int64_t *bad,
+                            struct tri_error *error)
 {
     struct tri_refine_options options = tri_refine_defaults();
     options.min_angle = 30;

@@ -13,11 +13,12 @@ const char long_options_help[] =
     "  --min-angle X      as -qX: no angle below X degrees\n"
     "  --output BASE      results are called BASE.node, BASE.ele, BASE.poly and so on\n"
     "  --report FILE      seconds, blocks, memory and mesh statistics, as JSON\n"
+    "  --blocks FILE      block and phase of each triangle, a line each, for meshplot --blocks\n"
     "  --progress         say on standard error how far the work is: one line on a terminal (there by\n"
     "  --no-progress      default), else a line for each stage. Never with -Q\n"
     "  --version, --help\n";
 
-enum id { THREADS, MAX_AREA, MIN_ANGLE, OUTPUT, REPORT, PROGRESS, NO_PROGRESS, VERSION, HELP };
+enum id { THREADS, MAX_AREA, MIN_ANGLE, OUTPUT, REPORT, BLOCKS, PROGRESS, NO_PROGRESS, VERSION, HELP };
 
 static const struct kind {
     const char *name;
@@ -25,7 +26,7 @@ static const struct kind {
     bool has_value;
 } kinds[] = {
     {"threads", THREADS, true},   {"max-area", MAX_AREA, true}, {"min-angle", MIN_ANGLE, true},
-    {"output", OUTPUT, true},     {"report", REPORT, true},     {"progress", PROGRESS, false},
+    {"output", OUTPUT, true},     {"report", REPORT, true},     {"blocks", BLOCKS, true}, {"progress", PROGRESS, false},
     {"no-progress", NO_PROGRESS, false}, {"version", VERSION, false}, {"help", HELP, false},
 };
 
@@ -94,6 +95,7 @@ static enum tri_status apply(struct long_options *options, struct tri_switches *
     case MIN_ANGLE: return take_angle(switches, value, error);
     case OUTPUT: return take_name(&options->output, kind, value, error);
     case REPORT: return take_name(&options->report, kind, value, error);
+    case BLOCKS: return take_name(&options->blocks, kind, value, error);
     case PROGRESS: options->progress = PROGRESS_YES; break;
     case NO_PROGRESS: options->progress = PROGRESS_NO; break;
     case VERSION: options->version = true; break;

@@ -16,6 +16,7 @@ struct long_options {
     int threads;        /* 0: not given */
     const char *output; /* BASE of --output; NULL: not given. Words are borrowed from argv */
     const char *report; /* file; NULL: none */
+    const char *blocks; /* file; NULL: none */
     enum long_options_progress progress;
     bool version, help;
 };

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "drivers/blocks_file.h"
 #include "drivers/console.h"
 #include "drivers/help.h"
 #include "drivers/long_options.h"
@@ -51,8 +52,11 @@ static enum tri_status done(void *user, const struct run *run, struct tri_error 
     char text[96];
     snprintf(text, sizeof text, "done in %.2f s", run->total_seconds);
     progress_stage(&p->progress, text);
-    if (!p->options.report)
-        return TRI_OK;
+    enum tri_status status = TRI_OK;
+    if (p->options.blocks)
+        status = blocks_write(p->options.blocks, &p->schedule, &run->mesh, error);
+    if (status || !p->options.report)
+        return status;
     return report_write(p->options.report, run, p->refined ? &p->schedule : NULL, p->threads, error);
 }
 
@@ -127,7 +131,7 @@ static int run_program(struct program *p, const struct arguments *arguments)
         progress_stage(&p->progress, "reading and triangulating");
     int code = run_arguments(arguments, &hooks);
     if (!arguments->file)
-        puts("  --threads N  --max-area X  --min-angle X  --output BASE  --report FILE  --progress  --help");
+        puts("  --threads N  --max-area X  --min-angle X  --output BASE  --report FILE  --blocks FILE  --progress  --help");
     par_report_free(&p->schedule);
     return code;
 }

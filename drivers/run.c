@@ -2,7 +2,6 @@
 #include "drivers/run.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 

@@ -27,9 +27,23 @@ struct par_options par_defaults(void) { return (struct par_options){0}; }
 
 void par_report_free(struct par_report *report)
 {
+    par_partition_free(&report->partition);
     free(report->blocks);
     report->blocks = NULL;
     report->n_blocks = 0;
+}
+
+int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, int32_t t, int *phase)
+{
+    const int32_t *v = mesh->tri[t].v;
+    for (*phase = 0; report->partition.x && *phase < PAR_COLOURS; ++*phase) {
+        int32_t block = par_block_at(&report->partition, *phase, mesh->xy[v[0]]);
+        if (block != TRI_NONE && par_block_at(&report->partition, *phase, mesh->xy[v[1]]) == block &&
+            par_block_at(&report->partition, *phase, mesh->xy[v[2]]) == block)
+            return block;
+    }
+    *phase = -1;
+    return TRI_NONE;
 }
 
 static int threads_for(const struct par_options *options)
@@ -83,7 +97,8 @@ static int is_too_long(void *user, const double a[2], const double b[2], const d
     (void)area;
     if (longest <= test->least2)
         return 0;
-    struct tri_point centre = {(a[0] / unit + b[0] / unit + c[0] / unit) / 3, (a[1] / unit + b[1] / unit + c[1] / unit) / 3};
+    struct tri_point centre = {(a[0] / unit + b[0] / unit + c[0] / unit) / 3,
+                               (a[1] / unit + b[1] / unit + c[1] / unit) / 3};
     double size = par_cell_size(test->partition, centre);
     return longest > test->share2 * size * size;
 }
@@ -106,8 +121,8 @@ static enum tri_status refine_level(struct par_state *state, const struct tri_re
 
 /* Pre-refinement where the input is coarse against the mesh to come: the same bounds with areas scaled up, as the paper
  * has it, for the area that makes COARSE_PER_BLOCK triangles in a cell. */
-static enum tri_status prerefine_uniform(struct par_state *state, const struct tri_refine_options *quality, double block,
-                                         int level, struct tri_error *error)
+static enum tri_status prerefine_uniform(struct par_state *state, const struct tri_refine_options *quality,
+                                         double block, int level, struct tri_error *error)
 {
     struct tri_refine_options coarse = *quality;
     coarse.area_scale = (quality->area_scale > 0 ? quality->area_scale : 1) * (block / COARSE_PER_BLOCK);
@@ -117,7 +132,8 @@ static enum tri_status prerefine_uniform(struct par_state *state, const struct t
 
 /* The pool becomes all triangles that violate the bounds, in the order of their slots; the radius, the largest
  * circumradius among them. */
-static enum tri_status fill_pool(struct par_state *state, const struct tri_refine_options *quality, struct tri_error *error)
+static enum tri_status fill_pool(struct par_state *state, const struct tri_refine_options *quality,
+                                 struct tri_error *error)
 {
     enum { CHUNK = 1 << 14 };
     struct tri_mesh *mesh = state->mesh;
@@ -253,6 +269,8 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     if (top) {
         report->columns = partition->n_columns;
         report->rows = partition->n_rows;
+        if (!status)
+            status = par_partition_copy(&report->partition, partition, error);
         report->radius_measured = state->radius * state->mesh->unit;
         report->prerefined = state->mesh->n_slots;
     }
@@ -306,7 +324,8 @@ static enum tri_status refine_level(struct par_state *state, const struct tri_re
         tell(state, 0);
         bool areas = quality->max_area > 0 || quality->region_areas;
         bool uniform = areas && input_work * (block / COARSE_PER_BLOCK) < 4 * partition.estimate;
-        status = uniform ? prerefine_uniform(state, quality, block, level, error) : prerefine_graded(state, quality, &partition, error);
+        status = uniform ? prerefine_uniform(state, quality, block, level, error)
+                         : prerefine_graded(state, quality, &partition, error);
         if (!uniform)
             state->report->seconds_prerefine += par_seconds() - began;
         if (!status)
@@ -323,8 +342,8 @@ static bool must_be_sequential(const struct tri_refine_options *quality, const s
            quality->left || (quality->unsuitable && !options->size_test_in_parallel);
 }
 
-enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality, const struct par_options *options,
-                           struct par_report *report, struct tri_error *error)
+enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                           const struct par_options *options, struct par_report *report, struct tri_error *error)
 {
     double began = par_seconds();
     *report = (struct par_report){.threads = threads_for(options)};

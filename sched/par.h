@@ -8,6 +8,7 @@
 #ifndef SCHED_PAR_H
 #define SCHED_PAR_H
 
+#include "sched/partition.h"
 #include "triangle/executor.h"
 #include "triangle/tri.h"
 
@@ -15,14 +16,13 @@ struct par_options {
     int threads;             /* 0: what OpenMP would use (OMP_NUM_THREADS, else all cores) */
     double block_triangles;  /* final triangles in a block, to the order; 0: the default. Part of the decomposition */
     bool margin;             /* the paper's margin: a block inserts no point within 2 r of its fence, where that leaves
-                                two thirds of it. Then no cavity is ever refused; without it, each is asked. Part of the
-                                decomposition */
-    bool size_test_in_parallel; /* quality.unsuitable may be called by several threads at once; else, where there is a size
-                                   test, the mesh is refined sequentially */
+                                two thirds of it. Then no cavity is refused in a mesh of even size; without it, each
+                                is asked. Part of the decomposition */
+    bool size_test_in_parallel; /* quality.unsuitable may be called by several threads at once; else, where there is a
+                                   size test, the mesh is refined sequentially */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
-    int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, so that they pause often */
-    /* Told now and then by the calling thread: the phase that begins (0: pre-refinement, then 1 ..), triangles so
-     * far. */
+    int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, and pause often */
+    /* Told by the calling thread: the phase that begins (0: pre-refinement, then 1 to 4), triangles so far. */
     void (*progress)(void *user, int round, int phase, int64_t triangles);
     void *progress_user;
 };
@@ -36,15 +36,19 @@ struct par_block_report {
 struct par_report {
     struct tri_refine_report total;
     int threads;
-    int rounds, levels;           /* rounds of four phases; levels of pre-refinement */
+    int rounds;                   /* of four phases, of all levels */
+    int levels;                   /* meshes that the phases refined: this one, its pre-refinement, ..; 0: none */
     int32_t columns, rows;        /* of blocks in the first round */
+    struct par_partition partition; /* blocks of the first round; without any where the call was sequential. Owned by the
+                                       report */
     double radius_theory;         /* tight bound for the area and angle bounds; 0 where one is missing */
-    double radius_measured;       /* largest circumradius when the first phase began */
+    double radius_measured;       /* largest circumradius of a bad triangle when the first phase began */
     int64_t prerefined;           /* triangles when the first phase began */
     int64_t deferred, left_over;  /* refused by fences in all phases; bad triangles that the last sequential call got */
     int64_t pauses;               /* times a block waited for room */
-    double seconds_prerefine, seconds_partition, seconds_seeds, seconds_room, seconds_refine, seconds_merge, seconds_last,
-        seconds_number, seconds_total; /* refine: wall time of the phases' parallel parts */
+    double seconds_prerefine, seconds_partition, seconds_seeds, seconds_room, seconds_merge, seconds_last,
+        seconds_number, seconds_total;
+    double seconds_refine;        /* wall time of the phases' parallel parts */
     double phase_seconds[4];      /* refine, by colour, over all rounds */
     struct par_block_report *blocks; /* [n_blocks] in canonical order; owned by the report */
     int32_t n_blocks;
@@ -52,11 +56,16 @@ struct par_report {
 
 struct par_options par_defaults(void);
 
-/* Refines as tri_refine does, with several threads. Where the bounds do not allow a schedule (max_steiner, a gate or a
- * fence of the caller's, a size test that must not run in parallel, a small mesh) it is one sequential call. Safe to
- * call from several threads on different meshes, and inside a parallel region. Errors as tri_refine. */
-enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality, const struct par_options *options,
-                           struct par_report *report, struct tri_error *error);
+/* Refines as tri_refine does, with several threads. Where the options do not allow a schedule (max_steiner; seeds, gate,
+ * fence, left or more_room of the caller's; a size test that must not run in parallel) or the mesh is small it is one
+ * sequential call; what an angle bound above TRI_USUAL_ANGLE asks for beyond that is one, too. Safe to call from several
+ * threads on different meshes, and inside a parallel region. Errors as tri_refine. */
+enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                           const struct par_options *options, struct par_report *report, struct tri_error *error);
+
+/* The block (column * n_rows + row) whose fence owns triangle t in the first phase that owns it, 0 to 3, which *phase receives;
+ * TRI_NONE and -1 where no fence of the first round does. For pictures. */
+int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, int32_t t, int *phase);
 
 void par_report_free(struct par_report *report);
 

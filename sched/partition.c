@@ -8,10 +8,11 @@
 
 #include <assert.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "triangle/quality.h"
 
-enum { SAMPLES_PER_BLOCK = 32 };
+enum { SAMPLES_PER_BLOCK = 32, DEEPEST_CUT = 12 };
 
 /* Measured: mean area over bound, and triangles around each vertex of the input for bounds of 20 to 34 degrees. */
 static const double MEAN_OVER_BOUND = 0.655, TRIANGLES_PER_VERTEX = 5;
@@ -101,7 +102,8 @@ static bool sample_triangle(struct samples *s, struct tri_point a, struct tri_po
 }
 
 /* Small pieces of work are gathered until they are worth a sample. */
-static bool take_samples(struct samples *s, const struct tri_mesh *mesh, const struct tri_refine_options *options, double grain)
+static bool take_samples(struct samples *s, const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                         double grain)
 {
     double waiting = 0, each = vertex_work(options);
     for (int32_t v = 0; v < mesh->n_vertices; v++) {
@@ -118,19 +120,23 @@ static bool take_samples(struct samples *s, const struct tri_mesh *mesh, const s
         waiting += work < grain ? work : 0;
         if (work < grain && waiting < grain)
             continue;
-        if (!sample_triangle(s, mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]], work < grain ? waiting : work, grain, 12))
+        if (!sample_triangle(s, mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]], work < grain ? waiting : work, grain,
+                             DEEPEST_CUT))
             return false;
         waiting = work < grain ? 0 : waiting;
     }
     return true;
 }
 
+/* So that equal samples alone have no order: qsort is not stable everywhere, and sums depend on it. */
+static int by_work(const struct sample *a, const struct sample *b) { return (a->work > b->work) - (a->work < b->work); }
+
 static int by_x(const void *left, const void *right)
 {
     const struct sample *a = left, *b = right;
     if (a->q.x != b->q.x)
         return a->q.x < b->q.x ? -1 : 1;
-    return (a->q.y > b->q.y) - (a->q.y < b->q.y);
+    return a->q.y != b->q.y ? (a->q.y < b->q.y ? -1 : 1) : by_work(a, b);
 }
 
 static int by_y(const void *left, const void *right)
@@ -138,7 +144,7 @@ static int by_y(const void *left, const void *right)
     const struct sample *a = left, *b = right;
     if (a->q.y != b->q.y)
         return a->q.y < b->q.y ? -1 : 1;
-    return (a->q.x > b->q.x) - (a->q.x < b->q.x);
+    return a->q.x != b->q.x ? (a->q.x < b->q.x ? -1 : 1) : by_work(a, b);
 }
 
 /* Sorted samples first .. end - 1 into n shares of equal work; cut[k] receives the index at which share k begins. */
@@ -237,12 +243,28 @@ enum tri_status par_partition_make(struct par_partition *p, const struct tri_mes
     }
     p->x = malloc(((size_t)p->n_columns + 1) * sizeof *p->x);
     p->y = malloc((size_t)p->n_columns * ((size_t)p->n_rows + 1) * sizeof *p->y);
-    bool done = p->x && p->y && take_samples(&s, mesh, options, p->estimate / par_blocks(p) / SAMPLES_PER_BLOCK) && cut_plane(p, &s);
+    double grain = p->estimate / par_blocks(p) / SAMPLES_PER_BLOCK;
+    bool done = p->x && p->y && take_samples(&s, mesh, options, grain) && cut_plane(p, &s);
     free(s.item);
     if (done)
         return TRI_OK;
     par_partition_free(p);
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the partition into blocks");
+}
+
+enum tri_status par_partition_copy(struct par_partition *copy, const struct par_partition *p, struct tri_error *error)
+{
+    size_t n_x = (size_t)p->n_columns + 1, n_y = (size_t)p->n_columns * ((size_t)p->n_rows + 1);
+    *copy = *p;
+    copy->x = malloc(n_x * sizeof *copy->x);
+    copy->y = malloc(n_y * sizeof *copy->y);
+    if (!copy->x || !copy->y) {
+        par_partition_free(copy);
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a copy of the partition");
+    }
+    memcpy(copy->x, p->x, n_x * sizeof *copy->x);
+    memcpy(copy->y, p->y, n_y * sizeof *copy->y);
+    return TRI_OK;
 }
 
 void par_partition_coarsen(struct par_partition *p)
@@ -269,11 +291,12 @@ void par_partition_free(struct par_partition *p)
     *p = (struct par_partition){0};
 }
 
-/* From the middle of the interval before to the middle of the one after; at the rim, to infinity. */
+/* From the middle of the interval before to the middle of the one after; to infinity where no interval of the same parity
+ * follows, so that those of each parity tile the line. */
 static void span(const double *bounds, int32_t k, int32_t n, double *low, double *high)
 {
-    *low = k == 0 ? -HUGE_VAL : 0.5 * (bounds[k - 1] + bounds[k]);
-    *high = k == n - 1 ? HUGE_VAL : 0.5 * (bounds[k + 1] + bounds[k + 2]);
+    *low = k < 2 ? -HUGE_VAL : 0.5 * (bounds[k - 1] + bounds[k]);
+    *high = k >= n - 2 ? HUGE_VAL : 0.5 * (bounds[k + 1] + bounds[k + 2]);
 }
 
 static const double *rows_of(const struct par_partition *p, int32_t column)

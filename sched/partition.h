@@ -41,6 +41,9 @@ enum tri_status par_partition_make(struct par_partition *partition, const struct
                                    const struct tri_refine_options *options, double block_triangles,
                                    struct tri_error *error);
 
+/* A copy with memory of its own. */
+enum tri_status par_partition_copy(struct par_partition *copy, const struct par_partition *partition, struct tri_error *error);
+
 /* Halves the number of columns and rows. */
 void par_partition_coarsen(struct par_partition *partition);
 

@@ -1,7 +1,6 @@
 /* Tasks of a phase: deal out seeds and room, run, collect. */
 #include "sched/phase.h"
 
-#include <assert.h>
 #include <stdlib.h>
 
 #include "sched/clock.h"
@@ -27,7 +26,6 @@ struct task {
     enum tri_status status;
     struct tri_error error;
     double seconds;
-    double unit;
 };
 
 struct phase {
@@ -45,6 +43,8 @@ struct phase {
 bool par_slots_add(struct par_slots *slots, int32_t slot)
 {
     if (slots->n == slots->capacity) {
+        if (slots->capacity > INT32_MAX / 2)
+            return false;
         int32_t capacity = slots->capacity ? 2 * slots->capacity : 64;
         int32_t *fresh = realloc(slots->item, (size_t)capacity * sizeof *fresh);
         if (!fresh)
@@ -143,7 +143,8 @@ static void set_up(struct phase *p, struct task *task)
     double unit = state->mesh->unit;
     task->fence = par_fence(p->partition, task->block / p->partition->n_rows, task->block % p->partition->n_rows);
     struct tri_fence active = state->options->margin ? active_of(&task->fence, state->radius) : task->fence;
-    task->active = (struct tri_fence){active.x_min * unit, active.y_min * unit, active.x_max * unit, active.y_max * unit};
+    task->active = (struct tri_fence){active.x_min * unit, active.y_min * unit, active.x_max * unit,
+                                      active.y_max * unit};
     task->options = *state->quality;
     task->options.gate = is_active;
     task->options.gate_user = task;
@@ -367,7 +368,8 @@ static enum tri_status run_phase(struct phase *p, struct tri_error *error)
     return status ? status : collected;
 }
 
-enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int colour, struct tri_error *error)
+enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int colour,
+                          struct tri_error *error)
 {
     size_t n = (size_t)state->pool.n + 1;
     struct phase p = {.state = state, .partition = partition, .colour = colour};

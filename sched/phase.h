@@ -25,7 +25,7 @@ struct par_state {
     int threads;
     struct par_slots pool;   /* triangles that may be bad, in canonical order; some may have gone since */
     struct par_room spare;   /* unused ranges of the arrays */
-    double radius;           /* largest circumradius when the first phase began */
+    double radius;           /* largest circumradius in the pool when it was last filled */
     struct par_report *report;
     int round;
 };

@@ -104,8 +104,8 @@ static void deal(struct par_ranges *to, struct par_ranges *spare, struct par_ran
 }
 
 /* Nothing is taken or counted before there is room for it in the lists: no range is ever lost. */
-static enum tri_status extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared, enum par_kind kind,
-                              int32_t need, struct tri_error *error)
+static enum tri_status extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
+                              enum par_kind kind, int32_t need, struct tri_error *error)
 {
     struct par_ranges *to = &room->ranges[kind], *from = &spare->ranges[kind];
     while (need > 0 && from->n > 0) {
@@ -132,8 +132,8 @@ static enum tri_status extend(struct par_room *room, struct par_room *spare, str
     return TRI_OK;
 }
 
-enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared, int32_t triangles,
-                                struct tri_error *error)
+enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
+                                int32_t triangles, struct tri_error *error)
 {
     enum tri_status status = extend(room, spare, shared, PAR_SLOTS, triangles, error);
     status = status ? status : extend(room, spare, shared, PAR_VERTICES, triangles / 2 + triangles / 64 + 16, error);

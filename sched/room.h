@@ -40,8 +40,8 @@ void par_room_leave(struct par_room *room, const struct tri_mesh *view);
 
 /* Gives the room at least `triangles` slots more, and vertices and subsegments to match: from `spare` first, else from
  * the end of the shared arrays, which grow. */
-enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared, int32_t triangles,
-                                struct tri_error *error);
+enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
+                                int32_t triangles, struct tri_error *error);
 
 /* Moves what is unused to `spare`, and frees the room. Cannot fail. */
 void par_room_return(struct par_room *room, struct par_room *spare);

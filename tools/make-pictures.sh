@@ -31,4 +31,9 @@ frame=20000,290000,125000,380000 # metres
 plot norway norway_sea --legend off --size 680 --mark $frame
 plot norway_zoom norway_sea --size 1000 --window $frame
 plot section section --color region --size 1100
+if [ -x "$programs/ptriangle" ]; then
+    cp data/coast/norway_sea.poly "$scratch/schedule.poly"
+    "$programs/ptriangle" -pq30a6000000Q --blocks "$scratch/blocks.txt" "$scratch/schedule.poly"
+    plot schedule schedule --color block --blocks "$scratch/blocks.txt" --edges off --size 640
+fi
 ls -l "$pictures"

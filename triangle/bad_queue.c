@@ -32,6 +32,8 @@ static int32_t take_node(struct tri_bad_queue *queue)
         return node;
     }
     if (queue->n_nodes == queue->node_capacity) {
+        if (queue->node_capacity > INT32_MAX / 2)
+            return NIL;
         int32_t capacity = queue->node_capacity ? 2 * queue->node_capacity : 1024;
         struct tri_node *fresh = realloc(queue->node, (size_t)capacity * sizeof *fresh);
         if (!fresh)

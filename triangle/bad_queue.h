@@ -2,7 +2,7 @@
  *
  * Two kinds. Those whose angle is bad wait in buckets by their shortest edge, shortest first: what grows out of the
  * smallest features is settled before larger triangles are asked, and the mesh comes out smaller (docs/performance.md:
- * by a third at 33 degrees against worst angle first). Within a bucket (a quarter of an octave) first come, first
+ * by a third at 33 degrees against worst angle first). Within a bucket (an eighth of an octave) first come, first
  * served. Those that are only too large wait first in, first out, which spreads sizes evenly, but in a window: when it
  * is full its older half goes to a stack and is taken back when the window has run empty. So the work stays where the
  * cache is, for any size of mesh.

@@ -4,7 +4,6 @@
  * meet at a subsegment; removing the dead ones needs to tell subsegments alone. */
 #include "triangle/carve.h"
 
-#include <assert.h>
 #include <stdlib.h>
 
 #include "triangle/predicates.h"
@@ -50,16 +49,6 @@ static void kill_concavities(struct flood *f)
                 kill_from(f, t);
 }
 
-static int32_t step_over(const struct tri_mesh *mesh, int32_t t, int e)
-{
-    int32_t link = mesh->tri[t].n[e];
-    if (link >= 0)
-        return tri_of(link);
-    const struct tri_subsegment *s = &mesh->sub[~link];
-    int32_t code = s->side[1 - tri_side(s, mesh->tri[t].v[tri_next[e]])];
-    return code == TRI_NONE ? TRI_NONE : tri_of(code);
-}
-
 /* The triangle that holds q, TRI_NONE outside the hull. A visibility walk over a constrained triangulation may cycle;
  * the edge it tries first turns with the number of steps, and after too many steps every triangle is looked at. */
 static int32_t locate(struct flood *f, struct tri_point q)
@@ -76,15 +65,15 @@ static int32_t locate(struct flood *f, struct tri_point q)
         }
         if (k == 3)
             return f->near = t;
-        t = step_over(mesh, t, e);
-        if (t == TRI_NONE)
+        int32_t beyond = tri_across(mesh, tri_code(t, e));
+        if (beyond == TRI_NONE)
             return TRI_NONE; /* the hull is convex: whoever leaves it does not come back */
-        f->near = t;
+        f->near = t = tri_of(beyond);
     }
     for (t = 0; t < mesh->n_slots; t++) {
         const int32_t *v = mesh->tri[t].v;
-        if (tri_orient2d(mesh->xy[v[0]], mesh->xy[v[1]], q) >= 0 && tri_orient2d(mesh->xy[v[1]], mesh->xy[v[2]], q) >= 0 &&
-            tri_orient2d(mesh->xy[v[2]], mesh->xy[v[0]], q) >= 0)
+        struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
+        if (tri_orient2d(a, b, q) >= 0 && tri_orient2d(b, c, q) >= 0 && tri_orient2d(c, a, q) >= 0)
             return t;
     }
     return TRI_NONE;

@@ -65,8 +65,8 @@ static inline bool in_circle(const struct tri_mesh *mesh, struct tri_point p, in
 }
 
 /* Explores what lies behind the link of the edge a -> b, depth first and left first, so that rims come out in order. */
-static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t link, int32_t region, int32_t a,
-                               int32_t b, struct tri_relative ra, struct tri_relative rb)
+static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t link, int32_t region,
+                               int32_t a, int32_t b, struct tri_relative ra, struct tri_relative rb)
 {
     const struct tri_triangle *tri = mesh->tri;
     const struct tri_point *xy = mesh->xy, p = c->p;
@@ -192,8 +192,8 @@ static bool overlaps_itself(const struct tri_cavity *c, int32_t s)
     return false;
 }
 
-enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p, int32_t s,
-                                        int32_t *n_left)
+enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p,
+                                        int32_t s, int32_t *n_left)
 {
     const struct tri_subsegment *sub = &mesh->sub[s];
     *n_left = 0;

@@ -48,7 +48,7 @@ struct tri_cavity {
     const struct tri_fence *fence; /* NULL: everything is owned */
     int32_t n_tri, n_rim, n_wall, capacity;
     int32_t *tri;         /* slots of the cavity's triangles */
-    struct tri_rim *rim;  /* one more entry than rims is kept, for the end of an open chain */
+    struct tri_rim *rim;  /* at most n_tri + 2 of them */
     int32_t *wall;        /* indices of the rims whose outer link is a subsegment */
     struct tri_pending *pending;
 };
@@ -63,7 +63,8 @@ enum tri_search {
 void tri_cavity_free(struct tri_cavity *cavity);
 
 /* Finds the cavity of p from triangle t. Reads the mesh only. Expected O(1) in a good mesh; O(cavity) always. */
-enum tri_search tri_cavity_search(struct tri_cavity *cavity, const struct tri_mesh *mesh, struct tri_point p, int32_t t);
+enum tri_search tri_cavity_search(struct tri_cavity *cavity, const struct tri_mesh *mesh, struct tri_point p,
+                                  int32_t t);
 
 /* The same for a point on (within rounding of) subsegment s, which is to be split there: the chain is the rims left of
  * it from its end to its start, then, where there is a triangle on the right, those right of it from start to end.

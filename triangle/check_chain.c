@@ -8,7 +8,6 @@
  *   3. Whatever stays uncovered must lie outside the mesh: the sweep is asked about points of it. */
 #include "triangle/check_chain.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 

@@ -3,7 +3,6 @@
  * Corners are grouped by vertex (counting sort), so that the half-edges between a and b are found by a scan of the
  * triangles at one of them. Scanning the vertex of fewer triangles costs O(n) in all: the sum over the edges of the
  * smaller degree is linear in a planar graph (Chiba & Nishizeki 1985). */
-#include <assert.h>
 #include <stdlib.h>
 
 #include "triangle/check_internal.h"

@@ -2,7 +2,6 @@
  *
  * Points that coincide are one vertex of the mesh; which of them carries the triangles is the mesher's choice. So each
  * input point has a `twin`: the used vertex at its place. */
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -7,7 +7,6 @@
  * An apex is a vertex where two subsegments meet at less than 60 degrees (or what the options say) with the mesh
  * between them. Near it no mesher can keep a bound: triangles at the apex, those that touch one at it, and those that
  * span its legs further out (across two concentric shells; Miller, Pav & Walkington 2003) are explained by it. */
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,7 +1,6 @@
 /* Coordinates of any size: multiplication by a power of two is exact as long as nothing becomes subnormal, and changes
  * no judgement but those on areas, which check_quality.c scales back. */
 #include <math.h>
-#include <stdlib.h>
 
 #include "triangle/check_internal.h"
 

@@ -2,7 +2,6 @@
  *
  * Where the mesh comes without a list, its boundary edges are the subsegments; then nothing can be wrong with them. */
 #include <assert.h>
-#include <stdlib.h>
 
 #include "triangle/check_internal.h"
 

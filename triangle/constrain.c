@@ -37,12 +37,6 @@ struct layer {
     struct tri_error *error;
 };
 
-/* The walk along a segment: the edge of triangle t that crosses it, between right (clockwise side) and left. */
-struct crossing {
-    int32_t t;
-    int e;
-};
-
 static enum tri_status no_memory(struct layer *l)
 {
     return tri_fail(l->error, TRI_NO_MEMORY, NULL, 0, "out of memory for segment %d", (int)l->segment);
@@ -86,21 +80,11 @@ static bool touch(struct layer *l, int32_t t)
 
 static int corner_of(const struct tri_triangle *t, int32_t v) { return t->v[0] == v ? 0 : t->v[1] == v ? 1 : 2; }
 
-/* The triangle on the other side of edge e of t, be it a subsegment or not; TRI_NONE outside. */
-static int32_t across(const struct tri_mesh *mesh, int32_t t, int e)
-{
-    int32_t link = mesh->tri[t].n[e];
-    if (link >= 0)
-        return link;
-    const struct tri_subsegment *s = &mesh->sub[~link];
-    return s->side[1 - tri_side(s, mesh->tri[t].v[tri_next[e]])];
-}
-
 /* The next triangle around v, counter-clockwise or clockwise; TRI_NONE at the boundary. */
 static int32_t turn(const struct tri_mesh *mesh, int32_t t, int32_t v, bool left)
 {
     int k = corner_of(&mesh->tri[t], v);
-    int32_t code = across(mesh, t, left ? tri_next[k] : tri_prev[k]);
+    int32_t code = tri_across(mesh, tri_code(t, left ? tri_next[k] : tri_prev[k]));
     return code == TRI_NONE ? TRI_NONE : tri_of(code);
 }
 
@@ -344,7 +328,8 @@ static enum tri_status lay_through(struct layer *l, int32_t s, int32_t v)
     int32_t segment = l->mesh->parents[old.parent].segment;
     if (old.side[0] == TRI_NONE || old.side[1] == TRI_NONE)
         return TRI_OK;
-    bool room = take_up(l, s) && push_piece(l, old.v[0], v, segment, old.marker) && push_piece(l, v, old.v[1], segment, old.marker);
+    bool room = take_up(l, s) && push_piece(l, old.v[0], v, segment, old.marker) &&
+                push_piece(l, v, old.v[1], segment, old.marker);
     return room ? TRI_OK : no_memory(l);
 }
 
@@ -420,8 +405,8 @@ static enum tri_status cut(struct layer *l, int32_t a, int32_t b, int32_t s, int
     return legalise(l) ? TRI_OK : no_memory(l);
 }
 
-/* What the segment a -> b meets first: sets *end to the vertex that ends the first piece, *clear to false where a
- * subsegment lies across, with *s that subsegment. Vertices on the segment end a piece. */
+/* What the segment a -> b meets first: *s, a subsegment that lies across it, else *end, the vertex that ends the first
+ * piece (vertices on the segment end a piece); the other becomes TRI_NONE, both where there is no way out of a. */
 static void look_ahead(struct layer *l, int32_t a, int32_t b, int32_t *end, int32_t *s)
 {
     const struct tri_mesh *mesh = l->mesh;
@@ -478,7 +463,8 @@ static enum tri_status lay_piece(struct layer *l, const struct piece *piece)
         return no_memory(l);
     if (cleared == NOT_YET)
         l->report->lost++;
-    if ((cleared == CLEARED && !mark_piece(l, a, end)) || !legalise(l) || !push_piece(l, end, b, piece->segment, piece->marker))
+    if ((cleared == CLEARED && !mark_piece(l, a, end)) || !legalise(l) ||
+        !push_piece(l, end, b, piece->segment, piece->marker))
         return no_memory(l);
     return TRI_OK;
 }

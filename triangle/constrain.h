@@ -6,7 +6,7 @@
 
 struct tri_constrain_report {
     int32_t crossings; /* vertices made where segments cross */
-    int32_t bent;      /* times a crossing was too near to a vertex for a vertex of its own: the segment runs through that one */
+    int32_t bent;      /* times a crossing was too near to a vertex for one of its own: the segment runs through that */
     int32_t lost;      /* pieces of segments that could not be made part of the mesh (precision) */
     int32_t skipped;   /* segments with an end outside the points, or two equal ends */
 };

@@ -137,7 +137,8 @@ static void fill(struct builder *b, int32_t v)
         int32_t slot = i < b->n_cavity ? b->cavity[i] : b->n_slots++;
         int32_t outer = b->rim[i].outer, end = b->rim[i + 1 < b->n_rim ? i + 1 : 0].a;
         struct tri_triangle *t = &b->tri[slot];
-        *t = (struct tri_triangle){{v, b->rim[i].a, end}, {outer, TRI_NONE, before == TRI_NONE ? TRI_NONE : tri_code(before, 1)}, 0, 0};
+        int32_t link = before == TRI_NONE ? TRI_NONE : tri_code(before, 1);
+        *t = (struct tri_triangle){{v, b->rim[i].a, end}, {outer, TRI_NONE, link}, 0, 0};
         b->tri[tri_of(outer)].n[tri_edge(outer)] = tri_code(slot, 0);
         if (before != TRI_NONE)
             b->tri[before].n[1] = tri_code(slot, 2);

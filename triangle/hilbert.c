@@ -43,8 +43,10 @@ static void key_points(const struct tri_point *xy, int32_t n, struct keyed *out)
     }
     double side = high.x - low.x > high.y - low.y ? high.x - low.x : high.y - low.y;
     double scale = side > 0 ? (double)((UINT32_C(1) << BITS) - 1) / side : 0;
-    for (int32_t i = 0; i < n; i++)
-        out[i] = (struct keyed){tri_hilbert((uint32_t)((xy[i].x - low.x) * scale), (uint32_t)((xy[i].y - low.y) * scale)), i};
+    for (int32_t i = 0; i < n; i++) {
+        uint32_t x = (uint32_t)((xy[i].x - low.x) * scale), y = (uint32_t)((xy[i].y - low.y) * scale);
+        out[i] = (struct keyed){tri_hilbert(x, y), i};
+    }
 }
 
 /* One stable pass; returns false, with nothing moved, where all keys agree in this digit. */

@@ -44,7 +44,7 @@ struct tri_triangle {
     int32_t v[3];   /* corners, counter-clockwise; v[0] == TRI_NONE: the slot is free */
     int32_t n[3];   /* links, see above */
     int32_t region; /* index into tri_mesh.regions */
-    uint32_t state; /* counts the lives of the slot, so that a queue entry can tell whether it still speaks of this one */
+    uint32_t state; /* counts the lives of the slot: a queue entry can tell whether it still speaks of this one */
 };
 
 struct tri_subsegment {
@@ -82,8 +82,8 @@ struct tri_mesh {
     int32_t n_subs, sub_capacity;
     struct tri_parent *parents; /* [n_parents] */
     int32_t n_parents, parent_capacity;
-    int32_t *spoke_start;     /* [n_hubs + 1] parents that end at vertex v are spokes[spoke_start[v] .. spoke_start[v + 1]) */
-    int32_t *spokes;
+    int32_t *spokes;          /* [2 * n_parents] spokes[spoke_start[v] .. spoke_start[v + 1]): parents that end at v */
+    int32_t *spoke_start;     /* [n_hubs + 1] */
     double shortest2;         /* square of the shortest edge that coordinates of this size can carry */
     double dearest_channel;   /* narrow spaces between parents that would cost more points than this are not filled */
     int32_t n_hubs;           /* vertices there were when the parents were listed; 0: not listed yet */
@@ -91,8 +91,8 @@ struct tri_mesh {
     struct tri_region *regions; /* [n_regions] regions[0] is "no region": attribute 0, no bound */
     int32_t n_regions;
 
-    int32_t *owner;           /* [slot_capacity] or NULL; for proofs in debug builds: who changed a triangle since the array
-                                 was cleared (0: nobody). Views of one mesh share it */
+    int32_t *owner;           /* [slot_capacity] or NULL; for proofs in debug builds: who changed a triangle since the
+                                 array was cleared (0: nobody). Views of one mesh share it */
     int32_t owner_id;         /* > 0: who works on this view */
 
     double unit;              /* a power of two: the caller's coordinates are xy * unit */
@@ -115,7 +115,14 @@ static inline struct tri_point tri_point_between(struct tri_point a, struct tri_
                               tri_round_coordinate(a.y + fraction * (b.y - a.y))};
 }
 
-/* A place given in the caller's coordinates. */
+/* A vertex in the caller's coordinates. */
+static inline void tri_mesh_place(const struct tri_mesh *mesh, int32_t v, double at[2])
+{
+    at[0] = mesh->xy[v].x * mesh->unit;
+    at[1] = mesh->xy[v].y * mesh->unit;
+}
+
+/* A place given in the caller's coordinates, in the mesh's. */
 static inline struct tri_point tri_to_units(const struct tri_mesh *mesh, double x, double y)
 {
     return (struct tri_point){tri_round_coordinate(x / mesh->unit), tri_round_coordinate(y / mesh->unit)};
@@ -140,6 +147,17 @@ int32_t tri_mesh_add_sub(struct tri_mesh *mesh, int32_t from, int32_t to, int32_
 
 /* Which side of a subsegment's record belongs to the triangle that sees it as from -> to (counter-clockwise)? */
 static inline int tri_side(const struct tri_subsegment *s, int32_t from) { return s->v[0] == from ? 0 : 1; }
+
+/* The same edge as its other triangle sees it, subsegment or not; TRI_NONE at the boundary. */
+static inline int32_t tri_across(const struct tri_mesh *mesh, int32_t code)
+{
+    const struct tri_triangle *t = &mesh->tri[tri_of(code)];
+    int32_t link = t->n[tri_edge(code)];
+    if (link >= 0)
+        return link;
+    const struct tri_subsegment *s = &mesh->sub[~link];
+    return s->side[1 - tri_side(s, t->v[tri_next[tri_edge(code)]])];
+}
 
 /* Lets the triangle or subsegment behind `outer` know that its neighbour across that edge is now `code`. `from` is the
  * corner at which the edge starts, counter-clockwise in the triangle of `code`. */

@@ -16,8 +16,8 @@ enum tri_status tri_pslg_check(const struct tri_pslg *pslg, struct tri_error *er
                         (int)pslg->n_points);
     for (int32_t i = 0; i < pslg->n_points; i++)
         if (!isfinite(pslg->points[2 * i]) || !isfinite(pslg->points[2 * i + 1]))
-            return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "vertex %d (counted from 0) has a coordinate that is not finite",
-                            (int)i);
+            return tri_fail(error, TRI_BAD_INPUT, NULL, 0,
+                            "vertex %d (counted from 0) has a coordinate that is not finite", (int)i);
     return TRI_OK;
 }
 

@@ -17,7 +17,8 @@ double tri_cos_degrees(double degrees)
 struct tri_bounds tri_bounds_for(double min_angle, bool conforming)
 {
     struct tri_bounds bounds = {0, 0, 0};
-    if (!(min_angle > 0)) { /* no bound: still keep away from subsegments, as for 20 degrees, or triangles come out flat */
+    if (!(min_angle > 0)) {
+        /* No bound: still keep away from subsegments, as for 20 degrees, or triangles come out flat. */
         bounds.lens_cos2 = conforming ? 0 : 0.58682408883346517; /* cos^2 of 40 degrees */
         return bounds;
     }

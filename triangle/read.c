@@ -4,7 +4,6 @@
  * of a few bytes cannot ask for gigabytes. */
 #include "triangle/read.h"
 
-#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -25,7 +25,7 @@ static const double EQUILATERAL = 2.3094010767585030580, IDEAL = 0.85;
 enum step { NOT_BEGUN, FIRST_PASS, SECOND_PASS };
 
 struct tri_refiner {
-    struct tri_mesh *mesh; /* only read by tri_count_bad */
+    struct tri_mesh *mesh; /* only read by tri_count_bad and tri_find_work */
     const struct tri_refine_options *options;
     struct tri_refine_report *report;
     struct tri_error *error;
@@ -146,6 +146,8 @@ static bool judge_chain(struct tri_refiner *r, int32_t first, int32_t last, stru
 static bool crowd(struct tri_refiner *r, int32_t s)
 {
     if (r->n_crowded == r->crowded_capacity) {
+        if (r->crowded_capacity > INT32_MAX / 2)
+            return false;
         int32_t capacity = r->crowded_capacity ? 2 * r->crowded_capacity : 256;
         int32_t *fresh = realloc(r->crowded, (size_t)capacity * sizeof *fresh);
         if (!fresh)
@@ -261,7 +263,8 @@ static enum outcome split(struct tri_refiner *r, int32_t s, int32_t slot)
     r->report->inserted_on_segments++;
     struct tri_relative at_start = tri_relative(&m->xy[old.v[0]], r->cavity.p);
     struct tri_relative at_end = tri_relative(&m->xy[old.v[1]], r->cavity.p);
-    bool room = judge_chain(r, 0, n_left, at_start) && judge_chain(r, n_left, r->cavity.n_rim, at_end) && crowd_walls(r);
+    bool room = judge_chain(r, 0, n_left, at_start) && judge_chain(r, n_left, r->cavity.n_rim, at_end) &&
+                crowd_walls(r);
     if (room && r->options->conforming)
         room = crowd(r, s) && crowd(r, second);
     return room ? DONE : FAILED;
@@ -299,7 +302,8 @@ static int32_t find_encroached(const struct tri_refiner *r)
 }
 
 /* How far from its shortest edge may the new point of this triangle lie? */
-static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape, enum badness badness)
+static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape,
+                       enum badness badness)
 {
     double l = shape->l[shape->shortest];
     double reach = r->bounds.off_centre > 0 ? r->bounds.off_centre * sqrt(l) : HUGE_VAL;
@@ -648,8 +652,8 @@ static bool needs_work(const struct tri_refiner *r, int32_t slot)
     return false;
 }
 
-int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t first, int32_t last,
-                      int32_t *found)
+int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t first,
+                      int32_t last, int32_t *found)
 {
     const struct tri_refiner r = {.mesh = (struct tri_mesh *)mesh,
                                   .options = options,
@@ -675,14 +679,14 @@ static bool is_beside_protected(const struct tri_refiner *r, const struct tri_tr
     return false;
 }
 
-static enum tri_excuse excuse_for(const struct tri_refiner *r, int32_t slot, const struct tri_shape *shape, enum badness badness,
-                                  const struct tri_refine_report *report)
+static enum tri_excuse excuse_for(const struct tri_refiner *r, int32_t slot, const struct tri_shape *shape,
+                                  enum badness badness, const struct tri_refine_report *report)
 {
     const struct tri_triangle *t = &r->mesh->tri[slot];
     if (badness == BAD_ANGLE && tri_is_hopeless(r->mesh, r->shortest2, slot, shape))
         return shape->l[shape->shortest] < r->shortest2 ? TRI_EXCUSE_PRECISION
-               : tri_is_channel(r->mesh, slot, shape)              ? TRI_EXCUSE_CHANNEL
-                                                                   : TRI_EXCUSE_INPUT_ANGLE;
+               : tri_is_channel(r->mesh, slot, shape)      ? TRI_EXCUSE_CHANNEL
+                                                           : TRI_EXCUSE_INPUT_ANGLE;
     if (report->hit_limit)
         return TRI_EXCUSE_LIMIT;
     if (r->options->protect > 0 && is_beside_protected(r, t))

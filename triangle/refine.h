@@ -28,7 +28,7 @@ typedef void tri_left(void *user, int32_t slot);
 typedef enum tri_status tri_more_room(void *user, struct tri_mesh *mesh, struct tri_error *error);
 
 struct tri_refine_options {
-    double min_angle;      /* degrees; 0: no bound on angles; above 34 best effort, and no more than 34 within a fence */
+    double min_angle;      /* degrees; 0: no bound on angles; above 34 best effort; within a fence no more than 34 */
     double max_area;       /* <= 0: none */
     bool region_areas;     /* mesh->regions[t.region].max_area applies too */
     double area_scale;     /* > 0: all area bounds are multiplied by this, for pre-refinement; 0: as they are */
@@ -84,8 +84,8 @@ void tri_refiner_free(struct tri_refiner *refiner);
 
 /* found[last - first] receives the slots from first to last - 1 at which there is something for the loop to do (a bad
  * angle or size; a crowded subsegment if conforming), in order; returns how many. */
-int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t first, int32_t last,
-                      int32_t *found);
+int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t first,
+                      int32_t last, int32_t *found);
 
 /* Makes the mesh ready for refinement: lists the parents at each vertex, and marks the input vertices at which two
  * subsegments meet at less than 60 degrees inside the mesh (TRI_VERTEX_ACUTE). To be called once, after carving.

@@ -36,8 +36,8 @@ double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegme
     if (!at_start && !at_end)
         return 0.5;
     double length = sqrt(squared(mesh->xy[s->v[0]], mesh->xy[s->v[1]]));
-    int exponent;
-    double mantissa = frexp(0.5 * length, &exponent); /* half the length is mantissa * 2^exponent, mantissa in [0.5, 1) */
+    int exponent; /* half the length is mantissa * 2^exponent, mantissa in [0.5, 1) */
+    double mantissa = frexp(0.5 * length, &exponent);
     double shell = ldexp(mantissa < 0.70710678118654752 ? 0.5 : 1, exponent);
     return at_start ? shell / length : 1 - shell / length;
 }

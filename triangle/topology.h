@@ -11,17 +11,6 @@
 
 #include "triangle/mesh.h"
 
-/* The same edge as its other triangle sees it, subsegment or not; TRI_NONE at the boundary. */
-static inline int32_t tri_across(const struct tri_mesh *mesh, int32_t code)
-{
-    const struct tri_triangle *t = &mesh->tri[tri_of(code)];
-    int32_t link = t->n[tri_edge(code)];
-    if (link >= 0)
-        return link;
-    const struct tri_subsegment *s = &mesh->sub[~link];
-    return s->side[1 - tri_side(s, t->v[tri_next[tri_edge(code)]])];
-}
-
 /* Triangles opposite the corners of t; TRI_NONE: none. */
 void tri_neighbors(const struct tri_mesh *mesh, int32_t t, int32_t neighbors[3]);
 

@@ -11,8 +11,9 @@ static void announce(const struct tri_options *options, enum tri_stage stage)
         options->stage(options->stage_user, stage);
 }
 
-static enum tri_status triangulate(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
-                                   struct tri_report *report, struct tri_error *error)
+static enum tri_status triangulate(struct tri_mesh *mesh, const struct tri_pslg *pslg,
+                                   const struct tri_options *options, struct tri_report *report,
+                                   struct tri_error *error)
 {
     enum tri_status status = tri_mesh_take_points(mesh, pslg, error);
     announce(options, TRI_STAGE_DELAUNAY);

@@ -43,11 +43,4 @@ struct tri_options tri_defaults(void);
 enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
                              struct tri_report *report, struct tri_error *error);
 
-/* A vertex in the caller's coordinates. */
-static inline void tri_mesh_place(const struct tri_mesh *mesh, int32_t v, double at[2])
-{
-    at[0] = mesh->xy[v].x * mesh->unit;
-    at[1] = mesh->xy[v].y * mesh->unit;
-}
-
 #endif

@@ -1,0 +1,11 @@
+/* Which block of the schedule made each triangle, as text for pictures. */
+#ifndef DRIVERS_BLOCKS_FILE_H
+#define DRIVERS_BLOCKS_FILE_H
+
+#include "sched/par.h"
+
+/* Writes a line "block phase" for each triangle in the order of the .ele file: par_block_of, phases from 0; -1 -1 where none. */
+enum tri_status blocks_write(const char *path, const struct par_report *report, const struct tri_mesh *mesh,
+                             struct tri_error *error);
+
+#endif
