@@ -4,7 +4,8 @@
 
 #include "sched/par.h"
 
-/* Writes a line "block phase" for each triangle in the order of the .ele file: par_block_of, phases from 0; -1 -1 where none. */
+/* Writes a line "block phase" for each triangle in the order of the .ele file: par_block_of, phases from 0; -1 -1 where
+ * none. */
 enum tri_status blocks_write(const char *path, const struct par_report *report, const struct tri_mesh *mesh,
                              struct tri_error *error);
 

@@ -9,6 +9,7 @@
  *
  * Usage: checkerboard [CELLS [MAX_AREA]]. Exit code 0: at the end all triangles satisfy the bounds. */
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "triangle/tri.h"
 

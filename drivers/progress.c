@@ -3,17 +3,11 @@
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <time.h>
 #include <unistd.h>
 
-static const double SECONDS_BETWEEN_LINES = 0.1;
+#include "sched/clock.h"
 
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
+static const double SECONDS_BETWEEN_LINES = 0.1;
 
 struct progress progress_start(const char *program, enum long_options_progress wanted, bool quiet)
 {
@@ -32,7 +26,7 @@ void progress_stage(struct progress *progress, const char *what)
 
 void progress_begin(struct progress *progress, int64_t triangles, int threads)
 {
-    progress->began = progress->told = now();
+    progress->began = progress->told = par_seconds();
     progress->first = triangles;
     progress->round = -1;
     if (progress->mode == PROGRESS_LOG)
@@ -70,7 +64,7 @@ static void rewrite(struct progress *p, double time, int round, int phase, int64
 void progress_step(void *user, int round, int phase, int64_t triangles)
 {
     struct progress *p = user;
-    double time = now();
+    double time = par_seconds();
     bool phase_begins = round != p->round || phase != p->phase;
     if (p->mode == PROGRESS_LINE && (phase_begins || time - p->told >= SECONDS_BETWEEN_LINES)) {
         rewrite(p, time, round, phase, triangles);
@@ -86,7 +80,7 @@ void progress_step(void *user, int round, int phase, int64_t triangles)
 
 void progress_end(struct progress *p, int64_t triangles)
 {
-    double time = now();
+    double time = par_seconds();
     if (p->mode == PROGRESS_LINE && p->width > 0) {
         fprintf(stderr, "\r%*s\r", p->width, "");
         fflush(stderr);

@@ -131,7 +131,8 @@ static int run_program(struct program *p, const struct arguments *arguments)
         progress_stage(&p->progress, "reading and triangulating");
     int code = run_arguments(arguments, &hooks);
     if (!arguments->file)
-        puts("  --threads N  --max-area X  --min-angle X  --output BASE  --report FILE  --blocks FILE  --progress  --help");
+        puts("  --threads N  --max-area X  --min-angle X  --output BASE  --report FILE  --blocks FILE  --progress"
+             "  --help");
     par_report_free(&p->schedule);
     return code;
 }

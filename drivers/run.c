@@ -3,13 +3,13 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include "drivers/console.h"
 #include "drivers/help.h"
 #include "drivers/mesh_files.h"
 #include "drivers/self_check.h"
 #include "drivers/summary.h"
+#include "sched/clock.h"
 #include "triangle/quality.h"
 
 /* A run and its clock. */
@@ -21,17 +21,10 @@ struct runner {
     struct tri_error *error;
 };
 
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 /* Ends a stage; the next one begins. */
 static void end_stage(struct runner *r, enum run_stage stage)
 {
-    double time = now();
+    double time = par_seconds();
     r->run.seconds[stage] += time - r->mark;
     r->mark = time;
 }
@@ -250,7 +243,7 @@ static enum tri_status write_output(struct runner *r, const struct mesh_files *f
     if (run->arguments->switches.second_order)
         console_say(&r->console, "Adding nodes amid edges.\n");
     console_say(&r->console, "\n");
-    r->mark = now();
+    r->mark = par_seconds();
     enum tri_status status = mesh_files_write(files, r->error);
     end_stage(r, RUN_WRITE);
     if (status)
@@ -265,7 +258,7 @@ static enum tri_status tell(struct runner *r, double begin)
     struct run *run = &r->run;
     const struct tri_switches *s = &run->arguments->switches;
     enum tri_status status = tri_count_mesh(&run->counts, &run->mesh, r->error);
-    run->total_seconds = now() - begin;
+    run->total_seconds = par_seconds() - begin;
     if (status)
         return status;
     say_milliseconds(r, "Total running", run->total_seconds);
@@ -284,7 +277,7 @@ static enum tri_status tell(struct runner *r, double begin)
 static enum tri_status run_stages(struct runner *r)
 {
     struct run *run = &r->run;
-    double begin = r->mark = now();
+    double begin = r->mark = par_seconds();
     enum tri_status status = check_switches(r);
     status = status ? status : read_input(r);
     if (status)

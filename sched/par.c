@@ -19,6 +19,7 @@
  * fewer seams (a fence of the first colour holds four blocks' worth). Coarse triangles a block has after
  * pre-refinement: enough for seams to be narrow, few enough for pre-refinement to take a few thousandths of the time.
  * (docs/performance.md) */
+static const double COARSE_ANGLE = 25, EASY_ANGLE = 31;
 static const double BLOCKS = 128, SMALLEST_BLOCK = 16384, LARGEST_BLOCK = 131072, COARSE_PER_BLOCK = 64;
 
 enum { FEWEST_BLOCKS = 4, FEWEST_COARSE_BLOCKS = 32, MAX_ROUNDS = 24 };
@@ -126,6 +127,7 @@ static enum tri_status prerefine_uniform(struct par_state *state, const struct t
 {
     struct tri_refine_options coarse = *quality;
     coarse.area_scale = (quality->area_scale > 0 ? quality->area_scale : 1) * (block / COARSE_PER_BLOCK);
+    coarse.min_angle = quality->min_angle < COARSE_ANGLE ? quality->min_angle : COARSE_ANGLE;
     coarse.unsuitable = NULL;
     return refine_level(state, &coarse, level + 1, error);
 }
@@ -229,13 +231,7 @@ static enum tri_status refine_rest(struct par_state *state, const struct tri_ref
             return TRI_OK;
     }
     enum tri_status status = tri_refine(state->mesh, &options, &report, error);
-    struct tri_refine_report *total = &state->report->total;
-    total->inserted_free += report.inserted_free;
-    total->inserted_on_segments += report.inserted_on_segments;
-    for (int k = 0; k < TRI_EXCUSES; k++)
-        total->refused[k] += report.refused[k];
-    total->hit_limit |= report.hit_limit;
-    total->hit_cap |= report.hit_cap;
+    par_add_up(&state->report->total, &report);
     return status;
 }
 
@@ -269,6 +265,7 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     if (top) {
         report->columns = partition->n_columns;
         report->rows = partition->n_rows;
+        par_partition_free(&report->partition);
         if (!status)
             status = par_partition_copy(&report->partition, partition, error);
         report->radius_measured = state->radius * state->mesh->unit;
@@ -335,6 +332,18 @@ static enum tri_status refine_level(struct par_state *state, const struct tri_re
     return status;
 }
 
+/* Bounds above EASY_ANGLE are dear wherever triangles of different sizes meet, and in a mesh that comes out of a coarse
+ * one by stages they meet everywhere. So sizes are brought about first, with an easy bound, and then the angles on a
+ * mesh of one size. (Measured on letter.poly, 33 degrees: 2% more triangles than by one sequential call, instead of
+ * 28%.) */
+static enum tri_status refine_sizes_first(struct par_state *state, const struct tri_refine_options *quality,
+                                          struct tri_error *error)
+{
+    struct tri_refine_options easy = *quality;
+    easy.min_angle = COARSE_ANGLE;
+    return quality->max_area > 0 || quality->region_areas ? refine_level(state, &easy, 0, error) : TRI_OK;
+}
+
 /* What a schedule cannot do, one call does. */
 static bool must_be_sequential(const struct tri_refine_options *quality, const struct par_options *options)
 {
@@ -358,9 +367,12 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
         report->seconds_last += par_seconds() - began;
     } else {
         usual.min_angle = quality->min_angle < TRI_USUAL_ANGLE ? quality->min_angle : TRI_USUAL_ANGLE;
-        status = refine_level(&state, &usual, 0, error);
+        status = usual.min_angle > EASY_ANGLE ? refine_sizes_first(&state, &usual, error) : TRI_OK;
+        status = status ? status : refine_level(&state, &usual, 0, error);
+        double last = par_seconds();
         if (!status && quality->min_angle > TRI_USUAL_ANGLE)
             status = refine_rest(&state, quality, true, error);
+        report->seconds_last += par_seconds() - last;
     }
     free(state.pool.item);
     par_room_free(&state.spare);

@@ -39,7 +39,7 @@ struct par_report {
     int rounds;                   /* of four phases, of all levels */
     int levels;                   /* meshes that the phases refined: this one, its pre-refinement, ..; 0: none */
     int32_t columns, rows;        /* of blocks in the first round */
-    struct par_partition partition; /* blocks of the first round; without any where the call was sequential. Owned by the
+    struct par_partition partition; /* blocks of the first round; none where the call was sequential. Owned by the
                                        report */
     double radius_theory;         /* tight bound for the area and angle bounds; 0 where one is missing */
     double radius_measured;       /* largest circumradius of a bad triangle when the first phase began */
@@ -56,15 +56,15 @@ struct par_report {
 
 struct par_options par_defaults(void);
 
-/* Refines as tri_refine does, with several threads. Where the options do not allow a schedule (max_steiner; seeds, gate,
- * fence, left or more_room of the caller's; a size test that must not run in parallel) or the mesh is small it is one
- * sequential call; what an angle bound above TRI_USUAL_ANGLE asks for beyond that is one, too. Safe to call from several
- * threads on different meshes, and inside a parallel region. Errors as tri_refine. */
+/* Refines as tri_refine does, with several threads. Where the options do not allow a schedule (max_steiner; seeds,
+ * gate, fence, left or more_room of the caller's; a size test that must not run in parallel) or the mesh is small it is
+ * one sequential call; what an angle bound above TRI_USUAL_ANGLE asks for beyond that is one, too. Safe to call from
+ * several threads on different meshes, and inside a parallel region. Errors as tri_refine. */
 enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
                            const struct par_options *options, struct par_report *report, struct tri_error *error);
 
-/* The block (column * n_rows + row) whose fence owns triangle t in the first phase that owns it, 0 to 3, which *phase receives;
- * TRI_NONE and -1 where no fence of the first round does. For pictures. */
+/* The block (column * n_rows + row) whose fence owns triangle t in the first phase that owns it, 0 to 3, which *phase
+ * receives; TRI_NONE and -1 where no fence of the first round does. For pictures. */
 int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, int32_t t, int *phase);
 
 void par_report_free(struct par_report *report);

@@ -45,7 +45,8 @@ static bool has_areas(const struct tri_refine_options *options)
 static double area_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
 {
     const int32_t *v = mesh->tri[t].v;
-    return 0.5 * tri_shape_of(mesh->xy, v).area2 * density(mesh, options, mesh->tri[t].region);
+    double work = 0.5 * tri_shape_of(mesh->xy, v).area2 * density(mesh, options, mesh->tri[t].region);
+    return work < TRI_MAX_TRIANGLES ? work : TRI_MAX_TRIANGLES;
 }
 
 static double vertex_work(const struct tri_refine_options *options)
@@ -58,13 +59,20 @@ double par_work_of(const struct tri_mesh *mesh, const struct tri_refine_options 
     return tri_is_live(&mesh->tri[t]) ? area_work(mesh, options, t) + 0.5 * vertex_work(options) : 0;
 }
 
-double par_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+/* As the bounds ask for, be it more than any mesh can hold. */
+static double whole_work(const struct tri_mesh *mesh, const struct tri_refine_options *options)
 {
     double sum = vertex_work(options) * mesh->n_vertices;
     for (int32_t t = 0; has_areas(options) && t < mesh->n_slots; t++)
         if (tri_is_live(&mesh->tri[t]))
             sum += area_work(mesh, options, t);
-    return sum < TRI_MAX_TRIANGLES ? sum : TRI_MAX_TRIANGLES; /* no mesh is larger */
+    return sum;
+}
+
+double par_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+{
+    double work = whole_work(mesh, options);
+    return work < TRI_MAX_TRIANGLES ? work : TRI_MAX_TRIANGLES;
 }
 
 static bool add_sample(struct samples *s, struct tri_point q, double work)
@@ -163,6 +171,7 @@ static void cut_shares(const struct sample *item, size_t first, size_t end, int3
     while (k <= n)
         cut[k++] = end;
     cut[n] = end;
+    assert(k == n + 1);
 }
 
 static double boundary(double before, double after) { return 0.5 * (before + after); }
@@ -228,6 +237,7 @@ static void choose_numbers(struct par_partition *p, double block_triangles)
     p->n_columns = (int32_t)(columns + 0.5);
     p->n_rows = (int32_t)(blocks / p->n_columns + 0.5);
     p->n_rows = p->n_rows < 1 ? 1 : p->n_rows;
+    assert(p->n_columns >= 1);
 }
 
 enum tri_status par_partition_make(struct par_partition *p, const struct tri_mesh *mesh,
@@ -243,7 +253,7 @@ enum tri_status par_partition_make(struct par_partition *p, const struct tri_mes
     }
     p->x = malloc(((size_t)p->n_columns + 1) * sizeof *p->x);
     p->y = malloc((size_t)p->n_columns * ((size_t)p->n_rows + 1) * sizeof *p->y);
-    double grain = p->estimate / par_blocks(p) / SAMPLES_PER_BLOCK;
+    double grain = whole_work(mesh, options) / par_blocks(p) / SAMPLES_PER_BLOCK;
     bool done = p->x && p->y && take_samples(&s, mesh, options, grain) && cut_plane(p, &s);
     free(s.item);
     if (done)
@@ -291,8 +301,8 @@ void par_partition_free(struct par_partition *p)
     *p = (struct par_partition){0};
 }
 
-/* From the middle of the interval before to the middle of the one after; to infinity where no interval of the same parity
- * follows, so that those of each parity tile the line. */
+/* From the middle of the interval before to the middle of the one after; to infinity where no interval of the same
+ * parity follows, so that those of each parity tile the line. */
 static void span(const double *bounds, int32_t k, int32_t n, double *low, double *high)
 {
     *low = k < 2 ? -HUGE_VAL : 0.5 * (bounds[k - 1] + bounds[k]);
@@ -307,6 +317,7 @@ static const double *rows_of(const struct par_partition *p, int32_t column)
 struct tri_fence par_fence(const struct par_partition *p, int32_t column, int32_t row)
 {
     struct tri_fence fence;
+    assert(column >= 0 && column < p->n_columns && row >= 0 && row < p->n_rows);
     span(p->x, column, p->n_columns, &fence.x_min, &fence.x_max);
     span(rows_of(p, column), row, p->n_rows, &fence.y_min, &fence.y_max);
     return fence;
@@ -343,6 +354,7 @@ static int32_t spanning_interval(const double *bounds, int32_t n, int parity, do
 
 int32_t par_block_at(const struct par_partition *p, int colour, struct tri_point q)
 {
+    assert(colour >= 0 && colour < PAR_COLOURS);
     int32_t column = spanning_interval(p->x, p->n_columns, colour & 1, q.x);
     if (column == TRI_NONE)
         return TRI_NONE;

@@ -42,7 +42,8 @@ enum tri_status par_partition_make(struct par_partition *partition, const struct
                                    struct tri_error *error);
 
 /* A copy with memory of its own. */
-enum tri_status par_partition_copy(struct par_partition *copy, const struct par_partition *partition, struct tri_error *error);
+enum tri_status par_partition_copy(struct par_partition *copy, const struct par_partition *partition,
+                                   struct tri_error *error);
 
 /* Halves the number of columns and rows. */
 void par_partition_coarsen(struct par_partition *partition);

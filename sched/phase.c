@@ -1,6 +1,7 @@
 /* Tasks of a phase: deal out seeds and room, run, collect. */
 #include "sched/phase.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 #include "sched/clock.h"
@@ -122,6 +123,7 @@ static bool deal_seeds(struct phase *p)
         else if (p->block_of[i] == TRI_NONE)
             pool->item[kept++] = slot;
     }
+    assert(kept <= pool->n && p->n_tasks <= used);
     pool->n = kept;
     free(start);
     return p->tasks;
@@ -221,6 +223,7 @@ static bool watch_owners(struct phase *p, bool first)
 static void run_task(struct phase *p, struct task *task)
 {
     double began = par_seconds();
+    assert(task->pausing);
     par_room_enter(&task->room, &task->view, p->state->mesh);
     task->view.owner_id = task->block + 1;
     task->status = TRI_OK;
@@ -303,7 +306,7 @@ static bool report_block(const struct phase *p, const struct task *task)
     return true;
 }
 
-static void add_up(struct tri_refine_report *sum, const struct tri_refine_report *add)
+void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add)
 {
     sum->inserted_free += add->inserted_free;
     sum->inserted_on_segments += add->inserted_on_segments;
@@ -322,14 +325,14 @@ static enum tri_status collect(struct phase *p, struct tri_error *error)
     bool memory = true;
     for (int32_t i = 0; i < p->n_tasks; i++) {
         struct task *task = &p->tasks[i];
-        if (!status && task->status) {
+        if (!status && task->status && task->status != TRI_NO_ROOM) { /* that: paused when the phase failed */
             status = task->status;
             tri_fail(error, status, task->error.file, task->error.line, "%s", task->error.text);
         }
         memory = memory && !task->left_lost;
         for (int32_t k = 0; memory && k < task->left.n; k++)
             memory = par_slots_add(&p->state->pool, task->left.item[k]);
-        add_up(&p->state->report->total, &task->report);
+        par_add_up(&p->state->report->total, &task->report);
         memory = memory && report_block(p, task);
         par_room_return(&task->room, &p->state->spare);
         free(task->left.item);

@@ -17,6 +17,8 @@ struct par_slots {
 
 bool par_slots_add(struct par_slots *slots, int32_t slot);
 
+void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add);
+
 /* What the phases of a schedule hand on. */
 struct par_state {
     struct tri_mesh *mesh;

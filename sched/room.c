@@ -67,6 +67,7 @@ enum tri_status par_more_room(void *user, struct tri_mesh *view, struct tri_erro
     for (int kind = 0; kind < PAR_KINDS; kind++) {
         int32_t *count, *capacity;
         counts_of(view, (enum par_kind)kind, &count, &capacity);
+        assert(*count <= *capacity);
         while (*capacity - *count < need[kind]) {
             leave(room, view, (enum par_kind)kind);
             if (room->current[kind] + 1 >= room->ranges[kind].n)
@@ -99,6 +100,7 @@ static bool reserve_deal(struct par_ranges *to, struct par_ranges *spare)
 
 static void deal(struct par_ranges *to, struct par_ranges *spare, struct par_range range)
 {
+    assert(to->n < to->capacity && range.next < range.end);
     to->item[to->n++] = range;
     spare->dealt++;
 }

@@ -1,6 +1,7 @@
 /* Radius bound, independence, buffer zone. */
 #include "sched/theory.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "triangle/quality.h"
@@ -11,13 +12,18 @@ static double sine(double degrees)
     return sqrt(1 - cosine * cosine);
 }
 
-double par_rho(double min_angle) { return 1 / (2 * sine(min_angle)); }
+double par_rho(double min_angle)
+{
+    assert(min_angle > 0 && min_angle <= 60);
+    return 1 / (2 * sine(min_angle));
+}
 
 double par_radius_lemma7(double max_area, double rho) { return 2 * rho * sqrt(rho) * sqrt(max_area); }
 
 double par_radius_tight(double max_area, double min_angle)
 {
     double s = sine(min_angle);
+    assert(min_angle > 0 && min_angle < 90);
     return sqrt(max_area / (2 * s * s * sine(2 * min_angle)));
 }
 

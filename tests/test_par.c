@@ -1,9 +1,9 @@
-/* The whole schedule against the sequential loop: the same bounds, nearly the same size, and one mesh for any number of
- * threads, any order of the blocks.
+/* The whole schedule against the sequential loop: the same bounds, nearly the same size, and one mesh for any number
+ * of threads, any order of the blocks.
  *
- * Blocks are made small, so that small inputs have many. This program may be linked with --wrap for malloc, calloc, realloc
- * and free (SUPPORT_WRAP): the library's calls then come to the functions below, which count what is held and fail the call
- * that a test has chosen. */
+ * Blocks are made small, so that small inputs have many. This program may be linked with --wrap for malloc, calloc,
+ * realloc and free (SUPPORT_WRAP): the library's calls then come to the functions below, which count what is held and
+ * fail the call that a test has chosen. */
 #include "support.h"
 
 #include <pthread.h>
@@ -196,11 +196,12 @@ static void compare_with_sequential(const struct trial *trial, const struct star
     struct tri_mesh plain = support_generate(&start->pslg, &start->options, &sequential);
     int64_t bad = sum_bad(mesh, &start->options.quality, &report->total);
     int64_t plain_bad = sum_bad(&plain, &start->options.quality, &sequential.quality);
-    print_message("  %-28s %7d triangles, sequential %7d (%+.1f %%), bad %d / %d, blocks %d x %d, levels %d, rounds %d, "
-                  "deferred %lld, left over %lld\n",
-                  trial->file, (int)mesh->n_slots, (int)plain.n_slots, 100.0 * mesh->n_slots / plain.n_slots - 100, (int)bad,
-                  (int)plain_bad, (int)report->columns, (int)report->rows, report->levels, report->rounds,
-                  (long long)report->deferred, (long long)report->left_over);
+    print_message(
+        "  %-28s %7d triangles, sequential %7d (%+.1f %%), bad %d / %d, blocks %d x %d, levels %d, rounds %d, "
+        "deferred %lld, left over %lld\n",
+        trial->file, (int)mesh->n_slots, (int)plain.n_slots, 100.0 * mesh->n_slots / plain.n_slots - 100, (int)bad,
+        (int)plain_bad, (int)report->columns, (int)report->rows, report->levels, report->rounds,
+        (long long)report->deferred, (long long)report->left_over);
     judge(start, mesh, bad);
     assert_true(bad <= plain_bad + plain_bad / 5 + 10 * (plain_bad > 0));
     assert_true(report->columns * report->rows >= 9);
@@ -266,7 +267,8 @@ static void test_any_number_of_threads_and_order_of_blocks_make_one_mesh(void **
     }
 }
 
-/* Ids tell from which room a block took them; places do not, where one round of phases does everything. */
+/* Ids tell from which room a block took them. Places do not, where one schedule does everything: a second one, and what
+ * is left over, begin in the order of the ids. */
 static void test_room_moves_ids_alone(void **state)
 {
     (void)state;
@@ -284,10 +286,10 @@ static void test_room_moves_ids_alone(void **state)
             struct support_places others = support_places(&other);
             bool same = support_same_places(&places, &others);
             assert_true(tight.pauses > 0);
-            if (report.levels == 1 && report.left_over == 0)
+            if (report.levels == 1 && report.left_over == 0 && trials[i].angle <= 30)
                 assert_true(same);
-            print_message("  %-28s room %d: levels %d, left over %lld, %s\n", trials[i].file, (int)rooms[k], report.levels,
-                          (long long)report.left_over, same ? "same" : "other");
+            print_message("  %-28s room %d: levels %d, left over %lld, %s\n", trials[i].file, (int)rooms[k],
+                          report.levels, (long long)report.left_over, same ? "same" : "other");
             judge(&start, &other, sum_bad(&other, &start.options.quality, &tight.total));
             support_places_free(&others);
             par_report_free(&tight);
@@ -320,8 +322,8 @@ static void test_nothing_is_deferred_with_the_margin(void **state)
         options.margin = margin;
         assert_int_equal(par_refine(&mesh, &finer, &options, &report, &error), TRI_OK);
         print_message("  margin %d: %d triangles, deferred %lld, left over %lld, r %g, blocks %d x %d\n", margin,
-                      (int)mesh.n_slots, (long long)report.deferred, (long long)report.left_over, report.radius_measured,
-                      (int)report.columns, (int)report.rows);
+                      (int)mesh.n_slots, (long long)report.deferred, (long long)report.left_over,
+                      report.radius_measured, (int)report.columns, (int)report.rows);
         assert_true(report.columns * report.rows >= 16);
         assert_true(margin ? report.deferred == 0 : report.deferred > 0);
         par_report_free(&report);
@@ -342,8 +344,9 @@ static void test_default_blocks_cost_no_triangles(void **state)
         options.threads = 2;
         struct tri_mesh mesh = refine(&start, &options, &report);
         struct tri_mesh plain = support_generate(&start.pslg, &start.options, NULL);
-        print_message("  %d triangles, sequential %d (%+.2f %%), blocks %d x %d\n", (int)mesh.n_slots, (int)plain.n_slots,
-                      100.0 * mesh.n_slots / plain.n_slots - 100, (int)report.columns, (int)report.rows);
+        print_message("  %d triangles, sequential %d (%+.2f %%), blocks %d x %d\n", (int)mesh.n_slots,
+                      (int)plain.n_slots, 100.0 * mesh.n_slots / plain.n_slots - 100, (int)report.columns,
+                      (int)report.rows);
         assert_true(report.columns * report.rows >= 9);
         assert_true(mesh.n_slots < 1.02 * plain.n_slots);
         assert_int_equal(sum_bad(&mesh, &start.options.quality, &report.total), 0);
@@ -414,7 +417,8 @@ static void test_limits_and_gates_go_the_sequential_way(void **state)
         struct par_report report;
         start.options.quality.max_steiner = k ? -1 : 3000;
         start.options.quality.gate = k ? open_gate : NULL;
-        struct tri_mesh mesh = refine(&start, &options, &report), plain = support_generate(&start.pslg, &start.options, NULL);
+        struct tri_mesh mesh = refine(&start, &options, &report),
+                        plain = support_generate(&start.pslg, &start.options, NULL);
         assert_same_bytes(&mesh, &plain);
         assert_int_equal(report.n_blocks, 0);
         assert_true(report.total.hit_limit == (k == 0));
@@ -464,9 +468,9 @@ static void test_any_unit_makes_the_same_mesh(void **state)
         par_report_free(&report);
         for (int i = 0; i < 4; i++) {
             struct tri_error error = {0};
-            struct start other = square(angle_only ? 5000 : 50, 30, 0);
             if (!angle_only && abs(exponents[i]) > 300)
                 continue; /* the area bound itself is no double there */
+            struct start other = square(angle_only ? 5000 : 50, 30, 0);
             other.options.quality.max_area = ldexp(start.options.quality.max_area, 2 * exponents[i]);
             for (int32_t k = 0; k < 2 * other.pslg.n_points; k++)
                 other.pslg.points[k] = ldexp(other.pslg.points[k], exponents[i]);
@@ -569,8 +573,8 @@ static void test_progress_is_told_by_the_caller(void **state)
     tri_pslg_free(&start.pslg);
 }
 
-/* One caller among several: refines a trial of its own with threads of its own. cmocka's asserts belong to the main thread,
- * so a caller only notes what came out. */
+/* One caller among several: refines a trial of its own with threads of its own. cmocka's asserts belong to the main
+ * thread, so a caller only notes what came out. */
 struct caller {
     struct start start;
     struct par_options options;

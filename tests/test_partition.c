@@ -127,8 +127,8 @@ static double least_width_at(const double *bounds, int32_t n, double q)
     return least;
 }
 
-/* par_block_at finds what a look at all fences finds; and some fence holds q together with what is around it, for a quarter of
- * the cells there: so no seam is left open by all four colours. */
+/* par_block_at finds what a look at all fences finds; and some fence holds q together with what is around it, for a
+ * quarter of the cells there: so no seam is left open by all four colours. */
 static void assert_point_is_served(const struct par_partition *p, struct tri_point q)
 {
     int32_t found[PAR_COLOURS] = {TRI_NONE, TRI_NONE, TRI_NONE, TRI_NONE};

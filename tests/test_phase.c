@@ -1,4 +1,5 @@
-/* One phase against its definition: the blocks of a colour, one after the other, by the sequential loop on the whole mesh. */
+/* One phase against its definition: the blocks of a colour, one after the other, by the sequential loop on the whole
+ * mesh. */
 #include "support.h"
 
 #include "sched/phase.h"
@@ -58,8 +59,8 @@ static bool is_in(void *user, const double p[2])
 }
 
 /* The reference: block after block, forwards or backwards, on the mesh itself. Returns the points inserted. */
-static int64_t run_one_by_one(struct tri_mesh *mesh, const struct tri_refine_options *quality, const struct par_partition *p,
-                              int colour, bool backwards)
+static int64_t run_one_by_one(struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                              const struct par_partition *p, int colour, bool backwards)
 {
     struct par_slots pool = bad_slots(mesh, quality);
     int32_t n = par_blocks(p), *block_of = malloc(((size_t)pool.n + 1) * sizeof *block_of);
@@ -99,7 +100,8 @@ static void mark_unused(struct tri_mesh *mesh, const struct par_room *spare)
 }
 
 /* The block of the colour whose fence holds all three corners, or TRI_NONE. */
-static int32_t block_of_triangle(const struct par_partition *p, int colour, const struct tri_mesh *mesh, const int32_t v[3])
+static int32_t block_of_triangle(const struct par_partition *p, int colour, const struct tri_mesh *mesh,
+                                 const int32_t v[3])
 {
     int32_t block = par_block_at(p, colour, mesh->xy[v[0]]);
     for (int k = 1; k < 3; k++)
@@ -123,7 +125,8 @@ static void assert_changes_are_owned(const struct tri_mesh *mesh, const struct t
     }
 }
 
-/* Is the triangle on the other side of a subsegment of this one listed? Of two beside a crowded subsegment one is enough. */
+/* Is the triangle on the other side of a subsegment of this one listed? Of two beside a crowded subsegment one is
+ * enough. */
 static bool is_listed_across(const struct tri_mesh *mesh, const bool *listed, int32_t t)
 {
     for (int e = 0; e < 3; e++)
@@ -188,8 +191,10 @@ static int64_t run_phase(struct tri_mesh *mesh, const struct tri_refine_options 
 static void test_a_phase_is_its_blocks_one_by_one(void **state)
 {
     (void)state;
-    static const struct par_options options[] = {
-        {.threads = 1}, {.threads = 3, .shuffle = 5}, {.threads = 2, .tight_room = 20}, {.threads = 4, .tight_room = 1, .shuffle = 9}};
+    static const struct par_options options[] = {{.threads = 1},
+                                                 {.threads = 3, .shuffle = 5},
+                                                 {.threads = 2, .tight_room = 20},
+                                                 {.threads = 4, .tight_room = 1, .shuffle = 9}};
     int64_t pauses = 0;
     for (int i = 0; i < N_TRIALS; i++)
         for (int colour = 0; colour < PAR_COLOURS; colour++) {
@@ -228,15 +233,16 @@ static void test_four_phases_in_turn(void **state)
         struct par_report report = {0};
         struct tri_mesh mesh = start_of(&trials[i], &quality);
         struct par_partition partition = cut(&mesh, &quality, trials[i].block);
-        struct par_state phases = {.mesh = &mesh, .quality = &quality, .options = &options, .threads = 2, .report = &report};
+        struct par_state phases = {
+            .mesh = &mesh, .quality = &quality, .options = &options, .threads = 2, .report = &report};
         phases.pool = bad_slots(&mesh, &quality);
         for (int colour = 0; colour < PAR_COLOURS; colour++) {
             assert_int_equal(par_phase(&phases, &partition, colour, NULL), TRI_OK);
             mark_unused(&mesh, &phases.spare);
             assert_pool_holds_all_that_is_bad(&mesh, &quality, &phases.pool, &report.total);
         }
-        print_message("  %-16s %d left of %lld inserted\n", trials[i].file ? trials[i].file : "square", (int)phases.pool.n,
-                      (long long)report.total.inserted_free);
+        print_message("  %-16s %d left of %lld inserted\n", trials[i].file ? trials[i].file : "square",
+                      (int)phases.pool.n, (long long)report.total.inserted_free);
         assert_true(phases.pool.n < report.total.inserted_free / 10);
         par_room_close(&phases.spare, &mesh, 2);
         assert_int_equal(tri_mesh_validate(&mesh, NULL), TRI_OK);

@@ -1,4 +1,5 @@
-/* Ranges of the shared arrays: dealt out, used, given back and closed up, against a table that says whose each item is. */
+/* Ranges of the shared arrays: dealt out, used, given back and closed up, against a table that says whose each item
+ * is. */
 #include "support.h"
 
 #include "sched/room.h"
@@ -83,7 +84,8 @@ static bool use_room(struct table *table, struct par_room *room, const struct tr
         enough = status == TRI_OK;
         if (!enough)
             break;
-        int32_t taken[4][2] = {{PAR_VERTICES, view.n_vertices++}, {PAR_SLOTS, view.n_slots++}, {PAR_SLOTS, view.n_slots++}};
+        int32_t taken[4][2] = {
+            {PAR_VERTICES, view.n_vertices++}, {PAR_SLOTS, view.n_slots++}, {PAR_SLOTS, view.n_slots++}};
         int n_taken = 3;
         if (support_below(random, 4) == 0) {
             taken[3][0] = PAR_SUBS;
@@ -127,7 +129,8 @@ static void test_random_dealings(void **state)
                 assert_int_equal(table_count(&table, PAR_SLOTS, who), 0);
                 assert_int_equal(table_count(&table, PAR_SLOTS, SPARE), room_left(&spare, PAR_SLOTS));
             } else if (action < 3) {
-                int32_t more = support_below(&random, seed % 2 ? 12 : 400) + 1, before = room_left(&room[who], PAR_SLOTS);
+                int32_t more = support_below(&random, seed % 2 ? 12 : 400) + 1,
+                        before = room_left(&room[who], PAR_SLOTS);
                 assert_int_equal(par_room_extend(&room[who], &spare, &shared, more, NULL), TRI_OK);
                 assert_true(room_left(&room[who], PAR_SLOTS) >= before + more);
                 assert_true(room_left(&room[who], PAR_VERTICES) >= more / 2);
@@ -203,7 +206,8 @@ static void mark_unused(struct tri_mesh *mesh, const struct par_room *room)
             mesh->tri[t].v[0] = TRI_NONE;
 }
 
-/* After closing: no gap, valid links, the same triangles at the same places, and what belongs to a vertex came with it. */
+/* After closing: no gap, valid links, the same triangles at the same places, and what belongs to a vertex came with
+ * it. */
 static void assert_closed(const struct tri_mesh *mesh, const struct support_places *before, int64_t vertices)
 {
     struct tri_error error = {0};
@@ -245,7 +249,8 @@ static void test_closing_keeps_the_mesh(void **state)
             if (action == 0) {
                 par_room_return(&room[who], &spare);
             } else if (action == 1) {
-                assert_int_equal(par_room_extend(&room[who], &spare, &mesh, 1 + support_below(&random, 300), NULL), TRI_OK);
+                assert_int_equal(par_room_extend(&room[who], &spare, &mesh, 1 + support_below(&random, 300), NULL),
+                                 TRI_OK);
                 mark_unused(&mesh, &room[who]);
             } else {
                 vertices += refine_in_room(&mesh, &room[who], support_below(&random, 60), 2e-4);

@@ -45,7 +45,8 @@ static void test_radius_bounds_hold(void **state)
     (void)state;
     struct support_random random = {7};
     for (int i = 0; i < 20000; i++) {
-        double least = 1 + 59 * support_unit(&random), bound = ldexp(0.5 + support_unit(&random), support_below(&random, 40) - 20);
+        double least = 1 + 59 * support_unit(&random),
+               bound = ldexp(0.5 + support_unit(&random), support_below(&random, 40) - 20);
         double alpha = least + (180 - 3 * least) * support_unit(&random);
         double beta = least + (180 - 2 * least - alpha) * support_unit(&random);
         struct tri_point v[3];
@@ -168,7 +169,8 @@ static bool are_apart(const struct tri_mesh *mesh, const struct tri_cavity *a, c
 }
 
 /* The cavity of the circumcentre of a random triangle; only those that no subsegment bounds. */
-static bool find_cavity(struct tri_cavity *cavity, const struct tri_mesh *mesh, struct support_random *random, int32_t *t)
+static bool find_cavity(struct tri_cavity *cavity, const struct tri_mesh *mesh, struct support_random *random,
+                        int32_t *t)
 {
     *t = support_below(random, mesh->n_slots);
     return tri_cavity_search(cavity, mesh, centre_of(mesh, *t), *t) == TRI_SEARCH_FOUND && cavity->n_wall == 0;
@@ -198,9 +200,9 @@ static void assert_same_mesh(const struct tri_mesh *a, const struct tri_mesh *b)
     support_places_free(&there);
 }
 
-/* Lemma 1: p then q, q then p, and both at once (both cavities found before either is filled) make one Delaunay mesh. */
-static void assert_order_does_not_matter(const struct tri_mesh *mesh, struct tri_cavity *p, int32_t tp, struct tri_cavity *q,
-                                         int32_t tq)
+/* Lemma 1: p then q, q then p, and both at once (both cavities found before either is filled) make one mesh. */
+static void assert_order_does_not_matter(const struct tri_mesh *mesh, struct tri_cavity *p, int32_t tp,
+                                         struct tri_cavity *q, int32_t tq)
 {
     struct tri_mesh first = copy_of(mesh), second = copy_of(mesh), both = copy_of(mesh);
     struct tri_error error = {0};
@@ -219,8 +221,8 @@ static void assert_order_does_not_matter(const struct tri_mesh *mesh, struct tri
     tri_mesh_free(&both);
 }
 
-/* Lemma 2: what par_independent accepts is independent. And the test says something: nearer pairs do get into each other's
- * way. */
+/* Lemma 2: what par_independent accepts is independent. And the test says something: nearer pairs do get into each
+ * other's way. */
 static void test_independent_points_have_cavities_apart(void **state)
 {
     (void)state;
@@ -249,8 +251,8 @@ static void test_independent_points_have_cavities_apart(void **state)
     tri_cavity_free(&q);
 }
 
-/* Definition 3: the cavity lies in the buffer zone; and all of it within 2 r of the point, corners included, which is what
- * the margin of a fence relies on. */
+/* Definition 3: the cavity lies in the buffer zone; and all of it within 2 r of the point, corners included, which is
+ * what the margin of a fence relies on. */
 static void test_cavities_lie_in_the_buffer_zone(void **state)
 {
     (void)state;
@@ -274,8 +276,8 @@ static void test_cavities_lie_in_the_buffer_zone(void **state)
     tri_cavity_free(&p);
 }
 
-/* Lemmas 3 and 4: each new triangle has a smaller circumradius than one of the two old ones at its rim; hence the largest
- * circumradius never grows. */
+/* Lemmas 3 and 4: each new triangle has a smaller circumradius than one of the two old ones at its rim; hence the
+ * largest circumradius never grows. */
 static void test_radius_never_grows(void **state)
 {
     (void)state;

@@ -87,6 +87,7 @@ bool tri_bad_queue_push_size(struct tri_bad_queue *queue, struct tri_entry entry
 static void refill(struct tri_bad_queue *queue)
 {
     size_t n = queue->n_cold < HALF ? queue->n_cold : HALF;
+    assert(queue->head == queue->tail);
     queue->n_cold -= n;
     for (size_t i = 0; i < n; i++)
         queue->window[queue->tail++ & MASK] = queue->cold[queue->n_cold + i];
@@ -112,6 +113,7 @@ bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, struct tri_
         if (bucket >= limit)
             return false;
         int32_t node = queue->first[bucket];
+        assert(node != NIL && queue->count[bucket] > 0);
         *entry = queue->node[node].entry;
         queue->first[bucket] = queue->node[node].next;
         queue->count[bucket]--;
@@ -139,7 +141,7 @@ bool tri_bad_queue_pop(struct tri_bad_queue *queue, struct tri_entry *entry)
 int tri_bad_queue_median(const struct tri_bad_queue *queue)
 {
     int64_t all = 0, below = 0;
-    int bucket = 0;
+    int bucket = 0; /* ends at the latest with the last entry */
     for (int b = 0; b < TRI_BUCKETS; b++)
         all += queue->count[b];
     while (all > 0 && 2 * (below += queue->count[bucket]) < all)

@@ -4,6 +4,7 @@
  * meet at a subsegment; removing the dead ones needs to tell subsegments alone. */
 #include "triangle/carve.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 #include "triangle/predicates.h"
@@ -93,6 +94,7 @@ static void kill_holes(struct flood *f, const struct tri_pslg *pslg)
 static void spread(struct flood *f, int32_t start, int32_t region)
 {
     int32_t n = 0;
+    assert(!f->dead[start] && f->reached[start] != region);
     f->stack[n++] = start;
     f->reached[start] = region;
     while (n > 0) {
@@ -142,9 +144,11 @@ static void remove_dead(struct flood *f)
         struct tri_triangle *at = &mesh->tri[t];
         if (!f->dead[t])
             continue;
-        for (int e = 0; e < 3; e++)
+        for (int e = 0; e < 3; e++) {
+            assert(at->n[e] < 0 || f->dead[tri_of(at->n[e])]);
             if (at->n[e] < 0)
                 mesh->sub[~at->n[e]].side[tri_side(&mesh->sub[~at->n[e]], at->v[tri_next[e]])] = TRI_NONE;
+        }
         at->v[0] = at->v[1] = at->v[2] = TRI_NONE;
     }
     tri_mesh_compact(mesh);

@@ -93,6 +93,7 @@ static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh
         } else {
             c->wall[c->n_wall++] = c->n_rim;
         }
+        assert(c->n_rim < c->n_tri + 2 && n_pending <= c->n_tri);
         c->rim[c->n_rim++] = (struct tri_rim){link, a, region, TRI_NONE, ra};
         if (n_pending == 0)
             return TRI_SEARCH_FOUND;
@@ -123,6 +124,7 @@ static bool add_start(struct tri_cavity *c, int32_t t)
 
 enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p, int32_t t)
 {
+    assert(tri_is_live(&mesh->tri[t]));
     if (!begin(c, p) || !add_start(c, t))
         return TRI_SEARCH_NO_MEMORY;
     if (!owns(c, mesh, t))
@@ -145,7 +147,8 @@ enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *m
     return TRI_SEARCH_FOUND;
 }
 
-/* One side of a split: the two other edges of the triangle at the subsegment. */
+/* One side of a split: the two other edges of the triangle at the subsegment. Where rounding has put the point outside
+ * its disk, a triangle flatter than rounding, the fan would not be Delaunay. */
 static enum tri_search explore_side(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t code)
 {
     int32_t t = tri_of(code);
@@ -158,6 +161,10 @@ static enum tri_search explore_side(struct tri_cavity *c, const struct tri_mesh 
     struct tri_relative r[3];
     for (int k = 0; k < 3; k++)
         r[k] = tri_relative(&mesh->xy[start.v[k]], c->p);
+    if (r[0].l == 0 || r[1].l == 0 || r[2].l == 0 ||
+        (!c->flips_follow &&
+         !in_circle(mesh, c->p, start.v[0], start.v[1], start.v[2], r[0], r[1], r[2])))
+        return TRI_SEARCH_OUTSIDE;
     enum tri_search found = explore(c, mesh, start.n[f], start.region, start.v[g], start.v[e], r[g], r[e]);
     if (found != TRI_SEARCH_FOUND)
         return found;
@@ -265,7 +272,7 @@ static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v, i
 
 void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v)
 {
-    assert(c->n_rim >= 3 && c->n_rim >= c->n_tri);
+    assert(c->n_tri >= 1 && c->n_rim == c->n_tri + 2);
     assert(claim(c, mesh));
     fill_chain(c, mesh, v, 0, c->n_rim, c->rim[0].a);
     int32_t first = c->rim[0].slot, last = c->rim[c->n_rim - 1].slot;
@@ -277,7 +284,7 @@ int32_t tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, int32
 {
     const struct tri_subsegment old = mesh->sub[s];
     int32_t second = mesh->n_subs++, ends[2] = {0, n_left};
-    assert(mesh->n_subs <= mesh->sub_capacity && c->n_rim >= c->n_tri);
+    assert(mesh->n_subs <= mesh->sub_capacity && c->n_rim >= c->n_tri && n_left >= 0 && n_left <= c->n_rim);
     assert(claim(c, mesh));
     mesh->sub[s] = (struct tri_subsegment){{old.v[0], v}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
     mesh->sub[second] = (struct tri_subsegment){{v, old.v[1]}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};

@@ -78,7 +78,11 @@ static bool touch(struct layer *l, int32_t t)
     return room;
 }
 
-static int corner_of(const struct tri_triangle *t, int32_t v) { return t->v[0] == v ? 0 : t->v[1] == v ? 1 : 2; }
+static int corner_of(const struct tri_triangle *t, int32_t v)
+{
+    assert(t->v[0] == v || t->v[1] == v || t->v[2] == v);
+    return t->v[0] == v ? 0 : t->v[1] == v ? 1 : 2;
+}
 
 /* The next triangle around v, counter-clockwise or clockwise; TRI_NONE at the boundary. */
 static int32_t turn(const struct tri_mesh *mesh, int32_t t, int32_t v, bool left)
@@ -156,6 +160,7 @@ static int32_t flip(struct layer *l, int32_t t, int e)
     int32_t u = tri_of(near->n[e]);
     int f = tri_edge(near->n[e]);
     struct tri_triangle *far = &mesh->tri[u];
+    assert(near->n[e] >= 0 && far->n[f] == tri_code(t, e));
     int32_t n = near->v[e], r = near->v[tri_next[e]], s = near->v[tri_prev[e]], o = far->v[f];
     int32_t nr = near->n[tri_prev[e]], sn = near->n[tri_next[e]], ro = far->n[tri_next[f]], os = far->n[tri_prev[f]];
     near->v[0] = n, near->v[1] = r, near->v[2] = o;
@@ -253,6 +258,7 @@ static enum clearing clear_channel(struct layer *l, int32_t a, int32_t b)
 static bool mark_piece(struct layer *l, int32_t a, int32_t b)
 {
     int32_t t = find_exit(l, a, l->mesh->xy[b]);
+    assert(t != TRI_NONE);
     int k = corner_of(&l->mesh->tri[t], a);
     bool right = l->mesh->tri[t].v[tri_next[k]] == b;
     assert(right || l->mesh->tri[t].v[tri_prev[k]] == b);
@@ -287,6 +293,7 @@ static bool take_up(struct layer *l, int32_t s)
 {
     struct tri_mesh *mesh = l->mesh;
     int32_t left = mesh->sub[s].side[0], right = mesh->sub[s].side[1];
+    assert(left != TRI_NONE && right != TRI_NONE);
     mesh->tri[tri_of(left)].n[tri_edge(left)] = right;
     mesh->tri[tri_of(right)].n[tri_edge(right)] = left;
     int32_t last = --mesh->n_subs;
@@ -445,6 +452,7 @@ static enum tri_status lay_piece(struct layer *l, const struct piece *piece)
 {
     int32_t a = piece->from, b = piece->to, end, s;
     look_ahead(l, a, b, &end, &s);
+    assert(a != b && (s == TRI_NONE || end == TRI_NONE));
     if (s != TRI_NONE) {
         enum tri_status status = cut(l, a, b, s, &end);
         if (status)
@@ -515,7 +523,7 @@ static enum tri_status lay_all(struct layer *l, const struct tri_pslg *pslg)
 enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_constrain_report *report,
                               struct tri_error *error)
 {
-    struct layer l = {.mesh = mesh, .report = report, .error = error};
+    struct layer l = {.mesh = mesh, .cavity = {.flips_follow = true}, .report = report, .error = error};
     *report = (struct tri_constrain_report){0};
     l.corner_capacity = mesh->n_vertices + 64;
     l.corner = malloc((size_t)l.corner_capacity * sizeof *l.corner);

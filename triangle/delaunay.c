@@ -120,6 +120,7 @@ static bool explore(struct builder *b, struct tri_point q, int32_t link, int32_t
             end = t->v[e];
             continue;
         }
+        assert(b->n_rim < b->n_cavity + 2 && n_pending <= b->n_cavity);
         b->rim[b->n_rim++] = (struct rim){link, a};
         if (n_pending == 0)
             return true;
@@ -133,6 +134,7 @@ static bool explore(struct builder *b, struct tri_point q, int32_t link, int32_t
 static void fill(struct builder *b, int32_t v)
 {
     int32_t before = TRI_NONE, first = TRI_NONE;
+    assert(b->n_rim == b->n_cavity + 2); /* a disk without a vertex inside */
     for (int32_t i = 0; i < b->n_rim; i++) {
         int32_t slot = i < b->n_cavity ? b->cavity[i] : b->n_slots++;
         int32_t outer = b->rim[i].outer, end = b->rim[i + 1 < b->n_rim ? i + 1 : 0].a;
@@ -267,6 +269,7 @@ static enum tri_status finish(struct tri_mesh *mesh, struct builder *b, const in
     if (status)
         return status;
     mesh->n_slots = b->n_slots;
+    assert(mesh->n_slots <= mesh->slot_capacity);
     for (int32_t t = 0; t < b->n_slots; t++) {
         struct tri_triangle *at = &mesh->tri[t];
         int ghost = ghost_corner(at);
@@ -323,8 +326,10 @@ static enum tri_status sort_triangles(struct tri_mesh *mesh, const int32_t *rank
                     at->n[e] = tri_code(to[tri_of(at->n[e])], tri_edge(at->n[e]));
         }
         memcpy(mesh->tri, sorted, (size_t)n * sizeof *sorted);
-        for (int32_t s = 0; s < mesh->n_subs; s++)
+        for (int32_t s = 0; s < mesh->n_subs; s++) {
+            assert(mesh->sub[s].side[0] != TRI_NONE && mesh->sub[s].side[1] == TRI_NONE); /* hull edges, no others */
             mesh->sub[s].side[0] = tri_code(to[tri_of(mesh->sub[s].side[0])], tri_edge(mesh->sub[s].side[0]));
+        }
     }
     bool done = start && to && sorted;
     free(start);

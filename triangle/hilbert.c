@@ -22,6 +22,7 @@ static const uint8_t next_of[4][4] = {{1, 0, 3, 0}, {0, 2, 1, 1}, {2, 1, 2, 3}, 
 
 uint64_t tri_hilbert(uint32_t x, uint32_t y)
 {
+    assert(x >> BITS == 0 && y >> BITS == 0);
     uint64_t key = 0;
     unsigned orientation = 0;
     for (int bit = BITS - 1; bit >= 0; bit--) {

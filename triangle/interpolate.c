@@ -1,6 +1,8 @@
 /* Linear interpolation of vertex attributes along an edge and over a triangle. */
 #include "triangle/interpolate.h"
 
+#include <assert.h>
+
 static double *attributes_of(const struct tri_mesh *mesh, int32_t v)
 {
     return mesh->attributes + (size_t)v * (size_t)mesh->n_attributes;
@@ -8,6 +10,7 @@ static double *attributes_of(const struct tri_mesh *mesh, int32_t v)
 
 void tri_interpolate_edge(struct tri_mesh *mesh, int32_t a, int32_t b, double fraction, int32_t to_vertex)
 {
+    assert(to_vertex < mesh->n_vertices && to_vertex != a && to_vertex != b);
     for (int32_t k = 0; k < mesh->n_attributes; k++) {
         double from = attributes_of(mesh, a)[k], to = attributes_of(mesh, b)[k];
         attributes_of(mesh, to_vertex)[k] = from + fraction * (to - from);

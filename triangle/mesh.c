@@ -99,6 +99,7 @@ void tri_mesh_free(struct tri_mesh *mesh)
 
 enum tri_status tri_mesh_reserve_vertices(struct tri_mesh *mesh, int32_t more, struct tri_error *error)
 {
+    assert(more >= 0);
     int64_t need = (int64_t)mesh->n_vertices + more;
     if (need <= mesh->vertex_capacity)
         return TRI_OK;
@@ -116,6 +117,7 @@ enum tri_status tri_mesh_reserve_vertices(struct tri_mesh *mesh, int32_t more, s
 
 enum tri_status tri_mesh_reserve_triangles(struct tri_mesh *mesh, int32_t more, struct tri_error *error)
 {
+    assert(more >= 0);
     int64_t need = (int64_t)mesh->n_slots + more;
     if (need <= mesh->slot_capacity)
         return TRI_OK;
@@ -133,6 +135,7 @@ enum tri_status tri_mesh_reserve_triangles(struct tri_mesh *mesh, int32_t more, 
 
 enum tri_status tri_mesh_reserve_subs(struct tri_mesh *mesh, int32_t more, struct tri_error *error)
 {
+    assert(more >= 0);
     int64_t need = (int64_t)mesh->n_subs + more, parents = (int64_t)mesh->n_parents + more;
     if (need > mesh->sub_capacity) {
         int32_t capacity = next_capacity(mesh->sub_capacity, need, TRI_MAX_TRIANGLES);

@@ -86,6 +86,7 @@ struct tri_mesh {
     int32_t *spoke_start;     /* [n_hubs + 1] */
     double shortest2;         /* square of the shortest edge that coordinates of this size can carry */
     double dearest_channel;   /* narrow spaces between parents that would cost more points than this are not filled */
+    double channel_points;    /* about so many points those that are filled take */
     int32_t n_hubs;           /* vertices there were when the parents were listed; 0: not listed yet */
 
     struct tri_region *regions; /* [n_regions] regions[0] is "no region": attribute 0, no bound */

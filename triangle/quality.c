@@ -1,9 +1,12 @@
 /* Bounds, and the placement of new points. */
 #include "triangle/quality.h"
 
+#include <assert.h>
+
 double tri_cos_degrees(double degrees)
 {
     static const double radians = 0.017453292519943295769;
+    assert(degrees >= 0 && degrees <= 180);
     if (degrees > 90)
         return -tri_cos_degrees(180 - degrees);
     double x = degrees * radians, x2 = x * x, term = 1, sum = 1;
@@ -19,7 +22,7 @@ struct tri_bounds tri_bounds_for(double min_angle, bool conforming)
     struct tri_bounds bounds = {0, 0, 0};
     if (!(min_angle > 0)) {
         /* No bound: still keep away from subsegments, as for 20 degrees, or triangles come out flat. */
-        bounds.lens_cos2 = conforming ? 0 : 0.58682408883346517; /* cos^2 of 40 degrees */
+        bounds.lens_cos2 = conforming ? 0 : 0.58682408883346604; /* cos^2 of 40 degrees */
         return bounds;
     }
     double cosine = tri_cos_degrees(min_angle < 60 ? min_angle : 60), twice = 2 * cosine * cosine - 1;
@@ -35,6 +38,7 @@ struct tri_bounds tri_bounds_for(double min_angle, bool conforming)
 struct tri_point tri_place(const struct tri_point *xy, const int32_t v[3], const struct tri_shape *shape, double reach)
 {
     int s = shape->shortest;
+    assert(s >= 0 && s < 3 && reach >= 0);
     struct tri_point a = xy[v[tri_next[s]]], b = xy[v[tri_prev[s]]], c = xy[v[s]];
     double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
     double l = shape->l[s], lc = cx * cx + cy * cy;

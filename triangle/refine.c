@@ -22,6 +22,8 @@
  * circumcentre: sizes then lie closer to the bound than with circumcentres alone. */
 static const double EQUILATERAL = 2.3094010767585030580, IDEAL = 0.85;
 
+enum stage { EASY_STAGE, USUAL_STAGE, BEYOND_STAGE, BACK_STAGE, LAST_STAGE };
+
 enum step { NOT_BEGUN, FIRST_PASS, SECOND_PASS };
 
 struct tri_refiner {
@@ -40,7 +42,7 @@ struct tri_refiner {
     enum step step;
     int limit;        /* buckets from here on wait for the second pass */
     int32_t next_seed, n_seeds;
-    int beyond;       /* 0: on the way to the usual angle; 1: to more; 2: back to the usual one where that failed */
+    enum stage stage;
     bool in_hand;     /* `hand` was being treated when there was no room */
     struct tri_entry hand;
     int32_t *crowded; /* stack of subsegments to test for encroachment (conforming only) */
@@ -48,6 +50,11 @@ struct tri_refiner {
 };
 
 enum { SEED_CHUNK = 1 << 16 };
+
+/* Beyond this lies no point that the predicates can carry: the triangle's area has been rounded to nothing. */
+static const double FARTHEST = 0x1p199;
+
+static const double EASY_ANGLE = 31, SIZES_ANGLE = 25; /* degrees, see begin_stages */
 
 enum badness { GOOD, BAD_SIZE, BAD_ANGLE };
 
@@ -116,6 +123,7 @@ static double least(double a, double b, double c)
 static bool judge_rim(struct tri_refiner *r, const struct tri_rim *rim, struct tri_relative rb, double bound2)
 {
     struct tri_relative ra = rim->ra;
+    assert(rim->slot >= 0);
     double area2 = tri_cross(ra, rb), x = ra.x - rb.x, y = ra.y - rb.y, l = x * x + y * y;
     if (area2 * area2 < r->bounds.sin2 * tri_longer_product(ra.l, rb.l, l))
         return push(r, rim->slot, BAD_ANGLE, least(ra.l, rb.l, l));
@@ -184,6 +192,7 @@ static enum tri_status make_room(struct tri_refiner *r)
 static int32_t add_vertex(struct tri_refiner *r, struct tri_point p, int32_t on, int32_t marker)
 {
     struct tri_mesh *m = r->mesh;
+    assert(m->n_vertices < m->vertex_capacity);
     int32_t v = m->n_vertices++;
     m->xy[v] = p;
     m->on[v] = on;
@@ -328,6 +337,8 @@ static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tr
 {
     const struct tri_triangle t = r->mesh->tri[slot];
     struct tri_point p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
+    if (!(fabs(p.x) < FARTHEST && fabs(p.y) < FARTHEST))
+        return refuse(r, TRI_EXCUSE_PRECISION);
     if (r->options->gate) {
         double at[2] = {p.x * r->mesh->unit, p.y * r->mesh->unit};
         if (!r->options->gate(r->options->gate_user, at))
@@ -365,6 +376,7 @@ static void relax(struct tri_refiner *r)
         r->relaxed++;
     if (r->relaxed == 3)
         return;
+    assert(r->relaxed >= 0 && r->relaxed < 3);
     lower_bound(r, bound[r->relaxed++]);
     r->angle_cap *= 2;
     r->report->hit_cap = true;
@@ -411,15 +423,20 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
     }
 }
 
-/* Does the apex of a triangle beside the subsegment lie in its diametral circle, and can that be mended? */
+/* Does the apex of the triangle with this code lie in the diametral circle of the subsegment? */
+static bool is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, int32_t code)
+{
+    struct tri_point apex = mesh->xy[mesh->tri[tri_of(code)].v[tri_edge(code)]];
+    struct tri_relative a = tri_relative(&mesh->xy[s->v[0]], apex), b = tri_relative(&mesh->xy[s->v[1]], apex);
+    return a.x * b.x + a.y * b.y < 0;
+}
+
+/* The same, and can it be mended? */
 static bool is_crowded_from(const struct tri_refiner *r, const struct tri_subsegment *s, int32_t code)
 {
-    const int32_t *v = r->mesh->tri[tri_of(code)].v;
-    struct tri_point apex = r->mesh->xy[v[tri_edge(code)]];
-    struct tri_relative a = tri_relative(&r->mesh->xy[s->v[0]], apex), b = tri_relative(&r->mesh->xy[s->v[1]], apex);
-    if (a.x * b.x + a.y * b.y >= 0)
+    if (!is_in_diametral_disk(r->mesh, s, code))
         return false;
-    struct tri_shape shape = tri_shape_of(r->mesh->xy, v);
+    struct tri_shape shape = tri_shape_of(r->mesh->xy, r->mesh->tri[tri_of(code)].v);
     return !tri_is_hopeless(r->mesh, r->mesh->shortest2, tri_of(code), &shape) && !is_flat(r, &shape);
 }
 
@@ -435,6 +452,7 @@ static bool split_crowded(struct tri_refiner *r)
         int32_t s = r->crowded[r->n_crowded - 1];
         const struct tri_subsegment *sub = &r->mesh->sub[s];
         int32_t beside = tri_of(sub->side[sub->side[0] == TRI_NONE]);
+        assert(s >= 0 && tri_is_live(&r->mesh->tri[beside]));
         r->n_crowded--;
         if (!is_crowded(r, sub) || at_limit(r) || r->relaxed == 3)
             continue;
@@ -553,31 +571,68 @@ static double quarter_of_shortest2(const struct tri_mesh *mesh)
     return shortest2 / 16;
 }
 
-/* Above TRI_USUAL_ANGLE refinement may feed on itself, with ever shorter edges. So the whole mesh is refined for the
- * usual angle first; then for more, as long as that adds less than half as many points again and no edge is much
- * shorter than what is there. */
-static bool refine_beyond_usual(struct tri_refiner *r)
+/* Where there are sizes to reach and the angle bound is above EASY_ANGLE, sizes come first, with an easy bound: bad
+ * angles are dear to mend where triangles of different sizes meet, and in a mesh of one size they seldom do
+ * (docs/performance.md: up to a sixth fewer triangles). Above TRI_USUAL_ANGLE refinement may feed on itself, with ever
+ * shorter edges. So the whole mesh is refined for the usual angle; then for more, as long as that adds less than half
+ * as many points again and no edge is much shorter than what is there; where that ran away, for the usual angle again.
+ * Within a fence there is only the usual stage. */
+static bool has_sizes(const struct tri_refine_options *options)
 {
-    if (r->beyond == 0) {
-        if (!refine_seeds(r))
-            return false;
-        double floor2 = quarter_of_shortest2(r->mesh);
-        r->shortest2 = floor2 > r->shortest2 ? floor2 : r->shortest2;
-        lower_bound(r, r->options->min_angle);
-        r->angle_cap = 1000 + r->for_angles + r->mesh->n_slots / 4;
-        r->step = NOT_BEGUN;
-        r->beyond = 1;
-    }
-    if (r->beyond == 1) {
-        if (!refine_seeds(r))
-            return false;
-        r->beyond = 2;
-        r->step = NOT_BEGUN;
-        r->shortest2 = r->mesh->shortest2;
-        if (r->report->hit_cap)
+    return options->max_area > 0 || options->region_areas || options->unsuitable;
+}
+
+static void begin_stages(struct tri_refiner *r)
+{
+    double usual = fmin(r->options->min_angle, TRI_USUAL_ANGLE);
+    bool easy = usual > EASY_ANGLE && has_sizes(r->options) && !r->options->fence;
+    r->stage = easy ? EASY_STAGE : USUAL_STAGE;
+    r->bounds = tri_bounds_for(easy ? SIZES_ANGLE : usual, r->options->conforming);
+}
+
+static void go_beyond(struct tri_refiner *r)
+{
+    r->shortest2 = fmax(r->shortest2, quarter_of_shortest2(r->mesh));
+    r->angle_cap = 1000 + r->for_angles + r->mesh->n_slots / 4;
+    lower_bound(r, r->options->min_angle);
+    r->stage = BEYOND_STAGE;
+}
+
+static void next_stage(struct tri_refiner *r)
+{
+    r->step = NOT_BEGUN;
+    switch (r->stage) {
+    case EASY_STAGE:
+        lower_bound(r, fmin(r->options->min_angle, TRI_USUAL_ANGLE));
+        r->stage = USUAL_STAGE;
+        return;
+    case USUAL_STAGE:
+        r->stage = LAST_STAGE;
+        if (r->options->min_angle > TRI_USUAL_ANGLE && !r->options->fence)
+            go_beyond(r);
+        return;
+    case BEYOND_STAGE:
+        r->stage = LAST_STAGE;
+        if (r->report->hit_cap) {
+            r->shortest2 = r->mesh->shortest2;
             lower_bound(r, TRI_USUAL_ANGLE);
+            r->stage = BACK_STAGE;
+        }
+        return;
+    default:
+        r->stage = LAST_STAGE;
     }
-    return !r->report->hit_cap || refine_seeds(r); /* the usual angle everywhere, whatever the attempt has left */
+}
+
+/* Resumable, as refine_seeds. */
+static bool refine_in_stages(struct tri_refiner *r)
+{
+    while (r->stage != LAST_STAGE) {
+        if (!refine_seeds(r))
+            return false;
+        next_stage(r);
+    }
+    return true;
 }
 
 enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *mesh,
@@ -592,15 +647,15 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
         *refiner = NULL;
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for refinement");
     }
+    assert(mesh->n_slots == 0 || mesh->n_hubs > 0); /* tri_refine_prepare has been called */
     r->mesh = mesh;
     r->options = options;
     r->report = report;
-    double angle = options->min_angle < TRI_USUAL_ANGLE ? options->min_angle : TRI_USUAL_ANGLE;
-    r->bounds = tri_bounds_for(angle, options->conforming);
+    begin_stages(r);
     r->shortest2 = mesh->shortest2;
     frexp(r->shortest2, &r->least_exponent);
     r->cavity.fence = options->fence;
-    r->angle_cap = 50000 + 100 * (int64_t)seed_count(r);
+    r->angle_cap = (options->fence ? 1000 : 20000) + 100 * (int64_t)seed_count(r) + (int64_t)(4 * mesh->channel_points);
     return TRI_OK;
 }
 
@@ -609,8 +664,7 @@ enum tri_status tri_refiner_run(struct tri_refiner *r, struct tri_error *error)
     struct tri_error own;
     r->error = error ? error : &own;
     r->error->status = TRI_OK;
-    bool beyond = r->options->min_angle > TRI_USUAL_ANGLE && !r->options->fence;
-    if (beyond ? refine_beyond_usual(r) : refine_seeds(r))
+    if (refine_in_stages(r))
         return TRI_OK;
     if (r->error->status == TRI_OK)
         tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "out of memory while refining");
@@ -659,6 +713,7 @@ int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_optio
                                   .options = options,
                                   .bounds = tri_bounds_for(options->min_angle, options->conforming)};
     int32_t n = 0;
+    assert(first >= 0 && last <= mesh->n_slots);
     for (int32_t slot = first; slot < last; slot++)
         if (needs_work(&r, slot))
             found[n++] = slot;
@@ -694,6 +749,17 @@ static enum tri_excuse excuse_for(const struct tri_refiner *r, int32_t slot, con
     if (report->hit_cap && badness == BAD_ANGLE)
         return TRI_EXCUSE_LIMIT;
     return report->gated + report->deferred > 0 ? TRI_EXCUSE_DEFERRED : TRI_EXCUSE_PRECISION;
+}
+
+int64_t tri_count_encroached(const struct tri_mesh *mesh)
+{
+    int64_t n = 0;
+    for (int32_t s = 0; s < mesh->n_subs; s++) {
+        const struct tri_subsegment *sub = &mesh->sub[s];
+        n += (sub->side[0] != TRI_NONE && is_in_diametral_disk(mesh, sub, sub->side[0])) ||
+             (sub->side[1] != TRI_NONE && is_in_diametral_disk(mesh, sub, sub->side[1]));
+    }
+    return n;
 }
 
 void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options *options,

@@ -9,7 +9,7 @@
  *      smaller is made because of it.
  *   2. Two segments side by side, nearer to each other than rounding, or than anyone could want to fill: spikes of no
  *      width, slits, borders that were digitised twice. The theory holds, but asks for length / width triangles. Such a
- *      channel is filled only if the mesh can afford it (dearest_affordable); a triangle whose shortest edge bridges
+ *      channel is filled only if the mesh can afford it (choose_channels); a triangle whose shortest edge bridges
  *      one that is too dear stays.
  *   3. Rounding: points nearer than about 100 units in the last place, flat triangles, split points beside their
  *      segment. An edge or height below mesh.shortest2 stays; a point that does not see its whole cavity is not
@@ -17,9 +17,9 @@
  * What stays is counted by reason (tri_count_bad). */
 #include "triangle/small_angle.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
-#include "triangle/predicates.h"
 #include "triangle/refine.h"
 
 static bool is_acute(const struct tri_mesh *mesh, int32_t v) { return mesh->on[v] == TRI_VERTEX_ACUTE; }
@@ -39,6 +39,7 @@ double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegme
     int exponent; /* half the length is mantissa * 2^exponent, mantissa in [0.5, 1) */
     double mantissa = frexp(0.5 * length, &exponent);
     double shell = ldexp(mantissa < 0.70710678118654752 ? 0.5 : 1, exponent);
+    assert(shell > 0.35 * length && shell < 0.71 * length);
     return at_start ? shell / length : 1 - shell / length;
 }
 
@@ -148,14 +149,15 @@ bool tri_is_hopeless(const struct tri_mesh *mesh, double shortest2, int32_t slot
            tri_is_channel(mesh, slot, shape);
 }
 
-/* The largest power of two, 2^10 or more, such that filling every narrow space as far as this cost goes takes no more
- * than PER_VERTEX points for each vertex of the input and an ALLOWANCE. (A space dearer than that is still filled where
- * it is wide.) */
-static double dearest_affordable(const struct tri_mesh *mesh)
+/* Which narrow spaces are filled, by their cost. All of them, where a quarter of a million points is enough for that: thin layers and slits
+ * of ordinary parts. Else, where there are spikes of no width or lines a few units in the last place apart, the cheap ones: up
+ * to the largest power of two, 2^10 or more, such that filling every space as far as this cost goes takes no more than
+ * PER_VERTEX points for each vertex of the input and an ALLOWANCE. (A dearer space is still filled where it is wide.) */
+static void choose_channels(struct tri_mesh *mesh)
 {
     enum { CHEAP = 10, OCTAVES = 64 };
-    const double ALLOWANCE = 20000, PER_VERTEX = 4;
-    double cost_of[OCTAVES] = {0}, count_of[OCTAVES] = {0}, dearer = 0, cheaper = 0;
+    const double ALL = 250000, ALLOWANCE = 20000, PER_VERTEX = 4;
+    double cost_of[OCTAVES] = {0}, count_of[OCTAVES] = {0}, dearer = 0, cheaper = 0, all = 0;
     for (int32_t t = 0; t < mesh->n_slots; t++) {
         const int32_t *v = mesh->tri[t].v;
         struct tri_shape shape = tri_shape_of(mesh->xy, v);
@@ -167,17 +169,19 @@ static double dearest_affordable(const struct tri_mesh *mesh)
             cost_of[octave] += cost;
             count_of[octave]++;
             dearer++;
+            all += cost;
         }
     }
-    int limit = CHEAP;
-    for (int octave = CHEAP + 1; octave < OCTAVES; octave++) {
+    int limit = all <= ALL ? OCTAVES : CHEAP;
+    mesh->channel_points = all <= ALL ? all : ALLOWANCE + PER_VERTEX * mesh->n_input;
+    for (int octave = CHEAP + 1; octave < OCTAVES && all > ALL; octave++) {
         cheaper += cost_of[octave];
         dearer -= count_of[octave];
-        if (cheaper + ldexp(dearer, octave) > ALLOWANCE + PER_VERTEX * mesh->n_input)
+        if (cheaper + ldexp(dearer, octave) > mesh->channel_points)
             break;
         limit = octave;
     }
-    return ldexp(1, limit);
+    mesh->dearest_channel = ldexp(1, limit);
 }
 
 static bool is_input(int32_t on) { return on == TRI_VERTEX_INPUT || on == TRI_VERTEX_ACUTE; }
@@ -216,6 +220,7 @@ static void find_acute(struct tri_mesh *mesh)
 static enum tri_status list_spokes(struct tri_mesh *mesh, struct tri_error *error)
 {
     size_t n = (size_t)mesh->n_vertices;
+    assert(!mesh->spoke_start && !mesh->spokes);
     mesh->spoke_start = calloc(n + 2, sizeof *mesh->spoke_start);
     mesh->spokes = malloc((2 * (size_t)mesh->n_parents + 1) * sizeof *mesh->spokes);
     if (!mesh->spoke_start || !mesh->spokes)
@@ -230,6 +235,7 @@ static enum tri_status list_spokes(struct tri_mesh *mesh, struct tri_error *erro
         for (int k = 0; k < 2; k++)
             mesh->spokes[fill[mesh->parents[p].v[k]]++] = p;
     mesh->n_hubs = mesh->n_vertices;
+    assert(mesh->spoke_start[n] == 2 * mesh->n_parents);
     return TRI_OK;
 }
 
@@ -250,6 +256,6 @@ enum tri_status tri_refine_prepare(struct tri_mesh *mesh, struct tri_error *erro
     find_acute(mesh);
     enum tri_status status = list_spokes(mesh, error);
     if (!status)
-        mesh->dearest_channel = dearest_affordable(mesh);
+        choose_channels(mesh);
     return status;
 }

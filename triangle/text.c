@@ -267,6 +267,15 @@ static enum tri_status make_index(struct tri_text *text, const struct tri_execut
     return TRI_OK;
 }
 
+/* The number of the line that holds the byte at `at`. */
+static long line_of(const char *begin, const char *at)
+{
+    long line = 1;
+    for (; begin < at; begin++)
+        line += *begin == '\n';
+    return line;
+}
+
 enum tri_status tri_text_load(struct tri_text *text, const char *path, size_t chunk_bytes,
                               const struct tri_executor *executor, struct tri_error *error)
 {
@@ -274,6 +283,12 @@ enum tri_status tri_text_load(struct tri_text *text, const char *path, size_t ch
     const enum tri_status status = read_file(text, executor, error);
     if (status != TRI_OK)
         return status;
+    const char *nul = text->size ? memchr(text->data, 0, text->size) : NULL;
+    if (nul) { /* a number would end there, and be read wrong: UTF-16, or no text at all */
+        const long line = line_of(text->data, nul);
+        tri_text_free(text);
+        return tri_fail(error, TRI_BAD_INPUT, path, line, "holds a NUL byte: this is not a text file");
+    }
     if (text->size == 0 || text->data[text->size - 1] != '\n')
         text->data[text->size++] = '\n';
     return make_index(text, executor, error);

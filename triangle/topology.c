@@ -40,9 +40,9 @@ static void list_edges(struct tri_edge_list *list, const struct tri_mesh *mesh)
             if (!is_first(code, other))
                 continue;
             if (list->number) {
-                list->number[3 * (size_t)t + tri_edge(code)] = n;
+                list->number[3 * (size_t)t + (size_t)tri_edge(code)] = n;
                 if (other != TRI_NONE)
-                    list->number[3 * (size_t)tri_of(other) + tri_edge(other)] = n;
+                    list->number[3 * (size_t)tri_of(other) + (size_t)tri_edge(other)] = n;
             }
             list->codes[n++] = code;
         }
@@ -76,7 +76,7 @@ void tri_middle_nodes(const struct tri_mesh *mesh, const struct tri_edge_list *e
 {
     assert(edges->number);
     for (int e = 0; e < 3; e++)
-        nodes[e] = mesh->n_vertices + edges->number[3 * (size_t)t + e];
+        nodes[e] = mesh->n_vertices + edges->number[3 * (size_t)t + (size_t)e];
 }
 
 double tri_blend_attribute(const struct tri_mesh *mesh, const struct tri_blend *blend, int32_t attribute)
