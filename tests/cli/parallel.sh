@@ -47,12 +47,12 @@ same 4e-4 -pq30 "--min-angle 30 --max-area 4e-4" letter.poly
 same 6e-6 -pq "--min-angle 20 --max-area 6e-6" square_random1000.poly
 same 6e6 -pq30 "--max-bad 300 --max-area 6e6" coast/norway_sea.poly
 same 3e8 -pq30aA "--max-bad 60 --max-area 3e8" coast/borders.poly
-same 0.008 -pqaA "--min-angle 20 --max-area 0.008" section.poly
+same 0.004 -pqaA "--min-angle 20 --max-area 0.004" section.poly
 same 0.012 -pq32 "--min-angle 32 --max-area 0.012" gear.poly
 same 6e-6 -pqD "--min-angle 20 --max-area 6e-6 --conforming" koch_lake.poly
 same 0.003 -pq30 "--min-angle 30 --max-area 0.003" perforated.poly
 same 1e-4 -pq30 "--min-angle 30 --max-area 1e-4" naca2412_box.poly
-same 8e-4 -pqY "--max-bad 2000" cracked_plate.poly
+same 4e-4 -pqY "--max-bad 2000" cracked_plate.poly
 same 1e-5 -pq30 "--max-bad 500 --max-area 1e-5" nasty/slit_1e-9.poly
 same 1e-5 -p "--max-area 1e-5" square.poly
 
