@@ -358,7 +358,9 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     *report = (struct par_report){.threads = threads_for(options)};
     struct par_state state = {.mesh = mesh, .options = options, .threads = report->threads, .report = report};
     struct tri_refine_options usual = *quality;
-    enum tri_status status = TRI_OK;
+    enum tri_status status = tri_refine_check(mesh, quality, error);
+    if (status)
+        return status;
     if (quality->min_angle > 0 && quality->max_area > 0)
         report->radius_theory = par_radius_tight(quality->max_area, quality->min_angle < 44 ? quality->min_angle : 44);
     if (must_be_sequential(quality, options)) {

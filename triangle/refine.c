@@ -635,6 +635,22 @@ static bool refine_in_stages(struct tri_refiner *r)
     return true;
 }
 
+enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                                 struct tri_error *error)
+{
+    const struct tri_refiner r = {.mesh = (struct tri_mesh *)mesh, .options = options};
+    double triangles = 0;
+    if (options->max_steiner >= 0 || !(options->max_area > 0 || options->region_areas))
+        return TRI_OK;
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        if (tri_is_live(&mesh->tri[t]))
+            triangles += tri_shape_of(mesh->xy, mesh->tri[t].v).area2 / area2_bound(&r, mesh->tri[t].region);
+    if (triangles <= TRI_MAX_TRIANGLES)
+        return TRI_OK;
+    return tri_fail(error, TRI_TOO_LARGE, NULL, 0, "the area bounds ask for more than %.3g triangles; a mesh holds %d",
+                    triangles, TRI_MAX_TRIANGLES);
+}
+
 enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *mesh,
                                 const struct tri_refine_options *options, struct tri_refine_report *report,
                                 struct tri_error *error)
@@ -684,8 +700,10 @@ void tri_refiner_free(struct tri_refiner *r)
 enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,
                            struct tri_refine_report *report, struct tri_error *error)
 {
-    struct tri_refiner *refiner;
-    enum tri_status status = tri_refiner_new(&refiner, mesh, options, report, error);
+    struct tri_refiner *refiner = NULL;
+    enum tri_status status = options->fence ? TRI_OK : tri_refine_check(mesh, options, error);
+    *report = (struct tri_refine_report){0};
+    status = status ? status : tri_refiner_new(&refiner, mesh, options, report, error);
     if (!status)
         status = tri_refiner_run(refiner, error);
     tri_refiner_free(refiner);
