@@ -120,7 +120,7 @@ static void list_neighbors(void)
 /* Replaces edge a b by the other diagonal. */
 static void flip(int32_t a, int32_t b)
 {
-    int p, q;
+    int p = 0, q = 0;
     int32_t t = find_edge(a, b, &p), u = find_edge(b, a, &q);
     int32_t c = trial.triangles[3 * t + p], d = trial.triangles[3 * u + q];
     memcpy(&trial.triangles[3 * t], (int32_t[3]){c, a, d}, 3 * sizeof(int32_t));

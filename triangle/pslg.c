@@ -4,21 +4,42 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "triangle/mesh.h"
+
+enum { MOST_RECORDS = 1 << 28 }; /* of any kind: four times that is still an int32_t's range of indices */
+
+static enum tri_status check_count(const char *what, int32_t n, const void *array, struct tri_error *error)
+{
+    if (n < 0 || (n > 0 && !array))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s: %d of them, without an array", what, (int)n);
+    if (n > MOST_RECORDS)
+        return tri_fail(error, TRI_TOO_LARGE, NULL, 0, "%d %s are more than one mesh can hold", (int)n, what);
+    return TRI_OK;
+}
+
+static enum tri_status check_finite(const char *what, int32_t n, const double *values, int width, struct tri_error *error)
+{
+    for (int32_t i = 0; i < n; i++) {
+        const double *at = values + (size_t)i * (size_t)width;
+        if (!isfinite(at[0]) || !isfinite(at[1]))
+            return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s %d (counted from 0) has a coordinate that is not finite", what,
+                            (int)i);
+    }
+    return TRI_OK;
+}
 
 enum tri_status tri_pslg_check(const struct tri_pslg *pslg, struct tri_error *error)
 {
     if (pslg->n_points < 3)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "at least three vertices are needed, there are %d",
                         (int)pslg->n_points);
-    if (pslg->n_points > TRI_MAX_VERTICES)
-        return tri_fail(error, TRI_TOO_LARGE, NULL, 0, "%d vertices are more than one mesh can hold",
-                        (int)pslg->n_points);
-    for (int32_t i = 0; i < pslg->n_points; i++)
-        if (!isfinite(pslg->points[2 * i]) || !isfinite(pslg->points[2 * i + 1]))
-            return tri_fail(error, TRI_BAD_INPUT, NULL, 0,
-                            "vertex %d (counted from 0) has a coordinate that is not finite", (int)i);
-    return TRI_OK;
+    enum tri_status status = check_count("vertices", pslg->n_points, pslg->points, error);
+    status = status ? status : check_count("attributes of a vertex", pslg->n_attributes, pslg->attributes, error);
+    status = status ? status : check_count("segments", pslg->n_segments, pslg->segments, error);
+    status = status ? status : check_count("holes", pslg->n_holes, pslg->holes, error);
+    status = status ? status : check_count("regions", pslg->n_regions, pslg->regions, error);
+    status = status ? status : check_finite("vertex", pslg->n_points, pslg->points, 2, error);
+    status = status ? status : check_finite("hole", pslg->n_holes, pslg->holes, 2, error);
+    return status ? status : check_finite("region", pslg->n_regions, pslg->regions, 4, error);
 }
 
 void tri_pslg_free(struct tri_pslg *pslg)

@@ -1,0 +1,107 @@
+/* Where refinement stops: shells at small input angles, narrow spaces, flat triangles. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+#include "tests/support.h"
+#include "triangle/small_angle.h"
+
+/* A rectangle of length 1 and this height, refined to 20 degrees; the number of triangles, and how many stay bad as channels. */
+static int32_t refine_rectangle(double height, int64_t *in_channel)
+{
+    struct tri_pslg pslg = support_pslg(4, 4, 0, 0);
+    support_add_point(&pslg, 0, 0);
+    support_add_point(&pslg, 1, 0);
+    support_add_point(&pslg, 1, height);
+    support_add_point(&pslg, 0, height);
+    for (int32_t i = 0; i < 4; i++)
+        support_add_segment(&pslg, i, (i + 1) % 4);
+    struct tri_options options = support_quality(20, 0);
+    struct tri_report report;
+    struct tri_mesh mesh = support_generate(&pslg, &options, &report);
+    int64_t count[TRI_EXCUSES];
+    tri_count_bad(&mesh, &options.quality, &report.quality, count);
+    *in_channel = count[TRI_EXCUSE_CHANNEL];
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        assert_true(k == TRI_EXCUSE_CHANNEL || count[k] == 0);
+    int32_t triangles = mesh.n_slots;
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+    return triangles;
+}
+
+static void test_thin_rectangles_are_filled_while_that_is_cheap(void **state)
+{
+    (void)state;
+    int64_t in_channel;
+    assert_in_range(refine_rectangle(1e-3, &in_channel), 500, 3000);
+    assert_int_equal(in_channel, 0);
+    assert_in_range(refine_rectangle(1e-5, &in_channel), 50000, 300000);
+    assert_int_equal(in_channel, 0);
+    assert_in_range(refine_rectangle(1e-8, &in_channel), 2, 100);
+    assert_true(in_channel > 0);
+}
+
+/* Subsegments at an acute vertex are split at powers of two from it, others in the middle. */
+static void test_shells_are_powers_of_two(void **state)
+{
+    (void)state;
+    struct tri_point xy[] = {{0, 0}, {3, 0}, {7, 0}};
+    int32_t on[] = {TRI_VERTEX_ACUTE, TRI_VERTEX_INPUT, TRI_VERTEX_INPUT};
+    struct tri_mesh mesh = {.xy = xy, .on = on, .n_vertices = 3};
+    struct tri_subsegment from_acute = {.v = {0, 1}}, to_acute = {.v = {2, 0}}, plain = {.v = {1, 2}};
+    assert_true(3 * tri_split_fraction(&mesh, &from_acute) == 2 || 3 * tri_split_fraction(&mesh, &from_acute) == 1);
+    assert_true(fabs(7 * (1 - tri_split_fraction(&mesh, &to_acute)) - 4) < 1e-14);
+    assert_true(tri_split_fraction(&mesh, &plain) == 0.5);
+}
+
+/* Every length is split between 0.35 and 0.71 of it. */
+static void test_shells_are_near_the_middle(void **state)
+{
+    (void)state;
+    struct support_random random = {1};
+    for (int i = 0; i < 1000; i++) {
+        struct tri_point xy[] = {{0, 0}, {ldexp(0.5 + support_unit(&random), i % 80 - 40), 0}};
+        int32_t on[] = {TRI_VERTEX_ACUTE, TRI_VERTEX_INPUT};
+        struct tri_mesh mesh = {.xy = xy, .on = on, .n_vertices = 2};
+        struct tri_subsegment s = {.v = {0, 1}};
+        double fraction = tri_split_fraction(&mesh, &s);
+        int exponent;
+        assert_true(fraction > 0.35 && fraction < 0.71);
+        double mantissa = frexp(fraction * xy[1].x, &exponent);
+        assert_true(mantissa - 0.5 < 1e-15 || 1 - mantissa < 1e-15);
+    }
+}
+
+/* Split points that rounding puts beside their segment, next to a triangle flatter than that: the mesh stays Delaunay. */
+static void test_flat_neighbour_keeps_the_mesh_delaunay(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = support_pslg(4, 1, 0, 0);
+    support_add_point(&pslg, -2.010477735624757, 0.9787641567595076);
+    support_add_point(&pslg, -0.9999439256018043, -0.010589884421148416);
+    support_add_point(&pslg, -3.0210115456477102, 1.9681181979401634);
+    support_add_point(&pslg, -3.0316014300688585, 2.968062123541968);
+    support_add_segment(&pslg, 0, 1);
+    struct tri_options options = support_quality(20, 0);
+    struct tri_report report;
+    options.keep_hull = true;
+    struct tri_mesh mesh = support_generate(&pslg, &options, &report);
+    support_judge(&mesh, &pslg, &(struct tri_check_options){.max_bad = mesh.n_slots}, false, NULL);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_thin_rectangles_are_filled_while_that_is_cheap),
+        cmocka_unit_test(test_shells_are_powers_of_two),
+        cmocka_unit_test(test_shells_are_near_the_middle),
+        cmocka_unit_test(test_flat_neighbour_keeps_the_mesh_delaunay),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
