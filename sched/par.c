@@ -129,6 +129,8 @@ static enum tri_status prerefine_uniform(struct par_state *state, const struct t
     coarse.area_scale = (quality->area_scale > 0 ? quality->area_scale : 1) * (block / COARSE_PER_BLOCK);
     coarse.min_angle = quality->min_angle < COARSE_ANGLE ? quality->min_angle : COARSE_ANGLE;
     coarse.unsuitable = NULL;
+    if (level == 0 && coarse.min_angle > 0 && quality->max_area > 0)
+        state->report->radius_theory = par_radius_tight(quality->max_area * coarse.area_scale, coarse.min_angle);
     return refine_level(state, &coarse, level + 1, error);
 }
 
@@ -361,8 +363,6 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     enum tri_status status = tri_refine_check(mesh, quality, error);
     if (status)
         return status;
-    if (quality->min_angle > 0 && quality->max_area > 0)
-        report->radius_theory = par_radius_tight(quality->max_area, quality->min_angle < 44 ? quality->min_angle : 44);
     if (must_be_sequential(quality, options)) {
         state.quality = quality;
         status = refine_rest(&state, quality, true, error);

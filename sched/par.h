@@ -41,7 +41,7 @@ struct par_report {
     int32_t columns, rows;        /* of blocks in the first round */
     struct par_partition partition; /* blocks of the first round; none where the call was sequential. Owned by the
                                        report */
-    double radius_theory;         /* tight bound for the area and angle bounds; 0 where one is missing */
+    double radius_theory;         /* tight bound for what pre-refinement asks for; 0 where it has no area or angle bound */
     double radius_measured;       /* largest circumradius of a bad triangle when the first phase began */
     int64_t prerefined;           /* triangles when the first phase began */
     int64_t deferred, left_over;  /* refused by fences in all phases; bad triangles that the last sequential call got */

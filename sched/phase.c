@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "sched/clock.h"
+#include "sched/theory.h"
 #include "triangle/quality.h"
 
 enum { GONE = -2 }; /* in phase.block_of: the triangle is no more */
@@ -138,6 +139,30 @@ static struct tri_fence active_of(const struct tri_fence *f, double radius)
         return *f;
     return (struct tri_fence){f->x_min + margin, f->y_min + margin, f->x_max - margin, f->y_max - margin};
 }
+
+#ifndef NDEBUG
+static double gap(double low_a, double high_a, double low_b, double high_b)
+{
+    return fmax(0, fmax(low_b - high_a, low_a - high_b));
+}
+
+/* Lemma 2, at run time: with the margin, any two points that different blocks may insert at once are independent. */
+static bool blocks_are_independent(const struct phase *p)
+{
+    const struct tri_point origin = {0, 0};
+    double unit = p->state->mesh->unit;
+    for (int32_t i = 0; i < p->n_tasks; i++)
+        for (int32_t k = 0; k < i; k++) {
+            const struct tri_fence *a = &p->tasks[i].active, *b = &p->tasks[k].active;
+            struct tri_point apart = {gap(a->x_min, a->x_max, b->x_min, b->x_max) / unit,
+                                      gap(a->y_min, a->y_max, b->y_min, b->y_max) / unit};
+            bool whole = a->x_min == p->tasks[i].fence.x_min * unit; /* no room for a margin in this one */
+            if (!whole && !par_independent(origin, apart, p->state->radius * (1 - 1e-9)))
+                return false;
+        }
+    return true;
+}
+#endif
 
 static void set_up(struct phase *p, struct task *task)
 {
@@ -351,6 +376,7 @@ static enum tri_status run_phase(struct phase *p, struct tri_error *error)
         set_up(p, &p->tasks[i]);
         p->tasks[i].expected = expect(p, &p->tasks[i]);
     }
+    assert(!p->state->options->margin || blocks_are_independent(p));
     if (!memory || !order_tasks(p))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks of a phase");
     report->seconds_seeds += par_seconds() - began;
