@@ -329,8 +329,8 @@ static struct tri_mesh coarse_square(struct tri_pslg *pslg)
 static void test_gate_that_says_no_stops_everything(void **state)
 {
     (void)state;
-    struct tri_pslg pslg;
-    struct tri_mesh mesh = coarse_square(&pslg), twin = coarse_square(&pslg);
+    struct tri_pslg pslg, same;
+    struct tri_mesh mesh = coarse_square(&pslg), twin = coarse_square(&same);
     struct gate gate = {-1, 0, 0};
     struct tri_refine_report report;
     struct tri_refine_options options = support_quality(33, 0.05).quality;
@@ -343,13 +343,14 @@ static void test_gate_that_says_no_stops_everything(void **state)
     tri_mesh_free(&mesh);
     tri_mesh_free(&twin);
     tri_pslg_free(&pslg);
+    tri_pslg_free(&same);
 }
 
 static void test_gate_that_says_yes_changes_nothing(void **state)
 {
     (void)state;
-    struct tri_pslg pslg;
-    struct tri_mesh mesh = coarse_square(&pslg), twin = coarse_square(&pslg);
+    struct tri_pslg pslg, same;
+    struct tri_mesh mesh = coarse_square(&pslg), twin = coarse_square(&same);
     struct gate gate = {1e9, 0, 0};
     struct tri_refine_report report;
     struct tri_refine_options options = support_quality(33, 0.05).quality;
@@ -362,6 +363,7 @@ static void test_gate_that_says_yes_changes_nothing(void **state)
     tri_mesh_free(&mesh);
     tri_mesh_free(&twin);
     tri_pslg_free(&pslg);
+    tri_pslg_free(&same);
 }
 
 /* A gate open on one side, then on the other, then for all: points only where it is open, nothing bad at the end. */
@@ -502,8 +504,8 @@ static void test_pauses_change_nothing(void **state)
 {
     (void)state;
     for (int conforming = 0; conforming < 2; conforming++) {
-        struct tri_pslg pslg;
-        struct tri_mesh mesh = coarse_square(&pslg), twin = coarse_square(&pslg);
+        struct tri_pslg pslg, same;
+        struct tri_mesh mesh = coarse_square(&pslg), twin = coarse_square(&same);
         struct tri_refine_report report, twin_report;
         struct tri_refine_options options = support_quality(31, 0.02).quality;
         struct tri_refiner *refiner;
@@ -531,6 +533,7 @@ static void test_pauses_change_nothing(void **state)
         tri_mesh_free(&mesh);
         tri_mesh_free(&twin);
         tri_pslg_free(&pslg);
+        tri_pslg_free(&same);
     }
 }
 
