@@ -56,7 +56,8 @@ static double vertex_work(const struct tri_refine_options *options)
 
 double par_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
 {
-    return tri_is_live(&mesh->tri[t]) ? area_work(mesh, options, t) + 0.5 * vertex_work(options) : 0;
+    double around = (has_areas(options) ? 0.5 : 0.65) * vertex_work(options); /* slots, beside those that become free */
+    return tri_is_live(&mesh->tri[t]) ? area_work(mesh, options, t) + around : 0;
 }
 
 /* As the bounds ask for, be it more than any mesh can hold. */

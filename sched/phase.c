@@ -201,11 +201,15 @@ static int32_t expect(const struct phase *p, const struct task *task)
     return sum < 1e7 ? (int32_t)sum : 10000000;
 }
 
-/* Room for a task that is full: a little where the expectation was about right, as much again where it was not. */
+/* Room for a task that is full. A pause costs what the block had in the cache: a little more room where areas made the
+ * expectation about right, a good deal more where it was a guess, as much again where it was wrong. */
 static int32_t more_for(const struct task *task)
 {
     int32_t inserted = (int32_t)(task->report.inserted_free + task->report.inserted_on_segments);
-    return inserted < task->expected ? task->expected / 16 + inserted / 16 + 256 : 2 * inserted;
+    bool areas = task->options.max_area > 0 || task->options.region_areas;
+    if (inserted >= task->expected)
+        return 2 * inserted;
+    return task->expected / (areas ? 16 : 4) + inserted / (areas ? 16 : 4) + 256;
 }
 
 /* Room for the paused tasks, in canonical order. */
