@@ -13,7 +13,6 @@ struct flood {
     struct tri_mesh *mesh;
     int32_t *stack;    /* [n_slots]: each triangle is pushed at most once a flood */
     uint8_t *dead;     /* [n_slots] */
-    int32_t *reached;  /* [n_slots] number of the last region flood that came here */
     int32_t near;      /* where the last location ended */
 };
 
@@ -90,20 +89,20 @@ static void kill_holes(struct flood *f, const struct tri_pslg *pslg)
     }
 }
 
-/* Regions are few where they are many-celled: each flood costs the cells it reaches. */
+/* Gives the region to what no region has reached yet. */
 static void spread(struct flood *f, int32_t start, int32_t region)
 {
+    struct tri_triangle *tri = f->mesh->tri;
     int32_t n = 0;
-    assert(!f->dead[start] && f->reached[start] != region);
+    assert(!f->dead[start] && tri[start].region == 0);
     f->stack[n++] = start;
-    f->reached[start] = region;
+    tri[start].region = region;
     while (n > 0) {
         int32_t t = f->stack[--n];
-        f->mesh->tri[t].region = region;
         for (int e = 0; e < 3; e++) {
-            int32_t link = f->mesh->tri[t].n[e];
-            if (link >= 0 && f->reached[tri_of(link)] != region) {
-                f->reached[tri_of(link)] = region;
+            int32_t link = tri[t].n[e];
+            if (link >= 0 && tri[tri_of(link)].region == 0) {
+                tri[tri_of(link)].region = region;
                 f->stack[n++] = tri_of(link);
             }
         }
@@ -118,11 +117,11 @@ static enum tri_status spread_regions(struct flood *f, const struct tri_pslg *ps
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for regions");
     mesh->regions = regions;
     mesh->n_regions = pslg->n_regions + 1;
-    for (int32_t k = 0; k < pslg->n_regions; k++) {
+    for (int32_t k = pslg->n_regions - 1; k >= 0; k--) { /* the last point of a region wins, so it comes first */
         const double *r = &pslg->regions[4 * k];
         regions[k + 1] = (struct tri_region){r[2], r[3]};
         int32_t t = locate(f, tri_to_units(mesh, r[0], r[1]));
-        if (t != TRI_NONE && !f->dead[t])
+        if (t != TRI_NONE && !f->dead[t] && mesh->tri[t].region == 0)
             spread(f, t, k + 1);
     }
     return TRI_OK;
@@ -199,9 +198,9 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
                           struct tri_error *error)
 {
     size_t n = (size_t)mesh->n_slots + 1;
-    struct flood f = {mesh, malloc(n * sizeof *f.stack), calloc(n, 1), calloc(n, sizeof *f.reached), 0};
+    struct flood f = {mesh, malloc(n * sizeof *f.stack), calloc(n, 1), 0};
     enum tri_status status = TRI_OK;
-    if (!f.stack || !f.dead || !f.reached)
+    if (!f.stack || !f.dead)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)mesh->n_slots);
     mark_vertices(mesh);
     if (!status && mesh->n_slots > 0) {
@@ -216,7 +215,6 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
     }
     free(f.stack);
     free(f.dead);
-    free(f.reached);
     if (!status) /* each subsegment gets a parent of its own */
         status = tri_mesh_reserve_subs(mesh, mesh->n_subs, error);
     return status ? status : order_subs(mesh, pslg->n_segments, error);
