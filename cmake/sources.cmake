@@ -16,7 +16,9 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/quality.c
     triangle/small_angle.c
     triangle/bad_queue.c
+    triangle/criterion.c
     triangle/refine.c
+    triangle/census.c
     triangle/stats.c
     triangle/check.c
     triangle/check_edges.c

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 
 #include "triangle/bad_queue.h"
+#include "triangle/criterion.h"
 #include "triangle/interpolate.h"
 #include "triangle/predicates.h"
 #include "triangle/quality.h"
@@ -27,11 +28,11 @@ enum stage { EASY_STAGE, USUAL_STAGE, BEYOND_STAGE, BACK_STAGE, LAST_STAGE };
 enum step { NOT_BEGUN, FIRST_PASS, SECOND_PASS };
 
 struct tri_refiner {
-    struct tri_mesh *mesh; /* only read by tri_count_bad and tri_find_work */
+    struct tri_mesh *mesh;
     const struct tri_refine_options *options;
     struct tri_refine_report *report;
     struct tri_error *error;
-    struct tri_bounds bounds;
+    struct tri_criterion criterion;
     double shortest2;   /* square of the shortest edge to make */
     int least_exponent; /* of it */
     struct tri_cavity cavity;
@@ -56,8 +57,6 @@ static const double FARTHEST = 0x1p199;
 
 static const double EASY_ANGLE = 31, SIZES_ANGLE = 25; /* degrees, see begin_stages */
 
-enum badness { GOOD, BAD_SIZE, BAD_ANGLE };
-
 /* DONE: a point was inserted, or the triangle is gone; AGAIN: a subsegment was split instead, the triangle may still
  * stand. */
 enum outcome { DONE, AGAIN, REFUSED, FAILED };
@@ -65,36 +64,6 @@ enum outcome { DONE, AGAIN, REFUSED, FAILED };
 struct tri_refine_options tri_refine_defaults(void)
 {
     return (struct tri_refine_options){.max_steiner = -1};
-}
-
-/* Twice the largest area allowed in a region; infinity where there is no bound. */
-static double area2_bound(const struct tri_refiner *r, int32_t region)
-{
-    double bound = r->options->max_area > 0 ? r->options->max_area : HUGE_VAL;
-    if (r->options->region_areas) {
-        double own = r->mesh->regions[region].max_area;
-        bound = own > 0 && own < bound ? own : bound;
-    }
-    bound *= r->options->area_scale > 0 ? r->options->area_scale : 1;
-    return 2 * (bound / r->mesh->unit / r->mesh->unit);
-}
-
-static bool is_unsuitable(const struct tri_refiner *r, const int32_t v[3], double area2)
-{
-    const struct tri_point *xy = r->mesh->xy;
-    double unit = r->mesh->unit, a[2] = {xy[v[0]].x * unit, xy[v[0]].y * unit};
-    double b[2] = {xy[v[1]].x * unit, xy[v[1]].y * unit}, c[2] = {xy[v[2]].x * unit, xy[v[2]].y * unit};
-    return r->options->unsuitable(r->options->unsuitable_user, a, b, c, 0.5 * area2 * unit * unit) != 0;
-}
-
-static enum badness judge(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape)
-{
-    double product = tri_longer_product(shape->l[0], shape->l[1], shape->l[2]);
-    if (shape->area2 * shape->area2 < r->bounds.sin2 * product)
-        return BAD_ANGLE;
-    if (shape->area2 > area2_bound(r, t->region))
-        return BAD_SIZE;
-    return r->options->unsuitable && is_unsuitable(r, t->v, shape->area2) ? BAD_SIZE : GOOD;
 }
 
 /* Four buckets an octave of the squared length, counted from the shortest edge that can be resolved. */
@@ -106,10 +75,10 @@ static int bucket_of(const struct tri_refiner *r, double shortest)
     return bucket < 0 ? 0 : bucket >= TRI_BUCKETS ? TRI_BUCKETS - 1 : bucket;
 }
 
-static bool push(struct tri_refiner *r, int32_t slot, enum badness badness, double shortest)
+static bool push(struct tri_refiner *r, int32_t slot, enum tri_badness badness, double shortest)
 {
     struct tri_entry entry = {slot, r->mesh->tri[slot].state};
-    return badness == BAD_ANGLE ? tri_bad_queue_push_angle(&r->queue, entry, bucket_of(r, shortest))
+    return badness == TRI_BAD_ANGLE ? tri_bad_queue_push_angle(&r->queue, entry, bucket_of(r, shortest))
                                 : tri_bad_queue_push_size(&r->queue, entry);
 }
 
@@ -125,12 +94,12 @@ static bool judge_rim(struct tri_refiner *r, const struct tri_rim *rim, struct t
     struct tri_relative ra = rim->ra;
     assert(rim->slot >= 0);
     double area2 = tri_cross(ra, rb), x = ra.x - rb.x, y = ra.y - rb.y, l = x * x + y * y;
-    if (area2 * area2 < r->bounds.sin2 * tri_longer_product(ra.l, rb.l, l))
-        return push(r, rim->slot, BAD_ANGLE, least(ra.l, rb.l, l));
+    if (area2 * area2 < r->criterion.bounds.sin2 * tri_longer_product(ra.l, rb.l, l))
+        return push(r, rim->slot, TRI_BAD_ANGLE, least(ra.l, rb.l, l));
     if (area2 > bound2)
-        return push(r, rim->slot, BAD_SIZE, 0);
-    if (r->options->unsuitable && is_unsuitable(r, r->mesh->tri[rim->slot].v, area2))
-        return push(r, rim->slot, BAD_SIZE, 0);
+        return push(r, rim->slot, TRI_BAD_SIZE, 0);
+    if (r->options->unsuitable && tri_is_unsuitable(&r->criterion, r->mesh->tri[rim->slot].v, area2))
+        return push(r, rim->slot, TRI_BAD_SIZE, 0);
     return true;
 }
 
@@ -143,7 +112,7 @@ static bool judge_chain(struct tri_refiner *r, int32_t first, int32_t last, stru
     for (int32_t i = first; i < last; i++) {
         if (rim[i].region != region) {
             region = rim[i].region;
-            bound2 = area2_bound(r, region);
+            bound2 = tri_area2_bound(&r->criterion, region);
         }
         if (!judge_rim(r, &rim[i], i + 1 < last ? rim[i + 1].ra : end, bound2))
             return false;
@@ -224,12 +193,6 @@ static enum outcome insert_free(struct tri_refiner *r, struct tri_point p)
     return judge_chain(r, 0, r->cavity.n_rim, r->cavity.rim[0].ra) && crowd_walls(r) ? DONE : FAILED;
 }
 
-static bool is_protected(const struct tri_refiner *r, const struct tri_subsegment *s)
-{
-    bool boundary = s->side[0] == TRI_NONE || s->side[1] == TRI_NONE;
-    return r->options->protect >= 2 || (r->options->protect == 1 && boundary);
-}
-
 /* The gate or the fence stands before this triangle: somebody else's. */
 static enum outcome leave(struct tri_refiner *r, int32_t slot, int64_t *counter)
 {
@@ -251,7 +214,7 @@ static enum outcome split(struct tri_refiner *r, int32_t s, int32_t slot)
     struct tri_mesh *m = r->mesh;
     const struct tri_subsegment old = m->sub[s];
     int32_t n_left;
-    if (is_protected(r, &old))
+    if (tri_is_protected(r->options, &old))
         return refuse(r, TRI_EXCUSE_PROTECTED);
     double fraction = tri_split_fraction(m, &old);
     struct tri_point a = m->xy[old.v[0]], b = m->xy[old.v[1]];
@@ -288,7 +251,7 @@ static bool encroaches(const struct tri_refiner *r, int32_t i, bool *beyond)
     *beyond = false;
     if (dot >= 0 && cross > 0)
         return false;
-    if (dot < 0 && dot * dot > r->bounds.lens_cos2 * rim->ra.l * next->ra.l)
+    if (dot < 0 && dot * dot > r->criterion.bounds.lens_cos2 * rim->ra.l * next->ra.l)
         return true;
     *beyond = tri_orient2d(c->p, r->mesh->xy[rim->a], r->mesh->xy[next->a]) <= 0;
     return *beyond;
@@ -312,12 +275,12 @@ static int32_t find_encroached(const struct tri_refiner *r)
 
 /* How far from its shortest edge may the new point of this triangle lie? */
 static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape,
-                       enum badness badness)
+                       enum tri_badness badness)
 {
     double l = shape->l[shape->shortest];
-    double reach = r->bounds.off_centre > 0 ? r->bounds.off_centre * sqrt(l) : HUGE_VAL;
-    double bound2 = area2_bound(r, t->region);
-    if (badness == BAD_SIZE && shape->area2 > bound2) {
+    double reach = r->criterion.bounds.off_centre > 0 ? r->criterion.bounds.off_centre * sqrt(l) : HUGE_VAL;
+    double bound2 = tri_area2_bound(&r->criterion, t->region);
+    if (badness == TRI_BAD_SIZE && shape->area2 > bound2) {
         double ideal2 = IDEAL * EQUILATERAL * 0.5 * bound2 - 0.25 * l;
         double ideal = ideal2 > 0 ? sqrt(ideal2) : 0;
         reach = ideal2 > 0.25 * l && ideal < reach ? ideal : reach;
@@ -325,15 +288,7 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
     return reach;
 }
 
-/* Lower than the shortest edge that coordinates can carry: splitting a subsegment beside it would chase the
- * rounding. */
-static bool is_flat(const struct tri_refiner *r, const struct tri_shape *shape)
-{
-    double longest2 = fmax(shape->l[0], fmax(shape->l[1], shape->l[2]));
-    return shape->area2 * shape->area2 < r->mesh->shortest2 * longest2;
-}
-
-static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tri_shape *shape, enum badness badness)
+static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tri_shape *shape, enum tri_badness badness)
 {
     const struct tri_triangle t = r->mesh->tri[slot];
     struct tri_point p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
@@ -349,7 +304,7 @@ static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tr
         int32_t s = find_encroached(r);
         if (s == TRI_NONE)
             return insert_free(r, p);
-        if (is_flat(r, shape))
+        if (tri_is_flat(r->mesh, shape))
             return refuse(r, TRI_EXCUSE_PRECISION);
         enum outcome outcome = split(r, s, slot);
         return outcome == DONE ? AGAIN : outcome;
@@ -362,9 +317,9 @@ static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tr
 /* Lowers the angle bound that the loop works for; what is already bad by the old one stays. */
 static void lower_bound(struct tri_refiner *r, double degrees)
 {
-    double lens_cos2 = r->bounds.lens_cos2;
-    r->bounds = tri_bounds_for(degrees, r->options->conforming);
-    r->bounds.lens_cos2 = degrees > 0 ? r->bounds.lens_cos2 : lens_cos2;
+    double lens_cos2 = r->criterion.bounds.lens_cos2;
+    r->criterion.bounds = tri_bounds_for(degrees, r->options->conforming);
+    r->criterion.bounds.lens_cos2 = degrees > 0 ? r->criterion.bounds.lens_cos2 : lens_cos2;
 }
 
 /* Points for bad angles run away: on with the bound for which refinement ends in practice, then with one for which it
@@ -382,9 +337,9 @@ static void relax(struct tri_refiner *r)
     r->report->hit_cap = true;
 }
 
-static void count_point(struct tri_refiner *r, enum badness badness)
+static void count_point(struct tri_refiner *r, enum tri_badness badness)
 {
-    if (badness == BAD_SIZE)
+    if (badness == TRI_BAD_SIZE)
         r->for_sizes++;
     else if (++r->for_angles > r->angle_cap + 4 * r->for_sizes)
         relax(r);
@@ -406,11 +361,11 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         if (t->state != entry.state || !tri_is_live(t))
             return DONE;
         struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
-        enum badness badness = judge(r, t, &shape);
-        if (badness == GOOD)
+        enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
+        if (badness == TRI_GOOD)
             return DONE;
-        if (badness == BAD_ANGLE && tri_is_hopeless(r->mesh, r->shortest2, entry.t, &shape)) {
-            if (shape.area2 <= area2_bound(r, t->region))
+        if (badness == TRI_BAD_ANGLE && tri_is_hopeless(r->mesh, r->shortest2, entry.t, &shape)) {
+            if (shape.area2 <= tri_area2_bound(&r->criterion, t->region))
                 return refuse(r, TRI_EXCUSE_INPUT_ANGLE);
         }
         if (at_limit(r))
@@ -423,29 +378,6 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
     }
 }
 
-/* Does the apex of the triangle with this code lie in the diametral circle of the subsegment? */
-static bool is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, int32_t code)
-{
-    struct tri_point apex = mesh->xy[mesh->tri[tri_of(code)].v[tri_edge(code)]];
-    struct tri_relative a = tri_relative(&mesh->xy[s->v[0]], apex), b = tri_relative(&mesh->xy[s->v[1]], apex);
-    return a.x * b.x + a.y * b.y < 0;
-}
-
-/* The same, and can it be mended? */
-static bool is_crowded_from(const struct tri_refiner *r, const struct tri_subsegment *s, int32_t code)
-{
-    if (!is_in_diametral_disk(r->mesh, s, code))
-        return false;
-    struct tri_shape shape = tri_shape_of(r->mesh->xy, r->mesh->tri[tri_of(code)].v);
-    return !tri_is_hopeless(r->mesh, r->mesh->shortest2, tri_of(code), &shape) && !is_flat(r, &shape);
-}
-
-static bool is_crowded(const struct tri_refiner *r, const struct tri_subsegment *s)
-{
-    return (s->side[0] != TRI_NONE && is_crowded_from(r, s, s->side[0])) ||
-           (s->side[1] != TRI_NONE && is_crowded_from(r, s, s->side[1]));
-}
-
 static bool split_crowded(struct tri_refiner *r)
 {
     while (r->n_crowded > 0) {
@@ -454,7 +386,7 @@ static bool split_crowded(struct tri_refiner *r)
         int32_t beside = tri_of(sub->side[sub->side[0] == TRI_NONE]);
         assert(s >= 0 && tri_is_live(&r->mesh->tri[beside]));
         r->n_crowded--;
-        if (!is_crowded(r, sub) || at_limit(r) || r->relaxed == 3)
+        if (!tri_is_crowded(r->mesh, sub) || at_limit(r) || r->relaxed == 3)
             continue;
         enum outcome outcome = split(r, s, beside);
         if (outcome == FAILED) {
@@ -462,7 +394,7 @@ static bool split_crowded(struct tri_refiner *r)
             return false;
         }
         if (outcome == DONE)
-            count_point(r, BAD_ANGLE);
+            count_point(r, TRI_BAD_ANGLE);
     }
     return true;
 }
@@ -494,8 +426,8 @@ static bool queue_bad(struct tri_refiner *r, int32_t slot, bool sizes)
     if (!tri_is_live(t))
         return true;
     struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
-    enum badness badness = judge(r, t, &shape);
-    if (badness == GOOD || (badness == BAD_SIZE) != sizes)
+    enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
+    if (badness == TRI_GOOD || (badness == TRI_BAD_SIZE) != sizes)
         return true;
     return push(r, slot, badness, shape.l[shape.shortest]);
 }
@@ -587,7 +519,7 @@ static void begin_stages(struct tri_refiner *r)
     double usual = fmin(r->options->min_angle, TRI_USUAL_ANGLE);
     bool easy = usual > EASY_ANGLE && has_sizes(r->options) && !r->options->fence;
     r->stage = easy ? EASY_STAGE : USUAL_STAGE;
-    r->bounds = tri_bounds_for(easy ? SIZES_ANGLE : usual, r->options->conforming);
+    r->criterion.bounds = tri_bounds_for(easy ? SIZES_ANGLE : usual, r->options->conforming);
 }
 
 static void go_beyond(struct tri_refiner *r)
@@ -635,22 +567,6 @@ static bool refine_in_stages(struct tri_refiner *r)
     return true;
 }
 
-enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
-                                 struct tri_error *error)
-{
-    const struct tri_refiner r = {.mesh = (struct tri_mesh *)mesh, .options = options};
-    double triangles = 0;
-    if (options->max_steiner >= 0 || !(options->max_area > 0 || options->region_areas))
-        return TRI_OK;
-    for (int32_t t = 0; t < mesh->n_slots; t++)
-        if (tri_is_live(&mesh->tri[t]))
-            triangles += tri_shape_of(mesh->xy, mesh->tri[t].v).area2 / area2_bound(&r, mesh->tri[t].region);
-    if (triangles <= TRI_MAX_TRIANGLES)
-        return TRI_OK;
-    return tri_fail(error, TRI_TOO_LARGE, NULL, 0, "the area bounds ask for more than %.3g triangles; a mesh holds %d",
-                    triangles, TRI_MAX_TRIANGLES);
-}
-
 enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *mesh,
                                 const struct tri_refine_options *options, struct tri_refine_report *report,
                                 struct tri_error *error)
@@ -666,6 +582,8 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
     assert(mesh->n_slots == 0 || mesh->n_hubs > 0); /* tri_refine_prepare has been called */
     r->mesh = mesh;
     r->options = options;
+    r->criterion.mesh = mesh;
+    r->criterion.options = options;
     r->report = report;
     begin_stages(r);
     r->shortest2 = mesh->shortest2;
@@ -710,90 +628,3 @@ enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_option
     return status;
 }
 
-static bool needs_work(const struct tri_refiner *r, int32_t slot)
-{
-    const struct tri_triangle *t = &r->mesh->tri[slot];
-    if (!tri_is_live(t))
-        return false;
-    struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
-    if (judge(r, t, &shape) != GOOD)
-        return true;
-    for (int e = 0; r->options->conforming && e < 3; e++)
-        if (t->n[e] < 0 && is_crowded(r, &r->mesh->sub[~t->n[e]]))
-            return true;
-    return false;
-}
-
-int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t first,
-                      int32_t last, int32_t *found)
-{
-    const struct tri_refiner r = {.mesh = (struct tri_mesh *)mesh,
-                                  .options = options,
-                                  .bounds = tri_bounds_for(options->min_angle, options->conforming)};
-    int32_t n = 0;
-    assert(first >= 0 && last <= mesh->n_slots);
-    for (int32_t slot = first; slot < last; slot++)
-        if (needs_work(&r, slot))
-            found[n++] = slot;
-    return n;
-}
-
-/* May a corner of the triangle be an end of a subsegment that must not be split? */
-static bool is_beside_protected(const struct tri_refiner *r, const struct tri_triangle *t)
-{
-    for (int e = 0; e < 3; e++) {
-        if (t->n[e] < 0 && is_protected(r, &r->mesh->sub[~t->n[e]]))
-            return true;
-        const struct tri_triangle *other = t->n[e] < 0 ? t : &r->mesh->tri[tri_of(t->n[e])];
-        for (int f = 0; f < 3; f++)
-            if (other->n[f] < 0 && is_protected(r, &r->mesh->sub[~other->n[f]]))
-                return true;
-    }
-    return false;
-}
-
-static enum tri_excuse excuse_for(const struct tri_refiner *r, int32_t slot, const struct tri_shape *shape,
-                                  enum badness badness, const struct tri_refine_report *report)
-{
-    const struct tri_triangle *t = &r->mesh->tri[slot];
-    if (badness == BAD_ANGLE && tri_is_hopeless(r->mesh, r->shortest2, slot, shape))
-        return shape->l[shape->shortest] < r->shortest2 ? TRI_EXCUSE_PRECISION
-               : tri_is_channel(r->mesh, slot, shape)      ? TRI_EXCUSE_CHANNEL
-                                                           : TRI_EXCUSE_INPUT_ANGLE;
-    if (report->hit_limit)
-        return TRI_EXCUSE_LIMIT;
-    if (r->options->protect > 0 && is_beside_protected(r, t))
-        return TRI_EXCUSE_PROTECTED;
-    if (report->hit_cap && badness == BAD_ANGLE)
-        return TRI_EXCUSE_LIMIT;
-    return report->gated + report->deferred > 0 ? TRI_EXCUSE_DEFERRED : TRI_EXCUSE_PRECISION;
-}
-
-int64_t tri_count_encroached(const struct tri_mesh *mesh)
-{
-    int64_t n = 0;
-    for (int32_t s = 0; s < mesh->n_subs; s++) {
-        const struct tri_subsegment *sub = &mesh->sub[s];
-        n += (sub->side[0] != TRI_NONE && is_in_diametral_disk(mesh, sub, sub->side[0])) ||
-             (sub->side[1] != TRI_NONE && is_in_diametral_disk(mesh, sub, sub->side[1]));
-    }
-    return n;
-}
-
-void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options *options,
-                   const struct tri_refine_report *report, int64_t count[TRI_EXCUSES])
-{
-    struct tri_refiner r = {.mesh = (struct tri_mesh *)mesh, .options = options};
-    r.bounds = tri_bounds_for(options->min_angle, options->conforming);
-    r.shortest2 = mesh->shortest2;
-    for (int k = 0; k < TRI_EXCUSES; k++)
-        count[k] = 0;
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
-        if (!tri_is_live(&mesh->tri[t]))
-            continue;
-        struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
-        enum badness badness = judge(&r, &mesh->tri[t], &shape);
-        if (badness != GOOD)
-            count[excuse_for(&r, t, &shape, badness, report)]++;
-    }
-}

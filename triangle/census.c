@@ -1,0 +1,105 @@
+/* Looking over a whole mesh: what is there to do, can it be done, what has been left, and why. */
+#include <assert.h>
+
+#include "triangle/criterion.h"
+#include "triangle/small_angle.h"
+
+enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                                 struct tri_error *error)
+{
+    const struct tri_criterion c = {.mesh = mesh, .options = options};
+    double triangles = 0;
+    if (options->max_steiner >= 0 || !(options->max_area > 0 || options->region_areas))
+        return TRI_OK;
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        if (tri_is_live(&mesh->tri[t]))
+            triangles += tri_shape_of(mesh->xy, mesh->tri[t].v).area2 / tri_area2_bound(&c, mesh->tri[t].region);
+    if (triangles <= TRI_MAX_TRIANGLES)
+        return TRI_OK;
+    return tri_fail(error, TRI_TOO_LARGE, NULL, 0, "the area bounds ask for more than %.3g triangles; a mesh holds %d",
+                    triangles, TRI_MAX_TRIANGLES);
+}
+
+static bool needs_work(const struct tri_criterion *c, int32_t slot)
+{
+    const struct tri_triangle *t = &c->mesh->tri[slot];
+    if (!tri_is_live(t))
+        return false;
+    struct tri_shape shape = tri_shape_of(c->mesh->xy, t->v);
+    if (tri_judge(c, t, &shape) != TRI_GOOD)
+        return true;
+    for (int e = 0; c->options->conforming && e < 3; e++)
+        if (t->n[e] < 0 && tri_is_crowded(c->mesh, &c->mesh->sub[~t->n[e]]))
+            return true;
+    return false;
+}
+
+int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t first,
+                      int32_t last, int32_t *found)
+{
+    const struct tri_criterion c = {mesh, options, tri_bounds_for(options->min_angle, options->conforming)};
+    int32_t n = 0;
+    assert(first >= 0 && last <= mesh->n_slots);
+    for (int32_t slot = first; slot < last; slot++)
+        if (needs_work(&c, slot))
+            found[n++] = slot;
+    return n;
+}
+
+/* May a corner of the triangle be an end of a subsegment that must not be split? */
+static bool is_beside_protected(const struct tri_criterion *c, const struct tri_triangle *t)
+{
+    for (int e = 0; e < 3; e++) {
+        if (t->n[e] < 0 && tri_is_protected(c->options, &c->mesh->sub[~t->n[e]]))
+            return true;
+        const struct tri_triangle *other = t->n[e] < 0 ? t : &c->mesh->tri[tri_of(t->n[e])];
+        for (int f = 0; f < 3; f++)
+            if (other->n[f] < 0 && tri_is_protected(c->options, &c->mesh->sub[~other->n[f]]))
+                return true;
+    }
+    return false;
+}
+
+static enum tri_excuse excuse_for(const struct tri_criterion *c, int32_t slot, const struct tri_shape *shape,
+                                  enum tri_badness badness, const struct tri_refine_report *report)
+{
+    const struct tri_triangle *t = &c->mesh->tri[slot];
+    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, c->mesh->shortest2, slot, shape))
+        return shape->l[shape->shortest] < c->mesh->shortest2 ? TRI_EXCUSE_PRECISION
+               : tri_is_channel(c->mesh, slot, shape)      ? TRI_EXCUSE_CHANNEL
+                                                           : TRI_EXCUSE_INPUT_ANGLE;
+    if (report->hit_limit)
+        return TRI_EXCUSE_LIMIT;
+    if (c->options->protect > 0 && is_beside_protected(c, t))
+        return TRI_EXCUSE_PROTECTED;
+    if (report->hit_cap && badness == TRI_BAD_ANGLE)
+        return TRI_EXCUSE_LIMIT;
+    return report->gated + report->deferred > 0 ? TRI_EXCUSE_DEFERRED : TRI_EXCUSE_PRECISION;
+}
+
+int64_t tri_count_encroached(const struct tri_mesh *mesh)
+{
+    int64_t n = 0;
+    for (int32_t s = 0; s < mesh->n_subs; s++) {
+        const struct tri_subsegment *sub = &mesh->sub[s];
+        n += (sub->side[0] != TRI_NONE && tri_is_in_diametral_disk(mesh, sub, sub->side[0])) ||
+             (sub->side[1] != TRI_NONE && tri_is_in_diametral_disk(mesh, sub, sub->side[1]));
+    }
+    return n;
+}
+
+void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                   const struct tri_refine_report *report, int64_t count[TRI_EXCUSES])
+{
+    const struct tri_criterion c = {mesh, options, tri_bounds_for(options->min_angle, options->conforming)};
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        count[k] = 0;
+    for (int32_t t = 0; t < mesh->n_slots; t++) {
+        if (!tri_is_live(&mesh->tri[t]))
+            continue;
+        struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
+        enum tri_badness badness = tri_judge(&c, &mesh->tri[t], &shape);
+        if (badness != TRI_GOOD)
+            count[excuse_for(&c, t, &shape, badness, report)]++;
+    }
+}

@@ -1,0 +1,40 @@
+/* Which triangles are bad, and which subsegments crowded: the criterion that the refinement loop works for, and its census counts.
+ *
+ * Nothing here changes the mesh. */
+#ifndef TRIANGLE_CRITERION_H
+#define TRIANGLE_CRITERION_H
+
+#include "triangle/quality.h"
+#include "triangle/refine.h"
+
+struct tri_criterion {
+    const struct tri_mesh *mesh;
+    const struct tri_refine_options *options;
+    struct tri_bounds bounds; /* for the angle that is worked for now, which may be below that of the options */
+};
+
+enum tri_badness { TRI_GOOD, TRI_BAD_SIZE, TRI_BAD_ANGLE };
+
+/* Twice the largest area allowed in a region, in the mesh's units; infinity where there is no bound. */
+double tri_area2_bound(const struct tri_criterion *criterion, int32_t region);
+
+/* Does the caller's size test refuse a triangle with these corners and twice this area? Only where there is one. */
+bool tri_is_unsuitable(const struct tri_criterion *criterion, const int32_t v[3], double area2);
+
+/* A bad angle counts before a bad size. */
+enum tri_badness tri_judge(const struct tri_criterion *criterion, const struct tri_triangle *t,
+                           const struct tri_shape *shape);
+
+/* -Y, -YY: must the subsegment not be split? */
+bool tri_is_protected(const struct tri_refine_options *options, const struct tri_subsegment *s);
+
+/* Lower than the shortest edge that coordinates can carry: splitting a subsegment beside it would chase the rounding. */
+bool tri_is_flat(const struct tri_mesh *mesh, const struct tri_shape *shape);
+
+/* Does the apex of the triangle with this code lie in the diametral circle of the subsegment? */
+bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, int32_t code);
+
+/* The apex of a triangle beside the subsegment does, and that can be mended. */
+bool tri_is_crowded(const struct tri_mesh *mesh, const struct tri_subsegment *s);
+
+#endif
