@@ -443,6 +443,23 @@ static void reads_from_a_pipe(void **state)
     close(ends[0]);
 }
 
+/* A NUL byte would end the number before it: UTF-16 text would be read as other numbers. */
+static void nul_bytes_are_refused(void **state)
+{
+    (void)state;
+    static const char text[] = "3 2 0 0\n1 0 0\n2 1\0002 0\n3 0 1\n";
+    FILE *const file = fopen(node_path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(text, 1, sizeof text - 1, file), sizeof text - 1);
+    assert_int_equal(fclose(file), 0);
+    struct tri_pslg pslg;
+    struct tri_error error;
+    int32_t base;
+    assert_int_equal(tri_read_node(node_path, &varieties[0], &pslg, &base, &error), TRI_BAD_INPUT);
+    assert_int_equal(error.line, 3);
+    assert_null(pslg.points);
+}
+
 /* A line has no length limit: far longer than a chunk, and than any buffer. */
 static void line_of_a_megabyte(void **state)
 {
@@ -545,6 +562,7 @@ int main(void)
         cmocka_unit_test(ele_and_area_errors),
         cmocka_unit_test(files_that_are_none),
         cmocka_unit_test(reads_from_a_pipe),
+        cmocka_unit_test(nul_bytes_are_refused),
         cmocka_unit_test(line_of_a_megabyte),
         cmocka_unit_test(large_file_in_chunks),
         cmocka_unit_test(mutated_bytes_are_harmless),
