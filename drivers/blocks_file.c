@@ -1,6 +1,7 @@
 /* A table of two whole numbers a row. */
 #include "drivers/blocks_file.h"
 
+#include "drivers/interrupt.h"
 #include "triangle/number.h"
 #include "triangle/write.h"
 
@@ -27,14 +28,14 @@ enum tri_status blocks_write(const char *path, const struct par_report *report, 
                              struct tri_error *error)
 {
     struct source source = {report, mesh};
-    struct tri_output_set set;
+    static struct tri_output_set set; /* outlives this call, since signals look at it */
     struct tri_output *output;
     tri_outputs_begin(&set);
+    interrupt_guard(&set);
+    interrupt_hold();
     enum tri_status status = tri_output_open(&set, path, &output, error);
+    interrupt_release();
     status = status ? status
                     : tri_write_table(output, (size_t)mesh->n_slots, ROW_BYTES, format_row, &source, NULL, error);
-    if (!status)
-        return tri_outputs_commit(&set, error);
-    tri_outputs_abort(&set);
-    return status;
+    return interrupt_finish(&set, status, error);
 }

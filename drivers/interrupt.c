@@ -53,3 +53,14 @@ void interrupt_release(void)
     if (waiting)
         end_by(waiting);
 }
+
+enum tri_status interrupt_finish(struct tri_output_set *set, enum tri_status status, struct tri_error *error)
+{
+    interrupt_hold();
+    if (status)
+        tri_outputs_abort(set);
+    else
+        status = tri_outputs_commit(set, error);
+    interrupt_release();
+    return status;
+}

@@ -390,12 +390,7 @@ enum tri_status mesh_files_write(const struct mesh_files *files, struct tri_erro
     interrupt_guard(&set);
     enum tri_status status = prepare(&w);
     status = status ? status : write_all(&w, &set);
-    interrupt_hold();
-    if (status)
-        tri_outputs_abort(&set);
-    else
-        status = tri_outputs_commit(&set, error);
-    interrupt_release();
+    status = interrupt_finish(&set, status, error);
     tri_edge_list_free(&w.edges);
     tri_used_free(&w.used);
     return status;

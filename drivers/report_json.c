@@ -198,13 +198,7 @@ static enum tri_status write_text(const char *path, const char *text, struct tri
     interrupt_release();
     status = status ? status : tri_output_write(output, text, strlen(text), error);
     status = status ? status : tri_output_write(output, "\n", 1, error);
-    interrupt_hold();
-    if (status)
-        tri_outputs_abort(&set);
-    else
-        status = tri_outputs_commit(&set, error);
-    interrupt_release();
-    return status;
+    return interrupt_finish(&set, status, error);
 }
 
 enum tri_status report_write(const char *path, const struct run *run, const struct par_report *schedule, int threads,

@@ -19,7 +19,6 @@
  * fewer seams (a fence of the first colour holds four blocks' worth). Coarse triangles a block has after
  * pre-refinement: enough for seams to be narrow, few enough for pre-refinement to take a few thousandths of the time.
  * (docs/performance.md) */
-static const double COARSE_ANGLE = 25, EASY_ANGLE = 31;
 static const double BLOCKS = 128, SMALLEST_BLOCK = 16384, LARGEST_BLOCK = 131072, COARSE_PER_BLOCK = 64;
 
 enum { FEWEST_BLOCKS = 4, FEWEST_COARSE_BLOCKS = 32, MAX_ROUNDS = 24 };
@@ -36,11 +35,9 @@ void par_report_free(struct par_report *report)
 
 int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, int32_t t, int *phase)
 {
-    const int32_t *v = mesh->tri[t].v;
     for (*phase = 0; report->partition.x && *phase < PAR_COLOURS; ++*phase) {
-        int32_t block = par_block_at(&report->partition, *phase, mesh->xy[v[0]]);
-        if (block != TRI_NONE && par_block_at(&report->partition, *phase, mesh->xy[v[1]]) == block &&
-            par_block_at(&report->partition, *phase, mesh->xy[v[2]]) == block)
+        int32_t block = par_owner_of(&report->partition, *phase, mesh, t);
+        if (block != TRI_NONE)
             return block;
     }
     *phase = -1;
@@ -127,7 +124,7 @@ static enum tri_status prerefine_uniform(struct par_state *state, const struct t
 {
     struct tri_refine_options coarse = *quality;
     coarse.area_scale = (quality->area_scale > 0 ? quality->area_scale : 1) * (block / COARSE_PER_BLOCK);
-    coarse.min_angle = quality->min_angle < COARSE_ANGLE ? quality->min_angle : COARSE_ANGLE;
+    coarse.min_angle = fmin(quality->min_angle, TRI_SIZES_ANGLE);
     coarse.unsuitable = NULL;
     if (level == 0 && coarse.min_angle > 0 && quality->max_area > 0)
         state->report->radius_theory = par_radius_tight(quality->max_area * coarse.area_scale, coarse.min_angle);
@@ -251,7 +248,7 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
             break;
         par_partition_coarsen(partition);
     }
-    state->report->deferred = state->report->total.deferred;
+    state->report->deferred += state->report->total.deferred; /* run_schedule clears it in the total */
     return status;
 }
 
@@ -312,7 +309,6 @@ static enum tri_status refine_level(struct par_state *state, const struct tri_re
     double input_work = 8.0 * state->mesh->n_slots;
     began = par_seconds();
     if (par_blocks(&partition) < (level == 0 ? FEWEST_BLOCKS : FEWEST_COARSE_BLOCKS)) {
-        state->quality = quality;
         status = refine_rest(state, quality, true, error);
         if (level > 0)
             state->report->seconds_prerefine += par_seconds() - began;
@@ -334,7 +330,7 @@ static enum tri_status refine_level(struct par_state *state, const struct tri_re
     return status;
 }
 
-/* Bounds above EASY_ANGLE are dear wherever triangles of different sizes meet, and in a mesh that comes out of a coarse
+/* Bounds above TRI_EASY_ANGLE are dear wherever triangles of different sizes meet, and in a mesh that comes out of a coarse
  * one by stages they meet everywhere. So sizes are brought about first, with an easy bound, and then the angles on a
  * mesh of one size. (Measured on letter.poly, 33 degrees: 2% more triangles than by one sequential call, instead of
  * 28%.) */
@@ -342,7 +338,7 @@ static enum tri_status refine_sizes_first(struct par_state *state, const struct 
                                           struct tri_error *error)
 {
     struct tri_refine_options easy = *quality;
-    easy.min_angle = COARSE_ANGLE;
+    easy.min_angle = TRI_SIZES_ANGLE;
     return quality->max_area > 0 || quality->region_areas ? refine_level(state, &easy, 0, error) : TRI_OK;
 }
 
@@ -364,12 +360,11 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     if (status)
         return status;
     if (must_be_sequential(quality, options)) {
-        state.quality = quality;
         status = refine_rest(&state, quality, true, error);
         report->seconds_last += par_seconds() - began;
     } else {
         usual.min_angle = quality->min_angle < TRI_USUAL_ANGLE ? quality->min_angle : TRI_USUAL_ANGLE;
-        status = usual.min_angle > EASY_ANGLE ? refine_sizes_first(&state, &usual, error) : TRI_OK;
+        status = usual.min_angle > TRI_EASY_ANGLE ? refine_sizes_first(&state, &usual, error) : TRI_OK;
         status = status ? status : refine_level(&state, &usual, 0, error);
         double last = par_seconds();
         if (!status && quality->min_angle > TRI_USUAL_ANGLE)

@@ -363,6 +363,16 @@ int32_t par_block_at(const struct par_partition *p, int colour, struct tri_point
     return row == TRI_NONE ? TRI_NONE : column * p->n_rows + row;
 }
 
+int32_t par_owner_of(const struct par_partition *p, int colour, const struct tri_mesh *mesh, int32_t t)
+{
+    const int32_t *v = mesh->tri[t].v;
+    int32_t block = par_block_at(p, colour, mesh->xy[v[0]]);
+    for (int k = 1; k < 3 && block != TRI_NONE; k++)
+        if (par_block_at(p, colour, mesh->xy[v[k]]) != block)
+            block = TRI_NONE;
+    return block;
+}
+
 double par_cell_size(const struct par_partition *p, struct tri_point q)
 {
     int32_t column = interval_at(p->x, p->n_columns, q.x);

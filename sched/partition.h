@@ -59,6 +59,9 @@ struct tri_fence par_fence(const struct par_partition *partition, int32_t column
  * or TRI_NONE. O(log blocks). */
 int32_t par_block_at(const struct par_partition *partition, int colour, struct tri_point q);
 
+/* The block of a colour whose fence holds all corners of triangle t, or TRI_NONE. O(log blocks). */
+int32_t par_owner_of(const struct par_partition *partition, int colour, const struct tri_mesh *mesh, int32_t t);
+
 /* The smaller side of the cell (not fence) that holds q. O(log blocks). */
 double par_cell_size(const struct par_partition *partition, struct tri_point q);
 

@@ -73,25 +73,14 @@ static bool is_active(void *user, const double p[2])
     return p[0] >= a->x_min && p[0] < a->x_max && p[1] >= a->y_min && p[1] < a->y_max;
 }
 
-/* The block whose fence holds all corners, or TRI_NONE. */
-static int32_t owner_of(const struct phase *p, const struct tri_triangle *t)
-{
-    const struct tri_point *xy = p->state->mesh->xy;
-    int32_t block = par_block_at(p->partition, p->colour, xy[t->v[0]]);
-    for (int k = 1; k < 3 && block != TRI_NONE; k++)
-        if (par_block_at(p->partition, p->colour, xy[t->v[k]]) != block)
-            block = TRI_NONE;
-    return block;
-}
-
 static void assign_blocks(struct phase *p)
 {
     const struct tri_mesh *mesh = p->state->mesh;
     const struct par_slots *pool = &p->state->pool;
 #pragma omp parallel for num_threads(p->state->threads) schedule(static)
     for (int32_t i = 0; i < pool->n; i++) {
-        const struct tri_triangle *t = &mesh->tri[pool->item[i]];
-        p->block_of[i] = tri_is_live(t) ? owner_of(p, t) : GONE;
+        int32_t t = pool->item[i];
+        p->block_of[i] = tri_is_live(&mesh->tri[t]) ? par_owner_of(p->partition, p->colour, mesh, t) : GONE;
     }
 }
 

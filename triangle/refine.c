@@ -55,8 +55,6 @@ enum { SEED_CHUNK = 1 << 16 };
 /* Beyond this lies no point that the predicates can carry: the triangle's area has been rounded to nothing. */
 static const double FARTHEST = 0x1p199;
 
-static const double EASY_ANGLE = 31, SIZES_ANGLE = 25; /* degrees, see begin_stages */
-
 /* DONE: a point was inserted, or the triangle is gone; AGAIN: a subsegment was split instead, the triangle may still
  * stand. */
 enum outcome { DONE, AGAIN, REFUSED, FAILED };
@@ -331,7 +329,6 @@ static void relax(struct tri_refiner *r)
         r->relaxed++;
     if (r->relaxed == 3)
         return;
-    assert(r->relaxed >= 0 && r->relaxed < 3);
     lower_bound(r, bound[r->relaxed++]);
     r->angle_cap *= 2;
     r->report->hit_cap = true;
@@ -503,7 +500,7 @@ static double quarter_of_shortest2(const struct tri_mesh *mesh)
     return shortest2 / 16;
 }
 
-/* Where there are sizes to reach and the angle bound is above EASY_ANGLE, sizes come first, with an easy bound: bad
+/* Where there are sizes to reach and the angle bound is above TRI_EASY_ANGLE, sizes come first, with an easy bound: bad
  * angles are dear to mend where triangles of different sizes meet, and in a mesh of one size they seldom do
  * (docs/performance.md: up to a sixth fewer triangles). Above TRI_USUAL_ANGLE refinement may feed on itself, with ever
  * shorter edges. So the whole mesh is refined for the usual angle; then for more, as long as that adds less than half
@@ -517,9 +514,9 @@ static bool has_sizes(const struct tri_refine_options *options)
 static void begin_stages(struct tri_refiner *r)
 {
     double usual = fmin(r->options->min_angle, TRI_USUAL_ANGLE);
-    bool easy = usual > EASY_ANGLE && has_sizes(r->options) && !r->options->fence;
+    bool easy = usual > TRI_EASY_ANGLE && has_sizes(r->options) && !r->options->fence;
     r->stage = easy ? EASY_STAGE : USUAL_STAGE;
-    r->criterion.bounds = tri_bounds_for(easy ? SIZES_ANGLE : usual, r->options->conforming);
+    r->criterion.bounds = tri_bounds_for(easy ? TRI_SIZES_ANGLE : usual, r->options->conforming);
 }
 
 static void go_beyond(struct tri_refiner *r)
