@@ -1,9 +1,9 @@
 /* The whole schedule against the sequential loop: the same bounds, nearly the same size, and one mesh for any number
  * of threads, any order of the blocks.
  *
- * Blocks are made small, so that small inputs have many. This program may be linked with --wrap for malloc, calloc,
- * realloc and free (SUPPORT_WRAP): the library's calls then come to the functions below, which count what is held and
- * fail the call that a test has chosen. */
+ * Blocks are made small, so that small inputs have many. This program is linked with --wrap for malloc, calloc,
+ * realloc and free: see allocations.h. */
+#include "allocations.h"
 #include "support.h"
 
 #include <pthread.h>
@@ -12,52 +12,6 @@
 #include "sched/par.h"
 #include "triangle/quality.h"
 
-#ifdef SUPPORT_WRAP
-void *__real_malloc(size_t bytes);
-void *__real_calloc(size_t n, size_t bytes);
-void *__real_realloc(void *block, size_t bytes);
-void __real_free(void *block);
-void *__wrap_malloc(size_t bytes);
-void *__wrap_calloc(size_t n, size_t bytes);
-void *__wrap_realloc(void *block, size_t bytes);
-void __wrap_free(void *block);
-
-static atomic_llong calls, fail_at = INT64_MAX, held;
-static atomic_bool fail_ever_after;
-
-static bool must_fail(void)
-{
-    long long call = atomic_fetch_add(&calls, 1) + 1;
-    return fail_ever_after ? call >= fail_at : call == fail_at;
-}
-
-void *__wrap_malloc(size_t bytes)
-{
-    void *block = must_fail() ? NULL : __real_malloc(bytes);
-    held += block != NULL;
-    return block;
-}
-
-void *__wrap_calloc(size_t n, size_t bytes)
-{
-    void *block = must_fail() ? NULL : __real_calloc(n, bytes);
-    held += block != NULL;
-    return block;
-}
-
-void *__wrap_realloc(void *block, size_t bytes)
-{
-    void *fresh = must_fail() ? NULL : __real_realloc(block, bytes);
-    held += fresh != NULL && block == NULL;
-    return fresh;
-}
-
-void __wrap_free(void *block)
-{
-    held -= block != NULL;
-    __real_free(block);
-}
-#endif
 
 /* An input and bounds; `target` triangles to the order, from which the area bound is drawn (0: none). */
 struct trial {
@@ -660,14 +614,14 @@ static bool fail_once(const struct start *start, const struct par_options *optio
 {
     struct tri_error error = {0}, fault = {0};
     struct par_report report;
-    long long before = held;
+    long long before = support_held;
     struct tri_mesh mesh = coarse_mesh(start);
-    calls = 0;
-    fail_ever_after = ever_after;
-    fail_at = k;
+    support_calls = 0;
+    support_fail_ever_after = ever_after;
+    support_fail_at = k;
     enum tri_status status = par_refine(&mesh, &start->options.quality, options, &report, &error);
-    bool failed = calls >= k;
-    fail_at = INT64_MAX;
+    bool failed = support_calls >= k;
+    support_fail_at = INT64_MAX;
     if (status == TRI_OK) {
         assert_true(!failed || !ever_after);
     } else {
@@ -680,7 +634,7 @@ static bool fail_once(const struct start *start, const struct par_options *optio
     judge(start, &mesh, INT64_MAX); /* whatever is bad: a legal mesh */
     par_report_free(&report);
     tri_mesh_free(&mesh);
-    assert_int_equal(held, before);
+    assert_int_equal(support_held, before);
     return failed;
 }
 

@@ -1,55 +1,10 @@
 /* The whole way from a PSLG to a mesh: stages, units, attributes, markers, refusals, and every allocation that can fail.
  *
- * This program is linked with --wrap for malloc, calloc, realloc and free: the library's calls come to the functions below,
- * which count what is held and fail the call that a test has chosen. */
+ * This program is linked with --wrap for malloc, calloc, realloc and free: see allocations.h. */
+#include "allocations.h"
 #include "support.h"
 
 #ifdef SUPPORT_WRAP
-void *__real_malloc(size_t bytes);
-void *__real_calloc(size_t n, size_t bytes);
-void *__real_realloc(void *block, size_t bytes);
-void __real_free(void *block);
-void *__wrap_malloc(size_t bytes);
-void *__wrap_calloc(size_t n, size_t bytes);
-void *__wrap_realloc(void *block, size_t bytes);
-void __wrap_free(void *block);
-
-static int64_t calls, fail_at = INT64_MAX, held;
-static bool fail_ever_after;
-
-static bool must_fail(void)
-{
-    calls++;
-    return fail_ever_after ? calls >= fail_at : calls == fail_at;
-}
-
-void *__wrap_malloc(size_t bytes)
-{
-    void *block = must_fail() ? NULL : __real_malloc(bytes);
-    held += block != NULL;
-    return block;
-}
-
-void *__wrap_calloc(size_t n, size_t bytes)
-{
-    void *block = must_fail() ? NULL : __real_calloc(n, bytes);
-    held += block != NULL;
-    return block;
-}
-
-void *__wrap_realloc(void *block, size_t bytes)
-{
-    void *fresh = must_fail() ? NULL : __real_realloc(block, bytes);
-    held += fresh != NULL && block == NULL;
-    return fresh;
-}
-
-void __wrap_free(void *block)
-{
-    held -= block != NULL;
-    __real_free(block);
-}
-
 static void assert_legal_failure(enum tri_status status, struct tri_mesh *mesh, const struct tri_error *error)
 {
     assert_int_equal(status, TRI_NO_MEMORY);
@@ -72,20 +27,20 @@ static void fail_each(const struct tri_pslg *pslg, const struct tri_options *opt
         struct tri_mesh mesh;
         struct tri_report report;
         struct tri_error error = {0};
-        int64_t before = held;
+        int64_t before = support_held;
         assert_true(k < 100000);
-        calls = 0;
-        fail_at = k;
-        fail_ever_after = ever_after;
+        support_calls = 0;
+        support_fail_at = k;
+        support_fail_ever_after = ever_after;
         status = tri_generate(&mesh, pslg, options, &report, &error);
-        bool failed = calls >= fail_at;
-        fail_at = INT64_MAX;
+        bool failed = support_calls >= support_fail_at;
+        support_fail_at = INT64_MAX;
         assert_true(failed || status == TRI_OK);
         if (status != TRI_OK)
             assert_legal_failure(status, &mesh, &error);
         assert_true(!failed || status != TRI_OK || !ever_after);
         tri_mesh_free(&mesh);
-        assert_int_equal(held, before); /* no leak */
+        assert_int_equal(support_held, before); /* no leak */
         if (status == TRI_OK && failed)
             status = TRI_NO_MEMORY; /* that one could do without; go on */
     }
@@ -141,13 +96,13 @@ static void test_allocation_fails_in_a_large_refinement(void **state)
 static void test_nothing_leaks_on_success(void **state)
 {
     (void)state;
-    int64_t before = held;
+    int64_t before = support_held;
     struct tri_pslg pslg = support_tangle(SUPPORT_LATTICE, 100, 60, 1);
     struct tri_options options = support_quality(30, 0);
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
-    assert_int_equal(held, before);
+    assert_int_equal(support_held, before);
 }
 #endif
 
