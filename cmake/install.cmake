@@ -12,6 +12,7 @@ foreach(header IN LISTS PTRIANGLE_PUBLIC_HEADERS)
     get_filename_component(room ${header} DIRECTORY)
     install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/ptriangle/${room})
 endforeach()
+install(FILES triangle/triangle.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}) # where Triangle's clients look for it
 
 install(EXPORT ptriangleTargets NAMESPACE ptriangle:: DESTINATION ${PTRIANGLE_PACKAGE_DIR})
 configure_package_config_file(cmake/ptriangleConfig.cmake.in ptriangleConfig.cmake
@@ -23,6 +24,10 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/ptriangleConfig.cmake ${CMAKE_CURRENT_
 # pkg-config: the way from the .pc file up to the prefix depends on the library folder (lib, lib64, lib/x86_64-...).
 file(RELATIVE_PATH PTRIANGLE_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 string(REGEX REPLACE "/$" "" PTRIANGLE_PC_PREFIX ${PTRIANGLE_PC_PREFIX})
+set(PTRIANGLE_PC_SINGLE "")
+if(PTRIANGLE_SINGLE)
+    set(PTRIANGLE_PC_SINGLE " -DSINGLE")
+endif()
 set(PTRIANGLE_PC_SCHED "")
 if(TARGET libptriangle)
     set(PTRIANGLE_PC_SCHED "-lptriangle ${OpenMP_C_FLAGS} ")

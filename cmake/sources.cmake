@@ -11,6 +11,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/delaunay.c
     triangle/constrain.c
     triangle/carve.c
+    triangle/reconstruct.c
     triangle/cavity.c
     triangle/interpolate.c
     triangle/quality.c
@@ -32,7 +33,11 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/check_quality.c
     triangle/tri.c
     triangle/switches.c
-    triangle/topology.c)
+    triangle/topology.c
+    triangle/io_input.c
+    triangle/io_output.c
+    triangle/io_run.c
+    triangle/triangulate.c)
 
 # Room triangle/, text files. The one C++ file wraps std::from_chars and std::to_chars.
 set(PTRIANGLE_TEXT_SOURCES
@@ -48,7 +53,8 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/partition.c
     sched/room.c
     sched/phase.c
-    sched/par.c)
+    sched/par.c
+    sched/triangulate.c)
 
 # Headers that are installed, below include/ptriangle/ at the same path.
 set(PTRIANGLE_PUBLIC_HEADERS
@@ -57,6 +63,7 @@ set(PTRIANGLE_PUBLIC_HEADERS
     triangle/pslg.h
     triangle/mesh.h
     triangle/carve.h
+    triangle/reconstruct.h
     triangle/constrain.h
     triangle/cavity.h
     triangle/refine.h

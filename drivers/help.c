@@ -15,7 +15,7 @@ static const char *const paragraphs[] = {
 
     "What to make\n"
     "  -p      the input is a planar straight line graph (.poly): keep its segments, empty its holes\n"
-    "  -r      the input is a mesh (.node, .ele): refine it\n"
+    "  -r      the input is a mesh (.node, .ele): refine it; with -p, keep the segments of its .poly\n"
     "  -c      keep everything inside the convex hull; its edges become segments\n"
     "  -D      conforming: every triangle is Delaunay, not only constrained Delaunay\n"
     "  -O      ignore the holes\n"

@@ -22,12 +22,12 @@ struct writer {
     const struct tri_switches *switches;
     const struct tri_mesh *mesh;
     struct tri_edge_list edges; /* made where a file needs them */
-    struct tri_used used;       /* vertex and number are NULL: all vertices are written */
+    struct tri_used used;       /* vertices written; vertex and number are NULL: all are */
     int32_t n_vertices;         /* written, nodes amid edges not counted */
     int32_t base;
     int32_t n_attributes;       /* of vertices */
     int n_nodes;                /* of a triangle */
-    int n_columns;              /* of triangle attributes */
+    int32_t n_columns;          /* of triangle attributes */
     struct tri_error *error;
 };
 
@@ -86,7 +86,7 @@ static char *ele_row(void *user, size_t i, char *at)
     int32_t nodes[6] = {number_of(w, t->v[0]), number_of(w, t->v[1]), number_of(w, t->v[2])};
     for (int e = 0; w->n_nodes == 6 && e < 3; e++)
         nodes[3 + e] = w->n_vertices + w->edges.number[3 * i + (size_t)e];
-    return tri_row_ele(at, (int64_t)i + w->base, w->base, nodes, w->n_nodes, &w->mesh->regions[t->region].attribute,
+    return tri_row_ele(at, (int64_t)i + w->base, w->base, nodes, w->n_nodes, tri_region_attributes(w->mesh, t->region),
                        w->n_columns);
 }
 
@@ -153,28 +153,46 @@ static enum tri_status write_ele(struct writer *w, struct tri_output *output)
     return status ? status : write_rows(w, output, (size_t)w->mesh->n_slots, row_bytes, ele_row);
 }
 
+static void add_segment(const struct writer *w, struct tri_pslg *pslg, const int32_t v[2], int32_t marker)
+{
+    int32_t from = number_of(w, v[0]), to = number_of(w, v[1]);
+    if (from == TRI_NONE || to == TRI_NONE)
+        return;
+    pslg->segments[2 * (size_t)pslg->n_segments] = from;
+    pslg->segments[2 * (size_t)pslg->n_segments + 1] = to;
+    pslg->segment_markers[pslg->n_segments++] = marker;
+}
+
+/* The subsegments, then the segments of the input that are no edges of the mesh (-rp). */
+static void list_segments(const struct writer *w, struct tri_pslg *pslg)
+{
+    const struct tri_pslg *input = w->files->pslg;
+    const int32_t *markers = input->segment_markers;
+    for (int32_t s = 0; s < w->mesh->n_subs; s++)
+        add_segment(w, pslg, w->mesh->sub[s].v, w->mesh->sub[s].marker);
+    for (int32_t k = 0; w->files->is_edge && w->switches->segments && k < input->n_segments; k++)
+        if (!w->files->is_edge[k])
+            add_segment(w, pslg, &input->segments[2 * (size_t)k], markers ? markers[k] : 0);
+}
+
 /* Subsegments are few beside triangles, so that a copy of them costs nothing. */
 static enum tri_status write_poly(struct writer *w, struct tri_output *output)
 {
-    const struct tri_mesh *mesh = w->mesh;
     const struct tri_pslg *input = w->files->pslg;
     bool read_regions = tri_switches_use_regions(w->switches);
-    struct tri_pslg pslg = {.n_attributes = w->n_attributes, .n_segments = mesh->n_subs, .n_holes = input->n_holes,
-                            .holes = input->holes, .n_regions = read_regions ? input->n_regions : 0,
-                            .regions = input->regions};
-    pslg.segments = malloc(((size_t)mesh->n_subs + 1) * 2 * sizeof *pslg.segments);
-    pslg.segment_markers = malloc(((size_t)mesh->n_subs + 1) * sizeof *pslg.segment_markers);
-    enum tri_status status = TRI_OK;
-    if (!pslg.segments || !pslg.segment_markers)
-        status = tri_fail(w->error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d subsegments", (int)mesh->n_subs);
-    for (int32_t s = 0; !status && s < mesh->n_subs; s++) {
-        pslg.segments[2 * (size_t)s] = number_of(w, mesh->sub[s].v[0]);
-        pslg.segments[2 * (size_t)s + 1] = number_of(w, mesh->sub[s].v[1]);
-        pslg.segment_markers[s] = mesh->sub[s].marker;
-    }
+    size_t n = (size_t)w->mesh->n_subs + (size_t)input->n_segments + 1;
+    struct tri_pslg pslg = {.n_attributes = w->n_attributes, .n_holes = input->n_holes, .holes = input->holes,
+                            .n_regions = read_regions ? input->n_regions : 0, .regions = input->regions};
+    pslg.segments = malloc(n * 2 * sizeof *pslg.segments);
+    pslg.segment_markers = malloc(n * sizeof *pslg.segment_markers);
     struct tri_layout layout = {w->base, w->files->executor};
-    if (!status)
+    enum tri_status status;
+    if (pslg.segments && pslg.segment_markers) {
+        list_segments(w, &pslg);
         status = tri_write_poly(output, &layout, &pslg, !w->switches->no_markers, w->error);
+    } else {
+        status = tri_fail(w->error, TRI_NO_MEMORY, NULL, 0, "out of memory for %zu segments", n);
+    }
     free(pslg.segments);
     free(pslg.segment_markers);
     return status;
@@ -292,9 +310,24 @@ enum { N_KINDS = sizeof kinds / sizeof *kinds };
 
 /* --- all together */
 
-int mesh_files_attributes(const struct tri_switches *switches, const struct tri_pslg *pslg)
+/* Columns of triangle attributes in the .ele file: with -r those of the input, else one with -A and regions. */
+static int32_t count_columns(const struct mesh_files *f)
 {
-    return switches->regions && switches->segments && !switches->mesh && pslg->n_regions > 0;
+    const struct tri_switches *s = &f->arguments->switches;
+    return s->mesh ? f->mesh->n_columns : s->regions && s->segments && f->pslg->n_regions > 0;
+}
+
+/* Which vertices are written? */
+static enum tri_status choose_vertices(struct writer *w)
+{
+    const struct mesh_files *f = w->files;
+    enum tri_status status = TRI_OK;
+    if (w->switches->jettison)
+        status = tri_used_make(&w->used, f->mesh, w->error);
+    else if (f->elements->n > 0 && f->elements->n_nodes > 3)
+        status = tri_kept_make(&w->used, f->mesh, f->elements, w->error);
+    w->n_vertices = w->used.number ? w->used.n : f->mesh->n_vertices;
+    return status;
 }
 
 /* May a file of this name be made, as far as permissions tell? */
@@ -343,11 +376,8 @@ static enum tri_status prepare(struct writer *w)
     w->base = f->base;
     w->n_attributes = f->mesh->n_attributes;
     w->n_nodes = w->switches->second_order ? 6 : 3;
-    w->n_columns = mesh_files_attributes(w->switches, f->pslg);
-    enum tri_status status = TRI_OK;
-    if (w->switches->jettison)
-        status = tri_used_make(&w->used, f->mesh, w->error);
-    w->n_vertices = w->switches->jettison ? w->used.n : f->mesh->n_vertices;
+    w->n_columns = count_columns(f);
+    enum tri_status status = choose_vertices(w);
     bool numbers = w->switches->second_order;
     if (!status && (numbers || w->switches->edges || w->switches->voronoi || w->switches->off))
         status = tri_edge_list_make(&w->edges, f->mesh, numbers, w->error);

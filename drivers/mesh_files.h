@@ -7,6 +7,7 @@
 #include "triangle/executor.h"
 #include "triangle/mesh.h"
 #include "triangle/pslg.h"
+#include "triangle/reconstruct.h"
 
 /* What is written, and how. All borrowed. */
 struct mesh_files {
@@ -17,6 +18,9 @@ struct mesh_files {
     const struct tri_pslg *pslg;         /* the input: its points are written bit by bit as they were read */
     bool points_in_poly;                 /* the points came from a .poly file */
     int32_t base;                        /* 0 or 1 */
+    const struct tri_elements *elements; /* -r: the input's triangles; else n is 0 */
+    const bool *is_edge;                 /* [n_segments] -rp: the segments of the input that are not are written again;
+                                            NULL: no -r */
 };
 
 /* Looks whether all files could be created, so that nobody waits for a mesh that cannot be kept; changes nothing.
@@ -25,8 +29,5 @@ enum tri_status mesh_files_check(const struct mesh_files *files, struct tri_erro
 
 /* Writes all of them, or none. Says a line for each. */
 enum tri_status mesh_files_write(const struct mesh_files *files, struct tri_error *error);
-
-/* Columns of triangle attributes in the .ele file: with -A and regions one, else none. */
-int mesh_files_attributes(const struct tri_switches *switches, const struct tri_pslg *pslg);
 
 #endif

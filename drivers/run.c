@@ -2,6 +2,7 @@
 #include "drivers/run.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "drivers/console.h"
@@ -114,7 +115,7 @@ static enum tri_status read_mesh(struct runner *r, const struct names *names, co
     if (status || !run->arguments->switches.area_lists)
         return status;
     console_say(&r->console, "Opening %s.\n", names->area);
-    return tri_read_area(names->area, options, run->elements.n, &run->areas, r->error);
+    return tri_read_area(names->area, options, &run->elements, r->error);
 }
 
 static enum tri_status read_input(struct runner *r)
@@ -189,12 +190,9 @@ static enum tri_status check_points(const struct tri_pslg *pslg, const char *fil
     return pslg->n_points < 3 ? TRI_OK : tri_fail(error, TRI_BAD_INPUT, file, 0, "all vertices are at the same place");
 }
 
-/* The input as a mesh that keeps no bounds yet. */
-static enum tri_status build(struct runner *r)
+static enum tri_status triangulate(struct runner *r)
 {
     struct run *run = &r->run;
-    if (run->arguments->switches.mesh) /* what is missing is a mesh made of run->elements and run->areas */
-        return tri_fail(r->error, TRI_BAD_INPUT, NULL, 0, "refining a mesh (-r) is not supported yet");
     enum tri_status status = check_points(&run->pslg, run->arguments->file, r->error);
     if (status)
         return status;
@@ -211,6 +209,45 @@ static enum tri_status build(struct runner *r)
     summary_duplicates(&r->console, &run->mesh, &run->pslg);
     summary_segments(&r->console, &run->report.constrain);
     return TRI_OK;
+}
+
+static void count_loose(struct runner *r)
+{
+    struct run *run = &r->run;
+    for (int32_t k = 0; run->arguments->switches.segments && k < run->pslg.n_segments; k++)
+        run->n_loose += !run->is_edge[k];
+    if (run->n_loose > 0)
+        console_warn(&r->console, "%ld segments are no edges of the mesh. They are copied, but not kept by the mesh.\n",
+                     (long)run->n_loose);
+}
+
+/* The mesh of -r. */
+static enum tri_status reconstruct(struct runner *r)
+{
+    struct run *run = &r->run;
+    run->is_edge = malloc(((size_t)run->pslg.n_segments + 1) * sizeof *run->is_edge);
+    if (!run->is_edge)
+        return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)run->pslg.n_segments);
+    struct tri_reconstruct_options options = {.use_segments = run->arguments->switches.segments,
+                                              .refine = run->options.refine, .base = run->base,
+                                              .is_edge = run->is_edge};
+    console_say(&r->console, "Rebuilding the mesh from its triangles.\n");
+    enum tri_status status = tri_reconstruct(&run->mesh, &run->pslg, &run->elements, &options, r->error);
+    end_stage(r, RUN_DELAUNAY);
+    if (status == TRI_BAD_INPUT)
+        snprintf(r->error->file, sizeof r->error->file, "%s.ele", run->arguments->input);
+    if (status)
+        return status;
+    say_milliseconds(r, "Mesh reconstruction", run->seconds[RUN_DELAUNAY]);
+    run->options.quality.region_areas = run->elements.areas != NULL;
+    count_loose(r);
+    return TRI_OK;
+}
+
+/* The input as a mesh that keeps no bounds yet. */
+static enum tri_status build(struct runner *r)
+{
+    return r->run.arguments->switches.mesh ? reconstruct(r) : triangulate(r);
 }
 
 static enum tri_status refine(struct runner *r)
@@ -262,6 +299,8 @@ static enum tri_status tell(struct runner *r, double begin)
     if (status)
         return status;
     say_milliseconds(r, "Total running", run->total_seconds);
+    run->counts.interior += run->n_loose; /* as Triangle counts */
+    run->counts.subsegments += run->n_loose;
     summary_counts(&r->console, s, &run->pslg, run->elements.n, &run->counts);
     if (s->verbosity > 0)
         summary_shapes(&r->console, &run->mesh, &run->report);
@@ -283,13 +322,14 @@ static enum tri_status run_stages(struct runner *r)
     if (status)
         return status;
     struct mesh_files files = {run->arguments, &r->console, run->hooks->executor, &run->mesh, &run->pslg,
-                               run->points_in_poly, run->base};
+                               run->points_in_poly, run->base, &run->elements, NULL};
     status = mesh_files_check(&files, r->error);
     status = status ? status : build(r);
     status = status ? status : refine(r);
     if (status)
         return status;
     tri_mesh_compact(&run->mesh);
+    files.is_edge = run->is_edge;
     status = write_output(r, &files);
     return status ? status : tell(r, begin);
 }
@@ -312,7 +352,7 @@ int run_arguments(const struct arguments *arguments, const struct run_hooks *hoo
     tri_mesh_free(&r.run.mesh);
     tri_pslg_free(&r.run.pslg);
     tri_elements_free(&r.run.elements);
-    free(r.run.areas);
+    free(r.run.is_edge);
     return console_close(&r.console) && !status ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 

@@ -29,7 +29,8 @@ struct run {
     struct tri_options options;
     struct tri_pslg pslg;
     struct tri_elements elements; /* -r: the triangles */
-    double *areas;                /* -r and bare -a: their bounds */
+    bool *is_edge;                /* [n_segments] -r: is the segment an edge of the mesh? Else NULL */
+    int32_t n_loose;              /* segments that are not */
     int32_t base;                 /* 0 or 1 */
     bool points_in_poly;
     struct tri_mesh mesh;

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Installs a build into a scratch prefix, moves the prefix, and builds and runs tests/client/ against it: as a C project
 # through find_package, and by hand through pkg-config.
+# A client of Triangle's interface is linked to the sequential and to the parallel library, and must print the same.
 # Usage: run_client.sh BUILD_DIR WORK_DIR CMAKE C_COMPILER
 set -eu
 build=$1
@@ -36,6 +37,33 @@ export PKG_CONFIG_PATH
 # shellcheck disable=SC2046 # the words of pkg-config are meant to be split
 "$cc" -std=c11 "$client/client.c" -o "$work/by_hand" $(pkg-config --cflags --libs ptriangle)
 "$work/by_hand" "$square"
+
+echo "== a client of Triangle, relinked"
+directory=$(dirname "$(dirname "$pc")") # of the libraries
+# takes PROGRAM yes|no: is it the parallel triangulate() that was linked?
+takes() {
+    if nm "$1" | grep -q ' par_refine$'; then found=yes; else found=no; fi
+    [ "$found" = "$2" ] || { echo "$1: parallel: $found, expected $2" >&2; exit 1; }
+}
+"$work/cmake/dropin" >"$work/sequential.txt"
+takes "$work/cmake/dropin" no
+# shellcheck disable=SC2046
+"$cc" -std=c11 -c "$client/dropin.c" $(pkg-config --cflags triangle) -o "$work/dropin.o"
+"$cc" "$work/dropin.o" -L "$directory" -ltriangle -lm -o "$work/relinked"
+takes "$work/relinked" no
+"$work/relinked" | diff - "$work/sequential.txt"
+if [ -x "$work/cmake/dropin_parallel" ]; then
+    "$work/cmake/dropin_parallel" | diff - "$work/sequential.txt"
+    takes "$work/cmake/dropin_parallel" yes
+    "$cc" "$work/dropin.o" -L "$directory" -lptriangle -ltriangle -lm -fopenmp -o "$work/relinked"
+    takes "$work/relinked" yes
+    "$work/relinked" | diff - "$work/sequential.txt"
+    for threads in 1 2 5; do
+        OMP_NUM_THREADS=$threads "$work/relinked" pcqa0.0001zQ
+    done | uniq >"$work/sizes.txt"
+    cat "$work/sizes.txt"
+    [ "$(wc -l <"$work/sizes.txt")" -eq 1 ]
+fi
 
 echo "== executables"
 for program in "$build/bin/"*; do

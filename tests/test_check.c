@@ -992,22 +992,22 @@ static void order_is_kept_and_balanced(void **state)
     (void)state;
     enum { N = 5000 };
     struct sweep_order order;
-    assert_int_equal(sweep_order_init(&order, N), TRI_OK);
+    assert_int_equal(tri_sweep_order_init(&order, N), TRI_OK);
     for (int32_t s = 0; s < N; s++)
-        sweep_order_insert(&order, s, s - 1); /* from bottom to top: the worst case of a plain tree */
+        tri_sweep_order_insert(&order, s, s - 1); /* from bottom to top: the worst case of a plain tree */
     for (int32_t s = 0; s < N; s += 2)
-        sweep_order_remove(&order, s);
+        tri_sweep_order_remove(&order, s);
     int32_t above = -1;
     for (int32_t s = 1; s < N; s += 2) {
-        above = sweep_order_above(&order, above);
+        above = tri_sweep_order_above(&order, above);
         assert_int_equal(above, s);
         assert_true(depth(&order, s) < 60);
     }
-    assert_int_equal(sweep_order_above(&order, above), -1);
+    assert_int_equal(tri_sweep_order_above(&order, above), -1);
     for (int32_t s = N - 1; s >= 0; s -= 2)
-        sweep_order_remove(&order, s);
+        tri_sweep_order_remove(&order, s);
     assert_int_equal(order.root, -1);
-    sweep_order_clear(&order);
+    tri_sweep_order_clear(&order);
 }
 
 int main(void)

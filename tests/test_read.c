@@ -127,8 +127,7 @@ enum kind { NODE, POLY, POLY_WITH_REGIONS, POLY_REFINING, ELE, AREA };
 static void read_kind(enum kind kind, struct tri_read_options options, struct dump *dump)
 {
     struct tri_pslg pslg = {0};
-    struct tri_elements elements = {0};
-    double *areas = NULL;
+    struct tri_elements elements = {.n = kind == AREA ? 3 : 0};
     int32_t base = -1;
     bool points_in_poly = false;
     struct tri_error error = {.status = TRI_OK};
@@ -144,13 +143,13 @@ static void read_kind(enum kind kind, struct tri_read_options options, struct du
     else if (kind == ELE)
         status = tri_read_ele(ele_path, &options, 1, 4, &elements, &error);
     else if (kind == AREA)
-        status = tri_read_area(area_path, &options, 3, &areas, &error);
+        status = tri_read_area(area_path, &options, &elements, &error);
     else
         status = tri_read_poly(poly_path, node_path, &options, &pslg, &base, &points_in_poly, &error);
     assert_int_equal(status, error.status);
     if (status != TRI_OK) {
         add(dump, "%d %ld %s", (int)status, error.line, error.text);
-        assert_null(pslg.points || pslg.segments || pslg.markers || elements.corners || areas ? "not empty" : NULL);
+        assert_null(pslg.points || pslg.segments || pslg.markers || elements.corners || elements.areas ? "not empty" : NULL);
         assert_non_null(strrchr(error.file, '/'));
         return;
     }
@@ -161,11 +160,11 @@ static void read_kind(enum kind kind, struct tri_read_options options, struct du
         add(dump, "%d ", (int)elements.n_nodes);
     add_integers(dump, "t:", elements.corners, 3 * (size_t)elements.n);
     add_reals(dump, "|a:", elements.attributes, (size_t)elements.n * (size_t)elements.n_attributes);
-    add_reals(dump, "b:", areas, 3);
+    add_integers(dump, "|x:", elements.extra, (size_t)elements.n * (size_t)(elements.n_nodes - 3));
+    add_reals(dump, "b:", elements.areas, 3);
     add(dump, "%s", warnings.text);
     tri_pslg_free(&pslg);
     tri_elements_free(&elements);
-    free(areas);
 }
 
 struct example {
@@ -306,8 +305,9 @@ static void ele_and_area(void **state)
     static const struct example elements[] = {
         {"2 3 0\n1 1 2 3\n2 2 4 3\n", "3 t:0 1 2 1 3 2"},
         {"2\n1 1 2 3 9 9\n2 2 4 3\n", "3 t:0 1 2 1 3 2"},
-        {"2 6 1\n1 1 2 3 4 5 6 7.5\n2 2 4 3 1 1 1\n", "6 t:0 1 2 1 3 2|a:7.5 0"},
-        {"1 4 1\n1 1 2 3\n", "4 t:0 1 2|a:0"},
+        {"2 6 1\n1 1 2 3 4 5 6 7.5\n2 2 4 3 1 1 1\n", "6 t:0 1 2 1 3 2|a:7.5 0|x:3 -1 -1 0 0 0"},
+        {"1 4 1\n1 1 2 3\n", "4 t:0 1 2|a:0|x:-1"},
+        {"1 5 1\n1 1 2 3 -- 4 8\n", "5 t:0 1 2|a:8|x:-1 3"},
         {"1 2000000000 0\n1 1 2 3 4\n", "2000000000 t:0 1 2"},
         {"1 3 2\n1 1 2 3 -1 1e10\n", "3 t:0 1 2|a:-1 10000000000"},
         {"0 3 0\n", "3 "},

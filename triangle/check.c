@@ -48,14 +48,14 @@ bool tri_check_passed(const struct tri_check_report *report)
     return true;
 }
 
-void check_begin(struct checker *c, enum tri_check_kind kind)
+void tri_check_begin(struct checker *c, enum tri_check_kind kind)
 {
     struct tri_check_item *item = &c->report->item[kind];
     if (item->state == TRI_CHECK_SKIPPED)
         item->state = TRI_CHECK_OK;
 }
 
-void check_fault(struct checker *c, enum tri_check_kind kind, const char *format, ...)
+void tri_check_fault(struct checker *c, enum tri_check_kind kind, const char *format, ...)
 {
     struct tri_check_item *item = &c->report->item[kind];
     item->state = TRI_CHECK_FAILED;
@@ -67,7 +67,7 @@ void check_fault(struct checker *c, enum tri_check_kind kind, const char *format
     va_end(arguments);
 }
 
-void *check_array(int64_t n, size_t size)
+void *tri_check_array(int64_t n, size_t size)
 {
     assert(n >= 0 && size > 0);
     if ((uint64_t)n >= SIZE_MAX / size)
@@ -75,13 +75,13 @@ void *check_array(int64_t n, size_t size)
     return malloc(((size_t)n + 1) * size);
 }
 
-void *check_zeros(int64_t n, size_t size)
+void *tri_check_zeros(int64_t n, size_t size)
 {
     assert(n >= 0 && size > 0);
     return (uint64_t)n >= SIZE_MAX / size ? NULL : calloc((size_t)n + 1, size);
 }
 
-enum tri_status check_ask(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id)
+enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id)
 {
     if (c->n_queries == c->query_capacity) {
         if (c->query_capacity > INT32_MAX / 2 - 16)
@@ -100,34 +100,34 @@ enum tri_status check_ask(struct checker *c, struct tri_point at, enum tri_check
 static void check_arrays(struct checker *c)
 {
     const struct tri_check_mesh *m = c->mesh;
-    check_begin(c, TRI_CHECK_ARRAYS);
+    tri_check_begin(c, TRI_CHECK_ARRAYS);
     for (int32_t h = 0; h < c->n_half_edges; h++) {
         int32_t v = m->triangles[h];
         if (v >= 0 && v < m->n_points)
             continue;
-        check_fault(c, TRI_CHECK_ARRAYS, "triangle %ld has corner %ld, which is not a vertex", check_number(c, h / 3),
-                    check_number(c, v));
+        tri_check_fault(c, TRI_CHECK_ARRAYS, "triangle %ld has corner %ld, which is not a vertex",
+                        check_number(c, h / 3), check_number(c, v));
     }
     for (int32_t v = 0; v < m->n_points; v++) {
         struct tri_point p = check_point(c, v);
         if (tri_is_exact_coordinate(p.x) && tri_is_exact_coordinate(p.y))
             continue;
-        check_fault(c, TRI_CHECK_ARRAYS, "vertex %ld at (%.17g, %.17g) is beyond the range of exact arithmetic",
-                    check_number(c, v), check_given(c, p.x), check_given(c, p.y));
+        tri_check_fault(c, TRI_CHECK_ARRAYS, "vertex %ld at (%.17g, %.17g) is beyond the range of exact arithmetic",
+                        check_number(c, v), check_given(c, p.x), check_given(c, p.y));
     }
 }
 
 static void check_orientation(struct checker *c)
 {
-    check_begin(c, TRI_CHECK_ORIENTATION);
+    tri_check_begin(c, TRI_CHECK_ORIENTATION);
     for (int32_t t = 0; t < c->mesh->n_triangles; t++) {
         const int32_t *v = c->mesh->triangles + 3 * (size_t)t;
         double sign = tri_orient2d(check_point(c, v[0]), check_point(c, v[1]), check_point(c, v[2]));
         if (sign > 0)
             continue;
-        check_fault(c, TRI_CHECK_ORIENTATION, "triangle %ld (%ld %ld %ld) is %s", check_number(c, t),
-                    check_number(c, v[0]), check_number(c, v[1]), check_number(c, v[2]),
-                    sign < 0 ? "clockwise" : "flat");
+        tri_check_fault(c, TRI_CHECK_ORIENTATION, "triangle %ld (%ld %ld %ld) is %s", check_number(c, t),
+                        check_number(c, v[0]), check_number(c, v[1]), check_number(c, v[2]),
+                        sign < 0 ? "clockwise" : "flat");
     }
 }
 
@@ -138,24 +138,24 @@ static enum tri_status run(struct checker *c)
     if (!check_good(c, TRI_CHECK_ARRAYS))
         return TRI_OK;
     check_orientation(c);
-    enum tri_status status = check_edges(c);
+    enum tri_status status = tri_check_edges(c);
     if (status == TRI_OK)
-        status = check_subsegments(c);
+        status = tri_check_subsegments(c);
     if (status == TRI_OK)
-        status = check_input(c);
+        status = tri_check_input(c);
     if (status == TRI_OK)
-        status = check_quality(c);
+        status = tri_check_quality(c);
     if (status != TRI_OK || !check_good(c, TRI_CHECK_ORIENTATION) || !check_good(c, TRI_CHECK_EDGES))
         return status;
-    check_delaunay(c);
-    status = check_stars(c);
+    tri_check_delaunay(c);
+    status = tri_check_stars(c);
     if (status == TRI_OK)
-        status = check_overlap(c);
+        status = tri_check_overlap(c);
     if (status != TRI_OK || !check_good(c, TRI_CHECK_OVERLAP))
         return status;
-    check_answers(c);
+    tri_check_answers(c);
     if (c->options->convex)
-        check_hull(c);
+        tri_check_hull(c);
     return TRI_OK;
 }
 
@@ -185,7 +185,7 @@ enum tri_status tri_check(const struct tri_check_mesh *mesh, const struct tri_ps
     memset(report, 0, sizeof *report);
     struct checker c = {.mesh = mesh, .input = input, .options = options, .report = report};
     c.n_half_edges = 3 * mesh->n_triangles;
-    enum tri_status status = check_scale(&c);
+    enum tri_status status = tri_check_scale(&c);
     if (status == TRI_OK)
         status = run(&c);
     release(&c);

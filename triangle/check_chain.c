@@ -164,8 +164,8 @@ static enum tri_status make_grid(struct chains *k)
     g->width = n > 0 ? (high.x - g->low.x) / g->side : 0;
     g->height = n > 0 ? (high.y - g->low.y) / g->side : 0;
     size_t n_cells = (size_t)g->side * (size_t)g->side;
-    g->first = check_zeros((int64_t)n_cells + 1, sizeof *g->first);
-    g->vertex = check_array(n, sizeof *g->vertex);
+    g->first = tri_check_zeros((int64_t)n_cells + 1, sizeof *g->first);
+    g->vertex = tri_check_array(n, sizeof *g->vertex);
     if (g->first == NULL || g->vertex == NULL)
         return TRI_NO_MEMORY;
     for (int32_t v = 0; v < c->mesh->n_points; v++) {
@@ -265,7 +265,7 @@ static enum tri_status ask_about(struct chains *k, const struct line *l, double 
     for (int i = 1; i <= 3 && status == TRI_OK; i++) {
         double s = (from + (to - from) * i / 4) / l->length;
         struct tri_point p = {l->a.x + s * l->dx, l->a.y + s * l->dy};
-        status = check_ask(k->c, p, TRI_CHECK_INPUT_SEGMENTS, l->id);
+        status = tri_check_ask(k->c, p, TRI_CHECK_INPUT_SEGMENTS, l->id);
     }
     return status;
 }
@@ -310,28 +310,29 @@ static enum tri_status check_line(struct chains *k, int32_t id)
 static void check_markers(struct chains *k)
 {
     struct checker *c = k->c;
-    check_begin(c, TRI_CHECK_MARKERS);
+    tri_check_begin(c, TRI_CHECK_MARKERS);
     for (int32_t s = 0; s < c->n_segments; s++) {
         int32_t a = c->segments[2 * (size_t)s], b = c->segments[2 * (size_t)s + 1], n = c->mesh->n_points;
         if (a < 0 || a >= n || b < 0 || b >= n)
             continue;
-        struct check_edge e = check_find_edge(c, a, b);
+        struct check_edge e = tri_check_find_edge(c, a, b);
         bool boundary = e.there < 0 || e.back < 0;
         int32_t expected = k->marker[s] != 0 ? k->marker[s] : boundary;
         if (c->mesh->segment_markers[s] == expected)
             continue;
-        check_fault(c, TRI_CHECK_MARKERS, "subsegment %ld (%ld-%ld) has marker %ld, expected %ld", check_number(c, s),
-                    check_number(c, a), check_number(c, b), (long)c->mesh->segment_markers[s], (long)expected);
+        tri_check_fault(c, TRI_CHECK_MARKERS, "subsegment %ld (%ld-%ld) has marker %ld, expected %ld",
+                        check_number(c, s),
+                        check_number(c, a), check_number(c, b), (long)c->mesh->segment_markers[s], (long)expected);
     }
 }
 
-enum tri_status check_chains(struct checker *c)
+enum tri_status tri_check_chains(struct checker *c)
 {
     struct chains k = {.c = c};
-    k.seen = check_zeros(c->mesh->n_points, sizeof *k.seen);
-    k.via = check_array(c->mesh->n_points, sizeof *k.via);
-    k.stack = check_array(2 * (int64_t)c->n_segments, sizeof *k.stack);
-    k.marker = check_zeros(c->n_segments, sizeof *k.marker);
+    k.seen = tri_check_zeros(c->mesh->n_points, sizeof *k.seen);
+    k.via = tri_check_array(c->mesh->n_points, sizeof *k.via);
+    k.stack = tri_check_array(2 * (int64_t)c->n_segments, sizeof *k.stack);
+    k.marker = tri_check_zeros(c->n_segments, sizeof *k.marker);
     enum tri_status status = TRI_OK;
     if (k.seen == NULL || k.via == NULL || k.stack == NULL || k.marker == NULL)
         status = TRI_NO_MEMORY;

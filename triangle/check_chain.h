@@ -6,6 +6,6 @@
 
 /* Looks for a chain for each input segment, asks the sweep about the missing pieces, and compares markers. Needs
  * c->twin, c->fan, c->tolerance. O(log n) a subsegment on the whole, unless many input segments are incomplete. */
-enum tri_status check_chains(struct checker *c);
+enum tri_status tri_check_chains(struct checker *c);
 
 #endif

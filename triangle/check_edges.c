@@ -11,8 +11,8 @@ static enum tri_status group_corners(struct checker *c)
 {
     const int32_t *v = c->mesh->triangles;
     int32_t n = c->mesh->n_points;
-    c->first = check_zeros((int64_t)n + 1, sizeof *c->first);
-    c->corner = check_array(c->n_half_edges, sizeof *c->corner);
+    c->first = tri_check_zeros((int64_t)n + 1, sizeof *c->first);
+    c->corner = tri_check_array(c->n_half_edges, sizeof *c->corner);
     if (c->first == NULL || c->corner == NULL)
         return TRI_NO_MEMORY;
     for (int32_t h = 0; h < c->n_half_edges; h++)
@@ -28,7 +28,7 @@ static enum tri_status group_corners(struct checker *c)
     return TRI_OK;
 }
 
-struct check_edge check_find_edge(const struct checker *c, int32_t a, int32_t b)
+struct check_edge tri_check_find_edge(const struct checker *c, int32_t a, int32_t b)
 {
     struct check_edge e = {-1, -1, 0, 0};
     bool at_a = c->first[a + 1] - c->first[a] <= c->first[b + 1] - c->first[b];
@@ -48,40 +48,41 @@ struct check_edge check_find_edge(const struct checker *c, int32_t a, int32_t b)
 static void pair_half_edge(struct checker *c, int32_t h)
 {
     int32_t a = check_org(c, h), b = check_dest(c, h);
-    struct check_edge e = check_find_edge(c, a, b);
+    struct check_edge e = tri_check_find_edge(c, a, b);
     if (e.n_there == 1 && e.n_back <= 1) {
         c->link[h] = e.back;
         if (e.back >= 0)
             c->link[e.back] = h;
         return;
     }
-    check_fault(c, TRI_CHECK_EDGES, "%d triangles lie on the %s side of edge %ld-%ld of triangle %ld",
-                e.n_there > 1 ? e.n_there : e.n_back, e.n_there > 1 ? "same" : "other", check_number(c, a),
-                check_number(c, b), check_number(c, h / 3));
+    tri_check_fault(c, TRI_CHECK_EDGES, "%d triangles lie on the %s side of edge %ld-%ld of triangle %ld",
+                    e.n_there > 1 ? e.n_there : e.n_back, e.n_there > 1 ? "same" : "other", check_number(c, a),
+                    check_number(c, b), check_number(c, h / 3));
 }
 
 static void compare_neighbors(struct checker *c)
 {
-    check_begin(c, TRI_CHECK_NEIGHBORS);
+    tri_check_begin(c, TRI_CHECK_NEIGHBORS);
     for (int32_t h = 0; h < c->n_half_edges; h++) {
         int32_t expected = c->link[h] < 0 ? -1 : c->link[h] / 3, given = c->mesh->neighbors[h];
         if (given == expected)
             continue;
-        check_fault(c, TRI_CHECK_NEIGHBORS, "triangle %ld: neighbor across edge %ld-%ld is given as %ld, but is %ld",
-                    check_number(c, h / 3), check_number(c, check_org(c, h)), check_number(c, check_dest(c, h)),
-                    given < 0 ? -1L : check_number(c, given), expected < 0 ? -1L : check_number(c, expected));
+        tri_check_fault(c, TRI_CHECK_NEIGHBORS,
+                        "triangle %ld: neighbor across edge %ld-%ld is given as %ld, but is %ld",
+                        check_number(c, h / 3), check_number(c, check_org(c, h)), check_number(c, check_dest(c, h)),
+                        given < 0 ? -1L : check_number(c, given), expected < 0 ? -1L : check_number(c, expected));
     }
 }
 
-enum tri_status check_edges(struct checker *c)
+enum tri_status tri_check_edges(struct checker *c)
 {
     enum tri_status status = group_corners(c);
     if (status != TRI_OK)
         return status;
-    c->link = check_array(c->n_half_edges, sizeof *c->link);
+    c->link = tri_check_array(c->n_half_edges, sizeof *c->link);
     if (c->link == NULL)
         return TRI_NO_MEMORY;
-    check_begin(c, TRI_CHECK_EDGES);
+    tri_check_begin(c, TRI_CHECK_EDGES);
     for (int32_t h = 0; h < c->n_half_edges; h++)
         c->link[h] = -2;
     for (int32_t h = 0; h < c->n_half_edges; h++) {
@@ -102,14 +103,14 @@ enum tri_status check_edges(struct checker *c)
 
 /* How often the triangles at each vertex sweep over the direction +x: an exact measure of their turning that needs no
  * arithmetic, since triangle v a b, counter-clockwise, covers it just if a is not above v and b is. */
-enum tri_status check_stars(struct checker *c)
+enum tri_status tri_check_stars(struct checker *c)
 {
     const int32_t *v = c->mesh->triangles;
-    uint8_t *turns = check_zeros(c->mesh->n_points, 1), *boundary = check_zeros(c->mesh->n_points, 1);
+    uint8_t *turns = tri_check_zeros(c->mesh->n_points, 1), *boundary = tri_check_zeros(c->mesh->n_points, 1);
     enum tri_status status = turns == NULL || boundary == NULL ? TRI_NO_MEMORY : TRI_OK;
     if (status != TRI_OK)
         goto done;
-    check_begin(c, TRI_CHECK_STARS);
+    tri_check_begin(c, TRI_CHECK_STARS);
     for (int32_t h = 0; h < c->n_half_edges; h++) {
         int32_t a = check_org(c, h), b = check_dest(c, h);
         double y = check_point(c, v[h]).y;
@@ -121,8 +122,8 @@ enum tri_status check_stars(struct checker *c)
     for (int32_t i = 0; i < c->mesh->n_points; i++) {
         if (!check_is_used(c, i) || turns[i] == 1 || (boundary[i] && turns[i] == 0))
             continue;
-        check_fault(c, TRI_CHECK_STARS, "the triangles around vertex %ld wind around it %d times", check_number(c, i),
-                    turns[i]);
+        tri_check_fault(c, TRI_CHECK_STARS, "the triangles around vertex %ld wind around it %d times",
+                        check_number(c, i), turns[i]);
     }
 done:
     free(turns);
@@ -146,9 +147,9 @@ static int32_t only_boundary_edge_from(const struct checker *c, int32_t v)
 }
 
 /* A simple closed boundary that never turns right is convex; two of them are two hulls. */
-void check_hull(struct checker *c)
+void tri_check_hull(struct checker *c)
 {
-    check_begin(c, TRI_CHECK_HULL);
+    tri_check_begin(c, TRI_CHECK_HULL);
     int32_t start = -1;
     for (int32_t h = 0; h < c->n_half_edges && start < 0; h++) {
         if (c->link[h] < 0)
@@ -162,8 +163,8 @@ void check_hull(struct checker *c)
         int32_t next = only_boundary_edge_from(c, check_dest(c, h));
         if (next < 0 || tri_orient2d(check_point(c, check_org(c, h)), check_point(c, check_dest(c, h)),
                                      check_point(c, check_dest(c, next))) < 0) {
-            check_fault(c, TRI_CHECK_HULL, "the boundary is not convex at vertex %ld",
-                        check_number(c, check_dest(c, h)));
+            tri_check_fault(c, TRI_CHECK_HULL, "the boundary is not convex at vertex %ld",
+                            check_number(c, check_dest(c, h)));
             return;
         }
         h = next;
@@ -171,6 +172,6 @@ void check_hull(struct checker *c)
     } while (h != start);
     if (n == c->report->n_boundary_edges)
         return;
-    check_fault(c, TRI_CHECK_HULL, "the boundary has %lld edges, but its loop through vertex %ld only %lld",
-                (long long)c->report->n_boundary_edges, check_number(c, check_org(c, start)), (long long)n);
+    tri_check_fault(c, TRI_CHECK_HULL, "the boundary has %lld edges, but its loop through vertex %ld only %lld",
+                    (long long)c->report->n_boundary_edges, check_number(c, check_org(c, start)), (long long)n);
 }

@@ -46,7 +46,7 @@ static enum tri_status make_table(struct reference *r, int32_t n)
     while (size < 2 * (uint64_t)n)
         size *= 2;
     r->mask = (uint32_t)(size - 1);
-    r->table = check_array((int64_t)size, sizeof *r->table);
+    r->table = tri_check_array((int64_t)size, sizeof *r->table);
     if (r->table == NULL)
         return TRI_NO_MEMORY;
     memset(r->table, -1, (size_t)size * sizeof *r->table);
@@ -56,7 +56,7 @@ static enum tri_status make_table(struct reference *r, int32_t n)
 /* Fills c->twin. Only points that are not used themselves need a search. */
 static enum tri_status find_twins(struct checker *c, struct reference *r)
 {
-    c->twin = check_array(r->n, sizeof *c->twin);
+    c->twin = tri_check_array(r->n, sizeof *c->twin);
     if (c->twin == NULL)
         return TRI_NO_MEMORY;
     int32_t n_searched = 0;
@@ -92,18 +92,18 @@ static void check_vertices(struct checker *c, const struct reference *r)
 {
     if (c->input == NULL || c->options->renumbered)
         return;
-    check_begin(c, TRI_CHECK_INPUT_VERTICES);
+    tri_check_begin(c, TRI_CHECK_INPUT_VERTICES);
     if (c->mesh->n_points < r->n) {
-        check_fault(c, TRI_CHECK_INPUT_VERTICES, "the mesh has %ld vertices, the input %ld", (long)c->mesh->n_points,
-                    (long)r->n);
+        tri_check_fault(c, TRI_CHECK_INPUT_VERTICES, "the mesh has %ld vertices, the input %ld",
+                        (long)c->mesh->n_points, (long)r->n);
     }
     for (int32_t v = 0; v < r->n && v < c->mesh->n_points; v++) {
         struct tri_point p = point_of(r, v), q = check_point(c, v);
         if (check_same_place(p, q))
             continue;
-        check_fault(c, TRI_CHECK_INPUT_VERTICES, "vertex %ld is at (%.17g, %.17g), in the input at (%.17g, %.17g)",
-                    check_number(c, v), check_given(c, q.x), check_given(c, q.y), check_given(c, p.x),
-                    check_given(c, p.y));
+        tri_check_fault(c, TRI_CHECK_INPUT_VERTICES, "vertex %ld is at (%.17g, %.17g), in the input at (%.17g, %.17g)",
+                        check_number(c, v), check_given(c, q.x), check_given(c, q.y), check_given(c, p.x),
+                        check_given(c, p.y));
     }
 }
 
@@ -117,11 +117,11 @@ static enum tri_status ask_for_lost(struct checker *c, const struct reference *r
         if (c->twin[v] >= 0)
             continue;
         if (c->options->convex) {
-            check_fault(c, TRI_CHECK_HULL, "no triangle uses vertex %ld", check_number(c, v));
+            tri_check_fault(c, TRI_CHECK_HULL, "no triangle uses vertex %ld", check_number(c, v));
         }
         struct tri_point p = point_of(r, v);
         if (isfinite(p.x) && isfinite(p.y))
-            status = check_ask(c, p, TRI_CHECK_LOST_VERTICES, v);
+            status = tri_check_ask(c, p, TRI_CHECK_LOST_VERTICES, v);
     }
     return status;
 }
@@ -134,7 +134,7 @@ static enum tri_status ask_for_holes(struct checker *c)
     for (int32_t i = 0; i < c->input->n_holes && status == TRI_OK; i++) {
         struct tri_point p = {c->input->holes[2 * (size_t)i], c->input->holes[2 * (size_t)i + 1]};
         if (isfinite(p.x) && isfinite(p.y))
-            status = check_ask(c, p, TRI_CHECK_HOLES, i);
+            status = tri_check_ask(c, p, TRI_CHECK_HOLES, i);
     }
     return status;
 }
@@ -147,7 +147,7 @@ static void set_tolerance(struct checker *c)
     c->tolerance = TRI_CHECK_ULPS * 0x1p-52 * largest;
 }
 
-enum tri_status check_input(struct checker *c)
+enum tri_status tri_check_input(struct checker *c)
 {
     set_tolerance(c);
     struct reference r = {.n = c->mesh->n_points, .points = c->mesh->points};
@@ -164,7 +164,7 @@ enum tri_status check_input(struct checker *c)
     if (status == TRI_OK)
         status = ask_for_holes(c);
     if (status == TRI_OK && c->input != NULL && c->mesh->segments != NULL)
-        status = check_chains(c);
+        status = tri_check_chains(c);
     return status;
 }
 
@@ -173,24 +173,24 @@ static void report_inside(struct checker *c, const struct check_query *query)
     long id = check_number(c, query->id);
     struct tri_point p = {check_given(c, query->at.x), check_given(c, query->at.y)};
     if (query->kind == TRI_CHECK_LOST_VERTICES) {
-        check_fault(c, query->kind, "vertex %ld lies in the mesh's area, but no triangle uses it", id);
+        tri_check_fault(c, query->kind, "vertex %ld lies in the mesh's area, but no triangle uses it", id);
     } else if (query->kind == TRI_CHECK_HOLES) {
-        check_fault(c, query->kind, "hole %ld at (%.17g, %.17g) lies inside the mesh", id, p.x, p.y);
+        tri_check_fault(c, query->kind, "hole %ld at (%.17g, %.17g) lies inside the mesh", id, p.x, p.y);
     } else {
         const int32_t *ends = c->input->segments + 2 * (size_t)query->id;
-        check_fault(c, query->kind, "input segment %ld (%ld-%ld) is missing near (%.17g, %.17g), inside the mesh", id,
-                    check_number(c, ends[0]), check_number(c, ends[1]), p.x, p.y);
+        tri_check_fault(c, query->kind, "input segment %ld (%ld-%ld) is missing near (%.17g, %.17g), inside the mesh",
+                        id, check_number(c, ends[0]), check_number(c, ends[1]), p.x, p.y);
     }
 }
 
-void check_answers(struct checker *c)
+void tri_check_answers(struct checker *c)
 {
     if (!c->options->ignore_lost)
-        check_begin(c, TRI_CHECK_LOST_VERTICES);
+        tri_check_begin(c, TRI_CHECK_LOST_VERTICES);
     if (c->input != NULL && !c->options->ignore_holes)
-        check_begin(c, TRI_CHECK_HOLES);
+        tri_check_begin(c, TRI_CHECK_HOLES);
     if (c->input != NULL && c->mesh->segments != NULL)
-        check_begin(c, TRI_CHECK_INPUT_SEGMENTS);
+        tri_check_begin(c, TRI_CHECK_INPUT_SEGMENTS);
     for (int32_t i = 0; i < c->n_queries; i++) {
         const struct check_query *q = &c->queries[i], *before = i > 0 ? q - 1 : NULL;
         bool told = before != NULL && before->inside && before->kind == q->kind && before->id == q->id;

@@ -68,35 +68,35 @@ struct checker {
     int32_t n_queries, query_capacity;
 };
 
-enum tri_status check_edges(struct checker *c);       /* needs ARRAYS: pairs the half-edges, compares neighbours */
-enum tri_status check_stars(struct checker *c);       /* needs EDGES, ORIENTATION */
-enum tri_status check_overlap(struct checker *c);     /* needs the same; answers the queries */
-void check_hull(struct checker *c);                   /* needs OVERLAP */
-enum tri_status check_subsegments(struct checker *c); /* needs EDGES; fills the fields above */
-void check_delaunay(struct checker *c);               /* needs EDGES, ORIENTATION, subsegments */
-enum tri_status check_input(struct checker *c);       /* needs ARRAYS, subsegments; adds queries */
-void check_answers(struct checker *c);                /* after check_overlap has found nothing: judges the answers */
-enum tri_status check_quality(struct checker *c);     /* needs EDGES, subsegments */
+enum tri_status tri_check_edges(struct checker *c);       /* needs ARRAYS: pairs the half-edges, compares neighbours */
+enum tri_status tri_check_stars(struct checker *c);       /* needs EDGES, ORIENTATION */
+enum tri_status tri_check_overlap(struct checker *c);     /* needs the same; answers the queries */
+void tri_check_hull(struct checker *c);                   /* needs OVERLAP */
+enum tri_status tri_check_subsegments(struct checker *c); /* needs EDGES; fills the fields above */
+void tri_check_delaunay(struct checker *c);               /* needs EDGES, ORIENTATION, subsegments */
+enum tri_status tri_check_input(struct checker *c);       /* needs ARRAYS, subsegments; adds queries */
+void tri_check_answers(struct checker *c);                /* where overlap has found nothing: judges the answers */
+enum tri_status tri_check_quality(struct checker *c);     /* needs EDGES, subsegments */
 
 /* Where the mesh is out of the range of exact arithmetic, puts copies of mesh and input in its place whose coordinates
  * are multiplied by a power of two; nothing else sees the originals. */
-enum tri_status check_scale(struct checker *c);
+enum tri_status tri_check_scale(struct checker *c);
 
 /* Notes that the kind has been looked at; it stays good until a fault is reported. */
-void check_begin(struct checker *c, enum tri_check_kind kind);
+void tri_check_begin(struct checker *c, enum tri_check_kind kind);
 /* Counts a fault and keeps the text of the first one. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif
-void check_fault(struct checker *c, enum tri_check_kind kind, const char *format, ...);
-enum tri_status check_ask(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id);
+void tri_check_fault(struct checker *c, enum tri_check_kind kind, const char *format, ...);
+enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id);
 
 /* O(smaller number of triangles at a and b). */
-struct check_edge check_find_edge(const struct checker *c, int32_t a, int32_t b);
+struct check_edge tri_check_find_edge(const struct checker *c, int32_t a, int32_t b);
 
 /* n * size bytes, never a null pointer for n = 0. */
-void *check_array(int64_t n, size_t size);
-void *check_zeros(int64_t n, size_t size);
+void *tri_check_array(int64_t n, size_t size);
+void *tri_check_zeros(int64_t n, size_t size);
 
 static inline bool check_good(const struct checker *c, enum tri_check_kind kind)
 {

@@ -79,9 +79,9 @@ static bool fault(struct sweep *w, const char *what, int32_t s, int32_t r)
 {
     struct checker *c = w->c;
     int32_t h = w->edge[s].half_edge, g = w->edge[r].half_edge;
-    check_fault(c, TRI_CHECK_OVERLAP, "boundary edges %ld-%ld of triangle %ld and %ld-%ld of triangle %ld: %s",
-                check_number(c, check_org(c, h)), check_number(c, check_dest(c, h)), check_number(c, h / 3),
-                check_number(c, check_org(c, g)), check_number(c, check_dest(c, g)), check_number(c, g / 3), what);
+    tri_check_fault(c, TRI_CHECK_OVERLAP, "boundary edges %ld-%ld of triangle %ld and %ld-%ld of triangle %ld: %s",
+                    check_number(c, check_org(c, h)), check_number(c, check_dest(c, h)), check_number(c, h / 3),
+                    check_number(c, check_org(c, g)), check_number(c, check_dest(c, g)), check_number(c, g / 3), what);
     return false;
 }
 
@@ -105,10 +105,10 @@ static bool remove_ending(struct sweep *w, struct tri_point p, int32_t n_ending,
 {
     int32_t s = find(w, p, below), n = 0;
     while (s >= 0 && side(w, s, p) == 0) {
-        int32_t next = sweep_order_above(&w->order, s);
+        int32_t next = tri_sweep_order_above(&w->order, s);
         if (!check_same_place(w->edge[s].right, p))
             return fault(w, "a vertex of one lies inside the other", s, witness);
-        sweep_order_remove(&w->order, s);
+        tri_sweep_order_remove(&w->order, s);
         s = next;
         n++;
     }
@@ -133,12 +133,12 @@ static bool insert_starting(struct sweep *w, int32_t n, int32_t below)
         if (i > 0 && compare_directions(&w->start[i - 1], &w->start[i]) == 0) {
             return fault(w, "one runs along the other", top, s);
         }
-        sweep_order_insert(&w->order, s, top);
+        tri_sweep_order_insert(&w->order, s, top);
         top = s;
     }
     int32_t a = below;
     for (int32_t i = 0; i <= n; i++) {
-        int32_t b = sweep_order_above(&w->order, a);
+        int32_t b = tri_sweep_order_above(&w->order, a);
         if (!neighbors_are_good(w, a, b))
             return false;
         a = b;
@@ -157,8 +157,8 @@ static void answer(struct sweep *w, int32_t number)
 
 static bool coincide(struct sweep *w, int32_t v, int32_t u)
 {
-    check_fault(w->c, TRI_CHECK_OVERLAP, "vertices %ld and %ld lie at the same place of the boundary",
-                check_number(w->c, v), check_number(w->c, u));
+    tri_check_fault(w->c, TRI_CHECK_OVERLAP, "vertices %ld and %ld lie at the same place of the boundary",
+                    check_number(w->c, v), check_number(w->c, u));
     return false;
 }
 
@@ -222,25 +222,25 @@ static void sweep(struct sweep *w)
     assert(w->order.root == -1);
 }
 
-enum tri_status check_overlap(struct checker *c)
+enum tri_status tri_check_overlap(struct checker *c)
 {
     int64_t n = c->report->n_boundary_edges, n_events = 2 * n + c->n_queries;
     if (n_events > INT32_MAX)
         return TRI_TOO_LARGE;
     struct sweep w = {.c = c};
-    w.edge = check_array(n, sizeof *w.edge);
-    w.start = check_array(n, sizeof *w.start);
-    w.event = check_array(n_events, sizeof *w.event);
-    enum tri_status status = sweep_order_init(&w.order, (int32_t)n);
+    w.edge = tri_check_array(n, sizeof *w.edge);
+    w.start = tri_check_array(n, sizeof *w.start);
+    w.event = tri_check_array(n_events, sizeof *w.event);
+    enum tri_status status = tri_sweep_order_init(&w.order, (int32_t)n);
     if (w.edge == NULL || w.start == NULL || w.event == NULL)
         status = TRI_NO_MEMORY;
     if (status == TRI_OK) {
-        check_begin(c, TRI_CHECK_OVERLAP);
+        tri_check_begin(c, TRI_CHECK_OVERLAP);
         sweep(&w);
     }
     free(w.edge);
     free(w.start);
     free(w.event);
-    sweep_order_clear(&w.order);
+    tri_sweep_order_clear(&w.order);
     return status;
 }

@@ -67,7 +67,7 @@ static bool is_wedge(const struct quality *w, int32_t v, int32_t a, int32_t b)
     if (dot * fabs(dot) <= (w->apex_cosine + SLACK) * (ax * ax + ay * ay) * (bx * bx + by * by))
         return false;
     bool left = ax * by - ay * bx > 0;
-    return check_find_edge(c, v, left ? a : b).there >= 0; /* a triangle between them? */
+    return tri_check_find_edge(c, v, left ? a : b).there >= 0; /* a triangle between them? */
 }
 
 /* More than 24 subsegments enclose an angle of 15 degrees at most: no need to compare them all. */
@@ -173,8 +173,8 @@ static void note_small(struct quality *q, int32_t t, const struct shape *s)
     c->report->n_small_explained += explained;
     if (c->options->max_bad >= 0 ? c->report->n_small <= c->options->max_bad : explained)
         return;
-    check_fault(c, TRI_CHECK_ANGLES, "triangle %ld has an angle of %.6g degrees", check_number(c, t),
-                asin(fmin(1, sqrt(s->sine2))) * DEGREES);
+    tri_check_fault(c, TRI_CHECK_ANGLES, "triangle %ld has an angle of %.6g degrees", check_number(c, t),
+                    asin(fmin(1, sqrt(s->sine2))) * DEGREES);
 }
 
 static double given_area(const struct checker *c, double area)
@@ -198,8 +198,8 @@ static void note_area(struct quality *q, int32_t t, double area)
         bound = fmin(bound, o->max_areas[t]);
     if (given_area(q->c, area) <= bound * (1 + SLACK))
         return;
-    check_fault(q->c, TRI_CHECK_AREAS, "triangle %ld has an area of %.17g, above the bound of %.17g",
-                check_number(q->c, t), given_area(q->c, area), bound);
+    tri_check_fault(q->c, TRI_CHECK_AREAS, "triangle %ld has an area of %.17g, above the bound of %.17g",
+                    check_number(q->c, t), given_area(q->c, area), bound);
 }
 
 static void note_shape(struct quality *q, int32_t t)
@@ -242,12 +242,12 @@ static double signed_squared_cosine(double degrees)
     return cosine * fabs(cosine);
 }
 
-enum tri_status check_quality(struct checker *c)
+enum tri_status tri_check_quality(struct checker *c)
 {
     const struct tri_check_options *o = c->options;
     struct tri_check_report *r = c->report;
     struct quality q = {.c = c, .sine2 = squared_sine(o->min_angle), .steps_left = MAX_ALL_STEPS};
-    q.is_apex = check_zeros(c->mesh->n_points, 1);
+    q.is_apex = tri_check_zeros(c->mesh->n_points, 1);
     q.apex_cosine = signed_squared_cosine(o->small_input_angle > 0 ? fmin(o->small_input_angle, 180) : 60);
     if (q.is_apex == NULL)
         return TRI_NO_MEMORY;
@@ -257,9 +257,9 @@ enum tri_status check_quality(struct checker *c)
     }
     r->smallest_angle_at = r->largest_angle_at = r->smallest_area_at = r->largest_area_at = -1;
     if (o->min_angle > 0)
-        check_begin(c, TRI_CHECK_ANGLES);
+        tri_check_begin(c, TRI_CHECK_ANGLES);
     if (o->max_area > 0 || o->max_areas != NULL)
-        check_begin(c, TRI_CHECK_AREAS);
+        tri_check_begin(c, TRI_CHECK_AREAS);
     for (int32_t t = 0; t < c->mesh->n_triangles; t++)
         note_shape(&q, t);
     summarize(&q);

@@ -20,13 +20,13 @@ static int choose_exponent(const struct tri_check_mesh *m)
 
 static double *scale(const double *values, int64_t n, int exponent)
 {
-    double *scaled = check_array(n, sizeof *scaled);
+    double *scaled = tri_check_array(n, sizeof *scaled);
     for (int64_t i = 0; scaled != NULL && i < n; i++)
         scaled[i] = ldexp(values[i], exponent);
     return scaled;
 }
 
-enum tri_status check_scale(struct checker *c)
+enum tri_status tri_check_scale(struct checker *c)
 {
     c->exponent = choose_exponent(c->mesh);
     if (c->exponent == 0)

@@ -7,7 +7,7 @@
 
 static enum tri_status take_boundary(struct checker *c)
 {
-    c->own_segments = check_array(2 * c->report->n_boundary_edges, sizeof *c->own_segments);
+    c->own_segments = tri_check_array(2 * c->report->n_boundary_edges, sizeof *c->own_segments);
     if (c->own_segments == NULL)
         return TRI_NO_MEMORY;
     if (c->report->n_boundary_edges > INT32_MAX / 2)
@@ -32,17 +32,17 @@ static bool is_valid(const struct checker *c, int32_t s)
 static void constrain(struct checker *c, int32_t s)
 {
     int32_t a = c->segments[2 * (size_t)s], b = c->segments[2 * (size_t)s + 1];
-    struct check_edge e = check_find_edge(c, a, b);
+    struct check_edge e = tri_check_find_edge(c, a, b);
     int32_t h = e.there, g = e.back;
     int32_t any = h >= 0 ? h : g;
     if (c->mesh->segments == NULL) {
         assert(any >= 0);
     } else if (any < 0) {
-        check_fault(c, TRI_CHECK_SUBSEGMENTS, "subsegment %ld (%ld-%ld) is not an edge of the mesh", check_number(c, s),
-                    check_number(c, a), check_number(c, b));
+        tri_check_fault(c, TRI_CHECK_SUBSEGMENTS, "subsegment %ld (%ld-%ld) is not an edge of the mesh",
+                        check_number(c, s), check_number(c, a), check_number(c, b));
     } else if (check_is_constrained(c, any)) {
-        check_fault(c, TRI_CHECK_SUBSEGMENTS, "subsegment %ld (%ld-%ld) is listed twice", check_number(c, s),
-                    check_number(c, a), check_number(c, b));
+        tri_check_fault(c, TRI_CHECK_SUBSEGMENTS, "subsegment %ld (%ld-%ld) is listed twice", check_number(c, s),
+                        check_number(c, a), check_number(c, b));
     }
     if (h >= 0)
         c->constrained[h >> 3] |= (uint8_t)(1u << (h & 7));
@@ -53,8 +53,8 @@ static void constrain(struct checker *c, int32_t s)
 static enum tri_status group_by_vertex(struct checker *c)
 {
     int32_t n = c->mesh->n_points;
-    c->fan_first = check_zeros((int64_t)n + 1, sizeof *c->fan_first);
-    c->fan = check_array(2 * (int64_t)c->n_segments, sizeof *c->fan);
+    c->fan_first = tri_check_zeros((int64_t)n + 1, sizeof *c->fan_first);
+    c->fan = tri_check_array(2 * (int64_t)c->n_segments, sizeof *c->fan);
     if (c->fan_first == NULL || c->fan == NULL)
         return TRI_NO_MEMORY;
     for (int32_t i = 0; i < 2 * c->n_segments; i++) {
@@ -75,18 +75,18 @@ static enum tri_status group_by_vertex(struct checker *c)
 
 static void check_boundary(struct checker *c)
 {
-    check_begin(c, TRI_CHECK_BOUNDARY);
+    tri_check_begin(c, TRI_CHECK_BOUNDARY);
     for (int32_t h = 0; h < c->n_half_edges; h++) {
         if (c->link[h] >= 0 || check_is_constrained(c, h))
             continue;
-        check_fault(c, TRI_CHECK_BOUNDARY, "boundary edge %ld-%ld of triangle %ld is not a subsegment",
-                    check_number(c, check_org(c, h)), check_number(c, check_dest(c, h)), check_number(c, h / 3));
+        tri_check_fault(c, TRI_CHECK_BOUNDARY, "boundary edge %ld-%ld of triangle %ld is not a subsegment",
+                        check_number(c, check_org(c, h)), check_number(c, check_dest(c, h)), check_number(c, h / 3));
     }
 }
 
-enum tri_status check_subsegments(struct checker *c)
+enum tri_status tri_check_subsegments(struct checker *c)
 {
-    c->constrained = check_zeros(c->n_half_edges / 8, 1);
+    c->constrained = tri_check_zeros(c->n_half_edges / 8, 1);
     if (c->constrained == NULL)
         return TRI_NO_MEMORY;
     c->segments = c->mesh->segments;
@@ -96,14 +96,15 @@ enum tri_status check_subsegments(struct checker *c)
         if (status != TRI_OK)
             return status;
     } else {
-        check_begin(c, TRI_CHECK_SUBSEGMENTS);
+        tri_check_begin(c, TRI_CHECK_SUBSEGMENTS);
     }
     for (int32_t s = 0; s < c->n_segments; s++) {
         if (is_valid(c, s)) {
             constrain(c, s);
         } else {
-            check_fault(c, TRI_CHECK_SUBSEGMENTS, "subsegment %ld has an end that is not a vertex, or two equal ends",
-                        check_number(c, s));
+            tri_check_fault(c, TRI_CHECK_SUBSEGMENTS,
+                            "subsegment %ld has an end that is not a vertex, or two equal ends",
+                            check_number(c, s));
         }
     }
     if (c->mesh->segments != NULL)

@@ -17,14 +17,14 @@ static uint32_t priority(int32_t s)
     return x ^ x >> 13;
 }
 
-enum tri_status sweep_order_init(struct sweep_order *order, int32_t n)
+enum tri_status tri_sweep_order_init(struct sweep_order *order, int32_t n)
 {
     order->root = -1;
-    order->node = check_array(n, sizeof *order->node);
+    order->node = tri_check_array(n, sizeof *order->node);
     return order->node == NULL ? TRI_NO_MEMORY : TRI_OK;
 }
 
-void sweep_order_clear(struct sweep_order *order)
+void tri_sweep_order_clear(struct sweep_order *order)
 {
     free(order->node);
     order->node = NULL;
@@ -59,7 +59,7 @@ static void rotate_up(struct sweep_order *o, int32_t s)
         node[moved].up = parent;
 }
 
-int32_t sweep_order_above(const struct sweep_order *o, int32_t s)
+int32_t tri_sweep_order_above(const struct sweep_order *o, int32_t s)
 {
     if (s >= 0)
         return o->node[s].next[1];
@@ -77,10 +77,10 @@ static void thread(struct sweep_order *o, int32_t below, int32_t above)
         o->node[above].next[0] = below;
 }
 
-void sweep_order_insert(struct sweep_order *o, int32_t s, int32_t below)
+void tri_sweep_order_insert(struct sweep_order *o, int32_t s, int32_t below)
 {
     struct sweep_node *node = o->node;
-    int32_t above = sweep_order_above(o, below);
+    int32_t above = tri_sweep_order_above(o, below);
     node[s] = (struct sweep_node){-1, {-1, -1}, {below, above}};
     thread(o, below, s);
     thread(o, s, above);
@@ -98,7 +98,7 @@ void sweep_order_insert(struct sweep_order *o, int32_t s, int32_t below)
         rotate_up(o, s);
 }
 
-void sweep_order_remove(struct sweep_order *o, int32_t s)
+void tri_sweep_order_remove(struct sweep_order *o, int32_t s)
 {
     struct sweep_node *node = o->node;
     while (node[s].down[0] >= 0 && node[s].down[1] >= 0) {

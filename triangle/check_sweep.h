@@ -21,14 +21,14 @@ struct sweep_order {
 };
 
 /* An empty order for segments 0 .. n - 1. TRI_NO_MEMORY. */
-enum tri_status sweep_order_init(struct sweep_order *order, int32_t n);
-void sweep_order_clear(struct sweep_order *order);
+enum tri_status tri_sweep_order_init(struct sweep_order *order, int32_t n);
+void tri_sweep_order_clear(struct sweep_order *order);
 
 /* The segment just above s, or the lowest of all if s is -1; -1: none. */
-int32_t sweep_order_above(const struct sweep_order *order, int32_t s);
+int32_t tri_sweep_order_above(const struct sweep_order *order, int32_t s);
 
 /* Puts segment s just above segment `below`, or lowest of all if that is -1. O(log n) expected. */
-void sweep_order_insert(struct sweep_order *order, int32_t s, int32_t below);
-void sweep_order_remove(struct sweep_order *order, int32_t s);
+void tri_sweep_order_insert(struct sweep_order *order, int32_t s, int32_t below);
+void tri_sweep_order_remove(struct sweep_order *order, int32_t s);
 
 #endif

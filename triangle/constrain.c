@@ -26,6 +26,7 @@ struct piece {
 struct layer {
     struct tri_mesh *mesh;
     struct tri_cavity cavity;
+    bool ties_stay;  /* an edge is flipped only where that makes a difference; else ties are broken by coordinates */
     int32_t *corner; /* [vertex_capacity] */
     int32_t corner_capacity;
     struct piece *piece; /* stack of what remains of the current segment, and of earlier ones that had to be taken up */
@@ -184,6 +185,17 @@ static bool is_convex(const struct tri_mesh *mesh, int32_t t, int e)
     return tri_orient2d(n, r, o) > 0 && tri_orient2d(n, o, s) > 0;
 }
 
+/* Does the apex beyond edge e of t lie inside the circle of t? */
+static bool is_illegal(const struct layer *l, int32_t t, int e)
+{
+    const struct tri_mesh *mesh = l->mesh;
+    const int32_t *v = mesh->tri[t].v;
+    int32_t link = mesh->tri[t].n[e];
+    struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
+    struct tri_point apex = mesh->xy[mesh->tri[tri_of(link)].v[tri_edge(link)]];
+    return l->ties_stay ? tri_incircle(a, b, c, apex) > 0 : tri_in_circle(a, b, c, apex);
+}
+
 /* Lawson: flips what is not Delaunay until everything touched is. */
 static bool legalise(struct layer *l)
 {
@@ -191,12 +203,7 @@ static bool legalise(struct layer *l)
     while (l->n_touched > 0) {
         int32_t code = l->touched[--l->n_touched], t = tri_of(code);
         int e = tri_edge(code);
-        int32_t link = mesh->tri[t].n[e];
-        if (link < 0)
-            continue;
-        const int32_t *v = mesh->tri[t].v;
-        int32_t apex = mesh->tri[tri_of(link)].v[tri_edge(link)];
-        if (!tri_in_circle(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]], mesh->xy[apex]) || !is_convex(mesh, t, e))
+        if (mesh->tri[t].n[e] < 0 || !is_illegal(l, t, e) || !is_convex(mesh, t, e))
             continue;
         int32_t u = flip(l, t, e);
         if (!touch(l, t) || !touch(l, u))
@@ -520,25 +527,59 @@ static enum tri_status lay_all(struct layer *l, const struct tri_pslg *pslg)
     return TRI_OK;
 }
 
+static enum tri_status find_corners(struct layer *l)
+{
+    struct tri_mesh *mesh = l->mesh;
+    l->corner_capacity = mesh->n_vertices + 64;
+    l->corner = malloc((size_t)l->corner_capacity * sizeof *l->corner);
+    if (!l->corner)
+        return no_memory(l);
+    for (int32_t v = 0; v < mesh->n_vertices; v++)
+        l->corner[v] = TRI_NONE;
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        for (int k = 0; k < 3; k++)
+            l->corner[mesh->tri[t].v[k]] = t;
+    return TRI_OK;
+}
+
+static void free_layer(struct layer *l)
+{
+    tri_cavity_free(&l->cavity);
+    free(l->corner);
+    free(l->piece);
+    free(l->touched);
+}
+
 enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_constrain_report *report,
                               struct tri_error *error)
 {
     struct layer l = {.mesh = mesh, .cavity = {.flips_follow = true}, .report = report, .error = error};
     *report = (struct tri_constrain_report){0};
-    l.corner_capacity = mesh->n_vertices + 64;
-    l.corner = malloc((size_t)l.corner_capacity * sizeof *l.corner);
-    enum tri_status status = l.corner ? TRI_OK : no_memory(&l);
-    if (!status) {
-        for (int32_t v = 0; v < mesh->n_vertices; v++)
-            l.corner[v] = TRI_NONE;
-        for (int32_t t = 0; t < mesh->n_slots; t++)
-            for (int k = 0; k < 3; k++)
-                l.corner[mesh->tri[t].v[k]] = t;
-        status = lay_all(&l, pslg);
-    }
-    tri_cavity_free(&l.cavity);
-    free(l.corner);
-    free(l.piece);
-    free(l.touched);
+    enum tri_status status = find_corners(&l);
+    status = status ? status : lay_all(&l, pslg);
+    free_layer(&l);
+    return status;
+}
+
+/* Touches the edges that lead to triangles of higher number: so each edge is touched by one of its two. */
+static bool touch_upwards(struct layer *l, int32_t t)
+{
+    if (!touch(l, t))
+        return false;
+    l->n_touched -= 3;
+    for (int e = 0; e < 3; e++)
+        if (l->mesh->tri[t].n[e] > tri_code(t, e))
+            l->touched[l->n_touched++] = tri_code(t, e);
+    return true;
+}
+
+enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, struct tri_error *error)
+{
+    struct layer l = {.mesh = mesh, .ties_stay = true, .error = error};
+    enum tri_status status = find_corners(&l);
+    for (int32_t t = 0; !status && t < mesh->n_slots; t++)
+        if (!touch_upwards(&l, t) || !legalise(&l))
+            status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
+    free_layer(&l);
     return status;
 }

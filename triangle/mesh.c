@@ -94,6 +94,7 @@ void tri_mesh_free(struct tri_mesh *mesh)
     free(mesh->spoke_start);
     free(mesh->spokes);
     free(mesh->regions);
+    free(mesh->columns);
     *mesh = (struct tri_mesh){0};
 }
 

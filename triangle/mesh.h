@@ -91,6 +91,9 @@ struct tri_mesh {
 
     struct tri_region *regions; /* [n_regions] regions[0] is "no region": attribute 0, no bound */
     int32_t n_regions;
+    double *columns;          /* [n_regions][n_columns] attributes of the triangles in a region, where the mesh was made
+                                 from triangles that had some; else NULL, and n_columns is 0 */
+    int32_t n_columns;
 
     int32_t *owner;           /* [slot_capacity] or NULL; for proofs in debug builds: who changed a triangle since the
                                  array was cleared (0: nobody). Views of one mesh share it */
@@ -114,6 +117,12 @@ static inline struct tri_point tri_point_between(struct tri_point a, struct tri_
 {
     return (struct tri_point){tri_round_coordinate(a.x + fraction * (b.x - a.x)),
                               tri_round_coordinate(a.y + fraction * (b.y - a.y))};
+}
+
+/* The attributes of the triangles in a region: n_columns of them, or one where that is 0. */
+static inline const double *tri_region_attributes(const struct tri_mesh *mesh, int32_t region)
+{
+    return mesh->columns ? mesh->columns + (size_t)region * (size_t)mesh->n_columns : &mesh->regions[region].attribute;
 }
 
 /* A vertex in the caller's coordinates. */

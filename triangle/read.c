@@ -414,6 +414,22 @@ struct element_rows {
     int32_t base, n_points;
 };
 
+/* The nodes behind the third. */
+static void parse_extra(const struct element_rows *rows, size_t i, struct tri_fields *fields)
+{
+    const int32_t n = rows->out->n_nodes - 3;
+    int32_t *const extra = rows->out->extra ? rows->out->extra + i * (size_t)n : NULL;
+    for (int32_t node = 0; node < n && (extra || tri_kind_at(fields->at) == TRI_IS_START); node++) {
+        int64_t number;
+        const bool good = tri_fields_integer(fields, &number) == TRI_FIELD_GOOD;
+        const int32_t index = good ? index_from(number, rows->base) : TRI_NONE;
+        if (extra)
+            extra[node] = index >= 0 && index < rows->n_points ? index : TRI_NONE;
+        if (!good)
+            tri_fields_skip(fields);
+    }
+}
+
 static const char *parse_element(void *user, size_t i, struct tri_fields *fields)
 {
     const struct element_rows *const rows = user;
@@ -428,8 +444,7 @@ static const char *parse_element(void *user, size_t i, struct tri_fields *fields
             return "has a corner that is not the number of a vertex";
         rows->out->corners[3 * i + corner] = (int32_t)index;
     }
-    for (int32_t node = 3; node < rows->out->n_nodes && tri_kind_at(fields->at) == TRI_IS_START; node++)
-        tri_fields_skip(fields);
+    parse_extra(rows, i, fields);
     return parse_attributes(fields, row_of(rows->out->attributes, i, rows->out->n_attributes), rows->out->n_attributes);
 }
 
@@ -461,6 +476,9 @@ static enum tri_status read_ele_text(const struct tri_text *text, const struct t
     const size_t n = (size_t)out->n;
     out->corners = allocate(&status, 3 * n, sizeof *out->corners, &cursor, error);
     out->attributes = allocate(&status, n * (size_t)out->n_attributes, sizeof *out->attributes, &cursor, error);
+    const size_t extra = (size_t)out->n_nodes - 3;
+    if (n > 0 && extra <= text->size / n)
+        out->extra = allocate(&status, n * extra, sizeof *out->extra, &cursor, error);
     if (status != TRI_OK)
         return status;
     return read_table(&cursor, &triangles, out->n, rows->base, parse_element, (void *)rows, options, error);
@@ -481,13 +499,6 @@ enum tri_status tri_read_ele(const char *path, const struct tri_read_options *op
     return status;
 }
 
-void tri_elements_free(struct tri_elements *elements)
-{
-    free(elements->corners);
-    free(elements->attributes);
-    *elements = (struct tri_elements){0};
-}
-
 /* --- .area */
 
 static const char *parse_bound(void *user, size_t i, struct tri_fields *fields)
@@ -498,32 +509,32 @@ static const char *parse_bound(void *user, size_t i, struct tri_fields *fields)
 }
 
 static enum tri_status read_area_text(const struct tri_text *text, const struct tri_read_options *options,
-                                      int32_t n_triangles, double **areas, struct tri_error *error)
+                                      struct tri_elements *elements, struct tri_error *error)
 {
     struct tri_cursor cursor = tri_cursor_begin(text);
     struct header header = {0, {0}};
     enum tri_status status = read_header(&cursor, &bounds, &header, 0, error);
-    if (status == TRI_OK && header.count != n_triangles)
+    if (status == TRI_OK && header.count != elements->n)
         status = tri_fail(error, TRI_BAD_INPUT, text->name, (long)cursor.line,
-                          "there are %lld area bounds, but %ld triangles", (long long)header.count, (long)n_triangles);
-    *areas = allocate(&status, (size_t)header.count, sizeof **areas, &cursor, error);
+                          "there are %lld area bounds, but %ld triangles", (long long)header.count, (long)elements->n);
+    elements->areas = allocate(&status, (size_t)header.count, sizeof *elements->areas, &cursor, error);
     if (status != TRI_OK)
         return status;
-    return read_table(&cursor, &bounds, n_triangles, 1, parse_bound, *areas, options, error);
+    return read_table(&cursor, &bounds, elements->n, 1, parse_bound, elements->areas, options, error);
 }
 
-enum tri_status tri_read_area(const char *path, const struct tri_read_options *options, int32_t n_triangles,
-                              double **areas, struct tri_error *error)
+enum tri_status tri_read_area(const char *path, const struct tri_read_options *options, struct tri_elements *elements,
+                              struct tri_error *error)
 {
-    *areas = NULL;
+    elements->areas = NULL;
     struct tri_text text;
     enum tri_status status = tri_text_load(&text, path, options->chunk_bytes, options->executor, error);
     if (status == TRI_OK)
-        status = read_area_text(&text, options, n_triangles, areas, error);
+        status = read_area_text(&text, options, elements, error);
     tri_text_free(&text);
     if (status != TRI_OK) {
-        free(*areas);
-        *areas = NULL;
+        free(elements->areas);
+        elements->areas = NULL;
     }
     return status;
 }

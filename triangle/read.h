@@ -17,6 +17,7 @@
 
 #include "triangle/executor.h"
 #include "triangle/pslg.h"
+#include "triangle/reconstruct.h"
 #include "triangle/status.h"
 
 struct tri_read_options {
@@ -30,15 +31,6 @@ struct tri_read_options {
     void *warn_user;
 };
 
-/* Triangles as an .ele file gives them. */
-struct tri_elements {
-    int32_t n;
-    int32_t *corners;     /* [n][3]: point indices, all of them in range; orientation and shape are not checked */
-    int32_t n_nodes;      /* nodes of a triangle in the file, >= 3; those behind the third are not kept */
-    int32_t n_attributes; /* per triangle, >= 0 */
-    double *attributes;   /* [n][n_attributes], or NULL */
-};
-
 /* Reads points, attributes and markers (NULL where the header announces none). *base becomes 0 or 1. */
 enum tri_status tri_read_node(const char *path, const struct tri_read_options *options, struct tri_pslg *out,
                               int32_t *base, struct tri_error *error);
@@ -50,16 +42,14 @@ enum tri_status tri_read_node(const char *path, const struct tri_read_options *o
 enum tri_status tri_read_poly(const char *poly_path, const char *node_path, const struct tri_read_options *options,
                               struct tri_pslg *out, int32_t *base, bool *points_in_poly, struct tri_error *error);
 
-/* Reads triangles whose corners count from base and are below n_points. */
+/* Reads triangles whose corners count from base and are below n_points. A node behind the third that is missing or no
+ * point becomes TRI_NONE; where the file is too small for so many nodes, out->extra stays NULL. */
 enum tri_status tri_read_ele(const char *path, const struct tri_read_options *options, int32_t base, int32_t n_points,
                              struct tri_elements *out, struct tri_error *error);
 
-/* Reads area bounds of n_triangles triangles, which must be as many as the file has. (*areas)[n_triangles] is
- * malloc'ed; <= 0: none, as where the file has no value. */
-enum tri_status tri_read_area(const char *path, const struct tri_read_options *options, int32_t n_triangles,
-                              double **areas, struct tri_error *error);
-
-/* Frees the arrays and zeroes the struct. */
-void tri_elements_free(struct tri_elements *elements);
+/* Reads area bounds of the triangles, which must be as many as the file has, into elements->areas (malloc'ed); <= 0:
+ * none, as where the file has no value. */
+enum tri_status tri_read_area(const char *path, const struct tri_read_options *options, struct tri_elements *elements,
+                              struct tri_error *error);
 
 #endif

@@ -1,0 +1,33 @@
+/* triangulate() of libptriangle.a: as that of libtriangle.a, but refines on several threads.
+ *
+ * It defines the same functions as triangle/triangulate.c, and no others: see there. */
+#include "triangle/triangle.h"
+
+#include "sched/par.h"
+#include "triangle/io.h"
+
+static enum tri_status refine(const struct triangulate_options *options, struct tri_mesh *mesh,
+                              const struct tri_refine_options *quality, struct tri_refine_report *report,
+                              struct tri_error *error)
+{
+    struct par_options how = par_defaults();
+    struct par_report schedule;
+    how.threads = options->threads > 0 ? options->threads : 0;
+    how.size_test_in_parallel = options->unsuitable_in_parallel != 0;
+    enum tri_status status = par_refine(mesh, quality, &how, &schedule, error);
+    *report = schedule.total;
+    par_report_free(&schedule);
+    return status;
+}
+
+int triangulate_with(const char *switches, const struct triangulateio *in, struct triangulateio *out,
+                     struct triangulateio *vorout, const struct triangulate_options *options)
+{
+    return tri_io_triangulate(switches, in, out, vorout, options, refine);
+}
+
+int triangulate(const char *switches, struct triangulateio *in, struct triangulateio *out,
+                struct triangulateio *vorout)
+{
+    return triangulate_with(switches, in, out, vorout, NULL);
+}

@@ -1,0 +1,147 @@
+#!/bin/sh
+# Compiles triangle/triangle.h in every way that clients of Triangle are known to include theirs: alone, twice, within a
+# namespace, within extern "C", with and without their macros, in old and new dialects of C and C++.
+# Usage: run_header.sh SOURCE_ROOT WORK_DIR C_COMPILER CXX_COMPILER
+set -u
+root=$1
+work=$2
+cc=$3
+cxx=$4
+mkdir -p "$work/only"
+cp "$root/triangle/triangle.h" "$work/only/" # nothing else can be included from here
+cd "$work" || exit 2
+failed=0
+count=0
+
+# What a client does. REAL_TYPE is the type that the fields must have.
+body='
+static void use(struct PREFIXtriangulateio *in, struct PREFIXtriangulateio *out, REAL_TYPE *xy, int *list)
+{
+    in->pointlist = xy;
+    in->trianglelist = list;
+    in->numberofpoints = 3;
+    PREFIXtriangulate("zQ", in, out, (struct PREFIXtriangulateio *)0);
+    PREFIXtrifree(list);
+    PREFIXtrifree(out->pointlist);
+}
+int main(void)
+{
+    struct PREFIXtriangulate_options options = {0};
+    (void)options;
+    (void)use;
+    return 0;
+}'
+
+# try yes|no SOURCE COMPILER...: does it compile?
+try() {
+    wanted=$1
+    name=$2
+    shift 2
+    count=$((count + 1))
+    got=no
+    "$@" -Ionly -Wall -Wextra -Werror -pedantic-errors -Wwrite-strings -c "$name" -o object.o >log 2>&1 && got=yes
+    if [ "$got" != "$wanted" ]; then
+        failed=$((failed + 1))
+        echo "header: $*: compiles: $got, wanted: $wanted:"
+        sed 's/^/    /' "$name" | head -n 30
+        cat log
+    fi
+}
+
+# client PREFIX REAL_TYPE PRELUDE: writes client.c and client.cpp; in the latter the struct goes by its plain name.
+client() {
+    printf '%s\n%s\n' "$3" "$body" | sed "s/PREFIX/$1/g; s/REAL_TYPE/$2/g" >client.c
+    sed 's/struct \([a-z:]*triangulateio\)/\1/g; s/= {0}/= {}/' client.c >client.cpp
+}
+in_c() {
+    for std in c89 c99 c11 c2x; do
+        try "$1" client.c "$cc" -std=$std -Wstrict-prototypes
+    done
+}
+in_cxx() {
+    for std in c++98 c++11 c++20; do
+        try "$1" client.cpp "$cxx" -std=$std
+    done
+}
+
+client '' double '#include "triangle.h"'
+in_c yes
+in_cxx yes
+client '' REAL '#include <triangle.h>'
+in_c yes
+in_cxx yes
+client '' double '#include "triangle.h"
+#include "triangle.h"'
+in_c yes
+in_cxx yes
+client '' double '#define REAL double
+#define VOID void
+#define ANSI_DECLARATORS
+#include "triangle.h"
+#undef REAL
+#undef VOID
+#undef ANSI_DECLARATORS
+#include "triangle.h"'
+in_c yes
+in_cxx yes
+client '' double '#define REAL double
+#define VOID int
+#include "triangle.h"'
+in_c yes
+in_cxx yes
+client '' double 'typedef double REAL;
+#include "triangle.h"'
+in_c yes
+client '' double '#define ANSI_DECLARATORS
+#define TRILIBRARY
+#define REDUCED
+#define CDT_ONLY
+#define EXTERNAL_TEST
+#define NO_TIMER
+#define LINUX
+#define CPU86
+#define SELF_CHECK
+#include "triangle.h"
+#undef ANSI_DECLARATORS
+int triunsuitable(double *origin, double *destination, double *apex, double area)
+{
+    return origin[0] + destination[0] + apex[0] > area;
+}'
+in_c yes
+in_cxx yes
+client '' double 'extern "C" {
+#define REAL double
+#define VOID void
+#include "triangle.h"
+}'
+in_cxx yes
+client 'inner::' double 'namespace inner { typedef double Real; typedef Real REAL;
+extern "C" {
+#include "triangle.h"
+} }'
+in_cxx yes
+client 'inner::' double 'namespace inner {
+#include "triangle.h"
+}'
+in_cxx yes
+for real in '' '#define REAL float'; do
+    client '' float "#define SINGLE
+$real
+#include \"triangle.h\""
+    in_c yes
+    in_cxx yes
+done
+
+# A coordinate type that the library does not have.
+client '' float '#define REAL float
+#include "triangle.h"'
+in_c no
+in_cxx no
+client '' double '#define SINGLE
+#define REAL double
+#include "triangle.h"'
+in_c no
+in_cxx no
+
+echo "header: $count compilations, $failed wrong"
+[ "$failed" -eq 0 ]

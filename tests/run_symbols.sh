@@ -1,0 +1,43 @@
+#!/bin/sh
+# What the libraries bring into the program of a client: names of their own alone, no way to print or to end it, and two
+# forms of triangulate() of which the linker takes one whole.
+# Usage: run_symbols.sh NM libtriangle.a libptriangle.a libtritext.a
+set -u
+nm=$1
+failed=0
+
+# names FLAG LIBRARY: symbols, sorted.
+names() { "$nm" -P "$1" "$2" 2>/dev/null | awk 'NF > 1 { print $1 }' | sort -u; }
+
+# own LIBRARY PATTERN: all that it defines matches.
+own() {
+    all=$("$nm" -P -g "$1" 2>/dev/null | awk 'NF > 1 && $2 !~ /^[Uwv]$/ { print $1 }' | sort -u)
+    [ -n "$all" ] || { echo "symbols: $1 defines nothing"; failed=1; }
+    strange=$(echo "$all" | grep -vE "$2")
+    [ -z "$strange" ] || { echo "symbols: $1 defines" $strange; failed=1; }
+}
+own "$2" '^(triangulate|triangulate_with|trifree|tri_[a-z0-9_]+)$'
+own "$3" '^(triangulate|triangulate_with|par_[a-z0-9_]+)$'
+own "$4" '^(tri_[a-z0-9_]+|_Z.*|DW\.ref\..*)$'
+
+refused='[vf]?printf|__v?f?printf_chk|puts|putchar|fputs|fwrite|perror|std(out|err)|_?exit|abort|longjmp|setlocale'
+for library in "$2" "$3"; do
+    bad=$(names -u "$library" | grep -xE "$refused")
+    [ -z "$bad" ] || { echo "symbols: $library uses" $bad; failed=1; }
+done
+
+# Members that define triangulate define the same, so that none of the other library's is needed beside.
+entries() {
+    "$nm" -P -A -g "$1" | awk '$3 ~ /^[A-TV-Z]$/ { sub(/:$/, "", $1); member[$2] = $1; all[$1] = all[$1] " " $2 }
+        END { print all[member["triangulate"]] }'
+}
+a=$(entries "$2")
+b=$(entries "$3")
+if [ -z "$a" ] || [ "$a" != "$b" ]; then
+    echo "symbols: triangulate lies with '$a' in the one, with '$b' in the other"
+    failed=1
+fi
+"$nm" -P "$2" | grep -q '^triunsuitable w' || { echo "symbols: triunsuitable is not weak"; failed=1; }
+
+[ "$failed" -eq 0 ] && echo "symbols: as they should be"
+exit "$failed"

@@ -1,0 +1,731 @@
+/* Meshes from their triangles: round trips, faults, surfaces that are no plane mesh, flips, regions.
+ *
+ * This program is linked with --wrap for malloc, calloc, realloc and free: see allocations.h. */
+#include "allocations.h"
+#include "support.h"
+#include "triangle/reconstruct.h"
+#include "triangle/topology.h"
+
+enum { MOST = 64 };
+
+/* A mesh as input: points, segments and triangles that a .node, .poly and .ele file of it would hold. */
+struct input {
+    struct tri_pslg pslg;
+    struct tri_elements elements;
+};
+
+static void free_input(struct input *input)
+{
+    tri_pslg_free(&input->pslg);
+    tri_elements_free(&input->elements);
+}
+
+static struct input input_of(const struct tri_mesh *mesh)
+{
+    struct input in = {.pslg = support_pslg(mesh->n_vertices, mesh->n_subs + 8, 0, 0)};
+    in.elements = (struct tri_elements){.n = mesh->n_slots, .n_nodes = 3};
+    in.elements.corners = malloc(((size_t)mesh->n_slots + 1) * 3 * sizeof *in.elements.corners);
+    in.pslg.markers = malloc(((size_t)mesh->n_vertices + 1) * sizeof *in.pslg.markers);
+    in.pslg.segment_markers = calloc((size_t)mesh->n_subs + 8, sizeof *in.pslg.segment_markers);
+    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+        double at[2];
+        tri_mesh_place(mesh, v, at);
+        support_add_point(&in.pslg, at[0], at[1]);
+        in.pslg.markers[v] = mesh->vertex_markers[v];
+    }
+    for (int32_t s = 0; s < mesh->n_subs; s++) {
+        support_add_segment(&in.pslg, mesh->sub[s].v[0], mesh->sub[s].v[1]);
+        in.pslg.segment_markers[s] = mesh->sub[s].marker;
+    }
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        memcpy(&in.elements.corners[3 * t], mesh->tri[t].v, sizeof mesh->tri[t].v);
+    return in;
+}
+
+/* A fan of n - 1 triangles around point 0 at the origin; the other n points lie on a half circle, or nearly so. */
+static struct input fan(int32_t n, double height)
+{
+    struct input in = {.pslg = support_pslg(n + 1, 8, 0, 0), .elements = {.n = n - 1, .n_nodes = 3}};
+    in.elements.corners = malloc((size_t)n * 3 * sizeof *in.elements.corners);
+    support_add_point(&in.pslg, 0, 0);
+    for (int32_t i = 0; i < n; i++) {
+        double x = 1 - 2.0 * i / (n - 1);
+        support_add_point(&in.pslg, x, 1 + height * (1 - x * x));
+    }
+    for (int32_t t = 0; t < n - 1; t++)
+        memcpy(&in.elements.corners[3 * t], (int32_t[]){0, t + 1, t + 2}, 3 * sizeof(int32_t));
+    return in;
+}
+
+static struct tri_mesh rebuild(const struct input *in, const struct tri_reconstruct_options *options)
+{
+    struct tri_mesh mesh;
+    struct tri_error error = {0};
+    if (tri_reconstruct(&mesh, &in->pslg, &in->elements, options, &error) != TRI_OK ||
+        tri_mesh_validate(&mesh, &error) != TRI_OK)
+        fail_msg("%s", error.text);
+    return mesh;
+}
+
+static void add_steiner(struct tri_mesh *mesh, double min_angle, double max_area)
+{
+    struct tri_refine_options options = tri_refine_defaults();
+    struct tri_refine_report report;
+    struct tri_error error = {0};
+    options.min_angle = min_angle;
+    options.max_area = max_area;
+    options.region_areas = true;
+    if (tri_refine(mesh, &options, &report, &error) != TRI_OK)
+        fail_msg("%s", error.text);
+    tri_mesh_compact(mesh);
+}
+
+/* Delaunay at every edge without subsegment; ties may be as they like. */
+static void assert_delaunay(const struct tri_mesh *mesh)
+{
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        for (int e = 0; tri_is_live(&mesh->tri[t]) && e < 3; e++) {
+            const struct tri_triangle *at = &mesh->tri[t];
+            if (at->n[e] < 0)
+                continue;
+            int32_t apex = mesh->tri[tri_of(at->n[e])].v[tri_edge(at->n[e])];
+            assert_true(tri_incircle(mesh->xy[at->v[0]], mesh->xy[at->v[1]], mesh->xy[at->v[2]], mesh->xy[apex]) <= 0);
+        }
+}
+
+/* --- round trips */
+
+static void assert_same_mesh(const struct tri_mesh *mesh, const struct tri_mesh *back)
+{
+    assert_int_equal(back->n_slots, mesh->n_slots);
+    assert_int_equal(back->n_subs, mesh->n_subs);
+    assert_int_equal(back->n_parents, mesh->n_subs);
+    assert_int_equal(back->n_vertices, mesh->n_vertices);
+    assert_int_equal(back->n_input, mesh->n_vertices);
+    assert_memory_equal(back->xy, mesh->xy, (size_t)mesh->n_vertices * sizeof *mesh->xy);
+    assert_memory_equal(back->vertex_markers, mesh->vertex_markers, (size_t)mesh->n_vertices * sizeof(int32_t));
+    for (int32_t t = 0; t < mesh->n_slots; t++) {
+        assert_memory_equal(back->tri[t].v, mesh->tri[t].v, sizeof mesh->tri[t].v);
+        assert_memory_equal(back->tri[t].n, mesh->tri[t].n, sizeof mesh->tri[t].n);
+        assert_int_equal(back->tri[t].region, 0);
+    }
+    for (int32_t s = 0; s < mesh->n_subs; s++) {
+        assert_memory_equal(back->sub[s].v, mesh->sub[s].v, sizeof mesh->sub[s].v);
+        assert_memory_equal(back->sub[s].side, mesh->sub[s].side, sizeof mesh->sub[s].side);
+        assert_int_equal(back->sub[s].marker, mesh->sub[s].marker);
+        assert_int_equal(back->sub[s].parent, s);
+        assert_int_equal(back->parents[s].segment, s);
+    }
+}
+
+/* A mesh that is refined already is made the same, refined or not, and further refinement is judged. */
+static void round_trip(const struct tri_pslg *pslg, double angle, double area)
+{
+    struct tri_options options = support_quality(angle, area);
+    struct tri_report report;
+    struct tri_mesh mesh = support_generate(pslg, &options, &report);
+    struct input in = input_of(&mesh);
+    for (int refine = 0; refine < 2; refine++) {
+        struct tri_mesh back = rebuild(&in, &(struct tri_reconstruct_options){.use_segments = true, .refine = refine});
+        assert_same_mesh(&mesh, &back);
+        if (refine) {
+            struct tri_check_options check = {.max_area = area / 4, .max_bad = INT64_MAX, .ignore_lost = true};
+            add_steiner(&back, angle, area / 4);
+            support_judge(&back, &in.pslg, &check, false, NULL);
+            assert_true(back.n_slots > mesh.n_slots);
+        }
+        tri_mesh_free(&back);
+    }
+    free_input(&in);
+    tri_mesh_free(&mesh);
+}
+
+static void what_was_meshed_comes_back(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        double area;
+    } files[] = {{"letter.poly", 0.1}, {"box_hole.poly", 0.05}, {"section.poly", 0.5}, {"cracked_plate.poly", 0.01},
+                 {"koch_lake.poly", 0.001}, {"base0.poly", 0.01}};
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        struct tri_pslg pslg;
+        assert_true(support_read(files[i].name, &pslg));
+        round_trip(&pslg, 20, files[i].area);
+        tri_pslg_free(&pslg);
+    }
+    for (uint64_t seed = 1; seed <= 8; seed++) {
+        struct tri_pslg pslg = support_tangle(seed % 2 ? SUPPORT_RANDOM : SUPPORT_LATTICE, 60, 12, seed);
+        round_trip(&pslg, 0, 0.01);
+        tri_pslg_free(&pslg);
+    }
+}
+
+/* Without segments the boundary alone is subsegments, in the order of the triangles, marked 1. */
+static void boundary_becomes_subsegments(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg;
+    struct tri_report report;
+    assert_true(support_read("section.poly", &pslg));
+    struct tri_options options = support_quality(20, 0);
+    struct tri_mesh mesh = support_generate(&pslg, &options, &report);
+    struct input in = input_of(&mesh);
+    memset(in.pslg.markers, 0, (size_t)in.pslg.n_points * sizeof *in.pslg.markers);
+    struct tri_mesh back = rebuild(&in, &(struct tri_reconstruct_options){.use_segments = false});
+    int32_t before = -1, n_boundary = 0;
+    for (int32_t s = 0; s < mesh.n_subs; s++)
+        n_boundary += mesh.sub[s].side[0] == TRI_NONE || mesh.sub[s].side[1] == TRI_NONE;
+    assert_true(n_boundary < mesh.n_subs);
+    assert_int_equal(back.n_subs, n_boundary);
+    for (int32_t s = 0; s < back.n_subs; s++) {
+        assert_true(back.sub[s].side[0] > before && back.sub[s].side[1] == TRI_NONE && back.sub[s].marker == 1);
+        assert_int_equal(back.parents[s].segment, TRI_NONE);
+        assert_int_equal(back.vertex_markers[back.sub[s].v[0]], 1);
+        before = back.sub[s].side[0];
+    }
+    tri_mesh_free(&back);
+    tri_mesh_free(&mesh);
+    free_input(&in);
+    tri_pslg_free(&pslg);
+}
+
+/* --- a square in four triangles around its middle, point 4; point 5 is unused */
+
+static const int32_t square_corners[12] = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4};
+
+static struct input square(void)
+{
+    struct input in = {.pslg = support_square(2, 0, 1), .elements = {.n = 4, .n_nodes = 3}};
+    tri_pslg_free(&in.pslg);
+    in.pslg = support_pslg(6, 8, 0, 0);
+    static const double at[6][2] = {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {1, 1}, {9, 9}};
+    for (int i = 0; i < 6; i++)
+        support_add_point(&in.pslg, at[i][0], at[i][1]);
+    in.elements.corners = malloc((MOST + 4) * 3 * sizeof(int32_t));
+    memcpy(in.elements.corners, square_corners, sizeof square_corners);
+    in.pslg.segment_markers = calloc(8, sizeof *in.pslg.segment_markers);
+    return in;
+}
+
+static void segment(struct input *in, int32_t a, int32_t b, int32_t marker)
+{
+    support_add_segment(&in->pslg, a, b);
+    in->pslg.segment_markers[in->pslg.n_segments - 1] = marker;
+}
+
+static int32_t marker_of(const struct tri_mesh *mesh, int32_t a, int32_t b)
+{
+    for (int32_t s = 0; s < mesh->n_subs; s++)
+        if ((mesh->sub[s].v[0] == a && mesh->sub[s].v[1] == b) || (mesh->sub[s].v[0] == b && mesh->sub[s].v[1] == a))
+            return mesh->sub[s].marker;
+    fail_msg("%d %d is no subsegment", (int)a, (int)b);
+    return 0;
+}
+
+static void segments_that_are_edges(void **state)
+{
+    (void)state;
+    struct input in = square();
+    segment(&in, 0, 2, 5); /* through the middle */
+    segment(&in, 4, 0, 0);
+    segment(&in, 0, 4, -7);
+    segment(&in, 4, 0, 8);
+    segment(&in, 1, 0, 6);
+    segment(&in, 3, 3, 1);
+    segment(&in, 2, 5, 1);
+    segment(&in, 99, 0, 1);
+    in.pslg.markers = (int32_t *)calloc(6, sizeof(int32_t));
+    in.pslg.markers[1] = 3;
+    bool is_edge[8];
+    struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){.use_segments = true, .is_edge = is_edge});
+    static const bool expected[8] = {false, true, true, true, true, false, false, false};
+    assert_memory_equal(is_edge, expected, sizeof expected);
+    assert_int_equal(mesh.n_subs, 5);
+    assert_int_equal(mesh.n_parents, 5);
+    assert_memory_equal(mesh.sub[0].v, ((int32_t[]){4, 0}), sizeof mesh.sub[0].v);
+    assert_memory_equal(mesh.sub[1].v, ((int32_t[]){1, 0}), sizeof mesh.sub[1].v);
+    assert_int_equal(mesh.parents[0].segment, 1);
+    assert_int_equal(mesh.parents[1].segment, 4);
+    assert_int_equal(marker_of(&mesh, 0, 4), -7);
+    assert_int_equal(marker_of(&mesh, 0, 1), 6);
+    assert_int_equal(marker_of(&mesh, 1, 2), 1);
+    static const int32_t markers[6] = {-7, 3, 1, 1, -7, 0};
+    assert_memory_equal(mesh.vertex_markers, markers, sizeof markers);
+    tri_mesh_free(&mesh);
+    mesh = rebuild(&in, &(struct tri_reconstruct_options){.is_edge = is_edge});
+    assert_int_equal(mesh.n_subs, 4);
+    for (int k = 0; k < 8; k++)
+        assert_false(is_edge[k]);
+    tri_mesh_free(&mesh);
+    free_input(&in);
+}
+
+static void clockwise_triangles_are_turned(void **state)
+{
+    (void)state;
+    struct input in = square();
+    memcpy(&in.elements.corners[3], (int32_t[]){1, 4, 2}, 3 * sizeof(int32_t));
+    memcpy(&in.elements.corners[9], (int32_t[]){4, 0, 3}, 3 * sizeof(int32_t));
+    struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){.use_segments = true});
+    assert_int_equal(mesh.n_subs, 4);
+    assert_memory_equal(mesh.tri[0].v, square_corners, sizeof mesh.tri[0].v);
+    assert_memory_equal(mesh.tri[1].v, ((int32_t[]){1, 2, 4}), sizeof mesh.tri[1].v);
+    assert_memory_equal(mesh.tri[3].v, ((int32_t[]){4, 3, 0}), sizeof mesh.tri[3].v);
+    support_judge(&mesh, NULL, &(struct tri_check_options){.max_bad = INT64_MAX, .ignore_lost = true}, false, NULL);
+    tri_mesh_free(&mesh);
+    free_input(&in);
+}
+
+/* Of the nodes behind the third those vanish that are no corners; other unused vertices stay. */
+static void kept_vertices(void **state)
+{
+    (void)state;
+    struct input in = square();
+    struct tri_error error = {0};
+    in.elements.n = 2; /* 0 1 4 and 1 2 4: 3 and 5 are unused */
+    in.elements.n_nodes = 5;
+    in.elements.extra = malloc(4 * sizeof(int32_t));
+    memcpy(in.elements.extra, (int32_t[]){2, 3, TRI_NONE, 77}, 4 * sizeof(int32_t));
+    struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){.refine = true});
+    add_steiner(&mesh, 0, 0.3);
+    assert_true(mesh.n_vertices > 6);
+    struct tri_used kept;
+    assert_int_equal(tri_kept_make(&kept, &mesh, &in.elements, &error), TRI_OK);
+    assert_int_equal(kept.n, mesh.n_vertices - 1);
+    for (int32_t v = 0; v < mesh.n_vertices; v++) {
+        assert_int_equal(kept.number[v], v < 3 ? v : v == 3 ? TRI_NONE : v - 1);
+        assert_true(v == 3 || kept.vertex[kept.number[v]] == v);
+    }
+    tri_used_free(&kept);
+    free(in.elements.extra);
+    in.elements.extra = NULL;
+    assert_int_equal(tri_kept_make(&kept, &mesh, &in.elements, &error), TRI_OK);
+    assert_int_equal(kept.n, mesh.n_vertices);
+    tri_used_free(&kept);
+    tri_mesh_free(&mesh);
+    free_input(&in);
+}
+
+/* --- faults */
+
+static void faults_name_the_triangle(void **state)
+{
+    (void)state;
+    static const struct {
+        int32_t base;
+        int32_t corners[6]; /* of triangles 4 and 5, behind the square */
+        const char *text;
+    } examples[] = {
+        {0, {0, 0, 1, 0, 1, 3}, "triangle 4 has two equal corners"},
+        {1, {0, 0, 1, 0, 1, 3}, "triangle 5 has two equal corners"},
+        {0, {0, 4, 2, 0, 1, 3}, "triangle 4 has no area"},
+        {0, {5, 0, 4, 0, 1, 3}, "triangle 4 has no area"},
+        {0, {0, 1, 6, 0, 1, 3}, "triangle 4 has a corner that is no vertex"},
+        {0, {0, 1, -1, 0, 1, 3}, "triangle 4 has a corner that is no vertex"},
+        {0, {2, 1, 5, 3, 2, 4}, "triangle 5 has an edge that two other triangles have, too"},
+        {0, {2, 1, 5, 0, 3, 5}, "triangle 5 lies on the same side of an edge as another triangle"},
+        {1, {2, 1, 5, 1, 2, 3}, "triangle 6 has an edge that two other triangles have, too"},
+        {0, {2, 1, 5, 1, 2, 5}, "triangle 5 has an edge that two other triangles have, too"},
+    };
+    for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
+        struct input in = square();
+        struct tri_mesh mesh;
+        struct tri_error error = {0};
+        struct tri_reconstruct_options options = {.base = examples[i].base};
+        in.elements.n = 6;
+        memcpy(&in.elements.corners[12], examples[i].corners, sizeof examples[i].corners);
+        assert_int_equal(tri_reconstruct(&mesh, &in.pslg, &in.elements, &options, &error), TRI_BAD_INPUT);
+        assert_string_equal(error.text, examples[i].text);
+        assert_int_equal(mesh.n_slots, 0);
+        assert_null(mesh.xy);
+        tri_mesh_free(&mesh);
+        free_input(&in);
+    }
+}
+
+static void no_triangles(void **state)
+{
+    (void)state;
+    struct input in = square();
+    struct tri_mesh mesh;
+    struct tri_error error = {0};
+    in.elements.n = 0;
+    mesh = rebuild(&in, &(struct tri_reconstruct_options){.use_segments = true, .refine = true});
+    assert_int_equal(mesh.n_slots, 0);
+    assert_int_equal(mesh.n_subs, 0);
+    add_steiner(&mesh, 20, 1);
+    assert_int_equal(mesh.n_vertices, 6);
+    tri_mesh_free(&mesh);
+    in.elements.n = -1;
+    struct tri_reconstruct_options options = {0};
+    assert_int_equal(tri_reconstruct(&mesh, &in.pslg, &in.elements, &options, &error), TRI_BAD_INPUT);
+    free(in.elements.corners);
+    in.elements.corners = NULL;
+    in.elements.n = 1;
+    assert_int_equal(tri_reconstruct(&mesh, &in.pslg, &in.elements, &options, &error), TRI_BAD_INPUT);
+    free_input(&in);
+}
+
+/* --- whatever the triangles are */
+
+static struct tri_pslg few_points(struct support_random *random, int32_t n)
+{
+    struct tri_pslg pslg = support_pslg(n, 8, 0, 0);
+    bool lattice = support_below(random, 2);
+    for (int32_t i = 0; i < n; i++) {
+        double x = lattice ? support_below(random, 4) : support_unit(random);
+        support_add_point(&pslg, x, lattice ? support_below(random, 4) : support_unit(random));
+    }
+    for (int32_t k = 0; k < 8; k++)
+        support_add_segment(&pslg, support_below(random, n), support_below(random, n));
+    return pslg;
+}
+
+/* Triangles of any kind, but, to get past the first look, only such as fit those before them. */
+static void grow(struct input *in, struct support_random *random, int32_t wanted, double wild)
+{
+    struct tri_elements *elements = &in->elements;
+    struct tri_reconstruct_options options = {0};
+    for (int32_t tries = 0; tries < 20 * wanted && elements->n < wanted; tries++) {
+        struct tri_mesh mesh;
+        int32_t *v = &elements->corners[3 * (size_t)elements->n++];
+        for (int k = 0; k < 3; k++)
+            v[k] = support_below(random, in->pslg.n_points);
+        if (support_unit(random) < wild)
+            continue;
+        if (tri_reconstruct(&mesh, &in->pslg, elements, &options, NULL) != TRI_OK)
+            elements->n--;
+        tri_mesh_free(&mesh);
+    }
+}
+
+static void add_values(struct tri_elements *elements, struct support_random *random)
+{
+    int32_t columns = support_below(random, 4);
+    elements->n_attributes = columns;
+    elements->attributes = columns ? calloc((size_t)(elements->n * columns) + 1, sizeof(double)) : NULL;
+    for (int32_t i = 0; i < elements->n * columns; i++)
+        elements->attributes[i] = support_below(random, 2);
+    elements->areas = support_below(random, 2) ? calloc((size_t)elements->n + 1, sizeof(double)) : NULL;
+    for (int32_t t = 0; elements->areas && t < elements->n; t++)
+        elements->areas[t] = support_below(random, 3) - 1 ? support_unit(random) : 0;
+}
+
+static void assert_counter_clockwise(const struct tri_mesh *mesh)
+{
+    struct tri_error error = {0};
+    if (tri_mesh_validate(mesh, &error) != TRI_OK)
+        fail_msg("%s", error.text);
+    for (int32_t t = 0; t < mesh->n_slots; t++) {
+        const int32_t *v = mesh->tri[t].v;
+        assert_true(mesh->tri[t].region >= 0 && mesh->tri[t].region < mesh->n_regions);
+        assert_true(!tri_is_live(&mesh->tri[t]) || tri_orient2d(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]) > 0);
+    }
+}
+
+/* Surfaces that overlap, wind several times around a vertex or hang together by corners are refined like any other, as
+ * far as that goes; what is none is refused. */
+static bool treat_garbage(struct support_random *random, double wild)
+{
+    struct input in = {.pslg = few_points(random, 4 + support_below(random, 12)), .elements = {.n_nodes = 3}};
+    in.elements.corners = malloc(MOST * 3 * sizeof(int32_t));
+    grow(&in, random, 1 + support_below(random, 24), wild);
+    add_values(&in.elements, random);
+    struct tri_reconstruct_options options = {.use_segments = support_below(random, 2), .refine = true};
+    struct tri_error error = {0};
+    struct tri_mesh mesh;
+    enum tri_status status = tri_reconstruct(&mesh, &in.pslg, &in.elements, &options, &error);
+    if (status) {
+        assert_int_equal(status, TRI_BAD_INPUT);
+        assert_non_null(strstr(error.text, "triangle "));
+    } else {
+        struct tri_refine_options quality = tri_refine_defaults();
+        struct tri_refine_report report;
+        quality.min_angle = 33 * support_unit(random);
+        quality.max_area = 0.2 * support_unit(random);
+        quality.region_areas = true;
+        quality.conforming = support_below(random, 2);
+        quality.protect = support_below(random, 3);
+        quality.max_steiner = 300;
+        assert_counter_clockwise(&mesh);
+        assert_int_equal(tri_refine(&mesh, &quality, &report, &error), TRI_OK);
+        assert_counter_clockwise(&mesh);
+        assert_delaunay(&mesh);
+    }
+    tri_mesh_free(&mesh);
+    free_input(&in);
+    return status == TRI_OK;
+}
+
+static void garbage(void **state)
+{
+    (void)state;
+    struct support_random random = {17};
+    int32_t good = 0, runs = 1500;
+    for (int32_t i = 0; i < runs; i++)
+        good += treat_garbage(&random, i % 4 == 0 ? 0.2 : 0);
+    assert_true(good > runs / 2 && good < runs);
+}
+
+/* A sheet that winds twice around the origin: eight sectors over sixteen points, two at each place of the rim. */
+static void winds_twice(void **state)
+{
+    (void)state;
+    static const double at[8][2] = {{2, 0}, {1, 1}, {0, 2}, {-1, 1}, {-2, 0}, {-1, -1}, {0, -2}, {1, -1}};
+    struct input in = {.pslg = support_pslg(17, 1, 0, 0), .elements = {.n = 16, .n_nodes = 3}};
+    in.elements.corners = malloc(MOST * 3 * sizeof(int32_t));
+    support_add_point(&in.pslg, 0, 0);
+    for (int32_t i = 0; i < 16; i++) {
+        support_add_point(&in.pslg, at[i % 8][0], at[i % 8][1]);
+        memcpy(&in.elements.corners[3 * i], (int32_t[]){0, 1 + i, 1 + (i + 1) % 16}, 3 * sizeof(int32_t));
+    }
+    struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){.refine = true});
+    assert_int_equal(mesh.n_subs, 16);
+    add_steiner(&mesh, 30, 0.01);
+    assert_counter_clockwise(&mesh);
+    assert_delaunay(&mesh);
+    double area = 0;
+    for (int32_t t = 0; t < mesh.n_slots; t++) {
+        struct tri_point a = mesh.xy[mesh.tri[t].v[0]], b = mesh.xy[mesh.tri[t].v[1]], c = mesh.xy[mesh.tri[t].v[2]];
+        area += 0.5 * ((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y));
+    }
+    assert_true(fabs(area - 16) < 1e-9);
+    tri_mesh_free(&mesh);
+    free_input(&in);
+}
+
+/* --- flips */
+
+static void flips_before_refinement(void **state)
+{
+    (void)state;
+    struct input in = fan(200, 0.75);
+    struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){.refine = false});
+    for (int32_t t = 0; t < mesh.n_slots; t++)
+        assert_memory_equal(mesh.tri[t].v, &in.elements.corners[3 * t], sizeof mesh.tri[t].v);
+    tri_mesh_free(&mesh);
+    mesh = rebuild(&in, &(struct tri_reconstruct_options){.refine = true});
+    assert_delaunay(&mesh);
+    struct support_set after = support_triangles(&mesh), before = {in.elements.n, calloc(200, sizeof *before.v)};
+    memcpy(before.v, in.elements.corners, (size_t)in.elements.n * sizeof *before.v);
+    support_sort(&before);
+    assert_false(support_same(&before, &after));
+    support_set_free(&before);
+    support_set_free(&after);
+    add_steiner(&mesh, 25, 0.01);
+    struct tri_check_options check = {.min_angle = 25, .max_area = 0.01, .max_bad = 20};
+    support_judge(&mesh, NULL, &check, false, NULL);
+    tri_mesh_free(&mesh);
+    free_input(&in);
+}
+
+/* Both diagonals of each cell of a grid are Delaunay: none is turned. */
+static void ties_stay(void **state)
+{
+    (void)state;
+    enum { N = 9 };
+    struct support_random random = {3};
+    struct input in = {.pslg = support_pslg(N * N, 1, 0, 0), .elements = {.n_nodes = 3}};
+    in.elements.corners = malloc(N * N * 6 * sizeof *in.elements.corners);
+    for (int32_t i = 0; i < N * N; i++)
+        support_add_point(&in.pslg, i % N, i / N);
+    for (int32_t i = 0; i < N * N - N; i++) {
+        int32_t right = i + 1, up = i + N, far = i + N + 1;
+        int32_t rising[6] = {i, right, far, i, far, up}, falling[6] = {i, right, up, right, far, up};
+        if (i % N == N - 1)
+            continue;
+        memcpy(&in.elements.corners[3 * in.elements.n], support_below(&random, 2) ? rising : falling, sizeof rising);
+        in.elements.n += 2;
+    }
+    struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){.refine = true});
+    for (int32_t t = 0; t < mesh.n_slots; t++)
+        assert_memory_equal(mesh.tri[t].v, &in.elements.corners[3 * t], sizeof mesh.tri[t].v);
+    add_steiner(&mesh, 30, 0.1);
+    assert_counter_clockwise(&mesh);
+    assert_delaunay(&mesh);
+    tri_mesh_free(&mesh);
+    free_input(&in);
+}
+
+/* Nothing is quadratic in the degree of a vertex, not even where every edge is a segment, too. */
+static void vertex_of_high_degree(void **state)
+{
+    (void)state;
+    enum { N = 200000 };
+    struct input in = fan(N, 0.5);
+    free(in.pslg.segments);
+    in.pslg.segments = malloc(N * 2 * sizeof *in.pslg.segments);
+    in.pslg.n_segments = N;
+    for (int32_t k = 0; k < N; k++)
+        memcpy(&in.pslg.segments[2 * k], (int32_t[]){0, k + 1}, 2 * sizeof(int32_t));
+    struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){.use_segments = true, .refine = true});
+    assert_int_equal(mesh.n_slots, N - 1);
+    assert_int_equal(mesh.n_subs, N + N - 1);
+    tri_mesh_free(&mesh);
+    free_input(&in);
+}
+
+/* --- attributes and areas */
+
+static void values_become_regions(void **state)
+{
+    (void)state;
+    struct input in = square();
+    double attributes[12] = {1, 2, 3, 1, 2, 4, 1, 2, 3, 0, 0, 0}, areas[4] = {-1, 0, 7, 0};
+    in.elements.n_attributes = 3;
+    in.elements.attributes = malloc(sizeof attributes);
+    memcpy(in.elements.attributes, attributes, sizeof attributes);
+    struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){0});
+    assert_int_equal(mesh.n_columns, 3);
+    assert_int_equal(mesh.n_regions, 3);
+    static const int32_t regions[4] = {1, 2, 1, 0};
+    for (int32_t t = 0; t < 4; t++) {
+        assert_int_equal(mesh.tri[t].region, regions[t]);
+        assert_memory_equal(tri_region_attributes(&mesh, regions[t]), &attributes[3 * t], 3 * sizeof *attributes);
+    }
+    tri_mesh_free(&mesh);
+    in.elements.areas = malloc(sizeof areas);
+    memcpy(in.elements.areas, areas, sizeof areas);
+    mesh = rebuild(&in, &(struct tri_reconstruct_options){0});
+    assert_int_equal(mesh.n_regions, 4);
+    for (int32_t t = 0; t < 4; t++) {
+        assert_int_equal(mesh.tri[t].region, t == 3 ? 0 : t + 1);
+        assert_true(mesh.regions[mesh.tri[t].region].max_area == (t == 2 ? 7 : 0));
+        assert_memory_equal(tri_region_attributes(&mesh, mesh.tri[t].region), &attributes[3 * t], 3 * sizeof(double));
+    }
+    tri_mesh_free(&mesh);
+    free_input(&in);
+}
+
+/* The input triangle that holds the centre of t. */
+static int32_t original_of(const struct tri_mesh *old, const struct tri_mesh *mesh, int32_t t)
+{
+    const int32_t *v = mesh->tri[t].v;
+    struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
+    struct tri_point q = {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3};
+    for (int32_t o = 0; o < old->n_slots; o++) {
+        const int32_t *w = old->tri[o].v;
+        if (tri_orient2d(old->xy[w[0]], old->xy[w[1]], q) >= 0 && tri_orient2d(old->xy[w[1]], old->xy[w[2]], q) >= 0 &&
+            tri_orient2d(old->xy[w[2]], old->xy[w[0]], q) >= 0)
+            return o;
+    }
+    fail_msg("triangle %d lies nowhere", (int)t);
+    return 0;
+}
+
+/* Where segments part them, the values of a place stay what they were. */
+static void values_do_not_cross_segments(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg;
+    struct tri_report report;
+    assert_true(support_read("section.poly", &pslg));
+    struct tri_options options = support_quality(20, 0);
+    options.spread_regions = true;
+    struct tri_mesh old = support_generate(&pslg, &options, &report);
+    struct input in = input_of(&old);
+    in.elements.n_attributes = 1;
+    in.elements.attributes = malloc((size_t)old.n_slots * sizeof(double));
+    in.elements.areas = malloc((size_t)old.n_slots * sizeof(double));
+    for (int32_t t = 0; t < old.n_slots; t++) {
+        in.elements.attributes[t] = old.regions[old.tri[t].region].attribute;
+        in.elements.areas[t] = in.elements.attributes[t] > 4 ? 0.5 : -1;
+    }
+    struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){.use_segments = true, .refine = true});
+    assert_true(mesh.n_regions <= old.n_regions);
+    add_steiner(&mesh, 25, 0);
+    assert_true(mesh.n_slots > old.n_slots);
+    for (int32_t t = 0; t < mesh.n_slots; t++)
+        assert_true(tri_region_attributes(&mesh, mesh.tri[t].region)[0] ==
+                    in.elements.attributes[original_of(&old, &mesh, t)]);
+    struct tri_check_options check = {.min_angle = 25, .max_bad = -1, .ignore_lost = true, .ignore_holes = true};
+    support_judge(&mesh, &in.pslg, &check, true, NULL);
+    tri_mesh_free(&mesh);
+    tri_mesh_free(&old);
+    free_input(&in);
+    tri_pslg_free(&pslg);
+}
+
+/* Where nothing parts them, values are still those of a triangle nearby, and each keeps its bound. */
+static void values_are_copied(void **state)
+{
+    (void)state;
+    struct input in = square();
+    in.elements.n_attributes = 2;
+    in.elements.attributes = malloc(8 * sizeof(double));
+    in.elements.areas = malloc(4 * sizeof(double));
+    for (int32_t t = 0; t < 4; t++) {
+        in.elements.attributes[2 * t] = t;
+        in.elements.attributes[2 * t + 1] = 10 * t;
+        in.elements.areas[t] = 0.01 * (t + 1);
+    }
+    struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){.refine = true});
+    add_steiner(&mesh, 20, 0);
+    double share[4] = {0};
+    for (int32_t t = 0; t < mesh.n_slots; t++) {
+        const double *values = tri_region_attributes(&mesh, mesh.tri[t].region);
+        int k = (int)values[0];
+        assert_true(values[0] == k && values[1] == 10 * k);
+        assert_true(mesh.regions[mesh.tri[t].region].max_area == 0.01 * (k + 1));
+        share[k] += 0.5 * tri_orient2d(mesh.xy[mesh.tri[t].v[0]], mesh.xy[mesh.tri[t].v[1]], mesh.xy[mesh.tri[t].v[2]]);
+    }
+    for (int k = 0; k < 4; k++)
+        assert_true(share[k] > 0.3 && share[k] < 1.7); /* 1 each, but for ragged borders */
+    support_judge(&mesh, NULL, &(struct tri_check_options){.min_angle = 20, .ignore_lost = true}, true, NULL);
+    tri_mesh_free(&mesh);
+    free_input(&in);
+}
+
+/* --- memory */
+
+static void fails_cleanly_without_memory(void **state)
+{
+    (void)state;
+#ifndef SUPPORT_WRAP
+    skip();
+#endif
+    struct input in = fan(40, 0.75);
+    support_add_segment(&in.pslg, 0, 7);
+    struct support_random random = {5};
+    add_values(&in.elements, &random);
+    struct tri_reconstruct_options options = {.use_segments = true, .refine = true};
+    enum tri_status status = TRI_NO_MEMORY;
+    int64_t k = 1, held = support_held;
+    for (; status != TRI_OK; k++) {
+        struct tri_mesh mesh;
+        struct tri_error error = {0};
+        support_calls = 0;
+        support_fail_at = k;
+        status = tri_reconstruct(&mesh, &in.pslg, &in.elements, &options, &error);
+        support_fail_at = INT64_MAX;
+        assert_true(status == TRI_OK || (status == TRI_NO_MEMORY && error.text[0] && !mesh.xy));
+        tri_mesh_free(&mesh);
+        assert_int_equal(support_held, held);
+    }
+    assert_true(k > 15);
+    free_input(&in);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_was_meshed_comes_back),
+        cmocka_unit_test(boundary_becomes_subsegments),
+        cmocka_unit_test(segments_that_are_edges),
+        cmocka_unit_test(clockwise_triangles_are_turned),
+        cmocka_unit_test(kept_vertices),
+        cmocka_unit_test(faults_name_the_triangle),
+        cmocka_unit_test(no_triangles),
+        cmocka_unit_test(garbage),
+        cmocka_unit_test(winds_twice),
+        cmocka_unit_test(flips_before_refinement),
+        cmocka_unit_test(ties_stay),
+        cmocka_unit_test(vertex_of_high_degree),
+        cmocka_unit_test(values_become_regions),
+        cmocka_unit_test(values_do_not_cross_segments),
+        cmocka_unit_test(values_are_copied),
+        cmocka_unit_test(fails_cleanly_without_memory),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,44 @@
+/* What lies behind triangulate(): from struct triangulateio to a PSLG or a mesh, through the stages, and back.
+ *
+ * Everything that can fail comes before the first change of the caller's structs: the arrays of the output are all
+ * allocated before the first of them is filled. */
+#ifndef TRIANGLE_IO_H
+#define TRIANGLE_IO_H
+
+#include "triangle/reconstruct.h"
+#include "triangle/switches.h"
+#include "triangle/triangle.h"
+#include "triangle/tri.h"
+
+enum { TRI_IO_MOST_COPIES = 10 };
+
+/* The input, from 0 and in double precision. Arrays that have this form are the caller's own. */
+struct tri_io_input {
+    struct tri_pslg pslg;
+    struct tri_elements elements; /* with r */
+    bool *is_edge; /* with r and p: [n_segments] room for tri_reconstruct_options.is_edge; else NULL */
+    void *copies[TRI_IO_MOST_COPIES]; /* what is not the caller's own */
+    int n_copies;
+};
+
+/* Reads what the switches select. TRI_BAD_INPUT: a negative count, a count without an array; with r, a
+ * segment that names no point. *input is valid until `in` changes; to be freed in any case. O(input). */
+enum tri_status tri_io_input_make(struct tri_io_input *input, const struct triangulateio *in,
+                                  const struct tri_switches *switches, struct tri_error *error);
+void tri_io_input_free(struct tri_io_input *input);
+
+/* Writes what the switches select; the mesh has no free slots. TRI_NO_MEMORY. O(output). */
+enum tri_status tri_io_output(const struct tri_mesh *mesh, const struct tri_io_input *input,
+                              const struct tri_switches *switches, const struct triangulateio *in,
+                              struct triangulateio *out, struct triangulateio *vorout, struct tri_error *error);
+
+/* Refines as tri_refine does. */
+typedef enum tri_status tri_io_refine(const struct triangulate_options *options, struct tri_mesh *mesh,
+                                      const struct tri_refine_options *quality, struct tri_refine_report *report,
+                                      struct tri_error *error);
+
+/* triangulate_with, with the refinement that is given. */
+int tri_io_triangulate(const char *switches, const struct triangulateio *in, struct triangulateio *out,
+                       struct triangulateio *vorout, const struct triangulate_options *options, tri_io_refine *refine);
+
+#endif

@@ -1,0 +1,177 @@
+/* The stages behind triangulate(), and what is told about them. */
+#include <stdio.h>
+
+#include "triangle/io.h"
+#include "triangle/quality.h"
+
+/* The client's test for u, if it has one: found by the linker. */
+extern __attribute__((weak)) int triunsuitable(REAL *origin, REAL *destination, REAL *apex, REAL area);
+
+struct io_run {
+    const struct tri_switches *switches;
+    const struct triangulate_options *options;
+    struct tri_io_input input;
+    struct tri_options how;
+    struct tri_mesh mesh;
+    struct tri_report report;
+    struct tri_error *error;
+};
+
+/* --- size test */
+
+static int ask_options(void *user, const double a[2], const double b[2], const double c[2], double area)
+{
+    const struct triangulate_options *options = user;
+    const REAL corners[3][2] = {{(REAL)a[0], (REAL)a[1]}, {(REAL)b[0], (REAL)b[1]}, {(REAL)c[0], (REAL)c[1]}};
+    return options->unsuitable(options->unsuitable_user, corners[0], corners[1], corners[2], (REAL)area);
+}
+
+static int ask_client(void *user, const double a[2], const double b[2], const double c[2], double area)
+{
+    REAL corners[3][2] = {{(REAL)a[0], (REAL)a[1]}, {(REAL)b[0], (REAL)b[1]}, {(REAL)c[0], (REAL)c[1]}};
+    (void)user;
+    return triunsuitable(corners[0], corners[1], corners[2], (REAL)area);
+}
+
+static enum tri_status add_size_test(struct io_run *run)
+{
+    struct tri_refine_options *quality = &run->how.quality;
+    if (!run->switches->user_test)
+        return TRI_OK;
+    if (!run->options->unsuitable && !triunsuitable)
+        return tri_fail(run->error, TRI_BAD_INPUT, NULL, 0, "switch u: there is no function triunsuitable to ask");
+    quality->unsuitable = run->options->unsuitable ? ask_options : ask_client;
+    quality->unsuitable_user = (void *)run->options; /* which only reads it */
+    return TRI_OK;
+}
+
+/* --- messages */
+
+static void warn(const struct io_run *run, const char *text)
+{
+    if (run->options->message && !run->switches->quiet)
+        run->options->message(run->options->message_user, 0, text);
+}
+
+static void warn_number(const struct io_run *run, int n, const char *what)
+{
+    char text[160];
+    snprintf(text, sizeof text, "%d %s", n, what);
+    if (n > 0)
+        warn(run, text);
+}
+
+static void warn_of_switches(const struct io_run *run)
+{
+    const struct tri_switches *s = run->switches;
+    for (int i = 0; i < s->n_notes; i++) {
+        char text[160];
+        snprintf(text, sizeof text, "%s: numbers of switches have no exponent; e is taken for a switch", s->notes[i]);
+        warn(run, text);
+    }
+    if (s->weighted)
+        warn(run, "weighted triangulations (w, W) are not made: the switch is ignored");
+    if (s->angle && s->min_angle > TRI_USUAL_ANGLE && s->min_angle < 180)
+        warn(run, "an angle bound above 34 degrees may not be reached everywhere");
+    if (s->jettison && s->no_node)
+        warn(run, "j and N: points are renumbered, and no array tells how");
+}
+
+static void warn_of_input(const struct io_run *run)
+{
+    const struct tri_report *report = &run->report;
+    int loose = 0;
+    for (int32_t k = 0; run->input.is_edge && k < run->input.pslg.n_segments; k++)
+        loose += !run->input.is_edge[k];
+    warn_number(run, loose, "segments are no edges of the mesh: they are passed on, but the mesh does not keep them");
+    warn_number(run, report->duplicates, "points lie where a point of lower number lies, and are not used");
+    warn_number(run, report->constrain.skipped, "segments name no point, or the same point twice, and are skipped");
+    warn_number(run, report->constrain.lost, "pieces of segments are missing: others are too near to tell them apart");
+    if (report->quality.hit_limit && run->how.quality.conforming)
+        warn(run, "the limit of S was reached before the mesh was conforming");
+}
+
+/* --- stages */
+
+static enum tri_status check_switches(const struct tri_switches *s, const struct triangulateio *vorout,
+                                      struct tri_error *error)
+{
+    if (s->bad_area)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "switch a: the maximum area must be > 0");
+    if (s->voronoi && !vorout)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "switch v: there is no struct for the Voronoi diagram");
+    return TRI_OK;
+}
+
+/* A triangulation needs three points that differ; that they are collinear is no error. */
+static enum tri_status check_points(const struct tri_pslg *pslg, struct tri_error *error)
+{
+    enum tri_status status = tri_pslg_check(pslg, error);
+    if (status)
+        return status;
+    for (int32_t i = 1; i < pslg->n_points; i++)
+        if (pslg->points[2 * (size_t)i] != pslg->points[0] || pslg->points[2 * (size_t)i + 1] != pslg->points[1])
+            return TRI_OK;
+    return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "all points are at the same place");
+}
+
+static enum tri_status build(struct io_run *run)
+{
+    const struct tri_pslg *pslg = &run->input.pslg;
+    struct tri_options how = run->how;
+    how.refine = false; /* is a stage of its own here */
+    enum tri_status status = check_points(pslg, run->error);
+    if (status || !run->switches->mesh)
+        return status ? status : tri_generate(&run->mesh, pslg, &how, &run->report, run->error);
+    struct tri_reconstruct_options options = {
+        .use_segments = run->how.use_segments, .refine = run->how.refine, .base = !run->switches->from_zero,
+        .is_edge = run->input.is_edge};
+    return tri_reconstruct(&run->mesh, pslg, &run->input.elements, &options, run->error);
+}
+
+static enum tri_status run_stages(struct io_run *run, const struct triangulateio *in, tri_io_refine *refine)
+{
+    run->how.quality.region_areas |= run->switches->mesh && run->switches->area_lists;
+    enum tri_status status = add_size_test(run);
+    status = status ? status : tri_io_input_make(&run->input, in, run->switches, run->error);
+    status = status ? status : build(run);
+    if (!status && run->how.refine)
+        status = refine(run->options, &run->mesh, &run->how.quality, &run->report.quality, run->error);
+    if (status)
+        return status;
+    tri_mesh_compact(&run->mesh);
+    warn_of_switches(run);
+    warn_of_input(run);
+    return TRI_OK;
+}
+
+static enum tri_status run_all(struct io_run *run, const struct triangulateio *in, struct triangulateio *out,
+                               struct triangulateio *vorout, tri_io_refine *refine)
+{
+    enum tri_status status = check_switches(run->switches, vorout, run->error);
+    status = status ? status : run_stages(run, in, refine);
+    if (!status)
+        status = tri_io_output(&run->mesh, &run->input, run->switches, in, out, vorout, run->error);
+    tri_io_input_free(&run->input);
+    tri_mesh_free(&run->mesh);
+    return status;
+}
+
+int tri_io_triangulate(const char *switches, const struct triangulateio *in, struct triangulateio *out,
+                       struct triangulateio *vorout, const struct triangulate_options *options, tri_io_refine *refine)
+{
+    static const struct triangulate_options none;
+    struct tri_error error = {0};
+    struct tri_switches s = tri_switches_none();
+    options = options ? options : &none;
+    if (switches && in && out) {
+        tri_switches_add(&s, switches);
+        struct io_run run = {.switches = &s, .options = options, .how = tri_switches_options(&s), .error = &error};
+        run_all(&run, in, out, vorout, refine);
+    } else {
+        tri_fail(&error, TRI_BAD_INPUT, NULL, 0, "switches, in and out must not be NULL");
+    }
+    if (error.status && options->message)
+        options->message(options->message_user, 1, error.text);
+    return (int)error.status;
+}
