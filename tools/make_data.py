@@ -779,6 +779,49 @@ def pentagon_repeat():
     return poly
 
 
+def figure(points, segments):
+    poly = Poly(1, False)
+    for x, y in points:
+        poly.new_point(x, y)
+    for a, b in segments:
+        poly.segment(a, b)
+    return poly
+
+
+def outline(points):
+    return figure(points, [(k, (k + 1) % len(points)) for k in range(len(points))])
+
+
+@case("regress/outline_repeat.poly", "outline whose last two vertices are the same point (github drufat/triangle issue "
+      "70)", "3 triangles; the original crashes now and then")
+def outline_repeat():
+    return outline(((1383, 171), (1998, 0), (2378, 750), (660, 1483), (0, 551), (0, 551)))
+
+
+@case("regress/arrow.poly", "quadrilateral with a reflex corner (github mrkkrj/TrianglePP, test 6.4)",
+      "2 triangles; -pq ends, the original has been seen to loop")
+def arrow():
+    return figure(((305, 56), (283, 138), (292, 68), (211, 59)), ((0, 1), (1, 3), (3, 2), (2, 0)))
+
+
+@case("regress/ulp_apart.poly", "two vertices one ulp apart that a segment joins to others (github "
+      "kninnug/Constrainautor issue 15)", "-pc: ends; flips went round for ever there", ("-pc",))
+def ulp_apart():
+    return figure(((0, 0), (0.05626429153399996, 0), (0.024093852080076722, 4.80267923973791e-18),
+                   (0.01379050745122589, 0.1463775332929564), (0.05177587092034522, 0.015468457826306506),
+                   (0.024093852080076705, -5.204170427930421e-18)), ((0, 5), (5, 2)))
+
+
+@case("regress/near_cocircular.poly", "polygon of nearly cocircular corners (github mapbox/earcut pull 205)",
+      "7 triangles; flips went round for ever there")
+def near_cocircular():
+    return outline(((127.65906365022843, 9.336137742499535), (124.21725103117963, 30.888097161477972),
+                    (91.35514946628345, 89.65621376119454), (40.10446780041529, 121.5550560957686),
+                    (-110.83205604043928, 64.03323632184248), (-127.20394987965459, -14.253249980770189),
+                    (61.074962259031416, -112.48932831632469), (127.37846573978545, -12.598669206638515),
+                    (127.77010311801033, -7.668164657400608)))
+
+
 # --- the coast
 
 COAST = [

@@ -1,0 +1,219 @@
+# What programs pass to Triangle, and what its users reported: crashes, endless loops, locales, numbers. docs/compatibility.md
+# says which report each part stands for.
+
+contents() { # contents BASE: all records of the output of BASE, without the closing comments
+    for output in "$1".1.*; do
+        echo "== $output"
+        grep -v '^#' "$output"
+    done
+}
+
+same() { # same FILE SWITCHES OTHER: both ways to write the switches give the same files
+    rm -f "${1%.*}".1.*
+    # shellcheck disable=SC2086 # several words
+    run 0 $2 "$1"
+    contents "${1%.*}" >.expected
+    rm -f "${1%.*}".1.*
+    # shellcheck disable=SC2086
+    run 0 $3 "$1"
+    contents "${1%.*}" >.found
+    check "not as $2" cmp .expected .found
+}
+
+ends() { # ends SECONDS WORDS...: exit code 0 in time
+    seconds=$1
+    shift
+    what="triangle $*"
+    checks=$((checks + 1))
+    timeout "$seconds" "$bin/triangle" "$@" >.out 2>.err
+    found=$?
+    [ "$found" -eq 0 ] || fault "exit code $found: $(head -n 1 .err)"
+}
+
+# --- bundles: noise inside, numbers without exponents and signs, the last number wins
+fresh letter.poly section.poly
+same letter.poly -pq30Q "-Qz{pq30}"
+same letter.poly "-p -c -e -v -Q" "-Qpc-e-v"
+same section.poly "-p -z -e -A -a -q33 -Y" "-YpzeAfaq33"
+same letter.poly "-p" "-z -i -p"
+same section.poly "-pAa -a2.5 -q30 -YY" "-pA -a -a2.5 -q30 -YY"
+same letter.poly "-p -q32.5 -a0.2 -A -Y -S100 -e -z -Q" "-pq32.5a0.2AYS100ezQ"
+same letter.poly "-pq32.5a0.2AYS100eQ" "-Y -eQpS100 -a0.2 -Aq32.5"
+same letter.poly -pqa0.1 -pqa.1.2
+same letter.poly -pqa0.1 -pqa.5a.1
+same letter.poly -pq20 -pq20.
+same letter.poly -pq -pq20
+same letter.poly -pq0.5 -pq.5
+same letter.poly -pq -pq-5
+same letter.poly -pq30e -pq30e1
+same letter.poly -pa1e -pa1e-3
+same section.poly -pAa -pAa-1
+same section.poly -pAaa6.2 -pAa6.2a
+same letter.poly -pqS1e -pqS1e3
+same letter.poly -pqS0 -pqS-3
+same letter.poly -pqS0 -pqS
+same letter.poly -p -pq0S0
+same letter.poly -pq -pqRUk%w
+same letter.poly -po2 -po22
+same letter.poly -p -poo3o
+for word in -pa0 -pqa. -pa0.0; do
+    run 1 $word letter.poly
+    complains "area"
+    matches "^Error:  "
+done
+same letter.poly -pqa0.05 -pqa0.05000000000000000000 # as MeshPy (%.20f) and ANUGA (%20.20f) write it
+fresh letter.poly
+run 0 -pqa0.00000000000000000001S10 letter # 1e-20: far below what can be reached
+judge letter.1 --poly letter.poly
+run 0 -pq180S50 letter # no such angle exists
+judge letter.1 --poly letter.poly
+
+# --- numbers and the locale: a comma locale changes nothing. Made here where the system has none.
+locale_of() {
+    for name in de_DE.UTF-8 de_DE.utf8 fr_FR.UTF-8; do
+        LC_ALL=$name locale decimal_point 2>/dev/null | grep -q "^,$" && echo "$name" && return
+    done
+    localedef -i de_DE -f UTF-8 "$PWD/.locales/de_DE.UTF-8" >/dev/null 2>&1 && echo de_DE.UTF-8
+}
+fresh letter.poly
+mkdir .locales
+comma=$(locale_of)
+if [ -n "$comma" ]; then
+    [ -d .locales/de_DE.UTF-8 ] && LOCPATH=$PWD/.locales && export LOCPATH
+    run 0 -pq20.5a0.1V letter
+    contents letter >.expected
+    grep -E "area:|angle:|-  +[0-9]" .out >.numbers
+    rm -f letter.1.*
+    LC_ALL=$comma
+    run 0 -pq20.5a0.1V letter
+    LC_ALL=C
+    contents letter >.found
+    what="LC_ALL=$comma"
+    check "the mesh depends on the locale" cmp .expected .found
+    check "printed numbers depend on the locale" sh -c 'grep -E "area:|angle:|-  +[0-9]" .out | cmp -s - .numbers'
+    # the libraries inside a process that has set it: these tests look for such locales themselves
+    for program in switches number triangulate; do
+        test="$bin/../tests/test_$program"
+        [ ! -x "$test" ] || check "test_$program" sh -c '"$1" >.tests 2>&1 && ! grep -q "SKIPPED.*locale" .tests' sh "$test"
+    done
+    unset LOCPATH
+fi
+rm -rf .locales .numbers .tests
+
+# --- programs that run triangle
+# FEMM: no iteration number, nothing but .node, .ele, .edge; counts from 0
+fresh section.poly
+sed 's/\r//' section.poly >femm.poly
+cp femm.poly kept.poly
+ls >.before
+for more in "" -Y; do
+    # shellcheck disable=SC2086
+    run 0 -p -P -j -q30 -e -A -a -z -Q -I $more femm.poly
+    wrote femm.node femm.ele femm.edge
+    check "nothing is said" test ! -s .out -a ! -s .err
+    check "the input is as it was" cmp femm.poly kept.poly
+    rm -f femm.node femm.ele femm.edge
+done
+# base 0 as FEMM writes it: all numbers in the files begin there
+fresh base0.poly
+run 0 -p -P -j -q30 -e -A -a.01 -z -Q -I base0.poly
+for output in node ele edge; do
+    check "$output counts from 0" test "$(records base0.$output | sed -n 2p | cut -d' ' -f1)" = 0
+done
+check "vertices exist" awk '
+    /^#/ || FNR == 1 { if (FNR == 1 && FILENAME ~ /node/) n = $1; next }
+    FILENAME ~ /ele/ { for (k = 2; k <= 4; k++) if ($k < 0 || $k >= n) exit 1 }
+    FILENAME ~ /edge/ { if ($2 < 0 || $2 >= n || $3 < 0 || $3 >= n) exit 1 }' base0.node base0.ele base0.edge
+
+# FloPy: numbered files with the vertices apart, all tables readable by columns, attributes whole numbers
+fresh section.poly
+n=$(records section.poly | sed -n 1p | cut -d' ' -f1)
+records section.poly | head -n $((n + 1)) | awk 'NR > 1 { $1 = $1 - 1 } { print }' >base.0.node
+{
+    records section.poly | sed -n 1p | sed 's/^[0-9]*/0/'
+    records section.poly | tail -n +$((n + 2)) | awk '
+        left == 0 { left = $1; section++; print; next }
+        { left--; $1 = $1 - 1; if (section == 1) { $2 = $2 - 1; $3 = $3 - 1 } print }'
+} >base.0.poly
+ls >.before
+run 0 -a -q30 -A -p -V -D -e -n base.0
+wrote base.1.node base.1.ele base.1.poly base.1.edge base.1.neigh
+check "attributes are whole numbers" test "$(records base.1.ele | awk 'NR > 1 && $5 !~ /^-?[0-9]+$/' | wc -l)" -eq 0
+check "each table has as many columns everywhere" awk '/^#/ || FNR == 1 { next }
+    !(FILENAME in n) { n[FILENAME] = NF } NF != n[FILENAME] { exit 1 }' base.1.node base.1.ele base.1.edge base.1.neigh
+judge base.1 --min-angle 30
+
+# gptoolbox and scripts
+fresh letter.poly
+same letter.poly "-p -q20 -a0.02" "-pq20-a0.02"
+run 0 -peq30a0.02 letter
+wrote letter.1.node letter.1.ele letter.1.poly letter.1.edge
+check "grep 'Mesh vertices'" test "$(grep "Mesh vertices" .out | awk '{ print $3 }')" \
+    = "$(records letter.1.node | sed -n 1p | cut -d' ' -f1)"
+
+# --- reports: crashes and endless loops. What must come out of data/regress is in data/expected.txt; here with bounds.
+fresh regress/hole_outside.poly regress/near_collinear_repeat.poly regress/touching_squares.poly \
+    regress/pentagon_repeat.poly regress/outline_repeat.poly regress/arrow.poly regress/ulp_apart.poly \
+    regress/near_cocircular.poly
+for input in *.poly; do
+    for words in -p -pc -pq -pq30 -pcq33D -pqa10YY -pi -pF; do
+        case $input$words in near_coll*q* | *_apart*q*) words=${words}S1000 ;; esac
+        ends 20 $words "$input"
+        case $words in *S1000) more="" ;; *) more="--poly $input" ;; esac
+        # shellcheck disable=SC2086
+        [ "$(records "${input%.*}.1.ele" | sed -n 1p | cut -d' ' -f1)" = 0 ] || judge "${input%.*}.1" $more
+    done
+done
+run 0 -p hole_outside
+counts 13 11 23 13 0 13
+run 0 -pe touching_squares
+counts 7 4 10 8 0 8
+run 0 -pe pentagon_repeat
+counts 4 2 5 4 0 4
+ends 20 -pq arrow
+judge arrow.1 --poly arrow.poly --min-angle 20
+
+fresh nasty/duplicates.poly nasty/crossing_random.poly nasty/huge_offset.poly nasty/overlap.poly nasty/spike.poly \
+    nasty/slit_1e-9.poly nasty/tiny_feature.poly nasty/bowtie.poly
+for input in *.poly; do
+    ends 60 -pq30 "$input"
+    judge "${input%.*}.1" --poly "$input"
+done
+
+# --- angles that cannot be: it ends, and says so
+fresh letter.poly
+for angle in 35 36 40 45 59 60 61 90; do
+    ends 60 -pq$angle letter
+    judge letter.1 --poly letter.poly
+done
+
+# --- input that is nothing
+fresh nasty/identical.node nasty/nan.node nasty/inf.node nasty/inf_word.node nasty/two_points.node nasty/empty.node \
+    nasty/collinear.node nasty/collinear.poly
+printf '0 2 0 0\n' >none.node
+ls >.before
+for input in identical nan inf inf_word two_points empty none; do
+    for words in "" -q -i -F -c; do
+        # shellcheck disable=SC2086
+        run 1 $words $input.node
+        complains "$input\.node|same place"
+    done
+done
+wrote
+for words in "" -q -c -i -env -o2 -j; do
+    # shellcheck disable=SC2086
+    run 0 $words collinear.node
+    counts . 0 0 0
+    run 0 -p$words collinear.poly
+    counts . 0 0 0
+done
+
+# --- the reports themselves, where they are at hand
+if [ -n "$shared" ]; then
+    for input in "$shared"/bug_*.poly; do
+        rm -f ./*
+        cp "$input" report.poly
+        ends 60 -pq30 report.poly
+        [ "$(records report.1.ele | sed -n 1p | cut -d' ' -f1)" = 0 ] || judge report.1 --poly report.poly
+    done
+fi
