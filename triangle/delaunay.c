@@ -363,7 +363,12 @@ static enum tri_status build_from(struct tri_mesh *mesh, const int32_t *order, i
 
 static enum tri_status triangulate(struct tri_mesh *mesh, int32_t *order, int32_t *scratch, struct tri_error *error)
 {
-    enum tri_status status = tri_hilbert_order(mesh->xy, mesh->n_vertices, order, error);
+    enum tri_status status = TRI_OK;
+    if (mesh->origin) /* the vertices are in order */
+        for (int32_t v = 0; v < mesh->n_vertices; v++)
+            order[v] = v;
+    else
+        status = tri_hilbert_order(mesh->xy, mesh->n_vertices, order, error);
     if (status)
         return status;
     int32_t n = drop_duplicates(mesh, order, mesh->n_vertices);

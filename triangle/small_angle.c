@@ -19,6 +19,7 @@
 
 #include <assert.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "triangle/refine.h"
 
@@ -217,15 +218,11 @@ static void find_acute(struct tri_mesh *mesh)
         }
 }
 
-static enum tri_status list_spokes(struct tri_mesh *mesh, struct tri_error *error)
+void tri_fill_spokes(struct tri_mesh *mesh)
 {
-    size_t n = (size_t)mesh->n_vertices;
-    assert(!mesh->spoke_start && !mesh->spokes);
-    mesh->spoke_start = calloc(n + 2, sizeof *mesh->spoke_start);
-    mesh->spokes = malloc((2 * (size_t)mesh->n_parents + 1) * sizeof *mesh->spokes);
-    if (!mesh->spoke_start || !mesh->spokes)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)mesh->n_parents);
+    size_t n = (size_t)mesh->n_hubs;
     int32_t *fill = mesh->spoke_start + 1; /* shifted by one, so that filling leaves the starts in place */
+    memset(mesh->spoke_start, 0, (n + 2) * sizeof *mesh->spoke_start);
     for (int32_t p = 0; p < mesh->n_parents; p++)
         for (int k = 0; k < 2; k++)
             fill[mesh->parents[p].v[k] + 1]++;
@@ -234,8 +231,18 @@ static enum tri_status list_spokes(struct tri_mesh *mesh, struct tri_error *erro
     for (int32_t p = 0; p < mesh->n_parents; p++)
         for (int k = 0; k < 2; k++)
             mesh->spokes[fill[mesh->parents[p].v[k]]++] = p;
-    mesh->n_hubs = mesh->n_vertices;
     assert(mesh->spoke_start[n] == 2 * mesh->n_parents);
+}
+
+static enum tri_status list_spokes(struct tri_mesh *mesh, struct tri_error *error)
+{
+    assert(!mesh->spoke_start && !mesh->spokes);
+    mesh->spoke_start = malloc(((size_t)mesh->n_vertices + 2) * sizeof *mesh->spoke_start);
+    mesh->spokes = malloc((2 * (size_t)mesh->n_parents + 1) * sizeof *mesh->spokes);
+    if (!mesh->spoke_start || !mesh->spokes)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)mesh->n_parents);
+    mesh->n_hubs = mesh->n_vertices;
+    tri_fill_spokes(mesh);
     return TRI_OK;
 }
 

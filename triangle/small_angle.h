@@ -18,4 +18,8 @@ bool tri_is_hopeless(const struct tri_mesh *mesh, double shortest2, int32_t slot
 /* Does the shortest edge of the triangle bridge a space between two parents that is too dear to fill? */
 bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape);
 
+/* Lists the parents at each vertex, in the arrays that tri_refine_prepare has made; called again when vertices get other
+ * numbers. O(vertices + parents). */
+void tri_fill_spokes(struct tri_mesh *mesh);
+
 #endif
