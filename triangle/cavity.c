@@ -39,16 +39,11 @@ static bool grow(struct tri_cavity *c)
     return true;
 }
 
-static inline bool holds(const struct tri_fence *f, const struct tri_point *q)
-{
-    return q->x >= f->x_min && q->x < f->x_max && q->y >= f->y_min && q->y < f->y_max;
-}
-
 static bool owns(const struct tri_cavity *c, const struct tri_mesh *mesh, int32_t t)
 {
     const int32_t *v = mesh->tri[t].v;
-    return !c->fence || (holds(c->fence, &mesh->xy[v[0]]) && holds(c->fence, &mesh->xy[v[1]]) &&
-                         holds(c->fence, &mesh->xy[v[2]]));
+    return !c->fence || (tri_fence_holds(c->fence, mesh->xy[v[0]]) && tri_fence_holds(c->fence, mesh->xy[v[1]]) &&
+                         tri_fence_holds(c->fence, mesh->xy[v[2]]));
 }
 
 /* Is p in the circumdisk of a, b, c, which are the vertices behind the relative coordinates? */
@@ -78,7 +73,7 @@ static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh
             int32_t apex = t->v[e];
             struct tri_relative rapex = tri_relative(&xy[apex], p);
             if (in_circle(mesh, p, a, apex, b, ra, rapex, rb)) {
-                if (c->fence && !holds(c->fence, &xy[apex]))
+                if (c->fence && !tri_fence_holds(c->fence, xy[apex]))
                     return TRI_SEARCH_FENCED;
                 if (c->n_tri == c->capacity && !grow(c))
                     return TRI_SEARCH_NO_MEMORY;

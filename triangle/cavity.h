@@ -43,6 +43,11 @@ struct tri_fence {
     double x_min, y_min, x_max, y_max; /* x_min <= x < x_max */
 };
 
+static inline bool tri_fence_holds(const struct tri_fence *f, struct tri_point q)
+{
+    return q.x >= f->x_min && q.x < f->x_max && q.y >= f->y_min && q.y < f->y_max;
+}
+
 struct tri_cavity {
     struct tri_point p;
     const struct tri_fence *fence; /* NULL: everything is owned */

@@ -134,11 +134,16 @@ static double channel_cost(const struct tri_mesh *mesh, int32_t u, int32_t v, in
     return dearest;
 }
 
-bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape)
+double tri_channel_cost(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape)
 {
     const int32_t *v = mesh->tri[slot].v;
     int k = shape->shortest;
-    return channel_cost(mesh, v[tri_next[k]], v[tri_prev[k]], v[k]) > mesh->dearest_channel;
+    return channel_cost(mesh, v[tri_next[k]], v[tri_prev[k]], v[k]);
+}
+
+bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape)
+{
+    return tri_channel_cost(mesh, slot, shape) > mesh->dearest_channel;
 }
 
 bool tri_is_hopeless(const struct tri_mesh *mesh, double shortest2, int32_t slot, const struct tri_shape *shape)
@@ -160,10 +165,9 @@ static void choose_channels(struct tri_mesh *mesh)
     const double ALL = 250000, ALLOWANCE = 20000, PER_VERTEX = 4;
     double cost_of[OCTAVES] = {0}, count_of[OCTAVES] = {0}, dearer = 0, cheaper = 0, all = 0;
     for (int32_t t = 0; t < mesh->n_slots; t++) {
-        const int32_t *v = mesh->tri[t].v;
-        struct tri_shape shape = tri_shape_of(mesh->xy, v);
-        int k = shape.shortest, octave; /* 2^(octave - 1) <= cost < 2^octave */
-        double cost = channel_cost(mesh, v[tri_next[k]], v[tri_prev[k]], v[k]);
+        struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
+        double cost = tri_channel_cost(mesh, t, &shape);
+        int octave; /* 2^(octave - 1) <= cost < 2^octave */
         frexp(cost, &octave);
         if (octave > CHEAP) {
             octave = octave < OCTAVES ? octave : OCTAVES - 1;
