@@ -47,8 +47,8 @@ static void test_sorting_follows_the_curve(void **state)
     assert_int_equal(tri_mesh_init(&mesh, NULL), TRI_OK);
     assert_int_equal(tri_mesh_take_points(&mesh, &pslg, NULL), TRI_OK);
     assert_true(mesh.n_input <= 600);
-    assert_int_equal(tri_hilbert_order(mesh.xy, mesh.n_input, order, NULL), TRI_OK);
-    assert_int_equal(tri_sort_points(&mesh, &rank, NULL), TRI_OK);
+    assert_int_equal(tri_hilbert_order(mesh.xy, mesh.n_input, order, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_sort_points(&mesh, &rank, NULL, NULL), TRI_OK);
     for (int32_t v = 0; v < mesh.n_input; v++) {
         assert_int_equal(mesh.origin[v], order[v]);
         assert_int_equal(rank[order[v]], v);

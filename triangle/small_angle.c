@@ -155,6 +155,18 @@ bool tri_is_hopeless(const struct tri_mesh *mesh, double shortest2, int32_t slot
            tri_is_channel(mesh, slot, shape);
 }
 
+/* Two corners at least lie on segments. */
+static bool may_bridge(const struct tri_mesh *mesh, const int32_t v[3])
+{
+    int on = 0;
+    for (int k = 0; k < 3; k++) {
+        int32_t n;
+        parents_of(mesh, v[k], &n);
+        on += n > 0;
+    }
+    return on >= 2;
+}
+
 /* Which narrow spaces are filled, by their cost. All of them, where a quarter of a million points is enough for that: thin layers and slits
  * of ordinary parts. Else, where there are spikes of no width or lines a few units in the last place apart, the cheap ones: up
  * to the largest power of two, 2^10 or more, such that filling every space as far as this cost goes takes no more than
@@ -165,6 +177,8 @@ static void choose_channels(struct tri_mesh *mesh)
     const double ALL = 250000, ALLOWANCE = 20000, PER_VERTEX = 4;
     double cost_of[OCTAVES] = {0}, count_of[OCTAVES] = {0}, dearer = 0, cheaper = 0, all = 0;
     for (int32_t t = 0; t < mesh->n_slots; t++) {
+        if (!may_bridge(mesh, mesh->tri[t].v))
+            continue;
         struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
         double cost = tri_channel_cost(mesh, t, &shape);
         int octave; /* 2^(octave - 1) <= cost < 2^octave */

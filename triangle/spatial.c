@@ -72,7 +72,8 @@ static void move_vertex(const struct tri_mesh *mesh, const struct reordered *r, 
                width * sizeof *r->attributes);
 }
 
-enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **rank, struct tri_error *error)
+enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **rank, const struct tri_executor *executor,
+                                struct tri_error *error)
 {
     int32_t n = mesh->n_input, *origin = array(n, sizeof *origin);
     struct reordered sorted = {0};
@@ -81,7 +82,7 @@ enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **rank, struct tr
     enum tri_status status = TRI_OK;
     if (!origin || !*rank || !allocate(&sorted, mesh))
         status = no_memory(mesh, error);
-    status = status ? status : tri_hilbert_order(mesh->xy, n, origin, error);
+    status = status ? status : tri_hilbert_order(mesh->xy, n, origin, executor, error);
     if (status) {
         free_reordered(&sorted);
         free(origin);

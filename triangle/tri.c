@@ -53,8 +53,8 @@ static enum tri_status triangulate(struct tri_mesh *mesh, const struct tri_pslg 
     struct tri_pslg renamed = {0};
     enum tri_status status = tri_mesh_take_points(mesh, pslg, error);
     announce(options, TRI_STAGE_DELAUNAY);
-    status = status ? status : tri_sort_points(mesh, &rank, error);
-    status = status ? status : tri_delaunay(mesh, error);
+    status = status ? status : tri_sort_points(mesh, &rank, options->executor, error);
+    status = status ? status : tri_delaunay(mesh, options->executor, error);
     for (int32_t v = 0; !status && mesh->twin && v < mesh->n_input; v++)
         report->duplicates += mesh->twin[v] != v;
     status = status ? status : rename_segments(&renamed, pslg, rank, error);
