@@ -8,6 +8,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/pslg.c
     triangle/mesh.c
     triangle/hilbert.c
+    triangle/spatial.c
     triangle/delaunay.c
     triangle/constrain.c
     triangle/carve.c
@@ -62,6 +63,7 @@ set(PTRIANGLE_PUBLIC_HEADERS
     triangle/status.h
     triangle/pslg.h
     triangle/mesh.h
+    triangle/spatial.h
     triangle/carve.h
     triangle/reconstruct.h
     triangle/constrain.h

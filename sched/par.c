@@ -15,13 +15,12 @@
 #include "sched/theory.h"
 #include "triangle/quality.h"
 
-/* Blocks hold one in BLOCKS of the final triangles, within limits: small blocks keep many threads busy, large ones have
- * fewer seams (a fence of the first colour holds four blocks' worth). Coarse triangles a block has after
- * pre-refinement: enough for seams to be narrow, few enough for pre-refinement to take a few thousandths of the time.
- * (docs/performance.md) */
-static const double BLOCKS = 128, SMALLEST_BLOCK = 16384, LARGEST_BLOCK = 131072, COARSE_PER_BLOCK = 64;
+/* Cells hold one in CELLS of the final triangles, within limits: small ones keep many threads busy, large ones make fewer
+ * seams. Coarse triangles a cell has after pre-refinement: enough for seams to be narrow, few enough for pre-refinement
+ * to take a few thousandths of the time. (docs/performance.md) */
+static const double CELLS = 128, SMALLEST_CELL = 8192, LARGEST_CELL = 131072, COARSE_PER_CELL = 64;
 
-enum { FEWEST_BLOCKS = 4, FEWEST_COARSE_BLOCKS = 32, MAX_ROUNDS = 24 };
+enum { FEWEST_CELLS = 8, FEWEST_COARSE_CELLS = 32, MAX_ROUNDS = 24 };
 
 struct par_options par_defaults(void) { return (struct par_options){0}; }
 
@@ -104,11 +103,11 @@ static int is_too_long(void *user, const double a[2], const double b[2], const d
 static double smallest_cell(const struct par_partition *p)
 {
     double least = HUGE_VAL;
+    for (int32_t c = 0; c + 1 < p->n_columns; c++)
+        least = p->x[c + 1] - p->x[c] < least ? p->x[c + 1] - p->x[c] : least;
     for (int32_t c = 0; c < p->n_columns; c++) {
-        const double *y = p->y + (size_t)c * ((size_t)p->n_rows + 1);
-        double width = p->x[c + 1] - p->x[c];
-        least = width < least ? width : least;
-        for (int32_t r = 0; r < p->n_rows; r++)
+        const double *y = p->y + (size_t)c * (size_t)p->n_rows;
+        for (int32_t r = 0; r + 1 < p->n_rows; r++)
             least = y[r + 1] - y[r] < least ? y[r + 1] - y[r] : least;
     }
     return least > 0 ? least : 0;
@@ -117,15 +116,31 @@ static double smallest_cell(const struct par_partition *p)
 static enum tri_status refine_level(struct par_state *state, const struct tri_refine_options *quality, int level,
                                     struct tri_error *error);
 
-/* Pre-refinement where the input is coarse against the mesh to come: the same bounds with areas scaled up, as the paper
- * has it, for the area that makes COARSE_PER_BLOCK triangles in a cell. */
-static enum tri_status prerefine_uniform(struct par_state *state, const struct tri_refine_options *quality,
-                                         double block, int level, struct tri_error *error)
+/* The bounds of a uniform pre-refinement: the same with areas scaled up, as the paper has it, for the area that makes
+ * COARSE_PER_CELL triangles in a cell. */
+static struct tri_refine_options coarse_bounds(const struct tri_refine_options *quality, double cell)
 {
     struct tri_refine_options coarse = *quality;
-    coarse.area_scale = (quality->area_scale > 0 ? quality->area_scale : 1) * (block / COARSE_PER_BLOCK);
+    coarse.area_scale = (quality->area_scale > 0 ? quality->area_scale : 1) * (cell / COARSE_PER_CELL);
     coarse.min_angle = fmin(quality->min_angle, TRI_SIZES_ANGLE);
     coarse.unsuitable = NULL;
+    return coarse;
+}
+
+/* Is the input coarse against the mesh to come, so that areas say where its triangles will be? Else features do. Each
+ * level has at most a quarter of the triangles of the one above. */
+static bool areas_decide(const struct par_state *state, const struct tri_refine_options *quality, double estimate,
+                         double cell)
+{
+    struct tri_refine_options coarse = coarse_bounds(quality, cell);
+    return (quality->max_area > 0 || quality->region_areas) &&
+           par_estimate(state->mesh, &coarse) < estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
+}
+
+static enum tri_status prerefine_uniform(struct par_state *state, const struct tri_refine_options *quality,
+                                         double cell, int level, struct tri_error *error)
+{
+    struct tri_refine_options coarse = coarse_bounds(quality, cell);
     if (level == 0 && coarse.min_angle > 0 && quality->max_area > 0)
         state->report->radius_theory = par_radius_tight(quality->max_area * coarse.area_scale, coarse.min_angle);
     return refine_level(state, &coarse, level + 1, error);
@@ -244,7 +259,7 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
             status = par_phase(state, partition, colour, error);
         }
         state->report->rounds++;
-        if (state->pool.n == 0 || par_blocks(partition) < FEWEST_BLOCKS * FEWEST_BLOCKS)
+        if (state->pool.n == 0 || par_cells(partition) < FEWEST_CELLS * FEWEST_CELLS)
             break;
         par_partition_coarsen(partition);
     }
@@ -288,45 +303,50 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     return status;
 }
 
-static double block_size(const struct par_state *state, double estimate)
+static double cell_size(const struct par_state *state, double estimate)
 {
-    double block = estimate / BLOCKS;
-    if (state->options->block_triangles > 0) /* more than the coarse triangles of a block, or levels would not end */
-        return fmax(state->options->block_triangles, 4 * COARSE_PER_BLOCK);
-    return block < SMALLEST_BLOCK ? SMALLEST_BLOCK : block > LARGEST_BLOCK ? LARGEST_BLOCK : block;
+    double cell = estimate / CELLS;
+    if (state->options->cell_triangles > 0)
+        return state->options->cell_triangles;
+    return cell < SMALLEST_CELL ? SMALLEST_CELL : cell > LARGEST_CELL ? LARGEST_CELL : cell;
 }
 
-/* Refines to these bounds: sequentially if that is little work, else by the schedule after a pre-refinement. */
-static enum tri_status refine_level(struct par_state *state, const struct tri_refine_options *quality, int level,
-                                    struct tri_error *error)
+/* The schedule on one level, after a pre-refinement. */
+static enum tri_status schedule_level(struct par_state *state, const struct tri_refine_options *quality, int level,
+                                      double estimate, double cell, struct tri_error *error)
 {
     struct par_partition partition;
-    double began = par_seconds(), block = block_size(state, par_estimate(state->mesh, quality));
-    enum tri_status status = par_partition_make(&partition, state->mesh, quality, block, error);
+    double began = par_seconds();
+    enum tri_status status = par_partition_make(&partition, state->mesh, quality, estimate, cell, error);
     state->report->seconds_partition += par_seconds() - began;
     if (status)
         return status;
-    double input_work = 8.0 * state->mesh->n_slots;
     began = par_seconds();
-    if (par_blocks(&partition) < (level == 0 ? FEWEST_BLOCKS : FEWEST_COARSE_BLOCKS)) {
-        status = refine_rest(state, quality, true, error);
-        if (level > 0)
-            state->report->seconds_prerefine += par_seconds() - began;
-        else
-            state->report->seconds_last += par_seconds() - began;
+    state->report->levels = level + 1 > state->report->levels ? level + 1 : state->report->levels;
+    tell(state, 0);
+    if (areas_decide(state, quality, estimate, cell)) {
+        status = prerefine_uniform(state, quality, cell, level, error);
     } else {
-        state->report->levels = level + 1 > state->report->levels ? level + 1 : state->report->levels;
-        tell(state, 0);
-        bool areas = quality->max_area > 0 || quality->region_areas;
-        bool uniform = areas && input_work * (block / COARSE_PER_BLOCK) < 4 * partition.estimate;
-        status = uniform ? prerefine_uniform(state, quality, block, level, error)
-                         : prerefine_graded(state, quality, &partition, error);
-        if (!uniform)
-            state->report->seconds_prerefine += par_seconds() - began;
-        if (!status)
-            status = run_schedule(state, quality, &partition, level == 0, error);
+        status = prerefine_graded(state, quality, &partition, error);
+        state->report->seconds_prerefine += par_seconds() - began;
     }
+    if (!status)
+        status = run_schedule(state, quality, &partition, level == 0, error);
     par_partition_free(&partition);
+    return status;
+}
+
+/* Refines to these bounds: sequentially if that is little work, else by the schedule. */
+static enum tri_status refine_level(struct par_state *state, const struct tri_refine_options *quality, int level,
+                                    struct tri_error *error)
+{
+    double began = par_seconds(), estimate = par_estimate(state->mesh, quality), cell = cell_size(state, estimate);
+    state->report->seconds_partition += par_seconds() - began;
+    if (estimate >= cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS))
+        return schedule_level(state, quality, level, estimate, cell, error);
+    began = par_seconds();
+    enum tri_status status = refine_rest(state, quality, true, error);
+    *(level > 0 ? &state->report->seconds_prerefine : &state->report->seconds_last) += par_seconds() - began;
     return status;
 }
 

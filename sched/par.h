@@ -14,7 +14,7 @@
 
 struct par_options {
     int threads;             /* 0: what OpenMP would use (OMP_NUM_THREADS, else all cores) */
-    double block_triangles;  /* final triangles in a block, to the order; 0: the default. Part of the decomposition */
+    double cell_triangles;  /* final triangles in a cell, to the order; 0: the default. Part of the decomposition */
     bool margin;             /* the paper's margin: a block inserts no point within 2 r of its fence, where that leaves
                                 two thirds of it. Then no cavity is refused in a mesh of even size; without it, each
                                 is asked. Part of the decomposition */

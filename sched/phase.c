@@ -25,6 +25,7 @@ struct task {
     struct par_slots left;  /* what gate and fence left */
     bool left_lost;         /* no memory for `left` */
     bool pausing;
+    int pauses;             /* so far */
     enum tri_status status;
     struct tri_error error;
     double seconds;
@@ -35,6 +36,7 @@ struct phase {
     const struct par_partition *partition;
     int colour;
     int32_t *block_of;  /* [pool.n] */
+    double *work;       /* [pool.n] triangles that each will become, to the order */
     int32_t *seeds;     /* [pool.n] by block */
     struct task *tasks;
     int32_t n_tasks;
@@ -68,9 +70,7 @@ static void leave_triangle(void *user, int32_t slot)
 /* The paper's test: is the new point in the cells that are active now? */
 static bool is_active(void *user, const double p[2])
 {
-    const struct task *task = user;
-    const struct tri_fence *a = &task->active;
-    return p[0] >= a->x_min && p[0] < a->x_max && p[1] >= a->y_min && p[1] < a->y_max;
+    return tri_fence_holds(user, (struct tri_point){p[0], p[1]});
 }
 
 static void assign_blocks(struct phase *p)
@@ -81,7 +81,17 @@ static void assign_blocks(struct phase *p)
     for (int32_t i = 0; i < pool->n; i++) {
         int32_t t = pool->item[i];
         p->block_of[i] = tri_is_live(&mesh->tri[t]) ? par_owner_of(p->partition, p->colour, mesh, t) : GONE;
+        p->work[i] = p->block_of[i] >= 0 ? par_work_of(mesh, p->state->quality, t) : 0;
     }
+}
+
+/* Triangles that seeds with so much work will become in this phase, to the order: a little less than they do become,
+ * since a pause costs less than gaps do. Measured: the rest is left at the seams. */
+static int32_t expect(int colour, double work)
+{
+    static const double share[PAR_COLOURS] = {0.68, 0.35, 0.35, 0.5};
+    double expected = share[colour] * work + 128;
+    return expected < 1e7 ? (int32_t)expected : 10000000;
 }
 
 /* Counting sort of the pool by block; what no block of this colour takes stays in the pool, what has gone is
@@ -91,11 +101,17 @@ static bool deal_seeds(struct phase *p)
     struct par_slots *pool = &p->state->pool;
     int32_t n_blocks = par_blocks(p->partition), kept = 0, used = 0;
     int32_t *start = calloc((size_t)n_blocks + 1, sizeof *start);
-    if (!start)
+    double *work = calloc((size_t)n_blocks + 1, sizeof *work);
+    if (!start || !work) {
+        free(start);
+        free(work);
         return false;
+    }
     for (int32_t i = 0; i < pool->n; i++)
-        if (p->block_of[i] >= 0)
+        if (p->block_of[i] >= 0) {
             start[p->block_of[i] + 1]++;
+            work[p->block_of[i]] += p->work[i];
+        }
     for (int32_t b = 0; b < n_blocks; b++) {
         used += start[b + 1] > 0;
         start[b + 1] += start[b];
@@ -105,7 +121,8 @@ static bool deal_seeds(struct phase *p)
         for (int32_t b = 0; b < n_blocks; b++)
             if (start[b + 1] > start[b])
                 p->tasks[p->n_tasks++] = (struct task){
-                    .block = b, .seeds = p->seeds + start[b], .n_seeds = start[b + 1] - start[b], .pausing = true};
+                    .block = b, .seeds = p->seeds + start[b], .n_seeds = start[b + 1] - start[b],
+                    .expected = expect(p->colour, work[b]), .pausing = true};
     for (int32_t i = 0; i < pool->n; i++) {
         int32_t slot = pool->item[i];
         if (p->block_of[i] >= 0)
@@ -116,6 +133,7 @@ static bool deal_seeds(struct phase *p)
     assert(kept <= pool->n && p->n_tasks <= used);
     pool->n = kept;
     free(start);
+    free(work);
     return p->tasks;
 }
 
@@ -162,8 +180,8 @@ static void set_up(struct phase *p, struct task *task)
     task->active = (struct tri_fence){active.x_min * unit, active.y_min * unit, active.x_max * unit,
                                       active.y_max * unit};
     task->options = *state->quality;
-    task->options.gate = is_active;
-    task->options.gate_user = task;
+    task->options.gate = state->options->margin ? is_active : NULL; /* else the fence says all */
+    task->options.gate_user = &task->active;
     task->options.fence = &task->fence;
     task->options.seeds = task->seeds;
     task->options.n_seeds = task->n_seeds;
@@ -173,32 +191,15 @@ static void set_up(struct phase *p, struct task *task)
     task->options.more_room_user = &task->room;
 }
 
-/* Triangles that the seeds of a task will become in this phase, to the order: a little less than they do become, since
- * a pause costs less than gaps do. Measured: the rest is left at the seams. */
-static int32_t expect(const struct phase *p, const struct task *task)
-{
-    static const double share[PAR_COLOURS] = {0.68, 0.35, 0.35, 0.5};
-    const struct tri_mesh *mesh = p->state->mesh;
-    double sum = 0;
-    for (int32_t i = 0; i < task->n_seeds; i++) {
-        double at[2];
-        tri_mesh_place(mesh, mesh->tri[task->seeds[i]].v[0], at);
-        if (is_active((void *)task, at))
-            sum += par_work_of(mesh, p->state->quality, task->seeds[i]);
-    }
-    sum = share[p->colour] * sum + 128;
-    return sum < 1e7 ? (int32_t)sum : 10000000;
-}
-
-/* Room for a task that is full. A pause costs what the block had in the cache: a little more room where areas made the
- * expectation about right, a good deal more where it was a guess, as much again where it was wrong. */
+/* Room for a task that is full. A pause costs what the block had in the cache, and whoever waits with it the time of the
+ * slowest: a little more room where areas made the expectation about right, a good deal more where it was a guess, and
+ * twice that each time. What is too much serves the phases that follow. */
 static int32_t more_for(const struct task *task)
 {
-    int32_t inserted = (int32_t)(task->report.inserted_free + task->report.inserted_on_segments);
+    double inserted = (double)(task->report.inserted_free + task->report.inserted_on_segments);
     bool areas = task->options.max_area > 0 || task->options.region_areas;
-    if (inserted >= task->expected)
-        return 2 * inserted;
-    return task->expected / (areas ? 16 : 4) + inserted / (areas ? 16 : 4) + 256;
+    double more = ldexp(fmax(task->expected, 2 * inserted) / (areas ? 16 : 4), task->pauses) + 256;
+    return (int32_t)fmin(more, 2 * inserted + 256);
 }
 
 /* Room for the paused tasks, in canonical order. */
@@ -212,6 +213,7 @@ static enum tri_status deal_room(struct phase *p, bool first, struct tri_error *
         int32_t more = first ? task->expected : more_for(task);
         if (p->state->options->tight_room > 0)
             more = p->state->options->tight_room;
+        task->pauses += !first;
         p->state->report->pauses += !first;
         status = par_room_extend(&task->room, &p->state->spare, p->state->mesh, more, error);
     }
@@ -365,10 +367,8 @@ static enum tri_status run_phase(struct phase *p, struct tri_error *error)
     double began = par_seconds();
     assign_blocks(p);
     bool memory = deal_seeds(p);
-    for (int32_t i = 0; memory && i < p->n_tasks; i++) {
+    for (int32_t i = 0; memory && i < p->n_tasks; i++)
         set_up(p, &p->tasks[i]);
-        p->tasks[i].expected = expect(p, &p->tasks[i]);
-    }
     assert(!p->state->options->margin || blocks_are_independent(p));
     if (!memory || !order_tasks(p))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks of a phase");
@@ -396,13 +396,15 @@ enum tri_status par_phase(struct par_state *state, const struct par_partition *p
     size_t n = (size_t)state->pool.n + 1;
     struct phase p = {.state = state, .partition = partition, .colour = colour};
     p.block_of = malloc(n * sizeof *p.block_of);
+    p.work = malloc(n * sizeof *p.work);
     p.seeds = malloc(n * sizeof *p.seeds);
     enum tri_status status = TRI_OK;
-    if (!p.block_of || !p.seeds)
+    if (!p.block_of || !p.work || !p.seeds)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the seeds of a phase");
     else
         status = run_phase(&p, error);
     free(p.block_of);
+    free(p.work);
     free(p.seeds);
     free(p.tasks);
     free(p.order);

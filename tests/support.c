@@ -279,7 +279,7 @@ struct tri_mesh support_constrained(const struct tri_pslg *pslg, struct tri_cons
     struct tri_error error = {0};
     assert_int_equal(tri_mesh_init(&mesh, &error), TRI_OK);
     assert_int_equal(tri_mesh_take_points(&mesh, pslg, &error), TRI_OK);
-    assert_int_equal(tri_delaunay(&mesh, &error), TRI_OK);
+    assert_int_equal(tri_delaunay(&mesh, NULL, &error), TRI_OK);
     if (tri_constrain(&mesh, pslg, report, &error) != TRI_OK)
         fail_msg("tri_constrain: %s", error.text);
     if (tri_mesh_validate(&mesh, &error) != TRI_OK)

@@ -8,7 +8,7 @@ static struct tri_mesh triangulate(const struct tri_pslg *pslg)
     struct tri_error error = {0};
     assert_int_equal(tri_mesh_init(&mesh, &error), TRI_OK);
     assert_int_equal(tri_mesh_take_points(&mesh, pslg, &error), TRI_OK);
-    if (tri_delaunay(&mesh, &error) != TRI_OK)
+    if (tri_delaunay(&mesh, NULL, &error) != TRI_OK)
         fail_msg("%s", error.text);
     if (tri_mesh_validate(&mesh, &error) != TRI_OK)
         fail_msg("%s", error.text);

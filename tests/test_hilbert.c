@@ -61,7 +61,7 @@ static void test_order_of_a_grid_is_a_path(void **state)
     int32_t order[4096];
     for (int i = 0; i < 4096; i++)
         xy[(i * 1031) % 4096] = (struct tri_point){i / 64, i % 64};
-    assert_int_equal(tri_hilbert_order(xy, 4096, order, NULL), TRI_OK);
+    assert_int_equal(tri_hilbert_order(xy, 4096, order, NULL, NULL), TRI_OK);
     assert_permutation(order, 4096);
     double length = 0;
     for (int i = 1; i < 4096; i++) {
@@ -78,7 +78,7 @@ static void test_equal_points_are_neighbours_in_increasing_index(void **state)
         struct tri_pslg pslg = support_points(SUPPORT_LATTICE, 500, seed);
         int32_t order[500];
         const struct tri_point *xy = (const struct tri_point *)pslg.points;
-        assert_int_equal(tri_hilbert_order(xy, 500, order, NULL), TRI_OK);
+        assert_int_equal(tri_hilbert_order(xy, 500, order, NULL, NULL), TRI_OK);
         assert_permutation(order, 500);
         int places = 0;
         for (int i = 0; i < 500; i++) {
@@ -100,7 +100,7 @@ static void test_crowded_cells_are_sorted(void **state)
     for (int i = 0; i < 63; i++)
         xy[i] = (struct tri_point){ldexp(i * 5 % 7, -60), ldexp(i % 3, -60)};
     xy[63] = (struct tri_point){1, 1};
-    assert_int_equal(tri_hilbert_order(xy, 64, order, NULL), TRI_OK);
+    assert_int_equal(tri_hilbert_order(xy, 64, order, NULL, NULL), TRI_OK);
     assert_permutation(order, 64);
     int places = 0;
     for (int i = 0; i < 64; i++)
@@ -113,15 +113,15 @@ static void test_degenerate_boxes(void **state)
     (void)state;
     struct tri_point xy[5] = {{1, 2}, {1, 2}, {1, 2}, {1, 2}, {1, 2}};
     int32_t order[5];
-    assert_int_equal(tri_hilbert_order(xy, 0, order, NULL), TRI_OK);
-    assert_int_equal(tri_hilbert_order(xy, 1, order, NULL), TRI_OK);
+    assert_int_equal(tri_hilbert_order(xy, 0, order, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_hilbert_order(xy, 1, order, NULL, NULL), TRI_OK);
     assert_int_equal(order[0], 0);
-    assert_int_equal(tri_hilbert_order(xy, 5, order, NULL), TRI_OK);
+    assert_int_equal(tri_hilbert_order(xy, 5, order, NULL, NULL), TRI_OK);
     for (int i = 0; i < 5; i++)
         assert_int_equal(order[i], i);
     for (int i = 0; i < 5; i++)
         xy[i] = (struct tri_point){i % 2 ? 0x1p200 : -0x1p200, i * 0x1p-216};
-    assert_int_equal(tri_hilbert_order(xy, 5, order, NULL), TRI_OK);
+    assert_int_equal(tri_hilbert_order(xy, 5, order, NULL, NULL), TRI_OK);
     assert_permutation(order, 5);
 }
 

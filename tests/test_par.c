@@ -102,7 +102,7 @@ static struct tri_mesh refine(const struct start *start, const struct par_option
 static struct par_options small_blocks(double block, int threads)
 {
     struct par_options options = par_defaults();
-    options.block_triangles = block;
+    options.cell_triangles = block;
     options.threads = threads;
     return options;
 }

@@ -39,16 +39,11 @@ static bool grow(struct tri_cavity *c)
     return true;
 }
 
-static inline bool holds(const struct tri_fence *f, const struct tri_point *q)
-{
-    return q->x >= f->x_min && q->x < f->x_max && q->y >= f->y_min && q->y < f->y_max;
-}
-
 static bool owns(const struct tri_cavity *c, const struct tri_mesh *mesh, int32_t t)
 {
     const int32_t *v = mesh->tri[t].v;
-    return !c->fence || (holds(c->fence, &mesh->xy[v[0]]) && holds(c->fence, &mesh->xy[v[1]]) &&
-                         holds(c->fence, &mesh->xy[v[2]]));
+    return !c->fence || (tri_fence_holds(c->fence, mesh->xy[v[0]]) && tri_fence_holds(c->fence, mesh->xy[v[1]]) &&
+                         tri_fence_holds(c->fence, mesh->xy[v[2]]));
 }
 
 /* Is p in the circumdisk of a, b, c, which are the vertices behind the relative coordinates? */
@@ -78,12 +73,13 @@ static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh
             int32_t apex = t->v[e];
             struct tri_relative rapex = tri_relative(&xy[apex], p);
             if (in_circle(mesh, p, a, apex, b, ra, rapex, rb)) {
-                if (c->fence && !holds(c->fence, &xy[apex]))
+                if (c->fence && !tri_fence_holds(c->fence, xy[apex]))
                     return TRI_SEARCH_FENCED;
                 if (c->n_tri == c->capacity && !grow(c))
                     return TRI_SEARCH_NO_MEMORY;
                 c->tri[c->n_tri++] = link >> 2;
                 region = t->region;
+                c->mixed |= (uint32_t)(region ^ c->region);
                 c->pending[n_pending++] = (struct tri_pending){t->n[tri_prev[e]], b, region, rb};
                 link = t->n[tri_next[e]];
                 b = apex;
@@ -111,13 +107,15 @@ static bool begin(struct tri_cavity *c, struct tri_point p)
 {
     c->p = p;
     c->n_tri = c->n_rim = c->n_wall = 0;
+    c->mixed = 0;
     return c->capacity > 0 || grow(c);
 }
 
-static bool add_start(struct tri_cavity *c, int32_t t)
+static bool add_start(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t t)
 {
     if (c->n_tri == c->capacity && !grow(c))
         return false;
+    c->region = mesh->tri[t].region;
     c->tri[c->n_tri++] = t;
     return true;
 }
@@ -125,7 +123,7 @@ static bool add_start(struct tri_cavity *c, int32_t t)
 enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p, int32_t t)
 {
     assert(tri_is_live(&mesh->tri[t]));
-    if (!begin(c, p) || !add_start(c, t))
+    if (!begin(c, p) || !add_start(c, mesh, t))
         return TRI_SEARCH_NO_MEMORY;
     if (!owns(c, mesh, t))
         return TRI_SEARCH_FENCED;
@@ -153,7 +151,7 @@ static enum tri_search explore_side(struct tri_cavity *c, const struct tri_mesh 
 {
     int32_t t = tri_of(code);
     int e = tri_edge(code), f = tri_next[e], g = tri_prev[e];
-    if (!add_start(c, t))
+    if (!add_start(c, mesh, t))
         return TRI_SEARCH_NO_MEMORY;
     if (!owns(c, mesh, t))
         return TRI_SEARCH_FENCED;
@@ -246,6 +244,29 @@ static bool claim(const struct tri_cavity *c, const struct tri_mesh *mesh)
 }
 #endif
 
+static bool is_inside(const struct tri_mesh *mesh, int32_t t, struct tri_point q)
+{
+    const int32_t *v = mesh->tri[t].v;
+    struct tri_relative a = tri_relative(&mesh->xy[v[0]], q), b = tri_relative(&mesh->xy[v[1]], q);
+    struct tri_relative c = tri_relative(&mesh->xy[v[2]], q);
+    return tri_cross(a, b) >= 0 && tri_cross(b, c) >= 0 && tri_cross(c, a) >= 0;
+}
+
+/* Where regions meet without a subsegment between, a new triangle belongs to the region in which its centroid lies: so
+ * regions stay where they are. Where rounding hides that, to the one behind its rim. */
+static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end, int32_t last)
+{
+    for (int32_t i = first; i < end; i++) {
+        struct tri_point a = mesh->xy[c->rim[i].a], b = mesh->xy[i + 1 < end ? c->rim[i + 1].a : last];
+        struct tri_point centroid = {(a.x + b.x + c->p.x) / 3, (a.y + b.y + c->p.y) / 3};
+        for (int32_t k = 0; k < c->n_tri; k++)
+            if (is_inside(mesh, c->tri[k], centroid)) {
+                c->rim[i].region = mesh->tri[c->tri[k]].region;
+                break;
+            }
+    }
+}
+
 /* Makes the triangles of rims first .. end - 1, linked with each other; the chain ends at vertex `last`. */
 static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v, int32_t first, int32_t end, int32_t last)
 {
@@ -274,6 +295,8 @@ void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v)
 {
     assert(c->n_tri >= 1 && c->n_rim == c->n_tri + 2);
     assert(claim(c, mesh));
+    if (c->mixed)
+        place_regions(c, mesh, 0, c->n_rim, c->rim[0].a);
     fill_chain(c, mesh, v, 0, c->n_rim, c->rim[0].a);
     int32_t first = c->rim[0].slot, last = c->rim[c->n_rim - 1].slot;
     mesh->tri[first].n[2] = tri_code(last, 1);
@@ -286,6 +309,10 @@ int32_t tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, int32
     int32_t second = mesh->n_subs++, ends[2] = {0, n_left};
     assert(mesh->n_subs <= mesh->sub_capacity && c->n_rim >= c->n_tri && n_left >= 0 && n_left <= c->n_rim);
     assert(claim(c, mesh));
+    if (c->mixed) {
+        place_regions(c, mesh, 0, n_left, old.v[0]);
+        place_regions(c, mesh, n_left, c->n_rim, old.v[1]);
+    }
     mesh->sub[s] = (struct tri_subsegment){{old.v[0], v}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
     mesh->sub[second] = (struct tri_subsegment){{v, old.v[1]}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
     for (int side = 0; side < 2; side++) {

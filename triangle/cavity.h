@@ -43,11 +43,18 @@ struct tri_fence {
     double x_min, y_min, x_max, y_max; /* x_min <= x < x_max */
 };
 
+static inline bool tri_fence_holds(const struct tri_fence *f, struct tri_point q)
+{
+    return q.x >= f->x_min && q.x < f->x_max && q.y >= f->y_min && q.y < f->y_max;
+}
+
 struct tri_cavity {
     struct tri_point p;
     const struct tri_fence *fence; /* NULL: everything is owned */
     bool flips_follow;             /* the caller makes the mesh Delaunay again after a split: see tri_cavity_search_split */
     int32_t n_tri, n_rim, n_wall, capacity;
+    int32_t region;       /* of the triangle at which the search began */
+    uint32_t mixed;       /* not 0: there are triangles of other regions, which no subsegment separates */
     int32_t *tri;         /* slots of the cavity's triangles */
     struct tri_rim *rim;  /* at most n_tri + 2 of them */
     int32_t *wall;        /* indices of the rims whose outer link is a subsegment */

@@ -20,7 +20,7 @@
 #include "triangle/predicates.h"
 #include "triangle/quality.h"
 
-enum { GHOST = -2, FIRST_ROUND = 512, ROUND_GROWTH = 8 };
+enum { GHOST = -2, FIRST_ROUND = 512, ROUND_GROWTH = 8, CHUNK = 1 << 15 };
 
 struct rim {
     int32_t outer, a;
@@ -290,51 +290,84 @@ static enum tri_status finish(struct tri_mesh *mesh, struct builder *b, const in
     return TRI_OK;
 }
 
-/* A triangle's place on the curve is that of its shortest edge: there is the work of refinement, however far the rest
- * reaches. */
-static int32_t rank_of(const struct tri_mesh *mesh, int32_t t, const int32_t *rank)
+/* A sort of the triangles by their place on the curve. */
+struct sorting {
+    struct tri_mesh *mesh;
+    const int32_t *rank;         /* of a vertex: its place on the curve; NULL: its number */
+    int32_t *to;                 /* [n_slots] first the place of each triangle on the curve, then its new slot */
+    struct tri_triangle *sorted; /* [n_slots] */
+};
+
+static int32_t last_of(const struct tri_mesh *mesh, int32_t first)
 {
-    const int32_t *v = mesh->tri[t].v;
-    int k = tri_shape_of(mesh->xy, v).shortest;
-    int32_t a = rank[v[tri_next[k]]], b = rank[v[tri_prev[k]]];
-    return a < b ? a : b;
+    return mesh->n_slots - first < CHUNK ? mesh->n_slots : first + CHUNK;
 }
 
-/* Sorts the triangles by their place on the curve (rank of a vertex: its place there). Insertion has left them
- * where cavities of all rounds were; every later stage runs faster where neighbours are near in memory. Counting sort,
- * O(n). */
-static enum tri_status sort_triangles(struct tri_mesh *mesh, const int32_t *rank, struct tri_error *error)
+/* A triangle's place is that of its shortest edge: there is the work of refinement, however far the rest reaches. */
+static void rank_chunk(void *context, size_t chunk)
 {
-    int32_t n = mesh->n_slots;
-    int32_t *start = calloc((size_t)mesh->n_vertices + 1, sizeof *start), *to = malloc(((size_t)n + 1) * sizeof *to);
-    struct tri_triangle *sorted = malloc(((size_t)n + 1) * sizeof *sorted);
-    if (start && to && sorted) {
-        for (int32_t t = 0; t < n; t++)
-            start[rank_of(mesh, t, rank)]++;
-        for (int32_t v = 0, sum = 0; v < mesh->n_vertices; v++) {
-            int32_t count = start[v];
-            start[v] = sum;
-            sum += count;
-        }
-        for (int32_t t = 0; t < n; t++)
-            to[t] = start[rank_of(mesh, t, rank)]++;
-        for (int32_t t = 0; t < n; t++) {
-            struct tri_triangle *at = &sorted[to[t]];
-            *at = mesh->tri[t];
-            for (int e = 0; e < 3; e++)
-                if (at->n[e] >= 0)
-                    at->n[e] = tri_code(to[tri_of(at->n[e])], tri_edge(at->n[e]));
-        }
-        memcpy(mesh->tri, sorted, (size_t)n * sizeof *sorted);
-        for (int32_t s = 0; s < mesh->n_subs; s++) {
-            assert(mesh->sub[s].side[0] != TRI_NONE && mesh->sub[s].side[1] == TRI_NONE); /* hull edges, no others */
-            mesh->sub[s].side[0] = tri_code(to[tri_of(mesh->sub[s].side[0])], tri_edge(mesh->sub[s].side[0]));
+    const struct sorting *s = context;
+    int32_t first = (int32_t)chunk * CHUNK, last = last_of(s->mesh, first);
+    for (int32_t t = first; t < last; t++) {
+        const int32_t *v = s->mesh->tri[t].v;
+        int k = tri_shape_of(s->mesh->xy, v).shortest;
+        int32_t a = v[tri_next[k]], b = v[tri_prev[k]];
+        a = s->rank ? s->rank[a] : a;
+        b = s->rank ? s->rank[b] : b;
+        s->to[t] = a < b ? a : b;
+    }
+}
+
+static void move_chunk(void *context, size_t chunk)
+{
+    const struct sorting *s = context;
+    int32_t first = (int32_t)chunk * CHUNK, last = last_of(s->mesh, first);
+    for (int32_t t = first; t < last; t++) {
+        struct tri_triangle *at = &s->sorted[s->to[t]];
+        *at = s->mesh->tri[t];
+        for (int e = 0; e < 3; e++)
+            if (at->n[e] >= 0)
+                at->n[e] = tri_code(s->to[tri_of(at->n[e])], tri_edge(at->n[e]));
+    }
+}
+
+/* Places become slots: a counting sort. start[n_vertices] is zero. */
+static void assign_slots(const struct sorting *s, int32_t *start)
+{
+    for (int32_t t = 0; t < s->mesh->n_slots; t++)
+        start[s->to[t]]++;
+    for (int32_t v = 0, sum = 0; v < s->mesh->n_vertices; v++) {
+        int32_t count = start[v];
+        start[v] = sum;
+        sum += count;
+    }
+    for (int32_t t = 0; t < s->mesh->n_slots; t++)
+        s->to[t] = start[s->to[t]]++;
+}
+
+/* Insertion has left triangles where cavities of all rounds were; every later stage runs faster where neighbours are near
+ * in memory. O(n). */
+static enum tri_status sort_triangles(struct tri_mesh *mesh, const int32_t *rank, const struct tri_executor *executor,
+                                      struct tri_error *error)
+{
+    size_t n = (size_t)mesh->n_slots, n_chunks = (n + CHUNK - 1) / CHUNK;
+    int32_t *start = calloc((size_t)mesh->n_vertices + 1, sizeof *start);
+    struct sorting s = {mesh, rank, malloc((n + 1) * sizeof *s.to), malloc((n + 1) * sizeof *s.sorted)};
+    bool done = start && s.to && s.sorted;
+    if (done) {
+        tri_execute(executor, n_chunks, rank_chunk, &s);
+        assign_slots(&s, start);
+        tri_execute(executor, n_chunks, move_chunk, &s);
+        memcpy(mesh->tri, s.sorted, n * sizeof *s.sorted);
+        for (int32_t i = 0; i < mesh->n_subs; i++) {
+            int32_t *side = mesh->sub[i].side;
+            assert(side[0] != TRI_NONE && side[1] == TRI_NONE); /* hull edges, no others */
+            side[0] = tri_code(s.to[tri_of(side[0])], tri_edge(side[0]));
         }
     }
-    bool done = start && to && sorted;
     free(start);
-    free(to);
-    free(sorted);
+    free(s.to);
+    free(s.sorted);
     return done ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sorting %d triangles", (int)n);
 }
 
@@ -361,9 +394,15 @@ static enum tri_status build_from(struct tri_mesh *mesh, const int32_t *order, i
     return status;
 }
 
-static enum tri_status triangulate(struct tri_mesh *mesh, int32_t *order, int32_t *scratch, struct tri_error *error)
+static enum tri_status triangulate(struct tri_mesh *mesh, int32_t *order, int32_t *scratch,
+                                   const struct tri_executor *executor, struct tri_error *error)
 {
-    enum tri_status status = tri_hilbert_order(mesh->xy, mesh->n_vertices, order, error);
+    enum tri_status status = TRI_OK;
+    bool in_order = mesh->origin;
+    for (int32_t v = 0; in_order && v < mesh->n_vertices; v++)
+        order[v] = v;
+    if (!in_order)
+        status = tri_hilbert_order(mesh->xy, mesh->n_vertices, order, executor, error);
     if (status)
         return status;
     int32_t n = drop_duplicates(mesh, order, mesh->n_vertices);
@@ -374,13 +413,13 @@ static enum tri_status triangulate(struct tri_mesh *mesh, int32_t *order, int32_
     status = build_from(mesh, order, scratch, n, error);
     if (status || mesh->n_slots == 0)
         return status;
-    int32_t *rank = scratch;
-    for (int32_t i = 0; i < n; i++)
+    int32_t *rank = in_order ? NULL : scratch;
+    for (int32_t i = 0; rank && i < n; i++)
         rank[order[i]] = i;
-    return sort_triangles(mesh, rank, error);
+    return sort_triangles(mesh, rank, executor, error);
 }
 
-enum tri_status tri_delaunay(struct tri_mesh *mesh, struct tri_error *error)
+enum tri_status tri_delaunay(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
 {
     int32_t n = mesh->n_vertices;
     assert(mesh->n_slots == 0 && mesh->n_subs == 0);
@@ -392,7 +431,7 @@ enum tri_status tri_delaunay(struct tri_mesh *mesh, struct tri_error *error)
     } else {
         for (int32_t i = 0; i < n; i++)
             mesh->twin[i] = i;
-        status = triangulate(mesh, order, scratch, error);
+        status = triangulate(mesh, order, scratch, executor, error);
     }
     free(order);
     free(scratch);

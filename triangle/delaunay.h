@@ -2,12 +2,13 @@
 #ifndef TRIANGLE_DELAUNAY_H
 #define TRIANGLE_DELAUNAY_H
 
+#include "triangle/executor.h"
 #include "triangle/mesh.h"
 
 /* Triangulates the convex hull of the mesh's vertices (which has no triangles yet). Cocircular ties are broken by
  * coordinates: the result depends on the set of points alone. Duplicates stay out: mesh->twin then maps every point to
  * the lowest index at its place. Every hull edge becomes a subsegment without input segment. Collinear points give no
  * triangle, TRI_OK. Expected O(n log n) for any order of the points. */
-enum tri_status tri_delaunay(struct tri_mesh *mesh, struct tri_error *error);
+enum tri_status tri_delaunay(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error);
 
 #endif

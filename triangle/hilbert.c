@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BITS = 31, DIGIT = 11, BUCKETS = 1 << DIGIT };
+enum { BITS = 31, DIGIT = 11, BUCKETS = 1 << DIGIT, CHUNK = 1 << 15 };
 
 struct keyed {
     uint64_t key;
@@ -33,7 +33,26 @@ uint64_t tri_hilbert(uint32_t x, uint32_t y)
     return key;
 }
 
-static void key_points(const struct tri_point *xy, int32_t n, struct keyed *out)
+/* What keys are made of. */
+struct keying {
+    const struct tri_point *xy;
+    int32_t n;
+    struct tri_point low;
+    double scale;
+    struct keyed *out;
+};
+
+static void key_chunk(void *context, size_t chunk)
+{
+    const struct keying *k = context;
+    int32_t first = (int32_t)chunk * CHUNK, last = k->n - first < CHUNK ? k->n : first + CHUNK;
+    for (int32_t i = first; i < last; i++) {
+        uint32_t x = (uint32_t)((k->xy[i].x - k->low.x) * k->scale), y = (uint32_t)((k->xy[i].y - k->low.y) * k->scale);
+        k->out[i] = (struct keyed){tri_hilbert(x, y), i};
+    }
+}
+
+static void key_points(const struct tri_point *xy, int32_t n, const struct tri_executor *executor, struct keyed *out)
 {
     struct tri_point low = xy[0], high = xy[0];
     for (int32_t i = 1; i < n; i++) {
@@ -43,11 +62,8 @@ static void key_points(const struct tri_point *xy, int32_t n, struct keyed *out)
         high.y = xy[i].y > high.y ? xy[i].y : high.y;
     }
     double side = high.x - low.x > high.y - low.y ? high.x - low.x : high.y - low.y;
-    double scale = side > 0 ? (double)((UINT32_C(1) << BITS) - 1) / side : 0;
-    for (int32_t i = 0; i < n; i++) {
-        uint32_t x = (uint32_t)((xy[i].x - low.x) * scale), y = (uint32_t)((xy[i].y - low.y) * scale);
-        out[i] = (struct keyed){tri_hilbert(x, y), i};
-    }
+    struct keying keying = {xy, n, low, side > 0 ? (double)((UINT32_C(1) << BITS) - 1) / side : 0, out};
+    tri_execute(executor, ((size_t)n + CHUNK - 1) / CHUNK, key_chunk, &keying);
 }
 
 /* One stable pass; returns false, with nothing moved, where all keys agree in this digit. */
@@ -111,14 +127,15 @@ static bool emit_order(const struct tri_point *xy, const struct keyed *sorted, i
     return true;
 }
 
-enum tri_status tri_hilbert_order(const struct tri_point *xy, int32_t n, int32_t *order, struct tri_error *error)
+enum tri_status tri_hilbert_order(const struct tri_point *xy, int32_t n, int32_t *order,
+                                  const struct tri_executor *executor, struct tri_error *error)
 {
     if (n == 0)
         return TRI_OK;
     struct keyed *from = malloc((size_t)n * sizeof *from), *to = malloc((size_t)n * sizeof *to);
     bool done = from && to;
     if (done) {
-        key_points(xy, n, from);
+        key_points(xy, n, executor, from);
         for (int shift = 0; shift < 2 * BITS; shift += DIGIT)
             if (radix_pass(from, to, n, shift)) {
                 struct keyed *swap = from;

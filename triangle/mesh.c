@@ -87,6 +87,7 @@ void tri_mesh_free(struct tri_mesh *mesh)
     free(mesh->on);
     free(mesh->vertex_markers);
     free(mesh->attributes);
+    free(mesh->origin);
     free(mesh->twin);
     free(raw_of(mesh->tri));
     free(mesh->sub);

@@ -72,8 +72,9 @@ struct tri_mesh {
     double *attributes;       /* [n_vertices][n_attributes] */
     int32_t n_attributes;
     int32_t n_vertices, vertex_capacity;
-    int32_t n_input;          /* the first n_input vertices are the caller's points, in the caller's order */
-    int32_t *twin;            /* [n_input] lowest index of a point with equal coordinates; NULL: no duplicates */
+    int32_t n_input;          /* the first n_input vertices are the caller's points, in the caller's order .. */
+    int32_t *origin;          /* [n_input] .. unless this is set: the caller's index of each (triangle/spatial.h) */
+    int32_t *twin;            /* [n_input] first (by the caller) of the points here; NULL: no duplicates */
 
     struct tri_triangle *tri; /* [n_slots], aligned to a cache line; some slots may be free (v[0] == TRI_NONE) */
     int32_t n_slots, slot_capacity;

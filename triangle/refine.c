@@ -297,6 +297,8 @@ static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tr
         if (!r->options->gate(r->options->gate_user, at))
             return leave(r, slot, &r->report->gated);
     }
+    if (r->options->fence && !tri_fence_holds(r->options->fence, p)) /* then its cavity reaches beyond, too */
+        return leave(r, slot, &r->report->deferred);
     enum tri_search found = tri_cavity_search(&r->cavity, r->mesh, p, slot);
     if (found == TRI_SEARCH_FOUND) {
         int32_t s = find_encroached(r);

@@ -19,6 +19,7 @@
 
 #include <assert.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "triangle/refine.h"
 
@@ -133,11 +134,16 @@ static double channel_cost(const struct tri_mesh *mesh, int32_t u, int32_t v, in
     return dearest;
 }
 
-bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape)
+double tri_channel_cost(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape)
 {
     const int32_t *v = mesh->tri[slot].v;
     int k = shape->shortest;
-    return channel_cost(mesh, v[tri_next[k]], v[tri_prev[k]], v[k]) > mesh->dearest_channel;
+    return channel_cost(mesh, v[tri_next[k]], v[tri_prev[k]], v[k]);
+}
+
+bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape)
+{
+    return tri_channel_cost(mesh, slot, shape) > mesh->dearest_channel;
 }
 
 bool tri_is_hopeless(const struct tri_mesh *mesh, double shortest2, int32_t slot, const struct tri_shape *shape)
@@ -147,6 +153,18 @@ bool tri_is_hopeless(const struct tri_mesh *mesh, double shortest2, int32_t slot
     int32_t u = t->v[tri_next[k]], v = t->v[tri_prev[k]];
     return shape->l[k] < shortest2 || on_one_shell(mesh, u, v, shape->l[k]) ||
            tri_is_channel(mesh, slot, shape);
+}
+
+/* Two corners at least lie on segments. */
+static bool may_bridge(const struct tri_mesh *mesh, const int32_t v[3])
+{
+    int on = 0;
+    for (int k = 0; k < 3; k++) {
+        int32_t n;
+        parents_of(mesh, v[k], &n);
+        on += n > 0;
+    }
+    return on >= 2;
 }
 
 /* Which narrow spaces are filled, by their cost. All of them, where a quarter of a million points is enough for that: thin layers and slits
@@ -159,10 +177,11 @@ static void choose_channels(struct tri_mesh *mesh)
     const double ALL = 250000, ALLOWANCE = 20000, PER_VERTEX = 4;
     double cost_of[OCTAVES] = {0}, count_of[OCTAVES] = {0}, dearer = 0, cheaper = 0, all = 0;
     for (int32_t t = 0; t < mesh->n_slots; t++) {
-        const int32_t *v = mesh->tri[t].v;
-        struct tri_shape shape = tri_shape_of(mesh->xy, v);
-        int k = shape.shortest, octave; /* 2^(octave - 1) <= cost < 2^octave */
-        double cost = channel_cost(mesh, v[tri_next[k]], v[tri_prev[k]], v[k]);
+        if (!may_bridge(mesh, mesh->tri[t].v))
+            continue;
+        struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
+        double cost = tri_channel_cost(mesh, t, &shape);
+        int octave; /* 2^(octave - 1) <= cost < 2^octave */
         frexp(cost, &octave);
         if (octave > CHEAP) {
             octave = octave < OCTAVES ? octave : OCTAVES - 1;
@@ -217,15 +236,11 @@ static void find_acute(struct tri_mesh *mesh)
         }
 }
 
-static enum tri_status list_spokes(struct tri_mesh *mesh, struct tri_error *error)
+void tri_fill_spokes(struct tri_mesh *mesh)
 {
-    size_t n = (size_t)mesh->n_vertices;
-    assert(!mesh->spoke_start && !mesh->spokes);
-    mesh->spoke_start = calloc(n + 2, sizeof *mesh->spoke_start);
-    mesh->spokes = malloc((2 * (size_t)mesh->n_parents + 1) * sizeof *mesh->spokes);
-    if (!mesh->spoke_start || !mesh->spokes)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)mesh->n_parents);
+    size_t n = (size_t)mesh->n_hubs;
     int32_t *fill = mesh->spoke_start + 1; /* shifted by one, so that filling leaves the starts in place */
+    memset(mesh->spoke_start, 0, (n + 2) * sizeof *mesh->spoke_start);
     for (int32_t p = 0; p < mesh->n_parents; p++)
         for (int k = 0; k < 2; k++)
             fill[mesh->parents[p].v[k] + 1]++;
@@ -234,8 +249,18 @@ static enum tri_status list_spokes(struct tri_mesh *mesh, struct tri_error *erro
     for (int32_t p = 0; p < mesh->n_parents; p++)
         for (int k = 0; k < 2; k++)
             mesh->spokes[fill[mesh->parents[p].v[k]]++] = p;
-    mesh->n_hubs = mesh->n_vertices;
     assert(mesh->spoke_start[n] == 2 * mesh->n_parents);
+}
+
+static enum tri_status list_spokes(struct tri_mesh *mesh, struct tri_error *error)
+{
+    assert(!mesh->spoke_start && !mesh->spokes);
+    mesh->spoke_start = malloc(((size_t)mesh->n_vertices + 2) * sizeof *mesh->spoke_start);
+    mesh->spokes = malloc((2 * (size_t)mesh->n_parents + 1) * sizeof *mesh->spokes);
+    if (!mesh->spoke_start || !mesh->spokes)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)mesh->n_parents);
+    mesh->n_hubs = mesh->n_vertices;
+    tri_fill_spokes(mesh);
     return TRI_OK;
 }
 

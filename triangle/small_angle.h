@@ -15,7 +15,15 @@ bool tri_can_split(double shortest2, struct tri_point a, struct tri_point b);
 /* A bad angle that no point can mend, or that would only move it: see the rules in the .c file. */
 bool tri_is_hopeless(const struct tri_mesh *mesh, double shortest2, int32_t slot, const struct tri_shape *shape);
 
+/* About so many points it would take to fill the space between two parents that the shortest edge of the triangle
+ * bridges; 0 where it bridges none. */
+double tri_channel_cost(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape);
+
 /* Does the shortest edge of the triangle bridge a space between two parents that is too dear to fill? */
 bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape);
+
+/* Lists the parents at each vertex, in the arrays that tri_refine_prepare has made; called again when vertices get other
+ * numbers. O(vertices + parents). */
+void tri_fill_spokes(struct tri_mesh *mesh);
 
 #endif

@@ -52,7 +52,7 @@ static void widen(double range[2], double value)
 static int aspect_bin(double aspect)
 {
     int bin = 0;
-    while (bin + 1 < TRI_ASPECT_BINS && aspect >= tri_aspect_limits[bin + 1])
+    while (bin + 1 < TRI_ASPECT_BINS && aspect > tri_aspect_limits[bin + 1])
         bin++;
     return bin;
 }
@@ -60,7 +60,7 @@ static int aspect_bin(double aspect)
 static int angle_bin(double cosine, const double limits[TRI_ANGLE_BINS])
 {
     int bin = 0;
-    while (bin + 1 < TRI_ANGLE_BINS && cosine <= limits[bin + 1])
+    while (bin + 1 < TRI_ANGLE_BINS && cosine < limits[bin + 1])
         bin++;
     return bin;
 }
@@ -102,7 +102,7 @@ void tri_measure_shapes(struct tri_shapes *shapes, const struct tri_mesh *mesh)
     if (mesh->n_slots == 0)
         return;
     for (int k = 0; k < TRI_ANGLE_BINS; k++)
-        limits[k] = tri_cos_degrees(10 * k);
+        limits[k] = k == 9 ? 0 : tri_cos_degrees(10 * k); /* right angles are common, and exact */
     for (int32_t t = 0; t < mesh->n_slots; t++) {
         assert(tri_is_live(&mesh->tri[t]));
         struct tri_shape s = tri_shape_of(mesh->xy, mesh->tri[t].v);

@@ -1,6 +1,8 @@
 /* The stages in their order. */
 #include "triangle/tri.h"
 
+#include <stdlib.h>
+
 #include "triangle/delaunay.h"
 
 struct tri_options tri_defaults(void) { return (struct tri_options){.quality = tri_refine_defaults()}; }
@@ -11,23 +13,54 @@ static void announce(const struct tri_options *options, enum tri_stage stage)
         options->stage(options->stage_user, stage);
 }
 
-static enum tri_status triangulate(struct tri_mesh *mesh, const struct tri_pslg *pslg,
-                                   const struct tri_options *options, struct tri_report *report,
-                                   struct tri_error *error)
+/* The segments of a PSLG by the numbers that its points have in the mesh. What names no point goes on naming none. */
+static enum tri_status rename_segments(struct tri_pslg *renamed, const struct tri_pslg *pslg, const int32_t *rank,
+                                       struct tri_error *error)
 {
-    enum tri_status status = tri_mesh_take_points(mesh, pslg, error);
-    announce(options, TRI_STAGE_DELAUNAY);
-    status = status ? status : tri_delaunay(mesh, error);
-    for (int32_t v = 0; !status && mesh->twin && v < mesh->n_input; v++)
-        report->duplicates += mesh->twin[v] != v;
+    size_t n = 2 * (size_t)pslg->n_segments;
+    *renamed = *pslg;
+    renamed->segments = malloc((n + 1) * sizeof *renamed->segments);
+    if (!renamed->segments)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)pslg->n_segments);
+    for (size_t i = 0; i < n; i++) {
+        int32_t v = pslg->segments[i];
+        renamed->segments[i] = v >= 0 && v < pslg->n_points ? rank[v] : TRI_NONE;
+    }
+    return TRI_OK;
+}
+
+static enum tri_status constrain_and_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg,
+                                           const struct tri_options *options, struct tri_report *report,
+                                           struct tri_error *error)
+{
     announce(options, TRI_STAGE_SEGMENTS);
-    if (!status && options->use_segments)
+    enum tri_status status = TRI_OK;
+    if (options->use_segments)
         status = tri_constrain(mesh, pslg, &report->constrain, error);
     announce(options, TRI_STAGE_HOLES);
     if (!status && options->use_segments) {
         struct tri_carve_options carve = {options->keep_hull, options->ignore_holes, options->spread_regions};
         status = tri_carve(mesh, pslg, &carve, error);
     }
+    return status;
+}
+
+static enum tri_status triangulate(struct tri_mesh *mesh, const struct tri_pslg *pslg,
+                                   const struct tri_options *options, struct tri_report *report,
+                                   struct tri_error *error)
+{
+    int32_t *rank = NULL;
+    struct tri_pslg renamed = {0};
+    enum tri_status status = tri_mesh_take_points(mesh, pslg, error);
+    announce(options, TRI_STAGE_DELAUNAY);
+    status = status ? status : tri_sort_points(mesh, &rank, options->executor, error);
+    status = status ? status : tri_delaunay(mesh, options->executor, error);
+    for (int32_t v = 0; !status && mesh->twin && v < mesh->n_input; v++)
+        report->duplicates += mesh->twin[v] != v;
+    status = status ? status : rename_segments(&renamed, pslg, rank, error);
+    free(rank);
+    status = status ? status : constrain_and_carve(mesh, &renamed, options, report, error);
+    free(renamed.segments);
     return status;
 }
 
@@ -50,6 +83,13 @@ enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg,
     if (options->refine) {
         announce(options, TRI_STAGE_QUALITY);
         status = tri_refine(mesh, &options->quality, &report->quality, error);
+    }
+    if (!options->leave_sorted) {
+        enum tri_status restored = tri_restore_points(mesh, options->executor, error);
+        if (restored) {
+            tri_mesh_free(mesh);
+            return restored;
+        }
     }
     announce(options, TRI_STAGE_DONE);
     return status;

@@ -15,6 +15,7 @@
 #include "triangle/mesh.h"
 #include "triangle/pslg.h"
 #include "triangle/refine.h"
+#include "triangle/spatial.h"
 #include "triangle/status.h"
 
 enum tri_stage { TRI_STAGE_DELAUNAY, TRI_STAGE_SEGMENTS, TRI_STAGE_HOLES, TRI_STAGE_QUALITY, TRI_STAGE_DONE };
@@ -26,6 +27,9 @@ struct tri_options {
     bool spread_regions; /* triangles learn the region they are in (-A, or -a without number) */
     bool refine;        /* the quality stage runs, with the options below */
     struct tri_refine_options quality;
+    bool leave_sorted;   /* vertices stay in spatial order, for a refinement that follows: the caller ends with
+                            tri_restore_points (triangle/spatial.h) */
+    const struct tri_executor *executor; /* for what is done in pieces; NULL: one after another */
     void (*stage)(void *user, enum tri_stage begins); /* told when a stage begins; NULL: nobody */
     void *stage_user;
 };
