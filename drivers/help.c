@@ -42,7 +42,7 @@ static const char *const paragraphs[] = {
     "  -I      no iteration number: results are called like the input, which is never overwritten\n",
 
     "Other\n"
-    "  -Q -V   print nothing but errors; print more (-VV: still more)\n"
+    "  -Q -V   print nothing but errors; print more\n"
     "  -C      check the mesh, and say what came of it\n"
     "  -h      this help\n"
     "  -i -F -l -X -w   accepted; the result does not depend on them\n",

@@ -200,14 +200,14 @@ static enum tri_status triangulate(struct runner *r)
     options.refine = false; /* is a stage of its own here */
     options.stage = follow_stage;
     options.stage_user = r;
+    options.leave_sorted = run->options.refine; /* which restores the order */
+    options.executor = run->hooks->executor;
     status = tri_generate(&run->mesh, &run->pslg, &options, &run->report, r->error);
     end_stage(r, RUN_HOLES);
     if (status)
         return status;
     if (run->arguments->switches.segments)
         say_milliseconds(r, "Hole", run->seconds[RUN_HOLES]);
-    summary_duplicates(&r->console, &run->mesh, &run->pslg);
-    summary_segments(&r->console, &run->report.constrain);
     return TRI_OK;
 }
 
@@ -261,6 +261,7 @@ static enum tri_status refine(struct runner *r)
     enum tri_status status = run->hooks->refine
                                  ? run->hooks->refine(run->hooks->user, &run->mesh, quality, report, r->error)
                                  : tri_refine(&run->mesh, quality, report, r->error);
+    status = status ? status : tri_restore_points(&run->mesh, run->hooks->executor, r->error);
     end_stage(r, RUN_QUALITY);
     if (status)
         return status;
@@ -270,6 +271,13 @@ static enum tri_status refine(struct runner *r)
     if (!r->console.quiet) /* a pass over all triangles */
         summary_bounds(&r->console, &run->mesh, quality, report);
     return TRI_OK;
+}
+
+/* What was odd about the input; said when the vertices have the numbers of the input again. */
+static void tell_of_input(const struct runner *r)
+{
+    summary_duplicates(&r->console, &r->run.mesh, &r->run.pslg);
+    summary_segments(&r->console, &r->run.report.constrain);
 }
 
 /* --- output */
@@ -328,6 +336,7 @@ static enum tri_status run_stages(struct runner *r)
     status = status ? status : refine(r);
     if (status)
         return status;
+    tell_of_input(r);
     tri_mesh_compact(&run->mesh);
     files.is_edge = run->is_edge;
     status = write_output(r, &files);

@@ -43,19 +43,20 @@ int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mes
     return TRI_NONE;
 }
 
-static int threads_for(const struct par_options *options)
+/* As many as asked for; else what OpenMP would use. */
+static int threads_for(int asked)
 {
 #ifdef _OPENMP
-    return options->threads > 0 ? options->threads : omp_get_max_threads();
+    return asked > 0 ? asked : omp_get_max_threads();
 #else
-    (void)options;
+    (void)asked;
     return 1;
 #endif
 }
 
 static void run_in_parallel(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
 {
-    int threads = *(int *)self;
+    int threads = threads_for(*(int *)self);
     threads = n_tasks < (size_t)threads ? (int)n_tasks : threads;
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
     for (size_t i = 0; i < n_tasks; i++)
@@ -373,7 +374,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
                            const struct par_options *options, struct par_report *report, struct tri_error *error)
 {
     double began = par_seconds();
-    *report = (struct par_report){.threads = threads_for(options)};
+    *report = (struct par_report){.threads = threads_for(options->threads)};
     struct par_state state = {.mesh = mesh, .options = options, .threads = report->threads, .report = report};
     struct tri_refine_options usual = *quality;
     enum tri_status status = tri_refine_check(mesh, quality, error);

@@ -23,7 +23,9 @@ static enum tri_status refine(const struct triangulate_options *options, struct 
 int triangulate_with(const char *switches, const struct triangulateio *in, struct triangulateio *out,
                      struct triangulateio *vorout, const struct triangulate_options *options)
 {
-    return tri_io_triangulate(switches, in, out, vorout, options, refine);
+    int threads = options ? options->threads : 0;
+    const struct tri_executor executor = par_executor(&threads);
+    return tri_io_triangulate(switches, in, out, vorout, options, refine, &executor);
 }
 
 int triangulate(const char *switches, struct triangulateio *in, struct triangulateio *out,

@@ -985,7 +985,7 @@ static void test_areas_of_triangles(void **state)
         const REAL *c = &out.pointlist[2 * v[2] - 2];
         double x = (a[0] + b[0] + c[0]) / 3, y = (a[1] + b[1] + c[1]) / 3;
         double area = ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])) / 2;
-        on_bounded += x > y && area > 0.01;
+        on_bounded += x > y + 0.2 && area > 0.01; /* no segment keeps the border where it was */
         on_free += x < y && area > 0.1;
     }
     assert_int_equal(on_bounded, 0);

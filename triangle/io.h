@@ -37,8 +37,9 @@ typedef enum tri_status tri_io_refine(const struct triangulate_options *options,
                                       const struct tri_refine_options *quality, struct tri_refine_report *report,
                                       struct tri_error *error);
 
-/* triangulate_with, with the refinement that is given. */
+/* triangulate_with, with the refinement that is given; the executor (or NULL) runs what comes in pieces. */
 int tri_io_triangulate(const char *switches, const struct triangulateio *in, struct triangulateio *out,
-                       struct triangulateio *vorout, const struct triangulate_options *options, tri_io_refine *refine);
+                       struct triangulateio *vorout, const struct triangulate_options *options, tri_io_refine *refine,
+                       const struct tri_executor *executor);
 
 #endif

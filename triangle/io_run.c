@@ -119,7 +119,8 @@ static enum tri_status build(struct io_run *run)
 {
     const struct tri_pslg *pslg = &run->input.pslg;
     struct tri_options how = run->how;
-    how.refine = false; /* is a stage of its own here */
+    how.refine = false; /* is a stage of its own here, and restores the order of the points */
+    how.leave_sorted = run->how.refine;
     enum tri_status status = check_points(pslg, run->error);
     if (status || !run->switches->mesh)
         return status ? status : tri_generate(&run->mesh, pslg, &how, &run->report, run->error);
@@ -137,6 +138,7 @@ static enum tri_status run_stages(struct io_run *run, const struct triangulateio
     status = status ? status : build(run);
     if (!status && run->how.refine)
         status = refine(run->options, &run->mesh, &run->how.quality, &run->report.quality, run->error);
+    status = status ? status : tri_restore_points(&run->mesh, run->how.executor, run->error);
     if (status)
         return status;
     tri_mesh_compact(&run->mesh);
@@ -158,7 +160,8 @@ static enum tri_status run_all(struct io_run *run, const struct triangulateio *i
 }
 
 int tri_io_triangulate(const char *switches, const struct triangulateio *in, struct triangulateio *out,
-                       struct triangulateio *vorout, const struct triangulate_options *options, tri_io_refine *refine)
+                       struct triangulateio *vorout, const struct triangulate_options *options, tri_io_refine *refine,
+                       const struct tri_executor *executor)
 {
     static const struct triangulate_options none;
     struct tri_error error = {0};
@@ -167,6 +170,7 @@ int tri_io_triangulate(const char *switches, const struct triangulateio *in, str
     if (switches && in && out) {
         tri_switches_add(&s, switches);
         struct io_run run = {.switches = &s, .options = options, .how = tri_switches_options(&s), .error = &error};
+        run.how.executor = executor;
         run_all(&run, in, out, vorout, refine);
     } else {
         tri_fail(&error, TRI_BAD_INPUT, NULL, 0, "switches, in and out must not be NULL");

@@ -53,7 +53,7 @@ static enum tri_status refine(const struct triangulate_options *options, struct 
 int triangulate_with(const char *switches, const struct triangulateio *in, struct triangulateio *out,
                      struct triangulateio *vorout, const struct triangulate_options *options)
 {
-    return tri_io_triangulate(switches, in, out, vorout, options, refine);
+    return tri_io_triangulate(switches, in, out, vorout, options, refine, NULL);
 }
 
 int triangulate(const char *switches, struct triangulateio *in, struct triangulateio *out,
