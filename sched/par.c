@@ -20,7 +20,7 @@
  * to take a few thousandths of the time. (docs/performance.md) */
 static const double CELLS = 128, SMALLEST_CELL = 8192, LARGEST_CELL = 131072, COARSE_PER_CELL = 64;
 
-enum { FEWEST_CELLS = 8, FEWEST_COARSE_CELLS = 32, MAX_ROUNDS = 24 };
+enum { FEWEST_CELLS = 8, FEWEST_COARSE_CELLS = 32, FEWEST_TO_COARSEN = 16, MAX_ROUNDS = 24 };
 
 struct par_options par_defaults(void) { return (struct par_options){0}; }
 
@@ -124,7 +124,6 @@ static struct tri_refine_options coarse_bounds(const struct tri_refine_options *
     struct tri_refine_options coarse = *quality;
     coarse.area_scale = (quality->area_scale > 0 ? quality->area_scale : 1) * (cell / COARSE_PER_CELL);
     coarse.min_angle = fmin(quality->min_angle, TRI_SIZES_ANGLE);
-    coarse.unsuitable = NULL;
     return coarse;
 }
 
@@ -134,7 +133,7 @@ static bool areas_decide(const struct par_state *state, const struct tri_refine_
                          double cell)
 {
     struct tri_refine_options coarse = coarse_bounds(quality, cell);
-    return (quality->max_area > 0 || quality->region_areas) &&
+    return (quality->max_area > 0 || quality->region_areas || quality->unsuitable) &&
            par_estimate(state->mesh, &coarse) < estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
 }
 
@@ -260,7 +259,7 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
             status = par_phase(state, partition, colour, error);
         }
         state->report->rounds++;
-        if (state->pool.n == 0 || par_cells(partition) < FEWEST_CELLS * FEWEST_CELLS)
+        if (state->pool.n == 0 || par_cells(partition) < FEWEST_TO_COARSEN)
             break;
         par_partition_coarsen(partition);
     }
@@ -360,7 +359,8 @@ static enum tri_status refine_sizes_first(struct par_state *state, const struct 
 {
     struct tri_refine_options easy = *quality;
     easy.min_angle = TRI_SIZES_ANGLE;
-    return quality->max_area > 0 || quality->region_areas ? refine_level(state, &easy, 0, error) : TRI_OK;
+    bool sizes = quality->max_area > 0 || quality->region_areas || quality->unsuitable;
+    return sizes ? refine_level(state, &easy, 0, error) : TRI_OK;
 }
 
 /* What a schedule cannot do, one call does. */

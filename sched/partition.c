@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "triangle/criterion.h"
 #include "triangle/quality.h"
 #include "triangle/small_angle.h"
 
@@ -17,6 +18,17 @@ enum { SAMPLES_PER_CELL = 32, DEEPEST_CUT = 12, SURVEY = 1 << 17 };
 
 /* Measured: mean area over bound. */
 static const double MEAN_OVER_BOUND = 0.655;
+
+struct corners {
+    struct tri_point a, b, c;
+};
+
+/* What work is estimated from. */
+struct estimator {
+    const struct tri_mesh *mesh;
+    const struct tri_refine_options *options;
+    double large; /* a size test is probed in pieces no larger than this */
+};
 
 struct sample {
     struct tri_point q;
@@ -38,16 +50,78 @@ static double density(const struct tri_mesh *mesh, const struct tri_refine_optio
     return bound < HUGE_VAL ? mesh->unit / (MEAN_OVER_BOUND * bound) * mesh->unit : 0;
 }
 
-static bool has_areas(const struct tri_refine_options *options)
+static bool has_sizes(const struct tri_refine_options *options)
 {
-    return options->max_area > 0 || options->region_areas;
+    return options->max_area > 0 || options->region_areas || options->unsuitable;
 }
 
-static double area_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
+/* Triangles that the caller's size test asks for in this one, by probing: it is asked about the triangle shrunk to a
+ * quarter, a sixteenth and so on of its area, until it says yes; 0 where it does at once, and also where it never does,
+ * since then it is no test of size. */
+static double probe_size(const struct estimator *e, const struct corners *t)
+{
+    enum { DEEPEST_PROBE = 16 };
+    double scale = e->options->area_scale > 0 ? e->options->area_scale : 1, pieces = 1;
+    for (int k = 0; k <= DEEPEST_PROBE; k++, pieces *= 4)
+        if (!tri_is_refused(e->options, e->mesh->unit, t->a, t->b, t->c, scale * pieces))
+            return k > 0 ? pieces : 0;
+    return 0;
+}
+
+static struct tri_point middle(struct tri_point a, struct tri_point b)
+{
+    return (struct tri_point){0.5 * (a.x + b.x), 0.5 * (a.y + b.y)};
+}
+
+/* A triangle in four. */
+static void quarter(const struct corners *t, struct corners part[4])
+{
+    struct tri_point ab = middle(t->a, t->b), bc = middle(t->b, t->c), ca = middle(t->c, t->a);
+    part[0] = (struct corners){t->a, ab, ca};
+    part[1] = (struct corners){ab, t->b, bc};
+    part[2] = (struct corners){ca, bc, t->c};
+    part[3] = (struct corners){ab, bc, ca};
+}
+
+static double area_of(const struct corners *t)
+{
+    double bx = t->b.x - t->a.x, by = t->b.y - t->a.y, cx = t->c.x - t->a.x, cy = t->c.y - t->a.y;
+    return 0.5 * (bx * cy - by * cx);
+}
+
+/* The same where sizes vary inside: in a large triangle, or where a probe says many, its quarters are probed. */
+static double size_work(const struct estimator *e, const struct corners *t, int depth)
+{
+    enum { MANY = 1024 };
+    double work = probe_size(e, t), sum = 0;
+    if (depth == 0 || (work <= MANY && area_of(t) <= e->large))
+        return work;
+    struct corners part[4];
+    quarter(t, part);
+    for (int i = 0; i < 4; i++)
+        sum += size_work(e, &part[i], depth - 1);
+    return work <= MANY ? fmax(work, sum) : sum;
+}
+
+/* Triangles that areas and size test ask for in a piece of a triangle of this region. */
+static double work_inside(const struct estimator *e, int32_t region, const struct corners *t)
+{
+    double work = area_of(t) * density(e->mesh, e->options, region);
+    if (e->options->unsuitable)
+        work = fmax(work, size_work(e, t, DEEPEST_CUT));
+    return work < TRI_MAX_TRIANGLES ? work : TRI_MAX_TRIANGLES;
+}
+
+static struct corners corners_of(const struct tri_mesh *mesh, int32_t t)
 {
     const int32_t *v = mesh->tri[t].v;
-    double work = 0.5 * tri_shape_of(mesh->xy, v).area2 * density(mesh, options, mesh->tri[t].region);
-    return work < TRI_MAX_TRIANGLES ? work : TRI_MAX_TRIANGLES;
+    return (struct corners){mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]};
+}
+
+static double area_work(const struct estimator *e, int32_t t)
+{
+    struct corners corners = corners_of(e->mesh, t);
+    return has_sizes(e->options) ? work_inside(e, e->mesh->tri[t].region, &corners) : 0;
 }
 
 /* log2(x) for x >= 1, within 0.09: the exponent, and the mantissa for the rest. */
@@ -75,23 +149,40 @@ static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_op
 
 double par_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
 {
-    return tri_is_live(&mesh->tri[t]) ? area_work(mesh, options, t) + angle_work(mesh, options, t) : 0;
+    const struct estimator here = {mesh, options, HUGE_VAL};
+    return tri_is_live(&mesh->tri[t]) ? area_work(&here, t) + angle_work(mesh, options, t) : 0;
 }
 
 /* Of a large mesh the angle's work is taken from every n-th triangle; triangles lie along a curve, so that is fair. */
 static int32_t survey_step(const struct tri_mesh *mesh) { return mesh->n_slots / SURVEY + 1; }
 
+static struct estimator estimator_for(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+{
+    enum { PIECES = 1 << 14 }; /* of the whole mesh */
+    struct estimator e = {mesh, options, HUGE_VAL};
+    double all = 0;
+    for (int32_t t = 0; options->unsuitable && t < mesh->n_slots; t++)
+        if (tri_is_live(&mesh->tri[t])) {
+            struct corners corners = corners_of(mesh, t);
+            all += area_of(&corners);
+        }
+    if (options->unsuitable)
+        e.large = all / PIECES;
+    return e;
+}
+
 /* As the bounds ask for, be it more than any mesh can hold. */
 static double whole_work(const struct tri_mesh *mesh, const struct tri_refine_options *options)
 {
+    const struct estimator e = estimator_for(mesh, options);
     int32_t step = survey_step(mesh);
     double sum = 0;
     for (int32_t t = 0; t < mesh->n_slots; t += step)
         if (tri_is_live(&mesh->tri[t]))
             sum += step * angle_work(mesh, options, t);
-    for (int32_t t = 0; has_areas(options) && t < mesh->n_slots; t++)
+    for (int32_t t = 0; has_sizes(options) && t < mesh->n_slots; t++)
         if (tri_is_live(&mesh->tri[t]))
-            sum += area_work(mesh, options, t);
+            sum += area_work(&e, t);
     return sum;
 }
 
@@ -115,24 +206,22 @@ static bool add_sample(struct samples *s, struct tri_point q, double work)
     return true;
 }
 
-static struct tri_point middle(struct tri_point a, struct tri_point b)
-{
-    return (struct tri_point){0.5 * (a.x + b.x), 0.5 * (a.y + b.y)};
-}
-
 /* Samples a triangle's work, cut into four as long as a piece holds more than `grain`; depth bounds the recursion. */
-static bool sample_triangle(struct samples *s, struct tri_point a, struct tri_point b, struct tri_point c, double work,
-                            double grain, int depth)
+static bool sample_triangle(struct samples *s, const struct estimator *e, int32_t region, const struct corners *t,
+                            double work, double grain, int depth)
 {
     if (work <= grain || depth == 0) {
-        struct tri_point q = {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3};
+        struct tri_point q = {(t->a.x + t->b.x + t->c.x) / 3, (t->a.y + t->b.y + t->c.y) / 3};
         return add_sample(s, q, work);
     }
-    struct tri_point ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-    return sample_triangle(s, a, ab, ca, work / 4, grain, depth - 1) &&
-           sample_triangle(s, ab, b, bc, work / 4, grain, depth - 1) &&
-           sample_triangle(s, ca, bc, c, work / 4, grain, depth - 1) &&
-           sample_triangle(s, ab, bc, ca, work / 4, grain, depth - 1);
+    struct corners part[4];
+    quarter(t, part);
+    for (int i = 0; i < 4; i++) {
+        double inside = e->options->unsuitable ? work_inside(e, region, &part[i]) : work / 4;
+        if (!sample_triangle(s, e, region, &part[i], inside, grain, depth - 1))
+            return false;
+    }
+    return true;
 }
 
 /* Small pieces of work are gathered until they are worth a sample. */
@@ -159,15 +248,16 @@ static bool take_angle_samples(struct samples *s, const struct tri_mesh *mesh,
 static bool take_area_samples(struct samples *s, const struct tri_mesh *mesh,
                               const struct tri_refine_options *options, double grain)
 {
+    const struct estimator e = estimator_for(mesh, options);
     double waiting = 0;
     for (int32_t t = 0; t < mesh->n_slots; t++) {
-        const int32_t *v = mesh->tri[t].v;
-        double work = tri_is_live(&mesh->tri[t]) ? area_work(mesh, options, t) : 0;
+        double work = tri_is_live(&mesh->tri[t]) ? area_work(&e, t) : 0;
         waiting += work < grain ? work : 0;
         if (work < grain && waiting < grain)
             continue;
-        if (!sample_triangle(s, mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]], work < grain ? waiting : work, grain,
-                             DEEPEST_CUT))
+        struct corners corners = corners_of(mesh, t);
+        if (!sample_triangle(s, &e, mesh->tri[t].region, &corners, work < grain ? waiting : work,
+                             work < grain ? waiting : grain, DEEPEST_CUT))
             return false;
         waiting = work < grain ? 0 : waiting;
     }
@@ -302,7 +392,7 @@ enum tri_status par_partition_make(struct par_partition *p, const struct tri_mes
     p->y = malloc((size_t)p->n_columns * (size_t)p->n_rows * sizeof *p->y);
     double grain = estimate / par_cells(p) / SAMPLES_PER_CELL;
     bool done = p->x && p->y && take_angle_samples(&s, mesh, options, grain) &&
-                (!has_areas(options) || take_area_samples(&s, mesh, options, grain)) && cut_plane(p, &s);
+                (!has_sizes(options) || take_area_samples(&s, mesh, options, grain)) && cut_plane(p, &s);
     free(s.item);
     if (done)
         return TRI_OK;

@@ -33,7 +33,8 @@ struct par_partition {
 };
 
 /* Estimates the number of triangles that refinement will end with: for bounded areas from the areas, for a bounded
- * angle from the edges' lengths; what a size test will ask for cannot be known. O(triangles). */
+ * angle from the edges' lengths, for a size test by probing it with triangles that get smaller. O(triangles), and a probe
+ * for each thousand triangles or so of those to come. */
 double par_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options);
 
 /* The share of one triangle in that. */

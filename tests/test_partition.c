@@ -316,6 +316,51 @@ static void test_work_follows_the_bounds(void **state)
     tri_pslg_free(&pslg);
 }
 
+/* Fine at one place of the square, far from the centroid of any triangle of the input. */
+static int is_too_large(void *user, const double a[2], const double b[2], const double c[2], double area)
+{
+    double x = (a[0] + b[0] + c[0]) / 3 - 0.97, y = (a[1] + b[1] + c[1]) / 3 - 0.96;
+    (void)user;
+    return area > 1e-7 + 1e-3 * (x * x + y * y);
+}
+
+static int is_never_right(void *user, const double a[2], const double b[2], const double c[2], double area)
+{
+    (void)user, (void)a, (void)b, (void)c;
+    return area > 0;
+}
+
+/* A size test says by probing how many triangles it will ask for, and where; one that is no test of size, nothing. */
+static void test_size_tests_are_probed(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = support_square(1, 0, 1);
+    struct tri_options options = support_quality(25, 0);
+    options.refine = false;
+    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+    options.quality.unsuitable = is_never_right;
+    assert_true(par_estimate(&mesh, &options.quality) < 100);
+    options.quality.unsuitable = is_too_large;
+    double estimate = par_estimate(&mesh, &options.quality);
+    struct par_partition p = cut(&mesh, &options.quality, estimate / 64);
+    struct tri_refine_report report;
+    assert_int_equal(tri_refine(&mesh, &options.quality, &report, NULL), TRI_OK);
+    int32_t *count = calloc((size_t)par_blocks(&p), sizeof *count), most = 0, n = par_cells(&p) / 4;
+    assert_non_null(count);
+    for (int32_t t = 0; t < mesh.n_slots; t++)
+        count[par_block_at(&p, 0, mesh.xy[mesh.tri[t].v[0]])]++;
+    for (int32_t i = 0; i < par_blocks(&p); i++)
+        most = count[i] > most ? count[i] : most;
+    print_message("  %d triangles for %.0f estimated, fullest of %d blocks %.2f of the mean\n", (int)mesh.n_slots, estimate,
+                  (int)n, most * (double)n / mesh.n_slots);
+    assert_true(mesh.n_slots > 0.4 * estimate && mesh.n_slots < 2.2 * estimate);
+    assert_true(n >= 9 && most * (double)n < 2.2 * mesh.n_slots);
+    free(count);
+    par_partition_free(&p);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
 /* No vertices at all; and estimates that no number of blocks can follow. */
 static void test_extremes(void **state)
 {
@@ -350,6 +395,7 @@ int main(void)
         cmocka_unit_test(test_cell_size),
         cmocka_unit_test(test_blocks_have_equal_shares_of_the_work),
         cmocka_unit_test(test_work_follows_the_bounds),
+        cmocka_unit_test(test_size_tests_are_probed),
         cmocka_unit_test(test_extremes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

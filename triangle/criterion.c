@@ -15,13 +15,32 @@ double tri_area2_bound(const struct tri_criterion *c, int32_t region)
     return 2 * (bound / c->mesh->unit / c->mesh->unit);
 }
 
-bool tri_is_unsuitable(const struct tri_criterion *criterion, const int32_t v[3], double area2)
+static void shrink(double at[2], const double centroid[2], double factor)
+{
+    at[0] = centroid[0] + factor * (at[0] - centroid[0]);
+    at[1] = centroid[1] + factor * (at[1] - centroid[1]);
+}
+
+bool tri_is_refused(const struct tri_refine_options *options, double unit, struct tri_point p, struct tri_point q,
+                    struct tri_point r, double scale)
+{
+    double a[2] = {p.x * unit, p.y * unit}, b[2] = {q.x * unit, q.y * unit}, c[2] = {r.x * unit, r.y * unit};
+    double area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+    if (scale != 1) {
+        double centroid[2] = {(a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3}, factor = 1 / sqrt(scale);
+        shrink(a, centroid, factor);
+        shrink(b, centroid, factor);
+        shrink(c, centroid, factor);
+    }
+    return options->unsuitable(options->unsuitable_user, a, b, c, area / scale) != 0;
+}
+
+bool tri_is_unsuitable(const struct tri_criterion *criterion, const int32_t v[3])
 {
     const struct tri_refine_options *options = criterion->options;
     const struct tri_point *xy = criterion->mesh->xy;
-    double unit = criterion->mesh->unit, a[2] = {xy[v[0]].x * unit, xy[v[0]].y * unit};
-    double b[2] = {xy[v[1]].x * unit, xy[v[1]].y * unit}, c[2] = {xy[v[2]].x * unit, xy[v[2]].y * unit};
-    return options->unsuitable(options->unsuitable_user, a, b, c, 0.5 * area2 * unit * unit) != 0;
+    return tri_is_refused(options, criterion->mesh->unit, xy[v[0]], xy[v[1]], xy[v[2]],
+                          options->area_scale > 0 ? options->area_scale : 1);
 }
 
 enum tri_badness tri_judge(const struct tri_criterion *c, const struct tri_triangle *t, const struct tri_shape *shape)
@@ -31,7 +50,7 @@ enum tri_badness tri_judge(const struct tri_criterion *c, const struct tri_trian
         return TRI_BAD_ANGLE;
     if (shape->area2 > tri_area2_bound(c, t->region))
         return TRI_BAD_SIZE;
-    return c->options->unsuitable && tri_is_unsuitable(c, t->v, shape->area2) ? TRI_BAD_SIZE : TRI_GOOD;
+    return c->options->unsuitable && tri_is_unsuitable(c, t->v) ? TRI_BAD_SIZE : TRI_GOOD;
 }
 
 bool tri_is_protected(const struct tri_refine_options *options, const struct tri_subsegment *s)

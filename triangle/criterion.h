@@ -18,8 +18,14 @@ enum tri_badness { TRI_GOOD, TRI_BAD_SIZE, TRI_BAD_ANGLE };
 /* Twice the largest area allowed in a region, in the mesh's units; infinity where there is no bound. */
 double tri_area2_bound(const struct tri_criterion *criterion, int32_t region);
 
-/* Does the caller's size test refuse a triangle with these corners and twice this area? Only where there is one. */
-bool tri_is_unsuitable(const struct tri_criterion *criterion, const int32_t v[3], double area2);
+/* Does the caller's size test, asked of a mesh with this unit, refuse the triangle? Where scale is not 1 it is asked about
+ * the triangle shrunk about its centroid, to 1 / scale of its area: so a test for a mesh `scale` times coarser is made
+ * of any. */
+bool tri_is_refused(const struct tri_refine_options *options, double unit, struct tri_point a, struct tri_point b,
+                    struct tri_point c, double scale);
+
+/* The same for a triangle with these corners, at options->area_scale. Only where there is a test. */
+bool tri_is_unsuitable(const struct tri_criterion *criterion, const int32_t v[3]);
 
 /* A bad angle counts before a bad size. */
 enum tri_badness tri_judge(const struct tri_criterion *criterion, const struct tri_triangle *t,

@@ -96,7 +96,7 @@ static bool judge_rim(struct tri_refiner *r, const struct tri_rim *rim, struct t
         return push(r, rim->slot, TRI_BAD_ANGLE, least(ra.l, rb.l, l));
     if (area2 > bound2)
         return push(r, rim->slot, TRI_BAD_SIZE, 0);
-    if (r->options->unsuitable && tri_is_unsuitable(&r->criterion, r->mesh->tri[rim->slot].v, area2))
+    if (r->options->unsuitable && tri_is_unsuitable(&r->criterion, r->mesh->tri[rim->slot].v))
         return push(r, rim->slot, TRI_BAD_SIZE, 0);
     return true;
 }

@@ -31,7 +31,8 @@ struct tri_refine_options {
     double min_angle;      /* degrees; 0: no bound on angles; above 34 best effort; within a fence no more than 34 */
     double max_area;       /* <= 0: none */
     bool region_areas;     /* mesh->regions[t.region].max_area applies too */
-    double area_scale;     /* > 0: all area bounds are multiplied by this, for pre-refinement; 0: as they are */
+    double area_scale;     /* > 0: all area bounds are multiplied by this, for pre-refinement, and the size test is asked
+                              about triangles that are smaller by this; 0: as they are */
     bool conforming;       /* -D: no vertex inside the diametral circle of a subsegment */
     int protect;           /* 1: boundary subsegments are not split (-Y); 2: no subsegment is (-YY) */
     int64_t max_steiner;   /* < 0: no limit on the points inserted */
