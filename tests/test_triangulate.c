@@ -506,6 +506,29 @@ static void test_caller_arrays(void **state)
     release("peAnv", &made, &vormade);
 }
 
+/* The segments, too: those that are no edges of the mesh are read last. */
+static void test_segments_in_place(void **state)
+{
+    (void)state;
+    static REAL xy[] = {0, 0, 2, 0, 2, 2, 0, 2, 1, 1};
+    static int corners[] = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4}, ends[32] = {0, 2, 1, 3}, markers[16] = {77, 88};
+    struct triangulateio in = points_only(xy, 5), out, vorout;
+    in.trianglelist = corners;
+    in.numberoftriangles = 4;
+    in.numberofcorners = 3;
+    in.numberoftriangleattributes = 0;
+    in.segmentlist = ends;
+    in.segmentmarkerlist = markers;
+    in.numberofsegments = 2;
+    prepare("rpzNE", &out, &vorout);
+    out.segmentlist = ends;
+    out.segmentmarkerlist = markers;
+    assert_int_equal(triangulate("rpzNEQ", &in, &out, &vorout), 0);
+    assert_int_equal(out.numberofsegments, 6);
+    SAME(ends + 8, ((int[]){0, 2, 1, 3}), 4);
+    SAME(markers + 4, ((int[]){77, 88}), 2);
+}
+
 /* The points of `out` may be those of `in`, also where they move (j). */
 static void test_in_place(void **state)
 {
@@ -1170,6 +1193,7 @@ int main(void)
         cmocka_unit_test(test_no_regions),
         cmocka_unit_test(test_caller_arrays),
         cmocka_unit_test(test_in_place),
+        cmocka_unit_test(test_segments_in_place),
         cmocka_unit_test(test_no_triangles),
         cmocka_unit_test(test_bad_points),
         cmocka_unit_test(test_bad_counts),

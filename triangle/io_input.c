@@ -56,6 +56,19 @@ static int32_t index_of(int number, int32_t base, int32_t n_points)
     return number >= base && number - base < n_points ? number - base : -1;
 }
 
+/* With r, segments that are no edges are passed on behind the others, where `out` may name arrays of `in`. */
+static enum tri_status take_loose(struct tri_io_input *input, const struct triangulateio *in, struct tri_error *error)
+{
+    size_t n = (size_t)in->numberofsegments;
+    input->is_edge = make_copy(input, n, sizeof *input->is_edge, error);
+    if (input->is_edge && in->segmentmarkerlist) {
+        input->pslg.segment_markers = make_copy(input, n, sizeof *input->pslg.segment_markers, error);
+        if (input->pslg.segment_markers)
+            memcpy(input->pslg.segment_markers, in->segmentmarkerlist, n * sizeof *input->pslg.segment_markers);
+    }
+    return input->is_edge && (input->pslg.segment_markers || !in->segmentmarkerlist) ? TRI_OK : TRI_NO_MEMORY;
+}
+
 /* Ends of segments. Without r those that name no point are skipped later. */
 static enum tri_status take_segments(struct tri_io_input *input, const struct triangulateio *in,
                                      const struct tri_switches *switches, struct tri_error *error)
@@ -76,9 +89,7 @@ static enum tri_status take_segments(struct tri_io_input *input, const struct tr
     input->pslg.n_segments = n;
     input->pslg.segments = ends;
     input->pslg.segment_markers = in->segmentmarkerlist;
-    if (switches->mesh)
-        input->is_edge = make_copy(input, (size_t)n, sizeof *input->is_edge, error);
-    return switches->mesh && !input->is_edge ? TRI_NO_MEMORY : TRI_OK;
+    return switches->mesh ? take_loose(input, in, error) : TRI_OK;
 }
 
 static enum tri_status take_points(struct tri_io_input *input, const struct triangulateio *in, struct tri_error *error)
