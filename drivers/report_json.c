@@ -138,7 +138,7 @@ static json_t *mesh_of(const struct run *run)
     const struct tri_counts *c = &run->counts;
     const struct tri_refine_options *bounds = &run->options.quality;
     struct tri_shapes shapes;
-    tri_measure_shapes(&shapes, &run->mesh);
+    tri_measure_shapes(&shapes, &run->mesh, run->hooks->executor);
     double mean = mean_area(&run->mesh);
     json_t *over = run->options.refine && bounds->max_area > 0 ? real(mean / bounds->max_area) : json_null();
     return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "vertices",

@@ -311,7 +311,7 @@ static enum tri_status tell(struct runner *r, double begin)
     run->counts.subsegments += run->n_loose;
     summary_counts(&r->console, s, &run->pslg, run->elements.n, &run->counts);
     if (s->verbosity > 0)
-        summary_shapes(&r->console, &run->mesh, &run->report);
+        summary_shapes(&r->console, &run->mesh, &run->report, run->hooks->executor);
     if (s->check)
         status = self_check(&r->console, s, &run->mesh, run->base, r->error);
     if (!status && run->hooks->done)

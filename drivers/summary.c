@@ -129,10 +129,11 @@ static int64_t bytes_of(const struct tri_mesh *mesh)
            (int64_t)mesh->parent_capacity * (int64_t)sizeof *mesh->parents;
 }
 
-void summary_shapes(const struct console *console, const struct tri_mesh *mesh, const struct tri_report *report)
+void summary_shapes(const struct console *console, const struct tri_mesh *mesh, const struct tri_report *report,
+                    const struct tri_executor *executor)
 {
     struct tri_shapes shapes;
-    tri_measure_shapes(&shapes, mesh);
+    tri_measure_shapes(&shapes, mesh, executor);
     console_detail(console, 1, "Mesh quality statistics:\n\n");
     console_detail(console, 1, "  Smallest area: %16.5g   |  Largest area: %16.5g\n", shapes.smallest_area,
                    shapes.largest_area);

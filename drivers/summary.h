@@ -23,6 +23,7 @@ void summary_counts(const struct console *console, const struct tri_switches *sw
                     int32_t n_input_triangles, const struct tri_counts *counts);
 
 /* The blocks of -V: shapes, memory, work done. */
-void summary_shapes(const struct console *console, const struct tri_mesh *mesh, const struct tri_report *report);
+void summary_shapes(const struct console *console, const struct tri_mesh *mesh, const struct tri_report *report,
+                    const struct tri_executor *executor);
 
 #endif

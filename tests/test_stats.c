@@ -71,7 +71,7 @@ static void test_shapes(void **state)
         double scale = scales[i], hypotenuse = sqrt(4.0001);
         struct tri_mesh mesh = two_triangles(scale);
         struct tri_shapes s;
-        tri_measure_shapes(&s, &mesh);
+        tri_measure_shapes(&s, &mesh, NULL);
         if (i != 1) { /* areas of 1e-602 are no doubles */
             assert_true(is_near(s.smallest_area, 0.01 * scale * scale));
             assert_true(is_near(s.largest_area, sqrt(3) * scale * scale));
@@ -105,7 +105,7 @@ static void test_against_judge(void **state)
     tri_mesh_compact(&mesh);
     struct tri_counts counts = counted(&mesh);
     struct tri_shapes s;
-    tri_measure_shapes(&s, &mesh);
+    tri_measure_shapes(&s, &mesh, NULL);
     int64_t triangles = 0, angles = 0;
     for (int k = 0; k < TRI_ASPECT_BINS; k++)
         triangles += s.aspects[k];
@@ -135,7 +135,7 @@ static void test_empty(void **state)
     struct tri_mesh mesh = support_generate(&pslg, &options, &report);
     struct tri_counts counts = counted(&mesh);
     struct tri_shapes s;
-    tri_measure_shapes(&s, &mesh);
+    tri_measure_shapes(&s, &mesh, NULL);
     assert_int_equal(counts.vertices + counts.triangles + counts.edges + counts.exterior, 0);
     assert_true(s.smallest_area == 0 && s.largest_angle == 0 && s.angles[0] == 0);
     tri_mesh_free(&mesh);

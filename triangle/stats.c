@@ -13,6 +13,8 @@
 const double tri_aspect_limits[TRI_ASPECT_BINS] = {1.1547, 1.5, 2,  2.5, 3,   4,   6,    10,
                                                    15,     25,  50, 100, 300, 1000, 10000, 100000};
 
+enum { PIECES = 64 };
+
 static const double DEGREES = 57.295779513082320877;
 
 enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh *mesh, struct tri_error *error)
@@ -94,19 +96,61 @@ static void convert(struct tri_shapes *shapes, const struct extremes *x, double 
     shapes->largest_angle = DEGREES * acos(fmax(x->least_cosine, -1));
 }
 
-void tri_measure_shapes(struct tri_shapes *shapes, const struct tri_mesh *mesh)
-{
-    struct extremes x = {{HUGE_VAL, 0}, {HUGE_VAL, 0}, HUGE_VAL, 0, 1, 1};
+/* A piece of the mesh and what was found in it. */
+struct tally {
+    struct tri_shapes shapes;
+    struct extremes extremes;
+};
+
+struct survey {
+    const struct tri_mesh *mesh;
     double limits[TRI_ANGLE_BINS];
+    struct tally tally[PIECES];
+};
+
+static void measure_piece(void *context, size_t piece)
+{
+    struct survey *s = context;
+    struct tally *tally = &s->tally[piece];
+    int64_t n = s->mesh->n_slots;
+    int32_t first = (int32_t)(n * (int64_t)piece / PIECES), last = (int32_t)(n * ((int64_t)piece + 1) / PIECES);
+    *tally = (struct tally){.extremes = {{HUGE_VAL, 0}, {HUGE_VAL, 0}, HUGE_VAL, 0, 1, 1}};
+    for (int32_t t = first; t < last; t++) {
+        assert(tri_is_live(&s->mesh->tri[t]));
+        struct tri_shape shape = tri_shape_of(s->mesh->xy, s->mesh->tri[t].v);
+        measure(&tally->shapes, &tally->extremes, &shape, s->limits);
+    }
+}
+
+static void add_tally(struct tally *sum, const struct tally *add)
+{
+    for (int k = 0; k < TRI_ASPECT_BINS; k++)
+        sum->shapes.aspects[k] += add->shapes.aspects[k];
+    for (int k = 0; k < TRI_ANGLE_BINS; k++)
+        sum->shapes.angles[k] += add->shapes.angles[k];
+    struct extremes *x = &sum->extremes;
+    const struct extremes *y = &add->extremes;
+    x->area2[0] = fmin(x->area2[0], y->area2[0]);
+    x->area2[1] = fmax(x->area2[1], y->area2[1]);
+    x->length2[0] = fmin(x->length2[0], y->length2[0]);
+    x->length2[1] = fmax(x->length2[1], y->length2[1]);
+    x->least_altitude2 = fmin(x->least_altitude2, y->least_altitude2);
+    x->greatest_aspect = fmax(x->greatest_aspect, y->greatest_aspect);
+    x->least_sine2 = fmin(x->least_sine2, y->least_sine2);
+    x->least_cosine = fmin(x->least_cosine, y->least_cosine);
+}
+
+void tri_measure_shapes(struct tri_shapes *shapes, const struct tri_mesh *mesh, const struct tri_executor *executor)
+{
+    struct survey s = {.mesh = mesh};
     *shapes = (struct tri_shapes){0};
     if (mesh->n_slots == 0)
         return;
     for (int k = 0; k < TRI_ANGLE_BINS; k++)
-        limits[k] = k == 9 ? 0 : tri_cos_degrees(10 * k); /* right angles are common, and exact */
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
-        assert(tri_is_live(&mesh->tri[t]));
-        struct tri_shape s = tri_shape_of(mesh->xy, mesh->tri[t].v);
-        measure(shapes, &x, &s, limits);
-    }
-    convert(shapes, &x, mesh->unit);
+        s.limits[k] = k == 9 ? 0 : tri_cos_degrees(10 * k); /* right angles are common, and exact */
+    tri_execute(executor, PIECES, measure_piece, &s);
+    for (int i = 1; i < PIECES; i++)
+        add_tally(&s.tally[0], &s.tally[i]);
+    *shapes = s.tally[0].shapes;
+    convert(shapes, &s.tally[0].extremes, mesh->unit);
 }

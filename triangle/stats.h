@@ -2,6 +2,7 @@
 #ifndef TRIANGLE_STATS_H
 #define TRIANGLE_STATS_H
 
+#include "triangle/executor.h"
 #include "triangle/mesh.h"
 
 struct tri_counts {
@@ -17,8 +18,8 @@ enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh 
 
 enum { TRI_ASPECT_BINS = 16, TRI_ANGLE_BINS = 18 };
 
-/* Limits of the bins of aspect ratios: bin k holds tri_aspect_limits[k] up to, not including, [k + 1]; the last is
- * open. */
+/* Limits of the bins of aspect ratios: bin k holds what is above tri_aspect_limits[k], up to and including [k + 1]; the
+ * first and the last are open. */
 extern const double tri_aspect_limits[TRI_ASPECT_BINS];
 
 /* Lengths and areas in the caller's coordinates, angles in degrees. All 0 without triangles. */
@@ -33,6 +34,6 @@ struct tri_shapes {
 };
 
 /* O(triangles). The mesh has no free slots. */
-void tri_measure_shapes(struct tri_shapes *shapes, const struct tri_mesh *mesh);
+void tri_measure_shapes(struct tri_shapes *shapes, const struct tri_mesh *mesh, const struct tri_executor *executor);
 
 #endif
