@@ -1,0 +1,248 @@
+"""What is timed: a program on a domain. Each case can run in memory, without writing a file, and can write its mesh for
+the judge. Both make the same mesh, which is checked by what a run says about it.
+
+Seconds of a run, by stage, all of wall time:
+  delaunay  points and segments in memory to the (constrained) Delaunay triangulation, emptied outside and in holes
+  quality   from there to the refined mesh, numbered
+  memory    both
+  process   the whole process, with reading and, where the case says so, writing of text files
+and what a program reports beyond that.
+"""
+import glob
+import json
+import os
+import re
+import sys
+
+from process import execute
+
+LIMIT = 900  # seconds
+
+
+class Failure(Exception):
+    """A run that gave no result; `timed_out` tells why."""
+
+    def __init__(self, text, timed_out=False):
+        super().__init__(text)
+        self.timed_out = timed_out
+
+
+class Run:
+    def __init__(self, seconds, ended, identity, facts=None):
+        self.seconds = seconds    # stage: seconds
+        self.peak = ended.peak
+        self.identity = identity  # what the program says of its mesh; None: nothing
+        self.facts = facts or {}
+
+
+class Case:
+    """ours: a failure or a fault is ours to mend. check: options of trianglecheck beyond bounds and input."""
+    ours, threads, check, limit = True, 1, (), LIMIT
+    compare_input, bounds_area = True, True
+
+    def __init__(self, settings, domain):
+        self.settings, self.domain = settings, domain
+
+    def run(self):
+        """One timed run."""
+        raise NotImplementedError
+
+    def write(self, base):
+        """Writes the mesh and returns (base name of its files, Run)."""
+        raise NotImplementedError
+
+    def execute(self, *command):
+        ended = execute(command, self.limit, self.settings.scratch)
+        if ended.timed_out:
+            raise Failure(f"not done in {self.limit:g} s", True)
+        if ended.code:
+            lines = (ended.errors.strip() or ended.output.strip()).splitlines()
+            raise Failure(f"exit code {ended.code}: {lines[-1][:200] if lines else ''}")
+        return ended
+
+    @property
+    def missing(self):
+        """Why it cannot run here, or None."""
+        return None
+
+
+class Ours(Case):
+    """ptriangle. `switches` beyond those of the domain: with `r`, its .poly file has a mesh beside it."""
+
+    def __init__(self, settings, domain, threads, switches="", files=False):
+        super().__init__(settings, domain)
+        self.threads, self.switches, self.files = threads, switches, files
+        self.name = f"ours, {threads} thread{'s' if threads > 1 else ''}{', with files' if files else ''}"
+        if "r" in switches:
+            self.check = ("--refined",)
+
+    def _call(self, extra):
+        report = os.path.join(self.settings.scratch, "report.json")
+        ended = self.execute(self.settings.program("ptriangle"), "--threads", str(self.threads), "--report", report,
+                             *extra, "-Q" + self.switches + self.domain.switches, self.domain.path)
+        with open(report) as file:
+            facts = json.load(file)
+        s = facts["seconds"]
+        seconds = {k: s[k] for k in s if k != "total"}
+        seconds["delaunay"] = s["delaunay"] + s["segments"] + s["holes"]  # with -r: reconstruction
+        seconds["memory"] = seconds["delaunay"] + s["quality"]
+        seconds["process"] = ended.wall
+        return Run(seconds, ended, json.dumps(facts["mesh"]), facts)
+
+    def run(self):
+        base = os.path.join(self.settings.scratch, "timed")
+        run = self._call(("--output", base) if self.files else ("-NEP",))
+        remove(base)
+        return run
+
+    def write(self, base):
+        return base, self._call(("--output", base))
+
+
+class Sequential(Case):
+    """Our `triangle`, which knows no threads. It tells milliseconds."""
+    name = "ours, sequential"
+
+    def _call(self, path, extra=()):
+        ended = self.execute(self.settings.program("triangle"), *extra, "-" + self.domain.switches, path)
+
+        def milliseconds(*names):
+            found = [re.search(rf"^{n} milliseconds: +(\d+)", ended.output, re.M) for n in names]
+            return sum(int(f.group(1)) for f in found if f) / 1000
+        seconds = {"delaunay": milliseconds("Delaunay", "Segment", "Hole"), "quality": milliseconds("Quality"),
+                   "process": ended.wall}
+        seconds["memory"] = seconds["delaunay"] + seconds["quality"]
+        return Run(seconds, ended, str(re.findall(r"^  Mesh \S+:.*", ended.output, re.M)))
+
+    def run(self):
+        return self._call(self.domain.path, ("-NEP",))
+
+    def write(self, base):
+        suffix = os.path.splitext(self.domain.path)[1]
+        for end in (".poly", ".node", ".ele") if suffix == ".poly" else (suffix,):
+            source = self.domain.path[:-len(suffix)] + end
+            if os.path.exists(source):
+                os.symlink(source, base + end)
+        return base + ".1", self._call(base + suffix)
+
+
+class Triangle(Case):
+    """Triangle 1.6 as PyPI brings it: its library function, timed alone. It makes triangulation and mesh in one call;
+    so `delaunay` is a call without bounds, and `quality` the difference. Timed calls ask for no output (N, E, P), so
+    that filling its arrays is not in the time."""
+    ours, name = False, "Triangle 1.6"
+
+    def __init__(self, settings, domain, switches=""):
+        super().__init__(settings, domain)
+        self.switches = switches
+        if "r" in switches:
+            self.check = ("--refined",)
+
+    @property
+    def library(self):
+        packages = os.path.join(self.settings.work, "python", "lib", "python*", "site-packages")
+        found = glob.glob(os.path.join(packages, "triangle", "core*.so"))
+        return found[0] if found else ""
+
+    @property
+    def missing(self):
+        return None if self.library else "the PyPI package triangle is not installed"
+
+    def _call(self, switches, *base):
+        ended = self.execute(python(self.settings), peer("triangle_call.py"), self.library, self.domain.path,
+                             self.switches + switches, *base)
+        said = json.loads(ended.output)
+        return said["seconds"], str(said["counts"]), ended
+
+    def run(self):
+        first, counts, ended = self._call(self.domain.plain_switches + "NEP")
+        seconds = {"delaunay": first, "memory": first}
+        if self.domain.angle:
+            seconds["memory"], counts, ended = self._call(self.domain.switches + "NEP")
+            seconds["quality"] = seconds["memory"] - first
+        return Run(seconds, ended, counts)
+
+    def write(self, base):
+        seconds, counts, ended = self._call(self.domain.switches, base)
+        return base, Run({"memory": seconds}, ended, counts)
+
+
+class Peer(Case):
+    """A program of bench/peers that takes INPUT and bounds, prints {"seconds": from input in memory to mesh in memory},
+    and writes the mesh if a base name follows."""
+    ours, compare_input = False, False
+
+    def command(self):
+        raise NotImplementedError
+
+    def _call(self, *base):
+        ended = self.execute(*self.command(), *base)
+        return Run({"memory": json.loads(ended.output.splitlines()[-1])["seconds"]}, ended, None)
+
+    def run(self):
+        return self._call()
+
+    def write(self, base):
+        return base, self._call(base)
+
+
+class Cgal(Peer):
+    name = "CGAL"
+
+    @property
+    def _program(self):
+        return os.path.join(self.settings.work, "cgal_mesh")
+
+    @property
+    def missing(self):
+        return None if os.path.exists(self._program) else "the CGAL headers are not installed (libcgal-dev)"
+
+    def command(self):
+        return self._program, self.domain.path, f"{self.domain.angle:g}", repr(self.domain.area)
+
+
+class Spade(Cgal):
+    name = "spade"
+
+    @property
+    def _program(self):
+        return os.path.join(self.settings.work, "spade", "release", "spade_mesh")
+
+    @property
+    def missing(self):
+        return None if os.path.exists(self._program) else "cargo is not installed, or cannot build spade"
+
+
+class Gmsh(Peer):
+    """gmsh has no bounds: asked for the edges of equilateral triangles of 0.66 of the area bound, our mean area. Its
+    meshes are not Delaunay after its own smoothing."""
+    check, bounds_area = ("--no-delaunay",), False
+
+    def __init__(self, settings, domain, algorithm, name):
+        super().__init__(settings, domain)
+        self.algorithm, self.name = algorithm, name
+
+    @property
+    def missing(self):
+        installed = glob.glob(os.path.join(self.settings.work, "python", "gmsh-*"))
+        return None if installed else "the PyPI package gmsh is not installed, or does not run"
+
+    def command(self):
+        size = (0.66 * self.domain.area * 4 / 3 ** 0.5) ** 0.5
+        return python(self.settings), peer("gmsh_mesh.py"), self.domain.path, repr(size), str(self.algorithm)
+
+
+def python(settings):
+    """The one that the packages were installed for."""
+    own = os.path.join(settings.work, "python", "bin", "python")
+    return own if os.path.exists(own) else sys.executable
+
+
+def peer(name):
+    return os.path.join(os.path.dirname(os.path.abspath(__file__)), "peers", name)
+
+
+def remove(base):
+    """A mesh and what was linked beside it."""
+    for path in glob.glob(glob.escape(base) + ".*"):
+        os.remove(path)

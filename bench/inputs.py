@@ -1,0 +1,92 @@
+"""The domains that are measured. Each is written anew as a plain file (numbered from 0, no attributes, markers and
+comments), so that all programs read the same and the simplest reader will do."""
+import os
+import random
+from array import array
+from dataclasses import dataclass, replace
+from decimal import Decimal
+
+import meshfiles
+
+LETTER_A_AREA, LETTER_AREA = 0.084127, 71.865746  # of the paper's letter A and of data/letter.poly
+
+
+@dataclass(frozen=True)
+class Domain:
+    name: str
+    path: str        # plain .poly or .node file
+    angle: float     # bounds in degrees and units of area; 0: none
+    area: float
+
+    @property
+    def switches(self):
+        """As Triangle takes them: numbers have no exponent."""
+        text = "p" if self.path.endswith(".poly") else ""
+        text += f"q{self.angle:g}" if self.angle else ""
+        return text + ("a" + format(Decimal(repr(self.area)), "f").removesuffix(".0") if self.area else "")
+
+    @property
+    def plain_switches(self):
+        """The triangulation before it is refined."""
+        return "p" if self.path.endswith(".poly") else ""
+
+    def without_bounds(self):
+        return replace(self, angle=0, area=0)
+
+
+def _plain(settings, name, source):
+    path = os.path.join(settings.work, "inputs", name + ".poly")
+    if not os.path.exists(path) or os.path.getmtime(path) < os.path.getmtime(source):
+        meshfiles.write(path, meshfiles.read(source))
+    return path
+
+
+def _data(settings, *name):
+    return os.path.join(settings.root, "data", *name)
+
+
+def letter(settings, area):
+    """The paper's letter A where it is at hand, else a letter R with as many triangles: its bounds are scaled."""
+    source = os.path.join(settings.shared, "classic_A.poly")
+    if os.path.exists(source):
+        return Domain("letter A", _plain(settings, "letter_a", source), 20, settings.bound(area))
+    source = _data(settings, "letter.poly")
+    return Domain("letter R", _plain(settings, "letter_r", source), 20,
+                  round(settings.bound(area) * LETTER_AREA / LETTER_A_AREA, 15))
+
+
+def square(settings, area):
+    source = _data(settings, "square_random1000.poly")
+    return Domain("unit square, 1,000 points", _plain(settings, "square", source), 20, settings.bound(area))
+
+
+def plate(settings, area):
+    return Domain("plate with 400 holes", _plain(settings, "plate", _data(settings, "perforated.poly")), 20,
+                  settings.bound(area))
+
+
+def norway(settings, angle, area):
+    source = _data(settings, "coast", "norway_sea.poly")
+    return Domain("sea off Norway", _plain(settings, "norway", source), angle, settings.bound(area))
+
+
+def shared_coasts(settings, angle, area):
+    """Coasts of the world's oceans, where the folder of further inputs is at hand."""
+    found, files = [], [("oceans, 59,000 segments", "coast_ne50m_sea")]
+    if not settings.small:  # its bound on angles alone makes a million triangles
+        files.append(("oceans, 78,000 segments", "coast_gshhg_l_clean"))
+    for name, file in files:
+        source = os.path.join(settings.shared, file + ".poly")
+        if os.path.exists(source):
+            found.append(Domain(name, _plain(settings, file, source), angle, settings.bound(area)))
+    return found
+
+
+def random_points(settings, angle):
+    n = 10_000 if settings.small else 1_000_000
+    path = os.path.join(settings.work, "inputs", f"random{n}.node")
+    if not os.path.exists(path):
+        source, pslg = random.Random(1), meshfiles.Pslg()
+        pslg.points = array("d", (source.random() for _ in range(2 * n)))
+        meshfiles.write(path, pslg)
+    return Domain(f"{n:,} random points", path, angle, 0)

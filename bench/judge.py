@@ -1,0 +1,63 @@
+"""Every mesh is judged by trianglecheck before a time of it is shown."""
+import json
+import os
+import zlib
+from dataclasses import dataclass
+
+from cases import Failure, remove
+from process import execute
+
+
+@dataclass
+class Verdict:
+    faults: str       # empty: none
+    vertices: int
+    triangles: int
+    subsegments: int
+    smallest_angle: float
+    total_area: float
+    checksum: int     # of the files
+
+    @property
+    def text(self):
+        return self.faults or "no fault"
+
+
+def _checksum(base):
+    """Comments, which hold the command, do not count."""
+    value = 0
+    for suffix in (".node", ".ele", ".poly"):
+        if os.path.exists(base + suffix):
+            with open(base + suffix, "rb") as file:
+                while lines := file.readlines(1 << 22):
+                    value = zlib.crc32(b"".join(line for line in lines if not line.startswith(b"#")), value)
+    return value
+
+
+def _command(case, base):
+    domain, command = case.domain, [case.settings.program("trianglecheck"), base, "--json", "--no-markers", *case.check]
+    if case.compare_input:
+        command += ["--poly", domain.path]
+    if domain.path.endswith(".node") and not domain.angle:  # vertices put on the hull are rounded
+        command += ["--convex"]
+    if domain.angle and case.bounds_area:
+        command += ["--min-angle", repr(domain.angle)]
+    if domain.area and case.bounds_area:
+        command += ["--max-area", repr(domain.area)]
+    return command
+
+
+def judge(case):
+    """Runs the case once, with files. Returns (Verdict, Run); raises Failure."""
+    scratch = os.path.join(case.settings.scratch, "judged")
+    try:
+        base, run = case.write(scratch)
+        ended = execute(_command(case, base), 3600, case.settings.scratch)
+        if ended.code not in (0, 1) or not ended.output:
+            raise Failure("the judge cannot read the mesh: " + ended.errors.strip())
+        said = json.loads(ended.output)
+        faults = "; ".join(f"{c['name']}: {c['count']}" for c in said["checks"] if c["state"] == "failed")
+        return Verdict(faults, said["vertices"], said["triangles"], said["subsegments"], said["smallest_angle"] or 0.0,
+                       said["total_area"] or 0.0, _checksum(base)), run
+    finally:
+        remove(scratch)

@@ -1,0 +1,83 @@
+"""Triangle's text files, as far as the benchmark needs them. What it writes is plain: numbered from 0, no attributes,
+no markers, no comments, so that the smallest reader can read it."""
+from array import array
+
+
+def rows(path):
+    """Lines as lists of words, without comments and empty lines."""
+    with open(path) as file:
+        for line in file:
+            words = line.split("#", 1)[0].split()
+            if words:
+                yield words
+
+
+class Pslg:
+    """points: x, y one after the other; segments, triangles: point numbers from 0; holes: x, y one after the other."""
+
+    def __init__(self):
+        self.points, self.segments, self.holes, self.triangles = array("d"), array("i"), array("d"), array("i")
+
+
+def _read_points(source, header):
+    points, first = array("d"), 0
+    for i in range(int(header[0])):
+        words = next(source)
+        if i == 0:
+            first = int(words[0])
+        points.append(float(words[1]))
+        points.append(float(words[2]))
+    return points, first
+
+
+def read(path):
+    """A .poly or .node file; the points of a .poly file may be in the .node file beside it."""
+    pslg, source = Pslg(), rows(path)
+    header = next(source)
+    if int(header[0]):
+        pslg.points, first = _read_points(source, header)
+    else:
+        nodes = rows(path[:-len(".poly")] + ".node")
+        pslg.points, first = _read_points(nodes, next(nodes))
+    if path.endswith(".poly"):
+        for _ in range(int(next(source)[0])):
+            pslg.segments.extend(int(w) - first for w in next(source)[1:3])
+        for _ in range(int(next(source)[0])):
+            pslg.holes.extend(float(w) for w in next(source)[1:3])
+    return pslg
+
+
+def read_mesh(path):
+    """A mesh numbered from 0: a .poly file with .node and .ele file beside it."""
+    pslg, source = read(path), rows(path[:-len(".poly")] + ".ele")
+    for _ in range(int(next(source)[0])):
+        pslg.triangles.extend(map(int, next(source)[1:4]))
+    return pslg
+
+
+def _table(file, header, values, width):
+    file.write(header + "\n")
+    for i in range(len(values) // width):
+        file.write(" ".join(map(repr, (i, *values[width * i:width * (i + 1)]))) + "\n")
+
+
+def write(path, pslg):
+    """A .poly file, or a .node file: then of the points alone."""
+    with open(path, "w") as file:
+        _table(file, f"{len(pslg.points) // 2} 2 0 0", pslg.points, 2)
+        if path.endswith(".poly"):
+            _table(file, f"{len(pslg.segments) // 2} 0", pslg.segments, 2)
+            _table(file, f"{len(pslg.holes) // 2}", pslg.holes, 2)
+
+
+def write_mesh(base, points, triangles, segments):
+    """base.node, base.ele, and base.poly if there are segments, of flat sequences."""
+    with open(base + ".node", "w") as file:
+        _table(file, f"{len(points) // 2} 2 0 0", points, 2)
+    with open(base + ".ele", "w") as file:
+        _table(file, f"{len(triangles) // 3} 3 0", triangles, 3)
+    if len(segments):
+        with open(base + ".poly", "w") as file:
+            file.write("0 2 0 0\n")
+            _table(file, f"{len(segments) // 2} 0", segments, 2)
+            file.write("0\n")

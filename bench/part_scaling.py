@@ -1,0 +1,54 @@
+"""The same mesh made by more and more threads; and what the report of one thread predicts for more than there are."""
+from cases import Ours
+from inputs import letter, norway, random_points, square
+from measure import measure, ratio, seconds_text, table
+
+HEAD = ("threads", "Delaunay, s", "Quality, s", "speedup of Quality", "efficiency", "predicted Quality, s",
+        "predicted speedup")
+NOTE = """\
+`ptriangle` on one to all cores; efficiency is speedup over threads. Predicted: the blocks of the run on one thread
+dealt to more by list scheduling, all else as sequential as there; nothing of it was measured. Median (least–most) of
+{} runs in turns.
+
+"""
+
+
+def _predictions(m):
+    """Seconds of the stage Quality by number of threads."""
+    schedule = m.typical("quality").facts["schedule"] if m.good else None
+    return {p["threads"]: p["quality_seconds"] for p in schedule["prediction"]} if schedule else {}
+
+
+def _lines(measured):
+    one, predicted = measured[0], _predictions(measured[0])
+    times = {m.case.threads: m for m in measured}
+    for n in sorted({*times, *predicted}):
+        m = times.get(n)
+        speed = one.median("quality") / m.median("quality") if m and m.good and one.good else None
+        guess = predicted.get(n)
+        yield (n, m.text("delaunay") if m else "–", m.text("quality") if m else "–", f"{speed:.2f}" if speed else "–",
+               f"{100 * speed / n:.0f}%" if speed else "–", seconds_text(guess) if guess else "–",
+               ratio(predicted.get(1), guess, 2))
+
+
+def _same(measured, settings):
+    """The files of all threads are compared by their checksums."""
+    sums = {m.verdict.checksum for m in measured if m.verdict}
+    if len(sums) > 1:
+        settings.fail("scaling: the files differ with the number of threads")
+    return "Same files, byte for byte, for all numbers of threads." if len(sums) == 1 else "THE FILES DIFFER."
+
+
+def run(settings):
+    domains = [square(settings, 1e-7), letter(settings, 2.5e-8), norway(settings, 30, 2.2e5),
+               random_points(settings, 30)]
+    texts, rows = [], []
+    for domain in domains:
+        cases = [Ours(settings, domain, n) for n in settings.thread_counts()]
+        measured = measure(f"scaling: {domain.name} -{domain.switches}", cases, settings)
+        size = f"{measured[0].verdict.triangles:,} triangles. " if measured[0].verdict else ""
+        texts.append(f"### {domain.name}, `-{domain.switches}`\n\n{size}{_same(measured, settings)}\n\n"
+                     + table(HEAD, _lines(measured)))
+        rows += [row for m in measured for row in m.rows("scaling")]
+    text = NOTE.format(settings.repeats) + "\n".join(texts)
+    return {"title": "Scaling", "text": text, "rows": rows, "targets": []}

@@ -1,0 +1,71 @@
+"""Table 1 of the paper: the letter A at 20 degrees, from 29 points to three area bounds; then the mesh of 1.3 million
+triangles refined further, once reconstructed from its triangles and once triangulated anew from its points."""
+import os
+
+import meshfiles
+from cases import Ours, Triangle
+from inputs import Domain, letter
+from judge import judge
+from measure import measure, table
+
+# Of the paper: input triangles, points and segments; bound; triangles, points and segments made; seconds.
+PAPER = (
+    ("0 / 29 / 29", 1e-6, "130,405 / 66,647 / 2,889", "0.000", "–", "0.643"),
+    ("0 / 29 / 29", 2.5e-8, "5,232,435 / 2,625,249 / 18,063", "0.000", "–", "24.641"),
+    ("0 / 29 / 29", 1e-7, "1,307,048 / 658,062 / 9,076", "0.000", "–", "6.253"),
+    ("1,307,048 / 658,062 / 9,076", 2.5e-8, "5,195,468 / 2,606,427 / 17,386", "–", "42.367", "19.988"),
+    ("0 / 658,062 / 9,076", 2.5e-8, "5,194,174 / 2,605,776 / 17,378", "7.038", "–", "19.395"))
+HEAD = ("given: triangles / points / segments", "area bound", "program", "made: triangles / points / segments",
+        "Delaunay, s", "Reconstruct, s", "Quality, s")
+NOTE = """\
+Input: {}, 20 degrees. Median (least–most) of {} runs in turns. Triangle 1.6 makes triangulation and mesh in one call:
+its first column is a call without bounds, Quality the difference of the two; no output arrays are asked for. Ours are
+stages of one run. Rows four and five start from our mesh of row three.
+
+"""
+
+
+def _cases(settings, domain, switches=""):
+    threads = sorted({1, settings.threads})
+    return [Triangle(settings, domain, switches), *(Ours(settings, domain, n, switches) for n in threads)]
+
+
+def _coarse_mesh(settings):
+    """The third row's mesh, as files. Both programs start from it."""
+    base = os.path.join(settings.work, "inputs", "refined_small" if settings.small else "refined")
+    case = Ours(settings, letter(settings, 1e-7), settings.threads)
+    verdict, _ = judge(case)
+    case.write(base)
+    return base + ".poly", verdict
+
+
+def _counts(v):
+    return f"{v.triangles:,} / {v.vertices:,} / {v.subsegments:,}"
+
+
+def _lines(i, given, domain, measured, reconstructed):
+    paper = PAPER[i]
+    lines = [(paper[0], f"{paper[1]:g}", "Triangle, the paper's", *paper[2:])]
+    for m in measured:
+        first = m.text("delaunay")
+        stages = ("–", first) if reconstructed else (first, "–")
+        made = _counts(m.verdict) if m.good else "missing: " + m.reason
+        lines.append((given, f"{domain.area:g}", m.case.name, made, *stages, m.text("quality")))
+    return lines
+
+
+def run(settings):
+    lines, rows = [], []
+    plain = [letter(settings, PAPER[i][1]) for i in range(3)]
+    path, coarse = _coarse_mesh(settings)
+    fine = Domain("its mesh refined further", path, 20, letter(settings, 2.5e-8).area)
+    pslg, mesh = meshfiles.read(plain[0].path), _counts(coarse)
+    start = f"0 / {len(pslg.points) // 2} / {len(pslg.segments) // 2}"
+    jobs = [(start, d, "") for d in plain] + [(mesh, fine, "r"), ("0" + mesh[mesh.index(" /"):], fine, "")]
+    for number, (given, domain, switches) in enumerate(jobs):
+        title = f"table1: {domain.name}, -{switches}{domain.switches}"
+        measured = measure(title, _cases(settings, domain, switches), settings)
+        lines += _lines(number, given, domain, measured, switches == "r")
+        rows += [row for m in measured for row in m.rows("table1")]
+    text = NOTE.format(plain[0].name, settings.repeats) + table(HEAD, lines)
+    return {"title": "Table 1 of the paper: one letter, refined three ways", "text": text, "rows": rows, "targets": []}

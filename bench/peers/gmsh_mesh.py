@@ -1,0 +1,87 @@
+"""Meshes a plain .poly file with gmsh: gmsh_mesh.py INPUT SIZE ALGORITHM [BASE]. SIZE: edge length everywhere (gmsh
+bounds neither angles nor areas); ALGORITHM: Mesh.Algorithm, 5 Delaunay, 6 frontal-Delaunay.
+Prints the seconds of meshing curves and surface, the geometry being ready; BASE: writes the mesh there.
+"""
+import json
+import os
+import sys
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+import gmsh  # noqa: E402
+import meshfiles  # noqa: E402
+
+
+def loops_of(segments):
+    """Closed chains of segment numbers; each vertex has two segments or none."""
+    at = {}
+    for i in range(len(segments) // 2):
+        for v in segments[2 * i:2 * i + 2]:
+            at.setdefault(v, []).append(i)
+    unused, loops = set(range(len(segments) // 2)), []
+    while unused:
+        loop, i = [], min(unused)
+        v = segments[2 * i]
+        while i in unused:
+            unused.remove(i)
+            forward = segments[2 * i] == v
+            loop.append((i + 1) if forward else -(i + 1))
+            v = segments[2 * i + 1] if forward else segments[2 * i]
+            i = next((j for j in at[v] if j in unused), i)
+        loops.append(loop)
+    return loops
+
+
+def area_of(loop, pslg):
+    total = 0.0
+    for signed in loop:
+        a, b = pslg.segments[2 * abs(signed) - 2:2 * abs(signed)]
+        a, b = (a, b) if signed > 0 else (b, a)
+        total += pslg.points[2 * a] * pslg.points[2 * b + 1] - pslg.points[2 * b] * pslg.points[2 * a + 1]
+    return total / 2
+
+
+def build(pslg, size):
+    """The outline is the loop of the largest area, all others are holes; free points are embedded."""
+    geo = gmsh.model.geo
+    for i in range(len(pslg.points) // 2):
+        geo.addPoint(pslg.points[2 * i], pslg.points[2 * i + 1], 0, size, i + 1)
+    for i in range(len(pslg.segments) // 2):
+        geo.addLine(pslg.segments[2 * i] + 1, pslg.segments[2 * i + 1] + 1, i + 1)
+    loops = sorted(loops_of(pslg.segments), key=lambda loop: -abs(area_of(loop, pslg)))
+    if area_of(loops[0], pslg) < 0:  # triangles turn as the outline does
+        loops[0] = [-i for i in reversed(loops[0])]
+    surface = geo.addPlaneSurface([geo.addCurveLoop(loop) for loop in loops])
+    geo.synchronize()
+    free = sorted(set(range(len(pslg.points) // 2)) - set(pslg.segments))
+    if free:
+        gmsh.model.mesh.embed(0, [i + 1 for i in free], 2, surface)
+
+
+def write(base):
+    tags, xyz, _ = gmsh.model.mesh.getNodes()
+    number, points = {int(t): i for i, t in enumerate(tags)}, []
+    for i in range(len(tags)):
+        points.extend(map(float, xyz[3 * i:3 * i + 2]))
+
+    def corners(kind):
+        return [number[int(t)] for t in gmsh.model.mesh.getElementsByType(kind)[1]]
+    meshfiles.write_mesh(base, points, corners(2), corners(1))
+
+
+def main():
+    path, size, algorithm = sys.argv[1:4]
+    gmsh.initialize(interruptible=False)
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.option.setNumber("General.NumThreads", 1)
+    gmsh.option.setNumber("Mesh.Algorithm", int(algorithm))
+    build(meshfiles.read(path), float(size))
+    start = time.perf_counter()
+    gmsh.model.mesh.generate(2)
+    print(json.dumps({"seconds": time.perf_counter() - start}), flush=True)
+    if len(sys.argv) > 4:
+        write(sys.argv[4])
+    gmsh.finalize()
+
+
+main()

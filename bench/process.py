@@ -1,0 +1,34 @@
+"""One process: its output, wall time and peak memory, under a limit."""
+import os
+import subprocess
+import tempfile
+import threading
+import time
+from dataclasses import dataclass
+
+
+@dataclass
+class Ended:
+    code: int
+    output: str
+    errors: str
+    wall: float      # seconds
+    peak: int        # bytes resident at most; what a program of this size weighs is included
+    timed_out: bool
+
+
+def execute(command, limit, cwd):
+    """Waits by wait4 because only that gives the memory of this one child."""
+    with tempfile.TemporaryFile("w+") as output, tempfile.TemporaryFile("w+") as errors:
+        start = time.perf_counter()
+        child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, stderr=errors, cwd=cwd)
+        timed_out = threading.Event()
+        timer = threading.Timer(limit, lambda: (timed_out.set(), child.kill()))
+        timer.start()
+        _, status, usage = os.wait4(child.pid, 0)
+        wall = time.perf_counter() - start
+        timer.cancel()
+        child.returncode = os.waitstatus_to_exitcode(status)
+        output.seek(0)
+        errors.seek(0)
+        return Ended(child.returncode, output.read(), errors.read(), wall, 1024 * usage.ru_maxrss, timed_out.is_set())

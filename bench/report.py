@@ -1,0 +1,72 @@
+"""results.csv and results.md from what the parts have left, each part from its last run."""
+import csv
+import json
+import os
+
+from measure import table
+from settings import PARTS
+
+COLUMNS = ("part", "input", "switches", "program", "threads", "stage", "runs", "median_seconds", "min_seconds",
+           "max_seconds", "triangles", "vertices", "smallest_angle", "peak_bytes", "judged", "commit", "compiler",
+           "processor", "cores", "load", "others")
+NOTE = """\
+Made by `make -f Makefile.bench`. Every mesh was judged by trianglecheck before its time was taken. `others`: cores that
+other work kept busy meanwhile, on average; above 0.1 the times are distorted. M/s: million triangles a second.
+"""
+SMALL = "A hundredth of the size, to see that all parts work: THE TIMES SAY NOTHING.\n"
+
+
+def path_of(settings, part):
+    return os.path.join(settings.measurements, part + ".json")
+
+
+def _load(settings):
+    found = {}
+    for part in PARTS:
+        if os.path.exists(path_of(settings, part)):
+            with open(path_of(settings, part)) as file:
+                found[part] = json.load(file)
+    return found
+
+
+def _write_csv(path, parts):
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, COLUMNS, extrasaction="ignore", lineterminator="\n")
+        writer.writeheader()
+        for part in parts.values():
+            writer.writerows({**part["machine"], **row} for row in part["rows"])
+
+
+def _machine_table(parts):
+    """What differs between the parts is told for each."""
+    lines = []
+    for key in next(iter(parts.values()))["machine"]:
+        values = {name: str(part["machine"][key]) for name, part in parts.items()}
+        same = len(set(values.values())) == 1
+        lines.append((key, next(iter(values.values())) if same else ", ".join(f"{v} ({n})" for n, v in values.items())))
+    return table(("", ""), lines)
+
+
+def _targets(parts):
+    lines = []
+    for part in parts.values():
+        for t in part["targets"]:
+            reached = t["reached"]
+            lines.append((t["asked"], f"{t['least']:g}", "missing" if reached is None else f"{reached:.3g}",
+                          "" if reached is None else "yes" if reached >= t["least"] else "NO"))
+    return table(("target", "asked, at least", "reached", ""), lines)
+
+
+def write(settings):
+    parts = _load(settings)
+    if not parts:
+        return
+    missing = [name for name in PARTS if name not in parts]
+    text = ["# Measurements\n", NOTE, *([SMALL] if settings.small else []), _machine_table(parts)]
+    text += [f"Not measured: {', '.join(missing)}.\n"] if missing else []
+    text += [f"## {part['title']}\n\n{part['text']}" for part in parts.values()]
+    text += ["## Targets\n", "Triangle 1.6 over ours in time, where a target names nothing else.\n", _targets(parts)]
+    _write_csv(os.path.join(settings.results, "results.csv"), parts)
+    with open(os.path.join(settings.results, "results.md"), "w") as file:
+        file.write("\n".join(text))
+    print(f"bench: wrote {os.path.relpath(os.path.join(settings.results, 'results.md'))} and .csv")
