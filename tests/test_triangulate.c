@@ -1016,6 +1016,83 @@ static void test_areas_of_triangles(void **state)
     release("r", &out, &vorout);
 }
 
+/* Gives every triangle of `mesh` two attributes: the number of its component between segments, and its own. */
+static void number_components(struct triangulateio *mesh)
+{
+    int n = mesh->numberoftriangles, *stack = malloc(((size_t)n + 1) * sizeof *stack), components = 0;
+    mesh->numberoftriangleattributes = 2;
+    mesh->triangleattributelist = calloc(2 * (size_t)n + 1, sizeof(REAL));
+    REAL *component = mesh->triangleattributelist; /* of every second */
+    for (int first = 0; first < n; first++) {
+        component[2 * first + 1] = first;
+        if (component[2 * first] != 0)
+            continue;
+        int waiting = 1;
+        stack[0] = first;
+        component[2 * first] = ++components;
+        while (waiting > 0) {
+            int t = stack[--waiting];
+            for (int k = 0; k < 3; k++) {
+                int other = mesh->neighborlist[3 * t + k];
+                int a = mesh->trianglelist[3 * t + (k + 1) % 3], b = mesh->trianglelist[3 * t + (k + 2) % 3];
+                for (int s = 0; other >= 0 && s < mesh->numberofsegments; s++) {
+                    const int *ends = &mesh->segmentlist[2 * s];
+                    if ((ends[0] == a && ends[1] == b) || (ends[0] == b && ends[1] == a))
+                        other = -1;
+                }
+                if (other >= 0 && component[2 * other] == 0) {
+                    component[2 * other] = components;
+                    stack[waiting++] = other;
+                }
+            }
+        }
+    }
+    free(stack);
+}
+
+static void free_arrays(struct triangulateio *mesh)
+{
+    free(mesh->pointlist);
+    free(mesh->pointmarkerlist);
+    free(mesh->trianglelist);
+    free(mesh->triangleattributelist);
+    free(mesh->neighborlist);
+    free(mesh->segmentlist);
+    free(mesh->segmentmarkerlist);
+}
+
+/* Attributes do not cross segments, be the triangles so flat and so far from the origin that where a centroid lies cannot
+ * be told. */
+static void test_attributes_keep_their_side(void **state)
+{
+    (void)state;
+    static REAL x[] = {0.019479877, 0.6555741561, 0.7898612974, 0.4394699812, 0.3434728748, 0.2030327488, 0.2228246209,
+                       0.9991590935, 0.9176901327, 0.3941536966, 0.2647444814, 0.3258692246, 0.7552931232, 0.4037777329,
+                       0.091462998},
+                y[] = {1.0696, 4.9419, 3.9656, 1.1405, 2.1131, 7.0501, 3.2873, 3.6779, 6.4806, 6.7897, 6.1183, 5.1366,
+                       8.3599, 8.6826, 6.2122};
+    static int segments[] = {3, 8, 3, 5, 10, 2, 1, 6, 3, 9, 7, 13, 10, 2};
+    REAL xy[30];
+    for (int i = 0; i < 15; i++) {
+        xy[2 * i] = 1e6 + x[i];
+        xy[2 * i + 1] = 1e6 + 1e-6 * y[i];
+    }
+    struct triangulateio in = {.pointlist = xy, .numberofpoints = 15, .segmentlist = segments, .numberofsegments = 7};
+    struct triangulateio mesh = {0}, out = {0};
+    assert_int_equal(triangulate("pcznQ", &in, &mesh, NULL), 0);
+    number_components(&mesh);
+    assert_int_equal(triangulate("rpznQq30", &mesh, &out, NULL), 0);
+    REAL *kept = out.triangleattributelist;
+    number_components(&out);
+    for (int t = 0; t < out.numberoftriangles; t++)
+        for (int u = 0; u < t; u++)
+            if (out.triangleattributelist[2 * t] == out.triangleattributelist[2 * u])
+                assert_true(kept[2 * t] == kept[2 * u]);
+    free(kept);
+    free_arrays(&mesh);
+    free_arrays(&out);
+}
+
 static void test_bad_meshes(void **state)
 {
     (void)state;
@@ -1212,6 +1289,7 @@ int main(void)
         cmocka_unit_test(test_loose_segments),
         cmocka_unit_test(test_not_delaunay),
         cmocka_unit_test(test_areas_of_triangles),
+        cmocka_unit_test(test_attributes_keep_their_side),
         cmocka_unit_test(test_bad_meshes),
         cmocka_unit_test(test_mesh_with_middles),
         cmocka_unit_test(test_size_test_of_options),

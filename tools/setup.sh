@@ -4,7 +4,7 @@
 #   build  C and C++ compiler, make, CMake          (what the programs need), and cairo (for meshplot) and jansson (for
 #          ptriangle --report), which can be done without
 #   tests  and cmocka, GMP, pkg-config              (what tools/test.sh needs)
-#   ci     and clang with its OpenMP library        (what .ci/run needs)
+#   ci     and clang with its OpenMP library, Python (what .ci/run needs)
 # Works as root or with sudo, asks nothing, and does not touch a machine that has everything.
 set -eu
 wanted=${1:-build}
@@ -54,6 +54,7 @@ list_missing() {
     need pkg-config command -v pkg-config
     [ "$wanted" = tests ] && return
     need clang command -v clang++
+    need python3-venv python3 -c 'import ensurepip, venv'
     need libomp-dev openmp_with_clang
 }
 

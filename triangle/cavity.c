@@ -201,7 +201,7 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
                                         int32_t s, int32_t *n_left)
 {
     const struct tri_subsegment *sub = &mesh->sub[s];
-    *n_left = 0;
+    *n_left = c->n_left_tri = 0;
     if (!begin(c, p))
         return TRI_SEARCH_NO_MEMORY;
     for (int side = 0; side < 2; side++) {
@@ -213,8 +213,10 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
             return found;
         if (!sees_rims(c, mesh, first, c->n_rim, last))
             return TRI_SEARCH_OUTSIDE;
-        if (side == 0)
+        if (side == 0) {
             *n_left = c->n_rim;
+            c->n_left_tri = c->n_tri;
+        }
     }
     return overlaps_itself(c, s) ? TRI_SEARCH_OUTSIDE : TRI_SEARCH_FOUND;
 }
@@ -253,13 +255,15 @@ static bool is_inside(const struct tri_mesh *mesh, int32_t t, struct tri_point q
 }
 
 /* Where regions meet without a subsegment between, a new triangle belongs to the region in which its centroid lies: so
- * regions stay where they are. Where rounding hides that, to the one behind its rim. */
-static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end, int32_t last)
+ * regions stay where they are. Where rounding hides that, to the one behind its rim. Looks among the cavity's triangles
+ * first_tri .. end_tri - 1, which lie on the same side of a split subsegment. */
+static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end, int32_t last,
+                          int32_t first_tri, int32_t end_tri)
 {
     for (int32_t i = first; i < end; i++) {
         struct tri_point a = mesh->xy[c->rim[i].a], b = mesh->xy[i + 1 < end ? c->rim[i + 1].a : last];
         struct tri_point centroid = {(a.x + b.x + c->p.x) / 3, (a.y + b.y + c->p.y) / 3};
-        for (int32_t k = 0; k < c->n_tri; k++)
+        for (int32_t k = first_tri; k < end_tri; k++)
             if (is_inside(mesh, c->tri[k], centroid)) {
                 c->rim[i].region = mesh->tri[c->tri[k]].region;
                 break;
@@ -296,7 +300,7 @@ void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v)
     assert(c->n_tri >= 1 && c->n_rim == c->n_tri + 2);
     assert(claim(c, mesh));
     if (c->mixed)
-        place_regions(c, mesh, 0, c->n_rim, c->rim[0].a);
+        place_regions(c, mesh, 0, c->n_rim, c->rim[0].a, 0, c->n_tri);
     fill_chain(c, mesh, v, 0, c->n_rim, c->rim[0].a);
     int32_t first = c->rim[0].slot, last = c->rim[c->n_rim - 1].slot;
     mesh->tri[first].n[2] = tri_code(last, 1);
@@ -310,8 +314,8 @@ int32_t tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, int32
     assert(mesh->n_subs <= mesh->sub_capacity && c->n_rim >= c->n_tri && n_left >= 0 && n_left <= c->n_rim);
     assert(claim(c, mesh));
     if (c->mixed) {
-        place_regions(c, mesh, 0, n_left, old.v[0]);
-        place_regions(c, mesh, n_left, c->n_rim, old.v[1]);
+        place_regions(c, mesh, 0, n_left, old.v[0], 0, c->n_left_tri);
+        place_regions(c, mesh, n_left, c->n_rim, old.v[1], c->n_left_tri, c->n_tri);
     }
     mesh->sub[s] = (struct tri_subsegment){{old.v[0], v}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
     mesh->sub[second] = (struct tri_subsegment){{v, old.v[1]}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};

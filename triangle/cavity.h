@@ -53,6 +53,7 @@ struct tri_cavity {
     const struct tri_fence *fence; /* NULL: everything is owned */
     bool flips_follow;             /* the caller makes the mesh Delaunay again after a split: see tri_cavity_search_split */
     int32_t n_tri, n_rim, n_wall, capacity;
+    int32_t n_left_tri;   /* of a split: triangles left of the subsegment, which come first */
     int32_t region;       /* of the triangle at which the search began */
     uint32_t mixed;       /* not 0: there are triangles of other regions, which no subsegment separates */
     int32_t *tri;         /* slots of the cavity's triangles */
