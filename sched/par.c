@@ -8,11 +8,14 @@
 #include <stdlib.h>
 #ifdef _OPENMP
 #include <omp.h>
+#include <stdatomic.h>
+#include <unistd.h>
 #endif
 
 #include "sched/clock.h"
 #include "sched/phase.h"
 #include "sched/theory.h"
+#include "triangle/criterion.h"
 #include "triangle/quality.h"
 
 /* Cells hold one in CELLS of the final triangles, within limits: small ones keep many threads busy, large ones make fewer
@@ -43,10 +46,15 @@ int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mes
     return TRI_NONE;
 }
 
-/* As many as asked for; else what OpenMP would use. */
+/* As many as asked for; else what OpenMP would use. A forked child has lost the threads that libgomp still counts on, and
+ * would wait for them for ever: it works alone. That needs to be known process-wide, the one thing here that is. */
 static int threads_for(int asked)
 {
 #ifdef _OPENMP
+    static _Atomic(long) first_process;
+    long none = 0, self = (long)getpid();
+    if (!atomic_compare_exchange_strong(&first_process, &none, self) && none != self)
+        return 1;
     return asked > 0 ? asked : omp_get_max_threads();
 #else
     (void)asked;
@@ -122,7 +130,7 @@ static enum tri_status refine_level(struct par_state *state, const struct tri_re
 static struct tri_refine_options coarse_bounds(const struct tri_refine_options *quality, double cell)
 {
     struct tri_refine_options coarse = *quality;
-    coarse.area_scale = (quality->area_scale > 0 ? quality->area_scale : 1) * (cell / COARSE_PER_CELL);
+    coarse.area_scale = tri_area_scale(quality) * (cell / COARSE_PER_CELL);
     coarse.min_angle = fmin(quality->min_angle, TRI_SIZES_ANGLE);
     return coarse;
 }
@@ -133,7 +141,7 @@ static bool areas_decide(const struct par_state *state, const struct tri_refine_
                          double cell)
 {
     struct tri_refine_options coarse = coarse_bounds(quality, cell);
-    return (quality->max_area > 0 || quality->region_areas || quality->unsuitable) &&
+    return tri_has_sizes(quality) &&
            par_estimate(state->mesh, &coarse) < estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
 }
 
@@ -174,6 +182,7 @@ static enum tri_status fill_pool(struct par_state *state, const struct tri_refin
     }
     double largest2 = 0;
     state->pool.n = 0;
+    assert(state->pool.n == 0);
     for (int32_t chunk = 0; chunk < n_chunks; chunk++) {
         largest2 = radius2[chunk] > largest2 ? radius2[chunk] : largest2;
         for (int32_t i = 0; i < count[chunk]; i++)
@@ -253,6 +262,7 @@ static enum tri_status refine_rest(struct par_state *state, const struct tri_ref
 static enum tri_status run_rounds(struct par_state *state, struct par_partition *partition, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
+    assert(par_cells(partition) >= 4);
     for (state->round = 0; !status && state->round < MAX_ROUNDS; state->round++) {
         for (int colour = 0; !status && colour < PAR_COLOURS && state->pool.n > 0; colour++) {
             tell(state, colour + 1);
@@ -359,8 +369,7 @@ static enum tri_status refine_sizes_first(struct par_state *state, const struct 
 {
     struct tri_refine_options easy = *quality;
     easy.min_angle = TRI_SIZES_ANGLE;
-    bool sizes = quality->max_area > 0 || quality->region_areas || quality->unsuitable;
-    return sizes ? refine_level(state, &easy, 0, error) : TRI_OK;
+    return tri_has_sizes(quality) ? refine_level(state, &easy, 0, error) : TRI_OK;
 }
 
 /* What a schedule cannot do, one call does. */

@@ -41,18 +41,10 @@ struct samples {
 };
 
 /* Triangles that the bounds ask for on one unit of area in this region; 0 without bound. */
-static double density(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t region)
+static double density(const struct estimator *e, int32_t region)
 {
-    double bound = options->max_area > 0 ? options->max_area : HUGE_VAL;
-    double own = options->region_areas ? mesh->regions[region].max_area : 0;
-    bound = own > 0 && own < bound ? own : bound;
-    bound *= options->area_scale > 0 ? options->area_scale : 1;
-    return bound < HUGE_VAL ? mesh->unit / (MEAN_OVER_BOUND * bound) * mesh->unit : 0;
-}
-
-static bool has_sizes(const struct tri_refine_options *options)
-{
-    return options->max_area > 0 || options->region_areas || options->unsuitable;
+    const struct tri_criterion criterion = {.mesh = e->mesh, .options = e->options};
+    return 2 / (MEAN_OVER_BOUND * tri_area2_bound(&criterion, region));
 }
 
 /* Triangles that the caller's size test asks for in this one, by probing: it is asked about the triangle shrunk to a
@@ -61,7 +53,7 @@ static bool has_sizes(const struct tri_refine_options *options)
 static double probe_size(const struct estimator *e, const struct corners *t)
 {
     enum { DEEPEST_PROBE = 16 };
-    double scale = e->options->area_scale > 0 ? e->options->area_scale : 1, pieces = 1;
+    double scale = tri_area_scale(e->options), pieces = 1;
     for (int k = 0; k <= DEEPEST_PROBE; k++, pieces *= 4)
         if (!tri_is_refused(e->options, e->mesh->unit, t->a, t->b, t->c, scale * pieces))
             return k > 0 ? pieces : 0;
@@ -106,7 +98,7 @@ static double size_work(const struct estimator *e, const struct corners *t, int 
 /* Triangles that areas and size test ask for in a piece of a triangle of this region. */
 static double work_inside(const struct estimator *e, int32_t region, const struct corners *t)
 {
-    double work = area_of(t) * density(e->mesh, e->options, region);
+    double work = area_of(t) * density(e, region);
     if (e->options->unsuitable)
         work = fmax(work, size_work(e, t, DEEPEST_CUT));
     return work < TRI_MAX_TRIANGLES ? work : TRI_MAX_TRIANGLES;
@@ -121,7 +113,7 @@ static struct corners corners_of(const struct tri_mesh *mesh, int32_t t)
 static double area_work(const struct estimator *e, int32_t t)
 {
     struct corners corners = corners_of(e->mesh, t);
-    return has_sizes(e->options) ? work_inside(e, e->mesh->tri[t].region, &corners) : 0;
+    return tri_has_sizes(e->options) ? work_inside(e, e->mesh->tri[t].region, &corners) : 0;
 }
 
 /* log2(x) for x >= 1, within 0.09: the exponent, and the mantissa for the rest. */
@@ -180,7 +172,7 @@ static double whole_work(const struct tri_mesh *mesh, const struct tri_refine_op
     for (int32_t t = 0; t < mesh->n_slots; t += step)
         if (tri_is_live(&mesh->tri[t]))
             sum += step * angle_work(mesh, options, t);
-    for (int32_t t = 0; has_sizes(options) && t < mesh->n_slots; t++)
+    for (int32_t t = 0; tri_has_sizes(options) && t < mesh->n_slots; t++)
         if (tri_is_live(&mesh->tri[t]))
             sum += area_work(&e, t);
     return sum;
@@ -392,7 +384,7 @@ enum tri_status par_partition_make(struct par_partition *p, const struct tri_mes
     p->y = malloc((size_t)p->n_columns * (size_t)p->n_rows * sizeof *p->y);
     double grain = estimate / par_cells(p) / SAMPLES_PER_CELL;
     bool done = p->x && p->y && take_angle_samples(&s, mesh, options, grain) &&
-                (!has_sizes(options) || take_area_samples(&s, mesh, options, grain)) && cut_plane(p, &s);
+                (!tri_has_sizes(options) || take_area_samples(&s, mesh, options, grain)) && cut_plane(p, &s);
     free(s.item);
     if (done)
         return TRI_OK;

@@ -2,6 +2,7 @@
 #include "sched/phase.h"
 
 #include <assert.h>
+#include <float.h>
 #include <stdlib.h>
 
 #include "sched/clock.h"
@@ -16,7 +17,8 @@ struct task {
     int32_t *seeds;         /* part of the phase's list */
     int32_t n_seeds;
     int32_t expected;       /* triangles, to the order */
-    struct tri_fence fence, active;
+    struct tri_fence fence, active; /* the second in the caller's coordinates */
+    bool has_margin;
     struct par_room room;
     struct tri_mesh view;
     struct tri_refine_options options;
@@ -137,23 +139,32 @@ static bool deal_seeds(struct phase *p)
     return p->tasks;
 }
 
-/* The active box of a fence with the paper's margin: 2 r less on every side, so that no cavity of a point in it reaches
- * beyond the fence (Definition 3); the whole fence where the largest circumradius is too large for that. */
-static struct tri_fence active_of(const struct tri_fence *f, double radius)
+/* Is a fence large enough for the paper's margin? */
+static bool can_have_margin(const struct tri_fence *f, double radius)
 {
-    double margin = 2 * radius, width = f->x_max - f->x_min, height = f->y_max - f->y_min;
-    if (!(width >= 6 * margin && height >= 6 * margin))
-        return *f;
+    return f->x_max - f->x_min >= 12 * radius && f->y_max - f->y_min >= 12 * radius;
+}
+
+/* The active box of a fence with the paper's margin: 2 r less on every side, so that no cavity of a point in it reaches
+ * beyond the fence (Definition 3). */
+static struct tri_fence with_margin(const struct tri_fence *f, double radius)
+{
+    double margin = 2 * radius;
     return (struct tri_fence){f->x_min + margin, f->y_min + margin, f->x_max - margin, f->y_max - margin};
 }
 
 #ifndef NDEBUG
+/* The gap between two intervals, more rather than less by what rounding of their ends may have taken. */
 static double gap(double low_a, double high_a, double low_b, double high_b)
 {
-    return fmax(0, fmax(low_b - high_a, low_a - high_b));
+    double before = low_b - high_a, after = low_a - high_b;
+    if (before > 0)
+        return before + 4 * DBL_EPSILON * (fabs(low_b) + fabs(high_a));
+    return after > 0 ? after + 4 * DBL_EPSILON * (fabs(low_a) + fabs(high_b)) : 0;
 }
 
-/* Lemma 2, at run time: with the margin, any two points that different blocks may insert at once are independent. */
+/* Lemma 2, at run time: any two points that different blocks may insert at once are independent, where both blocks are
+ * large enough for a margin. */
 static bool blocks_are_independent(const struct phase *p)
 {
     const struct tri_point origin = {0, 0};
@@ -163,8 +174,8 @@ static bool blocks_are_independent(const struct phase *p)
             const struct tri_fence *a = &p->tasks[i].active, *b = &p->tasks[k].active;
             struct tri_point apart = {gap(a->x_min, a->x_max, b->x_min, b->x_max) / unit,
                                       gap(a->y_min, a->y_max, b->y_min, b->y_max) / unit};
-            bool whole = a->x_min == p->tasks[i].fence.x_min * unit; /* no room for a margin in this one */
-            if (!whole && !par_independent(origin, apart, p->state->radius * (1 - 1e-9)))
+            if (p->tasks[i].has_margin && p->tasks[k].has_margin &&
+                !par_independent(origin, apart, p->state->radius * (1 - 1e-9)))
                 return false;
         }
     return true;
@@ -176,7 +187,8 @@ static void set_up(struct phase *p, struct task *task)
     const struct par_state *state = p->state;
     double unit = state->mesh->unit;
     task->fence = par_fence(p->partition, task->block / p->partition->n_rows, task->block % p->partition->n_rows);
-    struct tri_fence active = state->options->margin ? active_of(&task->fence, state->radius) : task->fence;
+    task->has_margin = state->options->margin && can_have_margin(&task->fence, state->radius);
+    struct tri_fence active = task->has_margin ? with_margin(&task->fence, state->radius) : task->fence;
     task->active = (struct tri_fence){active.x_min * unit, active.y_min * unit, active.x_max * unit,
                                       active.y_max * unit};
     task->options = *state->quality;

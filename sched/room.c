@@ -183,7 +183,7 @@ static struct closing closing_of(struct par_ranges *gaps, int32_t count)
     return (struct closing){gaps, 0, gaps->n, count - 1};
 }
 
-/* The next hole to fill and the item to fill it with; false at the end, when *last + 1 is the new count. */
+/* The next hole to fill and the item to fill it with; false at the end, when last + 1 is the new count. */
 static bool next_move(struct closing *c, int32_t *hole, int32_t *item)
 {
     for (;;) {

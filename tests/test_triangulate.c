@@ -1142,8 +1142,12 @@ static void test_mesh_with_middles(void **state)
     run("rzo2", &mesh, &out, &vorout);
     assert_int_equal(out.numberofpoints, 10);
     const int *t = out.trianglelist;
-    struct triangulateio plain = {.pointlist = out.pointlist, .numberofpoints = 5, .numberoftriangles = 2,
-                                  .trianglelist = (int[]){t[0], t[1], t[2], t[6], t[7], t[8]}};
+    int corners_alone[] = {t[0], t[1], t[2], t[6], t[7], t[8]};
+    struct triangulateio plain = {0};
+    plain.pointlist = out.pointlist;
+    plain.numberofpoints = 5;
+    plain.trianglelist = corners_alone;
+    plain.numberoftriangles = 2;
     judge(&plain, NULL, 0, false, &(struct tri_check_options){.max_bad = -1, .ignore_lost = true});
     release("r", &out, &vorout);
 }

@@ -16,8 +16,8 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_r
             triangles += tri_shape_of(mesh->xy, mesh->tri[t].v).area2 / tri_area2_bound(&c, mesh->tri[t].region);
     if (triangles <= TRI_MAX_TRIANGLES)
         return TRI_OK;
-    return tri_fail(error, TRI_TOO_LARGE, NULL, 0, "the area bounds ask for more than %.3g triangles; a mesh holds %d",
-                    triangles, TRI_MAX_TRIANGLES);
+    return tri_fail(error, TRI_TOO_LARGE, NULL, 0, "the area bounds ask for more triangles than the %d that a mesh holds",
+                    TRI_MAX_TRIANGLES);
 }
 
 static bool needs_work(const struct tri_criterion *c, int32_t slot)
@@ -74,7 +74,10 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, int32_t slot, c
         return TRI_EXCUSE_PROTECTED;
     if (report->hit_cap && badness == TRI_BAD_ANGLE)
         return TRI_EXCUSE_LIMIT;
-    return report->gated + report->deferred > 0 ? TRI_EXCUSE_DEFERRED : TRI_EXCUSE_PRECISION;
+    if (report->gated + report->deferred > 0)
+        return TRI_EXCUSE_DEFERRED;
+    bool protected_more = report->refused[TRI_EXCUSE_PROTECTED] > report->refused[TRI_EXCUSE_PRECISION];
+    return protected_more ? TRI_EXCUSE_PROTECTED : TRI_EXCUSE_PRECISION; /* of what is behind a protected one, far away */
 }
 
 int64_t tri_count_encroached(const struct tri_mesh *mesh)

@@ -1,6 +1,8 @@
 /* Judging triangles and subsegments. */
 #include "triangle/criterion.h"
 
+#include <assert.h>
+
 #include "triangle/cavity.h"
 #include "triangle/small_angle.h"
 
@@ -11,7 +13,7 @@ double tri_area2_bound(const struct tri_criterion *c, int32_t region)
         double own = c->mesh->regions[region].max_area;
         bound = own > 0 && own < bound ? own : bound;
     }
-    bound *= c->options->area_scale > 0 ? c->options->area_scale : 1;
+    bound *= tri_area_scale(c->options);
     return 2 * (bound / c->mesh->unit / c->mesh->unit);
 }
 
@@ -24,6 +26,7 @@ static void shrink(double at[2], const double centroid[2], double factor)
 bool tri_is_refused(const struct tri_refine_options *options, double unit, struct tri_point p, struct tri_point q,
                     struct tri_point r, double scale)
 {
+    assert(options->unsuitable && scale > 0);
     double a[2] = {p.x * unit, p.y * unit}, b[2] = {q.x * unit, q.y * unit}, c[2] = {r.x * unit, r.y * unit};
     double area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
     if (scale != 1) {
@@ -40,7 +43,7 @@ bool tri_is_unsuitable(const struct tri_criterion *criterion, const int32_t v[3]
     const struct tri_refine_options *options = criterion->options;
     const struct tri_point *xy = criterion->mesh->xy;
     return tri_is_refused(options, criterion->mesh->unit, xy[v[0]], xy[v[1]], xy[v[2]],
-                          options->area_scale > 0 ? options->area_scale : 1);
+                          tri_area_scale(options));
 }
 
 enum tri_badness tri_judge(const struct tri_criterion *c, const struct tri_triangle *t, const struct tri_shape *shape)

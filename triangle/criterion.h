@@ -13,6 +13,17 @@ struct tri_criterion {
     struct tri_bounds bounds; /* for the angle that is worked for now, which may be below that of the options */
 };
 
+/* Is there any bound on sizes? */
+static inline bool tri_has_sizes(const struct tri_refine_options *options)
+{
+    return options->max_area > 0 || options->region_areas || options->unsuitable;
+}
+
+static inline double tri_area_scale(const struct tri_refine_options *options)
+{
+    return options->area_scale > 0 ? options->area_scale : 1;
+}
+
 enum tri_badness { TRI_GOOD, TRI_BAD_SIZE, TRI_BAD_ANGLE };
 
 /* Twice the largest area allowed in a region, in the mesh's units; infinity where there is no bound. */

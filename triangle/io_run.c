@@ -166,16 +166,17 @@ int tri_io_triangulate(const char *switches, const struct triangulateio *in, str
     static const struct triangulate_options none;
     struct tri_error error = {0};
     struct tri_switches s = tri_switches_none();
+    enum tri_status status;
     options = options ? options : &none;
     if (switches && in && out) {
         tri_switches_add(&s, switches);
         struct io_run run = {.switches = &s, .options = options, .how = tri_switches_options(&s), .error = &error};
         run.how.executor = executor;
-        run_all(&run, in, out, vorout, refine);
+        status = run_all(&run, in, out, vorout, refine);
     } else {
-        tri_fail(&error, TRI_BAD_INPUT, NULL, 0, "switches, in and out must not be NULL");
+        status = tri_fail(&error, TRI_BAD_INPUT, NULL, 0, "switches, in and out must not be NULL");
     }
-    if (error.status && options->message)
+    if (status && options->message)
         options->message(options->message_user, 1, error.text);
-    return (int)error.status;
+    return (int)status;
 }

@@ -424,7 +424,7 @@ enum tri_status tri_reconstruct(struct tri_mesh *mesh, const struct tri_pslg *ps
     status = status ? status : tri_mesh_init(mesh, error);
     status = status ? status : build(&m);
     for (int32_t k = 0; !status && options->is_edge && k < pslg->n_segments; k++)
-        options->is_edge[k] = k < m.n_segments && m.edge_of[k] != TRI_NONE;
+        options->is_edge[k] = k < m.n_segments && (m.edge_of[k] != TRI_NONE || !names_edge(&m, k));
     free(m.edge_of);
     if (status)
         tri_mesh_free(mesh);

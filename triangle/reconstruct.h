@@ -24,7 +24,8 @@ struct tri_reconstruct_options {
     bool use_segments; /* the segments of the PSLG that are edges of the mesh become subsegments (-p) */
     bool refine;       /* the mesh is going to be refined: it is made constrained Delaunay first */
     int32_t base;      /* of the numbers in errors: of the first triangle and the first vertex */
-    bool *is_edge;     /* [n_segments] receives whether the segment is an edge of the mesh; NULL: not asked for */
+    bool *is_edge;     /* [n_segments] receives whether the segment is an edge of the mesh, or nothing that
+                          could be one; NULL: not asked for */
 };
 
 /* Makes *mesh of the points of the PSLG and these triangles, ready for tri_refine.

@@ -240,6 +240,12 @@ static enum outcome split(struct tri_refiner *r, int32_t s, int32_t slot)
     return room ? DONE : FAILED;
 }
 
+/* Where only sizes count, a subsegment that must not be split is no reason not to insert a point beside it. */
+static bool tolerates(const struct tri_refiner *r, const struct tri_rim *rim)
+{
+    return !(r->options->min_angle > 0) && tri_is_protected(r->options, &r->mesh->sub[~rim->outer]);
+}
+
 /* Does the new point lie on the wrong side of a wall, or see it under too wide an angle? Sets *beyond. */
 static bool encroaches(const struct tri_refiner *r, int32_t i, bool *beyond)
 {
@@ -249,7 +255,8 @@ static bool encroaches(const struct tri_refiner *r, int32_t i, bool *beyond)
     *beyond = false;
     if (dot >= 0 && cross > 0)
         return false;
-    if (dot < 0 && dot * dot > r->criterion.bounds.lens_cos2 * rim->ra.l * next->ra.l)
+    bool in_lens = dot < 0 && dot * dot > r->criterion.bounds.lens_cos2 * rim->ra.l * next->ra.l;
+    if (in_lens && !tolerates(r, rim))
         return true;
     *beyond = tri_orient2d(c->p, r->mesh->xy[rim->a], r->mesh->xy[next->a]) <= 0;
     return *beyond;
@@ -508,15 +515,10 @@ static double quarter_of_shortest2(const struct tri_mesh *mesh)
  * shorter edges. So the whole mesh is refined for the usual angle; then for more, as long as that adds less than half
  * as many points again and no edge is much shorter than what is there; where that ran away, for the usual angle again.
  * Within a fence there is only the usual stage. */
-static bool has_sizes(const struct tri_refine_options *options)
-{
-    return options->max_area > 0 || options->region_areas || options->unsuitable;
-}
-
 static void begin_stages(struct tri_refiner *r)
 {
     double usual = fmin(r->options->min_angle, TRI_USUAL_ANGLE);
-    bool easy = usual > TRI_EASY_ANGLE && has_sizes(r->options) && !r->options->fence;
+    bool easy = usual > TRI_EASY_ANGLE && tri_has_sizes(r->options) && !r->options->fence;
     r->stage = easy ? EASY_STAGE : USUAL_STAGE;
     r->criterion.bounds = tri_bounds_for(easy ? TRI_SIZES_ANGLE : usual, r->options->conforming);
 }

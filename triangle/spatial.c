@@ -77,7 +77,7 @@ enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **rank, const str
 {
     int32_t n = mesh->n_input, *origin = array(n, sizeof *origin);
     struct reordered sorted = {0};
-    assert(mesh->n_vertices == n && mesh->n_slots == 0 && !mesh->origin);
+    assert(mesh->n_vertices == n && mesh->n_slots == 0 && !mesh->origin && !mesh->twin);
     *rank = array(n, sizeof **rank);
     enum tri_status status = TRI_OK;
     if (!origin || !*rank || !allocate(&sorted, mesh))

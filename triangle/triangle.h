@@ -4,10 +4,12 @@
  *
  * Includes nothing, so that it may stand within a namespace or within extern "C"; C89 and later, C++98 and later. The
  * coordinate type is REAL: define it before including, or it becomes double. A library built with PTRIANGLE_SINGLE
- * has float instead; its clients define SINGLE. Inside, coordinates are double either way.
+ * has float instead; its clients define SINGLE. Inside, coordinates are double either way; rounded to float, triangles may
+ * turn flat or over where a float is coarse against them, so keep the origin near.
  *
- * No call prints, ends the process or keeps anything: any number of threads may call at the same time. With either
- * library the same input and switches give the same output, bit for bit, for any number of threads, compiler or locale.
+ * No call prints, ends the process or keeps anything: any number of threads may call at the same time. The same input and
+ * switches give the same output, bit for bit, for any number of threads, compiler or locale; the two libraries make
+ * different meshes for the same bounds. In a forked child libptriangle refines on one thread.
  *
  * ERRORS are returned, as an enum triangulate_status; Triangle's own function returns nothing. After an error nothing
  * is allocated, and neither *out nor *vorout nor an array they point to is changed. The words that go with it are told
@@ -103,7 +105,8 @@ struct triangulate_options {
     int (*unsuitable)(void *user, const REAL *a, const REAL *b, const REAL *c, REAL area);
     void *unsuitable_user;
     int unsuitable_in_parallel; /* not 0: the size test, either, may be called by several threads at once. What it
-                                   answers must not depend on order. Else u means one thread */
+                                   answers must not depend on order; it is then also asked about triangles that are
+                                   never made. Else u means one thread */
     int threads;                /* of libptriangle; <= 0: OMP_NUM_THREADS, else one for each core */
     /* Told of the error in one sentence, without newline; unless the switches have Q, also of what is odd about the
      * input (is_error 0): duplicate points, segments that name no point and so on. Called by the calling thread. */
