@@ -126,7 +126,7 @@ static double rough_log2(double x)
 
 /* Triangles that an angle bound makes of one. Sizes grow by a factor from row to row, so that an octave between the
  * shortest edge and the longest takes a number of triangles that the bound alone decides; a narrow space between
- * segments takes as many as it is times longer than wide. Fitted to 14 coasts, parts and point sets at 20 to 34 degrees:
+ * segments takes as many as it is times longer than wide, and the triangle bridges as much of it as it is long. Fitted to 14 coasts, parts and point sets at 20 to 34 degrees:
  * 0.8 to 1.25 times what comes out, with few exceptions (docs/performance.md). */
 static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
 {
@@ -134,15 +134,18 @@ static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_op
     double longest2 = fmax(shape.l[0], fmax(shape.l[1], shape.l[2]));
     double octaves = 0.5 * rough_log2(longest2 / shape.l[shape.shortest]);
     double channel = tri_channel_cost(mesh, t, &shape), angle = fmin(options->min_angle, TRI_USUAL_ANGLE);
-    channel = channel <= mesh->dearest_channel ? channel : 0;
+    channel = channel <= mesh->dearest_channel ? fmin(channel, sqrt(longest2 / shape.l[shape.shortest])) : 0;
     double work = angle > 0 ? 17 / (40 - angle) * (octaves + 2 * channel) : 0;
     return work < 1 ? 1 : work < TRI_MAX_TRIANGLES ? work : TRI_MAX_TRIANGLES;
 }
 
+/* A bad triangle becomes more than triangles do on average. */
+static const double BAD = 1.25;
+
 double par_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
 {
     const struct estimator here = {mesh, options, HUGE_VAL};
-    return tri_is_live(&mesh->tri[t]) ? area_work(&here, t) + angle_work(mesh, options, t) : 0;
+    return tri_is_live(&mesh->tri[t]) ? area_work(&here, t) + BAD * angle_work(mesh, options, t) : 0;
 }
 
 /* Of a large mesh the angle's work is taken from every n-th triangle; triangles lie along a curve, so that is fair. */

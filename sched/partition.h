@@ -37,7 +37,7 @@ struct par_partition {
  * for each thousand triangles or so of those to come. */
 double par_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options);
 
-/* The share of one triangle in that. */
+/* The share of one bad triangle in that. */
 double par_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t);
 
 /* Cuts the plane into cells of about cell_triangles. estimate: what par_estimate says. TRI_NO_MEMORY. O(triangles + samples

@@ -91,7 +91,7 @@ static void assign_blocks(struct phase *p)
  * since a pause costs less than gaps do. Measured: the rest is left at the seams. */
 static int32_t expect(int colour, double work)
 {
-    static const double share[PAR_COLOURS] = {0.68, 0.35, 0.35, 0.5};
+    static const double share[PAR_COLOURS] = {0.9, 0.42, 0.38, 0.35};
     double expected = share[colour] * work + 128;
     return expected < 1e7 ? (int32_t)expected : 10000000;
 }

@@ -7,6 +7,9 @@
 
 enum { LEAST_RANGE = 64 };
 
+/* What one insertion takes at most. */
+static const int32_t one_insertion[PAR_KINDS] = {[PAR_VERTICES] = 1, [PAR_SLOTS] = 2, [PAR_SUBS] = 1};
+
 static enum tri_status no_memory(struct tri_error *error)
 {
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the ranges of a block");
@@ -62,13 +65,12 @@ static void leave(struct par_room *room, const struct tri_mesh *view, enum par_k
 
 enum tri_status par_more_room(void *user, struct tri_mesh *view, struct tri_error *error)
 {
-    static const int32_t need[PAR_KINDS] = {1, 2, 1};
     struct par_room *room = user;
     for (int kind = 0; kind < PAR_KINDS; kind++) {
         int32_t *count, *capacity;
         counts_of(view, (enum par_kind)kind, &count, &capacity);
         assert(*count <= *capacity);
-        while (*capacity - *count < need[kind]) {
+        while (*capacity - *count < one_insertion[kind]) {
             leave(room, view, (enum par_kind)kind);
             if (room->current[kind] + 1 >= room->ranges[kind].n)
                 return tri_fail(error, TRI_NO_ROOM, NULL, 0, "the block's room is full");
@@ -134,12 +136,27 @@ static enum tri_status extend(struct par_room *room, struct par_room *spare, str
     return TRI_OK;
 }
 
+/* Unused items in the hands of a block, in ranges where an insertion fits. */
+static int32_t left_of(const struct par_room *room, enum par_kind kind)
+{
+    int32_t left = 0;
+    for (int32_t i = room->current[kind]; i < room->ranges[kind].n; i++) {
+        int32_t here = room->ranges[kind].item[i].end - room->ranges[kind].item[i].next;
+        left += here >= one_insertion[kind] ? here : 0;
+    }
+    return left;
+}
+
 enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
                                 int32_t triangles, struct tri_error *error)
 {
-    enum tri_status status = extend(room, spare, shared, PAR_SLOTS, triangles, error);
-    status = status ? status : extend(room, spare, shared, PAR_VERTICES, triangles / 2 + triangles / 64 + 16, error);
-    return status ? status : extend(room, spare, shared, PAR_SUBS, triangles / 16 + 64, error);
+    const int32_t wanted[PAR_KINDS] = {
+        [PAR_VERTICES] = triangles / 2 + triangles / 64 + 16, [PAR_SLOTS] = triangles, [PAR_SUBS] = triangles / 16 + 64};
+    enum tri_status status = TRI_OK;
+    for (int kind = 0; !status && kind < PAR_KINDS; kind++)
+        status = extend(room, spare, shared, (enum par_kind)kind,
+                        wanted[kind] - left_of(room, (enum par_kind)kind), error);
+    return status;
 }
 
 void par_room_return(struct par_room *room, struct par_room *spare)

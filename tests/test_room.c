@@ -129,10 +129,9 @@ static void test_random_dealings(void **state)
                 assert_int_equal(table_count(&table, PAR_SLOTS, who), 0);
                 assert_int_equal(table_count(&table, PAR_SLOTS, SPARE), room_left(&spare, PAR_SLOTS));
             } else if (action < 3) {
-                int32_t more = support_below(&random, seed % 2 ? 12 : 400) + 1,
-                        before = room_left(&room[who], PAR_SLOTS);
+                int32_t more = support_below(&random, seed % 2 ? 12 : 400) + 1;
                 assert_int_equal(par_room_extend(&room[who], &spare, &shared, more, NULL), TRI_OK);
-                assert_true(room_left(&room[who], PAR_SLOTS) >= before + more);
+                assert_true(room_left(&room[who], PAR_SLOTS) >= more);
                 assert_true(room_left(&room[who], PAR_VERTICES) >= more / 2);
                 table_grow(&table, &shared);
                 table_claim(&table, &room[who], who);
