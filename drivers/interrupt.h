@@ -13,7 +13,8 @@ void interrupt_guard(const struct tri_output_set *set);
 void interrupt_hold(void);
 void interrupt_release(void);
 
-/* Commits the guarded set, or aborts it where status is an error already, while signals wait. Returns what became of it. */
+/* Commits the guarded set, or aborts it where status is an error already, while signals wait. Returns what became of
+ * it. */
 enum tri_status interrupt_finish(struct tri_output_set *set, enum tri_status status, struct tri_error *error);
 
 #endif

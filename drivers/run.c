@@ -269,7 +269,7 @@ static enum tri_status refine(struct runner *r)
     if (report->hit_limit && quality->conforming)
         console_warn(&r->console, "the limit of -S was reached before the mesh was conforming.\n");
     if (!r->console.quiet) /* a pass over all triangles */
-        summary_bounds(&r->console, &run->mesh, quality, report);
+        summary_bounds(&r->console, &run->mesh, quality, report, run->hooks->executor);
     return TRI_OK;
 }
 

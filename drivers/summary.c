@@ -43,13 +43,14 @@ static const char *reason_of(enum tri_excuse excuse, const struct tri_refine_opt
 }
 
 void summary_bounds(const struct console *console, const struct tri_mesh *mesh,
-                    const struct tri_refine_options *options, const struct tri_refine_report *report)
+                    const struct tri_refine_options *options, const struct tri_refine_report *report,
+                    const struct tri_executor *executor)
 {
     int64_t count[TRI_EXCUSES] = {0}, sum = 0, encroached = options->conforming ? tri_count_encroached(mesh) : 0;
     if (encroached > 0)
-        console_say(console, "%" PRId64 " subsegment%s a vertex in the diametral circle: features too fine.\n", encroached,
-                    encroached == 1 ? " keeps" : "s keep");
-    tri_count_bad(mesh, options, report, count);
+        console_say(console, "%" PRId64 " subsegment%s a vertex in the diametral circle: features too fine.\n",
+                    encroached, encroached == 1 ? " keeps" : "s keep");
+    tri_count_bad(mesh, options, report, executor, count);
     for (int k = 0; k < TRI_EXCUSES; k++)
         sum += count[k];
     if (sum == 0) {

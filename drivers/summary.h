@@ -16,7 +16,8 @@ void summary_duplicates(const struct console *console, const struct tri_mesh *me
 
 /* One line: how many triangles stay below the bounds, and why. */
 void summary_bounds(const struct console *console, const struct tri_mesh *mesh,
-                    const struct tri_refine_options *options, const struct tri_refine_report *report);
+                    const struct tri_refine_options *options, const struct tri_refine_report *report,
+                    const struct tri_executor *executor);
 
 /* The block "Statistics:". n_input_triangles is told with -r. */
 void summary_counts(const struct console *console, const struct tri_switches *switches, const struct tri_pslg *pslg,

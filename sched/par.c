@@ -18,9 +18,9 @@
 #include "triangle/criterion.h"
 #include "triangle/quality.h"
 
-/* Cells hold one in CELLS of the final triangles, within limits: small ones keep many threads busy, large ones make fewer
- * seams. Coarse triangles a cell has after pre-refinement: enough for seams to be narrow, few enough for pre-refinement
- * to take a few thousandths of the time. (docs/performance.md) */
+/* Cells hold one in CELLS of the final triangles, within limits: small ones keep many threads busy, large ones make
+ * fewer seams. Coarse triangles a cell has after pre-refinement: enough for seams to be narrow, few enough for
+ * pre-refinement to take a few thousandths of the time. (docs/performance.md) */
 static const double CELLS = 128, SMALLEST_CELL = 8192, LARGEST_CELL = 131072, COARSE_PER_CELL = 64;
 
 enum { FEWEST_CELLS = 8, FEWEST_COARSE_CELLS = 32, FEWEST_TO_COARSEN = 16, MAX_ROUNDS = 24 };
@@ -46,8 +46,9 @@ int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mes
     return TRI_NONE;
 }
 
-/* As many as asked for; else what OpenMP would use. A forked child has lost the threads that libgomp still counts on, and
- * would wait for them for ever: it works alone. That needs to be known process-wide, the one thing here that is. */
+/* As many as asked for; else what OpenMP would use. A forked child has lost the threads that libgomp still counts
+ * on, and would wait for them for ever: it works alone. That needs to be known process-wide, the one thing here that
+ * is. */
 static int threads_for(int asked)
 {
 #ifdef _OPENMP
@@ -360,10 +361,10 @@ static enum tri_status refine_level(struct par_state *state, const struct tri_re
     return status;
 }
 
-/* Bounds above TRI_EASY_ANGLE are dear wherever triangles of different sizes meet, and in a mesh that comes out of a coarse
- * one by stages they meet everywhere. So sizes are brought about first, with an easy bound, and then the angles on a
- * mesh of one size. (Measured on letter.poly, 33 degrees: 2% more triangles than by one sequential call, instead of
- * 28%.) */
+/* Bounds above TRI_EASY_ANGLE are dear wherever triangles of different sizes meet, and in a mesh that comes out of a
+ * coarse one by stages they meet everywhere. So sizes are brought about first, with an easy bound, and then the
+ * angles on a mesh of one size. (Measured on letter.poly, 33 degrees: 2% more triangles than by one sequential call,
+ * instead of 28%.) */
 static enum tri_status refine_sizes_first(struct par_state *state, const struct tri_refine_options *quality,
                                           struct tri_error *error)
 {

@@ -22,8 +22,8 @@ struct par_options {
                                    size test, the mesh is refined sequentially */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
     int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, and pause often */
-    /* Told by the calling thread: the phase that begins (0: pre-refinement, then 1 to 4), triangles so far (with the room
-     * that blocks have been dealt). */
+    /* Told by the calling thread: the phase that begins (0: pre-refinement, then 1 to 4), triangles so far (with the
+     * room that blocks have been dealt). */
     void (*progress)(void *user, int round, int phase, int64_t triangles);
     void *progress_user;
 };
@@ -42,7 +42,7 @@ struct par_report {
     int32_t columns, rows;        /* of blocks in the first round */
     struct par_partition partition; /* blocks of the first round, in the mesh's units; none where the call was
                                        sequential. Owned by the report */
-    double radius_theory;         /* tight bound for what pre-refinement asks for; 0 where it has no area or angle bound */
+    double radius_theory;         /* tight bound for what pre-refinement asks for; 0 where it lacks a bound */
     double radius_measured;       /* largest circumradius of a bad triangle when the first phase began */
     int64_t prerefined;           /* triangles when the first phase began */
     int64_t deferred, left_over;  /* refused by fences in all phases; bad triangles that the last sequential call got */
@@ -58,11 +58,11 @@ struct par_report {
 struct par_options par_defaults(void);
 
 /* Refines as tri_refine does, with several threads. Where the options do not allow a schedule (max_steiner; seeds,
- * gate, fence, left or more_room of the caller's; a size test that must not run in parallel) or the mesh is small it is
- * one sequential call. A size test is also asked about triangles that will never be, smaller and larger ones, to find out
- * how much work there is where. In a child that was forked after a call there is one thread.
- * what an angle bound above TRI_USUAL_ANGLE asks for beyond that is one, too. Safe to call from
- * several threads on different meshes, and inside a parallel region. Errors as tri_refine. */
+ * gate, fence, left or more_room of the caller's; a size test that must not run in parallel) or the mesh is small it
+ * is one sequential call. A size test is also asked about triangles that will never be, smaller and larger ones, to
+ * find out how much work there is where. In a child that was forked after a call there is one thread. what an angle
+ * bound above TRI_USUAL_ANGLE asks for beyond that is one, too. Safe to call from several threads on different
+ * meshes, and inside a parallel region. Errors as tri_refine. */
 enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
                            const struct par_options *options, struct par_report *report, struct tri_error *error);
 

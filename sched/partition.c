@@ -1,9 +1,9 @@
 /* Quantiles of the estimated work, first along x, then along y in each column.
  *
- * The work of a triangle has two parts: what an area bound asks for inside it, and what an angle bound asks for to grade
- * from its shortest edge to its longest. The work is sampled: for the first part, large triangles are cut into small
- * ones first, so that their work lies where it is; the second lies at the shortest edge. There are some 32 samples for a
- * cell: enough for shares equal within a sixth, few enough to sort in no time. */
+ * The work of a triangle has two parts: what an area bound asks for inside it, and what an angle bound asks for to
+ * grade from its shortest edge to its longest. The work is sampled: for the first part, large triangles are cut into
+ * small ones first, so that their work lies where it is; the second lies at the shortest edge. There are some 32
+ * samples for a cell: enough for shares equal within a sixth, few enough to sort in no time. */
 #include "sched/partition.h"
 
 #include <assert.h>
@@ -126,8 +126,9 @@ static double rough_log2(double x)
 
 /* Triangles that an angle bound makes of one. Sizes grow by a factor from row to row, so that an octave between the
  * shortest edge and the longest takes a number of triangles that the bound alone decides; a narrow space between
- * segments takes as many as it is times longer than wide, and the triangle bridges as much of it as it is long. Fitted to 14 coasts, parts and point sets at 20 to 34 degrees:
- * 0.8 to 1.25 times what comes out, with few exceptions (docs/performance.md). */
+ * segments takes as many as it is times longer than wide, and the triangle bridges as much of it as it is long.
+ * Fitted to 14 coasts, parts and point sets at 20 to 34 degrees: 0.8 to 1.25 times what comes out, with few
+ * exceptions (docs/performance.md). */
 static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
 {
     struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
@@ -278,7 +279,8 @@ static int by_y(const void *left, const void *right)
     return a->q.x != b->q.x ? (a->q.x < b->q.x ? -1 : 1) : by_work(a, b);
 }
 
-/* Sorted samples into n shares of equal work; cut[k] receives the index at which share k begins, cut[n] that of the end. */
+/* Sorted samples into n shares of equal work; cut[k] receives the index at which share k begins, cut[n] that of the
+ * end. */
 static void cut_shares(const struct samples *s, int32_t n, size_t *cut)
 {
     double total = 0, sum = 0;

@@ -1,19 +1,19 @@
 /* The plane cut into cells of about equal work, and the blocks of cells that are refined at once.
  *
- * Columns of cells hold equal shares of the estimated final triangles, whatever the grading. Block column k reaches over
- * the columns of cells on both sides of boundary k, so that blocks with odd numbers tile the line, and those with even
- * numbers tile it with seams in the middles of the others:
+ * Columns of cells hold equal shares of the estimated final triangles, whatever the grading. Block column k reaches
+ * over the columns of cells on both sides of boundary k, so that blocks with odd numbers tile the line, and those
+ * with even numbers tile it with seams in the middles of the others:
  *
  *      boundaries      0   1   2   3   4   5   6
  *      blocks 1 3 5    |-------|-------|-------|         (the first and the last reach to infinity)
  *      blocks 0 2 4 6  |---|-------|-------|---|
  *
- * Rows are cut in the same way, for each block column from the work inside it. A block has four cells, half or a quarter
- * of that at the rim. Its colour is the parity of its column and of its row; colour 0 has the odd ones.
+ * Rows are cut in the same way, for each block column from the work inside it. A block has four cells, half or a
+ * quarter of that at the rim. Its colour is the parity of its column and of its row; colour 0 has the odd ones.
  *
- * INVARIANT: blocks of one colour are disjoint half-open boxes and tile the plane; a block of the next colour covers the
- * seams of the last one. So the phase of the first colour does most of the work and the other three close the seams, and
- * a triangle smaller than half a cell lies in some block of some colour.
+ * INVARIANT: blocks of one colour are disjoint half-open boxes and tile the plane; a block of the next colour covers
+ * the seams of the last one. So the phase of the first colour does most of the work and the other three close the
+ * seams, and a triangle smaller than half a cell lies in some block of some colour.
  *
  * The partition depends on the mesh and the bounds alone, never on the number of threads. */
 #ifndef SCHED_PARTITION_H
@@ -33,15 +33,15 @@ struct par_partition {
 };
 
 /* Estimates the number of triangles that refinement will end with: for bounded areas from the areas, for a bounded
- * angle from the edges' lengths, for a size test by probing it with triangles that get smaller. O(triangles), and a probe
- * for each thousand triangles or so of those to come. */
+ * angle from the edges' lengths, for a size test by probing it with triangles that get smaller. O(triangles), and a
+ * probe for each thousand triangles or so of those to come. */
 double par_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options);
 
 /* The share of one bad triangle in that. */
 double par_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t);
 
-/* Cuts the plane into cells of about cell_triangles. estimate: what par_estimate says. TRI_NO_MEMORY. O(triangles + samples
- * log samples). */
+/* Cuts the plane into cells of about cell_triangles. estimate: what par_estimate says. TRI_NO_MEMORY. O(triangles +
+ * samples log samples). */
 enum tri_status par_partition_make(struct par_partition *partition, const struct tri_mesh *mesh,
                                    const struct tri_refine_options *options, double estimate, double cell_triangles,
                                    struct tri_error *error);

@@ -203,9 +203,9 @@ static void set_up(struct phase *p, struct task *task)
     task->options.more_room_user = &task->room;
 }
 
-/* Room for a task that is full. A pause costs what the block had in the cache, and whoever waits with it the time of the
- * slowest: a little more room where areas made the expectation about right, a good deal more where it was a guess, and
- * twice that each time. What is too much serves the phases that follow. */
+/* Room for a task that is full. A pause costs what the block had in the cache, and whoever waits with it the time of
+ * the slowest: a little more room where areas made the expectation about right, a good deal more where it was a
+ * guess, and twice that each time. What is too much serves the phases that follow. */
 static int32_t more_for(const struct task *task)
 {
     double inserted = (double)(task->report.inserted_free + task->report.inserted_on_segments);

@@ -151,7 +151,10 @@ enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, s
                                 int32_t triangles, struct tri_error *error)
 {
     const int32_t wanted[PAR_KINDS] = {
-        [PAR_VERTICES] = triangles / 2 + triangles / 64 + 16, [PAR_SLOTS] = triangles, [PAR_SUBS] = triangles / 16 + 64};
+        [PAR_VERTICES] = triangles / 2 + triangles / 64 + 16,
+        [PAR_SLOTS] = triangles,
+        [PAR_SUBS] = triangles / 16 + 64,
+    };
     enum tri_status status = TRI_OK;
     for (int kind = 0; !status && kind < PAR_KINDS; kind++)
         status = extend(room, spare, shared, (enum par_kind)kind,

@@ -38,8 +38,9 @@ void par_room_enter(struct par_room *room, struct tri_mesh *view, const struct t
 /* Remembers in the room how far the view's ranges have been used. */
 void par_room_leave(struct par_room *room, const struct tri_mesh *view);
 
-/* Sees to it that the room has at least `triangles` unused slots, and vertices and subsegments to match: from `spare`
- * first, else from the end of the shared arrays, which grow. TRI_NO_MEMORY, TRI_TOO_LARGE: what it got so far it keeps. */
+/* Sees to it that the room has at least `triangles` unused slots, and vertices and subsegments to match: from
+ * `spare` first, else from the end of the shared arrays, which grow. TRI_NO_MEMORY, TRI_TOO_LARGE: what it got so
+ * far it keeps. */
 enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
                                 int32_t triangles, struct tri_error *error);
 

@@ -1,7 +1,7 @@
 /* Allocations that fail when a test wants them to.
  *
- * For programs linked with --wrap for malloc, calloc, realloc and free (the GNU and LLVM linkers know it): all their calls are
- * counted, and the chosen one fails. Any thread may call. */
+ * For programs linked with --wrap for malloc, calloc, realloc and free (the GNU and LLVM linkers know it): all their
+ * calls are counted, and the chosen one fails. Any thread may call. */
 #ifndef TESTS_ALLOCATIONS_H
 #define TESTS_ALLOCATIONS_H
 

@@ -30,7 +30,8 @@ uint64_t support_bits(struct support_random *random);
 double support_unit(struct support_random *random); /* 0 <= x < 1 */
 int32_t support_below(struct support_random *random, int32_t n);
 
-/* A PSLG with room for so many points, segments, holes and regions; the counts start at 0, attributes and markers at NULL. */
+/* A PSLG with room for so many points, segments, holes and regions; the counts start at 0, attributes and markers at
+ * NULL. */
 struct tri_pslg support_pslg(int32_t points, int32_t segments, int32_t holes, int32_t regions);
 int32_t support_add_point(struct tri_pslg *pslg, double x, double y);
 void support_add_segment(struct tri_pslg *pslg, int32_t a, int32_t b);
@@ -60,8 +61,8 @@ struct tri_pslg support_square(double side, int32_t n, uint64_t seed);
 /* Reads a .poly or .node file of PTRIANGLE_DATA_DIR; false where the reader refuses it. */
 bool support_read(const char *name, struct tri_pslg *pslg);
 
-/* All input names of data/, data/nasty, data/regress, data/coast that end in .poly or .node, sorted, NULL at the end; for
- * support_read. To be freed by support_free_names. */
+/* All input names of data/, data/nasty, data/regress, data/coast that end in .poly or .node, sorted, NULL at the
+ * end; for support_read. To be freed by support_free_names. */
 char **support_names(const char *folder);
 void support_free_names(char **names);
 
@@ -76,8 +77,8 @@ struct support_copy {
 struct support_copy support_copy(const struct tri_mesh *mesh);
 void support_copy_free(struct support_copy *copy);
 
-/* Validates the links and lets tri_check judge; a fault fails the test with the text of the judge. NULL report: unwanted.
- * options->max_areas is filled in from the regions where with_regions. */
+/* Validates the links and lets tri_check judge; a fault fails the test with the text of the judge. NULL report:
+ * unwanted. options->max_areas is filled in from the regions where with_regions. */
 void support_judge(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_check_options *options,
                    bool with_regions, struct tri_check_report *report);
 
@@ -112,11 +113,12 @@ bool support_same_places(const struct support_places *a, const struct support_pl
 bool support_has_place(const struct support_places *set, const double place[6]);
 void support_places_free(struct support_places *set);
 
-/* Does a subsegment other than `except` cut the sight from p to q? Exact. A touched end cuts, save where it is q itself. */
+/* Does a subsegment other than `except` cut the sight from p to q? Exact. A touched end cuts, save where it is q
+ * itself. */
 bool support_is_hidden(const struct tri_mesh *mesh, struct tri_point p, struct tri_point q, int32_t except);
 
-/* Every edge without subsegment is Delaunay, ties included, and (where naive) no vertex in the circumcircle of a triangle
- * is visible from a point in its interior. O(triangles * vertices * subsegments) where naive. */
+/* Every edge without subsegment is Delaunay, ties included, and (where naive) no vertex in the circumcircle of a
+ * triangle is visible from a point in its interior. O(triangles * vertices * subsegments) where naive. */
 void support_assert_cdt(const struct tri_mesh *mesh, bool naive);
 
 #endif

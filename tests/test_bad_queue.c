@@ -71,7 +71,8 @@ static void test_equals_naive_twin(void **state)
     }
 }
 
-/* More sizes than the window holds: each comes back once, and those that came last before the window ran over come first. */
+/* More sizes than the window holds: each comes back once, and those that came last before the window ran over come
+ * first. */
 static void test_sizes_beyond_the_window(void **state)
 {
     (void)state;

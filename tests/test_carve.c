@@ -2,7 +2,8 @@
 #include "support.h"
 #include "triangle/carve.h"
 
-/* paint[t]: the least number of a triangle that t reaches without crossing a subsegment. Sweeps until nothing changes. */
+/* paint[t]: the least number of a triangle that t reaches without crossing a subsegment. Sweeps until nothing
+ * changes. */
 static int32_t *paint_components(const struct tri_mesh *mesh)
 {
     int32_t *paint = calloc((size_t)mesh->n_slots + 1, sizeof *paint);
@@ -192,7 +193,8 @@ static void test_nested_rings(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* A hole point on a vertex, on a segment, and on an edge without segment: nothing breaks, the hull stays convex or empty. */
+/* A hole point on a vertex, on a segment, and on an edge without segment: nothing breaks, the hull stays convex or
+ * empty. */
 static void test_hole_points_in_odd_places(void **state)
 {
     (void)state;

@@ -34,7 +34,8 @@ static bool is_vertex(const struct tri_mesh *mesh, struct tri_point p)
     return false;
 }
 
-/* Whoever shares an edge without subsegment with the cavity and has p in its circumdisk belongs to it; until nothing changes. */
+/* Whoever shares an edge without subsegment with the cavity and has p in its circumdisk belongs to it; until nothing
+ * changes. */
 static int32_t naive_cavity(const struct tri_mesh *mesh, struct tri_point p, int32_t start, bool *in)
 {
     int32_t n = 1;

@@ -25,7 +25,8 @@ static void test_tangles_are_naively_constrained_delaunay(void **state)
         }
 }
 
-/* Hundreds of segments on nearly one line are bent again and again: there the judge's tolerance for segments is too narrow. */
+/* Hundreds of segments on nearly one line are bent again and again: there the judge's tolerance for segments is too
+ * narrow. */
 static void test_large_tangles_pass_the_judge(void **state)
 {
     (void)state;
@@ -244,7 +245,8 @@ static void test_crossings_below_resolution(void **state)
     }
 }
 
-/* Inputs that once broke links, went astray, looped or lost the Delaunay property: points, then segments, -1 at the end. */
+/* Inputs that once broke links, went astray, looped or lost the Delaunay property: points, then segments, -1 at the
+ * end. */
 static const struct {
     int32_t n_points;
     double points[12][2];

@@ -1,4 +1,5 @@
-/* The curve visits each cell once, neighbours in the order are neighbours in the plane, and the sort is a sort by it. */
+/* The curve visits each cell once, neighbours in the order are neighbours in the plane, and the sort is a sort by
+ * it. */
 #include "support.h"
 #include "triangle/hilbert.h"
 

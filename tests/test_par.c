@@ -127,7 +127,7 @@ static int64_t sum_bad(const struct tri_mesh *mesh, const struct tri_refine_opti
                        const struct tri_refine_report *report)
 {
     int64_t count[TRI_EXCUSES], sum = 0;
-    tri_count_bad(mesh, quality, report, count);
+    tri_count_bad(mesh, quality, report, NULL, count);
     for (int k = 0; k < TRI_EXCUSES; k++)
         sum += count[k];
     return sum;

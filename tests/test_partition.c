@@ -127,8 +127,8 @@ static double least_width_at(const double *bounds, int32_t n, double q)
     return least;
 }
 
-/* Every colour has one block that holds q, and par_block_at finds it; and some block holds q together with what is around
- * it, for half of the cells there: so no seam is left open by all four colours. */
+/* Every colour has one block that holds q, and par_block_at finds it; and some block holds q together with what is
+ * around it, for half of the cells there: so no seam is left open by all four colours. */
 static void assert_point_is_served(const struct par_partition *p, struct tri_point q)
 {
     int32_t found[PAR_COLOURS] = {TRI_NONE, TRI_NONE, TRI_NONE, TRI_NONE};

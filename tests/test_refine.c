@@ -18,7 +18,7 @@ static double total_area(const struct tri_mesh *mesh)
 static int64_t count_bad(const struct tri_mesh *mesh, const struct tri_options *options, const struct tri_report *report)
 {
     int64_t count[TRI_EXCUSES], sum = 0;
-    tri_count_bad(mesh, &options->quality, &report->quality, count);
+    tri_count_bad(mesh, &options->quality, &report->quality, NULL, count);
     for (int k = 0; k < TRI_EXCUSES; k++)
         sum += count[k];
     return sum;

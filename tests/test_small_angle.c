@@ -9,7 +9,8 @@
 #include "tests/support.h"
 #include "triangle/small_angle.h"
 
-/* A rectangle of length 1 and this height, refined to 20 degrees; the number of triangles, and how many stay bad as channels. */
+/* A rectangle of length 1 and this height, refined to 20 degrees; the number of triangles, and how many stay bad as
+ * channels. */
 static int32_t refine_rectangle(double height, int64_t *in_channel)
 {
     struct tri_pslg pslg = support_pslg(4, 4, 0, 0);
@@ -23,7 +24,7 @@ static int32_t refine_rectangle(double height, int64_t *in_channel)
     struct tri_report report;
     struct tri_mesh mesh = support_generate(&pslg, &options, &report);
     int64_t count[TRI_EXCUSES];
-    tri_count_bad(&mesh, &options.quality, &report.quality, count);
+    tri_count_bad(&mesh, &options.quality, &report.quality, NULL, count);
     *in_channel = count[TRI_EXCUSE_CHANNEL];
     for (int k = 0; k < TRI_EXCUSES; k++)
         assert_true(k == TRI_EXCUSE_CHANNEL || count[k] == 0);
@@ -76,7 +77,8 @@ static void test_shells_are_near_the_middle(void **state)
     }
 }
 
-/* Split points that rounding puts beside their segment, next to a triangle flatter than that: the mesh stays Delaunay. */
+/* Split points that rounding puts beside their segment, next to a triangle flatter than that: the mesh stays
+ * Delaunay. */
 static void test_flat_neighbour_keeps_the_mesh_delaunay(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* The whole way from a PSLG to a mesh: stages, units, attributes, markers, refusals, and every allocation that can fail.
+/* The whole way from a PSLG to a mesh: stages, units, attributes, markers, refusals, and every allocation that can
+ * fail.
  *
  * This program is linked with --wrap for malloc, calloc, realloc and free: see allocations.h. */
 #include "allocations.h"
@@ -195,7 +196,8 @@ static void scale(struct tri_pslg *pslg, double by)
     }
 }
 
-/* Scaling by a power of two scales the mesh, as far as doubles go: the same triangles, the same vertices times the factor. */
+/* Scaling by a power of two scales the mesh, as far as doubles go: the same triangles, the same vertices times the
+ * factor. */
 static void test_scaling_scales_the_mesh(void **state)
 {
     (void)state;

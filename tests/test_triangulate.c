@@ -1061,8 +1061,8 @@ static void free_arrays(struct triangulateio *mesh)
     free(mesh->segmentmarkerlist);
 }
 
-/* Attributes do not cross segments, be the triangles so flat and so far from the origin that where a centroid lies cannot
- * be told. */
+/* Attributes do not cross segments, be the triangles so flat and so far from the origin that where a centroid lies
+ * cannot be told. */
 static void test_attributes_keep_their_side(void **state)
 {
     (void)state;

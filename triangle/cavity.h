@@ -51,7 +51,7 @@ static inline bool tri_fence_holds(const struct tri_fence *f, struct tri_point q
 struct tri_cavity {
     struct tri_point p;
     const struct tri_fence *fence; /* NULL: everything is owned */
-    bool flips_follow;             /* the caller makes the mesh Delaunay again after a split: see tri_cavity_search_split */
+    bool flips_follow;             /* the caller makes the mesh Delaunay again: see tri_cavity_search_split */
     int32_t n_tri, n_rim, n_wall, capacity;
     int32_t n_left_tri;   /* of a split: triangles left of the subsegment, which come first */
     int32_t region;       /* of the triangle at which the search began */

@@ -4,6 +4,8 @@
 #include "triangle/criterion.h"
 #include "triangle/small_angle.h"
 
+enum { PIECES = 64 };
+
 enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                                  struct tri_error *error)
 {
@@ -16,8 +18,8 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_r
             triangles += tri_shape_of(mesh->xy, mesh->tri[t].v).area2 / tri_area2_bound(&c, mesh->tri[t].region);
     if (triangles <= TRI_MAX_TRIANGLES)
         return TRI_OK;
-    return tri_fail(error, TRI_TOO_LARGE, NULL, 0, "the area bounds ask for more triangles than the %d that a mesh holds",
-                    TRI_MAX_TRIANGLES);
+    return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
+                    "the area bounds ask for more triangles than the %d that a mesh holds", TRI_MAX_TRIANGLES);
 }
 
 static bool needs_work(const struct tri_criterion *c, int32_t slot)
@@ -77,7 +79,7 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, int32_t slot, c
     if (report->gated + report->deferred > 0)
         return TRI_EXCUSE_DEFERRED;
     bool protected_more = report->refused[TRI_EXCUSE_PROTECTED] > report->refused[TRI_EXCUSE_PRECISION];
-    return protected_more ? TRI_EXCUSE_PROTECTED : TRI_EXCUSE_PRECISION; /* of what is behind a protected one, far away */
+    return protected_more ? TRI_EXCUSE_PROTECTED : TRI_EXCUSE_PRECISION; /* behind a protected one that is far away */
 }
 
 int64_t tri_count_encroached(const struct tri_mesh *mesh)
@@ -91,18 +93,38 @@ int64_t tri_count_encroached(const struct tri_mesh *mesh)
     return n;
 }
 
-void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options *options,
-                   const struct tri_refine_report *report, int64_t count[TRI_EXCUSES])
+/* A count of bad triangles, in pieces. */
+struct counting {
+    struct tri_criterion criterion;
+    const struct tri_refine_report *report;
+    int64_t count[PIECES][TRI_EXCUSES];
+};
+
+static void count_piece(void *context, size_t piece)
 {
-    const struct tri_criterion c = {mesh, options, tri_bounds_for(options->min_angle, options->conforming)};
-    for (int k = 0; k < TRI_EXCUSES; k++)
-        count[k] = 0;
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
+    struct counting *c = context;
+    const struct tri_mesh *mesh = c->criterion.mesh;
+    int64_t n = mesh->n_slots;
+    int32_t first = (int32_t)(n * (int64_t)piece / PIECES), last = (int32_t)(n * ((int64_t)piece + 1) / PIECES);
+    for (int32_t t = first; t < last; t++) {
         if (!tri_is_live(&mesh->tri[t]))
             continue;
         struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
-        enum tri_badness badness = tri_judge(&c, &mesh->tri[t], &shape);
+        enum tri_badness badness = tri_judge(&c->criterion, &mesh->tri[t], &shape);
         if (badness != TRI_GOOD)
-            count[excuse_for(&c, t, &shape, badness, report)]++;
+            c->count[piece][excuse_for(&c->criterion, t, &shape, badness, c->report)]++;
+    }
+}
+
+void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                   const struct tri_refine_report *report, const struct tri_executor *executor,
+                   int64_t count[TRI_EXCUSES])
+{
+    struct counting c = {{mesh, options, tri_bounds_for(options->min_angle, options->conforming)}, report, {{0}}};
+    tri_execute(options->unsuitable ? NULL : executor, PIECES, count_piece, &c);
+    for (int k = 0; k < TRI_EXCUSES; k++) {
+        count[k] = 0;
+        for (int i = 0; i < PIECES; i++)
+            count[k] += c.count[i][k];
     }
 }

@@ -1,4 +1,5 @@
-/* Which triangles are bad, and which subsegments crowded: the criterion that the refinement loop works for, and its census counts.
+/* Which triangles are bad, and which subsegments crowded: the criterion that the refinement loop works for, and its
+ * census counts.
  *
  * Nothing here changes the mesh. */
 #ifndef TRIANGLE_CRITERION_H
@@ -29,9 +30,9 @@ enum tri_badness { TRI_GOOD, TRI_BAD_SIZE, TRI_BAD_ANGLE };
 /* Twice the largest area allowed in a region, in the mesh's units; infinity where there is no bound. */
 double tri_area2_bound(const struct tri_criterion *criterion, int32_t region);
 
-/* Does the caller's size test, asked of a mesh with this unit, refuse the triangle? Where scale is not 1 it is asked about
- * the triangle shrunk about its centroid, to 1 / scale of its area: so a test for a mesh `scale` times coarser is made
- * of any. */
+/* Does the caller's size test, asked of a mesh with this unit, refuse the triangle? Where scale is not 1 it is asked
+ * about the triangle shrunk about its centroid, to 1 / scale of its area: so a test for a mesh `scale` times coarser
+ * is made of any. */
 bool tri_is_refused(const struct tri_refine_options *options, double unit, struct tri_point a, struct tri_point b,
                     struct tri_point c, double scale);
 
@@ -45,7 +46,8 @@ enum tri_badness tri_judge(const struct tri_criterion *criterion, const struct t
 /* -Y, -YY: must the subsegment not be split? */
 bool tri_is_protected(const struct tri_refine_options *options, const struct tri_subsegment *s);
 
-/* Lower than the shortest edge that coordinates can carry: splitting a subsegment beside it would chase the rounding. */
+/* Lower than the shortest edge that coordinates can carry: splitting a subsegment beside it would chase the
+ * rounding. */
 bool tri_is_flat(const struct tri_mesh *mesh, const struct tri_shape *shape);
 
 /* Does the apex of the triangle with this code lie in the diametral circle of the subsegment? */

@@ -345,8 +345,8 @@ static void assign_slots(const struct sorting *s, int32_t *start)
         s->to[t] = start[s->to[t]]++;
 }
 
-/* Insertion has left triangles where cavities of all rounds were; every later stage runs faster where neighbours are near
- * in memory. O(n). */
+/* Insertion has left triangles where cavities of all rounds were; every later stage runs faster where neighbours are
+ * near in memory. O(n). */
 static enum tri_status sort_triangles(struct tri_mesh *mesh, const int32_t *rank, const struct tri_executor *executor,
                                       struct tri_error *error)
 {

@@ -16,13 +16,14 @@ static enum tri_status check_count(const char *what, int32_t n, const void *arra
     return TRI_OK;
 }
 
-static enum tri_status check_finite(const char *what, int32_t n, const double *values, int width, struct tri_error *error)
+static enum tri_status check_finite(const char *what, int32_t n, const double *values, int width,
+                                    struct tri_error *error)
 {
     for (int32_t i = 0; i < n; i++) {
         const double *at = values + (size_t)i * (size_t)width;
         if (!isfinite(at[0]) || !isfinite(at[1]))
-            return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s %d (counted from 0) has a coordinate that is not finite", what,
-                            (int)i);
+            return tri_fail(error, TRI_BAD_INPUT, NULL, 0,
+                            "%s %d (counted from 0) has a coordinate that is not finite", what, (int)i);
     }
     return TRI_OK;
 }

@@ -26,8 +26,8 @@ struct tri_pslg {
     double *regions;        /* [n_regions][4]: x, y, attribute, area bound (<= 0: none) */
 };
 
-/* Fewer than three points, a negative count, a count without an array, a coordinate that is not finite: TRI_BAD_INPUT; more
- * than 2^28 of anything: TRI_TOO_LARGE. O(n). */
+/* Fewer than three points, a negative count, a count without an array, a coordinate that is not finite:
+ * TRI_BAD_INPUT; more than 2^28 of anything: TRI_TOO_LARGE. O(n). */
 enum tri_status tri_pslg_check(const struct tri_pslg *pslg, struct tri_error *error);
 
 /* Frees the arrays (malloc'ed) and zeroes the struct. */

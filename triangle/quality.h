@@ -11,7 +11,8 @@
 /* Up to about this bound in degrees refinement ends in practice (proved: 28.6 with input angles of 60 and more). */
 #define TRI_USUAL_ANGLE 34.0
 
-/* Above the first, in degrees, sizes are brought about before angles, with the second as bound: see refine.c, stages. */
+/* Above the first, in degrees, sizes are brought about before angles, with the second as bound: see refine.c,
+ * stages. */
 #define TRI_EASY_ANGLE 31.0
 #define TRI_SIZES_ANGLE 25.0
 

@@ -293,7 +293,8 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
     return reach;
 }
 
-static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tri_shape *shape, enum tri_badness badness)
+static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tri_shape *shape,
+                            enum tri_badness badness)
 {
     const struct tri_triangle t = r->mesh->tri[slot];
     struct tri_point p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));

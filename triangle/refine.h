@@ -11,6 +11,7 @@
 #define TRIANGLE_REFINE_H
 
 #include "triangle/cavity.h"
+#include "triangle/executor.h"
 
 /* Non-zero: the triangle a, b, c (counter-clockwise) must be refined. Called for triangles that satisfy all other size
  * bounds, by par_refine also for others (sched/par.h). */
@@ -31,8 +32,8 @@ struct tri_refine_options {
     double min_angle;      /* degrees; 0: no bound on angles; above 34 best effort; within a fence no more than 34 */
     double max_area;       /* <= 0: none */
     bool region_areas;     /* mesh->regions[t.region].max_area applies too */
-    double area_scale;     /* > 0: all area bounds are multiplied by this, for pre-refinement, and the size test is asked
-                              about triangles that are smaller by this; 0: as they are */
+    double area_scale;     /* > 0: all area bounds are multiplied by this, for pre-refinement, and the size test is
+                              asked about triangles that are smaller by this; 0: as they are */
     bool conforming;       /* -D: no vertex inside the diametral circle of a subsegment */
     int protect;           /* 1: boundary subsegments are not split (-Y); 2: no subsegment is (-YY) */
     int64_t max_steiner;   /* < 0: no limit on the points inserted */
@@ -69,7 +70,8 @@ struct tri_refine_report {
 
 struct tri_refine_options tri_refine_defaults(void);
 
-/* TRI_TOO_LARGE where the area bounds ask for more triangles than one mesh can hold; tri_refine asks first. O(triangles). */
+/* TRI_TOO_LARGE where the area bounds ask for more triangles than one mesh can hold; tri_refine asks first.
+ * O(triangles). */
 enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                                  struct tri_error *error);
 
@@ -100,8 +102,10 @@ enum tri_status tri_refine_prepare(struct tri_mesh *mesh, struct tri_error *erro
 /* Counts the subsegments with a vertex of a triangle beside them in their diametral circle: what -D could not mend. */
 int64_t tri_count_encroached(const struct tri_mesh *mesh);
 
-/* Counts the triangles that violate the bounds, by reason. O(triangles). */
+/* Counts the triangles that violate the bounds, by reason. A size test is asked by the calling thread alone.
+ * O(triangles). */
 void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options *options,
-                   const struct tri_refine_report *report, int64_t count[TRI_EXCUSES]);
+                   const struct tri_refine_report *report, const struct tri_executor *executor,
+                   int64_t count[TRI_EXCUSES]);
 
 #endif

@@ -167,10 +167,11 @@ static bool may_bridge(const struct tri_mesh *mesh, const int32_t v[3])
     return on >= 2;
 }
 
-/* Which narrow spaces are filled, by their cost. All of them, where a quarter of a million points is enough for that: thin layers and slits
- * of ordinary parts. Else, where there are spikes of no width or lines a few units in the last place apart, the cheap ones: up
- * to the largest power of two, 2^10 or more, such that filling every space as far as this cost goes takes no more than
- * PER_VERTEX points for each vertex of the input and an ALLOWANCE. (A dearer space is still filled where it is wide.) */
+/* Which narrow spaces are filled, by their cost. All of them, where a quarter of a million points is enough for
+ * that: thin layers and slits of ordinary parts. Else, where there are spikes of no width or lines a few units in
+ * the last place apart, the cheap ones: up to the largest power of two, 2^10 or more, such that filling every space
+ * as far as this cost goes takes no more than PER_VERTEX points for each vertex of the input and an ALLOWANCE. (A
+ * dearer space is still filled where it is wide.) */
 static void choose_channels(struct tri_mesh *mesh)
 {
     enum { CHEAP = 10, OCTAVES = 64 };

@@ -20,13 +20,17 @@ static const double DEGREES = 57.295779513082320877;
 enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh *mesh, struct tri_error *error)
 {
     *counts = (struct tri_counts){.triangles = mesh->n_slots, .subsegments = mesh->n_subs};
-    uint8_t *used = calloc((size_t)mesh->n_vertices + 1, 1);
+    /* Vertices that refinement has made are all in use; others may lie outside, or be duplicates. */
+    int32_t n_doubtful = mesh->n_hubs > 0 ? mesh->n_hubs : mesh->n_vertices;
+    uint8_t *used = calloc((size_t)n_doubtful + 1, 1);
     if (!used)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to count %d vertices", (int)mesh->n_vertices);
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to count %d vertices", (int)n_doubtful);
     for (int32_t t = 0; t < mesh->n_slots; t++)
         for (int k = 0; k < 3; k++)
-            used[mesh->tri[t].v[k]] = 1;
-    for (int32_t v = 0; v < mesh->n_vertices; v++)
+            if (mesh->tri[t].v[k] < n_doubtful)
+                used[mesh->tri[t].v[k]] = 1;
+    counts->vertices = mesh->n_vertices - n_doubtful;
+    for (int32_t v = 0; v < n_doubtful; v++)
         counts->vertices += used[v];
     free(used);
     for (int32_t s = 0; s < mesh->n_subs; s++) {

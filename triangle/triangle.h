@@ -1,19 +1,19 @@
-/* The C interface of Triangle 1.6, drop-in: what was compiled against Triangle's header compiles against this one, and
- * what was linked to Triangle links to libtriangle.a, or to libptriangle.a and libtriangle.a, in that order, and then
- * refines on all cores.
+/* The C interface of Triangle 1.6, drop-in: what was compiled against Triangle's header compiles against this one,
+ * and what was linked to Triangle links to libtriangle.a, or to libptriangle.a and libtriangle.a, in that order, and
+ * then refines on all cores.
  *
- * Includes nothing, so that it may stand within a namespace or within extern "C"; C89 and later, C++98 and later. The
- * coordinate type is REAL: define it before including, or it becomes double. A library built with PTRIANGLE_SINGLE
- * has float instead; its clients define SINGLE. Inside, coordinates are double either way; rounded to float, triangles may
- * turn flat or over where a float is coarse against them, so keep the origin near.
+ * Includes nothing, so that it may stand within a namespace or within extern "C"; C89 and later, C++98 and later.
+ * The coordinate type is REAL: define it before including, or it becomes double. A library built with
+ * PTRIANGLE_SINGLE has float instead; its clients define SINGLE. Inside, coordinates are double either way; rounded
+ * to float, triangles may turn flat or over where a float is coarse against them, so keep the origin near.
  *
- * No call prints, ends the process or keeps anything: any number of threads may call at the same time. The same input and
- * switches give the same output, bit for bit, for any number of threads, compiler or locale; the two libraries make
- * different meshes for the same bounds. In a forked child libptriangle refines on one thread.
+ * No call prints, ends the process or keeps anything: any number of threads may call at the same time. The same
+ * input and switches give the same output, bit for bit, for any number of threads, compiler or locale; the two
+ * libraries make different meshes for the same bounds. In a forked child libptriangle refines on one thread.
  *
- * ERRORS are returned, as an enum triangulate_status; Triangle's own function returns nothing. After an error nothing
- * is allocated, and neither *out nor *vorout nor an array they point to is changed. The words that go with it are told
- * to options->message. */
+ * ERRORS are returned, as an enum triangulate_status; Triangle's own function returns nothing. After an error
+ * nothing is allocated, and neither *out nor *vorout nor an array they point to is changed. The words that go with
+ * it are told to options->message. */
 #ifndef TRIANGLE_TRIANGLE_H
 #define TRIANGLE_TRIANGLE_H
 
