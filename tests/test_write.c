@@ -516,7 +516,7 @@ static void too_many_outputs(void **state)
     struct tri_output *output;
     tri_outputs_begin(&set);
     for (int i = 0; i < TRI_MAX_OUTPUTS; i++) {
-        char name[8];
+        char name[16];
         snprintf(name, sizeof name, "%d", i);
         assert_int_equal(tri_output_open(&set, in_directory(name), &output, NULL), TRI_OK);
     }
