@@ -1,8 +1,7 @@
 /* Hilbert keys, and a radix sort by them.
  *
  * The key walks down the quadtree from the largest cell; a state of four orientations says how the curve runs through
- * the four quadrants (table below). Three levels would fit one step of a bigger table; the sort costs more than the
- * keys. */
+ * the four quadrants (table below). */
 #include "triangle/hilbert.h"
 
 #include <assert.h>
@@ -16,19 +15,25 @@ struct keyed {
     int32_t index;
 };
 
-/* [orientation][2 * x bit + y bit]: rank of the quadrant on the curve, and the orientation inside it. */
-static const uint8_t rank_of[4][4] = {{0, 1, 3, 2}, {0, 3, 1, 2}, {2, 3, 1, 0}, {2, 1, 3, 0}};
-static const uint8_t next_of[4][4] = {{1, 0, 3, 0}, {0, 2, 1, 1}, {2, 1, 2, 3}, {3, 3, 0, 2}};
+/* Two levels in one step: [orientation][4 * two bits of x + two bits of y] is 4 * (ranks of the two quadrants on the
+ * curve, 2 bits each) + the orientation inside. It follows from one level: in orientations 0 to 3 the quadrants 2 * x
+ * bit + y bit have ranks 0132, 0312, 2310, 2130 and hold orientations 1030, 0211, 2123, 3302. */
+static const uint8_t two_levels[4][16] = {
+    {0, 14, 17, 20, 5, 9, 31, 24, 59, 55, 33, 36, 60, 50, 47, 40},
+    {1, 4, 58, 61, 15, 8, 54, 51, 16, 30, 32, 46, 21, 25, 37, 41},
+    {42, 45, 48, 62, 38, 35, 53, 57, 26, 29, 11, 7, 22, 19, 12, 2},
+    {43, 39, 27, 23, 44, 34, 28, 18, 49, 52, 10, 13, 63, 56, 6, 3}};
 
 uint64_t tri_hilbert(uint32_t x, uint32_t y)
 {
     assert(x >> BITS == 0 && y >> BITS == 0);
     uint64_t key = 0;
-    unsigned orientation = 0;
-    for (int bit = BITS - 1; bit >= 0; bit--) {
-        unsigned quadrant = 2 * (x >> bit & 1) + (y >> bit & 1);
-        key = key << 2 | rank_of[orientation][quadrant];
-        orientation = next_of[orientation][quadrant];
+    unsigned orientation = 1; /* one level more makes their number even: there all cells lie in quadrant 0, of rank 0 and
+                                 orientation 0 */
+    for (int bit = BITS - 1; bit >= 0; bit -= 2) {
+        unsigned step = two_levels[orientation][4 * (x >> bit & 3) + (y >> bit & 3)];
+        key = key << 4 | step >> 2;
+        orientation = step & 3;
     }
     return key;
 }
