@@ -4,8 +4,6 @@
 #include "triangle/criterion.h"
 #include "triangle/small_angle.h"
 
-enum { PIECES = 64 };
-
 enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                                  struct tri_error *error)
 {
@@ -97,22 +95,21 @@ int64_t tri_count_encroached(const struct tri_mesh *mesh)
 struct counting {
     struct tri_criterion criterion;
     const struct tri_refine_report *report;
-    int64_t count[PIECES][TRI_EXCUSES];
+    int64_t count[TRI_MOST_SHARES][TRI_EXCUSES];
 };
 
-static void count_piece(void *context, size_t piece)
+static void count_share(void *context, size_t share)
 {
     struct counting *c = context;
     const struct tri_mesh *mesh = c->criterion.mesh;
-    int64_t n = mesh->n_slots;
-    int32_t first = (int32_t)(n * (int64_t)piece / PIECES), last = (int32_t)(n * ((int64_t)piece + 1) / PIECES);
-    for (int32_t t = first; t < last; t++) {
+    struct tri_range range = tri_share(share, mesh->n_slots);
+    for (int32_t t = range.first; t < range.last; t++) {
         if (!tri_is_live(&mesh->tri[t]))
             continue;
         struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
         enum tri_badness badness = tri_judge(&c->criterion, &mesh->tri[t], &shape);
         if (badness != TRI_GOOD)
-            c->count[piece][excuse_for(&c->criterion, t, &shape, badness, c->report)]++;
+            c->count[share][excuse_for(&c->criterion, t, &shape, badness, c->report)]++;
     }
 }
 
@@ -121,10 +118,11 @@ void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options 
                    int64_t count[TRI_EXCUSES])
 {
     struct counting c = {{mesh, options, tri_bounds_for(options->min_angle, options->conforming)}, report, {{0}}};
-    tri_execute(options->unsuitable ? NULL : executor, PIECES, count_piece, &c);
+    size_t shares = tri_shares(mesh->n_slots);
+    tri_execute(options->unsuitable ? NULL : executor, shares, count_share, &c);
     for (int k = 0; k < TRI_EXCUSES; k++) {
         count[k] = 0;
-        for (int i = 0; i < PIECES; i++)
+        for (size_t i = 0; i < shares; i++)
             count[k] += c.count[i][k];
     }
 }

@@ -20,7 +20,7 @@
 #include "triangle/predicates.h"
 #include "triangle/quality.h"
 
-enum { GHOST = -2, FIRST_ROUND = 512, ROUND_GROWTH = 8, CHUNK = 1 << 15 };
+enum { GHOST = -2, FIRST_ROUND = 512, ROUND_GROWTH = 8 };
 
 struct rim {
     int32_t outer, a;
@@ -298,17 +298,12 @@ struct sorting {
     struct tri_triangle *sorted; /* [n_slots] */
 };
 
-static int32_t last_of(const struct tri_mesh *mesh, int32_t first)
-{
-    return mesh->n_slots - first < CHUNK ? mesh->n_slots : first + CHUNK;
-}
-
 /* A triangle's place is that of its shortest edge: there is the work of refinement, however far the rest reaches. */
-static void rank_chunk(void *context, size_t chunk)
+static void rank_share(void *context, size_t share)
 {
     const struct sorting *s = context;
-    int32_t first = (int32_t)chunk * CHUNK, last = last_of(s->mesh, first);
-    for (int32_t t = first; t < last; t++) {
+    struct tri_range range = tri_share(share, s->mesh->n_slots);
+    for (int32_t t = range.first; t < range.last; t++) {
         const int32_t *v = s->mesh->tri[t].v;
         int k = tri_shape_of(s->mesh->xy, v).shortest;
         int32_t a = v[tri_next[k]], b = v[tri_prev[k]];
@@ -318,11 +313,11 @@ static void rank_chunk(void *context, size_t chunk)
     }
 }
 
-static void move_chunk(void *context, size_t chunk)
+static void move_share(void *context, size_t share)
 {
     const struct sorting *s = context;
-    int32_t first = (int32_t)chunk * CHUNK, last = last_of(s->mesh, first);
-    for (int32_t t = first; t < last; t++) {
+    struct tri_range range = tri_share(share, s->mesh->n_slots);
+    for (int32_t t = range.first; t < range.last; t++) {
         struct tri_triangle *at = &s->sorted[s->to[t]];
         *at = s->mesh->tri[t];
         for (int e = 0; e < 3; e++)
@@ -350,14 +345,14 @@ static void assign_slots(const struct sorting *s, int32_t *start)
 static enum tri_status sort_triangles(struct tri_mesh *mesh, const int32_t *rank, const struct tri_executor *executor,
                                       struct tri_error *error)
 {
-    size_t n = (size_t)mesh->n_slots, n_chunks = (n + CHUNK - 1) / CHUNK;
+    size_t n = (size_t)mesh->n_slots;
     int32_t *start = calloc((size_t)mesh->n_vertices + 1, sizeof *start);
     struct sorting s = {mesh, rank, malloc((n + 1) * sizeof *s.to), malloc((n + 1) * sizeof *s.sorted)};
     bool done = start && s.to && s.sorted;
     if (done) {
-        tri_execute(executor, n_chunks, rank_chunk, &s);
+        tri_execute(executor, tri_shares(mesh->n_slots), rank_share, &s);
         assign_slots(&s, start);
-        tri_execute(executor, n_chunks, move_chunk, &s);
+        tri_execute(executor, tri_shares(mesh->n_slots), move_share, &s);
         memcpy(mesh->tri, s.sorted, n * sizeof *s.sorted);
         for (int32_t i = 0; i < mesh->n_subs; i++) {
             int32_t *side = mesh->sub[i].side;

@@ -6,6 +6,7 @@
 #define TRIANGLE_EXECUTOR_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 struct tri_executor {
     /* Calls task(context, i) exactly once for every i in [0, n_tasks), in any order and on any threads, and returns
@@ -23,6 +24,26 @@ static inline void tri_execute(const struct tri_executor *executor, size_t n_tas
     }
     for (size_t i = 0; i < n_tasks; i++)
         task(context, i);
+}
+
+/* Work on n items in as many shares as are worth a task each, but no more than TRI_MOST_SHARES. */
+enum { TRI_MOST_SHARES = 64, TRI_WORTH_A_TASK = 1 << 15 };
+
+struct tri_range {
+    int32_t first, last; /* first .. last - 1 */
+};
+
+static inline size_t tri_shares(int32_t n)
+{
+    size_t shares = (size_t)n / TRI_WORTH_A_TASK + 1;
+    return shares < TRI_MOST_SHARES ? shares : TRI_MOST_SHARES;
+}
+
+/* The items of share i < tri_shares(n). */
+static inline struct tri_range tri_share(size_t i, int32_t n)
+{
+    int64_t k = (int64_t)i, shares = (int64_t)tri_shares(n);
+    return (struct tri_range){(int32_t)(n * k / shares), (int32_t)(n * (k + 1) / shares)};
 }
 
 #endif

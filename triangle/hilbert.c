@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BITS = 31, DIGIT = 11, BUCKETS = 1 << DIGIT, CHUNK = 1 << 15 };
+enum { BITS = 31, DIGIT = 11, BUCKETS = 1 << DIGIT };
 
 struct keyed {
     uint64_t key;
@@ -47,11 +47,11 @@ struct keying {
     struct keyed *out;
 };
 
-static void key_chunk(void *context, size_t chunk)
+static void key_share(void *context, size_t share)
 {
     const struct keying *k = context;
-    int32_t first = (int32_t)chunk * CHUNK, last = k->n - first < CHUNK ? k->n : first + CHUNK;
-    for (int32_t i = first; i < last; i++) {
+    struct tri_range range = tri_share(share, k->n);
+    for (int32_t i = range.first; i < range.last; i++) {
         uint32_t x = (uint32_t)((k->xy[i].x - k->low.x) * k->scale), y = (uint32_t)((k->xy[i].y - k->low.y) * k->scale);
         k->out[i] = (struct keyed){tri_hilbert(x, y), i};
     }
@@ -68,7 +68,7 @@ static void key_points(const struct tri_point *xy, int32_t n, const struct tri_e
     }
     double side = high.x - low.x > high.y - low.y ? high.x - low.x : high.y - low.y;
     struct keying keying = {xy, n, low, side > 0 ? (double)((UINT32_C(1) << BITS) - 1) / side : 0, out};
-    tri_execute(executor, ((size_t)n + CHUNK - 1) / CHUNK, key_chunk, &keying);
+    tri_execute(executor, tri_shares(n), key_share, &keying);
 }
 
 /* One stable pass; returns false, with nothing moved, where all keys agree in this digit. */

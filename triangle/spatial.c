@@ -11,12 +11,11 @@
 #include "triangle/hilbert.h"
 #include "triangle/small_angle.h"
 
-enum { CHUNK = 1 << 15 };
-
 /* Vertex arrays with the first n items in another order. */
 struct reordered {
     struct tri_point *xy;
-    int32_t *on, *markers, *twin;
+    int32_t *on, *markers;
+    int32_t *twin; /* only where the mesh has it */
     double *attributes;
 };
 
@@ -36,9 +35,9 @@ static bool allocate(struct reordered *r, const struct tri_mesh *mesh)
 {
     int32_t n = mesh->n_input;
     *r = (struct reordered){array(n, sizeof *r->xy), array(n, sizeof *r->on), array(n, sizeof *r->markers),
-                            array(n, sizeof *r->twin),
+                            mesh->twin ? array(n, sizeof *r->twin) : NULL,
                             array(n, (size_t)mesh->n_attributes * sizeof *r->attributes + 1)};
-    if (r->xy && r->on && r->markers && r->twin && r->attributes)
+    if (r->xy && r->on && r->markers && (r->twin || !mesh->twin) && r->attributes)
         return true;
     free_reordered(r);
     return false;
@@ -107,12 +106,12 @@ struct restoration {
     const struct reordered *to;
 };
 
-static void restore_vertices(void *context, size_t chunk)
+static void restore_vertices(void *context, size_t share)
 {
     const struct restoration *r = context;
     const struct tri_mesh *mesh = r->mesh;
-    int32_t first = (int32_t)chunk * CHUNK, last = mesh->n_input - first < CHUNK ? mesh->n_input : first + CHUNK;
-    for (int32_t v = first; v < last; v++) {
+    struct tri_range range = tri_share(share, mesh->n_input);
+    for (int32_t v = range.first; v < range.last; v++) {
         move_vertex(mesh, r->to, v, mesh->origin[v]);
         if (mesh->twin)
             r->to->twin[mesh->origin[v]] = mesh->origin[mesh->twin[v]];
@@ -125,12 +124,12 @@ static void restore_name(const struct tri_mesh *mesh, int32_t *v)
         *v = mesh->origin[*v];
 }
 
-static void restore_corners(void *context, size_t chunk)
+static void restore_corners(void *context, size_t share)
 {
     const struct restoration *r = context;
     const struct tri_mesh *mesh = r->mesh;
-    int32_t first = (int32_t)chunk * CHUNK, last = mesh->n_slots - first < CHUNK ? mesh->n_slots : first + CHUNK;
-    for (int32_t t = first; t < last; t++)
+    struct tri_range range = tri_share(share, mesh->n_slots);
+    for (int32_t t = range.first; t < range.last; t++)
         for (int k = 0; k < 3; k++)
             restore_name(mesh, &mesh->tri[t].v[k]);
 }
@@ -145,8 +144,6 @@ static void restore_ends(const struct tri_mesh *mesh)
             restore_name(mesh, &mesh->parents[p].v[k]);
 }
 
-static size_t chunks(int32_t n) { return ((size_t)n + CHUNK - 1) / CHUNK; }
-
 enum tri_status tri_restore_points(struct tri_mesh *mesh, const struct tri_executor *executor,
                                    struct tri_error *error)
 {
@@ -156,8 +153,8 @@ enum tri_status tri_restore_points(struct tri_mesh *mesh, const struct tri_execu
         return TRI_OK;
     if (!allocate(&own, mesh))
         return no_memory(mesh, error);
-    tri_execute(executor, chunks(mesh->n_input), restore_vertices, &r);
-    tri_execute(executor, chunks(mesh->n_slots), restore_corners, &r);
+    tri_execute(executor, tri_shares(mesh->n_input), restore_vertices, &r);
+    tri_execute(executor, tri_shares(mesh->n_slots), restore_corners, &r);
     restore_ends(mesh);
     copy_back(mesh, &own);
     if (mesh->twin)

@@ -13,8 +13,6 @@
 const double tri_aspect_limits[TRI_ASPECT_BINS] = {1.1547, 1.5, 2,  2.5, 3,   4,   6,    10,
                                                    15,     25,  50, 100, 300, 1000, 10000, 100000};
 
-enum { PIECES = 64 };
-
 static const double DEGREES = 57.295779513082320877;
 
 enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh *mesh, struct tri_error *error)
@@ -109,17 +107,16 @@ struct tally {
 struct survey {
     const struct tri_mesh *mesh;
     double limits[TRI_ANGLE_BINS];
-    struct tally tally[PIECES];
+    struct tally tally[TRI_MOST_SHARES];
 };
 
-static void measure_piece(void *context, size_t piece)
+static void measure_share(void *context, size_t share)
 {
     struct survey *s = context;
-    struct tally *tally = &s->tally[piece];
-    int64_t n = s->mesh->n_slots;
-    int32_t first = (int32_t)(n * (int64_t)piece / PIECES), last = (int32_t)(n * ((int64_t)piece + 1) / PIECES);
+    struct tally *tally = &s->tally[share];
+    struct tri_range range = tri_share(share, s->mesh->n_slots);
     *tally = (struct tally){.extremes = {{HUGE_VAL, 0}, {HUGE_VAL, 0}, HUGE_VAL, 0, 1, 1}};
-    for (int32_t t = first; t < last; t++) {
+    for (int32_t t = range.first; t < range.last; t++) {
         assert(tri_is_live(&s->mesh->tri[t]));
         struct tri_shape shape = tri_shape_of(s->mesh->xy, s->mesh->tri[t].v);
         measure(&tally->shapes, &tally->extremes, &shape, s->limits);
@@ -152,8 +149,9 @@ void tri_measure_shapes(struct tri_shapes *shapes, const struct tri_mesh *mesh, 
         return;
     for (int k = 0; k < TRI_ANGLE_BINS; k++)
         s.limits[k] = k == 9 ? 0 : tri_cos_degrees(10 * k); /* right angles are common, and exact */
-    tri_execute(executor, PIECES, measure_piece, &s);
-    for (int i = 1; i < PIECES; i++)
+    size_t shares = tri_shares(mesh->n_slots);
+    tri_execute(executor, shares, measure_share, &s);
+    for (size_t i = 1; i < shares; i++)
         add_tally(&s.tally[0], &s.tally[i]);
     *shapes = s.tally[0].shapes;
     convert(shapes, &s.tally[0].extremes, mesh->unit);
