@@ -181,28 +181,18 @@ static void follow_stage(void *user, enum tri_stage begins)
     }
 }
 
-/* A triangulation needs three points that differ; that they are collinear is no error. */
-static enum tri_status check_points(const struct tri_pslg *pslg, const char *file, struct tri_error *error)
-{
-    for (int32_t i = 1; i < pslg->n_points; i++)
-        if (pslg->points[2 * (size_t)i] != pslg->points[0] || pslg->points[2 * (size_t)i + 1] != pslg->points[1])
-            return TRI_OK;
-    return pslg->n_points < 3 ? TRI_OK : tri_fail(error, TRI_BAD_INPUT, file, 0, "all vertices are at the same place");
-}
-
 static enum tri_status triangulate(struct runner *r)
 {
     struct run *run = &r->run;
-    enum tri_status status = check_points(&run->pslg, run->arguments->file, r->error);
-    if (status)
-        return status;
+    if (run->pslg.n_points >= 3 && tri_pslg_is_one_place(&run->pslg)) /* fewer: tri_generate says so */
+        return tri_fail(r->error, TRI_BAD_INPUT, run->arguments->file, 0, "all vertices are at the same place");
     struct tri_options options = run->options;
     options.refine = false; /* is a stage of its own here */
     options.stage = follow_stage;
     options.stage_user = r;
     options.leave_sorted = run->options.refine; /* which restores the order */
     options.executor = run->hooks->executor;
-    status = tri_generate(&run->mesh, &run->pslg, &options, &run->report, r->error);
+    enum tri_status status = tri_generate(&run->mesh, &run->pslg, &options, &run->report, r->error);
     end_stage(r, RUN_HOLES);
     if (status)
         return status;

@@ -103,16 +103,12 @@ static enum tri_status check_switches(const struct tri_switches *s, const struct
     return TRI_OK;
 }
 
-/* A triangulation needs three points that differ; that they are collinear is no error. */
 static enum tri_status check_points(const struct tri_pslg *pslg, struct tri_error *error)
 {
     enum tri_status status = tri_pslg_check(pslg, error);
-    if (status)
-        return status;
-    for (int32_t i = 1; i < pslg->n_points; i++)
-        if (pslg->points[2 * (size_t)i] != pslg->points[0] || pslg->points[2 * (size_t)i + 1] != pslg->points[1])
-            return TRI_OK;
-    return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "all points are at the same place");
+    if (!status && tri_pslg_is_one_place(pslg))
+        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "all points are at the same place");
+    return status;
 }
 
 static enum tri_status build(struct io_run *run)

@@ -43,6 +43,15 @@ enum tri_status tri_pslg_check(const struct tri_pslg *pslg, struct tri_error *er
     return status ? status : check_finite("region", pslg->n_regions, pslg->regions, 4, error);
 }
 
+bool tri_pslg_is_one_place(const struct tri_pslg *pslg)
+{
+    const double *points = pslg->points;
+    for (int32_t i = 1; i < pslg->n_points; i++)
+        if (points[2 * (size_t)i] != points[0] || points[2 * (size_t)i + 1] != points[1])
+            return false;
+    return true;
+}
+
 void tri_pslg_free(struct tri_pslg *pslg)
 {
     free(pslg->points);

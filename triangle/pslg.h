@@ -5,6 +5,7 @@
 #ifndef TRIANGLE_PSLG_H
 #define TRIANGLE_PSLG_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -29,6 +30,9 @@ struct tri_pslg {
 /* Fewer than three points, a negative count, a count without an array, a coordinate that is not finite:
  * TRI_BAD_INPUT; more than 2^28 of anything: TRI_TOO_LARGE. O(n). */
 enum tri_status tri_pslg_check(const struct tri_pslg *pslg, struct tri_error *error);
+
+/* Are all points at one place? Then there is nothing to triangulate; that they are collinear is no error. O(n). */
+bool tri_pslg_is_one_place(const struct tri_pslg *pslg);
 
 /* Frees the arrays (malloc'ed) and zeroes the struct. */
 void tri_pslg_free(struct tri_pslg *pslg);
