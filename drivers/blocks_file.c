@@ -30,11 +30,8 @@ enum tri_status blocks_write(const char *path, const struct par_report *report, 
     struct source source = {report, mesh};
     static struct tri_output_set set; /* outlives this call, since signals look at it */
     struct tri_output *output;
-    tri_outputs_begin(&set);
-    interrupt_guard(&set);
-    interrupt_hold();
-    enum tri_status status = tri_output_open(&set, path, &output, error);
-    interrupt_release();
+    interrupt_begin(&set);
+    enum tri_status status = interrupt_open(&set, path, &output, error);
     status = status ? status
                     : tri_write_table(output, (size_t)mesh->n_slots, ROW_BYTES, format_row, &source, NULL, error);
     return interrupt_finish(&set, status, error);

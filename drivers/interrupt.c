@@ -35,7 +35,7 @@ static void catch(int number)
         sigaction(number, &action, NULL); /* no SA_RESTART: opening a pipe that nobody reads must end */
 }
 
-void interrupt_guard(const struct tri_output_set *set)
+static void guard(const struct tri_output_set *set)
 {
     guarded = set;
     catch(SIGINT);
@@ -45,22 +45,37 @@ void interrupt_guard(const struct tri_output_set *set)
     signal(SIGPIPE, SIG_IGN);
 }
 
-void interrupt_hold(void) { held = 1; }
+static void hold(void) { held = 1; }
 
-void interrupt_release(void)
+static void release(void)
 {
     held = 0;
     if (waiting)
         end_by(waiting);
 }
 
+void interrupt_begin(struct tri_output_set *set)
+{
+    tri_outputs_begin(set);
+    guard(set);
+}
+
+enum tri_status interrupt_open(struct tri_output_set *set, const char *path, struct tri_output **output,
+                               struct tri_error *error)
+{
+    hold();
+    enum tri_status status = tri_output_open(set, path, output, error);
+    release();
+    return status;
+}
+
 enum tri_status interrupt_finish(struct tri_output_set *set, enum tri_status status, struct tri_error *error)
 {
-    interrupt_hold();
+    hold();
     if (status)
         tri_outputs_abort(set);
     else
         status = tri_outputs_commit(set, error);
-    interrupt_release();
+    release();
     return status;
 }

@@ -391,9 +391,7 @@ static enum tri_status write_file(struct writer *w, const struct kind *kind, str
         return tri_fail(w->error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
     console_say(w->files->console, "Writing %s.\n", path);
     struct tri_output *output;
-    interrupt_hold();
-    enum tri_status status = tri_output_open(set, path, &output, w->error);
-    interrupt_release();
+    enum tri_status status = interrupt_open(set, path, &output, w->error);
     free(path);
     status = status ? status : kind->write(w, output);
     return status ? status : tri_write_comment(output, w->files->arguments->argc, w->files->arguments->argv, w->error);
@@ -416,8 +414,7 @@ enum tri_status mesh_files_write(const struct mesh_files *files, struct tri_erro
 {
     static struct tri_output_set set; /* outlives this call, since signals look at it */
     struct writer w = {.files = files, .error = error};
-    tri_outputs_begin(&set);
-    interrupt_guard(&set);
+    interrupt_begin(&set);
     enum tri_status status = prepare(&w);
     status = status ? status : write_all(&w, &set);
     status = interrupt_finish(&set, status, error);

@@ -191,11 +191,8 @@ static enum tri_status write_text(const char *path, const char *text, struct tri
 {
     static struct tri_output_set set; /* outlives this call, since signals look at it */
     struct tri_output *output;
-    tri_outputs_begin(&set);
-    interrupt_guard(&set);
-    interrupt_hold();
-    enum tri_status status = tri_output_open(&set, path, &output, error);
-    interrupt_release();
+    interrupt_begin(&set);
+    enum tri_status status = interrupt_open(&set, path, &output, error);
     status = status ? status : tri_output_write(output, text, strlen(text), error);
     status = status ? status : tri_output_write(output, "\n", 1, error);
     return interrupt_finish(&set, status, error);
