@@ -7,6 +7,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/predicates.c
     triangle/pslg.c
     triangle/mesh.c
+    triangle/radix.c
     triangle/hilbert.c
     triangle/spatial.c
     triangle/delaunay.c
@@ -20,6 +21,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/bad_queue.c
     triangle/criterion.c
     triangle/refine.c
+    triangle/numbering.c
     triangle/census.c
     triangle/stats.c
     triangle/check.c

@@ -14,11 +14,14 @@ const char long_options_help[] =
     "  --output BASE      results are called BASE.node, BASE.ele, BASE.poly and so on\n"
     "  --report FILE      seconds, blocks, memory and mesh statistics, as JSON\n"
     "  --blocks FILE      block and phase of each triangle, a line each, for meshplot --blocks\n"
+    "  --numbering curve  new vertices and triangles are numbered along a space-filling curve, which makes\n"
+    "                     solvers faster (the default); or, quicker,\n"
+    "  --numbering blocks as the blocks of the schedule made them\n"
     "  --progress         say on standard error how far the work is: one line on a terminal (there by\n"
     "  --no-progress      default), else a line for each stage. Never with -Q\n"
     "  --version, --help\n";
 
-enum id { THREADS, MAX_AREA, MIN_ANGLE, OUTPUT, REPORT, BLOCKS, PROGRESS, NO_PROGRESS, VERSION, HELP };
+enum id { THREADS, MAX_AREA, MIN_ANGLE, OUTPUT, REPORT, BLOCKS, NUMBERING, PROGRESS, NO_PROGRESS, VERSION, HELP };
 
 static const struct kind {
     const char *name;
@@ -26,8 +29,8 @@ static const struct kind {
     bool has_value;
 } kinds[] = {
     {"threads", THREADS, true},   {"max-area", MAX_AREA, true}, {"min-angle", MIN_ANGLE, true},
-    {"output", OUTPUT, true},     {"report", REPORT, true},     {"blocks", BLOCKS, true}, {"progress", PROGRESS, false},
-    {"no-progress", NO_PROGRESS, false}, {"version", VERSION, false}, {"help", HELP, false},
+    {"output", OUTPUT, true},     {"report", REPORT, true},     {"blocks", BLOCKS, true}, {"numbering", NUMBERING, true},
+    {"progress", PROGRESS, false}, {"no-progress", NO_PROGRESS, false}, {"version", VERSION, false}, {"help", HELP, false},
 };
 
 static const struct kind *find_kind(const char *name, size_t length)
@@ -78,6 +81,14 @@ static enum tri_status take_angle(struct tri_switches *switches, const char *val
     return TRI_OK;
 }
 
+static enum tri_status take_numbering(struct long_options *options, const char *value, struct tri_error *error)
+{
+    options->by_block = strcmp(value, "blocks") == 0;
+    if (options->by_block || strcmp(value, "curve") == 0)
+        return TRI_OK;
+    return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--numbering: \"%.40s\" is neither curve nor blocks", value);
+}
+
 static enum tri_status take_name(const char **name, const struct kind *kind, const char *value, struct tri_error *error)
 {
     if (!*value)
@@ -96,6 +107,7 @@ static enum tri_status apply(struct long_options *options, struct tri_switches *
     case OUTPUT: return take_name(&options->output, kind, value, error);
     case REPORT: return take_name(&options->report, kind, value, error);
     case BLOCKS: return take_name(&options->blocks, kind, value, error);
+    case NUMBERING: return take_numbering(options, value, error);
     case PROGRESS: options->progress = PROGRESS_YES; break;
     case NO_PROGRESS: options->progress = PROGRESS_NO; break;
     case VERSION: options->version = true; break;

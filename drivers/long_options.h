@@ -18,6 +18,7 @@ struct long_options {
     const char *report; /* file; NULL: none */
     const char *blocks; /* file; NULL: none */
     enum long_options_progress progress;
+    bool by_block;      /* --numbering blocks */
     bool version, help;
 };
 

@@ -34,6 +34,7 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     struct program *p = user;
     struct par_options options = par_defaults();
     options.threads = p->threads;
+    options.by_block = p->options.by_block;
     options.progress = progress_step;
     options.progress_user = &p->progress;
     progress_begin(&p->progress, mesh->n_slots, p->threads);
@@ -131,8 +132,8 @@ static int run_program(struct program *p, const struct arguments *arguments)
         progress_stage(&p->progress, "reading and triangulating");
     int code = run_arguments(arguments, &hooks);
     if (!arguments->file)
-        puts("  --threads N  --max-area X  --min-angle X  --output BASE  --report FILE  --blocks FILE  --progress"
-             "  --help");
+        puts("  --threads N  --max-area X  --min-angle X  --output BASE  --report FILE  --blocks FILE"
+             "  --numbering curve|blocks  --progress  --help");
     par_report_free(&p->schedule);
     return code;
 }

@@ -16,6 +16,7 @@
 #include "sched/phase.h"
 #include "sched/theory.h"
 #include "triangle/criterion.h"
+#include "triangle/numbering.h"
 #include "triangle/quality.h"
 
 /* Cells hold one in CELLS of the final triangles, within limits: small ones keep many threads busy, large ones make
@@ -259,6 +260,37 @@ static enum tri_status refine_rest(struct par_state *state, const struct tri_ref
     return status;
 }
 
+/* Numbers that depend on the mesh alone; what is free in its arrays is gone then. */
+static enum tri_status number(struct par_state *state, struct tri_error *error)
+{
+    double began = par_seconds();
+    struct tri_executor executor = par_executor(&state->threads);
+    enum tri_status status = tri_number(state->mesh, &executor, error);
+    state->numbered = state->mesh->n_vertices;
+    state->report->seconds_number += par_seconds() - began;
+    return status;
+}
+
+/* What blocks have left unused is gone afterwards, by numbering if that is now due. Slots move. */
+static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, enum tri_status status,
+                                     struct tri_error *error)
+{
+    double began = par_seconds();
+    if (!status && numbering) {
+        par_room_mark(&state->spare, state->mesh);
+        state->report->seconds_merge += par_seconds() - began;
+        status = number(state, error);
+        if (!status) {
+            par_room_free(&state->spare);
+            return status;
+        }
+        began = par_seconds();
+    }
+    par_room_close(&state->spare, state->mesh, state->threads);
+    state->report->seconds_merge += par_seconds() - began;
+    return status;
+}
+
 /* Rounds of four phases until nothing is left to do, each round on blocks four times as large. */
 static enum tri_status run_rounds(struct par_state *state, struct par_partition *partition, struct tri_error *error)
 {
@@ -297,13 +329,10 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         report->prerefined = state->mesh->n_slots;
     }
     status = status ? status : run_rounds(state, partition, error);
-    double closing = par_seconds();
-    /* Slots move: what is left over must be found again. */
     bool left_over = state->pool.n > 0;
-    par_room_close(&state->spare, state->mesh, state->threads);
-    report->seconds_number += par_seconds() - closing;
+    status = leave_no_gaps(state, top && !state->options->by_block && !left_over, status, error);
     double last = par_seconds();
-    if (!status && left_over)
+    if (!status && left_over) /* slots have moved */
         status = fill_pool(state, quality, error);
     if (top)
         report->left_over = left_over ? state->pool.n : 0;
@@ -385,7 +414,8 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
 {
     double began = par_seconds();
     *report = (struct par_report){.threads = threads_for(options->threads)};
-    struct par_state state = {.mesh = mesh, .options = options, .threads = report->threads, .report = report};
+    struct par_state state = {.mesh = mesh, .options = options, .threads = report->threads, .report = report,
+                              .numbered = -1};
     struct tri_refine_options usual = *quality;
     enum tri_status status = tri_refine_check(mesh, quality, error);
     if (status)
@@ -402,6 +432,8 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
             status = refine_rest(&state, quality, true, error);
         report->seconds_last += par_seconds() - last;
     }
+    if (!status && report->levels > 0 && !options->by_block && mesh->n_vertices != state.numbered)
+        status = number(&state, error);
     free(state.pool.item);
     par_room_free(&state.spare);
     report->seconds_total = par_seconds() - began;

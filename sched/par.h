@@ -20,6 +20,9 @@ struct par_options {
                                 is asked. Part of the decomposition */
     bool size_test_in_parallel; /* quality.unsuitable may be called by several threads at once; else, where there is a
                                    size test, the mesh is refined sequentially */
+    bool by_block;           /* new vertices and triangles are numbered as blocks made them: quicker. Else what the
+                                schedule made is numbered by the mesh alone, along a curve (triangle/numbering.h): a
+                                solver that goes through the triangles runs twice as fast then */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
     int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, and pause often */
     /* Told by the calling thread: the phase that begins (0: pre-refinement, then 1 to 4), triangles so far (with the
@@ -48,7 +51,8 @@ struct par_report {
     int64_t deferred, left_over;  /* refused by fences in all phases; bad triangles that the last sequential call got */
     int64_t pauses;               /* times a block waited for room */
     double seconds_prerefine, seconds_partition, seconds_seeds, seconds_room, seconds_merge, seconds_last,
-        seconds_number, seconds_total;
+        seconds_total;
+    double seconds_number;        /* part of the total that numbering by the mesh alone took */
     double seconds_refine;        /* wall time of the phases' parallel parts */
     double phase_seconds[4];      /* refine, by colour, over all rounds */
     struct par_block_report *blocks; /* [n_blocks] in canonical order; owned by the report */

@@ -9,7 +9,7 @@ static void test_curve_is_a_path_through_all_cells(void **state)
     (void)state;
     for (int bits = 1; bits <= 6; bits++) {
         uint32_t side = UINT32_C(1) << bits;
-        int shift = 31 - bits; /* cells of the coarse grid are blocks of the fine one */
+        int shift = 18 - bits; /* cells of the coarse grid are blocks of the fine one */
         int32_t n = (int32_t)(side * side);
         int32_t *at = malloc((size_t)n * sizeof *at);
         for (int32_t i = 0; i < n; i++)
@@ -36,12 +36,23 @@ static void test_curve_is_hierarchical(void **state)
     (void)state;
     struct support_random random = {1};
     for (int i = 0; i < 2000; i++) {
-        uint32_t x = (uint32_t)(support_bits(&random) >> 33), y = (uint32_t)(support_bits(&random) >> 33);
-        int shift = 1 + support_below(&random, 30);
+        uint32_t x = (uint32_t)(support_bits(&random) >> 46), y = (uint32_t)(support_bits(&random) >> 46);
+        int shift = 1 + support_below(&random, 17);
         uint32_t mask = ~((UINT32_C(1) << shift) - 1);
         assert_true(tri_hilbert(x, y) >> 2 * shift == tri_hilbert(x & mask, y & mask) >> 2 * shift);
         assert_true(tri_hilbert(x, y) != tri_hilbert(x ^ 1, y) && tri_hilbert(x, y) != tri_hilbert(x, y ^ 1));
     }
+}
+
+/* All n points along the curve. */
+static void order_all(const struct tri_point *xy, int32_t n, int32_t *order)
+{
+    uint64_t *scratch = malloc((2 * (size_t)n + 1) * sizeof *scratch);
+    assert_non_null(scratch);
+    for (int32_t i = 0; i < n; i++)
+        order[i] = i;
+    tri_hilbert_order(xy, order, n, scratch, NULL);
+    free(scratch);
 }
 
 static void assert_permutation(const int32_t *order, int32_t n)
@@ -62,7 +73,7 @@ static void test_order_of_a_grid_is_a_path(void **state)
     int32_t order[4096];
     for (int i = 0; i < 4096; i++)
         xy[(i * 1031) % 4096] = (struct tri_point){i / 64, i % 64};
-    assert_int_equal(tri_hilbert_order(xy, 4096, order, NULL, NULL), TRI_OK);
+    order_all(xy, 4096, order);
     assert_permutation(order, 4096);
     double length = 0;
     for (int i = 1; i < 4096; i++) {
@@ -79,7 +90,7 @@ static void test_equal_points_are_neighbours_in_increasing_index(void **state)
         struct tri_pslg pslg = support_points(SUPPORT_LATTICE, 500, seed);
         int32_t order[500];
         const struct tri_point *xy = (const struct tri_point *)pslg.points;
-        assert_int_equal(tri_hilbert_order(xy, 500, order, NULL, NULL), TRI_OK);
+        order_all(xy, 500, order);
         assert_permutation(order, 500);
         int places = 0;
         for (int i = 0; i < 500; i++) {
@@ -101,7 +112,7 @@ static void test_crowded_cells_are_sorted(void **state)
     for (int i = 0; i < 63; i++)
         xy[i] = (struct tri_point){ldexp(i * 5 % 7, -60), ldexp(i % 3, -60)};
     xy[63] = (struct tri_point){1, 1};
-    assert_int_equal(tri_hilbert_order(xy, 64, order, NULL, NULL), TRI_OK);
+    order_all(xy, 64, order);
     assert_permutation(order, 64);
     int places = 0;
     for (int i = 0; i < 64; i++)
@@ -109,20 +120,62 @@ static void test_crowded_cells_are_sorted(void **state)
     assert_int_equal(places, 22);
 }
 
+/* The order of the points, not of their ids: any permutation of the ids comes out the same. Rings within rings, each a
+ * million times smaller, fill many cells with cells. */
+static void test_any_order_comes_out_the_same(void **state)
+{
+    (void)state;
+    enum { N = 3000 };
+    struct support_random random = {3};
+    struct tri_point *xy = malloc(N * sizeof *xy);
+    int32_t order[N], first[N];
+    uint64_t *scratch = malloc(2 * N * sizeof *scratch);
+    for (int i = 0; i < N; i++) {
+        double size = ldexp(1, -20 * (i % 5));
+        xy[i] = (struct tri_point){size * support_unit(&random), size * support_unit(&random)};
+        first[i] = i;
+    }
+    order_all(xy, N, first);
+    assert_permutation(first, N);
+    for (int trial = 0; trial < 10; trial++) {
+        for (int i = 0; i < N; i++)
+            order[i] = i;
+        for (int i = N - 1; i > 0; i--) {
+            int k = support_below(&random, i + 1), swap = order[i];
+            order[i] = order[k];
+            order[k] = swap;
+        }
+        tri_hilbert_order(xy, order, N, scratch, NULL);
+        assert_memory_equal(order, first, sizeof order);
+    }
+    double length = 0; /* along the innermost rings as well: a curve of their own */
+    int inner = 0;
+    struct tri_point last = {0, 0};
+    for (int i = 0; i < N; i++)
+        if (first[i] % 5 == 4) {
+            length += fabs(xy[first[i]].x - last.x) + fabs(xy[first[i]].y - last.y);
+            last = xy[first[i]];
+            inner++;
+        }
+    assert_true(length < 3 * ldexp(sqrt(inner), -80));
+    free(scratch);
+    free(xy);
+}
+
 static void test_degenerate_boxes(void **state)
 {
     (void)state;
     struct tri_point xy[5] = {{1, 2}, {1, 2}, {1, 2}, {1, 2}, {1, 2}};
     int32_t order[5];
-    assert_int_equal(tri_hilbert_order(xy, 0, order, NULL, NULL), TRI_OK);
-    assert_int_equal(tri_hilbert_order(xy, 1, order, NULL, NULL), TRI_OK);
+    order_all(xy, 0, order);
+    order_all(xy, 1, order);
     assert_int_equal(order[0], 0);
-    assert_int_equal(tri_hilbert_order(xy, 5, order, NULL, NULL), TRI_OK);
+    order_all(xy, 5, order);
     for (int i = 0; i < 5; i++)
         assert_int_equal(order[i], i);
     for (int i = 0; i < 5; i++)
         xy[i] = (struct tri_point){i % 2 ? 0x1p200 : -0x1p200, i * 0x1p-216};
-    assert_int_equal(tri_hilbert_order(xy, 5, order, NULL, NULL), TRI_OK);
+    order_all(xy, 5, order);
     assert_permutation(order, 5);
 }
 
@@ -134,6 +187,7 @@ int main(void)
         cmocka_unit_test(test_order_of_a_grid_is_a_path),
         cmocka_unit_test(test_equal_points_are_neighbours_in_increasing_index),
         cmocka_unit_test(test_crowded_cells_are_sorted),
+        cmocka_unit_test(test_any_order_comes_out_the_same),
         cmocka_unit_test(test_degenerate_boxes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

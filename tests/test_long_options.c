@@ -47,7 +47,10 @@ static void test_both_forms(void **state)
     assert_int_equal(TAKE(&t, "--progress", "letter"), TRI_OK);
     assert_int_equal(t.options.progress, PROGRESS_YES);
     assert_int_equal(t.at, 1);
-    assert_false(t.options.help || t.options.version);
+    assert_int_equal(TAKE(&t, "--numbering", "blocks"), TRI_OK);
+    assert_true(t.options.by_block);
+    assert_int_equal(TAKE_ALONE(&t, "--numbering=curve"), TRI_OK);
+    assert_false(t.options.by_block || t.options.help || t.options.version);
 }
 
 /* Bounds become switches, exponents and all. */
@@ -74,6 +77,7 @@ static void test_refused(void **state)
         {"--max-area", "inf"},    {"--max-area", "nan"},    {"--max-area", "1e999"},  {"--max-area=", NULL},
         {"--max-area", "1 "},     {"--min-angle", "60.1"},  {"--min-angle", "-0.1"},  {"--min-angle", "nan"},
         {"--output", ""},         {"--report", NULL},       {"--progress=1", NULL},   {"--help=", NULL},
+        {"--numbering", "block"}, {"--numbering=", NULL},   {"--numbering", NULL},    {"--numbers", "curve"},
         {"--thread", "2"},        {"--threadss", "2"},      {"--", "letter"},         {"--=1", NULL},
     };
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {

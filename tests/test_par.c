@@ -10,6 +10,7 @@
 #include <stdatomic.h>
 
 #include "sched/par.h"
+#include "triangle/numbering.h"
 #include "triangle/quality.h"
 
 
@@ -221,8 +222,8 @@ static void test_any_number_of_threads_and_order_of_blocks_make_one_mesh(void **
     }
 }
 
-/* Ids tell from which room a block took them. Places do not, where one schedule does everything: a second one, and what
- * is left over, begin in the order of the ids. */
+/* By block, ids tell from which room a block took them. Places do not, where one schedule does everything: a second one,
+ * and what is left over, begin in the order of the ids. And the same mesh has the same numbers, unless by block. */
 static void test_room_moves_ids_alone(void **state)
 {
     (void)state;
@@ -236,12 +237,19 @@ static void test_room_moves_ids_alone(void **state)
         for (int k = 0; k < 3; k++) {
             options.tight_room = rooms[k];
             options.shuffle = (unsigned)k;
+            options.by_block = k == 1;
             struct tri_mesh other = refine(&start, &options, &tight);
             struct support_places others = support_places(&other);
             bool same = support_same_places(&places, &others);
             assert_true(tight.pauses > 0);
             if (report.levels == 1 && report.left_over == 0 && trials[i].angle <= 30)
                 assert_true(same);
+            if (same && !options.by_block)
+                assert_same_bytes(&mesh, &other);
+            if (same && options.by_block) {
+                assert_int_equal(tri_number(&other, NULL, NULL), TRI_OK);
+                assert_same_bytes(&mesh, &other);
+            }
             print_message("  %-28s room %d: levels %d, left over %lld, %s\n", trials[i].file, (int)rooms[k],
                           report.levels, (long long)report.left_over, same ? "same" : "other");
             judge(&start, &other, sum_bad(&other, &start.options.quality, &tight.total));

@@ -389,15 +389,28 @@ static enum tri_status build_from(struct tri_mesh *mesh, const int32_t *order, i
     return status;
 }
 
+/* The vertices along the curve; they are already where the mesh knows their origin. */
+static enum tri_status order_vertices(const struct tri_mesh *mesh, int32_t *order, const struct tri_executor *executor,
+                                      struct tri_error *error)
+{
+    int32_t n = mesh->n_vertices;
+    for (int32_t v = 0; v < n; v++)
+        order[v] = v;
+    if (mesh->origin)
+        return TRI_OK;
+    uint64_t *scratch = malloc((2 * (size_t)n + 1) * sizeof *scratch);
+    if (!scratch)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sorting %d points", (int)n);
+    tri_hilbert_order(mesh->xy, order, n, scratch, executor);
+    free(scratch);
+    return TRI_OK;
+}
+
 static enum tri_status triangulate(struct tri_mesh *mesh, int32_t *order, int32_t *scratch,
                                    const struct tri_executor *executor, struct tri_error *error)
 {
-    enum tri_status status = TRI_OK;
     bool in_order = mesh->origin;
-    for (int32_t v = 0; in_order && v < mesh->n_vertices; v++)
-        order[v] = v;
-    if (!in_order)
-        status = tri_hilbert_order(mesh->xy, mesh->n_vertices, order, executor, error);
+    enum tri_status status = order_vertices(mesh, order, executor, error);
     if (status)
         return status;
     int32_t n = drop_duplicates(mesh, order, mesh->n_vertices);

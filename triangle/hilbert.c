@@ -1,4 +1,4 @@
-/* Hilbert keys, and a radix sort by them.
+/* Hilbert keys, and a sort by them.
  *
  * The key walks down the quadtree from the largest cell; a state of four orientations says how the curve runs through
  * the four quadrants (table below). */
@@ -6,14 +6,14 @@
 
 #include <assert.h>
 #include <stdlib.h>
-#include <string.h>
 
-enum { BITS = 31, DIGIT = 11, BUCKETS = 1 << DIGIT };
+#include "triangle/radix.h"
 
-struct keyed {
-    uint64_t key;
-    int32_t index;
-};
+/* An item to sort is the cell of a point and its id. Points of one cell follow a curve over their own box, unless they
+ * are FEW. */
+enum { BITS = 18, ID_BITS = 28, FEW = 16 };
+
+_Static_assert(2 * BITS + ID_BITS == 64 && INT64_C(1) << ID_BITS == TRI_MAX_VERTICES, "cell and id fill an item");
 
 /* Two levels in one step: [orientation][4 * two bits of x + two bits of y] is 4 * (ranks of the two quadrants on the
  * curve, 2 bits each) + the orientation inside. It follows from one level: in orientations 0 to 3 the quadrants 2 * x
@@ -28,9 +28,8 @@ uint64_t tri_hilbert(uint32_t x, uint32_t y)
 {
     assert(x >> BITS == 0 && y >> BITS == 0);
     uint64_t key = 0;
-    unsigned orientation = 1; /* one level more makes their number even: there all cells lie in quadrant 0, of rank 0 and
-                                 orientation 0 */
-    for (int bit = BITS - 1; bit >= 0; bit -= 2) {
+    unsigned orientation = 0;
+    for (int bit = BITS - 2; bit >= 0; bit -= 2) {
         unsigned step = two_levels[orientation][4 * (x >> bit & 3) + (y >> bit & 3)];
         key = key << 4 | step >> 2;
         orientation = step & 3;
@@ -38,13 +37,14 @@ uint64_t tri_hilbert(uint32_t x, uint32_t y)
     return key;
 }
 
-/* What keys are made of. */
+/* What items are made of. */
 struct keying {
     const struct tri_point *xy;
+    const int32_t *order;
     int32_t n;
     struct tri_point low;
     double scale;
-    struct keyed *out;
+    uint64_t *item;
 };
 
 static void key_share(void *context, size_t share)
@@ -52,47 +52,62 @@ static void key_share(void *context, size_t share)
     const struct keying *k = context;
     struct tri_range range = tri_share(share, k->n);
     for (int32_t i = range.first; i < range.last; i++) {
-        uint32_t x = (uint32_t)((k->xy[i].x - k->low.x) * k->scale), y = (uint32_t)((k->xy[i].y - k->low.y) * k->scale);
-        k->out[i] = (struct keyed){tri_hilbert(x, y), i};
+        struct tri_point p = k->xy[k->order[i]];
+        uint32_t x = (uint32_t)((p.x - k->low.x) * k->scale), y = (uint32_t)((p.y - k->low.y) * k->scale);
+        k->item[i] = tri_hilbert(x, y) << ID_BITS | (uint32_t)k->order[i];
     }
 }
 
-static void key_points(const struct tri_point *xy, int32_t n, const struct tri_executor *executor, struct keyed *out)
+struct box {
+    struct tri_point low, high;
+};
+
+static struct box box_around(struct box a, struct box b)
 {
-    struct tri_point low = xy[0], high = xy[0];
-    for (int32_t i = 1; i < n; i++) {
-        low.x = xy[i].x < low.x ? xy[i].x : low.x;
-        low.y = xy[i].y < low.y ? xy[i].y : low.y;
-        high.x = xy[i].x > high.x ? xy[i].x : high.x;
-        high.y = xy[i].y > high.y ? xy[i].y : high.y;
-    }
-    double side = high.x - low.x > high.y - low.y ? high.x - low.x : high.y - low.y;
-    struct keying keying = {xy, n, low, side > 0 ? (double)((UINT32_C(1) << BITS) - 1) / side : 0, out};
-    tri_execute(executor, tri_shares(n), key_share, &keying);
+    return (struct box){{a.low.x < b.low.x ? a.low.x : b.low.x, a.low.y < b.low.y ? a.low.y : b.low.y},
+                        {a.high.x > b.high.x ? a.high.x : b.high.x, a.high.y > b.high.y ? a.high.y : b.high.y}};
 }
 
-/* One stable pass; returns false, with nothing moved, where all keys agree in this digit. */
-static bool radix_pass(const struct keyed *from, struct keyed *to, int32_t n, int shift)
+struct boxing {
+    const struct tri_point *xy;
+    const int32_t *order;
+    int32_t n;
+    struct box box[TRI_MOST_SHARES];
+};
+
+static void box_share(void *context, size_t share)
 {
-    int32_t start[BUCKETS] = {0}, sum = 0;
-    for (int32_t i = 0; i < n; i++)
-        start[from[i].key >> shift & (BUCKETS - 1)]++;
-    if (start[from[0].key >> shift & (BUCKETS - 1)] == n)
-        return false;
-    for (int b = 0; b < BUCKETS; b++) {
-        int32_t count = start[b];
-        start[b] = sum;
-        sum += count;
+    struct boxing *b = context;
+    struct tri_range range = tri_share(share, b->n);
+    struct tri_point first = b->xy[b->order[range.first]];
+    struct box box = {first, first};
+    for (int32_t i = range.first + 1; i < range.last; i++) {
+        struct tri_point p = b->xy[b->order[i]];
+        box = box_around(box, (struct box){p, p});
     }
-    for (int32_t i = 0; i < n; i++)
-        to[start[from[i].key >> shift & (BUCKETS - 1)]++] = from[i];
-    return true;
+    b->box[share] = box;
 }
 
-/* A point with its index, to order the points of one cell. */
+static struct box box_of(const struct tri_point *xy, const int32_t *order, int32_t n,
+                         const struct tri_executor *executor)
+{
+    struct boxing boxing = {xy, order, n, {{{0, 0}, {0, 0}}}};
+    tri_execute(executor, tri_shares(n), box_share, &boxing);
+    struct box box = boxing.box[0];
+    for (size_t share = 1; share < tri_shares(n); share++)
+        box = box_around(box, boxing.box[share]);
+    return box;
+}
+
+struct emission {
+    const uint64_t *item;
+    int32_t *order, n;
+};
+
+/* A point with its id, to order the points of one cell. */
 struct placed {
     struct tri_point q;
-    int32_t index;
+    int32_t id;
 };
 
 static int compare_placed(const void *left, const void *right)
@@ -102,54 +117,63 @@ static int compare_placed(const void *left, const void *right)
         return a->q.x < b->q.x ? -1 : 1;
     if (a->q.y != b->q.y)
         return a->q.y < b->q.y ? -1 : 1;
-    return (a->index > b->index) - (a->index < b->index);
+    return (a->id > b->id) - (a->id < b->id);
 }
 
-static bool order_cell(const struct tri_point *xy, int32_t *order, int32_t n)
+
+static void order_few(const struct tri_point *xy, int32_t *order, int32_t n)
 {
-    struct placed *cell = malloc((size_t)n * sizeof *cell);
-    if (!cell)
-        return false;
+    struct placed cell[FEW];
+    assert(n <= FEW);
     for (int32_t i = 0; i < n; i++)
         cell[i] = (struct placed){xy[order[i]], order[i]};
     qsort(cell, (size_t)n, sizeof *cell, compare_placed);
     for (int32_t i = 0; i < n; i++)
-        order[i] = cell[i].index;
-    free(cell);
-    return true;
+        order[i] = cell[i].id;
 }
 
-static bool emit_order(const struct tri_point *xy, const struct keyed *sorted, int32_t n, int32_t *order)
+static void order_points(const struct tri_point *xy, int32_t *order, int32_t n, uint64_t *item, uint64_t *scratch,
+                         const struct tri_executor *executor);
+
+/* Cells with several points are sorted within: by coordinates, or along a curve of their own. */
+static void order_cells(const struct tri_point *xy, int32_t *order, int32_t n, uint64_t *item, uint64_t *scratch,
+                        const struct tri_executor *executor)
 {
-    for (int32_t i = 0; i < n; i++)
-        order[i] = sorted[i].index;
     for (int32_t first = 0, end; first < n; first = end) {
-        for (end = first + 1; end < n && sorted[end].key == sorted[first].key;)
+        for (end = first + 1; end < n && item[end] >> ID_BITS == item[first] >> ID_BITS;)
             end++;
-        if (end - first > 1 && !order_cell(xy, order + first, end - first))
-            return false;
+        if (end - first > FEW)
+            order_points(xy, order + first, end - first, item + first, scratch + first, executor);
+        else if (end - first > 1)
+            order_few(xy, order + first, end - first);
     }
-    return true;
 }
 
-enum tri_status tri_hilbert_order(const struct tri_point *xy, int32_t n, int32_t *order,
-                                  const struct tri_executor *executor, struct tri_error *error)
+static void emit_share(void *context, size_t share)
 {
-    if (n == 0)
-        return TRI_OK;
-    struct keyed *from = malloc((size_t)n * sizeof *from), *to = malloc((size_t)n * sizeof *to);
-    bool done = from && to;
-    if (done) {
-        key_points(xy, n, executor, from);
-        for (int shift = 0; shift < 2 * BITS; shift += DIGIT)
-            if (radix_pass(from, to, n, shift)) {
-                struct keyed *swap = from;
-                from = to;
-                to = swap;
-            }
-        done = emit_order(xy, from, n, order);
-    }
-    free(from);
-    free(to);
-    return done ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sorting %d points", (int)n);
+    const struct emission *e = context;
+    struct tri_range range = tri_share(share, e->n);
+    for (int32_t i = range.first; i < range.last; i++)
+        e->order[i] = (int32_t)(e->item[i] & ((UINT64_C(1) << ID_BITS) - 1));
+}
+
+static void order_points(const struct tri_point *xy, int32_t *order, int32_t n, uint64_t *item, uint64_t *scratch,
+                         const struct tri_executor *executor)
+{
+    struct box box = box_of(xy, order, n, executor);
+    double width = box.high.x - box.low.x, height = box.high.y - box.low.y, side = width > height ? width : height;
+    struct keying keying = {xy, order, n, box.low, side > 0 ? ((1 << BITS) - 1) / side : 0, item};
+    struct emission emission = {item, order, n};
+    tri_execute(executor, tri_shares(n), key_share, &keying);
+    tri_radix_sort(item, scratch, n, side > 0 ? ID_BITS : 0, 64, executor); /* all at one place: by id */
+    tri_execute(executor, tri_shares(n), emit_share, &emission);
+    if (side > 0)
+        order_cells(xy, order, n, item, scratch, executor);
+}
+
+void tri_hilbert_order(const struct tri_point *xy, int32_t *order, int32_t n, uint64_t *scratch,
+                       const struct tri_executor *executor)
+{
+    if (n > 0)
+        order_points(xy, order, n, scratch, scratch + n, executor);
 }

@@ -6,12 +6,14 @@
 #include "triangle/executor.h"
 #include "triangle/mesh.h"
 
-/* Position of cell (x, y), 0 <= x, y < 2^31, on the curve through the 2^31 x 2^31 cells. */
+/* Position of cell (x, y), 0 <= x, y < 2^18, on the curve through the 2^18 x 2^18 cells. */
 uint64_t tri_hilbert(uint32_t x, uint32_t y);
 
-/* order[n] receives 0 .. n - 1 sorted by position on the curve over the bounding box; equal points come one after
- * another in increasing index, so that duplicates are neighbours. O(n), and O(k log k) for k points in one cell. */
-enum tri_status tri_hilbert_order(const struct tri_point *xy, int32_t n, int32_t *order,
-                                  const struct tri_executor *executor, struct tri_error *error);
+/* Sorts the ids order[n] of points by position on the curve over the bounding box of those points; points of one cell
+ * by their positions on a curve over their own box, or, if they are a few, by coordinates; equal points by id, so that
+ * duplicates are neighbours. But for the ids of equal points the result depends on the points alone, not on the order
+ * they come in. scratch[2 * n]. O(n), and as much again for what is crowded in a box that much smaller. Cannot fail. */
+void tri_hilbert_order(const struct tri_point *xy, int32_t *order, int32_t n, uint64_t *scratch,
+                       const struct tri_executor *executor);
 
 #endif

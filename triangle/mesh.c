@@ -1,4 +1,4 @@
-/* Storage of the mesh: growth, links, compaction, and the check of its invariants.
+/* Storage of the mesh: growth, links, reordering, compaction, and the check of its invariants.
  *
  * Growth is by half, through realloc: for large arrays the C library moves pages rather than bytes, so that the peak
  * stays near what is used. The triangle array starts at a cache line, so that a triangle never straddles two. */
@@ -198,6 +198,56 @@ int32_t tri_mesh_add_sub(struct tri_mesh *mesh, int32_t from, int32_t to, int32_
     mesh->parents[parent] = (struct tri_parent){{from, to}, segment};
     mesh->sub[s] = (struct tri_subsegment){{from, to}, {TRI_NONE, TRI_NONE}, marker, parent};
     return s;
+}
+
+/* One array of items on the way to their new places. */
+struct gathering {
+    char *array; /* from where the first item goes */
+    char *scratch;
+    const char *origin; /* item 0 */
+    size_t item;
+    const int32_t *from;
+    int32_t n;
+};
+
+static void gather_share(void *context, size_t share)
+{
+    const struct gathering *g = context;
+    struct tri_range range = tri_share(share, g->n);
+    size_t item = g->item;
+    for (int32_t i = range.first; i < range.last; i++) {
+        const char *from = g->origin + (size_t)g->from[i] * item;
+        char *to = g->scratch + (size_t)i * item;
+        if (item == sizeof(int32_t)) /* lengths that the compiler knows */
+            memcpy(to, from, sizeof(int32_t));
+        else if (item == sizeof(struct tri_point))
+            memcpy(to, from, sizeof(struct tri_point));
+        else
+            memcpy(to, from, item);
+    }
+}
+
+static void bring_share(void *context, size_t share)
+{
+    const struct gathering *g = context;
+    struct tri_range range = tri_share(share, g->n);
+    size_t first = (size_t)range.first * g->item;
+    memcpy(g->array + first, g->scratch + first, (size_t)(range.last - range.first) * g->item);
+}
+
+void tri_mesh_gather_vertices(struct tri_mesh *mesh, int32_t first, const int32_t *from, int32_t n, void *scratch,
+                              const struct tri_executor *executor)
+{
+    void *array[] = {mesh->xy, mesh->on, mesh->vertex_markers, mesh->attributes};
+    const size_t item[] = {sizeof *mesh->xy, sizeof *mesh->on, sizeof *mesh->vertex_markers,
+                           (size_t)mesh->n_attributes * sizeof *mesh->attributes};
+    for (int k = 0; k < 4; k++) {
+        if (n == 0 || item[k] == 0)
+            continue;
+        struct gathering g = {(char *)array[k] + (size_t)first * item[k], scratch, array[k], item[k], from, n};
+        tri_execute(executor, tri_shares(n), gather_share, &g);
+        tri_execute(executor, tri_shares(n), bring_share, &g);
+    }
 }
 
 static void move_triangle(struct tri_mesh *mesh, int32_t from, int32_t to)

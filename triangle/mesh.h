@@ -20,6 +20,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "triangle/executor.h"
 #include "triangle/pslg.h"
 #include "triangle/status.h"
 
@@ -32,7 +33,8 @@ enum {
 enum tri_vertex_kind { /* values of tri_mesh.on below 0 */
     TRI_VERTEX_INPUT = -1, /* a point of the input, or a crossing of two of its segments */
     TRI_VERTEX_FREE = -2,  /* made by refinement in the interior of a region */
-    TRI_VERTEX_ACUTE = -3  /* as TRI_VERTEX_INPUT, and two subsegments meet there at less than 60 degrees */
+    TRI_VERTEX_ACUTE = -3, /* as TRI_VERTEX_INPUT, and two subsegments meet there at less than 60 degrees */
+    TRI_VERTEX_NONE = -4   /* no vertex: an id that is free (only until tri_number) */
     /* >= 0: made by refinement on the parent with that id */
 };
 
@@ -178,6 +180,18 @@ static inline void tri_relink(struct tri_mesh *mesh, int32_t outer, int32_t from
         mesh->tri[outer >> 2].n[outer & 3] = code;
     else
         mesh->sub[~outer].side[tri_side(&mesh->sub[~outer], from)] = code;
+}
+
+/* Vertex first + i becomes what vertex from[i] was, for all i < n, where from[] names vertices first and above. Moves what
+ * the vertices have; whoever refers to them is the caller's to rename. scratch: n * tri_vertex_size bytes. O(n). */
+void tri_mesh_gather_vertices(struct tri_mesh *mesh, int32_t first, const int32_t *from, int32_t n, void *scratch,
+                              const struct tri_executor *executor);
+
+/* The largest thing that a vertex has, in bytes. */
+static inline size_t tri_vertex_size(const struct tri_mesh *mesh)
+{
+    size_t attributes = (size_t)mesh->n_attributes * sizeof *mesh->attributes;
+    return attributes > sizeof *mesh->xy ? attributes : sizeof *mesh->xy;
 }
 
 /* Fills the holes that free slots leave with triangles from the end. O(slots). */

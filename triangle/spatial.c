@@ -6,41 +6,17 @@
 
 #include <assert.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "triangle/hilbert.h"
 #include "triangle/small_angle.h"
 
-/* Vertex arrays with the first n items in another order. */
-struct reordered {
-    struct tri_point *xy;
-    int32_t *on, *markers;
-    int32_t *twin; /* only where the mesh has it */
-    double *attributes;
-};
-
 static void *array(int32_t n, size_t item) { return malloc(((size_t)n + 1) * item); }
 
-static void free_reordered(struct reordered *r)
+/* For sorting points (16 bytes each) and for moving them. */
+static void *scratch_for(const struct tri_mesh *mesh)
 {
-    free(r->xy);
-    free(r->on);
-    free(r->markers);
-    free(r->twin);
-    free(r->attributes);
-    *r = (struct reordered){0};
-}
-
-static bool allocate(struct reordered *r, const struct tri_mesh *mesh)
-{
-    int32_t n = mesh->n_input;
-    *r = (struct reordered){array(n, sizeof *r->xy), array(n, sizeof *r->on), array(n, sizeof *r->markers),
-                            mesh->twin ? array(n, sizeof *r->twin) : NULL,
-                            array(n, (size_t)mesh->n_attributes * sizeof *r->attributes + 1)};
-    if (r->xy && r->on && r->markers && (r->twin || !mesh->twin) && r->attributes)
-        return true;
-    free_reordered(r);
-    return false;
+    _Static_assert(sizeof(struct tri_point) >= 2 * sizeof(uint64_t), "room to sort and to move");
+    return array(mesh->n_input, tri_vertex_size(mesh));
 }
 
 static enum tri_status no_memory(const struct tri_mesh *mesh, struct tri_error *error)
@@ -48,75 +24,38 @@ static enum tri_status no_memory(const struct tri_mesh *mesh, struct tri_error *
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sorting %d points", (int)mesh->n_input);
 }
 
-static void copy_back(struct tri_mesh *mesh, const struct reordered *r)
+/* The inverse of a permutation, malloc'ed; NULL: no memory. */
+static int32_t *inverse_of(const int32_t *order, int32_t n)
 {
-    size_t n = (size_t)mesh->n_input;
-    if (n == 0)
-        return;
-    memcpy(mesh->xy, r->xy, n * sizeof *r->xy);
-    memcpy(mesh->on, r->on, n * sizeof *r->on);
-    memcpy(mesh->vertex_markers, r->markers, n * sizeof *r->markers);
-    if (mesh->n_attributes)
-        memcpy(mesh->attributes, r->attributes, n * (size_t)mesh->n_attributes * sizeof *r->attributes);
-}
-
-static void move_vertex(const struct tri_mesh *mesh, const struct reordered *r, int32_t from, int32_t to)
-{
-    size_t width = (size_t)mesh->n_attributes;
-    r->xy[to] = mesh->xy[from];
-    r->on[to] = mesh->on[from];
-    r->markers[to] = mesh->vertex_markers[from];
-    if (width)
-        memcpy(r->attributes + (size_t)to * width, mesh->attributes + (size_t)from * width,
-               width * sizeof *r->attributes);
+    int32_t *rank = array(n, sizeof *rank);
+    for (int32_t v = 0; rank && v < n; v++)
+        rank[order[v]] = v;
+    return rank;
 }
 
 enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **rank, const struct tri_executor *executor,
                                 struct tri_error *error)
 {
     int32_t n = mesh->n_input, *origin = array(n, sizeof *origin);
-    struct reordered sorted = {0};
+    void *scratch = scratch_for(mesh);
     assert(mesh->n_vertices == n && mesh->n_slots == 0 && !mesh->origin && !mesh->twin);
-    *rank = array(n, sizeof **rank);
-    enum tri_status status = TRI_OK;
-    if (!origin || !*rank || !allocate(&sorted, mesh))
-        status = no_memory(mesh, error);
-    status = status ? status : tri_hilbert_order(mesh->xy, n, origin, executor, error);
-    if (status) {
-        free_reordered(&sorted);
+    if (origin && scratch) {
+        for (int32_t v = 0; v < n; v++)
+            origin[v] = v;
+        tri_hilbert_order(mesh->xy, origin, n, scratch, executor);
+    }
+    *rank = origin && scratch ? inverse_of(origin, n) : NULL;
+    if (*rank) {
+        tri_mesh_gather_vertices(mesh, 0, origin, n, scratch, executor);
+        mesh->origin = origin;
+    } else {
         free(origin);
-        free(*rank);
-        *rank = NULL;
-        return status;
     }
-    for (int32_t v = 0; v < n; v++) {
-        (*rank)[origin[v]] = v;
-        move_vertex(mesh, &sorted, origin[v], v);
-    }
-    copy_back(mesh, &sorted);
-    free_reordered(&sorted);
-    mesh->origin = origin;
-    return TRI_OK;
+    free(scratch);
+    return *rank ? TRI_OK : no_memory(mesh, error);
 }
 
 /* --- and back */
-
-struct restoration {
-    struct tri_mesh *mesh;
-    const struct reordered *to;
-};
-
-static void restore_vertices(void *context, size_t share)
-{
-    const struct restoration *r = context;
-    const struct tri_mesh *mesh = r->mesh;
-    struct tri_range range = tri_share(share, mesh->n_input);
-    for (int32_t v = range.first; v < range.last; v++) {
-        move_vertex(mesh, r->to, v, mesh->origin[v]);
-        if (mesh->twin)
-            r->to->twin[mesh->origin[v]] = mesh->origin[mesh->twin[v]];
-    }
-}
 
 static void restore_name(const struct tri_mesh *mesh, int32_t *v)
 {
@@ -126,8 +65,7 @@ static void restore_name(const struct tri_mesh *mesh, int32_t *v)
 
 static void restore_corners(void *context, size_t share)
 {
-    const struct restoration *r = context;
-    const struct tri_mesh *mesh = r->mesh;
+    const struct tri_mesh *mesh = context;
     struct tri_range range = tri_share(share, mesh->n_slots);
     for (int32_t t = range.first; t < range.last; t++)
         for (int k = 0; k < 3; k++)
@@ -144,22 +82,36 @@ static void restore_ends(const struct tri_mesh *mesh)
             restore_name(mesh, &mesh->parents[p].v[k]);
 }
 
+/* The first of the points at a place, by the caller's numbers: twin[caller's index] = caller's index. */
+static void restore_twins(struct tri_mesh *mesh, int32_t *twin)
+{
+    for (int32_t v = 0; v < mesh->n_input; v++)
+        twin[mesh->origin[v]] = mesh->origin[mesh->twin[v]];
+    free(mesh->twin);
+    mesh->twin = twin;
+}
+
 enum tri_status tri_restore_points(struct tri_mesh *mesh, const struct tri_executor *executor,
                                    struct tri_error *error)
 {
-    struct reordered own;
-    struct restoration r = {mesh, &own};
+    int32_t n = mesh->n_input;
     if (!mesh->origin)
         return TRI_OK;
-    if (!allocate(&own, mesh))
+    int32_t *rank = inverse_of(mesh->origin, n), *twin = mesh->twin ? array(n, sizeof *twin) : NULL;
+    void *scratch = scratch_for(mesh);
+    if (!rank || !scratch || (mesh->twin && !twin)) {
+        free(rank);
+        free(twin);
+        free(scratch);
         return no_memory(mesh, error);
-    tri_execute(executor, tri_shares(mesh->n_input), restore_vertices, &r);
-    tri_execute(executor, tri_shares(mesh->n_slots), restore_corners, &r);
+    }
+    tri_mesh_gather_vertices(mesh, 0, rank, n, scratch, executor);
+    free(rank);
+    free(scratch);
+    if (twin)
+        restore_twins(mesh, twin);
+    tri_execute(executor, tri_shares(mesh->n_slots), restore_corners, mesh);
     restore_ends(mesh);
-    copy_back(mesh, &own);
-    if (mesh->twin)
-        memcpy(mesh->twin, own.twin, (size_t)mesh->n_input * sizeof *mesh->twin);
-    free_reordered(&own);
     free(mesh->origin);
     mesh->origin = NULL;
     if (mesh->n_hubs > 0)

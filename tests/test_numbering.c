@@ -1,0 +1,273 @@
+/* However a mesh is scrambled, numbering it gives the same bytes: those of the same mesh. */
+#include "allocations.h"
+#include "support.h"
+#include "triangle/numbering.h"
+
+/* Runs tasks from the last to the first. */
+static void backwards(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
+{
+    (void)self;
+    while (n_tasks > 0)
+        task(context, --n_tasks);
+}
+
+static double plane(int k, struct tri_point p) { return k ? p.x - 3 * p.y : 2 * p.x + p.y; }
+
+/* Regions, crossing segments, and attributes that tell where a vertex is; so fine that work comes in shares. */
+static struct tri_mesh refined(uint64_t seed, double max_area)
+{
+    struct tri_pslg pslg = support_tangle(SUPPORT_RANDOM, 60, 20, seed);
+    struct tri_options options = support_quality(25, max_area);
+    pslg.n_attributes = 2;
+    pslg.attributes = malloc(2 * (size_t)pslg.n_points * sizeof *pslg.attributes);
+    assert_non_null(pslg.attributes);
+    for (int32_t i = 0; i < 2 * pslg.n_points; i++)
+        pslg.attributes[i] = plane(i % 2, (struct tri_point){pslg.points[i / 2 * 2], pslg.points[i / 2 * 2 + 1]});
+    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+    for (int32_t t = 0; t < mesh.n_slots; t++) /* regions by place, so that they can be recognised */
+        mesh.tri[t].region = mesh.xy[mesh.tri[t].v[0]].x + mesh.xy[mesh.tri[t].v[1]].x + mesh.xy[mesh.tri[t].v[2]].x > 1;
+    tri_pslg_free(&pslg);
+    return mesh;
+}
+
+/* A random way to put n things into n + n / 8 places from `first` on. */
+static int32_t *scatter(int32_t n, int32_t first, int32_t *places, struct support_random *random)
+{
+    *places = n + n / 8;
+    int32_t *to = malloc(((size_t)*places + 1) * sizeof *to);
+    assert_non_null(to);
+    for (int32_t i = 0; i < *places; i++)
+        to[i] = first + i;
+    for (int32_t i = *places - 1; i > 0; i--) {
+        int32_t k = support_below(random, i + 1), swap = to[i];
+        to[i] = to[k];
+        to[k] = swap;
+    }
+    return to;
+}
+
+/* The same mesh under other numbers, with free ids between them. */
+static struct tri_mesh scrambled(const struct tri_mesh *from, struct support_random *random)
+{
+    struct tri_mesh to;
+    int32_t hubs = from->n_hubs, vertices, slots, subs;
+    int32_t *vertex = scatter(from->n_vertices - hubs, hubs, &vertices, random);
+    int32_t *slot = scatter(from->n_slots, 0, &slots, random), *sub = scatter(from->n_subs, 0, &subs, random);
+    int32_t *turn = malloc((size_t)from->n_slots * sizeof *turn);
+    assert_non_null(turn);
+    assert_int_equal(tri_mesh_init(&to, NULL), TRI_OK);
+    to.n_attributes = from->n_attributes;
+    assert_int_equal(tri_mesh_reserve_vertices(&to, hubs + vertices, NULL), TRI_OK);
+    assert_int_equal(tri_mesh_reserve_triangles(&to, slots, NULL), TRI_OK);
+    assert_int_equal(tri_mesh_reserve_subs(&to, subs > from->n_parents ? subs : from->n_parents, NULL), TRI_OK);
+    to.n_vertices = hubs + vertices;
+    to.n_slots = slots;
+    to.n_subs = subs;
+    to.n_hubs = hubs;
+    to.n_input = from->n_input;
+    to.n_parents = from->n_parents;
+    memcpy(to.parents, from->parents, (size_t)from->n_parents * sizeof *to.parents);
+    for (int32_t v = 0; v < to.n_vertices; v++) {
+        to.xy[v] = (struct tri_point){NAN, NAN};
+        to.on[v] = TRI_VERTEX_NONE;
+    }
+    for (int32_t s = 0; s < subs; s++)
+        to.sub[s] = (struct tri_subsegment){{TRI_NONE, TRI_NONE}, {TRI_NONE, TRI_NONE}, 0, TRI_NONE};
+    for (int32_t t = 0; t < slots; t++)
+        to.tri[t] = (struct tri_triangle){{TRI_NONE, 7, 7}, {7, 7, 7}, 7, 7};
+    for (int32_t t = 0; t < from->n_slots; t++)
+        turn[t] = support_below(random, 3);
+#define VERTEX(v) ((v) < hubs ? (v) : vertex[(v) - hubs])
+#define CODE(c) tri_code(slot[tri_of(c)], (tri_edge(c) + turn[tri_of(c)]) % 3)
+    for (int32_t v = 0; v < from->n_vertices; v++) {
+        to.xy[VERTEX(v)] = from->xy[v];
+        to.on[VERTEX(v)] = from->on[v];
+        to.vertex_markers[VERTEX(v)] = from->vertex_markers[v];
+        memcpy(to.attributes + 2 * VERTEX(v), from->attributes + 2 * v, 2 * sizeof *to.attributes);
+    }
+    for (int32_t t = 0; t < from->n_slots; t++) {
+        const struct tri_triangle *old = &from->tri[t];
+        struct tri_triangle *fresh = &to.tri[slot[t]];
+        for (int k = 0; k < 3; k++) {
+            fresh->v[(k + turn[t]) % 3] = VERTEX(old->v[k]);
+            fresh->n[(k + turn[t]) % 3] = old->n[k] >= 0 ? CODE(old->n[k]) : ~sub[~old->n[k]];
+        }
+        fresh->region = old->region;
+        fresh->state = (uint32_t)support_bits(random);
+    }
+    for (int32_t s = 0; s < from->n_subs; s++) {
+        const struct tri_subsegment *old = &from->sub[s];
+        to.sub[sub[s]] = (struct tri_subsegment){
+            {VERTEX(old->v[0]), VERTEX(old->v[1])},
+            {old->side[0] == TRI_NONE ? TRI_NONE : CODE(old->side[0]), old->side[1] == TRI_NONE ? TRI_NONE : CODE(old->side[1])},
+            old->marker, old->parent};
+    }
+#undef VERTEX
+#undef CODE
+    assert_int_equal(tri_mesh_validate(&to, NULL), TRI_OK);
+    free(vertex);
+    free(slot);
+    free(sub);
+    free(turn);
+    return to;
+}
+
+static void assert_same_bytes(const struct tri_mesh *a, const struct tri_mesh *b)
+{
+    assert_int_equal(a->n_vertices, b->n_vertices);
+    assert_int_equal(a->n_slots, b->n_slots);
+    assert_int_equal(a->n_subs, b->n_subs);
+    size_t n = (size_t)a->n_vertices;
+    assert_memory_equal(a->xy, b->xy, n * sizeof *a->xy);
+    assert_memory_equal(a->on, b->on, n * sizeof *a->on);
+    assert_memory_equal(a->vertex_markers, b->vertex_markers, n * sizeof *a->vertex_markers);
+    assert_memory_equal(a->attributes, b->attributes, 2 * n * sizeof *a->attributes);
+    assert_memory_equal(a->tri, b->tri, (size_t)a->n_slots * sizeof *a->tri);
+    assert_memory_equal(a->sub, b->sub, (size_t)a->n_subs * sizeof *a->sub);
+}
+
+/* What the header promises of the order. */
+static void assert_in_order(const struct tri_mesh *mesh)
+{
+    for (int32_t t = 0; t < mesh->n_slots; t++) {
+        const int32_t *v = mesh->tri[t].v, *before = mesh->tri[t - (t > 0)].v;
+        assert_true(v[0] > v[1] && v[0] > v[2]);
+        assert_true(t == 0 || v[0] > before[0] || (v[0] == before[0] && v[1] > before[1]));
+    }
+    for (int32_t s = 1; s < mesh->n_subs; s++) {
+        const struct tri_subsegment *a = &mesh->sub[s - 1], *b = &mesh->sub[s];
+        assert_true(b->parent > a->parent || (b->parent == a->parent && b->v[0] > a->v[0]));
+    }
+    double steps = 0; /* along a curve: neighbours are near */
+    int32_t n = mesh->n_vertices - mesh->n_hubs;
+    for (int32_t v = mesh->n_hubs + 1; v < mesh->n_vertices; v++)
+        steps += hypot(mesh->xy[v].x - mesh->xy[v - 1].x, mesh->xy[v].y - mesh->xy[v - 1].y);
+    assert_true(steps < 6 * sqrt(n) + 1);
+}
+
+static void assert_is_whole(const struct tri_mesh *mesh)
+{
+    struct tri_error error = {0};
+    if (tri_mesh_validate(mesh, &error) != TRI_OK)
+        fail_msg("%s", error.text);
+    for (int32_t t = 0; t < mesh->n_slots; t++) {
+        const int32_t *v = mesh->tri[t].v;
+        assert_int_equal(mesh->tri[t].region, mesh->xy[v[0]].x + mesh->xy[v[1]].x + mesh->xy[v[2]].x > 1);
+    }
+    for (int32_t v = 0; v < mesh->n_vertices; v++)
+        for (int k = 0; k < 2; k++)
+            assert_true(fabs(mesh->attributes[2 * v + k] - plane(k, mesh->xy[v])) < 1e-9);
+}
+
+static void test_any_scrambling_comes_out_the_same(void **state)
+{
+    (void)state;
+    const struct tri_executor executor = {backwards, NULL};
+    for (uint64_t seed = 0; seed < 12; seed++) {
+        struct support_random random = {seed};
+        struct tri_mesh mesh = refined(seed, seed < 2 ? 1e-4 : 1e-3);
+        struct support_places places = support_places(&mesh), after;
+        struct tri_mesh other = scrambled(&mesh, &random);
+        assert_true(mesh.n_vertices > mesh.n_hubs && mesh.n_hubs > mesh.n_input);
+        assert_int_equal(tri_number(&mesh, seed % 2 ? &executor : NULL, NULL), TRI_OK);
+        assert_int_equal(tri_number(&other, seed % 2 ? NULL : &executor, NULL), TRI_OK);
+        assert_same_bytes(&mesh, &other);
+        assert_in_order(&mesh);
+        assert_is_whole(&mesh);
+        after = support_places(&mesh);
+        assert_true(support_same_places(&places, &after));
+        assert_int_equal(tri_number(&mesh, NULL, NULL), TRI_OK); /* once more: nothing to do */
+        assert_same_bytes(&mesh, &other);
+        support_places_free(&places);
+        support_places_free(&after);
+        tri_mesh_free(&mesh);
+        tri_mesh_free(&other);
+    }
+}
+
+/* Refinement may go on, and a mesh to which nothing was added is numbered too. */
+static void test_before_and_after_refinement(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = support_square(1, 200, 3);
+    struct tri_options options = support_quality(25, 1e-3);
+    struct tri_check_options check = {.min_angle = 25, .max_area = 1e-3, .delaunay = TRI_CHECK_CONSTRAINED};
+    struct tri_refine_report report;
+    options.refine = false;
+    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+    assert_int_equal(tri_number(&mesh, NULL, NULL), TRI_OK);
+    assert_int_equal(mesh.n_vertices, 204);
+    assert_in_order(&mesh);
+    for (int round = 0; round < 2; round++) {
+        assert_int_equal(tri_refine(&mesh, &options.quality, &report, NULL), TRI_OK);
+        assert_int_equal(tri_number(&mesh, NULL, NULL), TRI_OK);
+        assert_in_order(&mesh);
+        support_judge(&mesh, &pslg, &check, false, NULL);
+        options.quality.max_area = check.max_area = 3e-4;
+    }
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+/* A corner where thousands of triangles start: sorted in linear time, and right. */
+static void test_large_fan(void **state)
+{
+    (void)state;
+    enum { N = 20000 };
+    struct tri_pslg pslg = support_pslg(N + 1, N, 0, 0);
+    struct tri_options options = support_quality(0, 0);
+    options.refine = false;
+    for (int i = 0; i < N; i++)
+        support_add_point(&pslg, cos(i * (2 * acos(-1) / N)), sin(i * (2 * acos(-1) / N)));
+    for (int i = 0; i < N; i++)
+        support_add_segment(&pslg, i, (i + 1) % N);
+    support_add_point(&pslg, 0, 0);
+    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+    assert_int_equal(tri_number(&mesh, NULL, NULL), TRI_OK);
+    assert_int_equal(mesh.tri[mesh.n_slots / 2].v[0], N);
+    assert_in_order(&mesh);
+    assert_int_equal(tri_mesh_validate(&mesh, NULL), TRI_OK);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+static void test_without_memory_nothing_changes(void **state)
+{
+    (void)state;
+    struct support_random random = {9};
+    struct tri_mesh mesh = refined(9, 1e-3), other = scrambled(&mesh, &random);
+    assert_int_equal(tri_number(&mesh, NULL, NULL), TRI_OK);
+    long long held = support_held;
+    for (int call = 1;; call++) {
+        struct support_places before = support_places(&other);
+        support_calls = 0;
+        support_fail_at = call;
+        enum tri_status status = tri_number(&other, NULL, NULL);
+        support_fail_at = INT64_MAX;
+        struct support_places after = support_places(&other);
+        assert_true(support_same_places(&before, &after));
+        support_places_free(&before);
+        support_places_free(&after);
+        assert_int_equal(support_held, held);
+        if (!status) {
+            assert_true(call > 1);
+            break;
+        }
+        assert_int_equal(status, TRI_NO_MEMORY);
+        assert_int_equal(tri_mesh_validate(&other, NULL), TRI_OK);
+    }
+    assert_same_bytes(&mesh, &other);
+    tri_mesh_free(&mesh);
+    tri_mesh_free(&other);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_any_scrambling_comes_out_the_same),
+        cmocka_unit_test(test_before_and_after_refinement),
+        cmocka_unit_test(test_large_fan),
+        cmocka_unit_test(test_without_memory_nothing_changes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,79 @@
+/* Against a stable sort that is plainly right, over all sizes that are treated differently. */
+#include "support.h"
+#include "triangle/radix.h"
+
+/* Runs tasks from the last to the first. */
+static void backwards(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
+{
+    (void)self;
+    while (n_tasks > 0)
+        task(context, --n_tasks);
+}
+
+struct entry {
+    uint64_t key;
+    int32_t at;
+    uint64_t item;
+};
+
+static int by_key_then_place(const void *left, const void *right)
+{
+    const struct entry *a = left, *b = right;
+    if (a->key != b->key)
+        return a->key < b->key ? -1 : 1;
+    return (a->at > b->at) - (a->at < b->at);
+}
+
+static void assert_sorts(uint64_t *items, int32_t n, int low, int high, const struct tri_executor *executor)
+{
+    struct entry *expected = malloc(((size_t)n + 1) * sizeof *expected);
+    uint64_t *scratch = malloc(((size_t)n + 1) * sizeof *scratch);
+    assert_non_null(expected);
+    assert_non_null(scratch);
+    for (int32_t i = 0; i < n; i++)
+        expected[i] = (struct entry){items[i] >> low, i, items[i]};
+    qsort(expected, (size_t)n, sizeof *expected, by_key_then_place);
+    tri_radix_sort(items, scratch, n, low, high, executor);
+    for (int32_t i = 0; i < n; i++)
+        assert_true(items[i] == expected[i].item);
+    free(expected);
+    free(scratch);
+}
+
+/* Keys of so many bits, the place of each below them; spread: 0 all alike .. 3 evenly, 4: nearly all in one bucket. */
+static void fill(uint64_t *items, int32_t n, int low, int bits, int spread, struct support_random *random)
+{
+    uint64_t mask = bits == 64 ? UINT64_MAX : (UINT64_C(1) << bits) - 1;
+    for (int32_t i = 0; i < n; i++) {
+        uint64_t key = support_bits(random);
+        if (spread == 4)
+            key = i % 1000 == 0 ? key & mask : key & mask >> (bits / 2);
+        else
+            key = spread == 0 ? 5 & mask : (key & mask) >> (bits * (3 - spread) / 3);
+        items[i] = key << low | ((uint64_t)i & ((UINT64_C(1) << low) - 1));
+    }
+}
+
+static void test_sorts_stably(void **state)
+{
+    (void)state;
+    const struct tri_executor executor = {backwards, NULL};
+    static const int32_t sizes[] = {0, 1, 2, 23, 24, 25, 100, 1000, 70000, 300000};
+    static const int ranges[][2] = {{0, 64}, {28, 64}, {31, 53}, {0, 1}, {3, 11}, {63, 64}};
+    struct support_random random = {1};
+    uint64_t *items = malloc(300000 * sizeof *items);
+    assert_non_null(items);
+    for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++)
+        for (size_t r = 0; r < sizeof ranges / sizeof *ranges; r++)
+            for (int spread = 0; spread < 5; spread++) {
+                fill(items, sizes[s], ranges[r][0], ranges[r][1] - ranges[r][0], spread, &random);
+                assert_sorts(items, sizes[s], ranges[r][0], ranges[r][1], spread % 2 ? &executor : NULL);
+            }
+    free(items);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_sorts_stably)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

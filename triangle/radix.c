@@ -1,0 +1,150 @@
+/* One pass by the highest digit puts items together that fit the cache, in parallel; these are then sorted from their
+ * lowest digit up. Items move between two arrays: `home` tells whether they are now in the one where they belong at the
+ * end. */
+#include "triangle/radix.h"
+
+#include <assert.h>
+#include <stdbool.h>
+#include <string.h>
+
+enum {
+    DIGIT = 11,        /* bits of a pass over items that fit the cache, at most */
+    WIDE_DIGIT = 8,    /* of a pass over more */
+    BUCKETS = 1 << WIDE_DIGIT,
+    FEW = 24,          /* items that are sorted by insertion */
+    MANY = 1 << 18     /* items that are worth several tasks */
+};
+
+/* Items from[0 .. n), and the array beside them that the next pass writes to. */
+struct run {
+    uint64_t *from, *to;
+    int32_t n;
+    int low, high; /* bits to sort by; all items agree in those above */
+    bool home;
+};
+
+static void insert_all(const struct run *run)
+{
+    for (int32_t i = 1; i < run->n; i++) {
+        uint64_t item = run->from[i];
+        int32_t at = i;
+        for (; at > 0 && run->from[at - 1] >> run->low > item >> run->low; at--)
+            run->from[at] = run->from[at - 1];
+        run->from[at] = item;
+    }
+}
+
+static void stable_pass(struct run *run, int shift, int digit)
+{
+    int32_t at[1 << DIGIT], sum = 0;
+    uint64_t mask = (UINT64_C(1) << digit) - 1, *other = run->to;
+    memset(at, 0, (mask + 1) * sizeof *at);
+    for (int32_t i = 0; i < run->n; i++)
+        at[run->from[i] >> shift & mask]++;
+    for (uint64_t b = 0; b <= mask; b++) {
+        int32_t count = at[b];
+        at[b] = sum;
+        sum += count;
+    }
+    for (int32_t i = 0; i < run->n; i++)
+        other[at[run->from[i] >> shift & mask]++] = run->from[i];
+    run->to = run->from;
+    run->from = other;
+    run->home = !run->home;
+}
+
+static void sort_run(struct run run)
+{
+    int bits = run.high - run.low, passes = (bits + DIGIT - 1) / DIGIT;
+    if (run.n <= FEW)
+        insert_all(&run);
+    for (int pass = 0; run.n > FEW && pass < passes; pass++) {
+        int first = bits * pass / passes, end = bits * (pass + 1) / passes;
+        stable_pass(&run, run.low + first, end - first);
+    }
+    if (!run.home)
+        memcpy(run.to, run.from, (size_t)run.n * sizeof *run.from);
+}
+
+/* A pass over many items, in shares. */
+struct wide_pass {
+    struct run run;
+    int shift, digit;
+    int32_t at[TRI_MOST_SHARES][BUCKETS]; /* where the next item of a share goes */
+    int32_t end[BUCKETS];
+};
+
+static uint64_t bucket_of(const struct wide_pass *pass, uint64_t item)
+{
+    return item >> pass->shift & ((UINT64_C(1) << pass->digit) - 1);
+}
+
+static void count_share(void *context, size_t share)
+{
+    struct wide_pass *pass = context;
+    struct tri_range range = tri_share(share, pass->run.n);
+    for (int32_t i = range.first; i < range.last; i++)
+        pass->at[share][bucket_of(pass, pass->run.from[i])]++;
+}
+
+static void move_share(void *context, size_t share)
+{
+    struct wide_pass *pass = context;
+    struct tri_range range = tri_share(share, pass->run.n);
+    for (int32_t i = range.first; i < range.last; i++) {
+        uint64_t item = pass->run.from[i];
+        pass->run.to[pass->at[share][bucket_of(pass, item)]++] = item;
+    }
+}
+
+static struct run bucket_run(const struct wide_pass *pass, size_t bucket)
+{
+    int32_t first = bucket ? pass->end[bucket - 1] : 0;
+    return (struct run){pass->run.to + first, pass->run.from + first, pass->end[bucket] - first,
+                        pass->run.low, pass->shift, !pass->run.home};
+}
+
+static void sort_bucket(void *context, size_t bucket)
+{
+    struct run run = bucket_run(context, bucket);
+    if (run.n > 0 && run.n <= MANY)
+        sort_run(run);
+}
+
+/* As sort_run. Buckets that are still large follow one by one, each with all threads. */
+static void sort_wide(struct run run, const struct tri_executor *executor)
+{
+    int bits = run.high - run.low;
+    if (run.n <= MANY || bits == 0) {
+        sort_run(run);
+        return;
+    }
+    struct wide_pass pass = {.run = run, .digit = bits < WIDE_DIGIT ? bits : WIDE_DIGIT};
+    size_t shares = tri_shares(run.n);
+    int32_t sum = 0;
+    pass.shift = run.high - pass.digit;
+    tri_execute(executor, shares, count_share, &pass);
+    for (int b = 0; b < BUCKETS; b++) {
+        for (size_t share = 0; share < shares; share++) {
+            int32_t count = pass.at[share][b];
+            pass.at[share][b] = sum;
+            sum += count;
+        }
+        pass.end[b] = sum;
+    }
+    assert(sum == run.n);
+    tri_execute(executor, shares, move_share, &pass);
+    tri_execute(executor, BUCKETS, sort_bucket, &pass);
+    for (size_t b = 0; b < BUCKETS; b++) {
+        struct run part = bucket_run(&pass, b);
+        if (part.n > MANY)
+            sort_wide(part, executor);
+    }
+}
+
+void tri_radix_sort(uint64_t *items, uint64_t *scratch, int32_t n, int low, int high,
+                    const struct tri_executor *executor)
+{
+    assert(0 <= low && low < high && high <= 64);
+    sort_wide((struct run){items, scratch, n, low, high, true}, executor);
+}
