@@ -29,6 +29,7 @@ def _lines(m):
     yield "mean area over bound", f"{v.total_area / v.triangles / m.case.domain.area:.4f}"
     yield "judged", v.text
     yield "Quality", m.text("quality") + " s"
+    yield "numbering", m.text("number") + " s"
     yield "speed", millions_per_second(v.triangles, m.median("quality")) + " million triangles a second"
     yield "peak memory", f"{m.peak / 1e9:.2f} GB"
     yield "bytes a triangle", f"{m.peak / v.triangles:.1f}"

@@ -4,13 +4,15 @@ from cases import Ours, Sequential, Triangle
 from inputs import letter, norway, plate, random_points, shared_coasts, square
 from measure import measure, millions_per_second, ratio, table
 
-HEAD = ("program", "triangles", "smallest angle", "Delaunay, s", "Quality, s", "both, s", "M/s in Quality",
-        "Triangle's Quality over it", "Triangle's both over it", "bytes a triangle")
-FILES_HEAD = ("program", "read, s", "Delaunay, s", "Quality, s", "write, s", "process, s", "Triangle's call over it")
+HEAD = ("program", "triangles", "smallest angle", "Delaunay, s", "Quality, s", "numbering, s", "all, s",
+        "M/s in Quality", "Triangle's Quality over it", "Triangle's all over it", "bytes a triangle")
+FILES_HEAD = ("program", "read, s", "Delaunay, s", "Quality, s", "numbering, s", "write, s", "process, s",
+              "Triangle's call over it")
 NOTE = """\
-In memory, without files. Triangle 1.6: Delaunay is a call of its library function without bounds, both a call with
+In memory, without files. Triangle 1.6: Delaunay is a call of its library function without bounds, all a call with
 them, Quality the difference; the calls ask for no output arrays, and all conversion of input is outside the clock.
-Ours, sequential: `triangle`; else `ptriangle`. Bytes a triangle: resident peak of the whole process over triangles
+Ours, sequential: `triangle`; else `ptriangle`, which numbers the mesh along a curve when it is done (unless told
+`--numbering blocks`); Triangle and `triangle` leave their triangles in the order in which they came about. Bytes a triangle: resident peak of the whole process over triangles
 made, input and, for Triangle, Python included. Median (least–most) of {} runs in turns.
 
 """
@@ -24,10 +26,10 @@ def _cases(settings, domain):
 
 def _line(m, other):
     if not m.good:
-        return (m.case.name, "missing: " + m.reason, *["–"] * 8)
+        return (m.case.name, "missing: " + m.reason, *["–"] * 9)
     v = m.verdict
     return (m.case.name, f"{v.triangles:,}", f"{v.smallest_angle:.2f}", m.text("delaunay"), m.text("quality"),
-            m.text("memory"), millions_per_second(v.triangles, m.median("quality")),
+            m.text("number"), m.text("memory"), millions_per_second(v.triangles, m.median("quality")),
             ratio(other.median("quality"), m.median("quality")), ratio(other.median("memory"), m.median("memory")),
             f"{m.peak / v.triangles:.0f}")
 
@@ -38,8 +40,8 @@ def _with_files(settings, domain):
              Ours(settings, domain, settings.threads, files=True)]
     measured = measure(f"stages: {domain.name} -{domain.switches}, with files", cases, settings)
     call, ours = measured[0], measured[1:]
-    lines = [(m.case.name, m.text("read"), m.text("delaunay"), m.text("quality"), m.text("write"), m.text("process"),
-              ratio(call.median("memory"), m.median("process"))) for m in ours]
+    lines = [(m.case.name, m.text("read"), m.text("delaunay"), m.text("quality"), m.text("number"), m.text("write"),
+              m.text("process"), ratio(call.median("memory"), m.median("process"))) for m in ours]
     text = (f"### {domain.name}, -{domain.switches}: the whole process, with text files\n\nTriangle 1.6: "
             f"{call.text('memory')} s for its call alone, without reading, writing or filling an output array: the "
             "least a process could take.\n\n" + table(FILES_HEAD, lines))

@@ -55,14 +55,25 @@ double prediction_refine(const struct par_block_report *blocks, int32_t n_blocks
 
 double prediction_sequential(const struct par_report *report)
 {
-    double rest = report->seconds_total - report->seconds_refine;
+    double rest = report->seconds_total - report->seconds_refine - report->seconds_number;
     return rest > 0 ? rest : 0;
+}
+
+double prediction_number(const struct par_report *report, int threads)
+{
+    return report->seconds_number * report->threads / threads;
+}
+
+static double percent(const struct par_report *report, double seconds)
+{
+    double merged = report->seconds_total - report->seconds_number;
+    return report->levels == 0 || !(merged > 0) || seconds < 0 ? 0 : 100 * seconds / merged;
 }
 
 double prediction_overhead(const struct par_report *report)
 {
-    double rest = report->seconds_total - report->seconds_prerefine - report->seconds_refine;
-    if (report->levels == 0 || !(report->seconds_total > 0) || rest < 0)
-        return 0;
-    return 100 * rest / report->seconds_total;
+    return percent(report, report->seconds_total - report->seconds_number - report->seconds_prerefine -
+                               report->seconds_refine);
 }
+
+double prediction_numbering(const struct par_report *report) { return percent(report, report->seconds_number); }

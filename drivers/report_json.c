@@ -21,12 +21,14 @@ static json_t *whole(int64_t value) { return json_integer((json_int_t)value); }
 
 /* --- stages */
 
-static json_t *stages_of(const struct run *run)
+/* Quality here ends with the merged mesh; numbering comes after it. */
+static json_t *stages_of(const struct run *run, const struct par_report *schedule)
 {
-    const double *s = run->seconds;
-    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "read", real(s[RUN_READ]), "delaunay",
+    const double *s = run->seconds, number = schedule ? schedule->seconds_number : 0;
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "read", real(s[RUN_READ]), "delaunay",
                      real(s[RUN_DELAUNAY]), "segments", real(s[RUN_SEGMENTS]), "holes", real(s[RUN_HOLES]), "quality",
-                     real(s[RUN_QUALITY]), "write", real(s[RUN_WRITE]), "total", real(run->total_seconds));
+                     real(s[RUN_QUALITY] - number), "number", real(number), "write", real(s[RUN_WRITE]), "total",
+                     real(run->total_seconds));
 }
 
 static json_t *command_of(const struct arguments *arguments)
@@ -73,12 +75,13 @@ static json_t *predictions_of(const struct par_report *r)
     json_t *list = json_array();
     double sequential = prediction_sequential(r);
     for (int threads = 1; threads <= 256; threads *= 2) {
-        double refine = prediction_refine(r->blocks, r->n_blocks, 0, threads), total = sequential + refine;
+        double refine = prediction_refine(r->blocks, r->n_blocks, 0, threads), quality = sequential + refine;
         if (refine < 0)
             continue;
-        json_array_append_new(list, json_pack("{s:i, s:o, s:o, s:o}", "threads", threads, "refine_seconds",
-                                              real(refine), "quality_seconds", real(total), "sequential_share",
-                                              real(total > 0 ? sequential / total : 1)));
+        json_array_append_new(list, json_pack("{s:i, s:o, s:o, s:o, s:o}", "threads", threads, "refine_seconds",
+                                              real(refine), "quality_seconds", real(quality), "number_seconds",
+                                              real(prediction_number(r, threads)), "sequential_share",
+                                              real(quality > 0 ? sequential / quality : 1)));
     }
     return list;
 }
@@ -100,8 +103,8 @@ static json_t *schedule_of(const struct par_report *r)
                                whole(r->prerefined), "inserted", inserted, "deferred", whole(r->deferred), "left_over",
                                whole(r->left_over), "refused", refused_of(&r->total), "pauses", whole(r->pauses),
                                "radius_theory", real(r->radius_theory), "radius_measured", real(r->radius_measured));
-    json_t *times = json_pack("{s:o, s:o, s:o, s:o, s:o}", "seconds", parts_of(r), "overhead_percent",
-                              real(prediction_overhead(r)), "later_rounds_seconds_estimate",
+    json_t *times = json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "seconds", parts_of(r), "overhead_percent",
+                              real(prediction_overhead(r)), "numbering_percent", real(prediction_numbering(r)), "later_rounds_seconds_estimate",
                               real(prediction_refine(r->blocks, r->n_blocks, 1, r->threads)), "prediction",
                               predictions_of(r), "blocks", blocks_of(r));
     if (json_object_update(counts, times)) {
@@ -173,7 +176,7 @@ static json_t *report_of(const struct run *run, const struct par_report *schedul
                                "max_area", q->max_area > 0 ? real(q->max_area) : json_null());
     return json_pack("{s:s, s:s, s:o, s:i, s:o, s:o, s:o, s:o, s:o}", "program", run->hooks->program, "version",
                      PTRIANGLE_VERSION, "command", command_of(run->arguments), "threads", threads, "peak_memory_bytes",
-                     whole(memory), "bounds", bounds, "seconds", stages_of(run), "mesh", mesh_of(run), "schedule",
+                     whole(memory), "bounds", bounds, "seconds", stages_of(run, schedule), "mesh", mesh_of(run), "schedule",
                      schedule ? schedule_of(schedule) : json_null());
 }
 
