@@ -70,17 +70,18 @@ class Case:
 class Ours(Case):
     """ptriangle. `switches` beyond those of the domain: with `r`, its .poly file has a mesh beside it."""
 
-    def __init__(self, settings, domain, threads, switches="", files=False):
+    def __init__(self, settings, domain, threads, switches="", files=False, options=()):
         super().__init__(settings, domain)
-        self.threads, self.switches, self.files = threads, switches, files
-        self.name = f"ours, {threads} thread{'s' if threads > 1 else ''}{', with files' if files else ''}"
+        self.threads, self.switches, self.files, self.options = threads, switches, files, options
+        self.name = ", ".join((f"ours, {threads} thread{'s' if threads > 1 else ''}", *(["with files"] * files),
+                               *(" ".join(options),) * bool(options)))
         if "r" in switches:
             self.check = ("--refined",)
 
     def _call(self, extra):
         report = os.path.join(self.settings.scratch, "report.json")
-        ended = self.execute(self.settings.program("ptriangle"), "--threads", str(self.threads), "--report", report,
-                             *extra, "-Q" + self.switches + self.domain.switches, self.domain.path)
+        ended = self.execute(self.settings.program("ptriangle"), "--threads", str(self.threads), *self.options,
+                             "--report", report, *extra, "-Q" + self.switches + self.domain.switches, self.domain.path)
         with open(report) as file:
             facts = json.load(file)
         s = facts["seconds"]
@@ -91,8 +92,15 @@ class Ours(Case):
         return Run(seconds, ended, json.dumps(facts["mesh"]), facts)
 
     def run(self):
+        """With files: stages from one run, the process from another, that makes no report."""
+        if not self.files:
+            return self._call(("-NEP",))
         base = os.path.join(self.settings.scratch, "timed")
-        run = self._call(("--output", base) if self.files else ("-NEP",))
+        run = self._call(("--output", base))
+        remove(base)
+        run.seconds["process"] = self.execute(self.settings.program("ptriangle"), "--threads", str(self.threads),
+                                              *self.options, "--output", base,
+                                              "-Q" + self.switches + self.domain.switches, self.domain.path).wall
         remove(base)
         return run
 

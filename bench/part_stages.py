@@ -37,7 +37,8 @@ def _line(m, other):
 def _with_files(settings, domain):
     """The whole process, from text files to text files."""
     cases = [Triangle(settings, domain), Ours(settings, domain, 1, files=True),
-             Ours(settings, domain, settings.threads, files=True)]
+             Ours(settings, domain, settings.threads, files=True),
+             Ours(settings, domain, settings.threads, files=True, options=("--numbering", "blocks"))]
     measured = measure(f"stages: {domain.name} -{domain.switches}, with files", cases, settings)
     call, ours = measured[0], measured[1:]
     lines = [(m.case.name, m.text("read"), m.text("delaunay"), m.text("quality"), m.text("number"), m.text("write"),
@@ -90,7 +91,7 @@ def run(settings):
                                    measured[TRIANGLE], "delaunay"))
     text, measured = _with_files(settings, jobs[0][0])
     rows += [row for m in measured for row in m.rows("stages with files")]
-    targets.append(_target(f"whole process with text files, {jobs[0][0].name}, {measured[-1].case.name}", 7,
-                           measured[-1], measured[0], "process"))
+    targets += [_target(f"whole process with text files, {jobs[0][0].name}, {m.case.name}", 7, m, measured[0],
+                        "process") for m in measured[2:]]
     text = NOTE.format(settings.repeats) + "\n".join([*texts, text])
     return {"title": "Stages, beside Triangle 1.6", "text": text, "rows": rows, "targets": targets}

@@ -117,17 +117,6 @@ static json_t *schedule_of(const struct par_report *r)
 
 /* --- the mesh */
 
-static double mean_area(const struct tri_mesh *mesh)
-{
-    double sum = 0;
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
-        const int32_t *v = mesh->tri[t].v;
-        struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
-        sum += 0.5 * ((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y));
-    }
-    return mesh->n_slots > 0 ? sum / mesh->n_slots * mesh->unit * mesh->unit : 0;
-}
-
 static json_t *histogram_of(const int64_t *count, int n)
 {
     json_t *list = json_array();
@@ -142,7 +131,7 @@ static json_t *mesh_of(const struct run *run)
     const struct tri_refine_options *bounds = &run->options.quality;
     struct tri_shapes shapes;
     tri_measure_shapes(&shapes, &run->mesh, run->hooks->executor);
-    double mean = mean_area(&run->mesh);
+    double mean = c->triangles > 0 ? shapes.total_area / (double)c->triangles : 0;
     json_t *over = run->options.refine && bounds->max_area > 0 ? real(mean / bounds->max_area) : json_null();
     return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "vertices",
                      whole(c->vertices), "triangles", whole(c->triangles), "edges", whole(c->edges), "subsegments",

@@ -120,6 +120,7 @@ static void test_against_judge(void **state)
     assert_true(fabs(s.largest_angle - judged.largest_angle) < 1e-9);
     assert_true(is_near(s.smallest_area, judged.smallest_area));
     assert_true(is_near(s.largest_area, judged.largest_area));
+    assert_true(is_near(s.total_area, judged.total_area));
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
 }

@@ -42,6 +42,7 @@ enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh 
 /* Extremes in the mesh's units: least, greatest. */
 struct extremes {
     double area2[2], length2[2];
+    double total_area2; /* sums of shares, added in their order: the same for any number of threads */
     double least_altitude2, greatest_aspect;
     double least_sine2;  /* squared sine of the smallest angle, at most 60 degrees, so that the sine tells all */
     double least_cosine; /* of the largest angle, at least 60 degrees */
@@ -53,35 +54,42 @@ static void widen(double range[2], double value)
     range[1] = value > range[1] ? value : range[1];
 }
 
+/* Limits rise, or fall; so a bin is the number of limits passed, counted without a branch. */
 static int aspect_bin(double aspect)
 {
     int bin = 0;
-    while (bin + 1 < TRI_ASPECT_BINS && aspect > tri_aspect_limits[bin + 1])
-        bin++;
+    for (int k = 1; k < TRI_ASPECT_BINS; k++)
+        bin += aspect > tri_aspect_limits[k];
     return bin;
 }
 
 static int angle_bin(double cosine, const double limits[TRI_ANGLE_BINS])
 {
     int bin = 0;
-    while (bin + 1 < TRI_ANGLE_BINS && cosine < limits[bin + 1])
-        bin++;
+    for (int k = 1; k < TRI_ANGLE_BINS; k++)
+        bin += cosine < limits[k];
     return bin;
 }
 
+/* The library's fmin and fmax look out for NaN, which there is none of here, and are calls. */
+static double lesser(double a, double b) { return a < b ? a : b; }
+static double greater(double a, double b) { return a > b ? a : b; }
+
 static void measure(struct tri_shapes *shapes, struct extremes *x, const struct tri_shape *s, const double limits[])
 {
-    double longest2 = fmax(s->l[0], fmax(s->l[1], s->l[2])), aspect = longest2 / s->area2;
+    const double root[3] = {sqrt(s->l[0]), sqrt(s->l[1]), sqrt(s->l[2])};
+    double longest2 = greater(s->l[0], greater(s->l[1], s->l[2])), aspect = longest2 / s->area2;
     widen(x->area2, s->area2);
-    x->least_altitude2 = fmin(x->least_altitude2, s->area2 / longest2 * s->area2);
-    x->greatest_aspect = fmax(x->greatest_aspect, aspect);
-    x->least_sine2 = fmin(x->least_sine2, s->area2 / tri_longer_product(s->l[0], s->l[1], s->l[2]) * s->area2);
+    x->total_area2 += s->area2;
+    x->least_altitude2 = lesser(x->least_altitude2, s->area2 / longest2 * s->area2);
+    x->greatest_aspect = greater(x->greatest_aspect, aspect);
+    x->least_sine2 = lesser(x->least_sine2, s->area2 / tri_longer_product(s->l[0], s->l[1], s->l[2]) * s->area2);
     shapes->aspects[aspect_bin(aspect)]++;
     for (int k = 0; k < 3; k++) {
         double a = s->l[tri_next[k]], b = s->l[tri_prev[k]];
-        double cosine = (a + b - s->l[k]) / (2 * sqrt(a) * sqrt(b));
+        double cosine = (a + b - s->l[k]) / (2 * root[tri_next[k]] * root[tri_prev[k]]);
         widen(x->length2, s->l[k]);
-        x->least_cosine = fmin(x->least_cosine, cosine);
+        x->least_cosine = lesser(x->least_cosine, cosine);
         shapes->angles[angle_bin(cosine, limits)]++;
     }
 }
@@ -89,6 +97,7 @@ static void measure(struct tri_shapes *shapes, struct extremes *x, const struct 
 static void convert(struct tri_shapes *shapes, const struct extremes *x, double unit)
 {
     shapes->smallest_area = 0.5 * x->area2[0] * unit * unit;
+    shapes->total_area = 0.5 * x->total_area2 * unit * unit;
     shapes->largest_area = 0.5 * x->area2[1] * unit * unit;
     shapes->shortest_edge = sqrt(x->length2[0]) * unit;
     shapes->longest_edge = sqrt(x->length2[1]) * unit;
@@ -115,7 +124,7 @@ static void measure_share(void *context, size_t share)
     struct survey *s = context;
     struct tally *tally = &s->tally[share];
     struct tri_range range = tri_share(share, s->mesh->n_slots);
-    *tally = (struct tally){.extremes = {{HUGE_VAL, 0}, {HUGE_VAL, 0}, HUGE_VAL, 0, 1, 1}};
+    *tally = (struct tally){.extremes = {{HUGE_VAL, 0}, {HUGE_VAL, 0}, 0, HUGE_VAL, 0, 1, 1}};
     for (int32_t t = range.first; t < range.last; t++) {
         assert(tri_is_live(&s->mesh->tri[t]));
         struct tri_shape shape = tri_shape_of(s->mesh->xy, s->mesh->tri[t].v);
@@ -131,14 +140,15 @@ static void add_tally(struct tally *sum, const struct tally *add)
         sum->shapes.angles[k] += add->shapes.angles[k];
     struct extremes *x = &sum->extremes;
     const struct extremes *y = &add->extremes;
-    x->area2[0] = fmin(x->area2[0], y->area2[0]);
-    x->area2[1] = fmax(x->area2[1], y->area2[1]);
-    x->length2[0] = fmin(x->length2[0], y->length2[0]);
-    x->length2[1] = fmax(x->length2[1], y->length2[1]);
-    x->least_altitude2 = fmin(x->least_altitude2, y->least_altitude2);
-    x->greatest_aspect = fmax(x->greatest_aspect, y->greatest_aspect);
-    x->least_sine2 = fmin(x->least_sine2, y->least_sine2);
-    x->least_cosine = fmin(x->least_cosine, y->least_cosine);
+    for (int k = 0; k < 2; k++) {
+        widen(x->area2, y->area2[k]);
+        widen(x->length2, y->length2[k]);
+    }
+    x->total_area2 += y->total_area2;
+    x->least_altitude2 = lesser(x->least_altitude2, y->least_altitude2);
+    x->greatest_aspect = greater(x->greatest_aspect, y->greatest_aspect);
+    x->least_sine2 = lesser(x->least_sine2, y->least_sine2);
+    x->least_cosine = lesser(x->least_cosine, y->least_cosine);
 }
 
 void tri_measure_shapes(struct tri_shapes *shapes, const struct tri_mesh *mesh, const struct tri_executor *executor)

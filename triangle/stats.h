@@ -24,7 +24,7 @@ extern const double tri_aspect_limits[TRI_ASPECT_BINS];
 
 /* Lengths and areas in the caller's coordinates, angles in degrees. All 0 without triangles. */
 struct tri_shapes {
-    double smallest_area, largest_area;
+    double smallest_area, largest_area, total_area;
     double shortest_edge, longest_edge;
     double shortest_altitude;
     double largest_aspect; /* longest edge over shortest altitude; infinite where an area is lost to rounding */
