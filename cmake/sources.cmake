@@ -55,6 +55,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/theory.c
     sched/partition.c
     sched/room.c
+    sched/pool.c
     sched/phase.c
     sched/par.c
     sched/triangulate.c)

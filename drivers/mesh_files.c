@@ -321,11 +321,7 @@ static int32_t count_columns(const struct mesh_files *f)
 static enum tri_status choose_vertices(struct writer *w)
 {
     const struct mesh_files *f = w->files;
-    enum tri_status status = TRI_OK;
-    if (w->switches->jettison)
-        status = tri_used_make(&w->used, f->mesh, w->error);
-    else if (f->elements->n > 0 && f->elements->n_nodes > 3)
-        status = tri_kept_make(&w->used, f->mesh, f->elements, w->error);
+    enum tri_status status = tri_kept_make(&w->used, f->mesh, f->elements, w->switches->jettison, w->error);
     w->n_vertices = w->used.number ? w->used.n : f->mesh->n_vertices;
     return status;
 }

@@ -55,13 +55,14 @@ double prediction_refine(const struct par_block_report *blocks, int32_t n_blocks
 
 double prediction_sequential(const struct par_report *report)
 {
-    double rest = report->seconds_total - report->seconds_refine - report->seconds_number;
+    double rest = report->seconds_total - report->seconds_refine - report->seconds_find -
+                  report->seconds_number;
     return rest > 0 ? rest : 0;
 }
 
-double prediction_number(const struct par_report *report, int threads)
+double prediction_shared(const struct par_report *report, double seconds, int threads)
 {
-    return report->seconds_number * report->threads / threads;
+    return seconds * report->threads / threads;
 }
 
 static double percent(const struct par_report *report, double seconds)

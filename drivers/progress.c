@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "sched/clock.h"
+#include "sched/par.h"
 
 static const double SECONDS_BETWEEN_LINES = 0.1;
 
@@ -44,6 +45,8 @@ static double rate(const struct progress *progress, double time, int64_t triangl
 static int print_step(const struct progress *p, double time, int round, int phase, int64_t triangles)
 {
     char where[64] = "pre-refinement";
+    if (phase == PAR_NUMBERING)
+        return fprintf(stderr, "%s: numbering", p->program);
     if (phase > 0)
         snprintf(where, sizeof where, "round %d, phase %d of 4", round + 1, phase);
     return fprintf(stderr, "%s: refining: %s, %" PRId64 " triangles, %.2f million/s", p->program, where, triangles,
@@ -71,7 +74,7 @@ void progress_step(void *user, int round, int phase, int64_t triangles)
         p->told = time;
         p->round = round;
         p->phase = phase;
-    } else if (p->mode == PROGRESS_LOG && (phase == 0 || round != p->round)) {
+    } else if (p->mode == PROGRESS_LOG && (phase == 0 || phase == PAR_NUMBERING || round != p->round)) {
         print_step(p, time, round, phase, triangles);
         fputc('\n', stderr);
         p->round = phase == 0 ? -1 : round;

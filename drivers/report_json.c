@@ -47,8 +47,9 @@ static json_t *parts_of(const struct par_report *r)
     json_t *phases = json_array();
     for (int colour = 0; colour < 4; colour++)
         json_array_append_new(phases, real(r->phase_seconds[colour]));
-    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "total", real(r->seconds_total), "prerefine",
-                     real(r->seconds_prerefine), "partition", real(r->seconds_partition), "seeds",
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "total", real(r->seconds_total),
+                     "prerefine", real(r->seconds_prerefine), "partition", real(r->seconds_partition), "find",
+                     real(r->seconds_find), "seeds",
                      real(r->seconds_seeds), "room", real(r->seconds_room), "refine", real(r->seconds_refine), "merge",
                      real(r->seconds_merge), "last", real(r->seconds_last), "number", real(r->seconds_number), "phases",
                      phases);
@@ -75,12 +76,13 @@ static json_t *predictions_of(const struct par_report *r)
     json_t *list = json_array();
     double sequential = prediction_sequential(r);
     for (int threads = 1; threads <= 256; threads *= 2) {
-        double refine = prediction_refine(r->blocks, r->n_blocks, 0, threads), quality = sequential + refine;
+        double refine = prediction_refine(r->blocks, r->n_blocks, 0, threads);
+        double quality = sequential + refine + prediction_shared(r, r->seconds_find, threads);
         if (refine < 0)
             continue;
         json_array_append_new(list, json_pack("{s:i, s:o, s:o, s:o, s:o}", "threads", threads, "refine_seconds",
                                               real(refine), "quality_seconds", real(quality), "number_seconds",
-                                              real(prediction_number(r, threads)), "sequential_share",
+                                              real(prediction_shared(r, r->seconds_number, threads)), "sequential_share",
                                               real(quality > 0 ? sequential / quality : 1)));
     }
     return list;
@@ -98,11 +100,11 @@ static json_t *schedule_of(const struct par_report *r)
 {
     json_t *inserted = json_pack("{s:o, s:o}", "free", whole(r->total.inserted_free), "on_segments",
                                  whole(r->total.inserted_on_segments));
-    json_t *counts = json_pack("{s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "levels", r->levels,
+    json_t *counts = json_pack("{s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "levels", r->levels,
                                "rounds", r->rounds, "columns", (int)r->columns, "rows", (int)r->rows, "prerefined",
                                whole(r->prerefined), "inserted", inserted, "deferred", whole(r->deferred), "left_over",
                                whole(r->left_over), "refused", refused_of(&r->total), "pauses", whole(r->pauses),
-                               "radius_theory", real(r->radius_theory), "radius_measured", real(r->radius_measured));
+                               "radius_lemma7", real(r->radius_lemma7), "radius_theory", real(r->radius_theory), "radius_measured", real(r->radius_measured));
     json_t *times = json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "seconds", parts_of(r), "overhead_percent",
                               real(prediction_overhead(r)), "numbering_percent", real(prediction_numbering(r)), "later_rounds_seconds_estimate",
                               real(prediction_refine(r->blocks, r->n_blocks, 1, r->threads)), "prediction",

@@ -151,120 +151,18 @@ static enum tri_status prerefine_uniform(struct par_state *state, const struct t
                                          double cell, int level, struct tri_error *error)
 {
     struct tri_refine_options coarse = coarse_bounds(quality, cell);
-    if (level == 0 && coarse.min_angle > 0 && quality->max_area > 0)
-        state->report->radius_theory = par_radius_tight(quality->max_area * coarse.area_scale, coarse.min_angle);
+    if (level == 0 && coarse.min_angle > 0 && quality->max_area > 0) {
+        double area = quality->max_area * coarse.area_scale;
+        state->report->radius_lemma7 = par_radius_lemma7(area, par_rho(coarse.min_angle));
+        state->report->radius_theory = par_radius_tight(area, coarse.min_angle);
+    }
     return refine_level(state, &coarse, level + 1, error);
 }
 
-struct filling {
-    struct tri_mesh *mesh;
-    const struct tri_refine_options *quality;
-    const struct par_slots *known; /* the pool as it was, where only triangles born since need be judged; or NULL */
-    int32_t n_known;               /* slots there were then */
-    int32_t *found;                /* [n_slots] */
-};
-
-static int32_t first_in_pool(const struct par_slots *pool, int32_t slot)
+static enum tri_status fill_pool(struct par_state *state, const struct tri_refine_options *quality, int32_t n_known,
+                                 struct tri_error *error)
 {
-    int32_t low = 0, high = pool->n;
-    while (low < high) {
-        int32_t middle = low + (high - low) / 2;
-        if (pool->item[middle] < slot)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
-/* The bad ones among slots first .. last - 1; returns how many. All lives begin anew, so that who is born later can be
- * told from who was there. */
-static int32_t find_bad(const struct filling *f, int32_t first, int32_t last)
-{
-    int32_t *found = f->found + first, n = 0;
-    if (f->known) {
-        int32_t next = first_in_pool(f->known, first);
-        for (int32_t t = first; t < last; t++) {
-            bool was_bad = next < f->known->n && f->known->item[next] == t;
-            next += was_bad;
-            if (t >= f->n_known || f->mesh->tri[t].state != 0)
-                n += tri_find_work(f->mesh, f->quality, t, t + 1, found + n);
-            else if (was_bad)
-                found[n++] = t;
-        }
-    } else {
-        n = tri_find_work(f->mesh, f->quality, first, last, found);
-    }
-    for (int32_t t = first; t < last; t++)
-        f->mesh->tri[t].state = 0;
-    return n;
-}
-
-static double largest_radius2(const struct tri_mesh *mesh, const int32_t *slot, int32_t n)
-{
-    double largest = 0;
-    for (int32_t i = 0; i < n; i++) {
-        const int32_t *v = mesh->tri[slot[i]].v;
-        double r2 = par_radius2(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]);
-        largest = r2 > largest ? r2 : largest;
-    }
-    return largest;
-}
-
-/* The pool becomes all triangles that violate the bounds, in the order of their slots; the radius, the largest
- * circumradius among them. known: the pool is that already, for the mesh as it was when it had n_known slots and was
- * last looked at here. */
-static enum tri_status fill_pool(struct par_state *state, const struct tri_refine_options *quality, bool known,
-                                 int32_t n_known, struct tri_error *error)
-{
-    enum { CHUNK = 1 << 14 };
-    int32_t n = state->mesh->n_slots, n_chunks = n / CHUNK + 1;
-    int32_t *count = calloc((size_t)n_chunks, sizeof *count);
-    double *radius2 = calloc((size_t)n_chunks, sizeof *radius2);
-    struct filling f = {state->mesh, quality, known ? &state->pool : NULL, n_known,
-                        malloc(((size_t)n + 1) * sizeof *f.found)};
-    if (!f.found || !count || !radius2) {
-        free(f.found);
-        free(count);
-        free(radius2);
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)n);
-    }
-#pragma omp parallel for num_threads(state->threads) schedule(dynamic, 1)
-    for (int32_t chunk = 0; chunk < n_chunks; chunk++) {
-        int32_t first = chunk * CHUNK, last = first + CHUNK < n ? first + CHUNK : n;
-        count[chunk] = find_bad(&f, first, last);
-        radius2[chunk] = largest_radius2(state->mesh, f.found + first, count[chunk]);
-    }
-    double largest2 = 0;
-    int32_t filled = 0;
-    for (int32_t chunk = 0; chunk < n_chunks; chunk++) {
-        largest2 = radius2[chunk] > largest2 ? radius2[chunk] : largest2;
-        for (int32_t i = 0; i < count[chunk]; i++)
-            f.found[filled++] = f.found[chunk * CHUNK + i];
-    }
-    free(state->pool.item);
-    state->pool = (struct par_slots){f.found, filled, n + 1};
-    state->radius = sqrt(largest2);
-    free(count);
-    free(radius2);
-    return TRI_OK;
-}
-
-/* Those triangles of the pool that violate other bounds, in order. False: no memory. */
-static bool filter_pool(const struct par_state *state, const struct tri_refine_options *bounds, struct par_slots *found)
-{
-    const struct par_slots *pool = &state->pool;
-    *found = (struct par_slots){malloc(((size_t)pool->n + 1) * sizeof *found->item), 0, pool->n};
-    if (!found->item)
-        return false;
-#pragma omp parallel for num_threads(state->threads) schedule(dynamic, 4096)
-    for (int32_t i = 0; i < pool->n; i++)
-        if (tri_find_work(state->mesh, bounds, pool->item[i], pool->item[i] + 1, &found->item[i]) == 0)
-            found->item[i] = TRI_NONE;
-    for (int32_t i = 0; i < pool->n; i++)
-        if (found->item[i] != TRI_NONE)
-            found->item[found->n++] = found->item[i];
-    return true;
+    return par_pool_fill(&state->pool, state->mesh, quality, n_known, state->threads, &state->radius, error);
 }
 
 /* Pre-refinement where the input is already fine in places: only bad triangles with edges that are long against their
@@ -282,20 +180,26 @@ static enum tri_status prerefine_graded(struct par_state *state, const struct tr
     coarse.max_steiner = (int64_t)(partition->estimate / 400);
     int32_t n_slots = state->mesh->n_slots;
     struct par_slots long_ones;
-    enum tri_status status = fill_pool(state, quality, false, 0, error);
+    double began = par_seconds();
+    enum tri_status status = fill_pool(state, quality, 0, error);
     if (status)
         return status;
-    if (!filter_pool(state, &coarse, &long_ones))
+    if (!par_pool_filter(&state->pool, state->mesh, &coarse, state->threads, &long_ones))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)state->pool.n);
     coarse.seeds = long_ones.item;
     coarse.n_seeds = long_ones.n;
+    double found = par_seconds();
     if (long_ones.n > 0) {
         status = tri_refine(state->mesh, &coarse, &report, error);
         state->report->total.inserted_free += report.inserted_free;
         state->report->total.inserted_on_segments += report.inserted_on_segments;
     }
+    double refined = par_seconds();
     free(long_ones.item);
-    return status ? status : fill_pool(state, quality, true, n_slots, error);
+    status = status ? status : fill_pool(state, quality, n_slots, error);
+    state->report->seconds_prerefine += refined - found;
+    state->report->seconds_find += par_seconds() - refined + found - began;
+    return status;
 }
 
 /* One sequential call of the same loop, for what the pool holds (all: for the whole mesh). */
@@ -319,6 +223,7 @@ static enum tri_status refine_rest(struct par_state *state, const struct tri_ref
 static enum tri_status number(struct par_state *state, struct tri_error *error)
 {
     double began = par_seconds();
+    tell(state, PAR_NUMBERING);
     struct tri_executor executor = par_executor(&state->threads);
     enum tri_status status = tri_number(state->mesh, &executor, error);
     state->numbered = state->mesh->n_vertices;
@@ -385,7 +290,7 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     status = leave_no_gaps(state, top && !state->options->by_block && !left_over, status, error);
     double last = par_seconds();
     if (!status && left_over) /* slots have moved */
-        status = fill_pool(state, quality, false, 0, error);
+        status = fill_pool(state, quality, 0, error);
     if (top)
         report->left_over = left_over ? state->pool.n : 0;
     if (!status && left_over)
@@ -419,11 +324,10 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
     if (areas_decide(state, quality, estimate, cell)) {
         status = prerefine_uniform(state, quality, cell, level, error);
         began = par_seconds();
-        status = status ? status : fill_pool(state, quality, false, 0, error);
-        state->report->seconds_seeds += par_seconds() - began;
+        status = status ? status : fill_pool(state, quality, 0, error);
+        state->report->seconds_find += par_seconds() - began;
     } else {
         status = prerefine_graded(state, quality, &partition, error);
-        state->report->seconds_prerefine += par_seconds() - began;
     }
     if (!status)
         status = run_schedule(state, quality, &partition, level == 0, error);

@@ -12,6 +12,8 @@
 #include "triangle/executor.h"
 #include "triangle/tri.h"
 
+enum { PAR_NUMBERING = PAR_COLOURS + 1 }; /* told as a phase, see progress */
+
 struct par_options {
     int threads;             /* 0: what OpenMP would use (OMP_NUM_THREADS, else all cores) */
     double cell_triangles;  /* final triangles in a cell, to the order; 0: the default. Part of the decomposition */
@@ -25,8 +27,8 @@ struct par_options {
                                 solver that goes through the triangles runs twice as fast then */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
     int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, and pause often */
-    /* Told by the calling thread: the phase that begins (0: pre-refinement, then 1 to 4), triangles so far (with the
-     * room that blocks have been dealt). */
+    /* Told by the calling thread: the phase that begins (0: pre-refinement, then 1 to 4, at last PAR_NUMBERING),
+     * triangles so far (with the room that blocks have been dealt). */
     void (*progress)(void *user, int round, int phase, int64_t triangles);
     void *progress_user;
 };
@@ -45,14 +47,15 @@ struct par_report {
     int32_t columns, rows;        /* of blocks in the first round */
     struct par_partition partition; /* blocks of the first round, in the mesh's units; none where the call was
                                        sequential. Owned by the report */
-    double radius_theory;         /* tight bound for what pre-refinement asks for; 0 where it lacks a bound */
+    double radius_lemma7, radius_theory; /* the paper's bound and the tight one for what pre-refinement asks for; 0
+                                            where it lacks a bound */
     double radius_measured;       /* largest circumradius of a bad triangle when the first phase began */
     int64_t prerefined;           /* triangles when the first phase began */
     int64_t deferred, left_over;  /* refused by fences in all phases; bad triangles that the last sequential call got */
     int64_t pauses;               /* times a block waited for room */
-    double seconds_prerefine, seconds_partition, seconds_seeds, seconds_room, seconds_merge, seconds_last,
-        seconds_total;
-    double seconds_number;        /* part of the total that numbering by the mesh alone took */
+    double seconds_prerefine, seconds_partition, seconds_find, seconds_seeds, seconds_room, seconds_merge,
+        seconds_last, seconds_number, seconds_total; /* find: bad triangles and their blocks, number: by the mesh
+                                                        alone; both in equal shares. seeds: dealing them out */
     double seconds_refine;        /* wall time of the phases' parallel parts */
     double phase_seconds[4];      /* refine, by colour, over all rounds */
     struct par_block_report *blocks; /* [n_blocks] in canonical order; owned by the report */

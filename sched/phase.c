@@ -46,22 +46,6 @@ struct phase {
     size_t n_owners;    /* debug builds: length of mesh->owner */
 };
 
-bool par_slots_add(struct par_slots *slots, int32_t slot)
-{
-    if (slots->n == slots->capacity) {
-        if (slots->capacity > INT32_MAX / 2)
-            return false;
-        int32_t capacity = slots->capacity ? 2 * slots->capacity : 64;
-        int32_t *fresh = realloc(slots->item, (size_t)capacity * sizeof *fresh);
-        if (!fresh)
-            return false;
-        slots->item = fresh;
-        slots->capacity = capacity;
-    }
-    slots->item[slots->n++] = slot;
-    return true;
-}
-
 static void leave_triangle(void *user, int32_t slot)
 {
     struct task *task = user;
@@ -378,13 +362,15 @@ static enum tri_status run_phase(struct phase *p, struct tri_error *error)
     struct par_report *report = p->state->report;
     double began = par_seconds();
     assign_blocks(p);
+    double assigned = par_seconds();
     bool memory = deal_seeds(p);
     for (int32_t i = 0; memory && i < p->n_tasks; i++)
         set_up(p, &p->tasks[i]);
     assert(!p->state->options->margin || blocks_are_independent(p));
     if (!memory || !order_tasks(p))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks of a phase");
-    report->seconds_seeds += par_seconds() - began;
+    report->seconds_find += assigned - began;
+    report->seconds_seeds += par_seconds() - assigned;
     enum tri_status status = TRI_OK;
     for (bool first = true, waiting = true; waiting && !status; first = false) {
         double dealing = par_seconds();

@@ -8,14 +8,8 @@
 
 #include "sched/par.h"
 #include "sched/partition.h"
+#include "sched/pool.h"
 #include "sched/room.h"
-
-struct par_slots {
-    int32_t *item;
-    int32_t n, capacity;
-};
-
-bool par_slots_add(struct par_slots *slots, int32_t slot);
 
 void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add);
 

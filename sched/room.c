@@ -183,21 +183,26 @@ void par_room_free(struct par_room *room)
     *room = (struct par_room){0};
 }
 
+static void mark_free(struct tri_mesh *mesh, enum par_kind kind, int32_t at)
+{
+    switch (kind) {
+    case PAR_VERTICES:
+        mesh->on[at] = TRI_VERTEX_NONE;
+        return;
+    case PAR_SLOTS:
+        mesh->tri[at].v[0] = TRI_NONE;
+        return;
+    default:
+        mesh->sub[at] = (struct tri_subsegment){{TRI_NONE, TRI_NONE}, {TRI_NONE, TRI_NONE}, 0, TRI_NONE};
+    }
+}
+
 void par_room_mark(const struct par_room *spare, struct tri_mesh *shared)
 {
     for (int kind = 0; kind < PAR_KINDS; kind++)
         for (int32_t i = 0; i < spare->ranges[kind].n; i++)
             for (int32_t at = spare->ranges[kind].item[i].next; at < spare->ranges[kind].item[i].end; at++)
-                switch (kind) {
-                case PAR_VERTICES:
-                    shared->on[at] = TRI_VERTEX_NONE;
-                    break;
-                case PAR_SLOTS:
-                    shared->tri[at].v[0] = TRI_NONE;
-                    break;
-                default:
-                    shared->sub[at] = (struct tri_subsegment){{TRI_NONE, TRI_NONE}, {TRI_NONE, TRI_NONE}, 0, TRI_NONE};
-                }
+                mark_free(shared, (enum par_kind)kind, at);
 }
 
 static int by_start(const void *left, const void *right)

@@ -456,3 +456,32 @@ void support_assert_cdt(const struct tri_mesh *mesh, bool naive)
             assert_sees_none(mesh, t);
     }
 }
+
+void support_assert_same_bytes(const struct tri_mesh *a, const struct tri_mesh *b)
+{
+    assert_int_equal(a->n_vertices, b->n_vertices);
+    assert_int_equal(a->n_slots, b->n_slots);
+    assert_int_equal(a->n_subs, b->n_subs);
+    assert_int_equal(a->n_attributes, b->n_attributes);
+    size_t n = (size_t)a->n_vertices;
+    assert_memory_equal(a->xy, b->xy, n * sizeof *a->xy);
+    assert_memory_equal(a->on, b->on, n * sizeof *a->on);
+    assert_memory_equal(a->vertex_markers, b->vertex_markers, n * sizeof *a->vertex_markers);
+    if (a->n_attributes > 0)
+        assert_memory_equal(a->attributes, b->attributes, n * (size_t)a->n_attributes * sizeof *a->attributes);
+    assert_memory_equal(a->sub, b->sub, (size_t)a->n_subs * sizeof *a->sub);
+    for (int32_t t = 0; t < a->n_slots; t++) {
+        assert_memory_equal(a->tri[t].v, b->tri[t].v, sizeof a->tri[t].v);
+        assert_memory_equal(a->tri[t].n, b->tri[t].n, sizeof a->tri[t].n);
+        assert_int_equal(a->tri[t].region, b->tri[t].region);
+    }
+}
+
+static void run_backwards(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
+{
+    (void)self;
+    while (n_tasks > 0)
+        task(context, --n_tasks);
+}
+
+const struct tri_executor support_backwards = {run_backwards, NULL};

@@ -113,6 +113,12 @@ bool support_same_places(const struct support_places *a, const struct support_pl
 bool support_has_place(const struct support_places *set, const double place[6]);
 void support_places_free(struct support_places *set);
 
+/* The arrays of two meshes, numbers and all; lives of slots aside. */
+void support_assert_same_bytes(const struct tri_mesh *a, const struct tri_mesh *b);
+
+/* An executor that runs tasks from the last to the first. */
+extern const struct tri_executor support_backwards;
+
 /* Does a subsegment other than `except` cut the sight from p to q? Exact. A touched end cuts, save where it is q
  * itself. */
 bool support_is_hidden(const struct tri_mesh *mesh, struct tri_point p, struct tri_point q, int32_t except);

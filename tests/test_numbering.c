@@ -3,14 +3,6 @@
 #include "support.h"
 #include "triangle/numbering.h"
 
-/* Runs tasks from the last to the first. */
-static void backwards(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
-{
-    (void)self;
-    while (n_tasks > 0)
-        task(context, --n_tasks);
-}
-
 static double plane(int k, struct tri_point p) { return k ? p.x - 3 * p.y : 2 * p.x + p.y; }
 
 /* Regions, crossing segments, and attributes that tell where a vertex is; so fine that work comes in shares. */
@@ -112,20 +104,6 @@ static struct tri_mesh scrambled(const struct tri_mesh *from, struct support_ran
     return to;
 }
 
-static void assert_same_bytes(const struct tri_mesh *a, const struct tri_mesh *b)
-{
-    assert_int_equal(a->n_vertices, b->n_vertices);
-    assert_int_equal(a->n_slots, b->n_slots);
-    assert_int_equal(a->n_subs, b->n_subs);
-    size_t n = (size_t)a->n_vertices;
-    assert_memory_equal(a->xy, b->xy, n * sizeof *a->xy);
-    assert_memory_equal(a->on, b->on, n * sizeof *a->on);
-    assert_memory_equal(a->vertex_markers, b->vertex_markers, n * sizeof *a->vertex_markers);
-    assert_memory_equal(a->attributes, b->attributes, 2 * n * sizeof *a->attributes);
-    assert_memory_equal(a->tri, b->tri, (size_t)a->n_slots * sizeof *a->tri);
-    assert_memory_equal(a->sub, b->sub, (size_t)a->n_subs * sizeof *a->sub);
-}
-
 /* What the header promises of the order. */
 static void assert_in_order(const struct tri_mesh *mesh)
 {
@@ -162,22 +140,21 @@ static void assert_is_whole(const struct tri_mesh *mesh)
 static void test_any_scrambling_comes_out_the_same(void **state)
 {
     (void)state;
-    const struct tri_executor executor = {backwards, NULL};
     for (uint64_t seed = 0; seed < 12; seed++) {
         struct support_random random = {seed};
         struct tri_mesh mesh = refined(seed, seed < 2 ? 1e-4 : 1e-3);
         struct support_places places = support_places(&mesh), after;
         struct tri_mesh other = scrambled(&mesh, &random);
         assert_true(mesh.n_vertices > mesh.n_hubs && mesh.n_hubs > mesh.n_input);
-        assert_int_equal(tri_number(&mesh, seed % 2 ? &executor : NULL, NULL), TRI_OK);
-        assert_int_equal(tri_number(&other, seed % 2 ? NULL : &executor, NULL), TRI_OK);
-        assert_same_bytes(&mesh, &other);
+        assert_int_equal(tri_number(&mesh, seed % 2 ? &support_backwards : NULL, NULL), TRI_OK);
+        assert_int_equal(tri_number(&other, seed % 2 ? NULL : &support_backwards, NULL), TRI_OK);
+        support_assert_same_bytes(&mesh, &other);
         assert_in_order(&mesh);
         assert_is_whole(&mesh);
         after = support_places(&mesh);
         assert_true(support_same_places(&places, &after));
         assert_int_equal(tri_number(&mesh, NULL, NULL), TRI_OK); /* once more: nothing to do */
-        assert_same_bytes(&mesh, &other);
+        support_assert_same_bytes(&mesh, &other);
         support_places_free(&places);
         support_places_free(&after);
         tri_mesh_free(&mesh);
@@ -256,7 +233,7 @@ static void test_without_memory_nothing_changes(void **state)
         assert_int_equal(status, TRI_NO_MEMORY);
         assert_int_equal(tri_mesh_validate(&other, NULL), TRI_OK);
     }
-    assert_same_bytes(&mesh, &other);
+    support_assert_same_bytes(&mesh, &other);
     tri_mesh_free(&mesh);
     tri_mesh_free(&other);
 }

@@ -108,22 +108,6 @@ static struct par_options small_blocks(double block, int threads)
     return options;
 }
 
-static void assert_same_bytes(const struct tri_mesh *a, const struct tri_mesh *b)
-{
-    assert_int_equal(a->n_vertices, b->n_vertices);
-    assert_int_equal(a->n_slots, b->n_slots);
-    assert_int_equal(a->n_subs, b->n_subs);
-    assert_memory_equal(a->xy, b->xy, (size_t)a->n_vertices * sizeof *a->xy);
-    assert_memory_equal(a->on, b->on, (size_t)a->n_vertices * sizeof *a->on);
-    assert_memory_equal(a->vertex_markers, b->vertex_markers, (size_t)a->n_vertices * sizeof *a->vertex_markers);
-    assert_memory_equal(a->sub, b->sub, (size_t)a->n_subs * sizeof *a->sub);
-    for (int32_t t = 0; t < a->n_slots; t++) {
-        assert_memory_equal(a->tri[t].v, b->tri[t].v, sizeof a->tri[t].v);
-        assert_memory_equal(a->tri[t].n, b->tri[t].n, sizeof a->tri[t].n);
-        assert_int_equal(a->tri[t].region, b->tri[t].region);
-    }
-}
-
 static int64_t sum_bad(const struct tri_mesh *mesh, const struct tri_refine_options *quality,
                        const struct tri_refine_report *report)
 {
@@ -211,7 +195,7 @@ static void test_any_number_of_threads_and_order_of_blocks_make_one_mesh(void **
             options.threads = runs[k].threads;
             options.shuffle = runs[k].shuffle;
             struct tri_mesh mesh = refine(&start, &options, &report);
-            assert_same_bytes(&first, &mesh);
+            support_assert_same_bytes(&first, &mesh);
             assert_same_report(&first_report, &report);
             par_report_free(&report);
             tri_mesh_free(&mesh);
@@ -245,10 +229,10 @@ static void test_room_moves_ids_alone(void **state)
             if (report.levels == 1 && report.left_over == 0 && trials[i].angle <= 30)
                 assert_true(same);
             if (same && !options.by_block)
-                assert_same_bytes(&mesh, &other);
+                support_assert_same_bytes(&mesh, &other);
             if (same && options.by_block) {
                 assert_int_equal(tri_number(&other, NULL, NULL), TRI_OK);
-                assert_same_bytes(&mesh, &other);
+                support_assert_same_bytes(&mesh, &other);
             }
             print_message("  %-28s room %d: levels %d, left over %lld, %s\n", trials[i].file, (int)rooms[k],
                           report.levels, (long long)report.left_over, same ? "same" : "other");
@@ -340,7 +324,7 @@ static void test_a_size_test_runs_in_parallel_only_where_allowed(void **state)
         struct par_report report;
         struct tri_mesh mesh = refine(&start, &options, &report);
         assert_int_equal(report.n_blocks, 0);
-        assert_same_bytes(&mesh, &plain);
+        support_assert_same_bytes(&mesh, &plain);
         par_report_free(&report);
         tri_mesh_free(&mesh);
         options.size_test_in_parallel = true;
@@ -352,7 +336,7 @@ static void test_a_size_test_runs_in_parallel_only_where_allowed(void **state)
         if (threads == 1) {
             first = mesh;
         } else {
-            assert_same_bytes(&first, &mesh);
+            support_assert_same_bytes(&first, &mesh);
             tri_mesh_free(&mesh);
         }
         par_report_free(&report);
@@ -381,7 +365,7 @@ static void test_limits_and_gates_go_the_sequential_way(void **state)
         start.options.quality.gate = k ? open_gate : NULL;
         struct tri_mesh mesh = refine(&start, &options, &report),
                         plain = support_generate(&start.pslg, &start.options, NULL);
-        assert_same_bytes(&mesh, &plain);
+        support_assert_same_bytes(&mesh, &plain);
         assert_int_equal(report.n_blocks, 0);
         assert_true(report.total.hit_limit == (k == 0));
         assert_true(k || report.total.inserted_free + report.total.inserted_on_segments <= 3000);
@@ -466,7 +450,7 @@ static void test_small_and_empty_meshes(void **state)
         struct tri_mesh mesh = refine(&start, &options, &report);
         judge(&start, &mesh, 0);
         struct tri_mesh again = refine(&start, &options, &report);
-        assert_same_bytes(&mesh, &again);
+        support_assert_same_bytes(&mesh, &again);
         assert_int_equal(par_refine(&mesh, &start.options.quality, &options, &report, NULL), TRI_OK);
         assert_int_equal(report.total.inserted_free + report.total.inserted_on_segments, 0);
         assert_int_equal(mesh.n_slots, again.n_slots);
@@ -511,7 +495,7 @@ static void tell(void *user, int round, int phase, int64_t triangles)
 {
     struct told *told = user;
     assert_true(pthread_equal(told->thread, pthread_self()));
-    assert_true(phase >= 0 && phase <= 4 && round >= 0);
+    assert_true(phase >= 0 && phase <= PAR_NUMBERING && round >= 0);
     assert_true(phase == 0 || round > told->round || phase > told->phase || told->phase == 0);
     told->round = round;
     told->phase = phase;
@@ -569,7 +553,7 @@ static void end_callers(struct caller caller[CALLERS])
         struct par_report report;
         struct tri_mesh alone = refine(&caller[i].start, &caller[i].options, &report);
         assert_int_equal(caller[i].status, TRI_OK);
-        assert_same_bytes(&alone, &caller[i].mesh);
+        support_assert_same_bytes(&alone, &caller[i].mesh);
         par_report_free(&report);
         tri_mesh_free(&alone);
         tri_mesh_free(&caller[i].mesh);

@@ -92,13 +92,6 @@ static int64_t run_one_by_one(struct tri_mesh *mesh, const struct tri_refine_opt
     return inserted;
 }
 
-static void mark_unused(struct tri_mesh *mesh, const struct par_room *spare)
-{
-    for (int32_t i = 0; i < spare->ranges[PAR_SLOTS].n; i++)
-        for (int32_t t = spare->ranges[PAR_SLOTS].item[i].next; t < spare->ranges[PAR_SLOTS].item[i].end; t++)
-            mesh->tri[t].v[0] = TRI_NONE;
-}
-
 /* The block of the colour whose fence holds all three corners, or TRI_NONE. */
 static int32_t block_of_triangle(const struct par_partition *p, int colour, const struct tri_mesh *mesh,
                                  const int32_t v[3])
@@ -172,7 +165,7 @@ static int64_t run_phase(struct tri_mesh *mesh, const struct tri_refine_options 
     state.pool = bad_slots(mesh, quality);
     if (par_phase(&state, p, colour, &error) != TRI_OK)
         fail_msg("%s", error.text);
-    mark_unused(mesh, &state.spare);
+    par_room_mark(&state.spare, mesh); /* slots that nobody has used yet hold anything */
     assert_changes_are_owned(mesh, old, n_old, p, colour);
     assert_pool_holds_all_that_is_bad(mesh, quality, &state.pool, &report.total);
     *pauses += report.pauses;
@@ -238,7 +231,7 @@ static void test_four_phases_in_turn(void **state)
         phases.pool = bad_slots(&mesh, &quality);
         for (int colour = 0; colour < PAR_COLOURS; colour++) {
             assert_int_equal(par_phase(&phases, &partition, colour, NULL), TRI_OK);
-            mark_unused(&mesh, &phases.spare);
+            par_room_mark(&phases.spare, &mesh);
             assert_pool_holds_all_that_is_bad(&mesh, &quality, &phases.pool, &report.total);
         }
         print_message("  %-16s %d left of %lld inserted\n", trials[i].file ? trials[i].file : "square",

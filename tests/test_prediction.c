@@ -50,13 +50,14 @@ static void test_shares(void **state)
     assert_true(is_near(prediction_overhead(&report), 5));
     assert_true(is_near(prediction_numbering(&report), 0));
     report.seconds_number = 2; /* comes after what the shares are shares of, and is shared out itself */
+    report.seconds_find = 0.25;
     report.seconds_total += 2;
     report.threads = 2;
-    assert_true(is_near(prediction_sequential(&report), 1.5));
+    assert_true(is_near(prediction_sequential(&report), 1.25));
     assert_true(is_near(prediction_overhead(&report), 5));
     assert_true(is_near(prediction_numbering(&report), 20));
-    assert_true(is_near(prediction_number(&report, 1), 4));
-    assert_true(is_near(prediction_number(&report, 8), 0.5));
+    assert_true(is_near(prediction_shared(&report, report.seconds_number, 1), 4));
+    assert_true(is_near(prediction_shared(&report, report.seconds_number, 8), 0.5));
     report.levels = 0; /* one sequential call has no schedule */
     assert_true(is_near(prediction_overhead(&report), 0));
     assert_true(is_near(prediction_numbering(&report), 0));

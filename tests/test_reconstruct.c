@@ -291,17 +291,20 @@ static void kept_vertices(void **state)
     add_steiner(&mesh, 0, 0.3);
     assert_true(mesh.n_vertices > 6);
     struct tri_used kept;
-    assert_int_equal(tri_kept_make(&kept, &mesh, &in.elements, &error), TRI_OK);
+    assert_int_equal(tri_kept_make(&kept, &mesh, &in.elements, false, &error), TRI_OK);
     assert_int_equal(kept.n, mesh.n_vertices - 1);
     for (int32_t v = 0; v < mesh.n_vertices; v++) {
         assert_int_equal(kept.number[v], v < 3 ? v : v == 3 ? TRI_NONE : v - 1);
         assert_true(v == 3 || kept.vertex[kept.number[v]] == v);
     }
     tri_used_free(&kept);
+    assert_int_equal(tri_kept_make(&kept, &mesh, &in.elements, true, &error), TRI_OK); /* corners alone */
+    assert_int_equal(kept.n, mesh.n_vertices - 2);
+    tri_used_free(&kept);
     free(in.elements.extra);
     in.elements.extra = NULL;
-    assert_int_equal(tri_kept_make(&kept, &mesh, &in.elements, &error), TRI_OK);
-    assert_int_equal(kept.n, mesh.n_vertices);
+    assert_int_equal(tri_kept_make(&kept, &mesh, &in.elements, false, &error), TRI_OK);
+    assert_null(kept.number);
     tri_used_free(&kept);
     tri_mesh_free(&mesh);
     free_input(&in);

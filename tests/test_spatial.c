@@ -65,14 +65,6 @@ static void test_sorting_follows_the_curve(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Runs tasks from the last to the first. */
-static void backwards(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
-{
-    (void)self;
-    while (n_tasks > 0)
-        task(context, --n_tasks);
-}
-
 /* What comes after restoring finds everything that refers to vertices in order. */
 static void refine_again(struct tri_mesh *mesh, const struct tri_pslg *pslg)
 {
@@ -87,19 +79,18 @@ static void refine_again(struct tri_mesh *mesh, const struct tri_pslg *pslg)
 static void test_restoring_after_refinement(void **state)
 {
     (void)state;
-    const struct tri_executor executor = {backwards, NULL};
     for (enum support_kind kind = SUPPORT_RANDOM; kind <= SUPPORT_LATTICE; kind++) {
         struct tri_pslg pslg = named_points(kind, 300, 7 + (uint64_t)kind);
         struct tri_options options = support_quality(25, 0.01);
         struct tri_mesh once = support_generate(&pslg, &options, NULL);
         options.refine = false;
         options.leave_sorted = true;
-        options.executor = &executor;
+        options.executor = &support_backwards;
         struct tri_mesh steps = support_generate(&pslg, &options, NULL);
         struct tri_refine_report report;
         assert_non_null(steps.origin);
         assert_int_equal(tri_refine(&steps, &options.quality, &report, NULL), TRI_OK);
-        assert_int_equal(tri_restore_points(&steps, &executor, NULL), TRI_OK);
+        assert_int_equal(tri_restore_points(&steps, &support_backwards, NULL), TRI_OK);
         assert_callers_points(&steps, &pslg);
         assert_int_equal(once.n_slots, steps.n_slots);
         for (int32_t t = 0; t < once.n_slots; t++)

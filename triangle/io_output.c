@@ -252,11 +252,7 @@ static void fill_voronoi(struct output *o)
 static enum tri_status list_what_is_needed(struct output *o, struct tri_error *error)
 {
     const struct tri_switches *s = o->switches;
-    enum tri_status status = TRI_OK;
-    if (s->jettison)
-        status = tri_used_make(&o->used, o->mesh, error);
-    else if (s->mesh && o->input->elements.extra)
-        status = tri_kept_make(&o->used, o->mesh, &o->input->elements, error);
+    enum tri_status status = tri_kept_make(&o->used, o->mesh, &o->input->elements, s->jettison, error);
     if (!status && (s->edges || s->voronoi || s->second_order))
         status = tri_edge_list_make(&o->edges, o->mesh, s->second_order, error);
     return status;

@@ -294,6 +294,8 @@ enum tri_status tri_number(struct tri_mesh *mesh, const struct tri_executor *exe
     if (!status) {
         rank_vertices(&n);
         tri_mesh_gather_vertices(mesh, mesh->n_hubs, n.order, n.n_new, n.park, executor);
+        free(n.order);
+        n.order = NULL;
         rename_subs(&n);
         rank_subs(&n);
         rank_triangles(&n);

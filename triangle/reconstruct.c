@@ -434,13 +434,14 @@ enum tri_status tri_reconstruct(struct tri_mesh *mesh, const struct tri_pslg *ps
 /* --- what surrounds it */
 
 enum tri_status tri_kept_make(struct tri_used *kept, const struct tri_mesh *mesh, const struct tri_elements *elements,
-                              struct tri_error *error)
+                              bool jettison, struct tri_error *error)
 {
     enum { DROPPED = TRI_NONE - 1 };
-    enum tri_status status = tri_used_make(kept, mesh, error);
-    if (status)
-        return status;
     size_t n = elements->extra ? (size_t)elements->n * (size_t)(elements->n_nodes - 3) : 0;
+    *kept = (struct tri_used){0};
+    enum tri_status status = jettison || n > 0 ? tri_used_make(kept, mesh, error) : TRI_OK;
+    if (status || jettison || n == 0)
+        return status;
     for (size_t i = 0; i < n; i++) {
         int32_t v = elements->extra[i];
         if (v >= 0 && v < mesh->n_input && kept->number[v] == TRI_NONE)

@@ -52,9 +52,10 @@ struct tri_reconstruct_options {
 enum tri_status tri_reconstruct(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_elements *elements,
                                 const struct tri_reconstruct_options *options, struct tri_error *error);
 
-/* The vertices that Triangle writes of a mesh made so: all but the nodes behind the third (midpoints of edges, -o2)
- * that are no corners. O(vertices + triangles). TRI_NO_MEMORY. */
+/* The vertices that Triangle writes: with jettison (-j) those that are corners; of a mesh made from elements with more
+ * than three nodes all but the nodes behind the third (midpoints of edges, -o2) that are no corners; else all, and
+ * kept->number is NULL. O(vertices + triangles). TRI_NO_MEMORY. */
 enum tri_status tri_kept_make(struct tri_used *kept, const struct tri_mesh *mesh, const struct tri_elements *elements,
-                              struct tri_error *error);
+                              bool jettison, struct tri_error *error);
 
 #endif

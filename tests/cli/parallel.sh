@@ -108,8 +108,8 @@ wrote
 # --- report
 program 0 -pq30a0.001Q --threads 2 --report report.json letter
 wrote letter.1.node letter.1.ele letter.1.poly report.json
-for key in threads peak_memory_bytes read delaunay segments holes quality write total prerefine partition seeds room refine \
-    merge number last phases overhead_percent numbering_percent number_seconds free on_segments deferred left_over rounds pauses radius_theory \
+for key in threads peak_memory_bytes read delaunay segments holes quality write total prerefine partition find seeds room refine \
+    merge number last phases overhead_percent numbering_percent number_seconds free on_segments deferred left_over rounds pauses radius_lemma7 radius_theory \
     radius_measured sequential_share refine_seconds round phase block smallest_angle mean_area_over_bound; do
     check "no $key in the report" grep -q "\"$key\":" report.json
 done
@@ -145,6 +145,7 @@ check "the triangles of triangle" alike one.ele letter.1.ele
 program 0 -pq30a0.001 --progress letter
 says 'All triangles keep the bounds.'
 complains '^ptriangle: refining: round 1, phase 1 of 4, [0-9]+ triangles, [0-9.]+ million/s$'
+complains '^ptriangle: numbering$'
 complains '^ptriangle: refined to [0-9]+ triangles in '
 program 0 -pq30a0.01 letter
 calm
