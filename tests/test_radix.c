@@ -63,8 +63,30 @@ static void test_sorts_stably(void **state)
     free(items);
 }
 
+/* So many that even the buckets of the first pass do not fit a cache. The index below the key rises, so stably sorted
+ * items rise, too. */
+static void test_sorts_millions(void **state)
+{
+    (void)state;
+    enum { N = 2700000 };
+    struct support_random random = {2};
+    uint64_t *items = malloc(2 * (size_t)N * sizeof *items), sum = 0;
+    assert_non_null(items);
+    for (int32_t i = 0; i < N; i++) {
+        items[i] = (uint64_t)support_below(&random, 9) << 56 | support_bits(&random) >> 36 << 28 | (uint64_t)i;
+        sum += items[i];
+    }
+    tri_radix_sort(items, items + N, N, 28, 64, &support_backwards);
+    for (int32_t i = 0; i < N; i++) {
+        assert_true(i == 0 || items[i - 1] < items[i]);
+        sum -= items[i];
+    }
+    assert_true(sum == 0);
+    free(items);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_sorts_stably)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_sorts_stably), cmocka_unit_test(test_sorts_millions)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* One pass by the highest digit puts items together that fit the cache, in parallel; these are then sorted from their
- * lowest digit up. Items move between two arrays: `home` tells whether they are now in the one where they belong at the
+/* Passes by the highest digit, the first of them in parallel, put items together that fit the cache; these are then
+ * sorted from their lowest digit up. Items move between two arrays: `home` tells whether they are now in the one where they belong at the
  * end. */
 #include "triangle/radix.h"
 
@@ -8,11 +8,12 @@
 #include <string.h>
 
 enum {
-    DIGIT = 11,        /* bits of a pass over items that fit the cache, at most */
-    WIDE_DIGIT = 8,    /* of a pass over more */
+    DIGIT = 11,           /* bits of a pass from the lowest digit up, at most */
+    WIDE_DIGIT = 8,       /* of a pass from the highest digit down */
     BUCKETS = 1 << WIDE_DIGIT,
-    FEW = 24,          /* items that are sorted by insertion */
-    MANY = 1 << 18     /* items that are worth several tasks */
+    FEW = 24,             /* items that are sorted by insertion */
+    MANY = 1 << 18,       /* items that do not fit the cache, and are worth several tasks */
+    LARGE_SHARE = 8       /* a bucket with more than one in so many of them is worth them, too */
 };
 
 /* Items from[0 .. n), and the array beside them that the next pass writes to. */
@@ -53,8 +54,44 @@ static void stable_pass(struct run *run, int shift, int digit)
     run->home = !run->home;
 }
 
+/* A part of the run, moved one pass on. */
+static struct run part_of(const struct run *run, int32_t first, int32_t end, int shift)
+{
+    return (struct run){run->to + first, run->from + first, end - first, run->low, shift, !run->home};
+}
+
+static int wide_digit(const struct run *run)
+{
+    int bits = run->high - run->low;
+    return bits < WIDE_DIGIT ? bits : WIDE_DIGIT;
+}
+
+static void sort_run(struct run run);
+
+static void split_run(struct run run)
+{
+    int digit = wide_digit(&run), shift = run.high - digit;
+    uint64_t mask = (UINT64_C(1) << digit) - 1;
+    int32_t end[BUCKETS] = {0}, sum = 0;
+    for (int32_t i = 0; i < run.n; i++)
+        end[run.from[i] >> shift & mask]++;
+    for (uint64_t b = 0; b <= mask; b++) {
+        int32_t count = end[b];
+        end[b] = sum;
+        sum += count;
+    }
+    for (int32_t i = 0; i < run.n; i++)
+        run.to[end[run.from[i] >> shift & mask]++] = run.from[i];
+    for (uint64_t b = 0; b <= mask; b++)
+        sort_run(part_of(&run, b ? end[b - 1] : 0, end[b], shift));
+}
+
 static void sort_run(struct run run)
 {
+    if (run.n > MANY && run.high > run.low) {
+        split_run(run);
+        return;
+    }
     int bits = run.high - run.low, passes = (bits + DIGIT - 1) / DIGIT;
     if (run.n <= FEW)
         insert_all(&run);
@@ -99,27 +136,29 @@ static void move_share(void *context, size_t share)
 
 static struct run bucket_run(const struct wide_pass *pass, size_t bucket)
 {
-    int32_t first = bucket ? pass->end[bucket - 1] : 0;
-    return (struct run){pass->run.to + first, pass->run.from + first, pass->end[bucket] - first,
-                        pass->run.low, pass->shift, !pass->run.home};
+    return part_of(&pass->run, bucket ? pass->end[bucket - 1] : 0, pass->end[bucket], pass->shift);
+}
+
+static bool is_large(const struct wide_pass *pass, const struct run *bucket)
+{
+    return bucket->n > MANY && bucket->n > pass->run.n / LARGE_SHARE;
 }
 
 static void sort_bucket(void *context, size_t bucket)
 {
     struct run run = bucket_run(context, bucket);
-    if (run.n > 0 && run.n <= MANY)
+    if (!is_large(context, &run))
         sort_run(run);
 }
 
-/* As sort_run. Buckets that are still large follow one by one, each with all threads. */
+/* As sort_run. Buckets with a large share of the items follow one by one, each with all threads. */
 static void sort_wide(struct run run, const struct tri_executor *executor)
 {
-    int bits = run.high - run.low;
-    if (run.n <= MANY || bits == 0) {
+    if (run.n <= MANY || run.high == run.low) {
         sort_run(run);
         return;
     }
-    struct wide_pass pass = {.run = run, .digit = bits < WIDE_DIGIT ? bits : WIDE_DIGIT};
+    struct wide_pass pass = {.run = run, .digit = wide_digit(&run)};
     size_t shares = tri_shares(run.n);
     int32_t sum = 0;
     pass.shift = run.high - pass.digit;
@@ -137,7 +176,7 @@ static void sort_wide(struct run run, const struct tri_executor *executor)
     tri_execute(executor, BUCKETS, sort_bucket, &pass);
     for (size_t b = 0; b < BUCKETS; b++) {
         struct run part = bucket_run(&pass, b);
-        if (part.n > MANY)
+        if (is_large(&pass, &part))
             sort_wide(part, executor);
     }
 }
