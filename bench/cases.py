@@ -73,15 +73,22 @@ class Ours(Case):
     def __init__(self, settings, domain, threads, switches="", files=False, options=()):
         super().__init__(settings, domain)
         self.threads, self.switches, self.files, self.options = threads, switches, files, options
-        self.name = ", ".join((f"ours, {threads} thread{'s' if threads > 1 else ''}", *(["with files"] * files),
-                               *(" ".join(options),) * bool(options)))
+        words = ["ours", f"{threads} thread{'s' if threads > 1 else ''}"]
+        if files:
+            words.append("with files")
+        if options:
+            words.append(" ".join(options))
+        self.name = ", ".join(words)
         if "r" in switches:
             self.check = ("--refined",)
 
-    def _call(self, extra):
+    def _execute(self, *extra):
+        return self.execute(self.settings.program("ptriangle"), "--threads", str(self.threads), *self.options, *extra,
+                            "-Q" + self.switches + self.domain.switches, self.domain.path)
+
+    def _call(self, *extra):
         report = os.path.join(self.settings.scratch, "report.json")
-        ended = self.execute(self.settings.program("ptriangle"), "--threads", str(self.threads), *self.options,
-                             "--report", report, *extra, "-Q" + self.switches + self.domain.switches, self.domain.path)
+        ended = self._execute("--report", report, *extra)
         with open(report) as file:
             facts = json.load(file)
         s = facts["seconds"]
@@ -94,18 +101,16 @@ class Ours(Case):
     def run(self):
         """With files: stages from one run, the process from another, that makes no report."""
         if not self.files:
-            return self._call(("-NEP",))
+            return self._call("-NEP")
         base = os.path.join(self.settings.scratch, "timed")
-        run = self._call(("--output", base))
+        run = self._call("--output", base)
         remove(base)
-        run.seconds["process"] = self.execute(self.settings.program("ptriangle"), "--threads", str(self.threads),
-                                              *self.options, "--output", base,
-                                              "-Q" + self.switches + self.domain.switches, self.domain.path).wall
+        run.seconds["process"] = self._execute("--output", base).wall
         remove(base)
         return run
 
     def write(self, base):
-        return base, self._call(("--output", base))
+        return base, self._call("--output", base)
 
 
 class Sequential(Case):

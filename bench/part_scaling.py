@@ -7,7 +7,8 @@ HEAD = ("threads", "Delaunay, s", "Quality, s", "speedup of Quality", "efficienc
         "predicted speedup")
 NOTE = """\
 `ptriangle` on one to all cores; efficiency is speedup over threads. Predicted: the blocks of the run on one thread
-dealt to more by list scheduling, all else as sequential as there; nothing of it was measured. Median (least–most) of
+dealt to more by list scheduling, looking for bad triangles in equal shares, all else as sequential as there; nothing
+of it was measured. Median (least–most) of
 {} runs in turns.
 
 """

@@ -12,8 +12,9 @@ NOTE = """\
 In memory, without files. Triangle 1.6: Delaunay is a call of its library function without bounds, all a call with
 them, Quality the difference; the calls ask for no output arrays, and all conversion of input is outside the clock.
 Ours, sequential: `triangle`; else `ptriangle`, which numbers the mesh along a curve when it is done (unless told
-`--numbering blocks`); Triangle and `triangle` leave their triangles in the order in which they came about. Bytes a triangle: resident peak of the whole process over triangles
-made, input and, for Triangle, Python included. Median (least–most) of {} runs in turns.
+`--numbering blocks`); Triangle and `triangle` leave their triangles in the order in which they came about. Bytes a
+triangle: resident peak of the whole process over triangles made, input and, for Triangle, Python included. Median
+(least–most) of {} runs in turns.
 
 """
 TRIANGLE, SEQUENTIAL, ONE, MOST = range(4)

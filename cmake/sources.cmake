@@ -72,6 +72,7 @@ set(PTRIANGLE_PUBLIC_HEADERS
     triangle/constrain.h
     triangle/cavity.h
     triangle/refine.h
+    triangle/numbering.h
     triangle/check.h
     triangle/executor.h
     triangle/read.h

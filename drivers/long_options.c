@@ -28,9 +28,10 @@ static const struct kind {
     enum id id;
     bool has_value;
 } kinds[] = {
-    {"threads", THREADS, true},   {"max-area", MAX_AREA, true}, {"min-angle", MIN_ANGLE, true},
-    {"output", OUTPUT, true},     {"report", REPORT, true},     {"blocks", BLOCKS, true}, {"numbering", NUMBERING, true},
-    {"progress", PROGRESS, false}, {"no-progress", NO_PROGRESS, false}, {"version", VERSION, false}, {"help", HELP, false},
+    {"threads", THREADS, true},     {"max-area", MAX_AREA, true},  {"min-angle", MIN_ANGLE, true},
+    {"output", OUTPUT, true},       {"report", REPORT, true},      {"blocks", BLOCKS, true},
+    {"numbering", NUMBERING, true}, {"progress", PROGRESS, false}, {"no-progress", NO_PROGRESS, false},
+    {"version", VERSION, false},    {"help", HELP, false},
 };
 
 static const struct kind *find_kind(const char *name, size_t length)

@@ -62,7 +62,9 @@ double prediction_sequential(const struct par_report *report)
 
 double prediction_shared(const struct par_report *report, double seconds, int threads)
 {
-    return seconds * report->threads / threads;
+    int had = report->threads < TRI_MOST_SHARES ? report->threads : TRI_MOST_SHARES;
+    int have = threads < TRI_MOST_SHARES ? threads : TRI_MOST_SHARES;
+    return seconds * had / have;
 }
 
 static double percent(const struct par_report *report, double seconds)

@@ -81,9 +81,9 @@ void progress_step(void *user, int round, int phase, int64_t triangles)
     }
 }
 
-void progress_end(struct progress *p, int64_t triangles)
+void progress_end(struct progress *p, int64_t triangles, double numbering)
 {
-    double time = par_seconds();
+    double time = par_seconds() - numbering;
     if (p->mode == PROGRESS_LINE && p->width > 0) {
         fprintf(stderr, "\r%*s\r", p->width, "");
         fflush(stderr);

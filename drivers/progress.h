@@ -27,9 +27,9 @@ void progress_stage(struct progress *progress, const char *what);
 
 /* Refinement begins, goes on, ends. step has the shape of par_options.progress, user is the struct; it may be called
  * as often as wanted: a terminal sees each phase and at most ten lines a second beyond that, a log one line for each
- * round. */
+ * round. numbering: seconds since begin that do not count. */
 void progress_begin(struct progress *progress, int64_t triangles, int threads);
 void progress_step(void *user, int round, int phase, int64_t triangles);
-void progress_end(struct progress *progress, int64_t triangles);
+void progress_end(struct progress *progress, int64_t triangles, double numbering);
 
 #endif

@@ -39,7 +39,7 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     options.progress_user = &p->progress;
     progress_begin(&p->progress, mesh->n_slots, p->threads);
     enum tri_status status = par_refine(mesh, quality, &options, &p->schedule, error);
-    progress_end(&p->progress, mesh->n_slots);
+    progress_end(&p->progress, mesh->n_slots, p->schedule.seconds_number);
     if (!status)
         progress_stage(&p->progress, "writing");
     *report = p->schedule.total;

@@ -82,8 +82,8 @@ static json_t *predictions_of(const struct par_report *r)
             continue;
         json_array_append_new(list, json_pack("{s:i, s:o, s:o, s:o, s:o}", "threads", threads, "refine_seconds",
                                               real(refine), "quality_seconds", real(quality), "number_seconds",
-                                              real(prediction_shared(r, r->seconds_number, threads)), "sequential_share",
-                                              real(quality > 0 ? sequential / quality : 1)));
+                                              real(prediction_shared(r, r->seconds_number, threads)),
+                                              "sequential_share", real(quality > 0 ? sequential / quality : 1)));
     }
     return list;
 }
@@ -100,15 +100,17 @@ static json_t *schedule_of(const struct par_report *r)
 {
     json_t *inserted = json_pack("{s:o, s:o}", "free", whole(r->total.inserted_free), "on_segments",
                                  whole(r->total.inserted_on_segments));
-    json_t *counts = json_pack("{s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "levels", r->levels,
-                               "rounds", r->rounds, "columns", (int)r->columns, "rows", (int)r->rows, "prerefined",
-                               whole(r->prerefined), "inserted", inserted, "deferred", whole(r->deferred), "left_over",
-                               whole(r->left_over), "refused", refused_of(&r->total), "pauses", whole(r->pauses),
-                               "radius_lemma7", real(r->radius_lemma7), "radius_theory", real(r->radius_theory), "radius_measured", real(r->radius_measured));
-    json_t *times = json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "seconds", parts_of(r), "overhead_percent",
-                              real(prediction_overhead(r)), "numbering_percent", real(prediction_numbering(r)), "later_rounds_seconds_estimate",
-                              real(prediction_refine(r->blocks, r->n_blocks, 1, r->threads)), "prediction",
-                              predictions_of(r), "blocks", blocks_of(r));
+    json_t *counts =
+        json_pack("{s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "levels", r->levels, "rounds",
+                  r->rounds, "columns", (int)r->columns, "rows", (int)r->rows, "prerefined", whole(r->prerefined),
+                  "inserted", inserted, "deferred", whole(r->deferred), "left_over", whole(r->left_over), "refused",
+                  refused_of(&r->total), "pauses", whole(r->pauses), "radius_lemma7", real(r->radius_lemma7),
+                  "radius_theory", real(r->radius_theory), "radius_measured", real(r->radius_measured));
+    json_t *times =
+        json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "seconds", parts_of(r), "overhead_percent",
+                  real(prediction_overhead(r)), "numbering_percent", real(prediction_numbering(r)),
+                  "later_rounds_seconds_estimate", real(prediction_refine(r->blocks, r->n_blocks, 1, r->threads)),
+                  "prediction", predictions_of(r), "blocks", blocks_of(r));
     if (json_object_update(counts, times)) {
         json_decref(counts);
         counts = NULL;
@@ -167,8 +169,8 @@ static json_t *report_of(const struct run *run, const struct par_report *schedul
                                "max_area", q->max_area > 0 ? real(q->max_area) : json_null());
     return json_pack("{s:s, s:s, s:o, s:i, s:o, s:o, s:o, s:o, s:o}", "program", run->hooks->program, "version",
                      PTRIANGLE_VERSION, "command", command_of(run->arguments), "threads", threads, "peak_memory_bytes",
-                     whole(memory), "bounds", bounds, "seconds", stages_of(run, schedule), "mesh", mesh_of(run), "schedule",
-                     schedule ? schedule_of(schedule) : json_null());
+                     whole(memory), "bounds", bounds, "seconds", stages_of(run, schedule), "mesh", mesh_of(run),
+                     "schedule", schedule ? schedule_of(schedule) : json_null());
 }
 
 enum tri_status report_check(const char *path, struct tri_error *error)

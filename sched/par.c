@@ -159,10 +159,11 @@ static enum tri_status prerefine_uniform(struct par_state *state, const struct t
     return refine_level(state, &coarse, level + 1, error);
 }
 
-static enum tri_status fill_pool(struct par_state *state, const struct tri_refine_options *quality, int32_t n_known,
+static enum tri_status fill_pool(struct par_state *state, const struct tri_refine_options *quality, bool known,
                                  struct tri_error *error)
 {
-    return par_pool_fill(&state->pool, state->mesh, quality, n_known, state->threads, &state->radius, error);
+    struct tri_executor executor = par_executor(&state->threads);
+    return par_pool_fill(&state->pool, state->mesh, quality, known, &executor, &state->radius, error);
 }
 
 /* Pre-refinement where the input is already fine in places: only bad triangles with edges that are long against their
@@ -178,13 +179,13 @@ static enum tri_status prerefine_graded(struct par_state *state, const struct tr
     coarse.unsuitable_user = &test;
     coarse.protect = quality->protect;
     coarse.max_steiner = (int64_t)(partition->estimate / 400);
-    int32_t n_slots = state->mesh->n_slots;
     struct par_slots long_ones;
+    struct tri_executor executor = par_executor(&state->threads);
     double began = par_seconds();
-    enum tri_status status = fill_pool(state, quality, 0, error);
+    enum tri_status status = fill_pool(state, quality, false, error);
     if (status)
         return status;
-    if (!par_pool_filter(&state->pool, state->mesh, &coarse, state->threads, &long_ones))
+    if (!par_pool_filter(&state->pool, state->mesh, &coarse, &executor, &long_ones))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)state->pool.n);
     coarse.seeds = long_ones.item;
     coarse.n_seeds = long_ones.n;
@@ -196,7 +197,7 @@ static enum tri_status prerefine_graded(struct par_state *state, const struct tr
     }
     double refined = par_seconds();
     free(long_ones.item);
-    status = status ? status : fill_pool(state, quality, n_slots, error);
+    status = status ? status : fill_pool(state, quality, true, error);
     state->report->seconds_prerefine += refined - found;
     state->report->seconds_find += par_seconds() - refined + found - began;
     return status;
@@ -220,13 +221,13 @@ static enum tri_status refine_rest(struct par_state *state, const struct tri_ref
 }
 
 /* Numbers that depend on the mesh alone; what is free in its arrays is gone then. */
-static enum tri_status number(struct par_state *state, struct tri_error *error)
+static enum tri_status number_mesh(struct par_state *state, struct tri_error *error)
 {
     double began = par_seconds();
     tell(state, PAR_NUMBERING);
     struct tri_executor executor = par_executor(&state->threads);
     enum tri_status status = tri_number(state->mesh, &executor, error);
-    state->numbered = state->mesh->n_vertices;
+    state->numbered = true;
     state->report->seconds_number += par_seconds() - began;
     return status;
 }
@@ -239,7 +240,7 @@ static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, en
     if (!status && numbering) {
         par_room_mark(&state->spare, state->mesh);
         state->report->seconds_merge += par_seconds() - began;
-        status = number(state, error);
+        status = number_mesh(state, error);
         if (!status) {
             par_room_free(&state->spare);
             return status;
@@ -287,10 +288,10 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     }
     status = status ? status : run_rounds(state, partition, error);
     bool left_over = state->pool.n > 0;
-    status = leave_no_gaps(state, top && !state->options->by_block && !left_over, status, error);
+    status = leave_no_gaps(state, top && state->may_number && !left_over, status, error);
     double last = par_seconds();
     if (!status && left_over) /* slots have moved */
-        status = fill_pool(state, quality, 0, error);
+        status = fill_pool(state, quality, false, error);
     if (top)
         report->left_over = left_over ? state->pool.n : 0;
     if (!status && left_over)
@@ -318,13 +319,12 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
     state->report->seconds_partition += par_seconds() - began;
     if (status)
         return status;
-    began = par_seconds();
     state->report->levels = level + 1 > state->report->levels ? level + 1 : state->report->levels;
     tell(state, 0);
     if (areas_decide(state, quality, estimate, cell)) {
         status = prerefine_uniform(state, quality, cell, level, error);
         began = par_seconds();
-        status = status ? status : fill_pool(state, quality, 0, error);
+        status = status ? status : fill_pool(state, quality, false, error);
         state->report->seconds_find += par_seconds() - began;
     } else {
         status = prerefine_graded(state, quality, &partition, error);
@@ -373,8 +373,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
 {
     double began = par_seconds();
     *report = (struct par_report){.threads = threads_for(options->threads)};
-    struct par_state state = {.mesh = mesh, .options = options, .threads = report->threads, .report = report,
-                              .numbered = -1};
+    struct par_state state = {.mesh = mesh, .options = options, .threads = report->threads, .report = report};
     struct tri_refine_options usual = *quality;
     enum tri_status status = tri_refine_check(mesh, quality, error);
     if (status)
@@ -385,14 +384,15 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     } else {
         usual.min_angle = quality->min_angle < TRI_USUAL_ANGLE ? quality->min_angle : TRI_USUAL_ANGLE;
         status = usual.min_angle > TRI_EASY_ANGLE ? refine_sizes_first(&state, &usual, error) : TRI_OK;
+        state.may_number = !options->by_block && quality->min_angle <= TRI_USUAL_ANGLE;
         status = status ? status : refine_level(&state, &usual, 0, error);
         double last = par_seconds();
         if (!status && quality->min_angle > TRI_USUAL_ANGLE)
             status = refine_rest(&state, quality, true, error);
         report->seconds_last += par_seconds() - last;
     }
-    if (!status && report->levels > 0 && !options->by_block && mesh->n_vertices != state.numbered)
-        status = number(&state, error);
+    if (!status && report->levels > 0 && !options->by_block && !state.numbered)
+        status = number_mesh(&state, error);
     free(state.pool.item);
     par_room_free(&state.spare);
     report->seconds_total = par_seconds() - began;

@@ -53,9 +53,10 @@ struct par_report {
     int64_t prerefined;           /* triangles when the first phase began */
     int64_t deferred, left_over;  /* refused by fences in all phases; bad triangles that the last sequential call got */
     int64_t pauses;               /* times a block waited for room */
-    double seconds_prerefine, seconds_partition, seconds_find, seconds_seeds, seconds_room, seconds_merge,
-        seconds_last, seconds_number, seconds_total; /* find: bad triangles and their blocks, number: by the mesh
-                                                        alone; both in equal shares. seeds: dealing them out */
+    double seconds_prerefine, seconds_partition, seconds_room, seconds_merge, seconds_last, seconds_total;
+    double seconds_find;          /* bad triangles, and the block of each; in equal shares */
+    double seconds_seeds;         /* dealing them to blocks */
+    double seconds_number;        /* tri_number, after all others; nearly all in equal shares */
     double seconds_refine;        /* wall time of the phases' parallel parts */
     double phase_seconds[4];      /* refine, by colour, over all rounds */
     struct par_block_report *blocks; /* [n_blocks] in canonical order; owned by the report */
@@ -67,9 +68,10 @@ struct par_options par_defaults(void);
 /* Refines as tri_refine does, with several threads. Where the options do not allow a schedule (max_steiner; seeds,
  * gate, fence, left or more_room of the caller's; a size test that must not run in parallel) or the mesh is small it
  * is one sequential call. A size test is also asked about triangles that will never be, smaller and larger ones, to
- * find out how much work there is where. In a child that was forked after a call there is one thread. what an angle
- * bound above TRI_USUAL_ANGLE asks for beyond that is one, too. Safe to call from several threads on different
- * meshes, and inside a parallel region. Errors as tri_refine. */
+ * find out how much work there is where. In a child that was forked after a call there is one thread. What an angle
+ * bound above TRI_USUAL_ANGLE asks for beyond that is one sequential call, too. Unless by_block, ids of triangles, of
+ * subsegments and of all vertices from n_hubs on may change, those of earlier calls included. Safe to call from several
+ * threads on different meshes, and inside a parallel region. Errors as tri_refine. */
 enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
                            const struct par_options *options, struct par_report *report, struct tri_error *error);
 

@@ -24,7 +24,8 @@ struct par_state {
     double radius;           /* largest circumradius in the pool when it was last filled */
     struct par_report *report;
     int round;
-    int32_t numbered;        /* vertices there were when the mesh was last numbered */
+    bool may_number;         /* nothing is refined after this schedule but what it leaves over */
+    bool numbered;           /* and nothing was */
 };
 
 /* Refines the blocks of one colour; takes from the pool what they can take and puts back what they leave. */

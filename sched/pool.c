@@ -1,7 +1,6 @@
-/* Triangles are judged in chunks, one thread each, and gathered in the order of the chunks. */
+/* Triangles are judged in shares, and gathered in the order of the shares. */
 #include "sched/pool.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -23,13 +22,26 @@ bool par_slots_add(struct par_slots *slots, int32_t slot)
     return true;
 }
 
-struct filling {
+struct finding {
     struct tri_mesh *mesh;
-    const struct tri_refine_options *quality;
-    const struct par_slots *known; /* the pool as it was, where only triangles born since need be judged; or NULL */
-    int32_t n_known;               /* slots there were then */
-    int32_t *found;                /* [n_slots] */
+    const struct tri_refine_options *bounds;
+    const struct par_slots *pool; /* to choose from; or, when filling, the pool as it was, or NULL */
+    int32_t *found;               /* [n_slots or pool.n] each share's own behind one another, with gaps */
+    int32_t n[TRI_MOST_SHARES];
+    double radius2[TRI_MOST_SHARES];
 };
+
+/* Brings together what the shares of n have found. */
+static int32_t gather(const struct finding *f, int32_t n)
+{
+    int32_t filled = 0;
+    for (size_t share = 0; share < tri_shares(n); share++) {
+        int32_t first = tri_share(share, n).first;
+        for (int32_t i = 0; i < f->n[share]; i++)
+            f->found[filled++] = f->found[first + i];
+    }
+    return filled;
+}
 
 static int32_t first_in_pool(const struct par_slots *pool, int32_t slot)
 {
@@ -44,26 +56,19 @@ static int32_t first_in_pool(const struct par_slots *pool, int32_t slot)
     return low;
 }
 
-/* The bad ones among slots first .. last - 1; returns how many. All lives begin anew, so that who is born later can be
- * told from who was there. */
-static int32_t find_bad(const struct filling *f, int32_t first, int32_t last)
+/* The bad ones of a range, where the pool holds those that are as old as it is. A new life has begun in every slot
+ * when it was filled: who has a higher number was born since. */
+static int32_t find_newborn(const struct finding *f, struct tri_range range, int32_t *found)
 {
-    int32_t *found = f->found + first, n = 0;
-    if (f->known) {
-        int32_t next = first_in_pool(f->known, first);
-        for (int32_t t = first; t < last; t++) {
-            bool was_bad = next < f->known->n && f->known->item[next] == t;
-            next += was_bad;
-            if (t >= f->n_known || f->mesh->tri[t].state != 0)
-                n += tri_find_work(f->mesh, f->quality, t, t + 1, found + n);
-            else if (was_bad)
-                found[n++] = t;
-        }
-    } else {
-        n = tri_find_work(f->mesh, f->quality, first, last, found);
+    int32_t n = 0, next = first_in_pool(f->pool, range.first);
+    for (int32_t t = range.first; t < range.last; t++) {
+        bool was_bad = next < f->pool->n && f->pool->item[next] == t;
+        next += was_bad;
+        if (f->mesh->tri[t].state != 0)
+            n += tri_find_work(f->mesh, f->bounds, t, t + 1, found + n);
+        else if (was_bad)
+            found[n++] = t;
     }
-    for (int32_t t = first; t < last; t++)
-        f->mesh->tri[t].state = 0;
     return n;
 }
 
@@ -78,55 +83,56 @@ static double largest_radius2(const struct tri_mesh *mesh, const int32_t *slot, 
     return largest;
 }
 
-enum tri_status par_pool_fill(struct par_slots *pool, struct tri_mesh *mesh, const struct tri_refine_options *quality,
-                              int32_t n_known, int threads, double *radius, struct tri_error *error)
+static void fill_share(void *context, size_t share)
 {
-    enum { CHUNK = 1 << 14 };
-    int32_t n = mesh->n_slots, n_chunks = n / CHUNK + 1;
-    int32_t *count = calloc((size_t)n_chunks, sizeof *count);
-    double *radius2 = calloc((size_t)n_chunks, sizeof *radius2);
-    struct filling f = {mesh, quality, n_known > 0 ? pool : NULL, n_known, malloc(((size_t)n + 1) * sizeof *f.found)};
-    (void)threads; /* without OpenMP */
-    if (!f.found || !count || !radius2) {
-        free(f.found);
-        free(count);
-        free(radius2);
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)n);
-    }
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 1)
-    for (int32_t chunk = 0; chunk < n_chunks; chunk++) {
-        int32_t first = chunk * CHUNK, last = first + CHUNK < n ? first + CHUNK : n;
-        count[chunk] = find_bad(&f, first, last);
-        radius2[chunk] = largest_radius2(mesh, f.found + first, count[chunk]);
-    }
+    struct finding *f = context;
+    struct tri_range range = tri_share(share, f->mesh->n_slots);
+    int32_t *found = f->found + range.first;
+    f->n[share] = f->pool ? find_newborn(f, range, found)
+                          : tri_find_work(f->mesh, f->bounds, range.first, range.last, found);
+    f->radius2[share] = largest_radius2(f->mesh, found, f->n[share]);
+    for (int32_t t = range.first; t < range.last; t++)
+        f->mesh->tri[t].state = 0;
+}
+
+enum tri_status par_pool_fill(struct par_slots *pool, struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                              bool known, const struct tri_executor *executor, double *radius,
+                              struct tri_error *error)
+{
+    int32_t n = mesh->n_slots;
+    struct finding f = {mesh, quality, known ? pool : NULL, malloc(((size_t)n + 1) * sizeof *f.found), {0}, {0}};
     double largest2 = 0;
-    int32_t filled = 0;
-    for (int32_t chunk = 0; chunk < n_chunks; chunk++) {
-        largest2 = radius2[chunk] > largest2 ? radius2[chunk] : largest2;
-        for (int32_t i = 0; i < count[chunk]; i++)
-            f.found[filled++] = f.found[chunk * CHUNK + i];
-    }
+    if (!f.found)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)n);
+    tri_execute(executor, tri_shares(n), fill_share, &f);
+    for (size_t share = 0; share < tri_shares(n); share++)
+        largest2 = f.radius2[share] > largest2 ? f.radius2[share] : largest2;
     free(pool->item);
-    *pool = (struct par_slots){f.found, filled, n + 1};
+    *pool = (struct par_slots){f.found, gather(&f, n), n + 1};
     *radius = sqrt(largest2);
-    free(count);
-    free(radius2);
     return TRI_OK;
 }
 
-bool par_pool_filter(const struct par_slots *pool, const struct tri_mesh *mesh, const struct tri_refine_options *bounds,
-                     int threads, struct par_slots *found)
+static void filter_share(void *context, size_t share)
 {
-    (void)threads;
-    *found = (struct par_slots){malloc(((size_t)pool->n + 1) * sizeof *found->item), 0, pool->n};
-    if (!found->item)
+    struct finding *f = context;
+    struct tri_range range = tri_share(share, f->pool->n);
+    for (int32_t i = range.first; i < range.last; i++) {
+        int32_t slot = f->pool->item[i];
+        f->n[share] += tri_find_work(f->mesh, f->bounds, slot, slot + 1, &f->found[range.first + f->n[share]]);
+    }
+}
+
+bool par_pool_filter(const struct par_slots *pool, const struct tri_mesh *mesh,
+                     const struct tri_refine_options *bounds, const struct tri_executor *executor,
+                     struct par_slots *found)
+{
+    struct finding f = {(struct tri_mesh *)mesh, bounds, pool, malloc(((size_t)pool->n + 1) * sizeof *f.found),
+                        {0}, {0}};
+    *found = (struct par_slots){f.found, 0, pool->n};
+    if (!f.found)
         return false;
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 4096)
-    for (int32_t i = 0; i < pool->n; i++)
-        if (tri_find_work(mesh, bounds, pool->item[i], pool->item[i] + 1, &found->item[i]) == 0)
-            found->item[i] = TRI_NONE;
-    for (int32_t i = 0; i < pool->n; i++)
-        if (found->item[i] != TRI_NONE)
-            found->item[found->n++] = found->item[i];
+    tri_execute(executor, tri_shares(pool->n), filter_share, &f);
+    found->n = gather(&f, pool->n);
     return true;
 }

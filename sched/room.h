@@ -47,7 +47,7 @@ enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, s
 /* Moves what is unused to `spare`, and frees the room. Cannot fail. */
 void par_room_return(struct par_room *room, struct par_room *spare);
 
-/* Marks what `spare` lists as free in the shared arrays, as tri_number wants it. O(gaps). */
+/* Marks what `spare` lists as free in the shared arrays, as tri_number wants it; spare is as before. O(gaps). */
 void par_room_mark(const struct par_room *spare, struct tri_mesh *shared);
 
 /* Closes the gaps that `spare` lists in the shared arrays with the last items there; afterwards every vertex and slot

@@ -64,7 +64,11 @@ refuse '#[[:space:]]*pragma[[:space:]]+omp|<(omp|pthread|threads)\.h>' 'knows th
 refuse '(^|[^_a-zA-Z0-9])(printf|puts|putchar|perror|exit|_exit|abort|setlocale|std(out|err))([^_a-zA-Z0-9]|$)' \
     'prints, exits or touches the locale' triangle/*.[ch] triangle/*.cpp sched/*.[ch]
 
-# 4. Each header compiles alone.
+# 4. No line is longer than 120 characters.
+long=$(LC_ALL=C.UTF-8 grep -nE '^.{121,}$' triangle/*.[ch] triangle/*.cpp sched/*.[ch] drivers/*.[ch] tests/*.[ch] | head -n 3)
+[ -z "$long" ] || breach "lines of more than 120 characters: $long"
+
+# 5. Each header compiles alone.
 for file in triangle/*.h sched/*.h; do
     [ -f "$file" ] || continue
     "$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Wno-unused -I . -fsyntax-only -x c \

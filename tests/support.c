@@ -263,7 +263,8 @@ void support_judge(const struct tri_mesh *mesh, const struct tri_pslg *pslg, con
     support_copy_free(&copy);
 }
 
-struct tri_mesh support_generate(const struct tri_pslg *pslg, const struct tri_options *options, struct tri_report *report)
+struct tri_mesh support_generate(const struct tri_pslg *pslg, const struct tri_options *options,
+                                 struct tri_report *report)
 {
     struct tri_mesh mesh;
     struct tri_error error = {0};

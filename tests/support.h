@@ -83,7 +83,8 @@ void support_judge(const struct tri_mesh *mesh, const struct tri_pslg *pslg, con
                    bool with_regions, struct tri_check_report *report);
 
 /* tri_generate that must succeed. */
-struct tri_mesh support_generate(const struct tri_pslg *pslg, const struct tri_options *options, struct tri_report *report);
+struct tri_mesh support_generate(const struct tri_pslg *pslg, const struct tri_options *options,
+                                 struct tri_report *report);
 
 /* A constrained triangulation of the whole hull, nothing carved; its links are valid. */
 struct tri_mesh support_constrained(const struct tri_pslg *pslg, struct tri_constrain_report *report);

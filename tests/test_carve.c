@@ -38,7 +38,8 @@ static void mark_component(const struct tri_mesh *mesh, const int32_t *paint, in
 }
 
 /* region[t] becomes TRI_NONE where t goes, else the number of its region. */
-static int32_t *naive_regions(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_carve_options *options)
+static int32_t *naive_regions(const struct tri_mesh *mesh, const struct tri_pslg *pslg,
+                              const struct tri_carve_options *options)
 {
     int32_t *paint = paint_components(mesh), *region = calloc((size_t)mesh->n_slots + 1, sizeof *region);
     for (int32_t k = 0; options->spread_regions && k < pslg->n_regions; k++)
@@ -68,7 +69,8 @@ static struct support_set survivors(const struct tri_mesh *mesh, const int32_t *
     return set;
 }
 
-static void assert_same_triangles(const struct tri_mesh *before, const int32_t *wanted, const struct tri_mesh *after, int32_t region)
+static void assert_same_triangles(const struct tri_mesh *before, const int32_t *wanted, const struct tri_mesh *after,
+                                  int32_t region)
 {
     int32_t *found = calloc((size_t)after->n_slots + 1, sizeof *found);
     for (int32_t t = 0; t < after->n_slots; t++)
@@ -198,7 +200,8 @@ static void test_nested_rings(void **state)
 static void test_hole_points_in_odd_places(void **state)
 {
     (void)state;
-    static const double at[][2] = {{0, 0}, {0.5, 0}, {0.5, 0.5}, {1, 1}, {1.5, 1}, {-0.0, 0.25}, {1e300, 0}, {0.25, 1e-300}};
+    static const double at[][2] = {{0, 0},   {0.5, 0},     {0.5, 0.5}, {1, 1},
+                                   {1.5, 1}, {-0.0, 0.25}, {1e300, 0}, {0.25, 1e-300}};
     for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
         struct tri_pslg pslg = support_square(1, 0, 1);
         struct tri_options options = tri_defaults();

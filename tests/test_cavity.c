@@ -124,9 +124,11 @@ static void test_search_equals_flood_and_fill_is_delaunay(void **state)
             int32_t t = support_below(&random, mesh.n_slots);
             const int32_t *v = mesh.tri[t].v;
             double f = support_unit(&random), g = 2 * support_unit(&random) - 0.5;
-            struct tri_point p = tri_point_between(tri_point_between(mesh.xy[v[0]], mesh.xy[v[1]], f), mesh.xy[v[2]], g);
+            struct tri_point p =
+                tri_point_between(tri_point_between(mesh.xy[v[0]], mesh.xy[v[1]], f), mesh.xy[v[2]], g);
             enum tri_search found = tri_cavity_search(&cavity, &mesh, p, t);
-            assert_int_equal(found, in_disk(&mesh, t, p) && !is_vertex(&mesh, p) ? TRI_SEARCH_FOUND : TRI_SEARCH_OUTSIDE);
+            assert_int_equal(found,
+                             in_disk(&mesh, t, p) && !is_vertex(&mesh, p) ? TRI_SEARCH_FOUND : TRI_SEARCH_OUTSIDE);
             if (found != TRI_SEARCH_FOUND)
                 continue;
             assert_same_set(&cavity, in, naive_cavity(&mesh, p, t, in));
@@ -180,7 +182,8 @@ static void test_encroached_subsegments_are_walls(void **state)
             int32_t t = support_below(&random, mesh.n_slots);
             const int32_t *v = mesh.tri[t].v;
             double f = support_unit(&random), g = support_unit(&random);
-            struct tri_point p = tri_point_between(tri_point_between(mesh.xy[v[0]], mesh.xy[v[1]], f), mesh.xy[v[2]], g);
+            struct tri_point p =
+                tri_point_between(tri_point_between(mesh.xy[v[0]], mesh.xy[v[1]], f), mesh.xy[v[2]], g);
             if (!contains(&mesh, t, p) || tri_cavity_search(&cavity, &mesh, p, t) != TRI_SEARCH_FOUND)
                 continue;
             for (int32_t s = 0; s < mesh.n_subs; s++) {
@@ -211,7 +214,8 @@ static void test_split_keeps_everything(void **state)
         for (int i = 0; i < 25; i++) {
             int32_t s = support_below(&random, mesh.n_subs), n_left, n = mesh.n_subs;
             struct tri_subsegment old = mesh.sub[s];
-            struct tri_point p = tri_point_between(mesh.xy[old.v[0]], mesh.xy[old.v[1]], 0.25 * (1 + support_below(&random, 3)));
+            struct tri_point p =
+                tri_point_between(mesh.xy[old.v[0]], mesh.xy[old.v[1]], 0.25 * (1 + support_below(&random, 3)));
             if (tri_cavity_search_split(&cavity, &mesh, p, s, &n_left) != TRI_SEARCH_FOUND)
                 continue;
             assert_int_equal(n_left > 0, old.side[0] != TRI_NONE);
@@ -294,7 +298,8 @@ static void test_fence_stops_exactly_what_it_does_not_own(void **state)
         struct tri_fence fence = {x - 2, y - 2, x + 2, y + 2};
         int32_t t = support_below(&random, mesh.n_slots);
         const int32_t *v = mesh.tri[t].v;
-        struct tri_point p = tri_point_between(tri_point_between(mesh.xy[v[0]], mesh.xy[v[1]], 0.4), mesh.xy[v[2]], 0.4);
+        struct tri_point p =
+            tri_point_between(tri_point_between(mesh.xy[v[0]], mesh.xy[v[1]], 0.4), mesh.xy[v[2]], 0.4);
         bool all = true;
         naive_cavity(&mesh, p, t, in);
         for (int32_t u = 0; u < mesh.n_slots; u++)

@@ -15,7 +15,8 @@ static void test_tangles_are_naively_constrained_delaunay(void **state)
     for (int kind = 0; kind < SUPPORT_KINDS; kind++)
         for (uint64_t seed = 0; seed < 30; seed++) {
             struct tri_constrain_report report;
-            struct tri_pslg pslg = support_tangle((enum support_kind)kind, 3 + (int32_t)(seed % 20), (int32_t)(seed % 12), seed);
+            int32_t points = 3 + (int32_t)(seed % 20), segments = (int32_t)(seed % 12);
+            struct tri_pslg pslg = support_tangle((enum support_kind)kind, points, segments, seed);
             struct tri_mesh mesh = support_constrained(&pslg, &report);
             support_assert_cdt(&mesh, true);
             judge(&mesh, &pslg);
@@ -236,8 +237,10 @@ static void test_crossings_below_resolution(void **state)
             support_add_segment(&pslg, a, b);
         }
         struct tri_mesh mesh = support_constrained(&pslg, &report);
-        for (int32_t t = 0; t < mesh.n_slots; t++)
-            assert_true(tri_orient2d(mesh.xy[mesh.tri[t].v[0]], mesh.xy[mesh.tri[t].v[1]], mesh.xy[mesh.tri[t].v[2]]) > 0);
+        for (int32_t t = 0; t < mesh.n_slots; t++) {
+            const int32_t *v = mesh.tri[t].v;
+            assert_true(tri_orient2d(mesh.xy[v[0]], mesh.xy[v[1]], mesh.xy[v[2]]) > 0);
+        }
         support_assert_cdt(&mesh, false);
         assert_int_equal(report.lost, 0);
         tri_mesh_free(&mesh);
@@ -274,7 +277,8 @@ static const struct {
           {1000000.5610671287, 1000000.5610671291}}, {7, 2, 2, 4, 10, 3, 9, 10, 8, 6, -1}},
     {6, {{1000000.1817857648, 1000000.0000000006}, {1000000.6078538388, 1000000.0000000001},
          {1000000.6137097399, 1000000.0000000001}, {1000000.0026033765, 1000000.0000000002},
-         {1000000.1617301517, 1000000.0000000005}, {1000000.9675408755, 1000000.0000000005}}, {2, 4, 3, 5, 4, 2, 0, 1, -1}},
+         {1000000.1617301517, 1000000.0000000005}, {1000000.9675408755, 1000000.0000000005}},
+     {2, 4, 3, 5, 4, 2, 0, 1, -1}},
 };
 
 static void test_once_broken(void **state)

@@ -64,7 +64,8 @@ static void test_points_are_taken_over(void **state)
     (void)state;
     double points[8] = {0, 1, 2, 3, 4, 5, -6, 7}, attributes[4] = {9, 8, 7, 6};
     int32_t markers[4] = {4, 3, 2, 1};
-    struct tri_pslg pslg = {.n_points = 4, .points = points, .n_attributes = 1, .attributes = attributes, .markers = markers};
+    struct tri_pslg pslg = {
+        .n_points = 4, .points = points, .n_attributes = 1, .attributes = attributes, .markers = markers};
     struct tri_mesh mesh;
     assert_int_equal(tri_mesh_init(&mesh, NULL), TRI_OK);
     assert_int_equal(tri_mesh_take_points(&mesh, &pslg, NULL), TRI_OK);

@@ -17,7 +17,8 @@ static struct tri_mesh refined(uint64_t seed, double max_area)
         pslg.attributes[i] = plane(i % 2, (struct tri_point){pslg.points[i / 2 * 2], pslg.points[i / 2 * 2 + 1]});
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
     for (int32_t t = 0; t < mesh.n_slots; t++) /* regions by place, so that they can be recognised */
-        mesh.tri[t].region = mesh.xy[mesh.tri[t].v[0]].x + mesh.xy[mesh.tri[t].v[1]].x + mesh.xy[mesh.tri[t].v[2]].x > 1;
+        mesh.tri[t].region =
+            mesh.xy[mesh.tri[t].v[0]].x + mesh.xy[mesh.tri[t].v[1]].x + mesh.xy[mesh.tri[t].v[2]].x > 1;
     tri_pslg_free(&pslg);
     return mesh;
 }
@@ -89,10 +90,11 @@ static struct tri_mesh scrambled(const struct tri_mesh *from, struct support_ran
     }
     for (int32_t s = 0; s < from->n_subs; s++) {
         const struct tri_subsegment *old = &from->sub[s];
-        to.sub[sub[s]] = (struct tri_subsegment){
-            {VERTEX(old->v[0]), VERTEX(old->v[1])},
-            {old->side[0] == TRI_NONE ? TRI_NONE : CODE(old->side[0]), old->side[1] == TRI_NONE ? TRI_NONE : CODE(old->side[1])},
-            old->marker, old->parent};
+        to.sub[sub[s]] = (struct tri_subsegment){{VERTEX(old->v[0]), VERTEX(old->v[1])},
+                                                 {old->side[0] == TRI_NONE ? TRI_NONE : CODE(old->side[0]),
+                                                  old->side[1] == TRI_NONE ? TRI_NONE : CODE(old->side[1])},
+                                                 old->marker,
+                                                 old->parent};
     }
 #undef VERTEX
 #undef CODE

@@ -206,8 +206,9 @@ static void test_any_number_of_threads_and_order_of_blocks_make_one_mesh(void **
     }
 }
 
-/* By block, ids tell from which room a block took them. Places do not, where one schedule does everything: a second one,
- * and what is left over, begin in the order of the ids. And the same mesh has the same numbers, unless by block. */
+/* By block, ids tell from which room a block took them. Places do not, where one schedule does everything: a second
+ * one, and what is left over, begin in the order of the ids. And the same mesh has the same numbers, unless by
+ * block. */
 static void test_room_moves_ids_alone(void **state)
 {
     (void)state;
@@ -254,6 +255,36 @@ static struct start square(int32_t points, double angle, double max_area)
 }
 
 /* Definition 3: with the paper's margin, and fences that are wide against the radii, no cavity meets a fence. */
+/* Above 31 degrees sizes are brought about first, above 34 a sequential call has the last word: what comes after
+ * must not see other numbers. */
+static void test_the_way_of_numbering_moves_ids_alone(void **state)
+{
+    (void)state;
+    static const double angles[] = {25, 33, 35};
+    for (int i = 0; i < 3; i++) {
+        struct start start = square(100, angles[i], 1e-4);
+        struct par_options options = small_blocks(300, 2);
+        struct par_report report[2];
+        struct tri_mesh mesh[2];
+        struct support_places places[2];
+        for (int k = 0; k < 2; k++) {
+            options.by_block = k;
+            mesh[k] = refine(&start, &options, &report[k]);
+            places[k] = support_places(&mesh[k]);
+        }
+        assert_true(report[0].levels > 0 && report[0].seconds_number > 0 && report[1].seconds_number == 0);
+        assert_true(support_same_places(&places[0], &places[1]));
+        assert_int_equal(tri_number(&mesh[1], NULL, NULL), TRI_OK);
+        support_assert_same_bytes(&mesh[0], &mesh[1]);
+        for (int k = 0; k < 2; k++) {
+            support_places_free(&places[k]);
+            par_report_free(&report[k]);
+            tri_mesh_free(&mesh[k]);
+        }
+        tri_pslg_free(&start.pslg);
+    }
+}
+
 static void test_nothing_is_deferred_with_the_margin(void **state)
 {
     (void)state;
@@ -655,6 +686,7 @@ int main(void)
         cmocka_unit_test(test_bounds_and_size_are_those_of_the_sequential_loop),
         cmocka_unit_test(test_any_number_of_threads_and_order_of_blocks_make_one_mesh),
         cmocka_unit_test(test_room_moves_ids_alone),
+        cmocka_unit_test(test_the_way_of_numbering_moves_ids_alone),
         cmocka_unit_test(test_nothing_is_deferred_with_the_margin),
         cmocka_unit_test(test_default_blocks_cost_no_triangles),
         cmocka_unit_test(test_a_size_test_runs_in_parallel_only_where_allowed),

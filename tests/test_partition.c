@@ -351,8 +351,8 @@ static void test_size_tests_are_probed(void **state)
         count[par_block_at(&p, 0, mesh.xy[mesh.tri[t].v[0]])]++;
     for (int32_t i = 0; i < par_blocks(&p); i++)
         most = count[i] > most ? count[i] : most;
-    print_message("  %d triangles for %.0f estimated, fullest of %d blocks %.2f of the mean\n", (int)mesh.n_slots, estimate,
-                  (int)n, most * (double)n / mesh.n_slots);
+    print_message("  %d triangles for %.0f estimated, fullest of %d blocks %.2f of the mean\n", (int)mesh.n_slots,
+                  estimate, (int)n, most * (double)n / mesh.n_slots);
     assert_true(mesh.n_slots > 0.4 * estimate && mesh.n_slots < 2.2 * estimate);
     assert_true(n >= 9 && most * (double)n < 2.2 * mesh.n_slots);
     free(count);

@@ -58,6 +58,7 @@ static void test_shares(void **state)
     assert_true(is_near(prediction_numbering(&report), 20));
     assert_true(is_near(prediction_shared(&report, report.seconds_number, 1), 4));
     assert_true(is_near(prediction_shared(&report, report.seconds_number, 8), 0.5));
+    assert_true(is_near(prediction_shared(&report, report.seconds_number, 256), 4.0 / TRI_MOST_SHARES));
     report.levels = 0; /* one sequential call has no schedule */
     assert_true(is_near(prediction_overhead(&report), 0));
     assert_true(is_near(prediction_numbering(&report), 0));

@@ -8,7 +8,8 @@ static void test_cosine(void **state)
 {
     (void)state;
     for (double degrees = 0; degrees <= 180; degrees += 0.0625)
-        assert_true(fabs(tri_cos_degrees(degrees) - (double)cosl((long double)degrees * 0.017453292519943295769237L)) <= 1e-15);
+        assert_true(fabs(tri_cos_degrees(degrees) - (double)cosl((long double)degrees * 0.017453292519943295769237L)) <=
+                    1e-15);
     assert_true(tri_cos_degrees(0) == 1);
 }
 

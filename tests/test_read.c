@@ -149,7 +149,8 @@ static void read_kind(enum kind kind, struct tri_read_options options, struct du
     assert_int_equal(status, error.status);
     if (status != TRI_OK) {
         add(dump, "%d %ld %s", (int)status, error.line, error.text);
-        assert_null(pslg.points || pslg.segments || pslg.markers || elements.corners || elements.areas ? "not empty" : NULL);
+        assert_null(pslg.points || pslg.segments || pslg.markers || elements.corners || elements.areas ? "not empty"
+                                                                                                       : NULL);
         assert_non_null(strrchr(error.file, '/'));
         return;
     }

@@ -15,7 +15,8 @@ static double total_area(const struct tri_mesh *mesh)
     return 0.5 * area2 * mesh->unit * mesh->unit;
 }
 
-static int64_t count_bad(const struct tri_mesh *mesh, const struct tri_options *options, const struct tri_report *report)
+static int64_t count_bad(const struct tri_mesh *mesh, const struct tri_options *options,
+                         const struct tri_report *report)
 {
     int64_t count[TRI_EXCUSES], sum = 0;
     tri_count_bad(mesh, &options->quality, &report->quality, NULL, count);
@@ -202,7 +203,8 @@ static void test_user_size_test(void **state)
             double at[3][2];
             for (int k = 0; k < 3; k++)
                 tri_mesh_place(&mesh, mesh.tri[t].v[k], at[k]);
-            double area = 0.5 * ((at[1][0] - at[0][0]) * (at[2][1] - at[0][1]) - (at[1][1] - at[0][1]) * (at[2][0] - at[0][0]));
+            double area =
+                0.5 * ((at[1][0] - at[0][0]) * (at[2][1] - at[0][1]) - (at[1][1] - at[0][1]) * (at[2][0] - at[0][0]));
             assert_false(wants_smaller(&wish, at[0], at[1], at[2], area));
         }
         assert_in_range(mesh.n_slots, 2000, 20000);
@@ -236,7 +238,8 @@ static void test_protected_subsegments_stay(void **state)
                 assert_true(whole || (protect == 1 && !is_boundary(&mesh.sub[s])));
             }
             assert_true(protect == 1 || report.quality.inserted_on_segments == 0);
-            assert_true(mesh.n_vertices == pslg.n_points + report.quality.inserted_free + report.quality.inserted_on_segments);
+            assert_true(mesh.n_vertices ==
+                        pslg.n_points + report.quality.inserted_free + report.quality.inserted_on_segments);
             tri_mesh_free(&mesh);
             tri_pslg_free(&pslg);
         }
@@ -290,7 +293,8 @@ static void test_same_input_same_mesh(void **state)
         struct tri_report report;
         struct tri_pslg pslg = load(valid[i]);
         struct tri_options options = support_quality(30, 0);
-        struct tri_mesh first = support_generate(&pslg, &options, &report), second = support_generate(&pslg, &options, &report);
+        struct tri_mesh first = support_generate(&pslg, &options, &report),
+                        second = support_generate(&pslg, &options, &report);
         support_assert_same_bytes(&first, &second);
         tri_mesh_free(&first);
         tri_mesh_free(&second);
@@ -306,7 +310,8 @@ static void test_second_call_changes_nothing(void **state)
     struct tri_refine_report again;
     struct tri_pslg pslg = load("letter.poly");
     struct tri_options options = support_quality(30, 0.05);
-    struct tri_mesh mesh = support_generate(&pslg, &options, &report), twin = support_generate(&pslg, &options, &report);
+    struct tri_mesh mesh = support_generate(&pslg, &options, &report),
+                    twin = support_generate(&pslg, &options, &report);
     assert_int_equal(tri_refine(&mesh, &options.quality, &again, NULL), TRI_OK);
     assert_int_equal(again.inserted_free + again.inserted_on_segments, 0);
     support_assert_same_bytes(&mesh, &twin);
@@ -710,7 +715,8 @@ static void test_refinement_ends_on_everything(void **state)
                 struct tri_mesh mesh = support_generate(&pslg, &options, &report);
                 double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
                 print_message("  %s %g: %d triangles, %d input vertices, %lld bad, %.2f s\n", *name, angles[k],
-                              (int)mesh.n_slots, (int)pslg.n_points, (long long)count_bad(&mesh, &options, &report), seconds);
+                              (int)mesh.n_slots, (int)pslg.n_points, (long long)count_bad(&mesh, &options, &report),
+                              seconds);
                 assert_true(mesh.n_slots <= 500 * (int64_t)pslg.n_points + 5000);
                 assert_true(seconds < 20);
                 struct tri_check_options check = {.max_bad = mesh.n_slots, .min_angle = angles[k], .ignore_lost = true};

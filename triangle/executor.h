@@ -18,7 +18,7 @@ struct tri_executor {
 static inline void tri_execute(const struct tri_executor *executor, size_t n_tasks,
                                void (*task)(void *context, size_t index), void *context)
 {
-    if (executor) {
+    if (executor && n_tasks > 1) {
         executor->run(executor->self, n_tasks, task, context);
         return;
     }

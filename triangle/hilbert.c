@@ -37,19 +37,18 @@ uint64_t tri_hilbert(uint32_t x, uint32_t y)
     return key;
 }
 
-/* What items are made of. */
-struct keying {
+struct ordering {
     const struct tri_point *xy;
-    const int32_t *order;
+    int32_t *order;
     int32_t n;
-    struct tri_point low;
-    double scale;
+    struct tri_point low; /* of the box */
+    double scale;         /* cells in a unit of length */
     uint64_t *item;
 };
 
 static void key_share(void *context, size_t share)
 {
-    const struct keying *k = context;
+    const struct ordering *k = context;
     struct tri_range range = tri_share(share, k->n);
     for (int32_t i = range.first; i < range.last; i++) {
         struct tri_point p = k->xy[k->order[i]];
@@ -99,11 +98,6 @@ static struct box box_of(const struct tri_point *xy, const int32_t *order, int32
     return box;
 }
 
-struct emission {
-    const uint64_t *item;
-    int32_t *order, n;
-};
-
 /* A point with its id, to order the points of one cell. */
 struct placed {
     struct tri_point q;
@@ -119,7 +113,6 @@ static int compare_placed(const void *left, const void *right)
         return a->q.y < b->q.y ? -1 : 1;
     return (a->id > b->id) - (a->id < b->id);
 }
-
 
 static void order_few(const struct tri_point *xy, int32_t *order, int32_t n)
 {
@@ -151,7 +144,7 @@ static void order_cells(const struct tri_point *xy, int32_t *order, int32_t n, u
 
 static void emit_share(void *context, size_t share)
 {
-    const struct emission *e = context;
+    const struct ordering *e = context;
     struct tri_range range = tri_share(share, e->n);
     for (int32_t i = range.first; i < range.last; i++)
         e->order[i] = (int32_t)(e->item[i] & ((UINT64_C(1) << ID_BITS) - 1));
@@ -162,11 +155,10 @@ static void order_points(const struct tri_point *xy, int32_t *order, int32_t n, 
 {
     struct box box = box_of(xy, order, n, executor);
     double width = box.high.x - box.low.x, height = box.high.y - box.low.y, side = width > height ? width : height;
-    struct keying keying = {xy, order, n, box.low, side > 0 ? ((1 << BITS) - 1) / side : 0, item};
-    struct emission emission = {item, order, n};
-    tri_execute(executor, tri_shares(n), key_share, &keying);
-    tri_radix_sort(item, scratch, n, side > 0 ? ID_BITS : 0, 64, executor); /* all at one place: by id */
-    tri_execute(executor, tri_shares(n), emit_share, &emission);
+    struct ordering ordering = {xy, order, n, box.low, side > 0 ? ((1 << BITS) - 1) / side : 0, item};
+    tri_execute(executor, tri_shares(n), key_share, &ordering);
+    tri_radix_sort(item, scratch, n, side > 0 ? ID_BITS : 0, side > 0 ? 64 : ID_BITS, executor); /* one place: by id */
+    tri_execute(executor, tri_shares(n), emit_share, &ordering);
     if (side > 0)
         order_cells(xy, order, n, item, scratch, executor);
 }

@@ -53,7 +53,7 @@ struct tri_subsegment {
     int32_t v[2];    /* from, to */
     int32_t side[2]; /* triangle code left of v[0] -> v[1], and right of it; TRI_NONE where there is no triangle */
     int32_t marker;  /* marker of the input segment, 0 where it has none */
-    int32_t parent;  /* index into tri_mesh.parents, or TRI_NONE: an edge of the hull that the input does not ask for */
+    int32_t parent;  /* index into tri_mesh.parents; TRI_NONE only in a record that is free (see tri_number) */
 };
 
 /* A subsegment as it was before refinement: what splitting, shells and small input angles refer to. */
@@ -182,17 +182,18 @@ static inline void tri_relink(struct tri_mesh *mesh, int32_t outer, int32_t from
         mesh->sub[~outer].side[tri_side(&mesh->sub[~outer], from)] = code;
 }
 
-/* Vertex first + i becomes what vertex from[i] was, for all i < n, where from[] names vertices first and above. Moves what
- * the vertices have; whoever refers to them is the caller's to rename. scratch: n * tri_vertex_size bytes. O(n). */
-void tri_mesh_gather_vertices(struct tri_mesh *mesh, int32_t first, const int32_t *from, int32_t n, void *scratch,
-                              const struct tri_executor *executor);
-
-/* The largest thing that a vertex has, in bytes. */
+/* Bytes of the largest thing that a vertex has. */
 static inline size_t tri_vertex_size(const struct tri_mesh *mesh)
 {
     size_t attributes = (size_t)mesh->n_attributes * sizeof *mesh->attributes;
     return attributes > sizeof *mesh->xy ? attributes : sizeof *mesh->xy;
 }
+
+/* Vertex first + i becomes what vertex from[i] was, for all i < n, where from[] names vertices first and above.
+ * Moves what the vertices have; whoever refers to them is the caller's to rename. scratch: n * tri_vertex_size
+ * bytes. O(n). */
+void tri_mesh_gather_vertices(struct tri_mesh *mesh, int32_t first, const int32_t *from, int32_t n, void *scratch,
+                              const struct tri_executor *executor);
 
 /* Fills the holes that free slots leave with triangles from the end. O(slots). */
 void tri_mesh_compact(struct tri_mesh *mesh);

@@ -4,8 +4,9 @@
  * another second corner, since an edge has one triangle on its left; of the subsegments of a parent, which all run its
  * way, each starts at another vertex. So nothing is left to how the mesh came about.
  *
- * All memory is asked for before anything moves. Items to be sorted take 16 bytes a triangle, and when they are sorted
- * links and regions wait there while corners move into the places of links: there is never a second copy of the mesh. */
+ * All memory is asked for before anything moves. Items to be sorted take 16 bytes a triangle, and when they are
+ * sorted links and regions wait there while corners move into the places of links: there is never a second copy of the
+ * mesh. */
 #include "triangle/numbering.h"
 
 #include <assert.h>
@@ -17,7 +18,7 @@
 
 /* What is sorted: a vertex or parent, and the triangle or subsegment that is sorted by it. A triangle tells also which
  * of its corners is the first. */
-enum { ID_BITS = 29, FIRST_BITS = 2, KEY_SHIFT = ID_BITS + FIRST_BITS, HANDFUL = 16 };
+enum { ID_BITS = 29, FIRST_BITS = 2, KEY_SHIFT = ID_BITS + FIRST_BITS };
 
 _Static_assert(INT64_C(1) << ID_BITS == TRI_MAX_TRIANGLES, "ids fill their bits");
 
@@ -42,6 +43,7 @@ struct numbering {
     int32_t *order;    /* [n_vertices - n_hubs] the new vertices, one after the other */
     int32_t *rank;     /* [n_vertices - n_hubs] new number of vertex n_hubs + i */
     int32_t n_new;
+    int vertex_bits;   /* of the largest number of a vertex, and one more */
     int32_t *sub_rank; /* [n_subs] */
     struct tri_subsegment *sub; /* [n_subs] */
     int32_t *place;    /* [n_slots] first the second corner of a triangle, then where it goes */
@@ -119,8 +121,11 @@ static void rank_subs(struct numbering *n)
     for (int32_t s = 0; s < mesh->n_subs; s++)
         item[s] = item_of(mesh->sub[s].v[0] == TRI_NONE ? mesh->n_vertices : mesh->sub[s].v[0], 0, s);
     n->n_subs = sort_live(n, mesh->n_subs, mesh->n_vertices);
-    for (int32_t i = 0; i < n->n_subs; i++)
-        item[i] = item_of(mesh->sub[id_of(item[i])].parent, 0, id_of(item[i]));
+    for (int32_t i = 0; i < n->n_subs; i++) {
+        int32_t parent = mesh->sub[id_of(item[i])].parent;
+        assert(parent >= 0 && parent < mesh->n_parents);
+        item[i] = item_of(parent, 0, id_of(item[i]));
+    }
     sort_items(n, n->n_subs, mesh->n_parents);
     for (int32_t i = 0; i < n->n_subs; i++)
         n->sub_rank[id_of(item[i])] = i;
@@ -169,22 +174,15 @@ static void find_fans(struct numbering *n)
     }
 }
 
-/* By second corner: a handful by insertion. */
+/* By second corner. */
 static void sort_fan(const struct numbering *n, int32_t begin, int32_t end)
 {
     uint64_t *item = items_of(n) + begin;
-    int32_t count = end - begin;
-    for (int32_t i = 0; i < count; i++)
+    for (int32_t i = 0; i < end - begin; i++)
         item[i] = item_of(n->place[id_of(item[i])], first_of(item[i]), id_of(item[i]));
-    if (count > HANDFUL)
-        tri_radix_sort(item, item + n->n_items, count, KEY_SHIFT, KEY_SHIFT + bits_of(n->mesh->n_vertices), NULL);
-    for (int32_t i = 1; count <= HANDFUL && i < count; i++) {
-        uint64_t moving = item[i];
-        int32_t at = i;
-        for (; at > 0 && item[at - 1] > moving; at--)
-            item[at] = item[at - 1];
-        item[at] = moving;
-    }
+    tri_radix_sort(item, item + n->n_items, end - begin, KEY_SHIFT, KEY_SHIFT + n->vertex_bits, NULL);
+    for (int32_t i = 1; i < end - begin; i++)
+        assert(key_of(item[i - 1]) < key_of(item[i]));
 }
 
 static void place_triangles(void *context, size_t share)
@@ -286,27 +284,34 @@ static enum tri_status allocate(struct numbering *n, struct tri_error *error)
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for numbering %d triangles", (int)mesh->n_slots);
 }
 
+/* Cannot fail. */
+static void renumber(struct numbering *n)
+{
+    struct tri_mesh *mesh = n->mesh;
+    rank_vertices(n);
+    tri_mesh_gather_vertices(mesh, mesh->n_hubs, n->order, n->n_new, n->park, n->executor);
+    free(n->order);
+    n->order = NULL;
+    rename_subs(n);
+    rank_subs(n);
+    rank_triangles(n);
+    tri_execute(n->executor, tri_shares(mesh->n_slots), park_share, n);
+    tri_execute(n->executor, tri_shares(mesh->n_slots), move_corners, n);
+    tri_execute(n->executor, tri_shares(n->n_tri), settle_share, n);
+    move_subs(n);
+    mesh->n_slots = n->n_tri;
+    mesh->n_subs = n->n_subs;
+    mesh->n_vertices = mesh->n_hubs + n->n_new;
+}
+
 enum tri_status tri_number(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
 {
-    struct numbering n = {.mesh = mesh, .executor = executor};
+    if (mesh->n_hubs == 0 && mesh->n_vertices > 0)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "the mesh has not been prepared for refinement");
+    struct numbering n = {.mesh = mesh, .executor = executor, .vertex_bits = bits_of(mesh->n_vertices)};
     enum tri_status status = allocate(&n, error);
-    assert(mesh->n_hubs > 0 || mesh->n_vertices == 0);
-    if (!status) {
-        rank_vertices(&n);
-        tri_mesh_gather_vertices(mesh, mesh->n_hubs, n.order, n.n_new, n.park, executor);
-        free(n.order);
-        n.order = NULL;
-        rename_subs(&n);
-        rank_subs(&n);
-        rank_triangles(&n);
-        tri_execute(executor, tri_shares(mesh->n_slots), park_share, &n);
-        tri_execute(executor, tri_shares(mesh->n_slots), move_corners, &n);
-        tri_execute(executor, tri_shares(n.n_tri), settle_share, &n);
-        move_subs(&n);
-        mesh->n_slots = n.n_tri;
-        mesh->n_subs = n.n_subs;
-        mesh->n_vertices = mesh->n_hubs + n.n_new;
-    }
+    if (!status)
+        renumber(&n);
     free(n.order);
     free(n.rank);
     free(n.sub_rank);

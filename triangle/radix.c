@@ -1,6 +1,6 @@
-/* Passes by the highest digit, the first of them in parallel, put items together that fit the cache; these are then
- * sorted from their lowest digit up. Items move between two arrays: `home` tells whether they are now in the one where they belong at the
- * end. */
+/* Passes by the highest digit put items together that fit the cache, in parallel; these are then sorted from their
+ * lowest digit up. Items move between two arrays: `home` tells whether they are now in the one where they belong at
+ * the end. */
 #include "triangle/radix.h"
 
 #include <assert.h>
@@ -54,44 +54,9 @@ static void stable_pass(struct run *run, int shift, int digit)
     run->home = !run->home;
 }
 
-/* A part of the run, moved one pass on. */
-static struct run part_of(const struct run *run, int32_t first, int32_t end, int shift)
-{
-    return (struct run){run->to + first, run->from + first, end - first, run->low, shift, !run->home};
-}
-
-static int wide_digit(const struct run *run)
-{
-    int bits = run->high - run->low;
-    return bits < WIDE_DIGIT ? bits : WIDE_DIGIT;
-}
-
-static void sort_run(struct run run);
-
-static void split_run(struct run run)
-{
-    int digit = wide_digit(&run), shift = run.high - digit;
-    uint64_t mask = (UINT64_C(1) << digit) - 1;
-    int32_t end[BUCKETS] = {0}, sum = 0;
-    for (int32_t i = 0; i < run.n; i++)
-        end[run.from[i] >> shift & mask]++;
-    for (uint64_t b = 0; b <= mask; b++) {
-        int32_t count = end[b];
-        end[b] = sum;
-        sum += count;
-    }
-    for (int32_t i = 0; i < run.n; i++)
-        run.to[end[run.from[i] >> shift & mask]++] = run.from[i];
-    for (uint64_t b = 0; b <= mask; b++)
-        sort_run(part_of(&run, b ? end[b - 1] : 0, end[b], shift));
-}
-
+/* Items that fit the cache. */
 static void sort_run(struct run run)
 {
-    if (run.n > MANY && run.high > run.low) {
-        split_run(run);
-        return;
-    }
     int bits = run.high - run.low, passes = (bits + DIGIT - 1) / DIGIT;
     if (run.n <= FEW)
         insert_all(&run);
@@ -105,63 +70,37 @@ static void sort_run(struct run run)
 
 /* A pass over many items, in shares. */
 struct wide_pass {
-    struct run run;
-    int shift, digit;
+    const struct run *run;
+    int shift;
+    uint64_t mask;
     int32_t at[TRI_MOST_SHARES][BUCKETS]; /* where the next item of a share goes */
-    int32_t end[BUCKETS];
 };
-
-static uint64_t bucket_of(const struct wide_pass *pass, uint64_t item)
-{
-    return item >> pass->shift & ((UINT64_C(1) << pass->digit) - 1);
-}
 
 static void count_share(void *context, size_t share)
 {
     struct wide_pass *pass = context;
-    struct tri_range range = tri_share(share, pass->run.n);
+    struct tri_range range = tri_share(share, pass->run->n);
     for (int32_t i = range.first; i < range.last; i++)
-        pass->at[share][bucket_of(pass, pass->run.from[i])]++;
+        pass->at[share][pass->run->from[i] >> pass->shift & pass->mask]++;
 }
 
 static void move_share(void *context, size_t share)
 {
     struct wide_pass *pass = context;
-    struct tri_range range = tri_share(share, pass->run.n);
+    struct tri_range range = tri_share(share, pass->run->n);
     for (int32_t i = range.first; i < range.last; i++) {
-        uint64_t item = pass->run.from[i];
-        pass->run.to[pass->at[share][bucket_of(pass, item)]++] = item;
+        uint64_t item = pass->run->from[i];
+        pass->run->to[pass->at[share][item >> pass->shift & pass->mask]++] = item;
     }
 }
 
-static struct run bucket_run(const struct wide_pass *pass, size_t bucket)
+/* Moves the items of the run into buckets; end[b] is where bucket b ends. A function of its own, since its frame is
+ * large and the sort recurses. */
+static void fill_buckets(const struct run *run, int shift, int32_t end[BUCKETS], const struct tri_executor *executor)
 {
-    return part_of(&pass->run, bucket ? pass->end[bucket - 1] : 0, pass->end[bucket], pass->shift);
-}
-
-static bool is_large(const struct wide_pass *pass, const struct run *bucket)
-{
-    return bucket->n > MANY && bucket->n > pass->run.n / LARGE_SHARE;
-}
-
-static void sort_bucket(void *context, size_t bucket)
-{
-    struct run run = bucket_run(context, bucket);
-    if (!is_large(context, &run))
-        sort_run(run);
-}
-
-/* As sort_run. Buckets with a large share of the items follow one by one, each with all threads. */
-static void sort_wide(struct run run, const struct tri_executor *executor)
-{
-    if (run.n <= MANY || run.high == run.low) {
-        sort_run(run);
-        return;
-    }
-    struct wide_pass pass = {.run = run, .digit = wide_digit(&run)};
-    size_t shares = tri_shares(run.n);
+    struct wide_pass pass = {.run = run, .shift = shift, .mask = (UINT64_C(1) << (run->high - shift)) - 1};
+    size_t shares = tri_shares(run->n);
     int32_t sum = 0;
-    pass.shift = run.high - pass.digit;
     tri_execute(executor, shares, count_share, &pass);
     for (int b = 0; b < BUCKETS; b++) {
         for (size_t share = 0; share < shares; share++) {
@@ -169,15 +108,55 @@ static void sort_wide(struct run run, const struct tri_executor *executor)
             pass.at[share][b] = sum;
             sum += count;
         }
-        pass.end[b] = sum;
+        end[b] = sum;
     }
-    assert(sum == run.n);
+    assert(sum == run->n);
     tri_execute(executor, shares, move_share, &pass);
-    tri_execute(executor, BUCKETS, sort_bucket, &pass);
-    for (size_t b = 0; b < BUCKETS; b++) {
-        struct run part = bucket_run(&pass, b);
-        if (is_large(&pass, &part))
-            sort_wide(part, executor);
+}
+
+/* A run whose items are in buckets. */
+struct bucketed {
+    const struct run *run;
+    int shift;
+    int32_t end[BUCKETS];
+};
+
+static struct run bucket_run(const struct bucketed *b, size_t bucket)
+{
+    int32_t first = bucket ? b->end[bucket - 1] : 0;
+    return (struct run){b->run->to + first, b->run->from + first, b->end[bucket] - first,
+                        b->run->low, b->shift, !b->run->home};
+}
+
+static bool is_large(const struct bucketed *b, const struct run *bucket)
+{
+    return bucket->n > MANY && bucket->n > b->run->n / LARGE_SHARE;
+}
+
+static void sort_any(struct run run, const struct tri_executor *executor);
+
+static void sort_bucket(void *context, size_t bucket)
+{
+    struct run run = bucket_run(context, bucket);
+    if (!is_large(context, &run))
+        sort_any(run, NULL);
+}
+
+/* Buckets with a large share of the items follow one by one, each with all threads. */
+static void sort_any(struct run run, const struct tri_executor *executor)
+{
+    if (run.n <= MANY || run.high == run.low) {
+        sort_run(run);
+        return;
+    }
+    int bits = run.high - run.low;
+    struct bucketed b = {.run = &run, .shift = run.high - (bits < WIDE_DIGIT ? bits : WIDE_DIGIT)};
+    fill_buckets(&run, b.shift, b.end, executor);
+    tri_execute(executor, BUCKETS, sort_bucket, &b);
+    for (size_t bucket = 0; bucket < BUCKETS; bucket++) {
+        struct run part = bucket_run(&b, bucket);
+        if (is_large(&b, &part))
+            sort_any(part, executor);
     }
 }
 
@@ -185,5 +164,5 @@ void tri_radix_sort(uint64_t *items, uint64_t *scratch, int32_t n, int low, int 
                     const struct tri_executor *executor)
 {
     assert(0 <= low && low < high && high <= 64);
-    sort_wide((struct run){items, scratch, n, low, high, true}, executor);
+    sort_any((struct run){items, scratch, n, low, high, true}, executor);
 }

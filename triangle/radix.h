@@ -6,7 +6,7 @@
 
 /* Sorts items[n] by their bits low .. high - 1, 0 <= low < high <= 64; those that agree in them keep their order. Bits
  * at and above high must be zero. What lies below low comes along: an index, mostly. scratch[n]. Cannot fail.
- * O(n (high - low)) at worst, one or two passes for keys that are spread. */
+ * O(n (high - low)): for keys that are spread one pass through memory, and up to four in the cache. */
 void tri_radix_sort(uint64_t *items, uint64_t *scratch, int32_t n, int low, int high,
                     const struct tri_executor *executor);
 

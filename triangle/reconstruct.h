@@ -54,7 +54,7 @@ enum tri_status tri_reconstruct(struct tri_mesh *mesh, const struct tri_pslg *ps
 
 /* The vertices that Triangle writes: with jettison (-j) those that are corners; of a mesh made from elements with more
  * than three nodes all but the nodes behind the third (midpoints of edges, -o2) that are no corners; else all, and
- * kept->number is NULL. O(vertices + triangles). TRI_NO_MEMORY. */
+ * kept->number is NULL. To be freed by tri_used_free. O(vertices + triangles). TRI_NO_MEMORY. */
 enum tri_status tri_kept_make(struct tri_used *kept, const struct tri_mesh *mesh, const struct tri_elements *elements,
                               bool jettison, struct tri_error *error);
 

@@ -75,7 +75,8 @@ static int angle_bin(double cosine, const double limits[TRI_ANGLE_BINS])
 static double lesser(double a, double b) { return a < b ? a : b; }
 static double greater(double a, double b) { return a > b ? a : b; }
 
-static void measure(struct tri_shapes *shapes, struct extremes *x, const struct tri_shape *s, const double limits[])
+static void measure(struct tri_shapes *shapes, struct extremes *x, const struct tri_shape *s,
+                    const double limits[TRI_ANGLE_BINS])
 {
     const double root[3] = {sqrt(s->l[0]), sqrt(s->l[1]), sqrt(s->l[2])};
     double longest2 = greater(s->l[0], greater(s->l[1], s->l[2])), aspect = longest2 / s->area2;

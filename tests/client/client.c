@@ -28,7 +28,8 @@ int main(int argc, char **argv)
         return 1;
     }
     int right = square.n_points == 4 && passes(&square, good) && !passes(&square, folded);
-    printf("client: %d points, %d segments: %s\n", (int)square.n_points, (int)square.n_segments, right ? "ok" : "wrong");
+    printf("client: %d points, %d segments: %s\n", (int)square.n_points, (int)square.n_segments,
+           right ? "ok" : "wrong");
     tri_pslg_free(&square);
     return right ? 0 : 1;
 }
