@@ -8,9 +8,10 @@
 #include <string.h>
 
 enum {
-    DIGIT = 11,           /* bits of a pass from the lowest digit up, at most */
+    DIGIT = 10,           /* bits of a pass from the lowest digit up, at most */
     WIDE_DIGIT = 8,       /* of a pass from the highest digit down */
     BUCKETS = 1 << WIDE_DIGIT,
+    SHARES = 16,          /* of a pass from the highest digit down: few, since their counts lie on the stack */
     FEW = 24,             /* items that are sorted by insertion */
     MANY = 1 << 18,       /* items that do not fit the cache, and are worth several tasks */
     LARGE_SHARE = 8       /* a bucket with more than one in so many of them is worth them, too */
@@ -73,13 +74,19 @@ struct wide_pass {
     const struct run *run;
     int shift;
     uint64_t mask;
-    int32_t at[TRI_MOST_SHARES][BUCKETS]; /* where the next item of a share goes */
+    int32_t at[SHARES][BUCKETS]; /* where the next item of a share goes */
 };
+
+static struct tri_range share_of(const struct run *run, size_t share)
+{
+    return (struct tri_range){(int32_t)(run->n * (int64_t)share / SHARES),
+                              (int32_t)(run->n * (int64_t)(share + 1) / SHARES)};
+}
 
 static void count_share(void *context, size_t share)
 {
     struct wide_pass *pass = context;
-    struct tri_range range = tri_share(share, pass->run->n);
+    struct tri_range range = share_of(pass->run, share);
     for (int32_t i = range.first; i < range.last; i++)
         pass->at[share][pass->run->from[i] >> pass->shift & pass->mask]++;
 }
@@ -87,7 +94,7 @@ static void count_share(void *context, size_t share)
 static void move_share(void *context, size_t share)
 {
     struct wide_pass *pass = context;
-    struct tri_range range = tri_share(share, pass->run->n);
+    struct tri_range range = share_of(pass->run, share);
     for (int32_t i = range.first; i < range.last; i++) {
         uint64_t item = pass->run->from[i];
         pass->run->to[pass->at[share][item >> pass->shift & pass->mask]++] = item;
@@ -99,11 +106,10 @@ static void move_share(void *context, size_t share)
 static void fill_buckets(const struct run *run, int shift, int32_t end[BUCKETS], const struct tri_executor *executor)
 {
     struct wide_pass pass = {.run = run, .shift = shift, .mask = (UINT64_C(1) << (run->high - shift)) - 1};
-    size_t shares = tri_shares(run->n);
     int32_t sum = 0;
-    tri_execute(executor, shares, count_share, &pass);
+    tri_execute(executor, SHARES, count_share, &pass);
     for (int b = 0; b < BUCKETS; b++) {
-        for (size_t share = 0; share < shares; share++) {
+        for (size_t share = 0; share < SHARES; share++) {
             int32_t count = pass.at[share][b];
             pass.at[share][b] = sum;
             sum += count;
@@ -111,7 +117,7 @@ static void fill_buckets(const struct run *run, int shift, int32_t end[BUCKETS],
         end[b] = sum;
     }
     assert(sum == run->n);
-    tri_execute(executor, shares, move_share, &pass);
+    tri_execute(executor, SHARES, move_share, &pass);
 }
 
 /* A run whose items are in buckets. */
