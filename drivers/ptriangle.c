@@ -14,6 +14,7 @@
 #include "drivers/report_json.h"
 #include "drivers/run.h"
 #include "sched/par.h"
+#include "triangle/write.h"
 
 static const char PROGRAM[] = "ptriangle";
 
@@ -117,6 +118,8 @@ static enum tri_status take_words(struct program *p, struct arguments *arguments
     status = status ? status : name_output(arguments, p->options.output, error);
     if (!status && p->options.report && arguments->file)
         status = report_check(p->options.report, error);
+    if (!status && p->options.blocks && arguments->file)
+        status = tri_output_try(p->options.blocks, error);
     return status;
 }
 

@@ -173,15 +173,7 @@ static json_t *report_of(const struct run *run, const struct par_report *schedul
                      "schedule", schedule ? schedule_of(schedule) : json_null());
 }
 
-enum tri_status report_check(const char *path, struct tri_error *error)
-{
-    struct tri_output_set set;
-    struct tri_output *output;
-    tri_outputs_begin(&set);
-    enum tri_status status = tri_output_open(&set, path, &output, error);
-    tri_outputs_abort(&set);
-    return status;
-}
+enum tri_status report_check(const char *path, struct tri_error *error) { return tri_output_try(path, error); }
 
 static enum tri_status write_text(const char *path, const char *text, struct tri_error *error)
 {

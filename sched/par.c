@@ -226,7 +226,7 @@ static enum tri_status number_mesh(struct par_state *state, struct tri_error *er
     double began = par_seconds();
     tell(state, PAR_NUMBERING);
     struct tri_executor executor = par_executor(&state->threads);
-    enum tri_status status = tri_number(state->mesh, &executor, error);
+    enum tri_status status = tri_number(state->mesh, state->n_kept, &executor, error);
     state->numbered = true;
     state->report->seconds_number += par_seconds() - began;
     return status;
@@ -373,7 +373,8 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
 {
     double began = par_seconds();
     *report = (struct par_report){.threads = threads_for(options->threads)};
-    struct par_state state = {.mesh = mesh, .options = options, .threads = report->threads, .report = report};
+    struct par_state state = {.mesh = mesh, .options = options, .threads = report->threads, .report = report,
+                              .n_kept = mesh->n_vertices};
     struct tri_refine_options usual = *quality;
     enum tri_status status = tri_refine_check(mesh, quality, error);
     if (status)

@@ -24,6 +24,7 @@ struct par_state {
     double radius;           /* largest circumradius in the pool when it was last filled */
     struct par_report *report;
     int round;
+    int32_t n_kept;          /* vertices there were before */
     bool may_number;         /* nothing is refined after this schedule but what it leaves over */
     bool numbered;           /* and nothing was */
 };

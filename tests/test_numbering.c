@@ -148,14 +148,14 @@ static void test_any_scrambling_comes_out_the_same(void **state)
         struct support_places places = support_places(&mesh), after;
         struct tri_mesh other = scrambled(&mesh, &random);
         assert_true(mesh.n_vertices > mesh.n_hubs && mesh.n_hubs > mesh.n_input);
-        assert_int_equal(tri_number(&mesh, seed % 2 ? &support_backwards : NULL, NULL), TRI_OK);
-        assert_int_equal(tri_number(&other, seed % 2 ? NULL : &support_backwards, NULL), TRI_OK);
+        assert_int_equal(tri_number(&mesh, mesh.n_hubs, seed % 2 ? &support_backwards : NULL, NULL), TRI_OK);
+        assert_int_equal(tri_number(&other, other.n_hubs, seed % 2 ? NULL : &support_backwards, NULL), TRI_OK);
         support_assert_same_bytes(&mesh, &other);
         assert_in_order(&mesh);
         assert_is_whole(&mesh);
         after = support_places(&mesh);
         assert_true(support_same_places(&places, &after));
-        assert_int_equal(tri_number(&mesh, NULL, NULL), TRI_OK); /* once more: nothing to do */
+        assert_int_equal(tri_number(&mesh, mesh.n_hubs, NULL, NULL), TRI_OK); /* once more: nothing to do */
         support_assert_same_bytes(&mesh, &other);
         support_places_free(&places);
         support_places_free(&after);
@@ -174,12 +174,12 @@ static void test_before_and_after_refinement(void **state)
     struct tri_refine_report report;
     options.refine = false;
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    assert_int_equal(tri_number(&mesh, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_number(&mesh, mesh.n_hubs, NULL, NULL), TRI_OK);
     assert_int_equal(mesh.n_vertices, 204);
     assert_in_order(&mesh);
     for (int round = 0; round < 2; round++) {
         assert_int_equal(tri_refine(&mesh, &options.quality, &report, NULL), TRI_OK);
-        assert_int_equal(tri_number(&mesh, NULL, NULL), TRI_OK);
+        assert_int_equal(tri_number(&mesh, mesh.n_hubs, NULL, NULL), TRI_OK);
         assert_in_order(&mesh);
         support_judge(&mesh, &pslg, &check, false, NULL);
         options.quality.max_area = check.max_area = 3e-4;
@@ -202,7 +202,7 @@ static void test_large_fan(void **state)
         support_add_segment(&pslg, i, (i + 1) % N);
     support_add_point(&pslg, 0, 0);
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    assert_int_equal(tri_number(&mesh, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_number(&mesh, mesh.n_hubs, NULL, NULL), TRI_OK);
     assert_int_equal(mesh.tri[mesh.n_slots / 2].v[0], N);
     assert_in_order(&mesh);
     assert_int_equal(tri_mesh_validate(&mesh, NULL), TRI_OK);
@@ -215,13 +215,13 @@ static void test_without_memory_nothing_changes(void **state)
     (void)state;
     struct support_random random = {9};
     struct tri_mesh mesh = refined(9, 1e-3), other = scrambled(&mesh, &random);
-    assert_int_equal(tri_number(&mesh, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_number(&mesh, mesh.n_hubs, NULL, NULL), TRI_OK);
     long long held = support_held;
     for (int call = 1;; call++) {
         struct support_places before = support_places(&other);
         support_calls = 0;
         support_fail_at = call;
-        enum tri_status status = tri_number(&other, NULL, NULL);
+        enum tri_status status = tri_number(&other, other.n_hubs, NULL, NULL);
         support_fail_at = INT64_MAX;
         struct support_places after = support_places(&other);
         assert_true(support_same_places(&before, &after));

@@ -40,8 +40,9 @@ struct parked {
 struct numbering {
     struct tri_mesh *mesh;
     const struct tri_executor *executor;
-    int32_t *order;    /* [n_vertices - n_hubs] the new vertices, one after the other */
-    int32_t *rank;     /* [n_vertices - n_hubs] new number of vertex n_hubs + i */
+    int32_t n_kept;    /* the vertices that keep their numbers */
+    int32_t *order;    /* [n_vertices - n_kept] the new vertices, one after the other */
+    int32_t *rank;     /* [n_vertices - n_kept] new number of vertex n_kept + i */
     int32_t n_new;
     int vertex_bits;   /* of the largest number of a vertex, and one more */
     int32_t *sub_rank; /* [n_subs] */
@@ -85,13 +86,13 @@ static void rank_share(void *context, size_t share)
     const struct numbering *n = context;
     struct tri_range range = tri_share(share, n->n_new);
     for (int32_t i = range.first; i < range.last; i++)
-        n->rank[n->order[i] - n->mesh->n_hubs] = n->mesh->n_hubs + i;
+        n->rank[n->order[i] - n->n_kept] = n->n_kept + i;
 }
 
 static void rank_vertices(struct numbering *n)
 {
     const struct tri_mesh *mesh = n->mesh;
-    for (int32_t v = mesh->n_hubs; v < mesh->n_vertices; v++)
+    for (int32_t v = n->n_kept; v < mesh->n_vertices; v++)
         if (mesh->on[v] != TRI_VERTEX_NONE)
             n->order[n->n_new++] = v;
     tri_hilbert_order(mesh->xy, n->order, n->n_new, n->park, n->executor);
@@ -100,7 +101,7 @@ static void rank_vertices(struct numbering *n)
 
 static int32_t renamed(const struct numbering *n, int32_t v)
 {
-    return v < n->mesh->n_hubs ? v : n->rank[v - n->mesh->n_hubs];
+    return v < n->n_kept ? v : n->rank[v - n->n_kept];
 }
 
 /* --- subsegments */
@@ -270,7 +271,7 @@ static void move_subs(struct numbering *n)
 static enum tri_status allocate(struct numbering *n, struct tri_error *error)
 {
     const struct tri_mesh *mesh = n->mesh;
-    size_t vertices = (size_t)(mesh->n_vertices - mesh->n_hubs), subs = (size_t)mesh->n_subs;
+    size_t vertices = (size_t)(mesh->n_vertices - n->n_kept), subs = (size_t)mesh->n_subs;
     n->n_items = (size_t)(mesh->n_slots > mesh->n_subs ? mesh->n_slots : mesh->n_subs);
     size_t for_vertices = vertices * tri_vertex_size(mesh), for_items = n->n_items * sizeof(struct parked);
     n->order = malloc((vertices + 1) * sizeof *n->order);
@@ -289,7 +290,7 @@ static void renumber(struct numbering *n)
 {
     struct tri_mesh *mesh = n->mesh;
     rank_vertices(n);
-    tri_mesh_gather_vertices(mesh, mesh->n_hubs, n->order, n->n_new, n->park, n->executor);
+    tri_mesh_gather_vertices(mesh, n->n_kept, n->order, n->n_new, n->park, n->executor);
     free(n->order);
     n->order = NULL;
     rename_subs(n);
@@ -301,14 +302,15 @@ static void renumber(struct numbering *n)
     move_subs(n);
     mesh->n_slots = n->n_tri;
     mesh->n_subs = n->n_subs;
-    mesh->n_vertices = mesh->n_hubs + n->n_new;
+    mesh->n_vertices = n->n_kept + n->n_new;
 }
 
-enum tri_status tri_number(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
+enum tri_status tri_number(struct tri_mesh *mesh, int32_t n_kept, const struct tri_executor *executor,
+                           struct tri_error *error)
 {
-    if (mesh->n_hubs == 0 && mesh->n_vertices > 0)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "the mesh has not been prepared for refinement");
-    struct numbering n = {.mesh = mesh, .executor = executor, .vertex_bits = bits_of(mesh->n_vertices)};
+    assert(mesh->n_hubs <= n_kept && n_kept <= mesh->n_vertices);
+    struct numbering n = {
+        .mesh = mesh, .executor = executor, .n_kept = n_kept, .vertex_bits = bits_of(mesh->n_vertices)};
     enum tri_status status = allocate(&n, error);
     if (!status)
         renumber(&n);

@@ -196,6 +196,16 @@ enum tri_status tri_output_open(struct tri_output_set *set, const char *path, st
     return TRI_OK;
 }
 
+enum tri_status tri_output_try(const char *path, struct tri_error *error)
+{
+    struct tri_output_set set;
+    struct tri_output *output;
+    tri_outputs_begin(&set);
+    enum tri_status status = tri_output_open(&set, path, &output, error);
+    tri_outputs_abort(&set);
+    return status;
+}
+
 enum tri_status tri_output_write(struct tri_output *output, const char *data, size_t size, struct tri_error *error)
 {
     while (size > 0) {

@@ -101,6 +101,9 @@ program 1 -p --output letter letter.poly
 complains 'letter\.poly would be overwritten'
 program 1 -p --report nowhere/report.json letter
 complains '^nowhere/report\.json: cannot create'
+program 1 -p --blocks nowhere/blocks letter
+complains '^nowhere/blocks: cannot create'
+wrote
 program 1 -p nothing --report report.json
 complains '^nothing\.poly: cannot open'
 wrote
