@@ -92,11 +92,10 @@ static void test_shapes(void **state)
 }
 
 /* Bins add up, and extremes are those that the judge finds on its own way. */
-static void test_against_judge(void **state)
+static void assert_as_judged(double max_area, const struct tri_executor *executor)
 {
-    (void)state;
     struct tri_pslg pslg = support_polygon(80, 9);
-    struct tri_options options = support_quality(25, 0.01);
+    struct tri_options options = support_quality(25, max_area);
     struct tri_report report;
     struct tri_check_report judged;
     struct tri_mesh mesh = support_generate(&pslg, &options, &report);
@@ -105,7 +104,7 @@ static void test_against_judge(void **state)
     tri_mesh_compact(&mesh);
     struct tri_counts counts = counted(&mesh);
     struct tri_shapes s;
-    tri_measure_shapes(&s, &mesh, NULL);
+    tri_measure_shapes(&s, &mesh, executor);
     int64_t triangles = 0, angles = 0;
     for (int k = 0; k < TRI_ASPECT_BINS; k++)
         triangles += s.aspects[k];
@@ -121,6 +120,29 @@ static void test_against_judge(void **state)
     assert_true(is_near(s.smallest_area, judged.smallest_area));
     assert_true(is_near(s.largest_area, judged.largest_area));
     assert_true(is_near(s.total_area, judged.total_area));
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+static void test_against_judge(void **state)
+{
+    (void)state;
+    assert_as_judged(0.01, NULL);
+    assert_as_judged(5e-5, &support_backwards); /* so many that work comes in shares */
+}
+
+/* Right angles are common and exact; they count as at most 90 degrees. */
+static void test_right_angles(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = support_square(1, 0, 1);
+    struct tri_options options = tri_defaults();
+    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+    struct tri_shapes s;
+    tri_measure_shapes(&s, &mesh, NULL);
+    assert_int_equal(s.angles[8], 2);
+    assert_int_equal(s.angles[9], 0);
+    assert_int_equal(s.angles[4], 4);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
 }
@@ -147,7 +169,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_counts), cmocka_unit_test(test_unused), cmocka_unit_test(test_shapes),
-        cmocka_unit_test(test_against_judge), cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_against_judge), cmocka_unit_test(test_right_angles), cmocka_unit_test(test_empty),
     };
     return cmocka_run_group_tests_name("stats", tests, NULL, NULL);
 }
