@@ -79,6 +79,24 @@ static void make_point(enum support_kind kind, int32_t i, struct support_random 
     at[1] = y;
 }
 
+static double attribute_at(int k, struct tri_point p) { return k ? p.x - 3 * p.y : 2 * p.x + p.y; }
+
+void support_add_attributes(struct tri_pslg *pslg)
+{
+    pslg->n_attributes = 2;
+    pslg->attributes = malloc(2 * (size_t)pslg->n_points * sizeof *pslg->attributes);
+    assert_non_null(pslg->attributes);
+    for (int32_t i = 0; i < 2 * pslg->n_points; i++)
+        pslg->attributes[i] =
+            attribute_at(i % 2, (struct tri_point){pslg->points[i / 2 * 2], pslg->points[i / 2 * 2 + 1]});
+}
+
+bool support_has_its_attributes(const struct tri_mesh *mesh, int32_t v)
+{
+    const double *has = mesh->attributes + 2 * v;
+    return fabs(has[0] - attribute_at(0, mesh->xy[v])) < 1e-9 && fabs(has[1] - attribute_at(1, mesh->xy[v])) < 1e-9;
+}
+
 struct tri_pslg support_points(enum support_kind kind, int32_t n, uint64_t seed)
 {
     struct support_random random = {seed * SUPPORT_KINDS + kind};

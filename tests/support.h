@@ -36,6 +36,11 @@ struct tri_pslg support_pslg(int32_t points, int32_t segments, int32_t holes, in
 int32_t support_add_point(struct tri_pslg *pslg, double x, double y);
 void support_add_segment(struct tri_pslg *pslg, int32_t a, int32_t b);
 
+/* Two attributes for every point that are linear in the plane, so that interpolated ones can be recognised; and is a
+ * vertex of the mesh one that has them? */
+void support_add_attributes(struct tri_pslg *pslg);
+bool support_has_its_attributes(const struct tri_mesh *mesh, int32_t v);
+
 enum support_kind {
     SUPPORT_RANDOM,    /* in the unit square */
     SUPPORT_LATTICE,   /* drawn from a small lattice: duplicates, collinear and cocircular quadruples */

@@ -3,18 +3,12 @@
 #include "support.h"
 #include "triangle/numbering.h"
 
-static double plane(int k, struct tri_point p) { return k ? p.x - 3 * p.y : 2 * p.x + p.y; }
-
 /* Regions, crossing segments, and attributes that tell where a vertex is; so fine that work comes in shares. */
 static struct tri_mesh refined(uint64_t seed, double max_area)
 {
     struct tri_pslg pslg = support_tangle(SUPPORT_RANDOM, 60, 20, seed);
     struct tri_options options = support_quality(25, max_area);
-    pslg.n_attributes = 2;
-    pslg.attributes = malloc(2 * (size_t)pslg.n_points * sizeof *pslg.attributes);
-    assert_non_null(pslg.attributes);
-    for (int32_t i = 0; i < 2 * pslg.n_points; i++)
-        pslg.attributes[i] = plane(i % 2, (struct tri_point){pslg.points[i / 2 * 2], pslg.points[i / 2 * 2 + 1]});
+    support_add_attributes(&pslg);
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
     for (int32_t t = 0; t < mesh.n_slots; t++) /* regions by place, so that they can be recognised */
         mesh.tri[t].region =
@@ -135,8 +129,7 @@ static void assert_is_whole(const struct tri_mesh *mesh)
         assert_int_equal(mesh->tri[t].region, mesh->xy[v[0]].x + mesh->xy[v[1]].x + mesh->xy[v[2]].x > 1);
     }
     for (int32_t v = 0; v < mesh->n_vertices; v++)
-        for (int k = 0; k < 2; k++)
-            assert_true(fabs(mesh->attributes[2 * v + k] - plane(k, mesh->xy[v])) < 1e-9);
+        assert_true(support_has_its_attributes(mesh, v));
 }
 
 static void test_any_scrambling_comes_out_the_same(void **state)

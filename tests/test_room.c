@@ -154,8 +154,6 @@ static void test_random_dealings(void **state)
     }
 }
 
-static double plane(int k, struct tri_point p) { return k ? p.x - 3 * p.y : 2 * p.x + p.y; }
-
 /* Attributes that are linear in the plane, so that interpolated ones can be recognised. */
 static struct tri_mesh mesh_with_attributes(void)
 {
@@ -163,11 +161,7 @@ static struct tri_mesh mesh_with_attributes(void)
     struct tri_options options = support_quality(0, 0);
     options.refine = false;
     support_add_segment(&pslg, 0, 2);
-    pslg.n_attributes = 2;
-    pslg.attributes = malloc(2 * (size_t)pslg.n_points * sizeof *pslg.attributes);
-    assert_non_null(pslg.attributes);
-    for (int32_t i = 0; i < 2 * pslg.n_points; i++)
-        pslg.attributes[i] = plane(i % 2, (struct tri_point){pslg.points[i / 2 * 2], pslg.points[i / 2 * 2 + 1]});
+    support_add_attributes(&pslg);
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
     tri_pslg_free(&pslg);
     return mesh;
@@ -212,8 +206,7 @@ static void assert_closed(const struct tri_mesh *mesh, const struct support_plac
         fail_msg("%s", error.text);
     support_assert_cdt(mesh, false);
     for (int32_t v = 0; v < mesh->n_vertices; v++) {
-        for (int k = 0; k < 2; k++)
-            assert_true(fabs(mesh->attributes[2 * v + k] - plane(k, mesh->xy[v])) < 1e-9);
+        assert_true(support_has_its_attributes(mesh, v));
         if (mesh->on[v] < 0)
             continue;
         const struct tri_parent *parent = &mesh->parents[mesh->on[v]];
