@@ -3,9 +3,10 @@
  * Blocks of one phase are independent, phases follow one another. So the parallel part takes, on n threads, the sum
  * over the phases of the time that list scheduling of their blocks takes. Looking for bad triangles and numbering
  * are cut into equal shares; all else is taken for sequential, although some of it is not. List scheduling, largest
- * first, ends within 4/3 of the best schedule. Not in the model: threads that share caches, memory bandwidth or a
- * core's units, beyond what the measured run had of it. Source: R. L. Graham, "Bounds on Multiprocessing Timing
- * Anomalies", SIAM J. Appl. Math. 17 (1969), theorem 2. */
+ * first, ends within 4/3 of the best schedule.
+ * Not in the model: threads that share caches, memory bandwidth or a core's units, beyond what the measured run had of
+ * it.
+ * Source: R. L. Graham, "Bounds on Multiprocessing Timing Anomalies", SIAM J. Appl. Math. 17 (1969), theorem 2. */
 #ifndef DRIVERS_PREDICTION_H
 #define DRIVERS_PREDICTION_H
 

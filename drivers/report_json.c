@@ -49,10 +49,9 @@ static json_t *parts_of(const struct par_report *r)
         json_array_append_new(phases, real(r->phase_seconds[colour]));
     return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "total", real(r->seconds_total),
                      "prerefine", real(r->seconds_prerefine), "partition", real(r->seconds_partition), "find",
-                     real(r->seconds_find), "seeds",
-                     real(r->seconds_seeds), "room", real(r->seconds_room), "refine", real(r->seconds_refine), "merge",
-                     real(r->seconds_merge), "last", real(r->seconds_last), "number", real(r->seconds_number), "phases",
-                     phases);
+                     real(r->seconds_find), "seeds", real(r->seconds_seeds), "room", real(r->seconds_room), "refine",
+                     real(r->seconds_refine), "merge", real(r->seconds_merge), "last", real(r->seconds_last), "number",
+                     real(r->seconds_number), "phases", phases);
 }
 
 static json_t *blocks_of(const struct par_report *r)

@@ -189,15 +189,15 @@ static enum tri_status prerefine_graded(struct par_state *state, const struct tr
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)state->pool.n);
     coarse.seeds = long_ones.item;
     coarse.n_seeds = long_ones.n;
-    double found = par_seconds();
+    double found = par_seconds(), refined = found;
     if (long_ones.n > 0) {
         status = tri_refine(state->mesh, &coarse, &report, error);
         state->report->total.inserted_free += report.inserted_free;
         state->report->total.inserted_on_segments += report.inserted_on_segments;
+        refined = par_seconds();
+        status = status ? status : fill_pool(state, quality, true, error);
     }
-    double refined = par_seconds();
     free(long_ones.item);
-    status = status ? status : fill_pool(state, quality, true, error);
     state->report->seconds_prerefine += refined - found;
     state->report->seconds_find += par_seconds() - refined + found - began;
     return status;
@@ -233,11 +233,11 @@ static enum tri_status number_mesh(struct par_state *state, struct tri_error *er
 }
 
 /* What blocks have left unused is gone afterwards, by numbering if that is now due. Slots move. */
-static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, enum tri_status status,
-                                     struct tri_error *error)
+static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, struct tri_error *error)
 {
+    enum tri_status status = TRI_OK;
     double began = par_seconds();
-    if (!status && numbering) {
+    if (numbering) {
         par_room_mark(&state->spare, state->mesh);
         state->report->seconds_merge += par_seconds() - began;
         status = number_mesh(state, error);
@@ -288,7 +288,8 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     }
     status = status ? status : run_rounds(state, partition, error);
     bool left_over = state->pool.n > 0;
-    status = leave_no_gaps(state, top && state->may_number && !left_over, status, error);
+    enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number && !left_over, error);
+    status = status ? status : closed;
     double last = par_seconds();
     if (!status && left_over) /* slots have moved */
         status = fill_pool(state, quality, false, error);

@@ -39,11 +39,14 @@ static inline size_t tri_shares(int32_t n)
     return shares < TRI_MOST_SHARES ? shares : TRI_MOST_SHARES;
 }
 
-/* The items of share i < tri_shares(n). */
-static inline struct tri_range tri_share(size_t i, int32_t n)
+/* The items of share i of so many, equal but for one item. */
+static inline struct tri_range tri_share_of(size_t i, size_t shares, int32_t n)
 {
-    int64_t k = (int64_t)i, shares = (int64_t)tri_shares(n);
-    return (struct tri_range){(int32_t)(n * k / shares), (int32_t)(n * (k + 1) / shares)};
+    int64_t k = (int64_t)i, of = (int64_t)shares;
+    return (struct tri_range){(int32_t)(n * k / of), (int32_t)(n * (k + 1) / of)};
 }
+
+/* The items of share i < tri_shares(n). */
+static inline struct tri_range tri_share(size_t i, int32_t n) { return tri_share_of(i, tri_shares(n), n); }
 
 #endif

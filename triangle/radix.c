@@ -77,16 +77,10 @@ struct wide_pass {
     int32_t at[SHARES][BUCKETS]; /* where the next item of a share goes */
 };
 
-static struct tri_range share_of(const struct run *run, size_t share)
-{
-    return (struct tri_range){(int32_t)(run->n * (int64_t)share / SHARES),
-                              (int32_t)(run->n * (int64_t)(share + 1) / SHARES)};
-}
-
 static void count_share(void *context, size_t share)
 {
     struct wide_pass *pass = context;
-    struct tri_range range = share_of(pass->run, share);
+    struct tri_range range = tri_share_of(share, SHARES, pass->run->n);
     for (int32_t i = range.first; i < range.last; i++)
         pass->at[share][pass->run->from[i] >> pass->shift & pass->mask]++;
 }
@@ -94,7 +88,7 @@ static void count_share(void *context, size_t share)
 static void move_share(void *context, size_t share)
 {
     struct wide_pass *pass = context;
-    struct tri_range range = share_of(pass->run, share);
+    struct tri_range range = tri_share_of(share, SHARES, pass->run->n);
     for (int32_t i = range.first; i < range.last; i++) {
         uint64_t item = pass->run->from[i];
         pass->run->to[pass->at[share][item >> pass->shift & pass->mask]++] = item;
