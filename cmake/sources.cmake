@@ -11,6 +11,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/hilbert.c
     triangle/spatial.c
     triangle/delaunay.c
+    triangle/crossing.c
     triangle/constrain.c
     triangle/carve.c
     triangle/reconstruct.c

@@ -27,6 +27,8 @@
 
 _Static_assert(FLT_EVAL_METHOD == 0, "the error bounds are those of plain double arithmetic");
 
+struct tri_pair; /* triangle/expansion.h */
+
 /* With u = 2^-53, half a unit in the last place of 1. Both are exact doubles. */
 #define TRI_ORIENT2D_BOUND (3 * 0x1p-53 + 16 * 0x1p-106)
 #define TRI_INCIRCLE_BOUND (10 * 0x1p-53 + 96 * 0x1p-106)
@@ -85,5 +87,9 @@ static inline bool tri_in_circle(struct tri_point a, struct tri_point b, struct 
     double det = tri_incircle_filter(a, b, c, d);
     return det != 0 ? det > 0 : tri_in_circle_near(a, b, c, d);
 }
+
+/* The determinant of tri_orient2d to a relative 2^-50 (of exact sign, for constructions rather than decisions): head +
+ * tail. */
+struct tri_pair tri_orient2d_pair(struct tri_point a, struct tri_point b, struct tri_point c);
 
 #endif
