@@ -43,15 +43,28 @@ double tri_line_distance(struct tri_point a, struct tri_point b, struct tri_poin
     return fabs(det.head) / sqrt(x * x + y * y);
 }
 
-bool tri_crossing(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d, struct tri_point *p)
+static bool separates(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)
 {
     double at_c = tri_orient2d(a, b, c), at_d = tri_orient2d(a, b, d);
-    if (!((at_c > 0 && at_d < 0) || (at_c < 0 && at_d > 0)))
-        return false;
+    return (at_c > 0 && at_d < 0) || (at_c < 0 && at_d > 0);
+}
+
+/* Where the line through a and b crosses the segment from c to d. */
+static struct tri_point cut(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)
+{
     struct tri_pair from = tri_orient2d_pair(a, b, c), to = tri_orient2d_pair(a, b, d);
     struct tri_pair fraction = quotient(from, sum(from, negative(to)));
-    *p = (struct tri_point){go(c.x, tri_two_difference(d.x, c.x), fraction),
-                            go(c.y, tri_two_difference(d.y, c.y), fraction)};
+    return (struct tri_point){go(c.x, tri_two_difference(d.x, c.x), fraction),
+                              go(c.y, tri_two_difference(d.y, c.y), fraction)};
+}
+
+/* The place is found as a part of the segment with the finer coordinates. */
+bool tri_crossing(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d, struct tri_point *p)
+{
+    if (!separates(a, b, c, d) || !separates(c, d, a, b))
+        return false;
+    bool finer = fmax(tri_resolution(c), tri_resolution(d)) <= fmax(tri_resolution(a), tri_resolution(b));
+    *p = finer ? cut(a, b, c, d) : cut(c, d, a, b);
     return true;
 }
 

@@ -17,8 +17,7 @@ static inline double tri_resolution(struct tri_point p)
 /* Distance of q from the line through a and b, to a relative 2^-48 where it is not far below the resolution. */
 double tri_line_distance(struct tri_point a, struct tri_point b, struct tri_point q);
 
-/* *p: where the line through a and b crosses the segment from c to d, which is in their bounding box. False where c and
- * d do not lie strictly on both sides of that line. */
+/* *p: where the segments from a to b and from c to d cross. False where they do not, or only touch. */
 bool tri_crossing(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d, struct tri_point *p);
 
 /* The point of the line through a and b that is nearest to q. */

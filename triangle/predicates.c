@@ -138,13 +138,13 @@ double tri_orient2d_near(struct tri_point a, struct tri_point b, struct tri_poin
     return tri_expansion_value(exact_minor(&p, &q, h), h);
 }
 
-/* Doubled precision where the error, 2^-102 of size, is below 2^-50 of the result. */
+/* Doubled precision where the error, 2^-102 of size, is below 2^-80 of the result. */
 struct tri_pair tri_orient2d_pair(struct tri_point a, struct tri_point b, struct tri_point c)
 {
     struct vector p = difference(a, c), q = difference(b, c);
     double size, h[16];
     struct tri_pair minor = doubled_minor(&p, &q, &size);
-    if (fabs(minor.head) > 0x1p-51 * size) {
+    if (fabs(minor.head) > 0x1p-22 * size) {
         return tri_fast_two_sum(minor.head, minor.tail);
     }
     int n = exact_minor(&p, &q, h);

@@ -88,7 +88,7 @@ static inline bool tri_in_circle(struct tri_point a, struct tri_point b, struct 
     return det != 0 ? det > 0 : tri_in_circle_near(a, b, c, d);
 }
 
-/* The determinant of tri_orient2d to a relative 2^-50 (of exact sign, for constructions rather than decisions): head +
+/* The determinant of tri_orient2d to a relative 2^-80 (of exact sign, for constructions rather than decisions): head +
  * tail. */
 struct tri_pair tri_orient2d_pair(struct tri_point a, struct tri_point b, struct tri_point c);
 
