@@ -49,12 +49,15 @@ static void kill_concavities(struct flood *f)
                 kill_from(f, t);
 }
 
-/* The triangle that holds q, TRI_NONE outside the hull. A visibility walk over a constrained triangulation may cycle;
- * the edge it tries first turns with the number of steps, and after too many steps every triangle is looked at. */
+/* The triangle that holds q, TRI_NONE outside the hull, as everything out of range is. A visibility walk over a
+ * constrained triangulation may cycle; the edge it tries first turns with the number of steps, and after too many steps
+ * every triangle is looked at. */
 static int32_t locate(struct flood *f, struct tri_point q)
 {
     const struct tri_mesh *mesh = f->mesh;
     int32_t t = f->near;
+    if (!tri_is_in_range(q))
+        return TRI_NONE;
     for (int32_t steps = 0; steps < mesh->n_slots; steps++) {
         const struct tri_triangle *at = &mesh->tri[t];
         int k = 0, e = 0;

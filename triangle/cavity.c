@@ -123,6 +123,8 @@ static bool add_start(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t
 enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p, int32_t t)
 {
     assert(tri_is_live(&mesh->tri[t]));
+    if (!tri_is_in_range(p)) /* the circumcentre of a flat triangle: in the disk, perhaps, but in no figure */
+        return TRI_SEARCH_OUTSIDE;
     if (!begin(c, p) || !add_start(c, mesh, t))
         return TRI_SEARCH_NO_MEMORY;
     if (!owns(c, mesh, t))

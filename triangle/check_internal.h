@@ -89,6 +89,7 @@ void tri_check_begin(struct checker *c, enum tri_check_kind kind);
 __attribute__((format(printf, 3, 4)))
 #endif
 void tri_check_fault(struct checker *c, enum tri_check_kind kind, const char *format, ...);
+/* Asks the sweep whether the point, of any size, finite or not, lies inside the mesh. */
 enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id);
 
 /* O(smaller number of triangles at a and b). */

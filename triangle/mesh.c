@@ -182,6 +182,7 @@ enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_psl
     mesh->unit = unit_for(pslg);
     for (int32_t i = 0; i < n; i++) {
         mesh->xy[i] = tri_to_units(mesh, pslg->points[2 * i], pslg->points[2 * i + 1]);
+        assert(tri_is_in_range(mesh->xy[i]));
         mesh->on[i] = TRI_VERTEX_INPUT;
         mesh->vertex_markers[i] = pslg->markers ? pslg->markers[i] : 0;
     }

@@ -113,8 +113,19 @@ static inline int tri_edge(int32_t code) { return code & 3; }
 
 static inline bool tri_is_live(const struct tri_triangle *t) { return t->v[0] >= 0; }
 
-/* A coordinate that the exact predicates can carry: what is too small becomes 0. */
-static inline double tri_round_coordinate(double x) { return fabs(x) < 0x1p-216 ? 0 : x; }
+/* The range of the exact predicates (see predicates.h): 0 and what lies between these magnitudes. */
+#define TRI_LEAST_COORDINATE 0x1p-216
+#define TRI_LARGEST_COORDINATE 0x1p200
+
+/* What is too small for the range becomes 0. What is too large stays so: tri_is_in_range tells. */
+static inline double tri_round_coordinate(double x) { return fabs(x) < TRI_LEAST_COORDINATE ? 0 : x; }
+
+/* Can the predicates carry this point, whose coordinates have been rounded? Every vertex they can, and the range is
+ * convex: so the figure ends before the range does, and a point out of it lies outside the figure. */
+static inline bool tri_is_in_range(struct tri_point p)
+{
+    return fabs(p.x) <= TRI_LARGEST_COORDINATE && fabs(p.y) <= TRI_LARGEST_COORDINATE;
+}
 
 static inline struct tri_point tri_point_between(struct tri_point a, struct tri_point b, double fraction)
 {
@@ -135,7 +146,8 @@ static inline void tri_mesh_place(const struct tri_mesh *mesh, int32_t v, double
     at[1] = mesh->xy[v].y * mesh->unit;
 }
 
-/* A place given in the caller's coordinates, in the mesh's. */
+/* A place given in the caller's coordinates, in the mesh's. A vertex is in range then; any other place may be out of
+ * it, or even infinite: tri_is_in_range has to be asked before a predicate sees it. */
 static inline struct tri_point tri_to_units(const struct tri_mesh *mesh, double x, double y)
 {
     return (struct tri_point){tri_round_coordinate(x / mesh->unit), tri_round_coordinate(y / mesh->unit)};

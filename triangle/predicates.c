@@ -125,6 +125,7 @@ static double exact_minor_of_doubles(const struct vector *p, const struct vector
 
 double tri_orient2d_near(struct tri_point a, struct tri_point b, struct tri_point c)
 {
+    assert(tri_is_exact_point(a) && tri_is_exact_point(b) && tri_is_exact_point(c));
     struct vector p = difference(a, c), q = difference(b, c);
     if (is_double(&p) && is_double(&q)) {
         return exact_minor_of_doubles(&p, &q);
@@ -194,6 +195,7 @@ static double small_incircle(const struct vector *a, const struct vector *b, con
 
 double tri_incircle_near(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)
 {
+    assert(tri_is_exact_point(a) && tri_is_exact_point(b) && tri_is_exact_point(c) && tri_is_exact_point(d));
     if (mirror_pairs(a, b, c, d) || mirror_pairs(a, c, b, d) || mirror_pairs(a, d, b, c)) {
         return 0;
     }

@@ -19,6 +19,7 @@
 #ifndef TRIANGLE_PREDICATES_H
 #define TRIANGLE_PREDICATES_H
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
@@ -35,7 +36,13 @@ struct tri_pair; /* triangle/expansion.h */
 
 static inline bool tri_is_exact_coordinate(double x)
 {
-    return x == 0 || (fabs(x) >= 0x1p-216 && fabs(x) <= 0x1p200);
+    return x == 0 || (fabs(x) >= TRI_LEAST_COORDINATE && fabs(x) <= TRI_LARGEST_COORDINATE);
+}
+
+/* What every predicate asserts of its points. */
+static inline bool tri_is_exact_point(struct tri_point p)
+{
+    return tri_is_exact_coordinate(p.x) && tri_is_exact_coordinate(p.y);
 }
 
 /* What the inline functions below call when their filter is in doubt: the same results, without that filter.
@@ -50,6 +57,7 @@ bool tri_in_circle_near(struct tri_point a, struct tri_point b, struct tri_point
  * with the rounding of size and of the bound itself, 3u + 12u^2 + O(u^3) would do. A size of 0 means an exact 0. */
 static inline double tri_orient2d(struct tri_point a, struct tri_point b, struct tri_point c)
 {
+    assert(tri_is_exact_point(a) && tri_is_exact_point(b) && tri_is_exact_point(c));
     double left = (a.x - c.x) * (b.y - c.y), right = (b.x - c.x) * (a.y - c.y);
     double det = left - right, size = fabs(left) + fabs(right);
     return fabs(det) >= TRI_ORIENT2D_BOUND * size ? det : tri_orient2d_near(a, b, c);
@@ -61,6 +69,7 @@ static inline double tri_orient2d(struct tri_point a, struct tri_point b, struct
  * the bound itself, 10u + 74u^2 + O(u^3) would do. */
 static inline double tri_incircle_filter(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)
 {
+    assert(tri_is_exact_point(a) && tri_is_exact_point(b) && tri_is_exact_point(c) && tri_is_exact_point(d));
     double ax = a.x - d.x, ay = a.y - d.y, bx = b.x - d.x, by = b.y - d.y, cx = c.x - d.x, cy = c.y - d.y;
     double bc = bx * cy, cb = cx * by, ca = cx * ay, ac = ax * cy, ab = ax * by, ba = bx * ay;
     double a_lift = ax * ax + ay * ay, b_lift = bx * bx + by * by, c_lift = cx * cx + cy * cy;
