@@ -13,6 +13,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "triangle/predicates.h"
+
 enum { MAX_GRID_SIDE = 2048 };
 
 struct line { /* the input segment in question */
@@ -131,8 +133,17 @@ static int32_t follow(struct chains *k, const struct line *l, int32_t u, int32_t
     }
 }
 
-/* The input segment runs along the chain by which the search came to u, up to the first fork for certain. */
-static void mark(struct chains *k, const struct line *l, int32_t u)
+/* Do both ends lie exactly on the line? */
+static bool is_exactly_on(const struct chains *k, const struct line *l, int32_t subsegment)
+{
+    struct tri_point a = check_point(k->c, k->c->segments[2 * (size_t)subsegment]);
+    struct tri_point b = check_point(k->c, k->c->segments[2 * (size_t)subsegment + 1]);
+    return tri_orient2d(l->a, l->b, a) == 0 && tri_orient2d(l->a, l->b, b) == 0;
+}
+
+/* The input segment runs along the chain by which the search came to u: for certain up to the first fork, or, where
+ * pieces of it are missing (that the chain is its own is a guess then), where the chain is exactly on its line. */
+static void mark(struct chains *k, const struct line *l, int32_t u, bool whole)
 {
     const struct checker *c = k->c;
     int32_t end = u;
@@ -140,7 +151,7 @@ static void mark(struct chains *k, const struct line *l, int32_t u)
         if (k->forked[c->segments[k->via[u]]] == k->search)
             end = c->segments[k->via[u]];
     for (u = end; l->marker != 0 && k->via[u] >= 0; u = c->segments[k->via[u]])
-        if (k->certain[k->via[u] >> 1] < 0)
+        if (k->certain[k->via[u] >> 1] < 0 && (whole || is_exactly_on(k, l, k->via[u] >> 1)))
             k->certain[k->via[u] >> 1] = l->id;
 }
 
@@ -289,7 +300,7 @@ static enum tri_status ask_about(struct chains *k, const struct line *l, double 
     for (int i = 1; i <= 3 && status == TRI_OK; i++) {
         double s = (from + (to - from) * i / 4) / l->length;
         struct tri_point p = {l->a.x + s * l->dx, l->a.y + s * l->dy};
-        status = tri_check_ask(k->c, p, TRI_CHECK_INPUT_SEGMENTS, l->id);
+        status = tri_check_ask(k->c, p, TRI_CHECK_INPUT_SEGMENTS, l->id, l->tolerance);
     }
     return status;
 }
@@ -306,7 +317,7 @@ static enum tri_status cover(struct chains *k, const struct line *l)
             continue;
         status = ask_about(k, l, covered, s.at);
         int32_t end = follow(k, l, s.vertex, TRI_NONE);
-        mark(k, l, end);
+        mark(k, l, end, false);
         covered = along(l, check_point(k->c, end));
     }
     return status == TRI_OK ? ask_about(k, l, covered, l->length) : status;
@@ -327,7 +338,7 @@ static enum tri_status check_line(struct chains *k, int32_t id)
     int32_t from = k->c->twin[a], to = k->c->twin[b];
     k->search++;
     if (from >= 0 && to >= 0 && follow(k, &l, from, to) == to) {
-        mark(k, &l, to);
+        mark(k, &l, to, true);
         return TRI_OK;
     }
     return cover(k, &l);
