@@ -3,20 +3,20 @@
  * A segment a -> b is laid piece by piece. A piece is straight; from its start the walk along it meets first a vertex on
  * it, a vertex beside it, a subsegment across it, or its end. RULES, in this order:
  *   1. A vertex on the piece ends it.
- *   2. A vertex within one resolution of the piece (crossing.h; and within BESIDE of the segment's own line) could be on
+ *   2. A vertex within NEAR of the piece (in resolutions, crossing.h; and within BESIDE of the segment's own line) could be on
  *      it for all that coordinates tell: the piece runs through it. Of several the nearest is taken, so the triangle
  *      that the piece sweeps over holds none of the others.
- *   3. Where the piece crosses a subsegment, both get a vertex in common: one that is within a resolution of the
+ *   3. Where the piece crosses a subsegment, both get a vertex in common: one that is within APART of the
  *      crossing, else a new one, the rounded crossing of the two input segments (of the pieces, where bends have moved
  *      the crossing away from that). The subsegment is taken up, and its two parts and those of the piece are laid by
  *      the same rules.
  * So a piece that becomes a subsegment meets no vertex and no subsegment; no two chains cross, and whoever shares a
  * chain shares its subsegments. No vertex ever moves.
  * THEOREM (distance). A chain is made of vertices of the input within BESIDE resolutions of the segment's line, of
- * rounded crossings, within one of it, and of vertices within a resolution of a crossing. What bends add up to is
+ * rounded crossings, within one of it, and of vertices within APART of a crossing. What bends add up to is
  * checked for every subsegment: more than TRI_SEGMENT_ULPS is an error that names the segment.
- * Termination: a piece is replaced by two shorter ones (rules 1, 2), or a new vertex appears, farther than a resolution
- * from its neighbours (rule 3), or the subsegment in the way is bent round a vertex that it was too near to (rule 3,
+ * Termination: a piece is replaced by two shorter ones (rules 1, 2), or a new vertex appears, farther than APART from
+ * its neighbours (rule 3), or the subsegment in the way is bent round a vertex that it was too near to (rule 3,
  * shared vertex). A bound on the number of pieces stands behind that; reaching it is an error, too.
  *
  * INVARIANT: between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v]
@@ -38,7 +38,9 @@
 
 enum { MAX_PASSES = 10000, BESIDE = 3 };
 
-static const double NEAR = 0.5; /* a vertex is on a piece for all that coordinates tell: resolutions */
+/* In resolutions: a vertex so near to a piece is on it for all that coordinates tell; a new one keeps so far from
+ * others. */
+static const double NEAR = 0.5, APART = 2;
 
 /* The input segments that run along a piece or a subsegment: the first of them, and the first with a marker. */
 struct course {
@@ -465,25 +467,48 @@ static bool finish_parts(struct layer *l, int32_t first, int32_t v)
     return true;
 }
 
-static void try_nearer(const struct layer *l, int32_t v, struct tri_point p, int32_t *best)
+/* A vertex that pieces may share instead of a crossing of their own. */
+struct choice {
+    int32_t vertex;  /* TRI_NONE: none yet */
+    int before;      /* of how many pieces it lies before the start or beyond the end */
+    double distance; /* squared, from the crossing */
+};
+
+static bool lies_between(const struct layer *l, int32_t v, const struct piece *piece)
 {
-    if (*best == TRI_NONE || squared(l->mesh->xy[v], p) < squared(l->mesh->xy[*best], p))
-        *best = v;
+    struct tri_point a = l->mesh->xy[piece->from], b = l->mesh->xy[piece->to], q = l->mesh->xy[v];
+    double x = b.x - a.x, y = b.y - a.y, at = x * (q.x - a.x) + y * (q.y - a.y);
+    return v == piece->from || v == piece->to || (at > 0 && at < x * x + y * y);
 }
 
-/* The nearest to p of the ends of the pieces from number `first` on and of the vertices around its cavity. */
-static int32_t nearest(const struct layer *l, int32_t first, int32_t t, struct tri_point p)
+/* The vertex that leads the fewest of the pieces from number `first` on back, then the nearest. */
+static void try_vertex(const struct layer *l, int32_t first, int32_t v, struct tri_point p, double within,
+                       struct choice *best)
 {
-    int32_t best = TRI_NONE;
+    struct choice now = {v, 0, squared(l->mesh->xy[v], p)};
+    if (now.distance > within * within)
+        return;
+    for (int32_t i = first; i < l->n_pieces; i++)
+        now.before += !lies_between(l, v, &l->piece[i]);
+    if (best->vertex == TRI_NONE || now.before < best->before ||
+        (now.before == best->before && now.distance < best->distance))
+        *best = now;
+}
+
+/* The best of the ends of those pieces, the corners of triangle t (where there is one) and the vertices around the
+ * cavity of p, as far as they are within a distance of it; TRI_NONE if there is none. */
+static int32_t choose_vertex(const struct layer *l, int32_t first, int32_t t, struct tri_point p, double within)
+{
+    struct choice best = {TRI_NONE, 0, 0};
     for (int32_t i = first; i < l->n_pieces; i++) {
-        try_nearer(l, l->piece[i].from, p, &best);
-        try_nearer(l, l->piece[i].to, p, &best);
+        try_vertex(l, first, l->piece[i].from, p, within, &best);
+        try_vertex(l, first, l->piece[i].to, p, within, &best);
     }
     for (int k = 0; t != TRI_NONE && k < 3; k++)
-        try_nearer(l, l->mesh->tri[t].v[k], p, &best);
+        try_vertex(l, first, l->mesh->tri[t].v[k], p, within, &best);
     for (int32_t i = 0; t != TRI_NONE && i < l->cavity.n_rim; i++)
-        try_nearer(l, l->cavity.rim[i].a, p, &best);
-    return best;
+        try_vertex(l, first, l->cavity.rim[i].a, p, within, &best);
+    return best.vertex;
 }
 
 /* A vertex at p, whose cavity has been found, with marker and attributes of the piece `along`. */
@@ -542,9 +567,9 @@ static enum tri_status cross(struct layer *l, const struct piece *piece, int32_t
     enum tri_search found = t == TRI_NONE ? TRI_SEARCH_OUTSIDE : tri_cavity_search(&l->cavity, l->mesh, p, t);
     if (found == TRI_SEARCH_NO_MEMORY)
         return no_memory(l);
-    int32_t v = nearest(l, first, t, p);
-    double resolution = tri_resolution(p);
-    if (found != TRI_SEARCH_FOUND || squared(l->mesh->xy[v], p) <= resolution * resolution) {
+    bool free = found == TRI_SEARCH_FOUND;
+    int32_t v = choose_vertex(l, first, t, p, free ? APART * tri_resolution(p) : HUGE_VAL);
+    if (v != TRI_NONE) {
         l->report->bent++;
     } else {
         bool later = l->piece[first].course.first > l->piece[first + 1].course.first;
