@@ -326,14 +326,18 @@ static bool keeps_to(const struct layer *l, int32_t segment, int32_t v, double r
     return tri_line_distance(a, b, l->mesh->xy[v]) <= resolutions * resolution;
 }
 
+static enum tri_status cannot_keep(const struct layer *l, int32_t segment)
+{
+    return tri_fail(l->error, TRI_BAD_INPUT, NULL, 0,
+                    "segment %d cannot be kept to its line: too much lies within rounding of it", (int)segment);
+}
+
 static enum tri_status check_distance(struct layer *l, struct course course, int32_t v)
 {
     int32_t segment[2] = {course.first, course.marked};
     for (int k = 0; k < 2; k++)
         if (segment[k] != TRI_NONE && !keeps_to(l, segment[k], v, TRI_SEGMENT_ULPS))
-            return tri_fail(l->error, TRI_BAD_INPUT, NULL, 0,
-                            "segment %d cannot be kept to its line: too much lies within rounding of it",
-                            (int)segment[k]);
+            return cannot_keep(l, segment[k]);
     return TRI_OK;
 }
 
@@ -567,8 +571,9 @@ static enum tri_status cross(struct layer *l, const struct piece *piece, int32_t
     enum tri_search found = t == TRI_NONE ? TRI_SEARCH_OUTSIDE : tri_cavity_search(&l->cavity, l->mesh, p, t);
     if (found == TRI_SEARCH_NO_MEMORY)
         return no_memory(l);
-    bool free = found == TRI_SEARCH_FOUND;
-    int32_t v = choose_vertex(l, first, t, p, free ? APART * tri_resolution(p) : HUGE_VAL);
+    int32_t v = choose_vertex(l, first, t, p, APART * tri_resolution(p));
+    if (v == TRI_NONE && found != TRI_SEARCH_FOUND)
+        return cannot_keep(l, l->segment);
     if (v != TRI_NONE) {
         l->report->bent++;
     } else {
@@ -689,8 +694,7 @@ static enum tri_status lay_segment(struct layer *l, int32_t a, int32_t b, struct
     for (int64_t n = 0; l->n_pieces > 0; n++) {
         struct piece next = l->piece[--l->n_pieces];
         if (n >= bound)
-            return tri_fail(l->error, TRI_BAD_INPUT, NULL, 0,
-                            "segment %d cannot be laid: too much lies within rounding of it", (int)l->segment);
+            return cannot_keep(l, l->segment);
         enum tri_status status = lay_piece(l, &next);
         if (status)
             return status;
