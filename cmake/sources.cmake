@@ -11,6 +11,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/hilbert.c
     triangle/spatial.c
     triangle/delaunay.c
+    triangle/recover.c
     triangle/constrain.c
     triangle/carve.c
     triangle/reconstruct.c

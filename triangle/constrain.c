@@ -1,9 +1,9 @@
-/* Segment recovery by edge flips (Sloan 1993), then Lawson flips to the constrained Delaunay triangulation.
+/* Segments, piece by piece (recover.h); where they cross, Lawson flips to the constrained Delaunay triangulation.
  *
  * A segment a -> b is laid piece by piece. From a the walk along the segment meets first either an edge that lies on
  * it, a vertex on it, a subsegment across it, or b. What is met becomes the end of the piece; a subsegment across it is
- * split first, at the crossing. So the channel of a piece holds neither vertices nor subsegments, and flips can clear
- * it.
+ * split first, at the crossing. So the channel of a piece holds neither vertices nor subsegments, and it can be
+ * retriangulated as a whole.
  *
  * INVARIANT: between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v]
  * is a live triangle at v (TRI_NONE for points that are in no triangle). */
@@ -16,8 +16,9 @@
 #include "triangle/cavity.h"
 #include "triangle/interpolate.h"
 #include "triangle/predicates.h"
+#include "triangle/recover.h"
 
-enum { MAX_PIECES = 1 << 20, MAX_PASSES = 10000 };
+enum { MAX_PIECES = 1 << 20, HUB = 16 };
 
 struct piece {
     int32_t from, to, segment, marker;
@@ -26,6 +27,7 @@ struct piece {
 struct layer {
     struct tri_mesh *mesh;
     struct tri_cavity cavity;
+    struct tri_recovery recovery;
     bool ties_stay;  /* an edge is flipped only where that makes a difference; else ties are broken by coordinates */
     int32_t *corner; /* [vertex_capacity] */
     int32_t corner_capacity;
@@ -47,6 +49,8 @@ static bool reserve(void *array, int32_t *capacity, int32_t need, size_t item)
 {
     if (need <= *capacity)
         return true;
+    if (need > INT32_MAX / 2)
+        return false;
     int32_t wanted = need + need / 2 + 64;
     void **slot = array;
     void *fresh = realloc(*slot, (size_t)wanted * item);
@@ -111,23 +115,51 @@ static bool along_left(const struct tri_mesh *mesh, int32_t t, int k, struct tri
     return tri_orient2d(a, left, q) == 0 && (left.x - a.x) * (q.x - a.x) + (left.y - a.y) * (q.y - a.y) > 0;
 }
 
-/* The triangle at vertex a through which the ray to q leaves; its left edge counts only where nothing lies beyond it.
- * Remembered as a's corner, so that the spokes of a fan in order cost O(1) each. */
-static int32_t find_exit(struct layer *l, int32_t a, struct tri_point q)
+/* The search for the triangle at a vertex through which the ray to q leaves, a triangle a step. */
+struct rotation {
+    int32_t vertex, start, t;
+    struct tri_point q;
+    bool clockwise;
+};
+
+static struct rotation rotate_from(const struct layer *l, int32_t a, struct tri_point q)
 {
-    const struct tri_mesh *mesh = l->mesh;
-    int32_t start = l->corner[a], t = start;
-    for (int way = 1; way >= 0; way--) {
-        for (t = start; t != TRI_NONE;) {
-            int k = corner_of(&mesh->tri[t], a);
-            if (leaves_through(mesh, t, k, q) || along_left(mesh, t, k, q))
-                return l->corner[a] = t;
-            t = turn(mesh, t, a, way);
-            if (t == start)
-                return TRI_NONE;
-        }
+    return (struct rotation){a, l->corner[a], l->corner[a], q, false};
+}
+
+/* The triangle, if it is the one at hand (whose left edge counts only where nothing lies beyond it); else TRI_NONE, and
+ * the next one is at hand. After the last one r->t is TRI_NONE. */
+static int32_t rotate(const struct layer *l, struct rotation *r)
+{
+    int32_t t = r->t;
+    int k = corner_of(&l->mesh->tri[t], r->vertex);
+    if (leaves_through(l->mesh, t, k, r->q) || along_left(l->mesh, t, k, r->q))
+        return t;
+    r->t = turn(l->mesh, t, r->vertex, !r->clockwise);
+    if (r->t == TRI_NONE && !r->clockwise) { /* the other way, from the first one's neighbour */
+        r->clockwise = true;
+        r->t = turn(l->mesh, r->start, r->vertex, false);
+    } else if (r->t == r->start) {
+        r->t = TRI_NONE;
     }
     return TRI_NONE;
+}
+
+/* The triangle through which the segment leaves its end *a towards *b. Where *a is a hub, with many triangles, the
+ * search goes on around both ends in turns, and the two are exchanged if it succeeds at *b: so the cost is that of the
+ * end with fewer triangles. Remembered as the corner, so that the spokes of a fan in order cost O(1) each. */
+static int32_t find_exit(struct layer *l, int32_t *a, int32_t *b)
+{
+    int32_t from = *a, to = *b, found = TRI_NONE;
+    struct rotation at[2] = {rotate_from(l, from, l->mesh->xy[to]), rotate_from(l, to, l->mesh->xy[from])};
+    int end = 0;
+    for (int n = 0; at[end].t != TRI_NONE && (found = rotate(l, &at[end])) == TRI_NONE;)
+        end = n < HUB ? (n++, 0) : 1 - end;
+    if (found == TRI_NONE)
+        return TRI_NONE;
+    *a = end == 0 ? from : to;
+    *b = end == 0 ? to : from;
+    return l->corner[*a] = found;
 }
 
 static bool mark_edge(struct layer *l, int32_t t, int e)
@@ -212,64 +244,22 @@ static bool legalise(struct layer *l)
     return true;
 }
 
-/* What became of clearing a channel. */
-enum clearing { CLEARED, NOT_YET, CLEARING_FAILED };
-
-/* One walk through the channel from a to b that flips every crossing edge it can. CLEARED once edge ab exists;
- * CLEARING_FAILED where memory ran out. */
-static enum clearing clear_pass(struct layer *l, int32_t a, int32_t b)
+/* Makes ab, whose channel begins in triangle t, a subsegment. */
+static enum tri_status lay_edge(struct layer *l, int32_t t, int32_t a, int32_t b)
 {
     struct tri_mesh *mesh = l->mesh;
-    struct tri_point pa = mesh->xy[a], pb = mesh->xy[b];
-    int32_t t = find_exit(l, a, pb);
-    if (t == TRI_NONE)
-        return NOT_YET;
-    int e = corner_of(&mesh->tri[t], a);
-    if (mesh->tri[t].v[tri_next[e]] == b || mesh->tri[t].v[tri_prev[e]] == b)
-        return CLEARED;
-    for (;;) {
-        int32_t n = mesh->tri[t].v[e], u = tri_of(mesh->tri[t].n[e]);
-        int f = tri_edge(mesh->tri[t].n[e]);
-        int32_t o = mesh->tri[u].v[f];
-        double side = o == b ? 0 : tri_orient2d(pa, pb, mesh->xy[o]);
-        if (is_convex(mesh, t, e)) {
-            u = flip(l, t, e);
-            if (!touch(l, t) || !touch(l, u))
-                return CLEARING_FAILED;
-            if (n == a && o == b)
-                return CLEARED;
-            if (o == b)
-                return NOT_YET;
-            t = side > 0 ? t : u;
-            e = 0;
-        } else {
-            if (o == b)
-                return NOT_YET;
-            t = u;
-            e = side > 0 ? tri_next[f] : tri_prev[f]; /* the edge from right to o, or from o to left */
-        }
-    }
-}
-
-static enum clearing clear_channel(struct layer *l, int32_t a, int32_t b)
-{
-    for (int pass = 0; pass < MAX_PASSES; pass++) {
-        enum clearing done = clear_pass(l, a, b);
-        if (done != NOT_YET)
-            return done;
-    }
-    return NOT_YET;
-}
-
-/* Makes the edge ab a subsegment after its channel is clear. */
-static bool mark_piece(struct layer *l, int32_t a, int32_t b)
-{
-    int32_t t = find_exit(l, a, l->mesh->xy[b]);
-    assert(t != TRI_NONE);
-    int k = corner_of(&l->mesh->tri[t], a);
-    bool right = l->mesh->tri[t].v[tri_next[k]] == b;
-    assert(right || l->mesh->tri[t].v[tri_prev[k]] == b);
-    return mark_edge(l, t, right ? tri_prev[k] : tri_next[k]);
+    int k = corner_of(&mesh->tri[t], a);
+    if (mesh->tri[t].v[tri_next[k]] == b || mesh->tri[t].v[tri_prev[k]] == b)
+        return mark_edge(l, t, mesh->tri[t].v[tri_next[k]] == b ? tri_prev[k] : tri_next[k]) ? TRI_OK : no_memory(l);
+    int32_t code;
+    enum tri_status status = tri_recover_edge(&l->recovery, mesh, t, a, b, &code, l->error);
+    if (status)
+        return status;
+    for (int32_t i = 0; i < l->recovery.n_crossed; i++)
+        for (int c = 0; c < 3; c++)
+            l->corner[mesh->tri[tri_of(l->recovery.crossed[i])].v[c]] = tri_of(l->recovery.crossed[i]);
+    l->corner[a] = l->corner[b] = tri_of(code);
+    return mark_edge(l, tri_of(code), tri_edge(code)) ? TRI_OK : no_memory(l);
 }
 
 static bool keep_corners(struct layer *l, int32_t v)
@@ -419,13 +409,13 @@ static enum tri_status cut(struct layer *l, int32_t a, int32_t b, int32_t s, int
     return legalise(l) ? TRI_OK : no_memory(l);
 }
 
-/* What the segment a -> b meets first: *s, a subsegment that lies across it, else *end, the vertex that ends the first
- * piece (vertices on the segment end a piece); the other becomes TRI_NONE, both where there is no way out of a. */
-static void look_ahead(struct layer *l, int32_t a, int32_t b, int32_t *end, int32_t *s)
+/* What the segment a -> b, which leaves a through triangle t, meets first: *s, a subsegment that lies across it, else
+ * *end, the vertex that ends the first piece (vertices on the segment end a piece); the other becomes TRI_NONE, both
+ * where there is no way out of a. */
+static void look_ahead(struct layer *l, int32_t t, int32_t a, int32_t b, int32_t *end, int32_t *s)
 {
     const struct tri_mesh *mesh = l->mesh;
     struct tri_point pa = mesh->xy[a], pb = mesh->xy[b];
-    int32_t t = find_exit(l, a, pb);
     *s = TRI_NONE;
     *end = TRI_NONE;
     if (t == TRI_NONE)
@@ -457,8 +447,8 @@ static void look_ahead(struct layer *l, int32_t a, int32_t b, int32_t *end, int3
 /* Lays the first part of a piece and puts the rest back on the stack. */
 static enum tri_status lay_piece(struct layer *l, const struct piece *piece)
 {
-    int32_t a = piece->from, b = piece->to, end, s;
-    look_ahead(l, a, b, &end, &s);
+    int32_t a = piece->from, b = piece->to, end, s, t = find_exit(l, &a, &b);
+    look_ahead(l, t, a, b, &end, &s);
     assert(a != b && (s == TRI_NONE || end == TRI_NONE));
     if (s != TRI_NONE) {
         enum tri_status status = cut(l, a, b, s, &end);
@@ -473,15 +463,10 @@ static enum tri_status lay_piece(struct layer *l, const struct piece *piece)
         l->report->lost++;
         return TRI_OK;
     }
-    enum clearing cleared = clear_channel(l, a, end);
-    if (cleared == CLEARING_FAILED)
-        return no_memory(l);
-    if (cleared == NOT_YET)
-        l->report->lost++;
-    if ((cleared == CLEARED && !mark_piece(l, a, end)) || !legalise(l) ||
-        !push_piece(l, end, b, piece->segment, piece->marker))
-        return no_memory(l);
-    return TRI_OK;
+    enum tri_status status = lay_edge(l, t, a, end);
+    if (status)
+        return status;
+    return push_piece(l, end, b, piece->segment, piece->marker) ? TRI_OK : no_memory(l);
 }
 
 static enum tri_status lay_segment(struct layer *l, int32_t a, int32_t b, int32_t segment, int32_t marker)
@@ -545,6 +530,7 @@ static enum tri_status find_corners(struct layer *l)
 static void free_layer(struct layer *l)
 {
     tri_cavity_free(&l->cavity);
+    tri_recovery_free(&l->recovery);
     free(l->corner);
     free(l->piece);
     free(l->touched);
