@@ -12,6 +12,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/spatial.c
     triangle/delaunay.c
     triangle/crossing.c
+    triangle/recover.c
     triangle/constrain.c
     triangle/carve.c
     triangle/reconstruct.c

@@ -3,13 +3,12 @@
  * A segment a -> b is laid piece by piece. A piece is straight; from its start the walk along it meets first a vertex on
  * it, a vertex beside it, a subsegment across it, or its end. RULES, in this order:
  *   1. A vertex on the piece ends it.
- *   2. A vertex within NEAR of the piece (in resolutions, crossing.h; and within BESIDE of the segment's own line) could be on
+ *   2. A vertex within NEAR of the piece (in resolutions, crossing.h; and within BESIDE of the segment's own line) is on
  *      it for all that coordinates tell: the piece runs through it. Of several the nearest is taken, so the triangle
  *      that the piece sweeps over holds none of the others.
- *   3. Where the piece crosses a subsegment, both get a vertex in common: one that is within APART of the
- *      crossing, else a new one, the rounded crossing of the two input segments (of the pieces, where bends have moved
- *      the crossing away from that). The subsegment is taken up, and its two parts and those of the piece are laid by
- *      the same rules.
+ *   3. Where the piece crosses a subsegment, both get a vertex in common: one that is within APART of the crossing, else
+ *      a new one, the rounded crossing of the two input segments (of the pieces, where bends have moved the crossing
+ *      away from that). The subsegment is taken up, and its two parts and those of the piece are laid by the same rules.
  * So a piece that becomes a subsegment meets no vertex and no subsegment; no two chains cross, and whoever shares a
  * chain shares its subsegments. No vertex ever moves.
  * THEOREM (distance). A chain is made of vertices of the input within BESIDE resolutions of the segment's line, of
@@ -23,8 +22,7 @@
  * is a live triangle at v (TRI_NONE for points that are in no triangle). The mesh fills the convex hull.
  *
  * Source of the idea that vertices attract what passes them within rounding: snap rounding (Hobby, Practical segment
- * intersection with finite precision output, Computational Geometry 13, 1999), here without a grid. Flips: Sloan 1993;
- * Lawson. */
+ * intersection with finite precision output, Computational Geometry 13, 1999), here without a grid. */
 #include "triangle/constrain.h"
 
 #include <assert.h>
@@ -35,8 +33,9 @@
 #include "triangle/crossing.h"
 #include "triangle/interpolate.h"
 #include "triangle/predicates.h"
+#include "triangle/recover.h"
 
-enum { MAX_PASSES = 10000, BESIDE = 3 };
+enum { BESIDE = 3, HUB = 16 };
 
 /* In resolutions: a vertex so near to a piece is on it for all that coordinates tell; a new one keeps so far from
  * others. */
@@ -58,6 +57,7 @@ struct layer {
     struct tri_mesh *mesh;
     const struct tri_pslg *pslg;
     struct tri_cavity cavity;
+    struct tri_recovery recovery;
     bool ties_stay;  /* an edge is flipped only where that makes a difference; else ties are broken by coordinates */
     int32_t *corner; /* [corner_capacity] */
     int32_t corner_capacity;
@@ -81,6 +81,8 @@ static bool reserve(void *array, int32_t *capacity, int32_t need, size_t item)
 {
     if (need <= *capacity)
         return true;
+    if (need > INT32_MAX / 2)
+        return false;
     int32_t wanted = need + need / 2 + 64;
     void **slot = array;
     void *fresh = realloc(*slot, (size_t)wanted * item);
@@ -145,23 +147,51 @@ static bool along_left(const struct tri_mesh *mesh, int32_t t, int k, struct tri
     return tri_orient2d(a, left, q) == 0 && (left.x - a.x) * (q.x - a.x) + (left.y - a.y) * (q.y - a.y) > 0;
 }
 
-/* The triangle at vertex a through which the ray to q leaves; its left edge counts only where nothing lies beyond it.
- * Remembered as a's corner, so that the spokes of a fan in order cost O(1) each. */
-static int32_t find_exit(struct layer *l, int32_t a, struct tri_point q)
+/* The search for the triangle at a vertex through which the ray to q leaves, a triangle a step. */
+struct rotation {
+    int32_t vertex, start, t;
+    struct tri_point q;
+    bool clockwise;
+};
+
+static struct rotation rotate_from(const struct layer *l, int32_t a, struct tri_point q)
 {
-    const struct tri_mesh *mesh = l->mesh;
-    int32_t start = l->corner[a], t = start;
-    for (int way = 1; way >= 0; way--) {
-        for (t = start; t != TRI_NONE;) {
-            int k = corner_of(&mesh->tri[t], a);
-            if (leaves_through(mesh, t, k, q) || along_left(mesh, t, k, q))
-                return l->corner[a] = t;
-            t = turn(mesh, t, a, way);
-            if (t == start)
-                return TRI_NONE;
-        }
+    return (struct rotation){a, l->corner[a], l->corner[a], q, false};
+}
+
+/* The triangle, if it is the one at hand (whose left edge counts only where nothing lies beyond it); else TRI_NONE, and
+ * the next one is at hand. After the last one r->t is TRI_NONE. */
+static int32_t rotate(const struct layer *l, struct rotation *r)
+{
+    int32_t t = r->t;
+    int k = corner_of(&l->mesh->tri[t], r->vertex);
+    if (leaves_through(l->mesh, t, k, r->q) || along_left(l->mesh, t, k, r->q))
+        return t;
+    r->t = turn(l->mesh, t, r->vertex, !r->clockwise);
+    if (r->t == TRI_NONE && !r->clockwise) { /* the other way, from the first one's neighbour */
+        r->clockwise = true;
+        r->t = turn(l->mesh, r->start, r->vertex, false);
+    } else if (r->t == r->start) {
+        r->t = TRI_NONE;
     }
     return TRI_NONE;
+}
+
+/* The triangle through which the segment leaves its end *a towards *b. Where *a is a hub, with many triangles, the
+ * search goes on around both ends in turns, and the two are exchanged if it succeeds at *b: so the cost is that of the
+ * end with fewer triangles. Remembered as the corner, so that the spokes of a fan in order cost O(1) each. */
+static int32_t find_exit(struct layer *l, int32_t *a, int32_t *b)
+{
+    int32_t from = *a, to = *b, found = TRI_NONE;
+    struct rotation at[2] = {rotate_from(l, from, l->mesh->xy[to]), rotate_from(l, to, l->mesh->xy[from])};
+    int end = 0;
+    for (int n = 0; at[end].t != TRI_NONE && (found = rotate(l, &at[end])) == TRI_NONE;)
+        end = n < HUB ? (n++, 0) : 1 - end;
+    if (found == TRI_NONE)
+        return TRI_NONE;
+    *a = end == 0 ? from : to;
+    *b = end == 0 ? to : from;
+    return l->corner[*a] = found;
 }
 
 static int32_t lower(int32_t a, int32_t b) { return a == TRI_NONE || (b != TRI_NONE && b < a) ? b : a; }
@@ -264,55 +294,6 @@ static bool legalise(struct layer *l)
     return true;
 }
 
-/* What became of clearing a channel. */
-enum clearing { CLEARED, NOT_YET, CLEARING_FAILED };
-
-/* One walk through the channel from a to b that flips every crossing edge it can. CLEARED once edge ab exists;
- * CLEARING_FAILED where memory ran out. */
-static enum clearing clear_pass(struct layer *l, int32_t a, int32_t b)
-{
-    struct tri_mesh *mesh = l->mesh;
-    struct tri_point pa = mesh->xy[a], pb = mesh->xy[b];
-    int32_t t = find_exit(l, a, pb);
-    if (t == TRI_NONE)
-        return NOT_YET;
-    int e = corner_of(&mesh->tri[t], a);
-    if (mesh->tri[t].v[tri_next[e]] == b || mesh->tri[t].v[tri_prev[e]] == b)
-        return CLEARED;
-    for (;;) {
-        int32_t n = mesh->tri[t].v[e], u = tri_of(mesh->tri[t].n[e]);
-        int f = tri_edge(mesh->tri[t].n[e]);
-        int32_t o = mesh->tri[u].v[f];
-        double side = o == b ? 0 : tri_orient2d(pa, pb, mesh->xy[o]);
-        if (is_convex(mesh, t, e)) {
-            u = flip(l, t, e);
-            if (!touch(l, t) || !touch(l, u))
-                return CLEARING_FAILED;
-            if (n == a && o == b)
-                return CLEARED;
-            if (o == b)
-                return NOT_YET;
-            t = side > 0 ? t : u;
-            e = 0;
-        } else {
-            if (o == b)
-                return NOT_YET;
-            t = u;
-            e = side > 0 ? tri_next[f] : tri_prev[f]; /* the edge from right to o, or from o to left */
-        }
-    }
-}
-
-static enum clearing clear_channel(struct layer *l, int32_t a, int32_t b)
-{
-    for (int pass = 0; pass < MAX_PASSES; pass++) {
-        enum clearing done = clear_pass(l, a, b);
-        if (done != NOT_YET)
-            return done;
-    }
-    return NOT_YET;
-}
-
 static struct tri_point end_of(const struct layer *l, int32_t segment, int k)
 {
     return l->mesh->xy[l->pslg->segments[2 * segment + k]];
@@ -341,19 +322,27 @@ static enum tri_status check_distance(struct layer *l, struct course course, int
     return TRI_OK;
 }
 
-/* Makes the edge ab a subsegment after its channel is clear. */
-static enum tri_status mark_piece(struct layer *l, int32_t a, int32_t b, struct course course)
+/* Makes ab, whose channel begins in triangle t, a subsegment. */
+static enum tri_status lay_edge(struct layer *l, int32_t t, int32_t a, int32_t b, struct course course)
 {
-    int32_t t = find_exit(l, a, l->mesh->xy[b]);
-    assert(t != TRI_NONE);
-    int k = corner_of(&l->mesh->tri[t], a);
-    bool right = l->mesh->tri[t].v[tri_next[k]] == b;
-    assert(right || l->mesh->tri[t].v[tri_prev[k]] == b);
+    struct tri_mesh *mesh = l->mesh;
     enum tri_status status = check_distance(l, course, a);
     status = status ? status : check_distance(l, course, b);
     if (status)
         return status;
-    return mark_edge(l, t, right ? tri_prev[k] : tri_next[k], course) ? TRI_OK : no_memory(l);
+    int k = corner_of(&mesh->tri[t], a);
+    bool right = mesh->tri[t].v[tri_next[k]] == b;
+    if (right || mesh->tri[t].v[tri_prev[k]] == b)
+        return mark_edge(l, t, right ? tri_prev[k] : tri_next[k], course) ? TRI_OK : no_memory(l);
+    int32_t code;
+    status = tri_recover_edge(&l->recovery, mesh, t, a, b, &code, l->error);
+    if (status)
+        return status;
+    for (int32_t i = 0; i < l->recovery.n_crossed; i++)
+        for (int c = 0; c < 3; c++)
+            l->corner[mesh->tri[tri_of(l->recovery.crossed[i])].v[c]] = tri_of(l->recovery.crossed[i]);
+    l->corner[a] = l->corner[b] = tri_of(code);
+    return mark_edge(l, tri_of(code), tri_edge(code), course) ? TRI_OK : no_memory(l);
 }
 
 static bool keep_corners(struct layer *l, int32_t v)
@@ -612,12 +601,12 @@ static void consider(const struct layer *l, const struct piece *piece, int32_t v
     met->distance = distance;
 }
 
-static struct meeting look_ahead(struct layer *l, const struct piece *piece)
+/* t: the triangle through which the piece leaves its start. */
+static struct meeting look_ahead(const struct layer *l, const struct piece *piece, int32_t t)
 {
     const struct tri_mesh *mesh = l->mesh;
     struct tri_point pa = mesh->xy[piece->from], pb = mesh->xy[piece->to];
     struct meeting met = {TRI_NONE, TRI_NONE, TRI_NONE, 0};
-    int32_t t = find_exit(l, piece->from, pb);
     if (t == TRI_NONE)
         return met;
     int e = corner_of(&mesh->tri[t], piece->from);
@@ -655,33 +644,25 @@ static enum tri_status stop_at(struct layer *l, const struct piece *piece, int32
     return room ? TRI_OK : no_memory(l);
 }
 
-/* Makes the edge from the start of the piece to `end` a subsegment; nothing is in its way. */
-static enum tri_status lay_edge(struct layer *l, const struct piece *piece, int32_t end)
+/* Lays the first part of a piece, which may be turned round for it, or cuts it; the rest goes back on the stack. */
+static enum tri_status lay_piece(struct layer *l, struct piece piece)
 {
-    enum clearing cleared = clear_channel(l, piece->from, end);
-    if (cleared == NOT_YET)
-        return tri_fail(l->error, TRI_INTERNAL, NULL, 0, "segment %d cannot be laid", (int)l->segment);
-    enum tri_status status = cleared == CLEARED ? mark_piece(l, piece->from, end, piece->course) : no_memory(l);
-    if (status)
-        return status;
-    return legalise(l) && push_piece(l, end, piece->to, piece->course) ? TRI_OK : no_memory(l);
-}
-
-static enum tri_status lay_piece(struct layer *l, const struct piece *piece)
-{
-    struct meeting met = look_ahead(l, piece);
-    assert(piece->from != piece->to && (met.end == TRI_NONE || met.across == TRI_NONE));
-    if (met.beside != TRI_NONE && (met.end == TRI_NONE || met.end == piece->to)) {
+    int32_t t = find_exit(l, &piece.from, &piece.to);
+    struct meeting met = look_ahead(l, &piece, t);
+    assert(piece.from != piece.to && (met.end == TRI_NONE || met.across == TRI_NONE));
+    if (met.beside != TRI_NONE && (met.end == TRI_NONE || met.end == piece.to)) {
         l->report->bent++;
-        return stop_at(l, piece, met.beside);
+        return stop_at(l, &piece, met.beside);
     }
     if (met.beside != TRI_NONE)
-        return stop_at(l, piece, met.end);
+        return stop_at(l, &piece, met.end);
     if (met.across != TRI_NONE)
-        return cross(l, piece, met.across);
-    if (met.end == TRI_NONE)
-        return tri_fail(l->error, TRI_INTERNAL, NULL, 0, "segment %d leaves the hull", (int)l->segment);
-    return lay_edge(l, piece, met.end);
+        return cross(l, &piece, met.across);
+    assert(met.end != TRI_NONE); /* the hull is convex */
+    enum tri_status status = lay_edge(l, t, piece.from, met.end, piece.course);
+    if (status)
+        return status;
+    return push_piece(l, met.end, piece.to, piece.course) ? TRI_OK : no_memory(l);
 }
 
 static enum tri_status lay_segment(struct layer *l, int32_t a, int32_t b, struct course course)
@@ -695,7 +676,7 @@ static enum tri_status lay_segment(struct layer *l, int32_t a, int32_t b, struct
         struct piece next = l->piece[--l->n_pieces];
         if (n >= bound)
             return cannot_keep(l, l->segment);
-        enum tri_status status = lay_piece(l, &next);
+        enum tri_status status = lay_piece(l, next);
         if (status)
             return status;
     }
@@ -745,6 +726,7 @@ static enum tri_status find_corners(struct layer *l)
 static void free_layer(struct layer *l)
 {
     tri_cavity_free(&l->cavity);
+    tri_recovery_free(&l->recovery);
     free(l->corner);
     free(l->course);
     free(l->piece);
