@@ -313,12 +313,13 @@ static enum tri_status cover(struct chains *k, const struct line *l)
     k->search++;
     for (int32_t i = 0; i < k->n_stops && status == TRI_OK; i++) {
         struct stop s = k->stop[i];
-        if (s.at < covered || k->seen[s.vertex] == k->search)
+        if (k->seen[s.vertex] == k->search)
             continue;
-        status = ask_about(k, l, covered, s.at);
+        if (s.at > covered)
+            status = ask_about(k, l, covered, s.at);
         int32_t end = follow(k, l, s.vertex, TRI_NONE);
         mark(k, l, end, false);
-        covered = along(l, check_point(k->c, end));
+        covered = fmax(covered, along(l, check_point(k->c, end)));
     }
     return status == TRI_OK ? ask_about(k, l, covered, l->length) : status;
 }

@@ -752,7 +752,7 @@ static enum tri_status settle(struct layer *l)
         struct tri_subsegment *sub = &mesh->sub[s];
         sub->marker = marker_of(l, l->course[s]);
         sub->parent = mesh->n_parents++;
-        mesh->parents[sub->parent] = (struct tri_parent){{sub->v[0], sub->v[1]}, l->course[s].first};
+        mesh->parents[sub->parent] = (struct tri_parent){{sub->v[0], sub->v[1]}, l->course[s].first, {NAN, NAN}};
     }
     return status;
 }

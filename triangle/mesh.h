@@ -60,6 +60,8 @@ struct tri_subsegment {
 struct tri_parent {
     int32_t v[2];
     int32_t segment; /* input segment, or TRI_NONE */
+    struct tri_point guard; /* with the ends, a triangle beside the boundary that is the parent's own, see split.h; not a
+                               number: all that is outside */
 };
 
 struct tri_region {

@@ -17,6 +17,7 @@
 #include "triangle/predicates.h"
 #include "triangle/quality.h"
 #include "triangle/small_angle.h"
+#include "triangle/split.h"
 
 /* 4 / sqrt(3): an equilateral triangle of area A has a squared edge of this times A. The point of a triangle that is
  * only too large is placed as if to make an equilateral triangle of IDEAL of that edge, when that is nearer than the
@@ -215,9 +216,8 @@ static enum outcome split(struct tri_refiner *r, int32_t s, int32_t slot)
     if (tri_is_protected(r->options, &old))
         return refuse(r, TRI_EXCUSE_PROTECTED);
     double fraction = tri_split_fraction(m, &old);
-    struct tri_point a = m->xy[old.v[0]], b = m->xy[old.v[1]];
-    struct tri_point p = tri_point_between(a, b, fraction);
-    if (!tri_can_split(r->shortest2, a, b))
+    struct tri_point p;
+    if (!tri_can_split(r->shortest2, m->xy[old.v[0]], m->xy[old.v[1]]) || !tri_place_split(m, &old, fraction, &p))
         return refuse(r, TRI_EXCUSE_PRECISION);
     enum tri_search found = tri_cavity_search_split(&r->cavity, m, p, s, &n_left);
     if (found == TRI_SEARCH_FENCED)
