@@ -1,22 +1,23 @@
 /* Segments into a Delaunay triangulation: each becomes a chain of subsegments.
  *
- * A segment a -> b is laid piece by piece. A piece is straight; from its start the walk along it meets first a vertex on
- * it, a vertex beside it, a subsegment across it, or its end. RULES, in this order:
+ * A segment a -> b is laid piece by piece. A piece is straight; from its start the walk along it meets first a vertex
+ * on it, a vertex beside it, a subsegment across it, or its end. RULES, in this order:
  *   1. A vertex on the piece ends it.
- *   2. A vertex within NEAR of the piece (in resolutions, crossing.h; and within BESIDE of the segment's own line) is on
- *      it for all that coordinates tell: the piece runs through it. Of several the nearest is taken, so the triangle
+ *   2. A vertex within NEAR of the piece (in resolutions, crossing.h; and within BESIDE of the segment's own line) is
+ *      on it for all that coordinates tell: the piece runs through it. Of several the nearest is taken, so the triangle
  *      that the piece sweeps over holds none of the others.
- *   3. Where the piece crosses a subsegment, both get a vertex in common: one that is within APART of the crossing, else
- *      a new one, the rounded crossing of the two input segments (of the pieces, where bends have moved the crossing
- *      away from that). The subsegment is taken up, and its two parts and those of the piece are laid by the same rules.
+ *   3. Where the piece crosses a subsegment, both get a vertex in common: one that is within APART of the crossing,
+ *      else a new one, the rounded crossing of the two input segments (of the pieces, where bends have moved the
+ *      crossing away from that). The subsegment is taken up, and its two parts and those of the piece are laid by the
+ *      same rules.
  * So a piece that becomes a subsegment meets no vertex and no subsegment; no two chains cross, and whoever shares a
  * chain shares its subsegments. No vertex ever moves.
  * THEOREM (distance). A chain is made of vertices of the input within BESIDE resolutions of the segment's line, of
- * rounded crossings, within one of it, and of vertices within APART of a crossing. What bends add up to is
- * checked for every subsegment: more than TRI_SEGMENT_ULPS is an error that names the segment.
+ * rounded crossings, within one of it, and of vertices within APART of a crossing. What bends add up to is checked for
+ * every subsegment: more than TRI_SEGMENT_ULPS is an error that names the segment.
  * Termination: a piece is replaced by two shorter ones (rules 1, 2), or a new vertex appears, farther than APART from
- * its neighbours (rule 3), or the subsegment in the way is bent round a vertex that it was too near to (rule 3,
- * shared vertex). A bound on the number of pieces stands behind that; reaching it is an error, too.
+ * its neighbours (rule 3), or the subsegment in the way is bent round a vertex that it was too near to (rule 3, shared
+ * vertex). A bound on the number of pieces stands behind that; reaching it is an error, too.
  *
  * INVARIANT: between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v]
  * is a live triangle at v (TRI_NONE for points that are in no triangle). The mesh fills the convex hull.

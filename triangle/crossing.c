@@ -34,7 +34,10 @@ static double go(double from, struct tri_pair way, struct tri_pair fraction)
     return tri_round_coordinate(h.head + (h.tail + step.tail));
 }
 
-static struct tri_pair squared_length(struct tri_pair x, struct tri_pair y) { return sum(product(x, x), product(y, y)); }
+static struct tri_pair squared_length(struct tri_pair x, struct tri_pair y)
+{
+    return sum(product(x, x), product(y, y));
+}
 
 double tri_line_distance(struct tri_point a, struct tri_point b, struct tri_point q)
 {

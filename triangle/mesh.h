@@ -60,8 +60,7 @@ struct tri_subsegment {
 struct tri_parent {
     int32_t v[2];
     int32_t segment; /* input segment, or TRI_NONE */
-    struct tri_point guard; /* with the ends, a triangle beside the boundary that is the parent's own, see split.h; not a
-                               number: all that is outside */
+    struct tri_point guard; /* with the ends, a triangle outside that is the parent's own, see split.c; NaN: all is */
 };
 
 struct tri_region {

@@ -4,7 +4,8 @@
  * errors add up from split to split; and a boundary subsegment that moves outwards may meet another part of the
  * boundary, which is no longer known once what is outside has been carved.
  *
- * 1. The place is that on the parent's line, rounded once. So a chain keeps to its line however often it is split.
+ * 1. The place is that on the parent's line, rounded once (or, rarely, a neighbour of it or of the place on the
+ * subsegment, for the sake of 2). So a chain keeps to its line however often it is split.
  * 2. THEOREM (boundary). Each parent on the boundary has an empty triangle of its own outside: its ends and its guard,
  * the centroid of the triangle of the constrained Delaunay triangulation that was carved there. If every split point
  * of a boundary subsegment lies on the inner side of it (or on it), or in the parent's own triangle, the boundary never
@@ -33,21 +34,30 @@ static bool keeps_to_itself(const struct tri_mesh *mesh, const struct tri_parent
     return holds(a, b, guard, p) || holds(b, a, guard, p);
 }
 
-bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction,
-                     struct tri_point *p)
+/* Moves *p to a place at most one resolution away at which the subsegment may be split. */
+static bool find_place(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point *p)
 {
     static const int way[9][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
-    const struct tri_parent *parent = &mesh->parents[s->parent];
-    struct tri_point from = mesh->xy[s->v[0]], to = mesh->xy[s->v[1]];
-    struct tri_point ideal = tri_onto_line(mesh->xy[parent->v[0]], mesh->xy[parent->v[1]],
-                                           tri_point_between(from, to, fraction));
-    bool boundary = s->side[0] == TRI_NONE || s->side[1] == TRI_NONE, left = s->side[0] != TRI_NONE;
-    double step = tri_resolution(ideal);
+    bool left = s->side[0] != TRI_NONE, boundary = !left || s->side[1] == TRI_NONE;
+    struct tri_point from = mesh->xy[s->v[left ? 0 : 1]], to = mesh->xy[s->v[left ? 1 : 0]], at = *p;
+    double step = tri_resolution(at);
     for (int i = 0; i < 9; i++) {
-        *p = (struct tri_point){tri_round_coordinate(ideal.x + way[i][0] * step),
-                                tri_round_coordinate(ideal.y + way[i][1] * step)};
-        if (!boundary || keeps_to_itself(mesh, parent, left ? from : to, left ? to : from, *p))
+        *p = (struct tri_point){tri_round_coordinate(at.x + way[i][0] * step),
+                                tri_round_coordinate(at.y + way[i][1] * step)};
+        if (!boundary || keeps_to_itself(mesh, &mesh->parents[s->parent], from, to, *p))
             return true;
     }
     return false;
+}
+
+bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction,
+                     struct tri_point *p)
+{
+    const struct tri_parent *parent = &mesh->parents[s->parent];
+    struct tri_point between = tri_point_between(mesh->xy[s->v[0]], mesh->xy[s->v[1]], fraction);
+    *p = tri_onto_line(mesh->xy[parent->v[0]], mesh->xy[parent->v[1]], between);
+    if (find_place(mesh, s, p))
+        return true;
+    *p = between; /* the subsegment itself lies too far inside by now */
+    return find_place(mesh, s, p);
 }
