@@ -85,6 +85,21 @@ static enum tri_status generate(struct outcome *o, const struct tri_pslg *pslg, 
 
 /* --- judging */
 
+/* The input as a mesh keeps it: coordinates smaller than 2^-216 of the largest count as 0. The points are the caller's
+ * to free. */
+static struct tri_pslg kept_input(const struct outcome *o, const struct tri_pslg *pslg)
+{
+    struct tri_pslg input = *pslg;
+    size_t n = 2 * (size_t)pslg->n_points;
+    input.points = malloc(n * sizeof *input.points + 1);
+    assert_non_null(input.points);
+    for (size_t i = 0; i < n; i++)
+        input.points[i] = tri_round_coordinate(pslg->points[i] / o->mesh.unit) * o->mesh.unit;
+    if (!o->switches.segments)
+        input.n_segments = input.n_holes = 0;
+    return input;
+}
+
 static bool is_conforming_fault(int kind) { return kind == TRI_CHECK_LOCAL_DELAUNAY || kind == TRI_CHECK_ENCROACHMENT; }
 
 static void judge_mesh(const struct outcome *o, const struct tri_pslg *pslg, bool refined, struct verdict *verdict)
@@ -103,15 +118,14 @@ static void judge_mesh(const struct outcome *o, const struct tri_pslg *pslg, boo
     if (tri_mesh_validate(&o->mesh, &error) != TRI_OK)
         judge_fault(verdict, "links", "%s", error.text);
     struct support_copy copy = support_copy(&o->mesh);
-    struct tri_pslg input = *pslg;
-    if (!o->switches.segments)
-        input.n_segments = input.n_holes = 0;
+    struct tri_pslg input = kept_input(o, pslg);
     if (tri_check(&copy.mesh, &input, &ask, &report, &error) != TRI_OK)
         judge_fault(verdict, "checker", "%s", error.text);
     for (int kind = 0; kind < TRI_N_CHECKS && !verdict->fault[0]; kind++)
         if (report.item[kind].state == TRI_CHECK_FAILED)
             judge_fault(verdict, conforming && is_conforming_fault(kind) ? "conforming" : tri_check_name(kind),
                         "%lld, first: %s", (long long)report.item[kind].count, report.item[kind].text);
+    free(input.points);
     support_copy_free(&copy);
     if (!verdict->fault[0])
         judge_bounds(o, &report, verdict);

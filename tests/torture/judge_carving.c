@@ -88,12 +88,25 @@ static double area_of(const struct tri_mesh *mesh, int32_t t)
     return ((b->x - a->x) * (c->y - a->y) - (b->y - a->y) * (c->x - a->x)) / 2;
 }
 
+/* What vertices on subsegments may cover or leave open by being rounded. */
+static double rounding(const struct tri_mesh *mesh)
+{
+    double largest = 0, length = 0;
+    for (int32_t v = 0; v < mesh->n_vertices; v++)
+        largest = fmax(largest, fmax(fabs(mesh->xy[v].x), fabs(mesh->xy[v].y)));
+    for (int32_t s = 0; s < mesh->n_subs; s++) {
+        struct tri_point a = mesh->xy[mesh->sub[s].v[0]], b = mesh->xy[mesh->sub[s].v[1]];
+        length += fabs(a.x - b.x) + fabs(a.y - b.y);
+    }
+    return TRI_CHECK_ULPS * 0x1p-52 * largest * length;
+}
+
 /* Areas of the regions in both. */
 static void compare(const struct flood *f, const struct outcome *o, double *areas, struct verdict *verdict)
 {
     const struct tri_mesh *mesh = &o->mesh;
     int32_t left = 0;
-    double whole = 0;
+    double whole = 0, tolerance = rounding(mesh);
     for (int32_t t = 0; t < f->mesh.n_slots; t++) {
         double area = area_of(&f->mesh, t);
         left += f->mark[t] != GONE;
@@ -106,7 +119,7 @@ static void compare(const struct flood *f, const struct outcome *o, double *area
     if (!o->options.refine && left != mesh->n_slots)
         judge_fault(verdict, "carving", "%d triangles, by naive carving %d", (int)mesh->n_slots, (int)left);
     for (int32_t r = 0; r < mesh->n_regions; r++)
-        if (fabs(areas[r]) > 1e-6 * whole)
+        if (fabs(areas[r]) > 1e-9 * whole + tolerance)
             judge_fault(verdict, "carving", "region %d lacks %.3g of the hull's area", (int)r, areas[r] / whole);
 }
 
