@@ -104,8 +104,6 @@ static void judge_limit(const struct outcome *o, struct verdict *verdict)
 void judge_bounds(const struct outcome *o, const struct tri_check_report *report, struct verdict *verdict)
 {
     struct bounds b;
-    if (o->report.constrain.lost > 0)
-        judge_fault(verdict, "lost", "%d pieces of segments given up", (int)o->report.constrain.lost);
     if (!o->options.refine)
         return;
     judge_protection(o, verdict);
