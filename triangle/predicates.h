@@ -19,13 +19,11 @@
 #ifndef TRIANGLE_PREDICATES_H
 #define TRIANGLE_PREDICATES_H
 
-#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 
+#include "triangle/arithmetic.h"
 #include "triangle/mesh.h"
-
-_Static_assert(FLT_EVAL_METHOD == 0, "the error bounds are those of plain double arithmetic");
 
 /* With u = 2^-53, half a unit in the last place of 1. Both are exact doubles. */
 #define TRI_ORIENT2D_BOUND (3 * 0x1p-53 + 16 * 0x1p-106)
