@@ -67,7 +67,17 @@ in_cxx() {
 client '' double '#include "triangle.h"'
 in_c yes
 in_cxx yes
-client '' REAL '#include <triangle.h>'
+client '' TRI_REAL '#include <triangle.h>'
+in_c yes
+in_cxx yes
+client '' double 'double REAL(double x);
+#include "triangle.h"
+double REAL(double x) { return x; }'
+in_c yes
+in_cxx yes
+client '' double '#define TRI_REAL double
+#define REAL TRI_REAL
+#include "triangle.h"'
 in_c yes
 in_cxx yes
 client '' double '#include "triangle.h"

@@ -6,7 +6,8 @@
  * carries the sign, and approximates the value.
  *
  * Nothing here uses fma: products are split as Dekker did, so results are the same on every machine. What is needed is
- * IEEE double arithmetic (triangle/arithmetic.h) without flushing of subnormals, rounding to nearest even, and operands for which no bit is lost to overflow or underflow (predicates.h says why that holds there).
+ * IEEE double arithmetic (triangle/arithmetic.h) without flushing of subnormals, rounding to nearest even, and operands
+ * for which no bit is lost to overflow or underflow (predicates.h says why that holds there).
  *
  * Source: J. R. Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates, Discrete &
  * Computational Geometry 18 (1997), section 2; theorem numbers below are of that paper. */
