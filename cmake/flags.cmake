@@ -2,12 +2,13 @@
 # the sanitizers, which must reach every object and every link. STRICT is for our own code; tests, which consist of
 # cmocka's macros, do without.
 
+option(PTRIANGLE_STATIC_RUNTIME "The programs carry the C++ runtime inside" ON)
 option(PTRIANGLE_WERROR "Treat warnings as errors" OFF)
 option(PTRIANGLE_NATIVE "Compile for the processor of this machine (-march=native); results stay the same" OFF)
 set(PTRIANGLE_SANITIZE "" CACHE STRING "Sanitizers for the whole build, such as address,undefined or thread")
 
 # Debug keeps the asserts, and enough optimisation for the tests to end soon.
-if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
     set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug, RelWithDebInfo, MinSizeRel" FORCE)
 endif()
 set(PTRIANGLE_DEBUG_FLAGS $<$<CONFIG:Debug>:-O1>)
@@ -68,11 +69,17 @@ endfunction()
 include(CheckCXXSourceCompiles)
 set(CMAKE_REQUIRED_LINK_OPTIONS -static-libstdc++ -static-libgcc)
 check_cxx_source_compiles("#include <string>\nint main(int n, char **) { return std::string(n, 'x').size() == 0; }"
-                          PTRIANGLE_STATIC_RUNTIME)
+                          PTRIANGLE_HAVE_STATIC_RUNTIME)
 unset(CMAKE_REQUIRED_LINK_OPTIONS)
 
+# By what name a C client links it.
+set(PTRIANGLE_CXX_RUNTIME stdc++)
+if("c++" IN_LIST CMAKE_CXX_IMPLICIT_LINK_LIBRARIES)
+    set(PTRIANGLE_CXX_RUNTIME c++)
+endif()
+
 function(ptriangle_static_runtime target)
-    if(PTRIANGLE_STATIC_RUNTIME AND NOT PTRIANGLE_SANITIZE)
+    if(PTRIANGLE_STATIC_RUNTIME AND PTRIANGLE_HAVE_STATIC_RUNTIME AND NOT PTRIANGLE_SANITIZE)
         target_link_options(${target} PRIVATE -static-libstdc++ -static-libgcc)
     endif()
 endfunction()

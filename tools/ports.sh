@@ -195,13 +195,13 @@ runs() {
 mesh() {
     bin=$1
     list=$2
-    folder=$(mktemp -d)
+    scratch=$(mktemp -d)
     runs | while read -r program switches input; do
         [ -x "$bin/$program" ] || continue
-        rm -rf "${folder:?}"/*
-        cp "${input%.*}".* "$folder/"
+        rm -rf "${scratch:?}"/*
+        cp "${input%.*}".* "$scratch/"
         (
-            cd "$folder" || exit 2
+            cd "$scratch" || exit 2
             code=0
             export OMP_NUM_THREADS=3
             timeout 600 "$bin/$program" "$switches" "${input##*/}" >/dev/null 2>&1 || code=$?
@@ -214,7 +214,7 @@ mesh() {
                 "$(cat "$base".2.* 2>/dev/null | grep -v '^#' | sha256sum | cut -c1-16)"
         )
     done >"$list"
-    rm -rf "$folder"
+    rm -rf "$scratch"
 }
 
 compare() { # compare PORT BIN
