@@ -19,6 +19,10 @@
 #include "triangle/pslg.h"
 #include "triangle/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* --- outputs */
 
 enum { TRI_MAX_OUTPUTS = 16 };
@@ -140,5 +144,9 @@ enum tri_status tri_write_off_header(struct tri_output *output, size_t n_points,
 enum tri_status tri_write_off(struct tri_output *output, const struct tri_layout *layout, size_t n_points,
                               const double *points, size_t n_triangles, int n_nodes, const int32_t *nodes,
                               size_t n_edges, struct tri_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
