@@ -86,7 +86,7 @@ set(PTRIANGLE_PUBLIC_HEADERS
 # Room drivers/: what the executables share, then the executables, each from drivers/<name>.c. The second list of programs
 # needs the room sched/ and its library.
 set(PTRIANGLE_DRIVER_SOURCES)
-set(PTRIANGLE_PROGRAMS triangle trianglecheck)
+set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle trianglecheck)
 set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed
 set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
 

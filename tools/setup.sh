@@ -1,11 +1,12 @@
 #!/bin/sh
 # Installs what building needs and this machine lacks, through apt; where there is no apt, says what is needed.
-# Usage: tools/setup.sh [build|tests|ci]
+# Usage: tools/setup.sh [build|tests|ci|ports]
 #   build  C and C++ compiler, make, CMake          (what the programs need), and cairo (for meshplot) and jansson (for
 #          ptriangle --report), which can be done without
 #   tests  and cmocka, GMP, pkg-config              (what tools/test.sh needs)
 #   ci     and clang with its OpenMP library, its fuzzer and clang-tidy, cppcheck, valgrind, gcovr, Python (what
 #          .ci/run needs)
+#   ports  compilers for other processors and their emulator (what tools/ports.sh needs beside `build`)
 # Works as root or with sudo, asks nothing, and does not touch a machine that has everything.
 set -eu
 wanted=${1:-build}
@@ -64,6 +65,14 @@ list_missing() {
     need build-essential compilers
     need cmake command -v cmake
     [ "$wanted" = build ] && return
+    if [ "$wanted" = ports ]; then
+        for triplet in aarch64 i686 s390x; do
+            need g++-$triplet-linux-gnu command -v $triplet-linux-gnu-g++
+        done
+        need qemu-user command -v qemu-s390x
+        need python3-venv python3 -c 'import ensurepip, venv'
+        return
+    fi
     need libcmocka-dev links cmocka.h cmocka
     need libgmp-dev links gmp.h gmp
     need pkg-config command -v pkg-config
@@ -97,9 +106,9 @@ as_root() {
 apt() { as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@"; }
 
 case $wanted in
-build | tests | ci) ;;
+build | tests | ci | ports) ;;
 *)
-    echo "usage: tools/setup.sh [build|tests|ci]" >&2
+    echo "usage: tools/setup.sh [build|tests|ci|ports]" >&2
     exit 2
     ;;
 esac

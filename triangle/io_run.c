@@ -154,6 +154,14 @@ static enum tri_status run_all(struct io_run *run, const struct triangulateio *i
     return status;
 }
 
+/* What a client that did not ask for errors would go by. */
+static void zero_counts(struct triangulateio *io)
+{
+    io->numberofpoints = io->numberofpointattributes = io->numberofedges = 0;
+    io->numberoftriangles = io->numberofcorners = io->numberoftriangleattributes = 0;
+    io->numberofsegments = io->numberofholes = io->numberofregions = 0;
+}
+
 int tri_io_triangulate(const char *switches, const struct triangulateio *in, struct triangulateio *out,
                        struct triangulateio *vorout, const struct triangulate_options *options, tri_io_refine *refine,
                        const struct tri_executor *executor)
@@ -171,6 +179,10 @@ int tri_io_triangulate(const char *switches, const struct triangulateio *in, str
     } else {
         status = tri_fail(&error, TRI_BAD_INPUT, NULL, 0, "switches, in and out must not be NULL");
     }
+    if (status && out && out != in)
+        zero_counts(out);
+    if (status && vorout && vorout != in)
+        zero_counts(vorout);
     if (status && options->message)
         options->message(options->message_user, 1, error.text);
     return (int)status;

@@ -20,13 +20,11 @@
 #define TRIANGLE_PREDICATES_H
 
 #include <assert.h>
-#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 
+#include "triangle/arithmetic.h"
 #include "triangle/mesh.h"
-
-_Static_assert(FLT_EVAL_METHOD == 0, "the error bounds are those of plain double arithmetic");
 
 struct tri_pair; /* triangle/expansion.h */
 

@@ -13,6 +13,10 @@
 #include "triangle/cavity.h"
 #include "triangle/executor.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Non-zero: the triangle a, b, c (counter-clockwise) must be refined. Called for triangles that satisfy all other size
  * bounds, by par_refine also for others (sched/par.h). */
 typedef int tri_unsuitable(void *user, const double a[2], const double b[2], const double c[2], double area);
@@ -107,5 +111,9 @@ int64_t tri_count_encroached(const struct tri_mesh *mesh);
 void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                    const struct tri_refine_report *report, const struct tri_executor *executor,
                    int64_t count[TRI_EXCUSES]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

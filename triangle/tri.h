@@ -18,6 +18,10 @@
 #include "triangle/spatial.h"
 #include "triangle/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum tri_stage { TRI_STAGE_DELAUNAY, TRI_STAGE_SEGMENTS, TRI_STAGE_HOLES, TRI_STAGE_QUALITY, TRI_STAGE_DONE };
 
 struct tri_options {
@@ -46,5 +50,9 @@ struct tri_options tri_defaults(void);
  * (TRI_NO_MEMORY, TRI_TOO_LARGE) is a valid mesh. TRI_BAD_INPUT: see tri_pslg_check. The PSLG is only read. */
 enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
                              struct tri_report *report, struct tri_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
