@@ -1,5 +1,4 @@
-/* Which triangles are bad, and which subsegments crowded: the criterion that the refinement loop works for, and its
- * census counts.
+/* Which triangles are bad: the criterion that the refinement loop works for, and its census counts.
  *
  * Nothing here changes the mesh. */
 #ifndef TRIANGLE_CRITERION_H
@@ -49,11 +48,5 @@ bool tri_is_protected(const struct tri_refine_options *options, const struct tri
 /* Lower than the shortest edge that coordinates can carry: splitting a subsegment beside it would chase the
  * rounding. */
 bool tri_is_flat(const struct tri_mesh *mesh, const struct tri_shape *shape);
-
-/* Does the apex of the triangle with this code lie in the diametral circle of the subsegment? */
-bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, int32_t code);
-
-/* The apex of a triangle beside the subsegment does, and that can be mended. */
-bool tri_is_crowded(const struct tri_mesh *mesh, const struct tri_subsegment *s);
 
 #endif

@@ -13,6 +13,7 @@
 
 #include "triangle/bad_queue.h"
 #include "triangle/criterion.h"
+#include "triangle/disk.h"
 #include "triangle/interpolate.h"
 #include "triangle/predicates.h"
 #include "triangle/quality.h"
@@ -206,15 +207,14 @@ static enum outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
     return REFUSED;
 }
 
-/* Splits subsegment s for the sake of the triangle in a slot. */
-static enum outcome split(struct tri_refiner *r, int32_t s, int32_t slot)
+/* Splits subsegment s, at this fraction of it, for the sake of the triangle in a slot. */
+static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, int32_t slot)
 {
     struct tri_mesh *m = r->mesh;
     const struct tri_subsegment old = m->sub[s];
     int32_t n_left;
     if (tri_is_protected(r->options, &old))
         return refuse(r, TRI_EXCUSE_PROTECTED);
-    double fraction = tri_split_fraction(m, &old);
     struct tri_point a = m->xy[old.v[0]], b = m->xy[old.v[1]];
     struct tri_point p = tri_point_between(a, b, fraction);
     if (!tri_can_split(r->shortest2, a, b))
@@ -238,6 +238,11 @@ static enum outcome split(struct tri_refiner *r, int32_t s, int32_t slot)
     if (room && r->options->conforming)
         room = crowd(r, s) && crowd(r, second);
     return room ? DONE : FAILED;
+}
+
+static enum outcome split(struct tri_refiner *r, int32_t s, int32_t slot)
+{
+    return split_at(r, s, tri_split_fraction(r->mesh, &r->mesh->sub[s]), slot);
 }
 
 /* Where only sizes count, a subsegment that must not be split is no reason not to insert a point beside it. */
@@ -393,15 +398,13 @@ static bool split_crowded(struct tri_refiner *r)
         int32_t beside = tri_of(sub->side[sub->side[0] == TRI_NONE]);
         assert(s >= 0 && tri_is_live(&r->mesh->tri[beside]));
         r->n_crowded--;
-        if (!tri_is_crowded(r->mesh, sub) || at_limit(r) || r->relaxed == 3)
+        double fraction;
+        if (!tri_is_crowded(r->mesh, sub, &fraction) || at_limit(r))
             continue;
-        enum outcome outcome = split(r, s, beside);
-        if (outcome == FAILED) {
+        if (split_at(r, s, fraction, beside) == FAILED) {
             r->crowded[r->n_crowded++] = s; /* there is room: it was there a moment ago */
             return false;
         }
-        if (outcome == DONE)
-            count_point(r, TRI_BAD_ANGLE);
     }
     return true;
 }
