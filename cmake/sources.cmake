@@ -21,6 +21,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/disk.c
     triangle/bad_queue.c
     triangle/criterion.c
+    triangle/inside.c
     triangle/refine.c
     triangle/numbering.c
     triangle/census.c

@@ -66,6 +66,8 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, int32_t slot, c
                                   enum tri_badness badness, const struct tri_refine_report *report)
 {
     const struct tri_triangle *t = &c->mesh->tri[slot];
+    if (tri_is_too_large(c, t, shape))
+        badness = TRI_BAD_SIZE;
     if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, c->mesh->shortest2, slot, shape))
         return shape->l[shape->shortest] < c->mesh->shortest2 ? TRI_EXCUSE_PRECISION
                : tri_is_channel(c->mesh, slot, shape)      ? TRI_EXCUSE_CHANNEL

@@ -43,14 +43,17 @@ bool tri_is_unsuitable(const struct tri_criterion *criterion, const int32_t v[3]
                           tri_area_scale(options));
 }
 
+bool tri_is_too_large(const struct tri_criterion *c, const struct tri_triangle *t, const struct tri_shape *shape)
+{
+    return shape->area2 > tri_area2_bound(c, t->region) || (c->options->unsuitable && tri_is_unsuitable(c, t->v));
+}
+
 enum tri_badness tri_judge(const struct tri_criterion *c, const struct tri_triangle *t, const struct tri_shape *shape)
 {
     double product = tri_longer_product(shape->l[0], shape->l[1], shape->l[2]);
     if (shape->area2 * shape->area2 < c->bounds.sin2 * product)
         return TRI_BAD_ANGLE;
-    if (shape->area2 > tri_area2_bound(c, t->region))
-        return TRI_BAD_SIZE;
-    return c->options->unsuitable && tri_is_unsuitable(c, t->v) ? TRI_BAD_SIZE : TRI_GOOD;
+    return tri_is_too_large(c, t, shape) ? TRI_BAD_SIZE : TRI_GOOD;
 }
 
 bool tri_is_protected(const struct tri_refine_options *options, const struct tri_subsegment *s)

@@ -38,6 +38,10 @@ bool tri_is_refused(const struct tri_refine_options *options, double unit, struc
 /* The same for a triangle with these corners, at options->area_scale. Only where there is a test. */
 bool tri_is_unsuitable(const struct tri_criterion *criterion, const int32_t v[3]);
 
+/* Does the triangle break a bound on sizes, or does the size test refuse it? */
+bool tri_is_too_large(const struct tri_criterion *criterion, const struct tri_triangle *t,
+                      const struct tri_shape *shape);
+
 /* A bad angle counts before a bad size. */
 enum tri_badness tri_judge(const struct tri_criterion *criterion, const struct tri_triangle *t,
                            const struct tri_shape *shape);

@@ -14,6 +14,7 @@
 #include "triangle/bad_queue.h"
 #include "triangle/criterion.h"
 #include "triangle/disk.h"
+#include "triangle/inside.h"
 #include "triangle/interpolate.h"
 #include "triangle/predicates.h"
 #include "triangle/quality.h"
@@ -45,6 +46,7 @@ struct tri_refiner {
     int limit;        /* buckets from here on wait for the second pass */
     int32_t next_seed, n_seeds;
     enum stage stage;
+    enum tri_excuse excuse; /* of the last refusal */
     bool in_hand;     /* `hand` was being treated when there was no room */
     struct tri_entry hand;
     int32_t *crowded; /* stack of subsegments to test for encroachment (conforming only) */
@@ -57,8 +59,8 @@ enum { SEED_CHUNK = 1 << 16 };
 static const double FARTHEST = 0x1p199;
 
 /* DONE: a point was inserted, or the triangle is gone; AGAIN: a subsegment was split instead, the triangle may still
- * stand. */
-enum outcome { DONE, AGAIN, REFUSED, FAILED };
+ * stand; LEFT: it is somebody else's. */
+enum outcome { DONE, AGAIN, REFUSED, LEFT, FAILED };
 
 struct tri_refine_options tri_refine_defaults(void)
 {
@@ -198,10 +200,16 @@ static enum outcome leave(struct tri_refiner *r, int32_t slot, int64_t *counter)
     ++*counter;
     if (r->options->left)
         r->options->left(r->options->left_user, slot);
-    return REFUSED;
+    return LEFT;
 }
 
 static enum outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
+{
+    r->excuse = excuse;
+    return REFUSED;
+}
+
+static enum outcome give_up(struct tri_refiner *r, enum tri_excuse excuse)
 {
     r->report->refused[excuse]++;
     return REFUSED;
@@ -298,11 +306,9 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
     return reach;
 }
 
-static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tri_shape *shape,
-                            enum tri_badness badness)
+/* The cavity of a new point for the triangle in a slot: DONE where it is found and is ours. */
+static enum outcome find_cavity(struct tri_refiner *r, int32_t slot, struct tri_point p)
 {
-    const struct tri_triangle t = r->mesh->tri[slot];
-    struct tri_point p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
     if (!(fabs(p.x) < FARTHEST && fabs(p.y) < FARTHEST))
         return refuse(r, TRI_EXCUSE_PRECISION);
     if (r->options->gate) {
@@ -312,19 +318,44 @@ static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tr
     }
     if (r->options->fence && !tri_fence_holds(r->options->fence, p)) /* then its cavity reaches beyond, too */
         return leave(r, slot, &r->report->deferred);
-    enum tri_search found = tri_cavity_search(&r->cavity, r->mesh, p, slot);
-    if (found == TRI_SEARCH_FOUND) {
-        int32_t s = find_encroached(r);
-        if (s == TRI_NONE)
-            return insert_free(r, p);
-        if (tri_is_flat(r->mesh, shape))
-            return refuse(r, TRI_EXCUSE_PRECISION);
-        enum outcome outcome = split(r, s, slot);
-        return outcome == DONE ? AGAIN : outcome;
+    switch (tri_cavity_search(&r->cavity, r->mesh, p, slot)) {
+    case TRI_SEARCH_FOUND: return DONE;
+    case TRI_SEARCH_FENCED: return leave(r, slot, &r->report->deferred);
+    case TRI_SEARCH_OUTSIDE: return refuse(r, TRI_EXCUSE_PRECISION);
+    default: return FAILED;
     }
-    if (found == TRI_SEARCH_FENCED)
-        return leave(r, slot, &r->report->deferred);
-    return found == TRI_SEARCH_OUTSIDE ? refuse(r, TRI_EXCUSE_PRECISION) : FAILED;
+}
+
+/* The usual point, or the split of a subsegment that it encroaches. */
+static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tri_shape *shape,
+                            enum tri_badness badness)
+{
+    const struct tri_triangle t = r->mesh->tri[slot];
+    struct tri_point p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
+    enum outcome outcome = find_cavity(r, slot, p);
+    if (outcome != DONE)
+        return outcome;
+    int32_t s = find_encroached(r);
+    if (s == TRI_NONE)
+        return insert_free(r, p);
+    if (tri_is_flat(r->mesh, shape))
+        return refuse(r, TRI_EXCUSE_PRECISION);
+    outcome = split(r, s, slot);
+    return outcome == DONE ? AGAIN : outcome;
+}
+
+/* For sizes, where the usual point is refused: see inside.c. */
+static enum outcome propose_inside(struct tri_refiner *r, int32_t slot, const struct tri_shape *shape)
+{
+    int32_t s = tri_long_wall(r->mesh, r->options, slot, shape);
+    enum outcome outcome = s == TRI_NONE ? REFUSED : split(r, s, slot);
+    if (outcome != REFUSED)
+        return outcome == DONE ? AGAIN : outcome;
+    struct tri_point p;
+    if (!tri_centroid(r->mesh, slot, shape, &p))
+        return refuse(r, TRI_EXCUSE_PRECISION);
+    outcome = find_cavity(r, slot, p);
+    return outcome == DONE ? insert_free(r, p) : outcome;
 }
 
 /* Lowers the angle bound that the loop works for; what is already bad by the old one stays. */
@@ -376,17 +407,20 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
         if (badness == TRI_GOOD)
             return DONE;
-        if (badness == TRI_BAD_ANGLE && tri_is_hopeless(r->mesh, r->shortest2, entry.t, &shape)) {
-            if (shape.area2 <= tri_area2_bound(&r->criterion, t->region))
-                return refuse(r, TRI_EXCUSE_INPUT_ANGLE);
-        }
+        if (badness == TRI_BAD_ANGLE && tri_is_hopeless(r->mesh, r->shortest2, entry.t, &shape) &&
+            !tri_is_too_large(&r->criterion, t, &shape))
+            return give_up(r, TRI_EXCUSE_INPUT_ANGLE);
         if (at_limit(r))
-            return refuse(r, TRI_EXCUSE_LIMIT);
+            return give_up(r, TRI_EXCUSE_LIMIT);
         enum outcome outcome = propose(r, entry.t, &shape, badness);
+        if (outcome == REFUSED && tri_is_too_large(&r->criterion, t, &shape)) {
+            badness = TRI_BAD_SIZE;
+            outcome = propose_inside(r, entry.t, &shape);
+        }
         if (outcome == DONE || outcome == AGAIN)
             count_point(r, badness);
         if (outcome != AGAIN)
-            return outcome;
+            return outcome == REFUSED ? give_up(r, r->excuse) : outcome;
     }
 }
 
@@ -401,10 +435,13 @@ static bool split_crowded(struct tri_refiner *r)
         double fraction;
         if (!tri_is_crowded(r->mesh, sub, &fraction) || at_limit(r))
             continue;
-        if (split_at(r, s, fraction, beside) == FAILED) {
+        enum outcome outcome = split_at(r, s, fraction, beside);
+        if (outcome == FAILED) {
             r->crowded[r->n_crowded++] = s; /* there is room: it was there a moment ago */
             return false;
         }
+        if (outcome == REFUSED)
+            give_up(r, r->excuse);
     }
     return true;
 }
