@@ -88,7 +88,8 @@ bool tri_is_on_parent(const struct tri_mesh *mesh, int32_t v)
     return n > 0;
 }
 
-/* Is there a parent from one vertex to the other? Looks at the shorter of their lists: one may be the hub of a wheel. */
+/* Is there a parent from one vertex to the other? Looks at the shorter of their lists: one may be the hub of a
+ * wheel. */
 static bool are_joined(const struct tri_mesh *mesh, int32_t u, int32_t v)
 {
     int32_t nu, nv;
