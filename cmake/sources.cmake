@@ -21,8 +21,10 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/quality.c
     triangle/small_angle.c
     triangle/split.c
+    triangle/disk.c
     triangle/bad_queue.c
     triangle/criterion.c
+    triangle/inside.c
     triangle/refine.c
     triangle/numbering.c
     triangle/census.c

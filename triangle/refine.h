@@ -103,8 +103,10 @@ int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_optio
  * O(triangles). */
 enum tri_status tri_refine_prepare(struct tri_mesh *mesh, struct tri_error *error);
 
-/* Counts the subsegments with a vertex of a triangle beside them in their diametral circle: what -D could not mend. */
-int64_t tri_count_encroached(const struct tri_mesh *mesh);
+/* Counts the subsegments with a vertex of a triangle beside them in their diametral circle, which -D could not mend, by
+ * place: at a small angle of the input, between segments near to each other, and so on. */
+void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                          const struct tri_refine_report *report, int64_t count[TRI_EXCUSES]);
 
 /* Counts the triangles that violate the bounds, by reason. A size test is asked by the calling thread alone.
  * O(triangles). */
