@@ -112,7 +112,7 @@ enum tri_status estimate_check(const struct estimate *e, struct tri_error *error
 {
     if (SURE * e->triangles > TRI_MAX_TRIANGLES)
         return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
-                        "the bounds ask for about %.3g million triangles, and a mesh holds %d million",
+                        "the bounds ask for about %.0f million triangles, and a mesh holds %d million",
                         1e-6 * e->triangles, TRI_MAX_TRIANGLES / 1000000);
     double available = e->more > 1e8 ? resources_memory() : HUGE_VAL; /* small files, but why read them */
     if (e->more > available)

@@ -26,7 +26,7 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_r
     if (triangles <= TRI_MAX_TRIANGLES)
         return TRI_OK;
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
-                    "the area bounds ask for more than %.3g million triangles, and a mesh holds %d million",
+                    "the area bounds ask for more than %.0f million triangles, and a mesh holds %d million",
                     1e-6 * triangles, TRI_MAX_TRIANGLES / 1000000);
 }
 

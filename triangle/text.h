@@ -40,7 +40,8 @@ struct tri_text {
 };
 
 /* Reads the file whole and indexes it. chunk_bytes > 0, or 0 for the default. A pipe is read to its end, up to 1 GiB.
- * *text is to be freed in any case; `path` must live as long. Errors: TRI_CANNOT_READ, TRI_NO_MEMORY, TRI_STOPPED. O(size). */
+ * *text is to be freed in any case; `path` must live as long. Errors: TRI_CANNOT_READ, TRI_NO_MEMORY,
+ * TRI_STOPPED. O(size). */
 enum tri_status tri_text_load(struct tri_text *text, const char *path, size_t chunk_bytes,
                               const struct tri_executor *executor, const struct tri_stop *stop,
                               struct tri_error *error);

@@ -44,7 +44,8 @@ struct tri_report {
 struct tri_options tri_defaults(void);
 
 /* Makes *mesh from the PSLG. On failure *mesh is empty, except that what refinement had done when it ran out of memory
- * (TRI_NO_MEMORY, TRI_TOO_LARGE) or was stopped (TRI_STOPPED) is a valid mesh. TRI_BAD_INPUT: see tri_pslg_check. The PSLG is only read. */
+ * (TRI_NO_MEMORY, TRI_TOO_LARGE) or was stopped (TRI_STOPPED) is a valid mesh. TRI_BAD_INPUT: see tri_pslg_check.
+ * The PSLG is only read. */
 enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
                              struct tri_report *report, struct tri_error *error);
 
