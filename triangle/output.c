@@ -239,18 +239,20 @@ static enum tri_status check_target(const struct tri_output *output, const struc
     return old && access(output->path, W_OK) != 0 ? cannot_create(output, error) : TRI_OK;
 }
 
-/* Is it a file that does not exist yet, of the same name in the same directory? */
-static bool would_be_same(const char *a, const char *b)
+static bool stat_directory(const char *path, struct stat *status)
 {
-    struct stat of_a, of_b;
-    char *directory_a = beside(a, "."), *directory_b = beside(b, ".");
-    bool same = strcmp(a + directory_length(a), b + directory_length(b)) == 0;
-    if (same && directory_a && directory_b)
-        same = stat(directory_a, &of_a) == 0 && stat(directory_b, &of_b) == 0 && of_a.st_dev == of_b.st_dev &&
-               of_a.st_ino == of_b.st_ino;
-    free(directory_a);
-    free(directory_b);
-    return same;
+    char name[MAX_PATH];
+    const size_t length = directory_length(path);
+    if (length + 2 > sizeof name)
+        return false;
+    memcpy(name, path, length);
+    strcpy(name + length, ".");
+    return stat(name, status) == 0;
+}
+
+static bool is_same_node(const struct stat *a, const struct stat *b)
+{
+    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
 }
 
 bool tri_is_same_file(const char *a, const char *b)
@@ -258,14 +260,10 @@ bool tri_is_same_file(const char *a, const char *b)
     struct stat of_a, of_b;
     bool is_a = stat(a, &of_a) == 0, is_b = stat(b, &of_b) == 0;
     if (is_a && is_b)
-        return S_ISREG(of_a.st_mode) && of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
-    if (is_a || is_b)
+        return S_ISREG(of_a.st_mode) && is_same_node(&of_a, &of_b);
+    if (is_a || is_b || strcmp(a + directory_length(a), b + directory_length(b)) != 0)
         return false;
-    char *target_a = resolve(a), *target_b = resolve(b);
-    bool same = !target_a || !target_b || would_be_same(target_a, target_b);
-    free(target_a);
-    free(target_b);
-    return same;
+    return stat_directory(a, &of_a) && stat_directory(b, &of_b) && is_same_node(&of_a, &of_b);
 }
 
 /* No two outputs are one file: the second would replace the first. */

@@ -65,8 +65,8 @@ enum tri_status tri_outputs_commit(struct tri_output_set *set, struct tri_error 
 /* Closes and removes what is not committed. */
 void tri_outputs_abort(struct tri_output_set *set);
 
-/* Do two paths name one regular file, by links of any kind? Where neither exists: would they? Yes, where there is no
- * memory to tell. */
+/* Do two paths name one regular file, by links of any kind? Where neither exists: would they, if neither is a symbolic
+ * link itself? */
 bool tri_is_same_file(const char *a, const char *b);
 
 #endif
