@@ -1,8 +1,8 @@
 """For each k the k-th allocation of a program fails: it must end with exit code 1 and one line on standard error, and
 touch no file; or, where it can do without, with the very files of a run that lacked nothing.
 
-Usage: every_allocation.py BIN_FOLDER DATA_FOLDER SHIM WORK_FOLDER [all]
-Without `all` a few small cases; see failing_malloc.c for the shim.
+Usage: every_allocation.py BIN_FOLDER DATA_FOLDER SHIM WORK_FOLDER [all | NUMBER...]
+Of the cases below all, or those; else a few small ones; see failing_malloc.c for the shim.
 """
 
 import os
@@ -27,7 +27,7 @@ ALL = FAST + [
     ("triangle", "-pc crossing_random", ["nasty/crossing_random.poly"]),
     ("triangle", "-pq36 overlap", ["nasty/overlap.poly"]),
     ("triangle", "duplicates", ["nasty/duplicates.node"]),
-    ("ptriangle", "-pq33a0.0005 letter --threads 3 --report r.json --blocks b", ["letter.poly"]),
+    ("ptriangle", "-pq33a0.0005 letter --threads 3 --report report.json --blocks b", ["letter.poly"]),
     ("ptriangle", "-pqa0.0005A section --threads 2 --numbering blocks", ["section.poly"]),
     ("ptriangle", "-pqa2e9 --max-area 3e9 borders --threads 3", ["coast/borders.poly"]),
     ("ptriangle", "-rpqa0.0005 letter.1 --threads 2", ["letter.poly", "mesh:letter -pq"]),
@@ -36,6 +36,7 @@ ALL = FAST + [
 ]
 
 LONGEST = 60  # seconds of one run
+MOST = 160  # runs of a case in each mode
 
 
 def prepare(folder, inputs, bin_folder, data):
@@ -59,14 +60,34 @@ def prepare(folder, inputs, bin_folder, data):
             shutil.copy(f"{data}/{item}", folder)
 
 
-def contents(folder, only=None):
+def contents(folder):
     """What the files hold; reports tell seconds, so that of them only the being there counts."""
     found = {}
     for name in sorted(os.listdir(folder)):
-        if only is None or name in only:
-            with open(f"{folder}/{name}", "rb") as file:
-                found[name] = b"" if name.endswith(".json") else file.read()
+        with open(f"{folder}/{name}", "rb") as file:
+            found[name] = b"" if name.endswith(".json") else file.read()
     return found
+
+
+def restore(folder, before):
+    """The folder as it was."""
+    for name in os.listdir(folder):
+        if name not in before:
+            os.remove(f"{folder}/{name}")
+    for name, text in before.items():
+        with open(f"{folder}/{name}", "rb+") as file:
+            if file.read() != text:
+                file.seek(0)
+                file.truncate()
+                file.write(text)
+
+
+def chosen(n):
+    """The numbers 1 to n; of very many, the first and then as many again, evenly."""
+    if n <= MOST:
+        return range(1, n + 1)
+    half = MOST // 2
+    return [*range(1, half + 1), *(half + 1 + i * (n - half - 1) // half for i in range(half + 1))]
 
 
 def run(program, words, folder, variables):
@@ -94,10 +115,11 @@ def try_case(case, bin_folder, data, shim, work):
     program, words, inputs = case[0], case[1].split(), case[2]
     folder, count = f"{work}/case", f"{work}/count"
     path = f"{bin_folder}/{program}"
+    own = {"PTRIANGLE_FAIL_OWN": "1"} if program == "meshplot" else {}  # drawing libraries crash
     failure = 2 if program == "trianglecheck" else 1
     prepare(folder, inputs, bin_folder, data)
     before = contents(folder)
-    code, _, error = run(path, words, folder, {"LD_PRELOAD": shim, "PTRIANGLE_COUNT": count})
+    code, _, error = run(path, words, folder, {"LD_PRELOAD": shim, "PTRIANGLE_COUNT": count, **own})
     if code != 0:
         return [f"{program} {case[1]}: does not run: {error}"], 1
     whole = contents(folder)
@@ -105,11 +127,10 @@ def try_case(case, bin_folder, data, shim, work):
         n = int(file.read())
     faults, runs = [], 0
     for after in ("0", "1"):
-        for k in range(1, n + 1):
-            for name in set(os.listdir(folder)) - set(before):
-                os.remove(f"{folder}/{name}")
+        for k in chosen(n):
+            restore(folder, before)
             code, _, error = run(path, words, folder, {
-                "LD_PRELOAD": shim, "PTRIANGLE_FAIL_AT": str(k), "PTRIANGLE_FAIL_AFTER": after})
+                "LD_PRELOAD": shim, "PTRIANGLE_FAIL_AT": str(k), "PTRIANGLE_FAIL_AFTER": after, **own})
             fault = judge(code, failure, error, before, contents(folder), whole)
             runs += 1
             if fault:
@@ -119,7 +140,9 @@ def try_case(case, bin_folder, data, shim, work):
 
 def main():
     bin_folder, data, shim, work = sys.argv[1:5]
-    cases = ALL if sys.argv[5:] == ["all"] else FAST
+    cases = FAST
+    if sys.argv[5:]:
+        cases = ALL if sys.argv[5] == "all" else [ALL[int(i)] for i in sys.argv[5:]]
     faults, runs = [], 0
     for case in cases:
         if os.path.exists(f"{bin_folder}/{case[0]}"):

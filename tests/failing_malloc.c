@@ -3,6 +3,7 @@
  *
  *   PTRIANGLE_FAIL_AT=K     the K-th call fails, counted from 1
  *   PTRIANGLE_FAIL_AFTER=1  so do all behind it
+ *   PTRIANGLE_FAIL_OWN=1    only calls of the program itself are counted, not those of libraries
  *   PTRIANGLE_COUNT=FILE    receives the number of calls when the program ends
  *
  * Calls of the dynamic linker and of OpenMP's library are not counted: that prints a line and ends the program, and
@@ -25,7 +26,7 @@ void *__libc_memalign(size_t alignment, size_t bytes);
 
 static atomic_long calls;
 static long fail_at = LONG_MAX;
-static bool fail_after;
+static bool fail_after, own;
 static atomic_bool begun;
 
 __attribute__((constructor)) static void begin(void)
@@ -33,6 +34,7 @@ __attribute__((constructor)) static void begin(void)
     const char *at = getenv("PTRIANGLE_FAIL_AT"), *after = getenv("PTRIANGLE_FAIL_AFTER");
     fail_at = at ? atol(at) : LONG_MAX;
     fail_after = after && *after == '1';
+    own = getenv("PTRIANGLE_FAIL_OWN");
     begun = true;
 }
 
@@ -51,10 +53,12 @@ __attribute__((destructor)) static void end(void)
 static bool counts(const void *caller)
 {
     Dl_info info;
-    if (!begun)
+    if (!begun || !dladdr(caller, &info))
         return false;
-    return !dladdr(caller, &info) || !(strstr(info.dli_fname, "libgomp") || strstr(info.dli_fname, "ld-linux") ||
-                                       strstr(info.dli_fname, "ld-musl"));
+    const char *file = info.dli_fname;
+    if (own)
+        return !strstr(file, ".so");
+    return !strstr(file, "libgomp") && !strstr(file, "ld-linux") && !strstr(file, "ld-musl");
 }
 
 static bool must_fail(const void *caller)
