@@ -166,9 +166,9 @@ static json_t *report_of(const struct run *run, const struct par_report *schedul
     const struct tri_refine_options *q = &run->options.quality;
     json_t *bounds = json_pack("{s:o, s:o}", "min_angle", q->min_angle > 0 ? real(q->min_angle) : json_null(),
                                "max_area", q->max_area > 0 ? real(q->max_area) : json_null());
-    return json_pack("{s:s, s:s, s:o, s:i, s:o, s:o, s:o, s:o, s:o}", "program", run->hooks->program, "version",
-                     PTRIANGLE_VERSION, "command", command_of(run->arguments), "threads", threads, "peak_memory_bytes",
-                     whole(memory), "bounds", bounds, "seconds", stages_of(run, schedule), "mesh", mesh_of(run),
+    return json_pack("{s:s, s:s, s:o, s:s?, s:i, s:o, s:o, s:o, s:o, s:o}", "program", run->hooks->program, "version",
+                     PTRIANGLE_VERSION, "command", command_of(run->arguments), "stopped", run->stopped, "threads",
+                     threads, "peak_memory_bytes", whole(memory), "bounds", bounds, "seconds", stages_of(run, schedule), "mesh", mesh_of(run),
                      "schedule", schedule ? schedule_of(schedule) : json_null());
 }
 

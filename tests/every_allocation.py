@@ -1,8 +1,8 @@
 """For each k the k-th allocation of a program fails: it must end with exit code 1 and one line on standard error, and
 touch no file; or, where it can do without, with the very files of a run that lacked nothing.
 
-Usage: every_allocation.py BIN_FOLDER DATA_FOLDER SHIM WORK_FOLDER [all | NUMBER...]
-Of the cases below all, or those; else a few small ones; see failing_malloc.c for the shim.
+Usage: every_allocation.py BIN_FOLDER DATA_FOLDER SHIM WORK_FOLDER fast | all | NUMBER...
+Of the cases below a few small ones, all, or those; see failing_malloc.c for the shim.
 """
 
 import os
@@ -140,9 +140,8 @@ def try_case(case, bin_folder, data, shim, work):
 
 def main():
     bin_folder, data, shim, work = sys.argv[1:5]
-    cases = FAST
-    if sys.argv[5:]:
-        cases = ALL if sys.argv[5] == "all" else [ALL[int(i)] for i in sys.argv[5:]]
+    named = {"fast": FAST, "all": ALL}
+    cases = named.get(sys.argv[5]) or [ALL[int(i)] for i in sys.argv[5:]]
     faults, runs = [], 0
     for case in cases:
         if os.path.exists(f"{bin_folder}/{case[0]}"):
