@@ -32,6 +32,8 @@ fi
 start() { # start PROGRAM WORDS...: in the background, where a shell lets its jobs ignore some signals
     program=$1
     shift
+    : >.out
+    : >.err
     env --default-signal "$bin/$program" "$@" >.out 2>.err &
     job=$!
 }
