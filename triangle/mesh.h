@@ -23,6 +23,7 @@
 #include "triangle/executor.h"
 #include "triangle/pslg.h"
 #include "triangle/status.h"
+#include "triangle/stop.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -108,6 +109,8 @@ struct tri_mesh {
     int32_t owner_id;         /* > 0: who works on this view */
 
     double unit;              /* a power of two: the caller's coordinates are xy * unit */
+
+    const struct tri_stop *stop; /* whoever works on the mesh asks it whether to go on; borrowed; NULL: nobody */
 };
 
 static const int tri_next[3] = {1, 2, 0}, tri_prev[3] = {2, 0, 1};

@@ -52,6 +52,7 @@ struct tri_refiner {
     struct tri_entry hand;
     int32_t *crowded; /* stack of subsegments to test for encroachment (conforming only) */
     int32_t n_crowded, crowded_capacity;
+    uint32_t step_of_stop; /* see tri_stop_is_due */
 };
 
 enum { SEED_CHUNK = 1 << 16 };
@@ -453,9 +454,17 @@ static bool next_entry(struct tri_refiner *r)
                                  : tri_bad_queue_pop(&r->queue, &r->hand);
 }
 
+/* Somebody asks for the end: between two triangles the mesh is in order. */
+static bool must_stop(struct tri_refiner *r)
+{
+    return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(r->error);
+}
+
 static bool work_off(struct tri_refiner *r)
 {
     for (;;) {
+        if (must_stop(r))
+            return false;
         if (!split_crowded(r))
             return false;
         if (!r->in_hand && !next_entry(r))
