@@ -13,9 +13,6 @@ void summary_segments(const struct console *console, const struct tri_constrain_
     if (report->bent > 0)
         console_warn(console, "segments were led through a vertex that lies nearly on them %" PRId32 " times.\n",
                      report->bent);
-    if (report->lost > 0)
-        console_warn(console, "%" PRId32 " pieces of segments are missing: coordinates are too coarse for them.\n",
-                     report->lost);
 }
 
 void summary_duplicates(const struct console *console, const struct tri_mesh *mesh, const struct tri_pslg *pslg)

@@ -839,6 +839,48 @@ def near_cocircular():
                     (127.77010311801033, -7.668164657400608)))
 
 
+QUADRILATERAL = ((0, 0), (1, 0), (1, 1), (0.1, 1.3))
+
+
+def far_places(points, holes, region):
+    poly = outline(points)
+    poly.new_point(0.51 * points[2][0] / 0.93, 0.47 * points[2][1] / 1.11)
+    for x, y in holes:
+        poly.hole(x, y)
+    poly.region(*region, 5)
+    return poly
+
+
+@case("regress/far_hole.poly", "quadrilateral with a hole point at (1e300, 1e300)",
+      "ignores the hole: what is beyond the range of exact arithmetic is outside; once nothing was left")
+def far_hole():
+    poly = outline(QUADRILATERAL)
+    poly.hole(1e300, 1e300)
+    return poly
+
+
+@case("regress/far_places.poly", "holes and a region near the largest double", "ignores them; once exact arithmetic "
+      "overran its arrays")
+def far_places_of_one():
+    return far_places(((0.1, 0.23), (1.07, 0.31), (0.93, 1.11), (0.07, 0.97)),
+                      ((1e300, -1e308), (1.3e308, 1.1e307)), (1e300, 1.1e307))
+
+
+@case("regress/far_places_tiny.poly", "the same of size 1e-301, with holes and a region at 1", "ignores them")
+def far_places_tiny():
+    return far_places(((1e-302, 2.3e-302), (1.07e-301, 3.1e-302), (9.3e-302, 1.11e-301), (7e-303, 9.7e-302)),
+                      ((1.234567, 2.345678), (7.1, -3.3)), (1.234567, -3.3))
+
+
+@case("regress/far_region.poly", "nasty/tiny_scale.poly, its hole beyond the least double, with a region at 10",
+      "ignores the region")
+def far_region():
+    poly = tiny_scale()
+    poly.holes[:] = [(5e-301, 0)]
+    poly.region(10.739473, 0.767105, 1, 23)
+    return poly
+
+
 # --- the coast
 
 COAST = [

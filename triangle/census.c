@@ -5,20 +5,30 @@
 #include "triangle/disk.h"
 #include "triangle/small_angle.h"
 
-enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
-                                 struct tri_error *error)
+/* No mesh has triangles of more than this share of their bounds on average. (Measured: 0.63 to 0.67.) */
+static const double MOST_OVER_BOUND = 0.75;
+
+double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_options *options)
 {
     const struct tri_criterion c = {.mesh = mesh, .options = options};
     double triangles = 0;
-    if (options->max_steiner >= 0 || !(options->max_area > 0 || options->region_areas))
-        return TRI_OK;
+    if (!(options->max_area > 0 || options->region_areas))
+        return 0;
     for (int32_t t = 0; t < mesh->n_slots; t++)
         if (tri_is_live(&mesh->tri[t]))
             triangles += tri_shape_of(mesh->xy, mesh->tri[t].v).area2 / tri_area2_bound(&c, mesh->tri[t].region);
+    return triangles;
+}
+
+enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                                 struct tri_error *error)
+{
+    double triangles = options->max_steiner < 0 ? tri_area_demand(mesh, options) / MOST_OVER_BOUND : 0;
     if (triangles <= TRI_MAX_TRIANGLES)
         return TRI_OK;
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
-                    "the area bounds ask for more triangles than the %d that a mesh holds", TRI_MAX_TRIANGLES);
+                    "the area bounds ask for more than %.0f million triangles, and a mesh holds %d million",
+                    1e-6 * triangles, TRI_MAX_TRIANGLES / 1000000);
 }
 
 static bool needs_work(const struct tri_criterion *c, int32_t slot)

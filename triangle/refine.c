@@ -19,6 +19,7 @@
 #include "triangle/predicates.h"
 #include "triangle/quality.h"
 #include "triangle/small_angle.h"
+#include "triangle/split.h"
 
 /* 4 / sqrt(3): an equilateral triangle of area A has a squared edge of this times A. The point of a triangle that is
  * only too large is placed as if to make an equilateral triangle of IDEAL of that edge, when that is nearer than the
@@ -51,6 +52,7 @@ struct tri_refiner {
     struct tri_entry hand;
     int32_t *crowded; /* stack of subsegments to test for encroachment (conforming only) */
     int32_t n_crowded, crowded_capacity;
+    uint32_t step_of_stop; /* see tri_stop_is_due */
 };
 
 enum { SEED_CHUNK = 1 << 16 };
@@ -223,9 +225,8 @@ static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, 
     int32_t n_left;
     if (tri_is_protected(r->options, &old))
         return refuse(r, TRI_EXCUSE_PROTECTED);
-    struct tri_point a = m->xy[old.v[0]], b = m->xy[old.v[1]];
-    struct tri_point p = tri_point_between(a, b, fraction);
-    if (!tri_can_split(r->shortest2, a, b))
+    struct tri_point p;
+    if (!tri_can_split(r->shortest2, m->xy[old.v[0]], m->xy[old.v[1]]) || !tri_place_split(m, &old, fraction, &p))
         return refuse(r, TRI_EXCUSE_PRECISION);
     enum tri_search found = tri_cavity_search_split(&r->cavity, m, p, s, &n_left);
     if (found == TRI_SEARCH_FENCED)
@@ -453,9 +454,17 @@ static bool next_entry(struct tri_refiner *r)
                                  : tri_bad_queue_pop(&r->queue, &r->hand);
 }
 
+/* Somebody asks for the end: between two triangles the mesh is in order. */
+static bool must_stop(struct tri_refiner *r)
+{
+    return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(r->error);
+}
+
 static bool work_off(struct tri_refiner *r)
 {
     for (;;) {
+        if (must_stop(r))
+            return false;
         if (!split_crowded(r))
             return false;
         if (!r->in_hand && !next_entry(r))

@@ -191,6 +191,16 @@ for input in *.poly; do
     judge "${input%.*}.1" --poly "$input"
 done
 
+# --- holes and regions farther away than exact arithmetic reaches are outside
+fresh regress/far_hole.poly regress/far_places.poly regress/far_places_tiny.poly regress/far_region.poly
+for input in *.poly; do
+    run 0 -pA "$input"
+    judge "${input%.*}.1" --poly "$input"
+    check "no triangle has a region" test "$(records "${input%.*}.1.ele" | awk 'NR > 1 && $5 + 0 != 0' | wc -l)" -eq 0
+    ends 20 -pAq30 "$input"
+    judge "${input%.*}.1" --poly "$input" --min-angle 30
+done
+
 # --- angles that cannot be: it ends, and says so
 fresh letter.poly
 for angle in 35 36 40 45 59 60 61 90; do
