@@ -11,6 +11,8 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/hilbert.c
     triangle/spatial.c
     triangle/delaunay.c
+    triangle/crossing.c
+    triangle/recover.c
     triangle/constrain.c
     triangle/carve.c
     triangle/reconstruct.c
@@ -18,8 +20,11 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/interpolate.c
     triangle/quality.c
     triangle/small_angle.c
+    triangle/split.c
+    triangle/disk.c
     triangle/bad_queue.c
     triangle/criterion.c
+    triangle/inside.c
     triangle/refine.c
     triangle/numbering.c
     triangle/census.c
@@ -47,12 +52,14 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/number.cpp
     triangle/text.c
     triangle/read.c
+    triangle/output.c
     triangle/write.c)
 
 # Room sched/, the parallel schedule: with drivers/ptriangle.c, which asks for the number of threads, the only sources
 # compiled with OpenMP.
 set(PTRIANGLE_SCHED_SOURCES
     sched/theory.c
+    sched/threads.c
     sched/partition.c
     sched/room.c
     sched/pool.c
@@ -64,6 +71,7 @@ set(PTRIANGLE_SCHED_SOURCES
 set(PTRIANGLE_PUBLIC_HEADERS
     triangle/tri.h
     triangle/status.h
+    triangle/stop.h
     triangle/pslg.h
     triangle/mesh.h
     triangle/spatial.h
@@ -76,6 +84,7 @@ set(PTRIANGLE_PUBLIC_HEADERS
     triangle/check.h
     triangle/executor.h
     triangle/read.h
+    triangle/output.h
     triangle/write.h
     sched/par.h
     sched/partition.h)
@@ -103,6 +112,8 @@ set(PTRIANGLE_RUN_SOURCES
     drivers/mesh_files.c
     drivers/summary.c
     drivers/self_check.c
+    drivers/resources.c
+    drivers/estimate.c
     drivers/run.c)
 set(PTRIANGLE_RUN_PROGRAMS triangle ptriangle)
 

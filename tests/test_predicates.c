@@ -605,7 +605,7 @@ static void test_incircle_ends_of_the_range(void **state)
 static void test_incircle_least_determinant(void **state)
 {
     (void)state;
-    double u = 0x1p-268, x = 0x1p-216;
+    double u = 0x1p-268, x = 0x1p-216 + 4 * u;
     struct tri_point unit[4] = {{x, x}, {x + u, x}, {x + u, x + u}, {x, x + u}};
     assert_int_equal(check_incircle(unit), 0);
     for (int i = 0; i < 4; i++) {

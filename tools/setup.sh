@@ -4,7 +4,8 @@
 #   build  C and C++ compiler, make, CMake          (what the programs need), and cairo (for meshplot) and jansson (for
 #          ptriangle --report), which can be done without
 #   tests  and cmocka, GMP, pkg-config              (what tools/test.sh needs)
-#   ci     and clang with its OpenMP library, Python (what .ci/run needs)
+#   ci     and clang with its OpenMP library, its fuzzer and clang-tidy, cppcheck, valgrind, gcovr, Python (what
+#          .ci/run needs)
 #   ports  compilers for other processors and their emulator (what tools/ports.sh needs beside `build`)
 # Works as root or with sudo, asks nothing, and does not touch a machine that has everything.
 set -eu
@@ -33,6 +34,20 @@ openmp_with_clang() {
     result=$?
     rm -f "$probe"
     return $result
+}
+
+fuzzer_with_clang() {
+    probe=$(mktemp)
+    printf '#include <stddef.h>\nint LLVMFuzzerTestOneInput(const char *a, size_t n) { return a && n > 9; }\n' |
+        clang -fsanitize=fuzzer -x c - -o "$probe"
+    result=$?
+    rm -f "$probe"
+    return $result
+}
+
+# Debian's package of clang's runtime libraries has its version in the name.
+fuzzer_package() {
+    echo "libclang-rt-$(clang --version 2>/dev/null | sed -n 's/.*version \([0-9]*\).*/\1/p' | head -n 1 | grep . || echo 14)-dev"
 }
 
 cmake_is_new_enough() {
@@ -65,6 +80,11 @@ list_missing() {
     need clang command -v clang++
     need python3-venv python3 -c 'import ensurepip, venv'
     need libomp-dev openmp_with_clang
+    need "$(fuzzer_package)" fuzzer_with_clang
+    need cppcheck command -v cppcheck
+    need clang-tidy command -v clang-tidy
+    need valgrind command -v valgrind
+    need gcovr command -v gcovr
 }
 
 consequence() { # what a machine without $wished does without

@@ -47,7 +47,7 @@
 extern "C" {
 #endif
 
-enum { TRI_CHECK_ULPS = 64 };
+enum { TRI_CHECK_ULPS = 8 };
 
 /* The mesh on trial. Indices from 0; nothing is owned. */
 struct tri_check_mesh {

@@ -19,6 +19,7 @@
 #include "triangle/pslg.h"
 #include "triangle/reconstruct.h"
 #include "triangle/status.h"
+#include "triangle/stop.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -30,6 +31,7 @@ struct tri_read_options {
     bool refining;        /* a segment that names no vertex is an error; else a warning */
     size_t chunk_bytes;   /* of text for each task; 0: the default. The result does not depend on it */
     const struct tri_executor *executor; /* NULL: one task after another */
+    const struct tri_stop *stop;         /* asked whether to go on; NULL: nobody */
     /* Told of what is skipped, in the order of the lines, by the calling thread; text is one sentence. NULL: nobody. */
     void (*warn)(void *user, const char *file, long line, const char *text);
     void *warn_user;

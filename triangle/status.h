@@ -17,7 +17,8 @@ enum tri_status {
     TRI_CANNOT_READ,  /* a file cannot be opened or read */
     TRI_CANNOT_WRITE, /* a file cannot be created, written or renamed */
     TRI_NO_ROOM,      /* a view of shared arrays is full; not a failure: make room and call again */
-    TRI_INTERNAL      /* an invariant does not hold: a defect of this library */
+    TRI_INTERNAL,     /* an invariant does not hold: a defect of this library */
+    TRI_STOPPED       /* somebody asked for it, see triangle/stop.h */
 };
 
 struct tri_error {

@@ -86,7 +86,8 @@ enum triangulate_status {
     TRIANGULATE_NO_MEMORY = 1,
     TRIANGULATE_TOO_LARGE = 2, /* more than 2^28 points or 2^29 triangles */
     TRIANGULATE_BAD_INPUT = 3, /* switches or input have no meaning: the message tells which and where */
-    TRIANGULATE_INTERNAL = 7   /* a defect of the library */
+    TRIANGULATE_INTERNAL = 7,  /* a defect of the library */
+    TRIANGULATE_STOPPED = 8    /* options->stop said so */
 };
 
 /* Triangulates `in` as the string of switches says. vorout receives the Voronoi diagram (v); without v it may be NULL,
@@ -117,6 +118,10 @@ struct triangulate_options {
      * input (is_error 0): duplicate points, segments that name no point and so on. Called by the calling thread. */
     void (*message)(void *user, int is_error, const char *text);
     void *message_user;
+    /* Not 0: the call ends soon, with TRIANGULATE_STOPPED. Asked every few thousand steps, by several threads at once;
+     * once it has said so, it must go on saying so. */
+    int (*stop)(void *user);
+    void *stop_user;
 };
 
 /* options may be NULL. */
