@@ -9,6 +9,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "triangle/heap_sort.h"
 #include "triangle/hilbert.h"
 #include "triangle/predicates.h"
 #include "triangle/sweep_order.h"
@@ -21,8 +22,8 @@ struct walk {
     int64_t steps; /* that may still be made */
 };
 
-/* The triangle that holds q, TRI_NONE outside the hull, NOT_FOUND where the steps did not suffice. A visibility walk over
- * a constrained triangulation may cycle: the edge it tries first turns with the number of steps. */
+/* The triangle that holds q, TRI_NONE outside the hull, NOT_FOUND where the steps did not suffice. A visibility walk
+ * over a constrained triangulation may cycle: the edge it tries first turns with the number of steps. */
 static int32_t walk_to(struct walk *w, struct tri_point q)
 {
     const struct tri_mesh *mesh = w->mesh;
@@ -105,27 +106,10 @@ static int32_t find_below(const struct sweep *w, struct tri_point q, int32_t *ne
     return below;
 }
 
-/* The subsegments that start at one place, from the lowest: heap sort, for they may be many and know their mesh. */
-static void sort_by_direction(const struct tri_mesh *mesh, int32_t *start, int32_t n)
+/* Of two subsegments that start at one place: does a lie below b? */
+static bool is_lower(const void *mesh, int32_t a, int32_t b)
 {
-    for (int32_t heap = n, root = n / 2; heap > 1;) {
-        if (root > 0) {
-            root--;
-        } else {
-            int32_t top = start[0];
-            start[0] = start[--heap];
-            start[heap] = top;
-        }
-        for (int32_t i = root, child; (child = 2 * i + 1) < heap; i = child) {
-            if (child + 1 < heap && height_over(mesh, start[child], end_of(mesh, start[child + 1], 1)) > 0)
-                child++;
-            if (height_over(mesh, start[i], end_of(mesh, start[child], 1)) <= 0)
-                break;
-            int32_t above = start[child];
-            start[child] = start[i];
-            start[i] = above;
-        }
-    }
+    return height_over(mesh, a, end_of(mesh, b, 1)) > 0;
 }
 
 /* What happens at one place: subsegments end, others start. */
@@ -138,7 +122,7 @@ static void pass_ends(struct sweep *w, const struct event *event, int32_t n)
         else
             w->start[n_start++] = event[i].code >> 1;
     }
-    sort_by_direction(w->mesh, w->start, n_start);
+    tri_heap_sort(w->start, n_start, is_lower, w->mesh);
     below = find_below(w, event->at, &next);
     for (int32_t i = 0; i < n_start; i++) {
         tri_sweep_order_insert(&w->order, w->start[i], below);
