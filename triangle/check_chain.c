@@ -11,7 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { MAX_GRID_SIDE = 2048 };
+enum { MAX_GRID_SIDE = 2048, HUB = 16 };
 
 struct line { /* the input segment in question */
     int32_t id;
@@ -288,12 +288,24 @@ static enum tri_status cover(struct chains *k, const struct line *l)
     return status == TRI_OK ? ask_about(k, l, covered, l->length) : status;
 }
 
+/* Do many subsegments end at this input point? */
+static bool is_hub(const struct checker *c, int32_t point)
+{
+    int32_t v = c->twin[point];
+    return v >= 0 && c->fan_first[v + 1] - c->fan_first[v] > HUB;
+}
+
 static enum tri_status check_line(struct chains *k, int32_t id)
 {
     const struct tri_pslg *input = k->c->input;
     int32_t a = input->segments[2 * (size_t)id], b = input->segments[2 * (size_t)id + 1];
     if (a < 0 || a >= input->n_points || b < 0 || b >= input->n_points)
         return TRI_OK; /* skipped by the mesher, too */
+    if (is_hub(k->c, a) && !is_hub(k->c, b)) { /* at the end of a search, ways on are not looked at */
+        int32_t hub = a;
+        a = b;
+        b = hub;
+    }
     const double *p = input->points + 2 * (size_t)a, *q = input->points + 2 * (size_t)b;
     struct line l = {id, {p[0], p[1]}, {q[0], q[1]}, q[0] - p[0], q[1] - p[1], hypot(q[0] - p[0], q[1] - p[1])};
     if (!(l.length > 0) || !isfinite(l.length))
