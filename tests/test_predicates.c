@@ -598,6 +598,7 @@ static void test_incircle_ends_of_the_range(void **state)
     }
     assert_false(tri_is_exact_coordinate(step(0x1p-216, -1)) || tri_is_exact_coordinate(-step(0x1p200, 1)));
     assert_false(tri_is_exact_coordinate(NAN));
+    assert_true(TRI_LEAST_COORDINATE == 0x1p-216);
 }
 
 /* Products of lowest bits reach 2^-1072; a filter that let them vanish would call these cocircular. */
