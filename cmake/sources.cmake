@@ -11,22 +11,28 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/hilbert.c
     triangle/spatial.c
     triangle/delaunay.c
+    triangle/crossing.c
+    triangle/recover.c
     triangle/constrain.c
+    triangle/sweep_order.c
+    triangle/locate.c
     triangle/carve.c
     triangle/reconstruct.c
     triangle/cavity.c
     triangle/interpolate.c
     triangle/quality.c
     triangle/small_angle.c
+    triangle/split.c
+    triangle/disk.c
     triangle/bad_queue.c
     triangle/criterion.c
+    triangle/inside.c
     triangle/refine.c
     triangle/numbering.c
     triangle/census.c
     triangle/stats.c
     triangle/check.c
     triangle/check_edges.c
-    triangle/check_sweep.c
     triangle/check_overlap.c
     triangle/check_delaunay.c
     triangle/check_segments.c
@@ -87,7 +93,7 @@ set(PTRIANGLE_PUBLIC_HEADERS
 # Room drivers/: what the executables share, then the executables, each from drivers/<name>.c. The second list of programs
 # needs the room sched/ and its library.
 set(PTRIANGLE_DRIVER_SOURCES)
-set(PTRIANGLE_PROGRAMS triangle trianglecheck)
+set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle trianglecheck)
 set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed
 set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
 

@@ -255,9 +255,7 @@ static char *off_face_row(void *user, size_t i, char *at)
 static enum tri_status write_off(struct writer *w, struct tri_output *output)
 {
     size_t n = count_nodes(w), n_faces = (size_t)w->mesh->n_slots;
-    const int64_t counts[] = {(int64_t)n, (int64_t)n_faces, w->edges.n};
-    enum tri_status status = tri_output_write(output, "OFF\n", 4, w->error);
-    status = status ? status : tri_write_counts(output, counts, 3, w->error);
+    enum tri_status status = tri_write_off_header(output, n, n_faces, (size_t)w->edges.n, w->error);
     status = status ? status : write_rows(w, output, n, tri_row_node_bytes(0), off_vertex_row);
     return status ? status : write_rows(w, output, n_faces, tri_row_ele_bytes(3, 0), off_face_row);
 }

@@ -7,13 +7,13 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "triangle/locate.h"
 #include "triangle/predicates.h"
 
 struct flood {
     struct tri_mesh *mesh;
     int32_t *stack;    /* [n_slots]: each triangle is pushed at most once a flood */
     uint8_t *dead;     /* [n_slots] */
-    int32_t near;      /* where the last location ended */
 };
 
 static bool is_wall(const struct tri_mesh *mesh, int32_t link, bool keep_hull)
@@ -49,44 +49,33 @@ static void kill_concavities(struct flood *f)
                 kill_from(f, t);
 }
 
-/* The triangle that holds q, TRI_NONE outside the hull. A visibility walk over a constrained triangulation may cycle;
- * the edge it tries first turns with the number of steps, and after too many steps every triangle is looked at. */
-static int32_t locate(struct flood *f, struct tri_point q)
+/* The faces of n places, given `width` numbers apart, x and y first; to be freed. */
+static enum tri_status locate(const struct tri_mesh *mesh, const double *places, int32_t n, int32_t width,
+                              int32_t **faces, struct tri_error *error)
 {
-    const struct tri_mesh *mesh = f->mesh;
-    int32_t t = f->near;
-    for (int32_t steps = 0; steps < mesh->n_slots; steps++) {
-        const struct tri_triangle *at = &mesh->tri[t];
-        int k = 0, e = 0;
-        for (; k < 3; k++) {
-            e = (int)((k + steps) % 3);
-            if (tri_orient2d(mesh->xy[at->v[tri_next[e]]], mesh->xy[at->v[tri_prev[e]]], q) < 0)
-                break;
-        }
-        if (k == 3)
-            return f->near = t;
-        int32_t beyond = tri_across(mesh, tri_code(t, e));
-        if (beyond == TRI_NONE)
-            return TRI_NONE; /* the hull is convex: whoever leaves it does not come back */
-        f->near = t = tri_of(beyond);
+    struct tri_point *points = malloc(((size_t)n + 1) * sizeof *points);
+    *faces = malloc(((size_t)n + 1) * sizeof **faces);
+    enum tri_status status = TRI_OK;
+    if (!points || !*faces)
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the places of %d points", (int)n);
+    for (int32_t k = 0; !status && k < n; k++) {
+        const double *at = places + (size_t)k * (size_t)width;
+        points[k] = tri_to_units(mesh, at[0], at[1]);
     }
-    for (t = 0; t < mesh->n_slots; t++) {
-        const int32_t *v = mesh->tri[t].v;
-        struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
-        if (tri_orient2d(a, b, q) >= 0 && tri_orient2d(b, c, q) >= 0 && tri_orient2d(c, a, q) >= 0)
-            return t;
-    }
-    return TRI_NONE;
+    status = status ? status : tri_locate_faces(mesh, points, n, *faces, error);
+    free(points);
+    return status;
 }
 
-static void kill_holes(struct flood *f, const struct tri_pslg *pslg)
+static enum tri_status kill_holes(struct flood *f, const struct tri_pslg *pslg, struct tri_error *error)
 {
-    for (int32_t k = 0; k < pslg->n_holes; k++) {
-        struct tri_point q = tri_to_units(f->mesh, pslg->holes[2 * k], pslg->holes[2 * k + 1]);
-        int32_t t = locate(f, q);
-        if (t != TRI_NONE)
-            kill_from(f, t);
-    }
+    int32_t *faces;
+    enum tri_status status = locate(f->mesh, pslg->holes, pslg->n_holes, 2, &faces, error);
+    for (int32_t k = 0; !status && k < pslg->n_holes; k++)
+        if (faces[k] != TRI_NONE)
+            kill_from(f, faces[k]);
+    free(faces);
+    return status;
 }
 
 /* Gives the region to what no region has reached yet. */
@@ -117,14 +106,16 @@ static enum tri_status spread_regions(struct flood *f, const struct tri_pslg *ps
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for regions");
     mesh->regions = regions;
     mesh->n_regions = pslg->n_regions + 1;
-    for (int32_t k = pslg->n_regions - 1; k >= 0; k--) { /* the last point of a region wins, so it comes first */
-        const double *r = &pslg->regions[4 * k];
+    int32_t *faces;
+    enum tri_status status = locate(mesh, pslg->regions, pslg->n_regions, 4, &faces, error);
+    for (int32_t k = pslg->n_regions - 1; !status && k >= 0; k--) { /* a region's last point wins, so it comes first */
+        const double *r = &pslg->regions[4 * (size_t)k];
         regions[k + 1] = (struct tri_region){r[2], r[3]};
-        int32_t t = locate(f, tri_to_units(mesh, r[0], r[1]));
-        if (t != TRI_NONE && !f->dead[t] && mesh->tri[t].region == 0)
-            spread(f, t, k + 1);
+        if (faces[k] != TRI_NONE && !f->dead[faces[k]] && mesh->tri[faces[k]].region == 0)
+            spread(f, faces[k], k + 1);
     }
-    return TRI_OK;
+    free(faces);
+    return status;
 }
 
 /* Markers of segments pass to vertices without one. */
@@ -136,9 +127,28 @@ static void mark_vertices(struct tri_mesh *mesh)
                 mesh->vertex_markers[mesh->sub[s].v[k]] = mesh->sub[s].marker;
 }
 
+/* The centroid of a triangle that goes becomes the guard of each of its edges that stays as a part of the boundary: the
+ * three parts of the triangle do not overlap, nor do triangles. */
+static void guard_boundary(const struct flood *f, int32_t t)
+{
+    const struct tri_mesh *mesh = f->mesh;
+    const struct tri_triangle *at = &mesh->tri[t];
+    struct tri_point a = mesh->xy[at->v[0]], b = mesh->xy[at->v[1]], c = mesh->xy[at->v[2]];
+    struct tri_point centroid = {tri_round_coordinate((a.x + b.x + c.x) / 3),
+                                 tri_round_coordinate((a.y + b.y + c.y) / 3)};
+    bool inside = tri_orient2d(a, b, centroid) > 0 && tri_orient2d(b, c, centroid) > 0 &&
+                  tri_orient2d(c, a, centroid) > 0;
+    for (int e = 0; e < 3; e++)
+        if (at->n[e] < 0)
+            mesh->parents[mesh->sub[~at->n[e]].parent].guard = inside ? centroid : mesh->xy[at->v[tri_next[e]]];
+}
+
 static void remove_dead(struct flood *f)
 {
     struct tri_mesh *mesh = f->mesh;
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        if (f->dead[t])
+            guard_boundary(f, t);
     for (int32_t t = 0; t < mesh->n_slots; t++) {
         struct tri_triangle *at = &mesh->tri[t];
         if (!f->dead[t])
@@ -158,9 +168,10 @@ static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, str
 {
     int32_t *start = calloc((size_t)n_segments + 2, sizeof *start), kept = 0;
     struct tri_subsegment *sorted = malloc(((size_t)mesh->n_subs + 1) * sizeof *sorted);
+    struct tri_parent *parents = malloc(((size_t)mesh->n_subs + 1) * sizeof *parents);
     int32_t *segment = malloc(((size_t)mesh->n_subs + 1) * sizeof *segment);
     enum tri_status status = TRI_OK;
-    if (!start || !sorted || !segment) {
+    if (!start || !sorted || !parents || !segment) {
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d subsegments", (int)mesh->n_subs);
         goto done;
     }
@@ -176,11 +187,11 @@ static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, str
         if (mesh->sub[s].side[0] != TRI_NONE || mesh->sub[s].side[1] != TRI_NONE) {
             int32_t at = start[segment[s]]++;
             sorted[at] = mesh->sub[s];
-            sorted[at].parent = segment[s] == n_segments ? TRI_NONE : segment[s];
+            parents[at] = mesh->parents[mesh->sub[s].parent];
         }
     for (int32_t s = 0; s < kept; s++) {
         mesh->sub[s] = sorted[s];
-        mesh->parents[s] = (struct tri_parent){{sorted[s].v[0], sorted[s].v[1]}, sorted[s].parent};
+        mesh->parents[s] = parents[s];
         mesh->sub[s].parent = s;
         for (int side = 0; side < 2; side++)
             if (sorted[s].side[side] != TRI_NONE)
@@ -190,6 +201,7 @@ static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, str
 done:
     free(start);
     free(sorted);
+    free(parents);
     free(segment);
     return status;
 }
@@ -198,7 +210,7 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
                           struct tri_error *error)
 {
     size_t n = (size_t)mesh->n_slots + 1;
-    struct flood f = {mesh, malloc(n * sizeof *f.stack), calloc(n, 1), 0};
+    struct flood f = {mesh, malloc(n * sizeof *f.stack), calloc(n, 1)};
     enum tri_status status = TRI_OK;
     if (!f.stack || !f.dead)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)mesh->n_slots);
@@ -207,16 +219,14 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
         if (!options->keep_hull)
             kill_concavities(&f);
         if (!options->ignore_holes)
-            kill_holes(&f, pslg);
-        if (options->spread_regions)
+            status = kill_holes(&f, pslg, error);
+        if (!status && options->spread_regions)
             status = spread_regions(&f, pslg, error);
         if (!status)
             remove_dead(&f);
     }
     free(f.stack);
     free(f.dead);
-    if (!status) /* each subsegment gets a parent of its own */
-        status = tri_mesh_reserve_subs(mesh, mesh->n_subs, error);
     return status ? status : order_subs(mesh, pslg->n_segments, error);
 }
 

@@ -123,6 +123,8 @@ static bool add_start(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t
 enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p, int32_t t)
 {
     assert(tri_is_live(&mesh->tri[t]));
+    if (!tri_is_in_range(p)) /* the circumcentre of a flat triangle: in the disk, perhaps, but in no figure */
+        return TRI_SEARCH_OUTSIDE;
     if (!begin(c, p) || !add_start(c, mesh, t))
         return TRI_SEARCH_NO_MEMORY;
     if (!owns(c, mesh, t))
@@ -160,8 +162,7 @@ static enum tri_search explore_side(struct tri_cavity *c, const struct tri_mesh 
     for (int k = 0; k < 3; k++)
         r[k] = tri_relative(&mesh->xy[start.v[k]], c->p);
     bool distinct = r[0].l != 0 && r[1].l != 0 && r[2].l != 0;
-    if (!c->flips_follow &&
-        (!distinct || !in_circle(mesh, c->p, start.v[0], start.v[1], start.v[2], r[0], r[1], r[2])))
+    if (!distinct || !in_circle(mesh, c->p, start.v[0], start.v[1], start.v[2], r[0], r[1], r[2]))
         return TRI_SEARCH_OUTSIDE;
     enum tri_search found = explore(c, mesh, start.n[f], start.region, start.v[g], start.v[e], r[g], r[e]);
     if (found != TRI_SEARCH_FOUND)
@@ -180,12 +181,39 @@ static bool sees_rims(const struct tri_cavity *c, const struct tri_mesh *mesh, i
     return true;
 }
 
+static int compare_links(const void *a, const void *b)
+{
+    const struct tri_pending *p = a, *q = b;
+    return (p->link > q->link) - (p->link < q->link);
+}
+
+/* Is a triangle of the cavity there twice, or beyond a rim? By sorting; no search is pending any more. */
+static bool repeats_itself(const struct tri_cavity *c)
+{
+    size_t n = (size_t)c->n_tri;
+    for (int32_t i = 0; i < c->n_tri; i++)
+        c->pending[i].link = c->tri[i];
+    qsort(c->pending, n, sizeof *c->pending, compare_links);
+    for (int32_t i = 1; i < c->n_tri; i++)
+        if (c->pending[i].link == c->pending[i - 1].link)
+            return true;
+    for (int32_t k = 0; k < c->n_rim; k++) {
+        struct tri_pending beyond = {.link = c->rim[k].outer >> 2};
+        if (c->rim[k].outer >= 0 && bsearch(&beyond, c->pending, n, sizeof *c->pending, compare_links))
+            return true;
+    }
+    return false;
+}
+
 /* Rounding may put a split point beside a vertex, around which the search then comes back to where it has been. */
 static bool overlaps_itself(const struct tri_cavity *c, int32_t s)
 {
+    enum { FEW = 64 };
     for (int32_t i = 0; i < c->n_wall; i++)
         if (c->rim[c->wall[i]].outer == ~s)
             return true;
+    if (c->n_tri > FEW)
+        return repeats_itself(c);
     for (int32_t i = 0; i < c->n_tri; i++) {
         for (int32_t k = 0; k < i; k++)
             if (c->tri[i] == c->tri[k])

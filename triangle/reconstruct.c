@@ -224,6 +224,7 @@ static void add_sub(struct tri_mesh *mesh, int32_t code, int32_t from, int32_t t
 {
     int32_t s = tri_mesh_add_sub(mesh, from, to, marker, segment), other = *link_of(mesh, code);
     int side = tri_side(&mesh->sub[s], mesh->tri[tri_of(code)].v[tri_next[tri_edge(code)]]);
+    mesh->parents[mesh->sub[s].parent].guard = mesh->xy[from]; /* what is outside is not known: nothing is its own */
     mesh->sub[s].side[side] = code;
     *link_of(mesh, code) = ~s;
     if (other == LOOSE)

@@ -4,6 +4,10 @@
 
 #include "triangle/mesh.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 struct tri_used; /* triangle/topology.h */
 
 /* Triangles as a caller or an .ele file gives them. Anything may stand in them: what is no mesh is refused. */
@@ -58,5 +62,9 @@ enum tri_status tri_reconstruct(struct tri_mesh *mesh, const struct tri_pslg *ps
  * kept->number is NULL. To be freed by tri_used_free. O(vertices + triangles). TRI_NO_MEMORY. */
 enum tri_status tri_kept_make(struct tri_used *kept, const struct tri_mesh *mesh, const struct tri_elements *elements,
                               bool jettison, struct tri_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -5,6 +5,10 @@
 #ifndef TRIANGLE_STATUS_H
 #define TRIANGLE_STATUS_H
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum tri_status {
     TRI_OK = 0,
     TRI_NO_MEMORY,    /* an allocation failed; what existed before the call is intact */
@@ -30,5 +34,9 @@ __attribute__((format(printf, 5, 6)))
 #endif
 enum tri_status tri_fail(struct tri_error *error, enum tri_status status, const char *file, long line,
                          const char *format, ...);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -18,6 +18,10 @@
 #include "triangle/spatial.h"
 #include "triangle/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum tri_stage { TRI_STAGE_DELAUNAY, TRI_STAGE_SEGMENTS, TRI_STAGE_HOLES, TRI_STAGE_QUALITY, TRI_STAGE_DONE };
 
 struct tri_options {
@@ -48,5 +52,9 @@ struct tri_options tri_defaults(void);
  * The PSLG is only read. */
 enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
                              struct tri_report *report, struct tri_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

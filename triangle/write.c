@@ -435,15 +435,23 @@ static char *format_off_face(void *user, size_t i, char *at)
     return put(at, "\n", 1);
 }
 
+enum tri_status tri_write_off_header(struct tri_output *output, size_t n_points, size_t n_faces, size_t n_edges,
+                                     struct tri_error *error)
+{
+    char line[3 * (TRI_INTEGER_CHARS + 1) + 4], *at = put(line, "OFF\n", 4);
+    at = tri_print_integer(at, (int64_t)n_points, 0);
+    at = tri_print_integer(put(at, " ", 1), (int64_t)n_faces, 0);
+    at = tri_print_integer(put(at, " ", 1), (int64_t)n_edges, 0);
+    at = put(at, "\n", 1);
+    return tri_output_write(output, line, (size_t)(at - line), error);
+}
+
 enum tri_status tri_write_off(struct tri_output *output, const struct tri_layout *layout, size_t n_points,
                               const double *points, size_t n_triangles, int n_nodes, const int32_t *nodes,
                               size_t n_edges, struct tri_error *error)
 {
     struct arrays arrays = {.n_nodes = n_nodes, .reals = points, .indices = nodes};
-    const int64_t counts[] = {(int64_t)n_points, (int64_t)n_triangles, (int64_t)n_edges};
-    enum tri_status status = tri_output_write(output, "OFF\n", 4, error);
-    if (status == TRI_OK)
-        status = tri_write_counts(output, counts, 3, error);
+    enum tri_status status = tri_write_off_header(output, n_points, n_triangles, n_edges, error);
     if (status == TRI_OK)
         status = write_rows(output, layout, n_points, tri_row_node_bytes(0), format_off_vertex, &arrays, error);
     if (status == TRI_OK)

@@ -19,6 +19,10 @@
 #include "triangle/pslg.h"
 #include "triangle/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* --- tables */
 
 enum { TRI_ROW_SLACK = 32 }; /* since numbers are stored in whole blocks, see triangle/number.h */
@@ -92,10 +96,18 @@ enum tri_status tri_write_neigh(struct tri_output *output, const struct tri_layo
 enum tri_status tri_write_v_edge(struct tri_output *output, const struct tri_layout *layout, size_t n,
                                  const int32_t *ends, const double *directions, struct tri_error *error);
 
+/* How an .off file begins: its name and a line of counts, with single blanks, as readers of the format expect. */
+enum tri_status tri_write_off_header(struct tri_output *output, size_t n_points, size_t n_faces, size_t n_edges,
+                                     struct tri_error *error);
+
 /* .off, which always counts from 0, whatever the base. points[n_points][2]; nodes[n_triangles][n_nodes], of which the
  * first three are written. */
 enum tri_status tri_write_off(struct tri_output *output, const struct tri_layout *layout, size_t n_points,
                               const double *points, size_t n_triangles, int n_nodes, const int32_t *nodes,
                               size_t n_edges, struct tri_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
