@@ -182,6 +182,7 @@ static void rounded_copy(struct tangle *t)
     }
 }
 
+/* A long segment that hundreds cross, which hardly cross each other. */
 static void many_across(struct tangle *t)
 {
     add_point(t, -3, -1 - unit(t));
@@ -190,6 +191,7 @@ static void many_across(struct tangle *t)
     for (int32_t n = 20 + below(t, 300); n > 0; n--) {
         add_random_points(t, 2, -3, 5);
         double *last = t->pslg.points + 2 * (t->pslg.n_points - 2);
+        last[2] = last[0] + between(t, -0.2, 0.2);
         last[1] = 1 + unit(t);
         last[3] = -1 - unit(t);
         add_segment(t, t->pslg.n_points - 2, t->pslg.n_points - 1);
