@@ -17,6 +17,12 @@ if(PTRIANGLE_SANITIZE)
     add_link_options(-fsanitize=${PTRIANGLE_SANITIZE})
 endif()
 
+# Coverage for libFuzzer in everything; the targets themselves bring its main().
+if(PTRIANGLE_FUZZ)
+    add_compile_options(-fsanitize=fuzzer-no-link)
+    add_link_options(-fsanitize=fuzzer-no-link)
+endif()
+
 # Left out: -Wsign-conversion, which with 32-bit ids as indices asks for a cast in every line, and -Wdouble-promotion, which
 # takes exception to INFINITY.
 set(PTRIANGLE_WARNINGS -Wall -Wextra -Wshadow)

@@ -56,6 +56,12 @@ same 4e-4 -pqY "--max-bad 2000" cracked_plate.poly
 same 1e-5 -pq30 "--max-bad 500 --max-area 1e-5" nasty/slit_1e-9.poly
 same 1e-5 -p "--max-area 1e-5" square.poly
 
+# --- tiny cells, for tests: many blocks in a small mesh
+fresh letter.poly
+PTRIANGLE_TEST_BLOCK=60 program 0 -pq30a0.1Q --report report.json letter
+check "many blocks" test "$(grep -c '"block":' report.json)" -gt 4
+judge letter.1 --poly letter.poly --min-angle 30 --max-area 0.1
+
 # --- long options
 fresh letter.poly
 program 0 --version
