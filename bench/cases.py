@@ -7,6 +7,7 @@ Seconds of a run, by stage, all of wall time:
   number    new numbers for it, along a curve, where a program does that
   memory    these three
   process   the whole process, with reading and, where the case says so, writing of text files
+  processor its processor time
 and what a program reports beyond that.
 """
 import glob
@@ -124,7 +125,7 @@ class Sequential(Case):
             found = [re.search(rf"^{n} milliseconds: +(\d+)", ended.output, re.M) for n in names]
             return sum(int(f.group(1)) for f in found if f) / 1000
         seconds = {"delaunay": milliseconds("Delaunay", "Segment", "Hole"), "quality": milliseconds("Quality"),
-                   "process": ended.wall}
+                   "process": ended.wall, "processor": ended.processor}
         seconds["memory"] = seconds["delaunay"] + seconds["quality"]
         return Run(seconds, ended, str(re.findall(r"^  Mesh \S+:.*", ended.output, re.M)))
 

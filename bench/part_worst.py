@@ -9,7 +9,7 @@ from inputs import Domain
 from measure import measure, table
 
 NOTE = """\
-Microseconds of the whole process a vertex of the input, `triangle`, without writing of files; in brackets those of
+Microseconds of processor time, of the whole process, a vertex of the input: `triangle`, without writing of files; in brackets those of
 `trianglecheck` on the mesh, its files read. Median of {} runs.
 
 """
@@ -41,7 +41,7 @@ def _measured(settings, build, n):
 def _cell(measured, n):
     if not measured.good:
         return "missing: " + measured.reason
-    return f"{measured.median('process') / n * 1e6:.2f} ({measured.verdict.seconds / n * 1e6:.2f})"
+    return f"{measured.median('processor') / n * 1e6:.2f} ({measured.verdict.seconds / n * 1e6:.2f})"
 
 
 def run(settings):

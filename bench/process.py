@@ -13,6 +13,7 @@ class Ended:
     output: str
     errors: str
     wall: float      # seconds
+    processor: float # seconds of processor time, of user and system
     peak: int        # bytes resident at most; what a program of this size weighs is included
     timed_out: bool
 
@@ -31,4 +32,5 @@ def execute(command, limit, cwd):
         child.returncode = os.waitstatus_to_exitcode(status)
         output.seek(0)
         errors.seek(0)
-        return Ended(child.returncode, output.read(), errors.read(), wall, 1024 * usage.ru_maxrss, timed_out.is_set())
+        return Ended(child.returncode, output.read(), errors.read(), wall,
+                     usage.ru_utime + usage.ru_stime, 1024 * usage.ru_maxrss, timed_out.is_set())
