@@ -793,6 +793,23 @@ def outline(points):
     return figure(points, [(k, (k + 1) % len(points)) for k in range(len(points))])
 
 
+@case("regress/needles.poly", "five segments that meet at small angles, in a box",
+      "-D: conforming with some 80 triangles; was left with 88 crowded subsegments")
+def needles():
+    return figure(((-1.5, -1.5), (1.5, -1.5), (1.5, 1.5), (-1.5, 1.5), (0, 0), (1, 0), (0.83, 0.001), (0.47, 0.002),
+                   (0.91, 0.012), (0.3, 0.1)),
+                  ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (4, 6), (4, 7), (4, 8), (4, 9)))
+
+
+@case("regress/ulps_apart.poly", "four segments a few units in the last place from one line, in a square",
+      "-a0.0002: no triangle larger; some beside the slivers stayed twice as large")
+def ulps_apart():
+    return figure(((0, 0), (1, 0), (1, 1), (0, 1), (0.24, 0.370000000000003), (0.83, 0.665000000000003),
+                   (0.33, 0.414999999999999), (0.38, 0.440000000000003), (0.21, 0.354999999999997),
+                   (0.24, 0.370000000000002), (0.15, 0.32500000000000195), (0.22, 0.360000000000003)),
+                  ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (6, 7), (8, 9), (10, 11)))
+
+
 @case("regress/outline_repeat.poly", "outline whose last two vertices are the same point (github drufat/triangle issue "
       "70)", "3 triangles; the original crashes now and then")
 def outline_repeat():

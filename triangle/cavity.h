@@ -21,6 +21,10 @@
 
 #include "triangle/mesh.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 struct tri_relative {
     double x, y, l; /* from the new point; squared distance to it */
 };
@@ -92,10 +96,15 @@ int32_t tri_cavity_fill_split(struct tri_cavity *cavity, struct tri_mesh *mesh, 
 static inline struct tri_relative tri_relative(const struct tri_point *q, struct tri_point p)
 {
     double x = q->x - p.x, y = q->y - p.y;
-    return (struct tri_relative){x, y, x * x + y * y};
+    struct tri_relative relative = {x, y, x * x + y * y};
+    return relative;
 }
 
 /* Twice the area of the triangle p, a, b. */
 static inline double tri_cross(struct tri_relative a, struct tri_relative b) { return a.x * b.y - a.y * b.x; }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

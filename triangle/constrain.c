@@ -69,6 +69,7 @@ struct layer {
     int32_t *touched; /* stack of edge codes to test for the Delaunay property */
     int32_t n_touched, touched_capacity;
     int32_t segment; /* the input segment that is being laid */
+    uint32_t step; /* see tri_stop_is_due */
     struct tri_constrain_report *report;
     struct tri_error *error;
 };
@@ -674,6 +675,8 @@ static enum tri_status lay_segment(struct layer *l, int32_t a, int32_t b, struct
     if (!push_piece(l, a, b, course))
         return no_memory(l);
     for (int64_t n = 0; l->n_pieces > 0; n++) {
+        if (tri_stop_is_due(l->mesh->stop, &l->step))
+            return tri_fail_stopped(l->error);
         struct piece next = l->piece[--l->n_pieces];
         if (n >= bound)
             return cannot_keep(l, l->segment);
@@ -788,7 +791,9 @@ enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, struct tri_error *er
     struct layer l = {.mesh = mesh, .ties_stay = true, .error = error};
     enum tri_status status = find_corners(&l);
     for (int32_t t = 0; !status && t < mesh->n_slots; t++)
-        if (!touch_upwards(&l, t) || !legalise(&l))
+        if (tri_stop_is_due(mesh->stop, &l.step))
+            status = tri_fail_stopped(error);
+        else if (!touch_upwards(&l, t) || !legalise(&l))
             status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
     free_layer(&l);
     return status;

@@ -4,6 +4,10 @@
 
 #include "triangle/mesh.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { TRI_SEGMENT_ULPS = 8 }; /* see tri_constrain */
 
 struct tri_constrain_report {
@@ -26,5 +30,9 @@ enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg
  * stays as it is. A slot keeps its region. O(triangles) where little is to do, and near that in practice; flips may be
  * quadratic (a fan of n triangles over a thin ellipse). On TRI_NO_MEMORY the mesh is valid. */
 enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, struct tri_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

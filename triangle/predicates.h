@@ -20,13 +20,11 @@
 #define TRIANGLE_PREDICATES_H
 
 #include <assert.h>
-#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 
+#include "triangle/arithmetic.h"
 #include "triangle/mesh.h"
-
-_Static_assert(FLT_EVAL_METHOD == 0, "the error bounds are those of plain double arithmetic");
 
 struct tri_pair; /* triangle/expansion.h */
 
@@ -49,6 +47,7 @@ static inline bool tri_is_exact_point(struct tri_point p)
  * 5 to 50 ns where the structure of the coordinates (points of a grid, mirror images) or doubled precision decides; up
  * to 3 us, and 40 KB of stack, for points that are cocircular within a relative 10^-30 but lie on no grid. */
 double tri_orient2d_near(struct tri_point a, struct tri_point b, struct tri_point c);
+double tri_dot_near(struct tri_point a, struct tri_point b, struct tri_point c);
 double tri_incircle_near(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d);
 bool tri_in_circle_near(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d);
 
@@ -61,6 +60,14 @@ static inline double tri_orient2d(struct tri_point a, struct tri_point b, struct
     double left = (a.x - c.x) * (b.y - c.y), right = (b.x - c.x) * (a.y - c.y);
     double det = left - right, size = fabs(left) + fabs(right);
     return fabs(det) >= TRI_ORIENT2D_BOUND * size ? det : tri_orient2d_near(a, b, c);
+}
+
+/* The sign of (a - c) . (b - c), < 0 where c lies strictly inside the circle with diameter ab. The magnitude
+ * approximates the product. The bound: each term errs by 3 roundings, the sum by 1. */
+static inline double tri_dot(struct tri_point a, struct tri_point b, struct tri_point c)
+{
+    double x = (a.x - c.x) * (b.x - c.x), y = (a.y - c.y) * (b.y - c.y), dot = x + y;
+    return fabs(dot) > 4 * DBL_EPSILON * (fabs(x) + fabs(y)) ? dot : tri_dot_near(a, b, c);
 }
 
 /* The in-circle determinant if its sign is certain, else 0.

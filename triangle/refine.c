@@ -5,7 +5,11 @@
  * triangle, if it still stands, is asked again. Nothing is changed before everything is known, so nothing is ever
  * undone.
  *
- * Termination: see the rules in small_angle.h. */
+ * Angles may be given up; sizes are not: a triangle that is too large and cannot have that point gets another
+ * (inside.c). For -D, subsegments whose diametral circle is not empty are split before anything else (disk.c).
+ *
+ * Termination: for angles by the rules in small_angle.c; the points for sizes and for circles that come on top are
+ * finitely many whatever the others do, see inside.c and disk.c. */
 #include "triangle/refine.h"
 
 #include <assert.h>
@@ -13,6 +17,8 @@
 
 #include "triangle/bad_queue.h"
 #include "triangle/criterion.h"
+#include "triangle/disk.h"
+#include "triangle/inside.h"
 #include "triangle/interpolate.h"
 #include "triangle/predicates.h"
 #include "triangle/quality.h"
@@ -45,10 +51,12 @@ struct tri_refiner {
     int limit;        /* buckets from here on wait for the second pass */
     int32_t next_seed, n_seeds;
     enum stage stage;
+    enum tri_excuse excuse; /* of the last refusal */
     bool in_hand;     /* `hand` was being treated when there was no room */
     struct tri_entry hand;
     int32_t *crowded; /* stack of subsegments to test for encroachment (conforming only) */
     int32_t n_crowded, crowded_capacity;
+    uint32_t step_of_stop; /* see tri_stop_is_due */
 };
 
 enum { SEED_CHUNK = 1 << 16 };
@@ -57,8 +65,8 @@ enum { SEED_CHUNK = 1 << 16 };
 static const double FARTHEST = 0x1p199;
 
 /* DONE: a point was inserted, or the triangle is gone; AGAIN: a subsegment was split instead, the triangle may still
- * stand. */
-enum outcome { DONE, AGAIN, REFUSED, FAILED };
+ * stand; LEFT: it is somebody else's. */
+enum outcome { DONE, AGAIN, REFUSED, LEFT, FAILED };
 
 struct tri_refine_options tri_refine_defaults(void)
 {
@@ -198,24 +206,29 @@ static enum outcome leave(struct tri_refiner *r, int32_t slot, int64_t *counter)
     ++*counter;
     if (r->options->left)
         r->options->left(r->options->left_user, slot);
-    return REFUSED;
+    return LEFT;
 }
 
 static enum outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
+{
+    r->excuse = excuse;
+    return REFUSED;
+}
+
+static enum outcome give_up(struct tri_refiner *r, enum tri_excuse excuse)
 {
     r->report->refused[excuse]++;
     return REFUSED;
 }
 
-/* Splits subsegment s for the sake of the triangle in a slot. */
-static enum outcome split(struct tri_refiner *r, int32_t s, int32_t slot)
+/* Splits subsegment s, at this fraction of it, for the sake of the triangle in a slot. */
+static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, int32_t slot)
 {
     struct tri_mesh *m = r->mesh;
     const struct tri_subsegment old = m->sub[s];
     int32_t n_left;
     if (tri_is_protected(r->options, &old))
         return refuse(r, TRI_EXCUSE_PROTECTED);
-    double fraction = tri_split_fraction(m, &old);
     struct tri_point p;
     if (!tri_can_split(r->shortest2, m->xy[old.v[0]], m->xy[old.v[1]]) || !tri_place_split(m, &old, fraction, &p))
         return refuse(r, TRI_EXCUSE_PRECISION);
@@ -238,6 +251,11 @@ static enum outcome split(struct tri_refiner *r, int32_t s, int32_t slot)
     if (room && r->options->conforming)
         room = crowd(r, s) && crowd(r, second);
     return room ? DONE : FAILED;
+}
+
+static enum outcome split(struct tri_refiner *r, int32_t s, int32_t slot)
+{
+    return split_at(r, s, tri_split_fraction(r->mesh, &r->mesh->sub[s]), slot);
 }
 
 /* Where only sizes count, a subsegment that must not be split is no reason not to insert a point beside it. */
@@ -293,11 +311,9 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
     return reach;
 }
 
-static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tri_shape *shape,
-                            enum tri_badness badness)
+/* The cavity of a new point for the triangle in a slot: DONE where it is found and is ours. */
+static enum outcome find_cavity(struct tri_refiner *r, int32_t slot, struct tri_point p)
 {
-    const struct tri_triangle t = r->mesh->tri[slot];
-    struct tri_point p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
     if (!(fabs(p.x) < FARTHEST && fabs(p.y) < FARTHEST))
         return refuse(r, TRI_EXCUSE_PRECISION);
     if (r->options->gate) {
@@ -307,19 +323,44 @@ static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tr
     }
     if (r->options->fence && !tri_fence_holds(r->options->fence, p)) /* then its cavity reaches beyond, too */
         return leave(r, slot, &r->report->deferred);
-    enum tri_search found = tri_cavity_search(&r->cavity, r->mesh, p, slot);
-    if (found == TRI_SEARCH_FOUND) {
-        int32_t s = find_encroached(r);
-        if (s == TRI_NONE)
-            return insert_free(r, p);
-        if (tri_is_flat(r->mesh, shape))
-            return refuse(r, TRI_EXCUSE_PRECISION);
-        enum outcome outcome = split(r, s, slot);
-        return outcome == DONE ? AGAIN : outcome;
+    switch (tri_cavity_search(&r->cavity, r->mesh, p, slot)) {
+    case TRI_SEARCH_FOUND: return DONE;
+    case TRI_SEARCH_FENCED: return leave(r, slot, &r->report->deferred);
+    case TRI_SEARCH_OUTSIDE: return refuse(r, TRI_EXCUSE_PRECISION);
+    default: return FAILED;
     }
-    if (found == TRI_SEARCH_FENCED)
-        return leave(r, slot, &r->report->deferred);
-    return found == TRI_SEARCH_OUTSIDE ? refuse(r, TRI_EXCUSE_PRECISION) : FAILED;
+}
+
+/* The usual point, or the split of a subsegment that it encroaches. */
+static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tri_shape *shape,
+                            enum tri_badness badness)
+{
+    const struct tri_triangle t = r->mesh->tri[slot];
+    struct tri_point p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
+    enum outcome outcome = find_cavity(r, slot, p);
+    if (outcome != DONE)
+        return outcome;
+    int32_t s = find_encroached(r);
+    if (s == TRI_NONE)
+        return insert_free(r, p);
+    if (tri_is_flat(r->mesh, shape))
+        return refuse(r, TRI_EXCUSE_PRECISION);
+    outcome = split(r, s, slot);
+    return outcome == DONE ? AGAIN : outcome;
+}
+
+/* For sizes, where the usual point is refused: see inside.c. */
+static enum outcome propose_inside(struct tri_refiner *r, int32_t slot, const struct tri_shape *shape)
+{
+    int32_t s = tri_long_wall(r->mesh, r->options, slot, shape);
+    enum outcome outcome = s == TRI_NONE ? REFUSED : split(r, s, slot);
+    if (outcome != REFUSED)
+        return outcome == DONE ? AGAIN : outcome;
+    struct tri_point p;
+    if (!tri_centroid(r->mesh, slot, shape, &p))
+        return refuse(r, TRI_EXCUSE_PRECISION);
+    outcome = find_cavity(r, slot, p);
+    return outcome == DONE ? insert_free(r, p) : outcome;
 }
 
 /* Lowers the angle bound that the loop works for; what is already bad by the old one stays. */
@@ -371,17 +412,20 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
         if (badness == TRI_GOOD)
             return DONE;
-        if (badness == TRI_BAD_ANGLE && tri_is_hopeless(r->mesh, r->shortest2, entry.t, &shape)) {
-            if (shape.area2 <= tri_area2_bound(&r->criterion, t->region))
-                return refuse(r, TRI_EXCUSE_INPUT_ANGLE);
-        }
+        if (badness == TRI_BAD_ANGLE && tri_is_hopeless(r->mesh, r->shortest2, entry.t, &shape) &&
+            !tri_is_too_large(&r->criterion, t, &shape))
+            return give_up(r, TRI_EXCUSE_INPUT_ANGLE);
         if (at_limit(r))
-            return refuse(r, TRI_EXCUSE_LIMIT);
+            return give_up(r, TRI_EXCUSE_LIMIT);
         enum outcome outcome = propose(r, entry.t, &shape, badness);
+        if (outcome == REFUSED && tri_is_too_large(&r->criterion, t, &shape)) {
+            badness = TRI_BAD_SIZE;
+            outcome = propose_inside(r, entry.t, &shape);
+        }
         if (outcome == DONE || outcome == AGAIN)
             count_point(r, badness);
         if (outcome != AGAIN)
-            return outcome;
+            return outcome == REFUSED ? give_up(r, r->excuse) : outcome;
     }
 }
 
@@ -393,15 +437,16 @@ static bool split_crowded(struct tri_refiner *r)
         int32_t beside = tri_of(sub->side[sub->side[0] == TRI_NONE]);
         assert(s >= 0 && tri_is_live(&r->mesh->tri[beside]));
         r->n_crowded--;
-        if (!tri_is_crowded(r->mesh, sub) || at_limit(r) || r->relaxed == 3)
+        double fraction;
+        if (!tri_is_crowded(r->mesh, sub, &fraction) || at_limit(r))
             continue;
-        enum outcome outcome = split(r, s, beside);
+        enum outcome outcome = split_at(r, s, fraction, beside);
         if (outcome == FAILED) {
             r->crowded[r->n_crowded++] = s; /* there is room: it was there a moment ago */
             return false;
         }
-        if (outcome == DONE)
-            count_point(r, TRI_BAD_ANGLE);
+        if (outcome == REFUSED)
+            give_up(r, r->excuse);
     }
     return true;
 }
@@ -413,9 +458,17 @@ static bool next_entry(struct tri_refiner *r)
                                  : tri_bad_queue_pop(&r->queue, &r->hand);
 }
 
+/* Somebody asks for the end: between two triangles the mesh is in order. */
+static bool must_stop(struct tri_refiner *r)
+{
+    return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(r->error);
+}
+
 static bool work_off(struct tri_refiner *r)
 {
     for (;;) {
+        if (must_stop(r))
+            return false;
         if (!split_crowded(r))
             return false;
         if (!r->in_hand && !next_entry(r))

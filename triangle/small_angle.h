@@ -12,6 +12,12 @@ double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegme
 /* Is the subsegment from a to b long enough to be split, where no edge shall be shorter than the root of shortest2? */
 bool tri_can_split(double shortest2, struct tri_point a, struct tri_point b);
 
+/* Does the vertex lie on a parent? */
+bool tri_is_on_parent(const struct tri_mesh *mesh, int32_t v);
+
+/* The common end of a parent and a parent that vertex v lies on; TRI_NONE where there is none. O(parents at v). */
+int32_t tri_common_end(const struct tri_mesh *mesh, int32_t parent, int32_t v);
+
 /* A bad angle that no point can mend, or that would only move it: see the rules in the .c file. */
 bool tri_is_hopeless(const struct tri_mesh *mesh, double shortest2, int32_t slot, const struct tri_shape *shape);
 
@@ -23,7 +29,8 @@ double tri_channel_cost(const struct tri_mesh *mesh, int32_t slot, const struct 
 bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape);
 
 /* Lists the parents at each vertex, in the arrays that tri_refine_prepare has made; called again when vertices get
- * other numbers. O(vertices + parents). */
+ * other numbers. Where there are many at one vertex, they are in order of direction. O(vertices + parents log parents)
+ * at most. */
 void tri_fill_spokes(struct tri_mesh *mesh);
 
 #endif

@@ -173,6 +173,17 @@ counts 4 2 5 4 0 4
 ends 20 -pq arrow
 judge arrow.1 --poly arrow.poly --min-angle 20
 
+# --- bounds that were not kept: sizes beside slivers, circles of subsegments beside each other
+fresh regress/ulps_apart.poly regress/needles.poly
+for words in -pa0.0002 -pq30a0.0002 -pq30a0.0002Y -pq30a0.0002YY; do
+    ends 20 $words ulps_apart
+    judge ulps_apart.1 --poly ulps_apart.poly --max-area 0.0002
+done
+for words in -pD -pq20D -pq30Da0.01; do
+    ends 20 $words needles
+    judge needles.1 --poly needles.poly --conforming
+done
+
 fresh nasty/duplicates.poly nasty/crossing_random.poly nasty/huge_offset.poly nasty/overlap.poly nasty/spike.poly \
     nasty/slit_1e-9.poly nasty/tiny_feature.poly nasty/bowtie.poly
 for input in *.poly; do
