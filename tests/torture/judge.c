@@ -121,10 +121,15 @@ static void judge_mesh(const struct outcome *o, const struct tri_pslg *pslg, boo
     struct tri_pslg input = kept_input(o, pslg);
     if (tri_check(&copy.mesh, &input, &ask, &report, &error) != TRI_OK)
         judge_fault(verdict, "checker", "%s", error.text);
-    for (int kind = 0; kind < TRI_N_CHECKS && !verdict->fault[0]; kind++)
-        if (report.item[kind].state == TRI_CHECK_FAILED)
-            judge_fault(verdict, conforming && is_conforming_fault(kind) ? "conforming" : tri_check_name(kind),
-                        "%lld, first: %s", (long long)report.item[kind].count, report.item[kind].text);
+    for (int kind = 0; kind < TRI_N_CHECKS && !verdict->fault[0]; kind++) {
+        const struct tri_check_item *item = &report.item[kind];
+        if (item->state != TRI_CHECK_FAILED)
+            continue;
+        if (ask.delaunay == TRI_CHECK_CONFORMING && is_conforming_fault(kind))
+            judge_conforming(o, item->count, verdict);
+        else
+            judge_fault(verdict, tri_check_name(kind), "%lld, first: %s", (long long)item->count, item->text);
+    }
     free(input.points);
     support_copy_free(&copy);
     if (!verdict->fault[0])
