@@ -417,7 +417,7 @@ static enum tri_status check_files(const struct runner *r, const struct mesh_fil
 static enum tri_status look_ahead(struct runner *r)
 {
     struct estimate estimate = estimate_make(&r->run, false);
-    return r->run.options.refine ? estimate_check(&estimate, r->error) : TRI_OK;
+    return r->run.options.refine ? estimate_check(&estimate, &r->console, r->error) : TRI_OK;
 }
 
 static enum tri_status make_mesh(struct runner *r)
@@ -446,7 +446,7 @@ static enum tri_status print_estimate(struct runner *r)
         return status;
     struct estimate estimate = estimate_make(&r->run, true);
     estimate_print(&estimate, &r->run);
-    return r->run.options.refine ? estimate_check(&estimate, r->error) : TRI_OK;
+    return r->run.options.refine ? estimate_check(&estimate, &r->console, r->error) : TRI_OK;
 }
 
 static enum tri_status run_stages(struct runner *r)

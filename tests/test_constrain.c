@@ -20,13 +20,11 @@ static void test_tangles_are_naively_constrained_delaunay(void **state)
             struct tri_mesh mesh = support_constrained(&pslg, &report);
             support_assert_cdt(&mesh, true);
             judge(&mesh, &pslg);
-                tri_mesh_free(&mesh);
+            tri_mesh_free(&mesh);
             tri_pslg_free(&pslg);
         }
 }
 
-/* Hundreds of segments on nearly one line are bent again and again: there the judge's tolerance for segments is too
- * narrow. */
 static void test_large_tangles_pass_the_judge(void **state)
 {
     (void)state;
@@ -35,8 +33,7 @@ static void test_large_tangles_pass_the_judge(void **state)
         struct tri_pslg pslg = support_tangle((enum support_kind)kind, 300, 100, 5);
         struct tri_mesh mesh = support_constrained(&pslg, &report);
         support_assert_cdt(&mesh, false);
-        if (kind != SUPPORT_NEAR_LINE)
-            judge(&mesh, &pslg);
+        judge(&mesh, &pslg);
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);
     }
@@ -325,7 +322,7 @@ static void test_all_segment_files(void **state)
             struct tri_mesh mesh = support_constrained(&pslg, &report);
             support_assert_cdt(&mesh, false);
             judge(&mesh, &pslg);
-                tri_mesh_free(&mesh);
+            tri_mesh_free(&mesh);
             tri_pslg_free(&pslg);
         }
         support_free_names(names);
