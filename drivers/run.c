@@ -290,7 +290,7 @@ static void tell_of_quality(struct runner *r)
 /* Triangles below the bounds, where counting them takes no time to speak of; else -1. */
 static int64_t count_bad(const struct runner *r)
 {
-    enum { SOON_COUNTED = 1 << 24 };
+    enum { SOON_COUNTED = 1 << 22 };
     const struct run *run = &r->run;
     int64_t count[TRI_EXCUSES], sum = 0;
     if (!run->options.refine || run->mesh.n_slots > SOON_COUNTED)
@@ -313,6 +313,8 @@ static void tell_of_stop(struct runner *r, bool partial)
     tri_fail(&line, TRI_STOPPED, NULL, 0, "stopped by %s after %.1f s while %s%s; %s", interrupt_cause(),
              par_seconds() - r->begin, interrupt_stage_now(), far,
              partial ? "the mesh so far is written" : "nothing was written");
+    if (!partial)
+        interrupt_told(); /* before: rather no line, if the handler comes between, than two */
     console_error(&r->console, &line);
 }
 

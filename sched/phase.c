@@ -334,11 +334,14 @@ void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *a
     sum->hit_cap |= add->hit_cap;
 }
 
-/* In canonical order: room and left triangles of each task go back, and its report is added up. */
+/* In canonical order: room and left triangles of each task go back, and its report is added up. A triangle goes back
+ * once, however often it was left: one with three crowded walls would count threefold, and ninefold after the next
+ * phase. */
 static enum tri_status collect(struct phase *p, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    bool memory = true;
+    struct par_slot_set pooled;
+    bool memory = par_slot_set_of(&pooled, &p->state->pool, p->state->mesh->n_slots);
     for (int32_t i = 0; i < p->n_tasks; i++) {
         struct task *task = &p->tasks[i];
         if (!status && task->status && task->status != TRI_NO_ROOM) { /* that: paused when the phase failed */
@@ -347,13 +350,14 @@ static enum tri_status collect(struct phase *p, struct tri_error *error)
         }
         memory = memory && !task->left_lost;
         for (int32_t k = 0; memory && k < task->left.n; k++)
-            memory = par_slots_add(&p->state->pool, task->left.item[k]);
+            memory = par_slots_add_new(&p->state->pool, &pooled, task->left.item[k]);
         par_add_up(&p->state->report->total, &task->report);
         memory = memory && report_block(p, task);
         par_room_return(&task->room, &p->state->spare);
         free(task->left.item);
         tri_refiner_free(task->refiner);
     }
+    free(pooled.word);
     return status || memory ? status : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for bad triangles");
 }
 

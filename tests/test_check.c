@@ -887,6 +887,27 @@ static void bent_segments(void **state)
     assert_int_equal(trial.report.item[TRI_CHECK_INPUT_SEGMENTS].count, 1);
 }
 
+/* A side shorter than the tolerance of where it is: the input segment that ends at its corner, the rest of it carved,
+ * does not run along it, although that is exactly on its line. */
+static void marker_beyond_the_end(void **state)
+{
+    (void)state;
+    double far = 0x1p50;
+    begin();
+    add_point(far, far), add_point(far + 1, far), add_point(far + 1, far + 9), add_point(far, far + 9);
+    add_point(far - 10, far);
+    add_triangle(0, 1, 2), add_triangle(0, 2, 3);
+    list_boundary();
+    trial.mesh.segment_markers = trial.markers;
+    take_as_input();
+    int32_t n = trial.input.n_segments++;
+    trial.input.segments[2 * n] = 4, trial.input.segments[2 * n + 1] = 0;
+    trial.input.segment_markers[n] = 9;
+    for (int32_t s = 0; s < n; s++)
+        trial.markers[s] = 1;
+    expect_good();
+}
+
 /* The unit square, and an input segment from below its lower side to beyond its right one that comes so far into it,
  * and is not there. */
 static void begin_grazed(double depth)
@@ -1148,6 +1169,7 @@ int main(void)
         cmocka_unit_test(broken_markers),
         cmocka_unit_test(markers_at_forks),
         cmocka_unit_test(bent_segments),
+        cmocka_unit_test(marker_beyond_the_end),
         cmocka_unit_test(what_is_missing_beside_the_boundary),
         cmocka_unit_test(broken_input_vertices),
         cmocka_unit_test(broken_lost_vertex),

@@ -17,6 +17,14 @@ void judge_fault(struct verdict *verdict, const char *fault, const char *format,
     snprintf(verdict->fault, sizeof verdict->fault, "%s", fault);
 }
 
+bool judge_names(const char *names, const char *fault)
+{
+    for (size_t n = strlen(fault); names; names = strchr(names, ',') ? strchr(names, ',') + 1 : NULL)
+        if (strncmp(names, fault, n) == 0 && (names[n] == ',' || names[n] == 0))
+            return true;
+    return false;
+}
+
 static void enter(struct verdict *verdict, const char *stage)
 {
     snprintf(verdict->stage, sizeof verdict->stage, "%s", stage);

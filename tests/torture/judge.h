@@ -16,6 +16,9 @@ struct verdict {
 /* Runs the case; the verdict holds the first fault, if any. */
 void judge_case(const struct torture_case *c, struct verdict *verdict);
 
+/* Is the kind of fault one of these names, which have commas between them? NULL: no. */
+bool judge_names(const char *names, const char *fault);
+
 /* --- for the files judge_*.c */
 
 /* A mesh and all that is known of it. */
