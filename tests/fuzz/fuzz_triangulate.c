@@ -13,13 +13,13 @@ enum { MOST_POINTS = 24, MOST_SEGMENTS = 24, MOST_TRIANGLES = 24, MOST_HOLES = 3
 
 struct arrays {
     struct triangulateio in;
-    REAL points[2 * MOST_POINTS], attributes[2 * MOST_POINTS], holes[2 * MOST_HOLES], regions[4 * MOST_HOLES];
-    REAL triangle_attributes[MOST_TRIANGLES], areas[MOST_TRIANGLES];
+    double points[2 * MOST_POINTS], attributes[2 * MOST_POINTS], holes[2 * MOST_HOLES], regions[4 * MOST_HOLES];
+    double triangle_attributes[MOST_TRIANGLES], areas[MOST_TRIANGLES];
     int markers[MOST_POINTS], segments[2 * MOST_SEGMENTS], segment_markers[MOST_SEGMENTS];
     int triangles[6 * MOST_TRIANGLES];
 };
 
-static void take_reals(struct bytes *b, REAL *to, int n, int32_t mode)
+static void take_reals(struct bytes *b, double *to, int n, int32_t mode)
 {
     for (int i = 0; i < n; i++)
         to[i] = bytes_coordinate(b, mode);
@@ -79,7 +79,7 @@ static void take_switches(struct bytes *b, char *to, size_t size)
     snprintf(to + length, size - length, "S%d", bytes_one(b));
 }
 
-static int is_large(void *user, const REAL *a, const REAL *b, const REAL *c, REAL area)
+static int is_large(void *user, const double *a, const double *b, const double *c, double area)
 {
     (void)user, (void)a, (void)b, (void)c;
     return area > 1;
