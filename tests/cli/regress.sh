@@ -91,10 +91,12 @@ if [ -n "$comma" ]; then
     what="LC_ALL=$comma"
     check "the mesh depends on the locale" cmp .expected .found
     check "printed numbers depend on the locale" sh -c 'grep -E "area:|angle:|-  +[0-9]" .out | cmp -s - .numbers'
-    # the libraries inside a process that has set it: these tests look for such locales themselves
+    # the libraries inside a process that has set it: these tests look for such locales themselves. Not where an emulator
+    # runs the programs by scripts (tools/ports.sh): the locales are in this machine's byte order
     for program in switches number triangulate; do
         test="$bin/../tests/test_$program"
-        [ ! -x "$test" ] || check "test_$program" sh -c '"$1" >.tests 2>&1 && ! grep -q "SKIPPED.*locale" .tests' sh "$test"
+        [ ! -x "$test" ] || [ "$(head -c 2 "$bin/triangle")" = '#!' ] ||
+            check "test_$program" sh -c '"$1" >.tests 2>&1 && ! grep -q "SKIPPED.*locale" .tests' sh "$test"
     done
     unset LOCPATH
 fi
