@@ -18,6 +18,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/interpolate.c
     triangle/quality.c
     triangle/small_angle.c
+    triangle/feature_size.c
     triangle/bad_queue.c
     triangle/criterion.c
     triangle/refine.c

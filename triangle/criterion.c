@@ -81,7 +81,7 @@ static bool is_crowded_from(const struct tri_mesh *mesh, const struct tri_subseg
     if (!tri_is_in_diametral_disk(mesh, s, code))
         return false;
     struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[tri_of(code)].v);
-    return !tri_is_hopeless(mesh, mesh->shortest2, tri_of(code), &shape) && !tri_is_flat(mesh, &shape);
+    return !tri_is_hopeless(mesh, tri_of(code), &shape) && !tri_is_flat(mesh, &shape);
 }
 
 bool tri_is_crowded(const struct tri_mesh *mesh, const struct tri_subsegment *s)
