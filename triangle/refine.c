@@ -24,6 +24,9 @@
  * circumcentre: sizes then lie closer to the bound than with circumcentres alone. */
 static const double EQUILATERAL = 2.3094010767585030580, IDEAL = 0.85;
 
+/* In degrees: a bound that is soon reached around points that were inserted for a larger one. */
+static const double BACK_ANGLE = 30;
+
 enum stage { EASY_STAGE, USUAL_STAGE, BEYOND_STAGE, BACK_STAGE, LAST_STAGE };
 
 enum step { NOT_BEGUN, FIRST_PASS, SECOND_PASS };
@@ -337,7 +340,7 @@ static void count_point(struct tri_refiner *r)
 {
     if (r->stage != BEYOND_STAGE || r->sized || --r->beyond >= 0 || r->report->hit_cap)
         return;
-    lower_bound(r, TRI_USUAL_ANGLE);
+    lower_bound(r, BACK_ANGLE);
     r->report->hit_cap = true;
 }
 
@@ -347,6 +350,16 @@ static bool at_limit(struct tri_refiner *r)
     if (r->options->max_steiner < 0 || inserted < r->options->max_steiner)
         return false;
     return r->report->hit_limit = true;
+}
+
+/* Beyond the usual angle edges must be eight times as long, so that afterwards there is room for better angles around
+ * them. */
+static bool is_hopeless(const struct tri_refiner *r, int32_t slot, const struct tri_shape *shape)
+{
+    const int32_t *v = r->mesh->tri[slot].v;
+    int k = shape->shortest;
+    return tri_is_hopeless(r->mesh, slot, shape) ||
+           (r->stage == BEYOND_STAGE && tri_has_run_away(r->mesh, v[tri_next[k]], v[tri_prev[k]], shape->l[k] / 64));
 }
 
 /* Treats one bad triangle until it is gone or refused. */
@@ -361,7 +374,7 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         if (badness == TRI_GOOD)
             return DONE;
         r->sized = badness == TRI_BAD_SIZE;
-        if (badness == TRI_BAD_ANGLE && tri_is_hopeless(r->mesh, entry.t, &shape)) {
+        if (badness == TRI_BAD_ANGLE && is_hopeless(r, entry.t, &shape)) {
             if (shape.area2 <= tri_area2_bound(&r->criterion, t->region))
                 return refuse(r, TRI_EXCUSE_INPUT_ANGLE);
             r->sized = true;
@@ -493,8 +506,8 @@ static bool refine_seeds(struct tri_refiner *r)
  * angles are dear to mend where triangles of different sizes meet, and in a mesh of one size they seldom do
  * (docs/performance.md: up to a sixth fewer triangles). Above TRI_USUAL_ANGLE refinement feeds on itself, until edges
  * are as short as feature_size.c allows. So the whole mesh is refined for the usual angle; then for more, as long as
- * that adds less than half as many points again; where it did not end so, for the usual angle again. Within a fence
- * there is only the usual stage. */
+ * that adds less than half as many points again; where it did not end so, what is left is mended for BACK_ANGLE (for
+ * the usual angle it would take several times as many points). Within a fence there is only the usual stage. */
 static void begin_stages(struct tri_refiner *r)
 {
     double usual = fmin(r->options->min_angle, TRI_USUAL_ANGLE);
@@ -526,7 +539,7 @@ static void next_stage(struct tri_refiner *r)
     case BEYOND_STAGE:
         r->stage = LAST_STAGE;
         if (r->report->hit_cap) {
-            lower_bound(r, TRI_USUAL_ANGLE);
+            lower_bound(r, BACK_ANGLE);
             r->stage = BACK_STAGE;
         }
         return;
