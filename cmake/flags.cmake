@@ -2,12 +2,13 @@
 # the sanitizers, which must reach every object and every link. STRICT is for our own code; tests, which consist of
 # cmocka's macros, do without.
 
+option(PTRIANGLE_STATIC_RUNTIME "The programs carry the C++ runtime inside" ON)
 option(PTRIANGLE_WERROR "Treat warnings as errors" OFF)
 option(PTRIANGLE_NATIVE "Compile for the processor of this machine (-march=native); results stay the same" OFF)
 set(PTRIANGLE_SANITIZE "" CACHE STRING "Sanitizers for the whole build, such as address,undefined or thread")
 
 # Debug keeps the asserts, and enough optimisation for the tests to end soon.
-if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
     set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug, RelWithDebInfo, MinSizeRel" FORCE)
 endif()
 set(PTRIANGLE_DEBUG_FLAGS $<$<CONFIG:Debug>:-O1>)
@@ -15,6 +16,12 @@ set(PTRIANGLE_DEBUG_FLAGS $<$<CONFIG:Debug>:-O1>)
 if(PTRIANGLE_SANITIZE)
     add_compile_options(-fsanitize=${PTRIANGLE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
     add_link_options(-fsanitize=${PTRIANGLE_SANITIZE})
+endif()
+
+# Coverage for libFuzzer in everything; the targets themselves bring its main().
+if(PTRIANGLE_FUZZ)
+    add_compile_options(-fsanitize=fuzzer-no-link)
+    add_link_options(-fsanitize=fuzzer-no-link)
 endif()
 
 # Left out: -Wsign-conversion, which with 32-bit ids as indices asks for a cast in every line, and -Wdouble-promotion, which
@@ -26,9 +33,22 @@ set(PTRIANGLE_STRICT_WARNINGS
     $<$<COMPILE_LANGUAGE:C>:-Wmissing-prototypes>
     $<$<COMPILE_LANGUAGE:C>:-Wold-style-definition>)
 
-# -ffp-contract=off is not a matter of taste: a fused multiply-add breaks the exact predicates, and meshes would differ
-# between compilers. It is private: a client's own arithmetic is the client's business. Hidden symbols let the compiler
-# inline position-independent code, and keep a client's shared library from exporting ours.
+# Each operation on doubles is rounded to a double as it is written, or the exact predicates break and meshes differ
+# between compilers (triangle/arithmetic.h): no fused multiply-add, no -ffast-math, no x87. These options stand behind
+# those of CFLAGS and CMAKE_C_FLAGS, so that they win. Linking has them too, since compilers add code there that switches
+# subnormals off for the whole process; -Ofast is the one option that nothing behind it takes back. They are private: a client's own arithmetic is the client's business.
+include(CheckCSourceCompiles)
+set(PTRIANGLE_ARITHMETIC -fno-fast-math -fno-unsafe-math-optimizations -ffp-contract=off)
+check_c_source_compiles("#ifndef __i386__\n#error other\n#endif\nint main(void) { return 0; }" PTRIANGLE_I386)
+if(PTRIANGLE_I386)
+    list(APPEND PTRIANGLE_ARITHMETIC -msse2 -mfpmath=sse)
+endif()
+foreach(flags CMAKE_C_FLAGS CMAKE_CXX_FLAGS)
+    string(REPLACE "-Ofast" "-O3" ${flags} "${${flags}}")
+endforeach()
+
+# Hidden symbols let the compiler inline position-independent code, and keep a client's shared library from exporting
+# ours.
 function(ptriangle_flags target)
     cmake_parse_arguments(PARSE_ARGV 1 arg "STRICT" "" "")
     set_target_properties(${target} PROPERTIES
@@ -36,7 +56,7 @@ function(ptriangle_flags target)
         CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF
         C_VISIBILITY_PRESET hidden CXX_VISIBILITY_PRESET hidden)
     target_compile_definitions(${target} PRIVATE $<$<COMPILE_LANGUAGE:C>:_POSIX_C_SOURCE=200809L>)
-    target_compile_options(${target} PRIVATE -ffp-contract=off ${PTRIANGLE_DEBUG_FLAGS} ${PTRIANGLE_WARNINGS})
+    target_compile_options(${target} PRIVATE ${PTRIANGLE_DEBUG_FLAGS} ${PTRIANGLE_WARNINGS})
     if(arg_STRICT)
         target_compile_options(${target} PRIVATE ${PTRIANGLE_STRICT_WARNINGS})
     endif()
@@ -46,6 +66,8 @@ function(ptriangle_flags target)
     if(PTRIANGLE_NATIVE)
         target_compile_options(${target} PRIVATE -march=native)
     endif()
+    target_compile_options(${target} PRIVATE ${PTRIANGLE_ARITHMETIC})
+    target_link_options(${target} PRIVATE -fno-fast-math -fno-unsafe-math-optimizations)
 endfunction()
 
 # The C++ runtime goes into the executables, so that they run where no libstdc++ is installed. Sanitizers bring a runtime
@@ -53,11 +75,17 @@ endfunction()
 include(CheckCXXSourceCompiles)
 set(CMAKE_REQUIRED_LINK_OPTIONS -static-libstdc++ -static-libgcc)
 check_cxx_source_compiles("#include <string>\nint main(int n, char **) { return std::string(n, 'x').size() == 0; }"
-                          PTRIANGLE_STATIC_RUNTIME)
+                          PTRIANGLE_HAVE_STATIC_RUNTIME)
 unset(CMAKE_REQUIRED_LINK_OPTIONS)
 
+# By what name a C client links it.
+set(PTRIANGLE_CXX_RUNTIME stdc++)
+if("c++" IN_LIST CMAKE_CXX_IMPLICIT_LINK_LIBRARIES)
+    set(PTRIANGLE_CXX_RUNTIME c++)
+endif()
+
 function(ptriangle_static_runtime target)
-    if(PTRIANGLE_STATIC_RUNTIME AND NOT PTRIANGLE_SANITIZE)
+    if(PTRIANGLE_STATIC_RUNTIME AND PTRIANGLE_HAVE_STATIC_RUNTIME AND NOT PTRIANGLE_SANITIZE)
         target_link_options(${target} PRIVATE -static-libstdc++ -static-libgcc)
     endif()
 endfunction()

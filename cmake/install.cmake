@@ -1,4 +1,4 @@
-# cmake --install: executables, static libraries, public headers, CMake package, pkg-config files. Nothing installed
+# cmake --install: executables, libraries, public headers, CMake package, pkg-config files. Nothing installed
 # names a folder of the machine that built it: the tree may be moved.
 
 include(CMakePackageConfigHelpers)
@@ -6,13 +6,17 @@ set(PTRIANGLE_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/ptriangle)
 
 get_property(libraries GLOBAL PROPERTY PTRIANGLE_LIBRARIES)
 get_property(executables GLOBAL PROPERTY PTRIANGLE_EXECUTABLES)
-install(TARGETS ${libraries} EXPORT ptriangleTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS ${executables} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS ${libraries} EXPORT ptriangleTargets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+if(executables)
+    install(TARGETS ${executables} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
 foreach(header IN LISTS PTRIANGLE_PUBLIC_HEADERS)
     get_filename_component(room ${header} DIRECTORY)
     install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/ptriangle/${room})
 endforeach()
-install(FILES triangle/triangle.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}) # where Triangle's clients look for it
+install(FILES triangle/triangle.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} # where Triangle's clients look for it
+        RENAME ${PTRIANGLE_PREFIX}triangle.h)
 
 install(EXPORT ptriangleTargets NAMESPACE ptriangle:: DESTINATION ${PTRIANGLE_PACKAGE_DIR})
 configure_package_config_file(cmake/ptriangleConfig.cmake.in ptriangleConfig.cmake
@@ -28,13 +32,27 @@ set(PTRIANGLE_PC_SINGLE "")
 if(PTRIANGLE_SINGLE)
     set(PTRIANGLE_PC_SINGLE " -DSINGLE")
 endif()
-set(PTRIANGLE_PC_SCHED "")
-if(TARGET libptriangle)
-    set(PTRIANGLE_PC_SCHED "-lptriangle ${OpenMP_C_FLAGS} ")
+# A shared library knows what it needs; of a static one the client's linker must be told.
+set(PTRIANGLE_PC_LIBRARY ${PTRIANGLE_PREFIX}triangle)
+set(PTRIANGLE_PC_NEEDS -lm)
+if(NOT TARGET libptriangle)
+    set(PTRIANGLE_PC_PARALLEL "-ltritext -l${PTRIANGLE_PC_LIBRARY}")
+    set(PTRIANGLE_PC_PARALLEL_NEEDS "-l${PTRIANGLE_CXX_RUNTIME} -lm")
+elseif(BUILD_SHARED_LIBS)
+    set(PTRIANGLE_PC_PARALLEL "-lptriangle -ltritext")
+else()
+    set(PTRIANGLE_PC_PARALLEL "-lptriangle -ltritext -l${PTRIANGLE_PC_LIBRARY}")
+    list(TRANSFORM OpenMP_C_LIB_NAMES PREPEND -l OUTPUT_VARIABLE openmp)
+    list(JOIN openmp " " openmp)
+    set(PTRIANGLE_PC_PARALLEL_NEEDS "${openmp} -l${PTRIANGLE_CXX_RUNTIME} -lm")
 endif()
-foreach(name triangle ptriangle)
-    configure_file(cmake/${name}.pc.in ${name}.pc @ONLY)
-    install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
-endforeach()
+if(BUILD_SHARED_LIBS)
+    set(PTRIANGLE_PC_NEEDS "")
+    set(PTRIANGLE_PC_PARALLEL_NEEDS "")
+endif()
+configure_file(cmake/triangle.pc.in ${PTRIANGLE_PREFIX}triangle.pc @ONLY)
+configure_file(cmake/ptriangle.pc.in ptriangle.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${PTRIANGLE_PREFIX}triangle.pc ${CMAKE_CURRENT_BINARY_DIR}/ptriangle.pc
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

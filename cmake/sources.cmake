@@ -11,6 +11,8 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/hilbert.c
     triangle/spatial.c
     triangle/delaunay.c
+    triangle/crossing.c
+    triangle/recover.c
     triangle/constrain.c
     triangle/carve.c
     triangle/reconstruct.c
@@ -19,8 +21,11 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/quality.c
     triangle/small_angle.c
     triangle/feature_size.c
+    triangle/split.c
+    triangle/disk.c
     triangle/bad_queue.c
     triangle/criterion.c
+    triangle/inside.c
     triangle/refine.c
     triangle/numbering.c
     triangle/census.c
@@ -48,12 +53,14 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/number.cpp
     triangle/text.c
     triangle/read.c
+    triangle/output.c
     triangle/write.c)
 
 # Room sched/, the parallel schedule: with drivers/ptriangle.c, which asks for the number of threads, the only sources
 # compiled with OpenMP.
 set(PTRIANGLE_SCHED_SOURCES
     sched/theory.c
+    sched/threads.c
     sched/partition.c
     sched/room.c
     sched/pool.c
@@ -65,6 +72,7 @@ set(PTRIANGLE_SCHED_SOURCES
 set(PTRIANGLE_PUBLIC_HEADERS
     triangle/tri.h
     triangle/status.h
+    triangle/stop.h
     triangle/pslg.h
     triangle/mesh.h
     triangle/spatial.h
@@ -77,6 +85,7 @@ set(PTRIANGLE_PUBLIC_HEADERS
     triangle/check.h
     triangle/executor.h
     triangle/read.h
+    triangle/output.h
     triangle/write.h
     sched/par.h
     sched/partition.h)
@@ -84,7 +93,7 @@ set(PTRIANGLE_PUBLIC_HEADERS
 # Room drivers/: what the executables share, then the executables, each from drivers/<name>.c. The second list of programs
 # needs the room sched/ and its library.
 set(PTRIANGLE_DRIVER_SOURCES)
-set(PTRIANGLE_PROGRAMS triangle trianglecheck)
+set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle trianglecheck)
 set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed
 set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
 
@@ -104,6 +113,8 @@ set(PTRIANGLE_RUN_SOURCES
     drivers/mesh_files.c
     drivers/summary.c
     drivers/self_check.c
+    drivers/resources.c
+    drivers/estimate.c
     drivers/run.c)
 set(PTRIANGLE_RUN_PROGRAMS triangle ptriangle)
 

@@ -24,15 +24,12 @@ static char *format_row(void *user, size_t i, char *at)
     return at;
 }
 
-enum tri_status blocks_write(const char *path, const struct par_report *report, const struct tri_mesh *mesh,
-                             struct tri_error *error)
+enum tri_status blocks_write(const char *path, struct tri_output_set *set, const struct par_report *report,
+                             const struct tri_mesh *mesh, struct tri_error *error)
 {
     struct source source = {report, mesh};
-    static struct tri_output_set set; /* outlives this call, since signals look at it */
     struct tri_output *output;
-    interrupt_begin(&set);
-    enum tri_status status = interrupt_open(&set, path, &output, error);
-    status = status ? status
-                    : tri_write_table(output, (size_t)mesh->n_slots, ROW_BYTES, format_row, &source, NULL, error);
-    return interrupt_finish(&set, status, error);
+    enum tri_status status = interrupt_open(set, path, &output, error);
+    return status ? status
+                  : tri_write_table(output, (size_t)mesh->n_slots, ROW_BYTES, format_row, &source, NULL, error);
 }

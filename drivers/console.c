@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
+#include <poll.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <sys/stat.h>
@@ -71,14 +72,29 @@ static bool are_one_place(int a, int b)
     return fstat(a, &at_a) == 0 && fstat(b, &at_b) == 0 && at_a.st_dev == at_b.st_dev && at_a.st_ino == at_b.st_ino;
 }
 
+/* Names of files may hold anything; an error is one line. */
+static void print_line(FILE *stream, const char *text)
+{
+    for (const char *at = text; *at; at++)
+        if (*at == '\n')
+            fputs("\\n", stream);
+        else if ((unsigned char)*at < 0x20 || *at == 0x7f)
+            fprintf(stream, "\\x%02x", (unsigned)*at);
+        else
+            fputc(*at, stream);
+}
+
 static void print_error(FILE *stream, const char *before, const struct tri_error *error)
 {
     fputs(before, stream);
+    if (error->file[0])
+        print_line(stream, error->file);
     if (error->file[0] && error->line > 0)
-        fprintf(stream, "%s:%ld: ", error->file, error->line);
+        fprintf(stream, ":%ld: ", error->line);
     else if (error->file[0])
-        fprintf(stream, "%s: ", error->file);
-    fprintf(stream, "%s\n", error->text);
+        fputs(": ", stream);
+    print_line(stream, error->text);
+    fputc('\n', stream);
 }
 
 void console_error(const struct console *console, const struct tri_error *error)
@@ -92,9 +108,24 @@ void console_error(const struct console *console, const struct tri_error *error)
     print_error(stderr, "", error);
 }
 
+/* Has the reader of standard output closed the pipe? */
+static bool reader_is_gone(void)
+{
+    struct pollfd output = {STDOUT_FILENO, POLLOUT, 0};
+    return poll(&output, 1, 0) == 1 && (output.revents & POLLERR);
+}
+
+enum tri_status console_flush(struct tri_error *error)
+{
+    bool written = fflush(stdout) == 0 && !ferror(stdout);
+    return written || reader_is_gone()
+               ? TRI_OK
+               : tri_fail(error, TRI_CANNOT_WRITE, NULL, 0, "cannot write to standard output");
+}
+
 bool console_close(const struct console *console)
 {
-    if (fflush(stdout) == 0 && !ferror(stdout))
+    if (console_flush(NULL) == TRI_OK)
         return true;
     fprintf(stderr, "%s: cannot write to standard output\n", console->program);
     return false;

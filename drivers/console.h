@@ -51,7 +51,11 @@ void console_remark(const struct console *console, const char *format, ...) CONS
 
 void console_error(const struct console *console, const struct tri_error *error);
 
-/* Flushes standard output. False, after a word on standard error: some of it could not be written. */
+/* Flushes standard output. TRI_CANNOT_WRITE: some of it could not be written. A reader who went away before the end is
+ * no error: he has seen what he wanted to see. */
+enum tri_status console_flush(struct tri_error *error);
+
+/* The same as the last thing that is done. False, after a word on standard error: could not be written. */
 bool console_close(const struct console *console);
 
 #endif

@@ -44,7 +44,7 @@ static const char *const paragraphs[] = {
     "Other\n"
     "  -Q -V   print nothing but errors; print more\n"
     "  -C      check the mesh, and say what came of it\n"
-    "  -h      this help\n"
+    "  -h      this help, as --help; --version\n"
     "  -i -F -l -X -w   accepted; the result does not depend on them\n",
 
     "Exit code: 0, or 1 after an error; then no file has been touched.\n",

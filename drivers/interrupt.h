@@ -1,20 +1,48 @@
-/* Ending early without leaving half of anything: what a signal that ends the program removes first. */
+/* Ending early, by a signal or a time limit, without leaving half of anything.
+ *
+ * The first signal asks: whoever works looks at interrupt_stop() and comes to an end that it can tell about. If that
+ * takes longer than INTERRUPT_GRACE seconds (a stage that must not stop half way), or if another signal comes later
+ * than that, the handler removes the temporary files and ends the program itself. */
 #ifndef DRIVERS_INTERRUPT_H
 #define DRIVERS_INTERRUPT_H
 
-#include "triangle/write.h"
+#include "triangle/output.h"
+#include "triangle/stop.h"
 
-/* Begins an empty set and guards it. From now on SIGINT, SIGTERM and SIGHUP (unless ignored already) remove the
- * temporary files of the set, then end the program as they would have; a file that grows too large and a reader of
- * standard output that went away are errors of write() rather than signals. The set lives as long as the program. */
+enum { INTERRUPT_TIME_UP = 124 }; /* exit code after a time limit, as that of timeout(1) */
+
+/* From now on every signal that would end the program (but those that its caller has it ignore, and SIGKILL) is taken
+ * as said above; one that tells of a crash removes the temporary files first; a file that grows too large and a reader
+ * of standard output that went away are errors of write() rather than signals. To be called once.
+ * program: for messages. seconds: the time limit; 0: none. patient: after the first signal there is no limit to the
+ * time that ending takes. False: the system has no timer left. */
+bool interrupt_start(const char *program, double seconds, bool patient);
+
+/* Has somebody asked for the end? */
+const struct tri_stop *interrupt_stop(void);
+
+/* What is done now, for the message of the handler: "reading". The text lives as long as the program. */
+void interrupt_stage(const char *what);
+const char *interrupt_stage_now(void);
+
+/* From now on interrupt_stop() says no, though somebody has asked: what is left is to be done. */
+void interrupt_go_on(void);
+
+/* The exit code for whoever was stopped: 128 + number of the signal, or INTERRUPT_TIME_UP; 0: nobody has asked. */
+int interrupt_code(void);
+
+/* What has asked: "SIGTERM", "the time limit". */
+const char *interrupt_cause(void);
+
+/* Begins an empty set and guards it; it lives as long as the program. */
 void interrupt_begin(struct tri_output_set *set);
 
-/* tri_output_open in the guarded set, while signals wait. */
+/* tri_output_open in the guarded set, while handlers wait. */
 enum tri_status interrupt_open(struct tri_output_set *set, const char *path, struct tri_output **output,
                                struct tri_error *error);
 
-/* Commits the guarded set, or aborts it where status is an error already, while signals wait. Returns what became of
- * it. */
-enum tri_status interrupt_finish(struct tri_output_set *set, enum tri_status status, struct tri_error *error);
+/* Commits the guarded set, or aborts it, while handlers wait. */
+enum tri_status interrupt_commit(struct tri_output_set *set, struct tri_error *error);
+void interrupt_drop(struct tri_output_set *set);
 
 #endif

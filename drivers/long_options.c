@@ -17,11 +17,18 @@ const char long_options_help[] =
     "  --numbering curve  new vertices and triangles are numbered along a space-filling curve, which makes\n"
     "                     solvers faster (the default); or, quicker,\n"
     "  --numbering blocks as the blocks of the schedule made them\n"
+    "  --dry-run          estimate triangles, memory, disk and time; refine and write nothing\n"
+    "  --time-limit T     stop after T seconds (also 90s, 10m, 2h), with exit code 124\n"
+    "  --write-partial    a run that is stopped while it refines, by the limit or a signal, writes the valid\n"
+    "                     mesh that it has; else it writes nothing\n"
     "  --progress         say on standard error how far the work is: one line on a terminal (there by\n"
     "  --no-progress      default), else a line for each stage. Never with -Q\n"
     "  --version, --help\n";
 
-enum id { THREADS, MAX_AREA, MIN_ANGLE, OUTPUT, REPORT, BLOCKS, NUMBERING, PROGRESS, NO_PROGRESS, VERSION, HELP };
+enum id {
+    THREADS, MAX_AREA, MIN_ANGLE, OUTPUT, REPORT, BLOCKS, NUMBERING, DRY_RUN, TIME_LIMIT, WRITE_PARTIAL, PROGRESS,
+    NO_PROGRESS, VERSION, HELP
+};
 
 static const struct kind {
     const char *name;
@@ -31,6 +38,7 @@ static const struct kind {
     {"threads", THREADS, true},     {"max-area", MAX_AREA, true},  {"min-angle", MIN_ANGLE, true},
     {"output", OUTPUT, true},       {"report", REPORT, true},      {"blocks", BLOCKS, true},
     {"numbering", NUMBERING, true}, {"progress", PROGRESS, false}, {"no-progress", NO_PROGRESS, false},
+    {"dry-run", DRY_RUN, false},    {"time-limit", TIME_LIMIT, true}, {"write-partial", WRITE_PARTIAL, false},
     {"version", VERSION, false},    {"help", HELP, false},
 };
 
@@ -90,6 +98,26 @@ static enum tri_status take_numbering(struct long_options *options, const char *
     return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--numbering: \"%.40s\" is neither curve nor blocks", value);
 }
 
+/* Seconds, or a number with s, m or h behind it. */
+static enum tri_status take_time(struct long_options *options, const char *value, struct tri_error *error)
+{
+    static const struct {
+        char letter;
+        double seconds;
+    } units[] = {{0, 1}, {'s', 1}, {'m', 60}, {'h', 3600}};
+    double number = 0;
+    const char *end = tri_scan_real(value, value + strlen(value), &number);
+    for (size_t i = 0; end > value && i < sizeof units / sizeof *units; i++) {
+        double seconds = number * units[i].seconds;
+        if (end[0] != units[i].letter || (end[0] && end[1]) || !(seconds >= 1e-3 && seconds <= 1e9))
+            continue;
+        options->time_limit = seconds;
+        return TRI_OK;
+    }
+    return tri_fail(error, TRI_BAD_INPUT, NULL, 0,
+                    "--time-limit: \"%.40s\" is not a time such as 90, 90s, 10m or 2h, from 0.001 s to 1e9 s", value);
+}
+
 static enum tri_status take_name(const char **name, const struct kind *kind, const char *value, struct tri_error *error)
 {
     if (!*value)
@@ -109,6 +137,9 @@ static enum tri_status apply(struct long_options *options, struct tri_switches *
     case REPORT: return take_name(&options->report, kind, value, error);
     case BLOCKS: return take_name(&options->blocks, kind, value, error);
     case NUMBERING: return take_numbering(options, value, error);
+    case TIME_LIMIT: return take_time(options, value, error);
+    case DRY_RUN: options->dry_run = true; break;
+    case WRITE_PARTIAL: options->write_partial = true; break;
     case PROGRESS: options->progress = PROGRESS_YES; break;
     case NO_PROGRESS: options->progress = PROGRESS_NO; break;
     case VERSION: options->version = true; break;

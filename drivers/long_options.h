@@ -19,6 +19,8 @@ struct long_options {
     const char *blocks; /* file; NULL: none */
     enum long_options_progress progress;
     bool by_block;      /* --numbering blocks */
+    double time_limit;  /* seconds; 0: none */
+    bool write_partial, dry_run;
     bool version, help;
 };
 

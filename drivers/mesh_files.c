@@ -4,15 +4,11 @@
  * (-o2) comes behind all vertices. Triangles and subsegments keep their order. */
 #include "drivers/mesh_files.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "drivers/interrupt.h"
 #include "triangle/number.h"
-#include "triangle/text.h"
 #include "triangle/topology.h"
 #include "triangle/tri.h"
 #include "triangle/write.h"
@@ -259,9 +255,7 @@ static char *off_face_row(void *user, size_t i, char *at)
 static enum tri_status write_off(struct writer *w, struct tri_output *output)
 {
     size_t n = count_nodes(w), n_faces = (size_t)w->mesh->n_slots;
-    const int64_t counts[] = {(int64_t)n, (int64_t)n_faces, w->edges.n};
-    enum tri_status status = tri_output_write(output, "OFF\n", 4, w->error);
-    status = status ? status : tri_write_counts(output, counts, 3, w->error);
+    enum tri_status status = tri_write_off_header(output, n, n_faces, (size_t)w->edges.n, w->error);
     status = status ? status : write_rows(w, output, n, tri_row_node_bytes(0), off_vertex_row);
     return status ? status : write_rows(w, output, n_faces, tri_row_ele_bytes(3, 0), off_face_row);
 }
@@ -326,41 +320,43 @@ static enum tri_status choose_vertices(struct writer *w)
     return status;
 }
 
-/* May a file of this name be made, as far as permissions tell? */
-static bool is_creatable(const char *path)
+/* One file more in a set on trial. */
+static enum tri_status try_file(struct tri_output_set *set, const char *path, const struct file_names *read,
+                                struct tri_error *error)
 {
-    struct stat old;
-    if (stat(path, &old) == 0) {
-        if (S_ISDIR(old.st_mode))
-            errno = EISDIR;
-        return !S_ISDIR(old.st_mode) && access(path, W_OK) == 0;
-    }
-    const char *slash = strrchr(path, '/');
-    char *directory = slash ? joined(path, "") : joined(".", "");
-    if (!directory)
-        return false;
-    if (slash)
-        directory[slash - path + 1] = 0;
-    bool writable = access(directory, W_OK | X_OK) == 0;
-    int reason = errno;
-    free(directory);
-    errno = reason;
-    return writable;
+    struct tri_output *output;
+    for (int i = 0; i < read->n; i++)
+        if (tri_is_same_file(path, read->name[i]))
+            return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "would be overwritten, a file of the input");
+    return interrupt_open(set, path, &output, error);
 }
 
-enum tri_status mesh_files_check(const struct mesh_files *files, struct tri_error *error)
+static enum tri_status try_all(struct tri_output_set *set, const struct mesh_files *files,
+                               const struct file_names *further, const struct file_names *read,
+                               struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     for (int k = 0; k < N_KINDS && !status; k++) {
         if (kinds[k].plan(files) != WRITTEN)
             continue;
         char *path = joined(files->arguments->output, kinds[k].suffix);
-        if (!path)
-            return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-        if (!is_creatable(path))
-            status = tri_fail_system(error, TRI_CANNOT_WRITE, path, "cannot create", errno);
+        status = path ? try_file(set, path, read, error)
+                      : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
         free(path);
     }
+    for (int i = 0; i < further->n && !status; i++)
+        status = try_file(set, further->name[i], read, error);
+    return status;
+}
+
+enum tri_status mesh_files_check(const struct mesh_files *files, const struct file_names *further,
+                                 const struct file_names *read, struct tri_error *error)
+{
+    static struct tri_output_set set; /* outlives this call, since signals look at it */
+    interrupt_begin(&set);
+    set.trial = true;
+    enum tri_status status = try_all(&set, files, further, read, error);
+    interrupt_drop(&set);
     return status;
 }
 
@@ -406,14 +402,11 @@ static enum tri_status write_all(struct writer *w, struct tri_output_set *set)
     return TRI_OK;
 }
 
-enum tri_status mesh_files_write(const struct mesh_files *files, struct tri_error *error)
+enum tri_status mesh_files_write(const struct mesh_files *files, struct tri_output_set *set, struct tri_error *error)
 {
-    static struct tri_output_set set; /* outlives this call, since signals look at it */
     struct writer w = {.files = files, .error = error};
-    interrupt_begin(&set);
     enum tri_status status = prepare(&w);
-    status = status ? status : write_all(&w, &set);
-    status = interrupt_finish(&set, status, error);
+    status = status ? status : write_all(&w, set);
     tri_edge_list_free(&w.edges);
     tri_used_free(&w.used);
     return status;

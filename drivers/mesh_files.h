@@ -6,6 +6,7 @@
 #include "drivers/console.h"
 #include "triangle/executor.h"
 #include "triangle/mesh.h"
+#include "triangle/output.h"
 #include "triangle/pslg.h"
 #include "triangle/reconstruct.h"
 
@@ -23,11 +24,22 @@ struct mesh_files {
                                             NULL: no -r */
 };
 
-/* Looks whether all files could be created, so that nobody waits for a mesh that cannot be kept; changes nothing.
- * Only the arguments and points_in_poly must be set. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
-enum tri_status mesh_files_check(const struct mesh_files *files, struct tri_error *error);
+enum { MESH_FILES_MOST_NAMES = 4 };
 
-/* Writes all of them, or none. Says a line for each. */
-enum tri_status mesh_files_write(const struct mesh_files *files, struct tri_error *error);
+/* Names of files, borrowed. */
+struct file_names {
+    int n;
+    const char *name[MESH_FILES_MOST_NAMES];
+};
+
+/* Looks whether all files, and further ones, could be created, so that nobody waits for a mesh that cannot be kept, and
+ * whether each is a file of its own that nobody has read. Leaves nothing behind. Only the arguments and points_in_poly
+ * must be set. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
+enum tri_status mesh_files_check(const struct mesh_files *files, const struct file_names *further,
+                                 const struct file_names *read, struct tri_error *error);
+
+/* Writes all of them into the guarded set (drivers/interrupt.h), whoever fails: its caller commits or aborts. Says a
+ * line for each. */
+enum tri_status mesh_files_write(const struct mesh_files *files, struct tri_output_set *set, struct tri_error *error);
 
 #endif

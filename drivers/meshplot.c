@@ -148,7 +148,7 @@ static enum tri_status parse_blocks(struct files *f, const struct tri_text *text
 static enum tri_status read_blocks(struct files *f, const char *path, struct tri_error *error)
 {
     struct tri_text text = {0};
-    enum tri_status status = tri_text_load(&text, path, 0, NULL, error);
+    enum tri_status status = tri_text_load(&text, path, 0, NULL, NULL, error);
     if (status == TRI_OK)
         status = parse_blocks(f, &text, error);
     tri_text_free(&text);

@@ -1,19 +1,20 @@
 /* ptriangle: the mesh generator on all cores, with the command line, the files and the printed lines of Triangle, and
  * long options. */
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
+#include <unistd.h>
 
 #include "drivers/blocks_file.h"
 #include "drivers/console.h"
 #include "drivers/help.h"
+#include "drivers/interrupt.h"
 #include "drivers/long_options.h"
 #include "drivers/progress.h"
 #include "drivers/report_json.h"
 #include "drivers/run.h"
 #include "sched/par.h"
+#include "sched/threads.h"
 #include "triangle/write.h"
 
 static const char PROGRAM[] = "ptriangle";
@@ -41,6 +42,13 @@ static double cell_for_tests(void)
 
 /* --- hooks */
 
+static void follow(void *user, int round, int phase, int64_t triangles)
+{
+    struct program *p = user;
+    interrupt_stage(phase == PAR_NUMBERING ? "numbering" : "refining");
+    progress_step(&p->progress, round, phase, triangles);
+}
+
 static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_refine_options *quality,
                               struct tri_refine_report *report, struct tri_error *error)
 {
@@ -49,8 +57,8 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     options.threads = p->threads;
     options.by_block = p->options.by_block;
     options.cell_triangles = cell_for_tests();
-    options.progress = progress_step;
-    options.progress_user = &p->progress;
+    options.progress = follow;
+    options.progress_user = p;
     progress_begin(&p->progress, mesh->n_slots, p->threads);
     enum tri_status status = par_refine(mesh, quality, &options, &p->schedule, error);
     progress_end(&p->progress, mesh->n_slots, p->schedule.seconds_number);
@@ -61,7 +69,14 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     return status;
 }
 
-static enum tri_status done(void *user, const struct run *run, struct tri_error *error)
+static double estimate(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *quality)
+{
+    (void)user;
+    return par_estimate(mesh, quality);
+}
+
+static enum tri_status write_further(void *user, const struct run *run, struct tri_output_set *set,
+                                     struct tri_error *error)
 {
     struct program *p = user;
     char text[96];
@@ -69,19 +84,13 @@ static enum tri_status done(void *user, const struct run *run, struct tri_error 
     progress_stage(&p->progress, text);
     enum tri_status status = TRI_OK;
     if (p->options.blocks)
-        status = blocks_write(p->options.blocks, &p->schedule, &run->mesh, error);
+        status = blocks_write(p->options.blocks, set, &p->schedule, &run->mesh, error);
     if (status || !p->options.report)
         return status;
-    return report_write(p->options.report, run, p->refined ? &p->schedule : NULL, p->threads, error);
+    return report_write(p->options.report, set, run, p->refined ? &p->schedule : NULL, p->threads, error);
 }
 
 /* --- arguments */
-
-static bool is_same_file(const char *a, const char *b)
-{
-    struct stat at_a, at_b;
-    return stat(a, &at_a) == 0 && stat(b, &at_b) == 0 && at_a.st_dev == at_b.st_dev && at_a.st_ino == at_b.st_ino;
-}
 
 /* Triangle never overwrites what it has read, and neither does --output. */
 static enum tri_status spare_input(const struct arguments *arguments, struct tri_error *error)
@@ -92,7 +101,7 @@ static enum tri_status spare_input(const struct arguments *arguments, struct tri
         char *read = joined(arguments->input, suffixes[i]), *written = joined(arguments->output, suffixes[i]);
         if (!read || !written)
             status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-        else if (is_same_file(read, written))
+        else if (access(read, F_OK) == 0 && tri_is_same_file(read, written))
             status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--output: %s would be overwritten, a file of the input",
                               written);
         free(read);
@@ -130,26 +139,36 @@ static enum tri_status take_words(struct program *p, struct arguments *arguments
     status = arguments_end(arguments, error);
     status = status ? status : name_output(arguments, p->options.output, error);
     if (!status && p->options.report && arguments->file)
-        status = report_check(p->options.report, error);
-    if (!status && p->options.blocks && arguments->file)
-        status = tri_output_try(p->options.blocks, error);
+        status = report_check(error);
     return status;
 }
 
 /* --- all together */
 
+static void add_further(struct file_names *names, const char *name)
+{
+    if (name)
+        names->name[names->n++] = name;
+}
+
 static int run_program(struct program *p, const struct arguments *arguments)
 {
-    p->threads = p->options.threads > 0 ? p->options.threads : omp_get_max_threads();
+    p->threads = par_threads(p->options.threads, true);
     p->progress = progress_start(PROGRAM, p->options.progress, arguments->switches.quiet);
     const struct tri_executor executor = par_executor(&p->threads);
-    const struct run_hooks hooks = {PROGRAM, &executor, refine, done, p};
+    const struct long_options *o = &p->options;
+    struct run_hooks hooks = {.program = PROGRAM, .executor = &executor, .refine = refine, .estimate = estimate,
+                              .threads = p->threads, .write = write_further, .user = p,
+                              .limits = {o->time_limit, o->write_partial, o->dry_run}};
+    add_further(&hooks.further, o->report);
+    add_further(&hooks.further, o->blocks);
     if (arguments->file)
         progress_stage(&p->progress, "reading and triangulating");
     int code = run_arguments(arguments, &hooks);
     if (!arguments->file)
         puts("  --threads N  --max-area X  --min-angle X  --output BASE  --report FILE  --blocks FILE"
-             "  --numbering curve|blocks  --progress  --help");
+             "  --numbering curve|blocks\n"
+             "  --dry-run  --time-limit T  --write-partial  --progress  --help");
     par_report_free(&p->schedule);
     return code;
 }

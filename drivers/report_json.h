@@ -4,14 +4,14 @@
 
 #include "drivers/run.h"
 #include "sched/par.h"
+#include "triangle/output.h"
 
-/* Looks whether the file could be created; changes nothing. TRI_CANNOT_WRITE, TRI_NO_MEMORY; TRI_BAD_INPUT: this
- * program was built without reports. */
-enum tri_status report_check(const char *path, struct tri_error *error);
+/* TRI_BAD_INPUT: this program was built without reports. */
+enum tri_status report_check(struct tri_error *error);
 
-/* Writes it; the file appears when complete. schedule: NULL, or what refined the mesh. Takes a pass or two over all
+/* Writes it into the guarded set (drivers/interrupt.h). schedule: NULL, or what refined the mesh. Takes a pass or two over all
  * triangles. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
-enum tri_status report_write(const char *path, const struct run *run, const struct par_report *schedule, int threads,
-                             struct tri_error *error);
+enum tri_status report_write(const char *path, struct tri_output_set *set, const struct run *run,
+                             const struct par_report *schedule, int threads, struct tri_error *error);
 
 #endif

@@ -6,16 +6,13 @@ static enum tri_status refuse(struct tri_error *error)
     return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--report: this program was built without the library jansson");
 }
 
-enum tri_status report_check(const char *path, struct tri_error *error)
-{
-    (void)path;
-    return refuse(error);
-}
+enum tri_status report_check(struct tri_error *error) { return refuse(error); }
 
-enum tri_status report_write(const char *path, const struct run *run, const struct par_report *schedule, int threads,
-                             struct tri_error *error)
+enum tri_status report_write(const char *path, struct tri_output_set *set, const struct run *run,
+                             const struct par_report *schedule, int threads, struct tri_error *error)
 {
     (void)path;
+    (void)set;
     (void)run;
     (void)schedule;
     (void)threads;

@@ -1,26 +1,38 @@
 /* The stages in their order, and the lines that are printed between them. */
 #include "drivers/run.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "drivers/console.h"
+#include "drivers/estimate.h"
 #include "drivers/help.h"
+#include "drivers/interrupt.h"
 #include "drivers/mesh_files.h"
 #include "drivers/self_check.h"
 #include "drivers/summary.h"
 #include "sched/clock.h"
 #include "triangle/quality.h"
 
+/* What is read: B.poly, B.node and so on. */
+struct names {
+    char *node, *poly, *ele, *area;
+};
+
 /* A run and its clock. */
 struct runner {
     struct run run;
     struct console console;
+    struct names names;
     struct console_series input_warnings;
-    double mark; /* when the stage began */
+    double begin, mark; /* when the run and the stage began */
+    bool built;         /* there is a mesh: what stops now leaves one that is valid */
     struct tri_error *error;
 };
+
+static struct tri_output_set outputs; /* signals look at it */
 
 /* Ends a stage; the next one begins. */
 static void end_stage(struct runner *r, enum run_stage stage)
@@ -68,11 +80,6 @@ static void warn_of_input(void *user, const char *file, long line, const char *t
         console_warn(&r->console, "%s:%ld: %s.\n", file, line, text);
 }
 
-/* What the functions below read: B.poly, B.node and so on. */
-struct names {
-    char *node, *poly, *ele, *area;
-};
-
 static void free_names(struct names *names)
 {
     free(names->node);
@@ -86,7 +93,6 @@ static enum tri_status make_names(struct names *names, const char *stem, struct 
     *names = (struct names){joined(stem, ".node"), joined(stem, ".poly"), joined(stem, ".ele"), joined(stem, ".area")};
     if (names->node && names->poly && names->ele && names->area)
         return TRI_OK;
-    free_names(names);
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
 }
 
@@ -125,16 +131,13 @@ static enum tri_status read_input(struct runner *r)
                                        .want_regions = tri_switches_use_regions(s),
                                        .refining = s->mesh,
                                        .executor = r->run.hooks->executor,
+                                       .stop = interrupt_stop(),
                                        .warn = warn_of_input,
                                        .warn_user = r};
-    struct names names;
-    enum tri_status status = make_names(&names, r->run.arguments->input, r->error);
-    if (status)
-        return status;
-    status = read_pslg(r, &names, &options);
+    interrupt_stage("reading");
+    enum tri_status status = read_pslg(r, &r->names, &options);
     if (!status && s->mesh)
-        status = read_mesh(r, &names, &options);
-    free_names(&names);
+        status = read_mesh(r, &r->names, &options);
     console_series_end(&r->console, &r->input_warnings, "of this kind");
     end_stage(r, RUN_READ);
     return status;
@@ -162,15 +165,18 @@ static void follow_stage(void *user, enum tri_stage begins)
     const struct tri_switches *s = &r->run.arguments->switches;
     switch (begins) {
     case TRI_STAGE_DELAUNAY:
+        interrupt_stage("building the Delaunay triangulation");
         console_say(&r->console, "Building the Delaunay triangulation by incremental insertion.\n");
         break;
     case TRI_STAGE_SEGMENTS:
         end_stage(r, RUN_DELAUNAY);
         say_milliseconds(r, "Delaunay", r->run.seconds[RUN_DELAUNAY]);
+        interrupt_stage("recovering segments");
         if (s->segments)
             console_say(&r->console, "Recovering segments.\n");
         break;
     case TRI_STAGE_HOLES:
+        interrupt_stage("removing holes");
         end_stage(r, RUN_SEGMENTS);
         if (s->segments || s->keep_hull)
             say_milliseconds(r, "Segment", r->run.seconds[RUN_SEGMENTS]);
@@ -192,6 +198,7 @@ static enum tri_status triangulate(struct runner *r)
     options.stage_user = r;
     options.leave_sorted = run->options.refine; /* which restores the order */
     options.executor = run->hooks->executor;
+    options.stop = interrupt_stop();
     enum tri_status status = tri_generate(&run->mesh, &run->pslg, &options, &run->report, r->error);
     end_stage(r, RUN_HOLES);
     if (status)
@@ -220,7 +227,9 @@ static enum tri_status reconstruct(struct runner *r)
         return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)run->pslg.n_segments);
     struct tri_reconstruct_options options = {.use_segments = run->arguments->switches.segments,
                                               .refine = run->options.refine, .base = run->base,
+                                              .stop = interrupt_stop(),
                                               .is_edge = run->is_edge};
+    interrupt_stage("rebuilding the mesh");
     console_say(&r->console, "Rebuilding the mesh from its triangles.\n");
     enum tri_status status = tri_reconstruct(&run->mesh, &run->pslg, &run->elements, &options, r->error);
     end_stage(r, RUN_DELAUNAY);
@@ -237,7 +246,15 @@ static enum tri_status reconstruct(struct runner *r)
 /* The input as a mesh that keeps no bounds yet. */
 static enum tri_status build(struct runner *r)
 {
-    return r->run.arguments->switches.mesh ? reconstruct(r) : triangulate(r);
+    enum tri_status status = r->run.arguments->switches.mesh ? reconstruct(r) : triangulate(r);
+    r->built = !status;
+    return status;
+}
+
+/* A stop that nobody has noticed counts as one up to here. */
+static enum tri_status notice_stop(struct runner *r, enum tri_status status)
+{
+    return !status && tri_stop_is_asked(interrupt_stop()) ? tri_fail_stopped(r->error) : status;
 }
 
 static enum tri_status refine(struct runner *r)
@@ -246,20 +263,68 @@ static enum tri_status refine(struct runner *r)
     const struct tri_refine_options *quality = &run->options.quality;
     struct tri_refine_report *report = &run->report.quality;
     if (!run->options.refine)
-        return TRI_OK;
+        return notice_stop(r, TRI_OK);
     console_say(&r->console, "Adding vertices until the bounds are kept.\n");
+    interrupt_stage("refining");
     enum tri_status status = run->hooks->refine
                                  ? run->hooks->refine(run->hooks->user, &run->mesh, quality, report, r->error)
                                  : tri_refine(&run->mesh, quality, report, r->error);
-    status = status ? status : tri_restore_points(&run->mesh, run->hooks->executor, r->error);
-    end_stage(r, RUN_QUALITY);
-    if (status)
-        return status;
+    return notice_stop(r, status);
+}
+
+static void tell_of_quality(struct runner *r)
+{
+    struct run *run = &r->run;
+    const struct tri_refine_report *report = &run->report.quality;
+    if (!run->options.refine)
+        return;
     say_milliseconds(r, "Quality", run->seconds[RUN_QUALITY]);
-    if (report->hit_limit && quality->conforming)
+    if (report->hit_limit && run->options.quality.conforming)
         console_warn(&r->console, "the limit of -S was reached before the mesh was conforming.\n");
     if (!r->console.quiet) /* a pass over all triangles */
-        summary_bounds(&r->console, &run->mesh, quality, report, run->hooks->executor);
+        summary_bounds(&r->console, &run->mesh, &run->options.quality, report, run->hooks->executor);
+}
+
+/* --- a run that is stopped */
+
+/* Triangles below the bounds, where counting them takes no time to speak of; else -1. */
+static int64_t count_bad(const struct runner *r)
+{
+    enum { SOON_COUNTED = 1 << 24 };
+    const struct run *run = &r->run;
+    int64_t count[TRI_EXCUSES], sum = 0;
+    if (!run->options.refine || run->mesh.n_slots > SOON_COUNTED)
+        return -1;
+    tri_count_bad(&run->mesh, &run->options.quality, &run->report.quality, run->hooks->executor, count);
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        sum += count[k];
+    return sum;
+}
+
+/* One line: by what, when, where, how far. */
+static void tell_of_stop(struct runner *r, bool partial)
+{
+    struct tri_error line = {.status = TRI_STOPPED};
+    char far[160] = "";
+    int64_t bad = r->built ? count_bad(r) : -1;
+    int length = r->built ? snprintf(far, sizeof far, ": %ld triangles", (long)r->run.mesh.n_slots) : 0;
+    if (bad >= 0)
+        snprintf(far + length, sizeof far - (size_t)length, ", %" PRId64 " of them below the bounds", bad);
+    tri_fail(&line, TRI_STOPPED, NULL, 0, "stopped by %s after %.1f s while %s%s; %s", interrupt_cause(),
+             par_seconds() - r->begin, interrupt_stage_now(), far,
+             partial ? "the mesh so far is written" : "nothing was written");
+    console_error(&r->console, &line);
+}
+
+/* After a stop: is there a mesh, and is it wanted? Then on with it. */
+static enum tri_status keep_partial(struct runner *r, enum tri_status status)
+{
+    if (status != TRI_STOPPED || !r->built || !r->run.hooks->limits.write_partial)
+        return status;
+    tell_of_stop(r, true);
+    r->run.stopped = interrupt_cause();
+    r->run.mesh.stop = NULL;
+    interrupt_go_on();
     return TRI_OK;
 }
 
@@ -272,14 +337,14 @@ static void tell_of_input(const struct runner *r)
 
 /* --- output */
 
-static enum tri_status write_output(struct runner *r, const struct mesh_files *files)
+static enum tri_status write_mesh(struct runner *r, const struct mesh_files *files)
 {
     struct run *run = &r->run;
     if (run->arguments->switches.second_order)
         console_say(&r->console, "Adding nodes amid edges.\n");
     console_say(&r->console, "\n");
     r->mark = par_seconds();
-    enum tri_status status = mesh_files_write(files, r->error);
+    enum tri_status status = mesh_files_write(files, &outputs, r->error);
     end_stage(r, RUN_WRITE);
     if (status)
         return status;
@@ -288,12 +353,12 @@ static enum tri_status write_output(struct runner *r, const struct mesh_files *f
     return TRI_OK;
 }
 
-static enum tri_status tell(struct runner *r, double begin)
+static enum tri_status tell(struct runner *r)
 {
     struct run *run = &r->run;
     const struct tri_switches *s = &run->arguments->switches;
     enum tri_status status = tri_count_mesh(&run->counts, &run->mesh, r->error);
-    run->total_seconds = par_seconds() - begin;
+    run->total_seconds = par_seconds() - r->begin;
     if (status)
         return status;
     say_milliseconds(r, "Total running", run->total_seconds);
@@ -302,35 +367,127 @@ static enum tri_status tell(struct runner *r, double begin)
     summary_counts(&r->console, s, &run->pslg, run->elements.n, &run->counts);
     if (s->verbosity > 0)
         summary_shapes(&r->console, &run->mesh, &run->report, run->hooks->executor);
-    if (s->check)
-        status = self_check(&r->console, s, &run->mesh, run->base, r->error);
-    if (!status && run->hooks->done)
-        status = run->hooks->done(run->hooks->user, run, r->error);
+    return s->check ? self_check(&r->console, s, &run->mesh, run->base, r->error) : TRI_OK;
+}
+
+static enum tri_status write_all(struct runner *r, const struct mesh_files *files)
+{
+    const struct run_hooks *hooks = r->run.hooks;
+    enum tri_status status = write_mesh(r, files);
+    status = status ? status : tell(r);
+    if (!status && hooks->write)
+        status = hooks->write(hooks->user, &r->run, &outputs, r->error);
+    return status ? status : console_flush(r->error);
+}
+
+/* Whatever can fail comes before the commit, what is printed included. */
+static enum tri_status write_output(struct runner *r, const struct mesh_files *files)
+{
+    interrupt_stage("writing");
+    interrupt_begin(&outputs);
+    if (r->run.hooks->limits.write_partial) /* a mesh that is there is written */
+        outputs.stop = NULL;
+    enum tri_status status = write_all(r, files);
+    if (!status)
+        return interrupt_commit(&outputs, r->error);
+    interrupt_drop(&outputs);
     return status;
 }
 
 /* --- all together */
 
+/* Does each file have a place of its own? */
+static enum tri_status check_files(const struct runner *r, const struct mesh_files *files)
+{
+    const struct run *run = &r->run;
+    const struct tri_switches *s = &run->arguments->switches;
+    struct file_names read = {0};
+    if (s->segments)
+        read.name[read.n++] = r->names.poly;
+    if (!run->points_in_poly)
+        read.name[read.n++] = r->names.node;
+    if (s->mesh)
+        read.name[read.n++] = r->names.ele;
+    if (s->mesh && s->area_lists)
+        read.name[read.n++] = r->names.area;
+    return mesh_files_check(files, &run->hooks->further, &read, r->error);
+}
+
+/* Refuses what cannot be before it costs time. */
+static enum tri_status look_ahead(struct runner *r)
+{
+    struct estimate estimate = estimate_make(&r->run, false);
+    return r->run.options.refine ? estimate_check(&estimate, r->error) : TRI_OK;
+}
+
+static enum tri_status make_mesh(struct runner *r)
+{
+    struct run *run = &r->run;
+    enum tri_status status = build(r);
+    status = status ? status : look_ahead(r);
+    status = status ? status : refine(r);
+    status = keep_partial(r, status);
+    if (!status && run->options.refine)
+        status = tri_restore_points(&run->mesh, run->hooks->executor, r->error);
+    end_stage(r, RUN_QUALITY);
+    if (status)
+        return status;
+    tell_of_quality(r);
+    tell_of_input(r);
+    tri_mesh_compact(&run->mesh);
+    return TRI_OK;
+}
+
+/* A dry run ends here, and says where the true one would be refused. */
+static enum tri_status print_estimate(struct runner *r)
+{
+    enum tri_status status = build(r);
+    if (status)
+        return status;
+    struct estimate estimate = estimate_make(&r->run, true);
+    estimate_print(&estimate, &r->run);
+    return r->run.options.refine ? estimate_check(&estimate, r->error) : TRI_OK;
+}
+
 static enum tri_status run_stages(struct runner *r)
 {
     struct run *run = &r->run;
-    double begin = r->mark = par_seconds();
     enum tri_status status = check_switches(r);
+    status = status ? status : make_names(&r->names, run->arguments->input, r->error);
     status = status ? status : read_input(r);
     if (status)
         return status;
     struct mesh_files files = {run->arguments, &r->console, run->hooks->executor, &run->mesh, &run->pslg,
                                run->points_in_poly, run->base, &run->elements, NULL};
-    status = mesh_files_check(&files, r->error);
-    status = status ? status : build(r);
-    status = status ? status : refine(r);
-    if (status)
-        return status;
-    tell_of_input(r);
-    tri_mesh_compact(&run->mesh);
+    if (run->hooks->limits.dry_run)
+        return print_estimate(r);
+    status = check_files(r, &files);
+    status = status ? status : make_mesh(r);
     files.is_edge = run->is_edge;
-    status = write_output(r, &files);
-    return status ? status : tell(r, begin);
+    return status ? status : write_output(r, &files);
+}
+
+static enum tri_status run_file(struct runner *r)
+{
+    const struct run_limits *limits = &r->run.hooks->limits;
+    r->begin = r->mark = par_seconds();
+    if (!interrupt_start(r->run.hooks->program, limits->seconds, limits->write_partial))
+        return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "the system has no timer left");
+    enum tri_status status = run_stages(r);
+    if (status == TRI_STOPPED)
+        tell_of_stop(r, false);
+    else if (status)
+        console_error(&r->console, r->error);
+    return status;
+}
+
+static void free_run(struct runner *r)
+{
+    tri_mesh_free(&r->run.mesh);
+    tri_pslg_free(&r->run.pslg);
+    tri_elements_free(&r->run.elements);
+    free(r->run.is_edge);
+    free_names(&r->names);
 }
 
 int run_arguments(const struct arguments *arguments, const struct run_hooks *hooks)
@@ -345,13 +502,10 @@ int run_arguments(const struct arguments *arguments, const struct run_hooks *hoo
     else if (!arguments->file)
         help_usage(hooks->program);
     else
-        status = run_stages(&r);
-    if (status)
-        console_error(&r.console, &error);
-    tri_mesh_free(&r.run.mesh);
-    tri_pslg_free(&r.run.pslg);
-    tri_elements_free(&r.run.elements);
-    free(r.run.is_edge);
+        status = run_file(&r);
+    free_run(&r);
+    if (status == TRI_STOPPED || (!status && r.run.stopped))
+        return interrupt_code();
     return console_close(&r.console) && !status ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 

@@ -7,6 +7,7 @@
 #define DRIVERS_RUN_H
 
 #include "drivers/arguments.h"
+#include "drivers/mesh_files.h"
 #include "triangle/executor.h"
 #include "triangle/read.h"
 #include "triangle/stats.h"
@@ -38,6 +39,14 @@ struct run {
     struct tri_counts counts;
     double seconds[RUN_STAGES];
     double total_seconds;
+    const char *stopped; /* what stopped the run, of which this is the mesh so far: "SIGTERM"; NULL: nothing */
+};
+
+/* What the command line says beyond the switches of Triangle. */
+struct run_limits {
+    double seconds;     /* the run ends after so much time; 0: none */
+    bool write_partial; /* a run that is stopped while it refines writes the valid mesh that it has */
+    bool dry_run;       /* nothing is refined or written: an estimate is printed */
 };
 
 struct run_hooks {
@@ -46,13 +55,21 @@ struct run_hooks {
     /* Refines the mesh as tri_refine does; NULL: tri_refine itself. */
     enum tri_status (*refine)(void *user, struct tri_mesh *mesh, const struct tri_refine_options *options,
                               struct tri_refine_report *report, struct tri_error *error);
-    /* Told when all files are written; NULL: nobody. A failure is an error of the run. */
-    enum tri_status (*done)(void *user, const struct run *run, struct tri_error *error);
+    /* Triangles that the mesh will have, and the share of them by which that may be wrong; NULL: what areas ask for is
+     * all that is known. */
+    double (*estimate)(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *options);
+    int threads;                    /* to refine with, for estimates */
+    struct file_names further;      /* files that are written beside the mesh .. */
+    /* .. by this, into the guarded set of files (drivers/interrupt.h) that holds those of the mesh; NULL: none. */
+    enum tri_status (*write)(void *user, const struct run *run, struct tri_output_set *set, struct tri_error *error);
     void *user;
+    struct run_limits limits;
 };
 
-/* Carries out what the arguments say, after arguments_end. Returns the exit code: 0, or 1 after an error, which has
- * been reported; then no file has been touched. */
+/* Carries out what the arguments say, after arguments_end. Returns the exit code: 0; 1 after an error, which has been
+ * reported; then no file has been touched; after a stop that of interrupt_code: then no file has been touched either,
+ * unless partial meshes are wanted and it says where one is. All files appear together, as the last thing that can
+ * fail. */
 int run_arguments(const struct arguments *arguments, const struct run_hooks *hooks);
 
 /* All of the above for a program without arguments of its own. */

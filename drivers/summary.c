@@ -13,9 +13,6 @@ void summary_segments(const struct console *console, const struct tri_constrain_
     if (report->bent > 0)
         console_warn(console, "segments were led through a vertex that lies nearly on them %" PRId32 " times.\n",
                      report->bent);
-    if (report->lost > 0)
-        console_warn(console, "%" PRId32 " pieces of segments are missing: coordinates are too coarse for them.\n",
-                     report->lost);
 }
 
 void summary_duplicates(const struct console *console, const struct tri_mesh *mesh, const struct tri_pslg *pslg)
@@ -42,22 +39,18 @@ static const char *reason_of(enum tri_excuse excuse, const struct tri_refine_opt
     }
 }
 
-void summary_bounds(const struct console *console, const struct tri_mesh *mesh,
-                    const struct tri_refine_options *options, const struct tri_refine_report *report,
-                    const struct tri_executor *executor)
+static int64_t sum_of(const int64_t count[TRI_EXCUSES])
 {
-    int64_t count[TRI_EXCUSES] = {0}, sum = 0, encroached = options->conforming ? tri_count_encroached(mesh) : 0;
-    if (encroached > 0)
-        console_say(console, "%" PRId64 " subsegment%s a vertex in the diametral circle: features too fine.\n",
-                    encroached, encroached == 1 ? " keeps" : "s keep");
-    tri_count_bad(mesh, options, report, executor, count);
+    int64_t sum = 0;
     for (int k = 0; k < TRI_EXCUSES; k++)
         sum += count[k];
-    if (sum == 0) {
-        console_say(console, "All triangles keep the bounds.\n");
-        return;
-    }
-    console_say(console, "%" PRId64 " triangle%s below the bounds:", sum, sum == 1 ? " stays" : "s stay");
+    return sum;
+}
+
+/* The rest of a line: how many for each reason. Nothing where there are none. */
+static void say_reasons(const struct console *console, const int64_t count[TRI_EXCUSES],
+                        const struct tri_refine_options *options, const struct tri_refine_report *report)
+{
     const char *comma = "";
     for (int k = 0; k < TRI_EXCUSES; k++) {
         if (count[k] == 0)
@@ -65,7 +58,30 @@ void summary_bounds(const struct console *console, const struct tri_mesh *mesh,
         console_say(console, "%s %" PRId64 " %s", comma, count[k], reason_of((enum tri_excuse)k, options, report));
         comma = ",";
     }
-    console_say(console, ".\n");
+    if (*comma)
+        console_say(console, ".\n");
+}
+
+void summary_bounds(const struct console *console, const struct tri_mesh *mesh,
+                    const struct tri_refine_options *options, const struct tri_refine_report *report,
+                    const struct tri_executor *executor)
+{
+    int64_t count[TRI_EXCUSES];
+    if (options->conforming) {
+        tri_count_encroached(mesh, options, report, count);
+        int64_t n = sum_of(count);
+        if (n > 0)
+            console_say(console, "%" PRId64 " subsegment%s a vertex in the diametral circle:", n,
+                        n == 1 ? " keeps" : "s keep");
+        say_reasons(console, count, options, report);
+    }
+    tri_count_bad(mesh, options, report, executor, count);
+    int64_t n = sum_of(count);
+    if (n == 0)
+        console_say(console, "All triangles keep the bounds.\n");
+    else
+        console_say(console, "%" PRId64 " triangle%s below the bounds:", n, n == 1 ? " stays" : "s stay");
+    say_reasons(console, count, options, report);
 }
 
 /* --- Statistics */

@@ -8,7 +8,7 @@
 #include "triangle/switches.h"
 #include "triangle/tri.h"
 
-/* What went otherwise than the input asks: crossings, segments bent or lost. */
+/* What went otherwise than the input asks: crossings, segments bent. */
 void summary_segments(const struct console *console, const struct tri_constrain_report *report);
 
 /* A warning for each point that has a twin of lower index. */

@@ -45,6 +45,7 @@ static const char help[] =
     "      --no-markers     do not compare the markers of subsegments\n"
     "      --json           report in JSON on standard output, instead of lines\n"
     "      --quiet          print faults only\n"
+    "      --version, --help\n"
     "\n"
     "Exit code: 0 no fault, 1 faults, 2 wrong usage or unreadable files (vertex numbers in BASE.ele that do not exist\n"
     "are found on reading). Numbers printed count as the files do.\n";
@@ -146,7 +147,7 @@ static enum tri_status parse_neighbors(struct files *f, const struct tri_text *t
 static enum tri_status read_neighbors(struct files *f, const char *path, struct tri_error *error)
 {
     struct tri_text text = {0};
-    enum tri_status status = tri_text_load(&text, path, 0, NULL, error);
+    enum tri_status status = tri_text_load(&text, path, 0, NULL, NULL, error);
     if (status == TRI_OK)
         status = parse_neighbors(f, &text, error);
     tri_text_free(&text);
@@ -328,7 +329,7 @@ static void print_json(const struct settings *s, const struct files *f, const st
 
 /* --- arguments */
 
-enum long_option { NO_DELAUNAY = 256, SMALL_INPUT_ANGLE, KEEP_HOLES, NO_MARKERS, JSON, QUIET, HELP };
+enum long_option { NO_DELAUNAY = 256, SMALL_INPUT_ANGLE, KEEP_HOLES, NO_MARKERS, JSON, QUIET, VERSION, HELP };
 
 static const struct option long_options[] = {
     {"poly", required_argument, NULL, 'p'},
@@ -345,6 +346,7 @@ static const struct option long_options[] = {
     {"no-markers", no_argument, NULL, NO_MARKERS},
     {"json", no_argument, NULL, JSON},
     {"quiet", no_argument, NULL, QUIET},
+    {"version", no_argument, NULL, VERSION},
     {"help", no_argument, NULL, HELP},
     {NULL, 0, NULL, 0},
 };
@@ -416,9 +418,9 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
 {
     int option;
     while ((option = getopt_long(argc, argv, "p:q:b:a:Dcjr", long_options, NULL)) != -1) {
-        if (option == HELP) {
-            fputs(usage, stdout);
-            fputs(help, stdout);
+        if (option == HELP || option == VERSION) {
+            fputs(option == HELP ? usage : "trianglecheck " PTRIANGLE_VERSION "\n", stdout);
+            fputs(option == HELP ? help : "", stdout);
             return -1;
         }
         if (option == '?') {

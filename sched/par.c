@@ -6,15 +6,11 @@
 
 #include <assert.h>
 #include <stdlib.h>
-#ifdef _OPENMP
-#include <omp.h>
-#include <stdatomic.h>
-#include <unistd.h>
-#endif
 
 #include "sched/clock.h"
 #include "sched/phase.h"
 #include "sched/theory.h"
+#include "sched/threads.h"
 #include "triangle/criterion.h"
 #include "triangle/numbering.h"
 #include "triangle/quality.h"
@@ -47,26 +43,9 @@ int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mes
     return TRI_NONE;
 }
 
-/* As many as asked for; else what OpenMP would use. A forked child has lost the threads that libgomp still counts
- * on, and would wait for them for ever: it works alone. That needs to be known process-wide, the one thing here that
- * is. */
-static int threads_for(int asked)
-{
-#ifdef _OPENMP
-    static _Atomic(long) first_process;
-    long none = 0, self = (long)getpid();
-    if (!atomic_compare_exchange_strong(&first_process, &none, self) && none != self)
-        return 1;
-    return asked > 0 ? asked : omp_get_max_threads();
-#else
-    (void)asked;
-    return 1;
-#endif
-}
-
 static void run_in_parallel(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
 {
-    int threads = threads_for(*(int *)self);
+    int threads = par_threads_wanted(*(int *)self);
     threads = n_tasks < (size_t)threads ? (int)n_tasks : threads;
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
     for (size_t i = 0; i < n_tasks; i++)
@@ -373,7 +352,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
                            const struct par_options *options, struct par_report *report, struct tri_error *error)
 {
     double began = par_seconds();
-    *report = (struct par_report){.threads = threads_for(options->threads)};
+    *report = (struct par_report){.threads = par_threads(options->threads, false)};
     struct par_state state = {.mesh = mesh, .options = options, .threads = report->threads, .report = report,
                               .n_kept = mesh->n_vertices};
     struct tri_refine_options usual = *quality;

@@ -12,6 +12,10 @@
 #include "triangle/executor.h"
 #include "triangle/tri.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { PAR_NUMBERING = PAR_COLOURS + 1 }; /* told as a phase, see progress */
 
 struct par_options {
@@ -83,5 +87,9 @@ void par_report_free(struct par_report *report);
 
 /* An executor that runs tasks on this many threads (<= 0: what OpenMP would use); it lives as long as *threads. */
 struct tri_executor par_executor(int *threads);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

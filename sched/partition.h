@@ -22,6 +22,10 @@
 #include "triangle/cavity.h"
 #include "triangle/refine.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { PAR_COLOURS = 4 };
 
 struct par_partition {
@@ -70,5 +74,9 @@ int32_t par_owner_of(const struct par_partition *partition, int colour, const st
 
 /* The smaller side of the cell that holds q. O(log blocks). */
 double par_cell_size(const struct par_partition *partition, struct tri_point q);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -422,7 +422,9 @@ enum tri_status par_phase(struct par_state *state, const struct par_partition *p
     p.work = malloc(n * sizeof *p.work);
     p.seeds = malloc(n * sizeof *p.seeds);
     enum tri_status status = TRI_OK;
-    if (!p.block_of || !p.work || !p.seeds)
+    if (tri_stop_is_asked(state->mesh->stop))
+        status = tri_fail_stopped(error);
+    else if (!p.block_of || !p.work || !p.seeds)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the seeds of a phase");
     else
         status = run_phase(&p, error);

@@ -4,6 +4,7 @@
 #include "triangle/triangle.h"
 
 #include "sched/par.h"
+#include "sched/threads.h"
 #include "triangle/io.h"
 
 static enum tri_status refine(const struct triangulate_options *options, struct tri_mesh *mesh,
@@ -23,7 +24,7 @@ static enum tri_status refine(const struct triangulate_options *options, struct 
 int triangulate_with(const char *switches, const struct triangulateio *in, struct triangulateio *out,
                      struct triangulateio *vorout, const struct triangulate_options *options)
 {
-    int threads = options ? options->threads : 0;
+    int threads = par_threads(options ? options->threads : 0, false);
     const struct tri_executor executor = par_executor(&threads);
     return tri_io_triangulate(switches, in, out, vorout, options, refine, &executor);
 }

@@ -1,6 +1,7 @@
 /* The functions that --wrap puts in place of the allocator. */
 #include "allocations.h"
 
+#include <errno.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -19,7 +20,10 @@ atomic_bool support_fail_ever_after;
 static bool must_fail(void)
 {
     long long call = atomic_fetch_add(&support_calls, 1) + 1;
-    return support_fail_ever_after ? call >= support_fail_at : call == support_fail_at;
+    bool fails = support_fail_ever_after ? call >= support_fail_at : call == support_fail_at;
+    if (fails)
+        errno = ENOMEM;
+    return fails;
 }
 
 void *__wrap_malloc(size_t bytes)

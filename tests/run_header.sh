@@ -1,6 +1,7 @@
 #!/bin/sh
 # Compiles triangle/triangle.h in every way that clients of Triangle are known to include theirs: alone, twice, within a
-# namespace, within extern "C", with and without their macros, in old and new dialects of C and C++.
+# namespace, within extern "C", with and without their macros, in old and new dialects of C and C++. Then the other
+# public headers in C++.
 # Usage: run_header.sh SOURCE_ROOT WORK_DIR C_COMPILER CXX_COMPILER
 set -u
 root=$1
@@ -67,7 +68,17 @@ in_cxx() {
 client '' double '#include "triangle.h"'
 in_c yes
 in_cxx yes
-client '' REAL '#include <triangle.h>'
+client '' TRI_REAL '#include <triangle.h>'
+in_c yes
+in_cxx yes
+client '' double 'double REAL(double x);
+#include "triangle.h"
+double REAL(double x) { return x; }'
+in_c yes
+in_cxx yes
+client '' double '#define TRI_REAL double
+#define REAL TRI_REAL
+#include "triangle.h"'
 in_c yes
 in_cxx yes
 client '' double '#include "triangle.h"
@@ -142,6 +153,22 @@ client '' double '#define SINGLE
 #include "triangle.h"'
 in_c no
 in_cxx no
+
+# The library's own headers, in a C++ client that takes no warning.
+for header in $(sed -n '/PTRIANGLE_PUBLIC_HEADERS/,/)/s/^ *\([a-z]*\/[a-z_]*\.h\).*/\1/p' "$root/cmake/sources.cmake"); do
+    printf '#include "%s"\nint main() { return 0; }\n' "$header" >client.cpp
+    for std in c++11 c++14 c++17 c++20; do
+        try yes client.cpp "$cxx" -I "$root" -std=$std -Wconversion
+    done
+    public=yes
+done
+[ "${public:-}" = yes ] || { echo "header: no public headers found"; failed=1; }
+# What they declare has C linkage.
+printf '#include "sched/par.h"\nint main() { par_report_free(0); struct tri_mesh m; tri_mesh_free(&m); }\n' >client.cpp
+"$cxx" -I "$root" -std=c++11 -c client.cpp -o object.o && nm object.o >names.txt
+for name in par_report_free tri_mesh_free; do
+    grep -q " U _*$name\$" names.txt || { echo "header: $name has C++ linkage"; failed=$((failed + 1)); }
+done
 
 echo "header: $count compilations, $failed wrong"
 [ "$failed" -eq 0 ]

@@ -217,6 +217,36 @@ static void test_hole_points_in_odd_places(void **state)
     }
 }
 
+/* Far away is outside, however far: there holes and regions change nothing, whatever size the figure has. */
+static void test_far_places_are_outside(void **state)
+{
+    (void)state;
+    const struct tri_carve_options options = {.spread_regions = true};
+    const struct tri_check_options judged = {0};
+    for (int size = -300; size <= 300; size += 50)
+        for (int far = size + 1; far <= 308; far += 7) {
+            struct tri_pslg pslg = support_square(1, 5, 3);
+            double scale = pow(10, size), x = pow(10, far);
+            for (int32_t i = 0; i < 2 * pslg.n_points; i++)
+                pslg.points[i] *= scale;
+            const double holes[] = {x, 1.7 * x, -x, 0}, regions[] = {x, x, 7, -1, 0, -x, 7, -1};
+            memcpy(pslg.holes, holes, sizeof holes);
+            memcpy(pslg.regions, regions, sizeof regions);
+            pslg.n_holes = pslg.n_regions = 2;
+            struct tri_constrain_report report;
+            struct tri_mesh mesh = support_constrained(&pslg, &report);
+            int32_t n = mesh.n_slots;
+            assert_int_equal(tri_carve(&mesh, &pslg, &options, NULL), TRI_OK);
+            assert_int_equal(mesh.n_slots, n);
+            for (int32_t t = 0; t < n; t++)
+                assert_int_equal(mesh.tri[t].region, 0);
+            tri_mark_boundary(&mesh);
+            support_judge(&mesh, &pslg, &judged, false, NULL);
+            tri_mesh_free(&mesh);
+            tri_pslg_free(&pslg);
+        }
+}
+
 static void test_boundary_markers(void **state)
 {
     (void)state;
@@ -255,6 +285,7 @@ int main(void)
         cmocka_unit_test(test_polygons_equal_naive_twin),
         cmocka_unit_test(test_nested_rings),
         cmocka_unit_test(test_hole_points_in_odd_places),
+        cmocka_unit_test(test_far_places_are_outside),
         cmocka_unit_test(test_boundary_markers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -332,6 +332,24 @@ static void test_a_vertex_is_refused(void **state)
     tri_cavity_free(&cavity);
 }
 
+/* The circumcentre of a flat triangle may be anywhere; no predicate is asked about it. */
+static void test_a_point_out_of_range_is_outside(void **state)
+{
+    (void)state;
+    static const double far[] = {0x1.0000000000001p200, 1e300, INFINITY, NAN};
+    struct tri_pslg pslg = support_square(1, 10, 1);
+    struct tri_constrain_report report;
+    struct tri_mesh mesh = support_constrained(&pslg, &report);
+    struct tri_cavity cavity = {0};
+    for (size_t i = 0; i < sizeof far / sizeof *far; i++) {
+        assert_int_equal(tri_cavity_search(&cavity, &mesh, (struct tri_point){far[i], 0.5}, 0), TRI_SEARCH_OUTSIDE);
+        assert_int_equal(tri_cavity_search(&cavity, &mesh, (struct tri_point){0.5, -far[i]}, 0), TRI_SEARCH_OUTSIDE);
+    }
+    tri_cavity_free(&cavity);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -341,6 +359,7 @@ int main(void)
         cmocka_unit_test(test_split_is_delaunay_where_nothing_rounds),
         cmocka_unit_test(test_fence_stops_exactly_what_it_does_not_own),
         cmocka_unit_test(test_a_vertex_is_refused),
+        cmocka_unit_test(test_a_point_out_of_range_is_outside),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "sched/par.h"
+#define REAL TRI_REAL
 #include "triangle/triangle.h"
 
 static REAL xy[] = {0, 0, 1, 0, 1, 1, 0, 1};

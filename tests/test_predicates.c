@@ -598,13 +598,14 @@ static void test_incircle_ends_of_the_range(void **state)
     }
     assert_false(tri_is_exact_coordinate(step(0x1p-216, -1)) || tri_is_exact_coordinate(-step(0x1p200, 1)));
     assert_false(tri_is_exact_coordinate(NAN));
+    assert_true(TRI_LEAST_COORDINATE == 0x1p-216);
 }
 
 /* Products of lowest bits reach 2^-1072; a filter that let them vanish would call these cocircular. */
 static void test_incircle_least_determinant(void **state)
 {
     (void)state;
-    double u = 0x1p-268, x = 0x1p-216;
+    double u = 0x1p-268, x = 0x1p-216 + 4 * u;
     struct tri_point unit[4] = {{x, x}, {x + u, x}, {x + u, x + u}, {x, x + u}};
     assert_int_equal(check_incircle(unit), 0);
     for (int i = 0; i < 4; i++) {

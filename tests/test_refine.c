@@ -107,33 +107,27 @@ static void test_tangles_are_refined(void **state)
             struct tri_mesh mesh = support_generate(&pslg, &options, &report);
             struct tri_check_options check = {.max_bad = count_bad(&mesh, &options, &report),
                                               .min_angle = options.quality.min_angle, .ignore_lost = true};
+            check.max_area = options.quality.max_area;
             support_judge(&mesh, &pslg, &check, false, NULL);
             tri_mesh_free(&mesh);
             tri_pslg_free(&pslg);
         }
 }
 
-/* -Y with sizes alone: only triangles at the boundary stay too large; a point beside it may be inserted. */
-static void test_sizes_are_kept_away_from_a_protected_boundary(void **state)
+/* -Y and -YY protect segments; sizes are kept all the same, by points inside. */
+static void test_protection_is_no_excuse_for_sizes(void **state)
 {
     (void)state;
-    struct tri_pslg pslg = load("letter.poly");
-    struct tri_options options = support_quality(0, 0.01);
-    options.quality.protect = 1;
-    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    double all = 0, over = 0;
-    for (int32_t t = 0; t < mesh.n_slots; t++) {
-        const int32_t *v = mesh.tri[t].v;
-        struct tri_point a = mesh.xy[v[0]], b = mesh.xy[v[1]], c = mesh.xy[v[2]];
-        double area = 0.5 * ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
-        all += area;
-        over += area > 0.01 ? area : 0;
+    for (int i = 0; i < 4; i++) {
+        struct tri_pslg pslg = load("letter.poly");
+        struct tri_options options = support_quality(i % 2 ? 30 : 0, 0.01);
+        options.quality.protect = 1 + i / 2;
+        struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+        struct tri_check_options check = {.max_area = 0.01, .min_angle = 0, .max_bad = -1};
+        support_judge(&mesh, &pslg, &check, false, NULL);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
     }
-    assert_true(over < 0.1 * all);
-    struct tri_check_options check = {.delaunay = TRI_CHECK_CONSTRAINED, .max_bad = -1};
-    support_judge(&mesh, &pslg, &check, false, NULL);
-    tri_mesh_free(&mesh);
-    tri_pslg_free(&pslg);
 }
 
 static void test_coasts_are_refined(void **state)
@@ -231,6 +225,7 @@ static void test_protected_subsegments_stay(void **state)
             options.quality.protect = protect;
             struct tri_mesh mesh = support_generate(&pslg, &options, &report);
             struct tri_check_options check = {.max_bad = mesh.n_slots, .min_angle = 25, .ignore_lost = true};
+            check.max_area = area;
             support_judge(&mesh, &pslg, &check, false, NULL);
             for (int32_t s = 0; s < mesh.n_subs; s++) {
                 const struct tri_parent *parent = &mesh.parents[mesh.sub[s].parent];
@@ -753,7 +748,7 @@ int main(void)
         cmocka_unit_test(test_angle_bounds_are_met),
         cmocka_unit_test(test_area_bounds_are_met),
         cmocka_unit_test(test_tangles_are_refined),
-        cmocka_unit_test(test_sizes_are_kept_away_from_a_protected_boundary),
+        cmocka_unit_test(test_protection_is_no_excuse_for_sizes),
         cmocka_unit_test(test_coasts_are_refined),
         cmocka_unit_test(test_region_areas),
         cmocka_unit_test(test_user_size_test),

@@ -3,6 +3,7 @@
  * Structs are poisoned before they are used: what must not be read would be followed into nowhere, what must not be
  * written would differ. The program is built once for libtriangle.a and once for libptriangle.a, and linked with --wrap
  * for malloc, calloc, realloc and free (allocations.h). */
+#define REAL TRI_REAL
 #include "triangle/triangle.h"
 
 #include <locale.h>
@@ -608,7 +609,15 @@ static void listen(void *user, int is_error, const char *text)
     snprintf(told->text, sizeof told->text, "%s", text);
 }
 
-/* The call fails with one message, and changes nothing. */
+/* What an error leaves of a struct: all but the counts. */
+static void clear_counts(struct triangulateio *io)
+{
+    io->numberofpoints = io->numberofpointattributes = io->numberoftriangles = io->numberofcorners = 0;
+    io->numberoftriangleattributes = io->numberofsegments = io->numberofholes = io->numberofregions = 0;
+    io->numberofedges = 0;
+}
+
+/* The call fails with one message, and changes nothing but counts, which become 0. */
 static void assert_fails(const char *switches, const struct triangulateio *in, bool with_vorout, int code,
                          const char *word)
 {
@@ -618,6 +627,9 @@ static void assert_fails(const char *switches, const struct triangulateio *in, b
     prepare(switches, &out, &vorout);
     memcpy(&out_before, &out, sizeof out);
     memcpy(&vorout_before, &vorout, sizeof vorout);
+    clear_counts(&out_before);
+    if (with_vorout)
+        clear_counts(&vorout_before);
     long long held = support_held;
     int got = triangulate_with(switches, in, &out, with_vorout ? &vorout : NULL, &options);
     if (got != code || !strstr(told.text, word))
@@ -696,7 +708,12 @@ static void test_bad_calls(void **state)
     assert_int_equal(triangulate(NULL, &in, &out, NULL), TRIANGULATE_BAD_INPUT);
     assert_int_equal(triangulate("z", NULL, &out, NULL), TRIANGULATE_BAD_INPUT);
     assert_int_equal(triangulate("z", &in, NULL, NULL), TRIANGULATE_BAD_INPUT);
+    clear_counts(&before);
     assert_memory_equal(&out, &before, sizeof out);
+    struct triangulateio both = figure("pz");
+    memcpy(&before, &both, sizeof both);
+    assert_int_equal(triangulate("pa0z", &both, &both, NULL), TRIANGULATE_BAD_INPUT);
+    assert_memory_equal(&both, &before, sizeof both); /* the input is not lost */
     trifree(NULL);
 }
 
@@ -757,6 +774,8 @@ static void test_every_allocation_may_fail(void **state)
                 prepare(all[s], &out, &vorout);
                 memcpy(&out_before, &out, sizeof out);
                 memcpy(&vorout_before, &vorout, sizeof vorout);
+                clear_counts(&out_before);
+                clear_counts(&vorout_before);
                 long long held = support_held;
                 support_calls = 0;
                 support_fail_at = k;

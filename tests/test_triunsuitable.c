@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #define EXTERNAL_TEST
+#define REAL TRI_REAL
 #include "triangle/triangle.h"
 
 static struct {

@@ -216,7 +216,7 @@ static void layout_voronoi_and_off(void **state)
     assert_int_equal(tri_write_off(output, &from_1, 2, square, 2, 3, two_triangles, 5, NULL), TRI_OK);
     assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
     assert_contents(in_directory("a.v.edge"), "2  0\n   1   1  2\n   2   2  -1   -2.5  1\n"
-                                              "OFF\n2  2  5\n 0  0  0\n 10  0  0\n"
+                                              "OFF\n2 2 5\n 0  0  0\n 10  0  0\n"
                                               " 3      0     1     2\n 3      0     2     3\n");
 }
 

@@ -792,6 +792,23 @@ def outline(points):
     return figure(points, [(k, (k + 1) % len(points)) for k in range(len(points))])
 
 
+@case("regress/needles.poly", "five segments that meet at small angles, in a box",
+      "-D: conforming with some 80 triangles; was left with 847 crowded subsegments")
+def needles():
+    return figure(((-1.5, -1.5), (1.5, -1.5), (1.5, 1.5), (-1.5, 1.5), (0, 0), (1, 0), (0.83, 0.0001), (0.47, 0.0002),
+                   (0.91, 0.0012), (0.3, 0.1)),
+                  ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (4, 6), (4, 7), (4, 8), (4, 9)))
+
+
+@case("regress/ulps_apart.poly", "four segments a few units in the last place from one line, in a square",
+      "-a0.0002: no triangle larger; some beside the slivers stayed twice as large")
+def ulps_apart():
+    return figure(((0, 0), (1, 0), (1, 1), (0, 1), (0.24, 0.370000000000003), (0.83, 0.665000000000003),
+                   (0.33, 0.414999999999999), (0.38, 0.440000000000003), (0.21, 0.354999999999997),
+                   (0.24, 0.370000000000002), (0.15, 0.32500000000000195), (0.22, 0.360000000000003)),
+                  ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (6, 7), (8, 9), (10, 11)))
+
+
 @case("regress/outline_repeat.poly", "outline whose last two vertices are the same point (github drufat/triangle issue "
       "70)", "3 triangles; the original crashes now and then")
 def outline_repeat():
@@ -820,6 +837,48 @@ def near_cocircular():
                     (-110.83205604043928, 64.03323632184248), (-127.20394987965459, -14.253249980770189),
                     (61.074962259031416, -112.48932831632469), (127.37846573978545, -12.598669206638515),
                     (127.77010311801033, -7.668164657400608)))
+
+
+QUADRILATERAL = ((0, 0), (1, 0), (1, 1), (0.1, 1.3))
+
+
+def far_places(points, holes, region):
+    poly = outline(points)
+    poly.new_point(0.51 * points[2][0] / 0.93, 0.47 * points[2][1] / 1.11)
+    for x, y in holes:
+        poly.hole(x, y)
+    poly.region(*region, 5)
+    return poly
+
+
+@case("regress/far_hole.poly", "quadrilateral with a hole point at (1e300, 1e300)",
+      "ignores the hole: what is beyond the range of exact arithmetic is outside; once nothing was left")
+def far_hole():
+    poly = outline(QUADRILATERAL)
+    poly.hole(1e300, 1e300)
+    return poly
+
+
+@case("regress/far_places.poly", "holes and a region near the largest double", "ignores them; once exact arithmetic "
+      "overran its arrays")
+def far_places_of_one():
+    return far_places(((0.1, 0.23), (1.07, 0.31), (0.93, 1.11), (0.07, 0.97)),
+                      ((1e300, -1e308), (1.3e308, 1.1e307)), (1e300, 1.1e307))
+
+
+@case("regress/far_places_tiny.poly", "the same of size 1e-301, with holes and a region at 1", "ignores them")
+def far_places_tiny():
+    return far_places(((1e-302, 2.3e-302), (1.07e-301, 3.1e-302), (9.3e-302, 1.11e-301), (7e-303, 9.7e-302)),
+                      ((1.234567, 2.345678), (7.1, -3.3)), (1.234567, -3.3))
+
+
+@case("regress/far_region.poly", "nasty/tiny_scale.poly, its hole beyond the least double, with a region at 10",
+      "ignores the region")
+def far_region():
+    poly = tiny_scale()
+    poly.holes[:] = [(5e-301, 0)]
+    poly.region(10.739473, 0.767105, 1, 23)
+    return poly
 
 
 # --- the coast

@@ -1,10 +1,12 @@
 #!/bin/sh
 # Installs what building needs and this machine lacks, through apt; where there is no apt, says what is needed.
-# Usage: tools/setup.sh [build|tests|ci]
+# Usage: tools/setup.sh [build|tests|ci|ports]
 #   build  C and C++ compiler, make, CMake          (what the programs need), and cairo (for meshplot) and jansson (for
 #          ptriangle --report), which can be done without
 #   tests  and cmocka, GMP, pkg-config              (what tools/test.sh needs)
-#   ci     and clang with its OpenMP library, Python (what .ci/run needs)
+#   ci     and clang with its OpenMP library, its fuzzer and clang-tidy, cppcheck, valgrind, gcovr, Python (what
+#          .ci/run needs)
+#   ports  compilers for other processors and their emulator (what tools/ports.sh needs beside `build`)
 # Works as root or with sudo, asks nothing, and does not touch a machine that has everything.
 set -eu
 wanted=${1:-build}
@@ -34,6 +36,20 @@ openmp_with_clang() {
     return $result
 }
 
+fuzzer_with_clang() {
+    probe=$(mktemp)
+    printf '#include <stddef.h>\nint LLVMFuzzerTestOneInput(const char *a, size_t n) { return a && n > 9; }\n' |
+        clang -fsanitize=fuzzer -x c - -o "$probe"
+    result=$?
+    rm -f "$probe"
+    return $result
+}
+
+# Debian's package of clang's runtime libraries has its version in the name.
+fuzzer_package() {
+    echo "libclang-rt-$(clang --version 2>/dev/null | sed -n 's/.*version \([0-9]*\).*/\1/p' | head -n 1 | grep . || echo 14)-dev"
+}
+
 cmake_is_new_enough() {
     cmake --version | head -n 1 |
         awk '{ split($3, v, "."); exit !(v[1] > 3 || (v[1] == 3 && v[2] >= 22)) }'
@@ -49,6 +65,14 @@ list_missing() {
     need build-essential compilers
     need cmake command -v cmake
     [ "$wanted" = build ] && return
+    if [ "$wanted" = ports ]; then
+        for triplet in aarch64 i686 s390x; do
+            need g++-$triplet-linux-gnu command -v $triplet-linux-gnu-g++
+        done
+        need qemu-user command -v qemu-s390x
+        need python3-venv python3 -c 'import ensurepip, venv'
+        return
+    fi
     need libcmocka-dev links cmocka.h cmocka
     need libgmp-dev links gmp.h gmp
     need pkg-config command -v pkg-config
@@ -56,6 +80,11 @@ list_missing() {
     need clang command -v clang++
     need python3-venv python3 -c 'import ensurepip, venv'
     need libomp-dev openmp_with_clang
+    need "$(fuzzer_package)" fuzzer_with_clang
+    need cppcheck command -v cppcheck
+    need clang-tidy command -v clang-tidy
+    need valgrind command -v valgrind
+    need gcovr command -v gcovr
 }
 
 consequence() { # what a machine without $wished does without
@@ -77,9 +106,9 @@ as_root() {
 apt() { as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@"; }
 
 case $wanted in
-build | tests | ci) ;;
+build | tests | ci | ports) ;;
 *)
-    echo "usage: tools/setup.sh [build|tests|ci]" >&2
+    echo "usage: tools/setup.sh [build|tests|ci|ports]" >&2
     exit 2
     ;;
 esac

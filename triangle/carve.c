@@ -49,12 +49,15 @@ static void kill_concavities(struct flood *f)
                 kill_from(f, t);
 }
 
-/* The triangle that holds q, TRI_NONE outside the hull. A visibility walk over a constrained triangulation may cycle;
- * the edge it tries first turns with the number of steps, and after too many steps every triangle is looked at. */
+/* The triangle that holds q, TRI_NONE outside the hull, as everything out of range is. A visibility walk over a
+ * constrained triangulation may cycle; the edge it tries first turns with the number of steps, and after too many steps
+ * every triangle is looked at. */
 static int32_t locate(struct flood *f, struct tri_point q)
 {
     const struct tri_mesh *mesh = f->mesh;
     int32_t t = f->near;
+    if (!tri_is_in_range(q))
+        return TRI_NONE;
     for (int32_t steps = 0; steps < mesh->n_slots; steps++) {
         const struct tri_triangle *at = &mesh->tri[t];
         int k = 0, e = 0;
@@ -136,9 +139,28 @@ static void mark_vertices(struct tri_mesh *mesh)
                 mesh->vertex_markers[mesh->sub[s].v[k]] = mesh->sub[s].marker;
 }
 
+/* The centroid of a triangle that goes becomes the guard of each of its edges that stays as a part of the boundary: the
+ * three parts of the triangle do not overlap, nor do triangles. */
+static void guard_boundary(const struct flood *f, int32_t t)
+{
+    const struct tri_mesh *mesh = f->mesh;
+    const struct tri_triangle *at = &mesh->tri[t];
+    struct tri_point a = mesh->xy[at->v[0]], b = mesh->xy[at->v[1]], c = mesh->xy[at->v[2]];
+    struct tri_point centroid = {tri_round_coordinate((a.x + b.x + c.x) / 3),
+                                 tri_round_coordinate((a.y + b.y + c.y) / 3)};
+    bool inside = tri_orient2d(a, b, centroid) > 0 && tri_orient2d(b, c, centroid) > 0 &&
+                  tri_orient2d(c, a, centroid) > 0;
+    for (int e = 0; e < 3; e++)
+        if (at->n[e] < 0)
+            mesh->parents[mesh->sub[~at->n[e]].parent].guard = inside ? centroid : mesh->xy[at->v[tri_next[e]]];
+}
+
 static void remove_dead(struct flood *f)
 {
     struct tri_mesh *mesh = f->mesh;
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        if (f->dead[t])
+            guard_boundary(f, t);
     for (int32_t t = 0; t < mesh->n_slots; t++) {
         struct tri_triangle *at = &mesh->tri[t];
         if (!f->dead[t])
@@ -158,9 +180,10 @@ static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, str
 {
     int32_t *start = calloc((size_t)n_segments + 2, sizeof *start), kept = 0;
     struct tri_subsegment *sorted = malloc(((size_t)mesh->n_subs + 1) * sizeof *sorted);
+    struct tri_parent *parents = malloc(((size_t)mesh->n_subs + 1) * sizeof *parents);
     int32_t *segment = malloc(((size_t)mesh->n_subs + 1) * sizeof *segment);
     enum tri_status status = TRI_OK;
-    if (!start || !sorted || !segment) {
+    if (!start || !sorted || !parents || !segment) {
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d subsegments", (int)mesh->n_subs);
         goto done;
     }
@@ -176,11 +199,11 @@ static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, str
         if (mesh->sub[s].side[0] != TRI_NONE || mesh->sub[s].side[1] != TRI_NONE) {
             int32_t at = start[segment[s]]++;
             sorted[at] = mesh->sub[s];
-            sorted[at].parent = segment[s] == n_segments ? TRI_NONE : segment[s];
+            parents[at] = mesh->parents[mesh->sub[s].parent];
         }
     for (int32_t s = 0; s < kept; s++) {
         mesh->sub[s] = sorted[s];
-        mesh->parents[s] = (struct tri_parent){{sorted[s].v[0], sorted[s].v[1]}, sorted[s].parent};
+        mesh->parents[s] = parents[s];
         mesh->sub[s].parent = s;
         for (int side = 0; side < 2; side++)
             if (sorted[s].side[side] != TRI_NONE)
@@ -190,6 +213,7 @@ static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, str
 done:
     free(start);
     free(sorted);
+    free(parents);
     free(segment);
     return status;
 }
@@ -215,8 +239,6 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
     }
     free(f.stack);
     free(f.dead);
-    if (!status) /* each subsegment gets a parent of its own */
-        status = tri_mesh_reserve_subs(mesh, mesh->n_subs, error);
     return status ? status : order_subs(mesh, pslg->n_segments, error);
 }
 

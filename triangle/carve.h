@@ -4,6 +4,10 @@
 
 #include "triangle/mesh.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 struct tri_carve_options {
     bool keep_hull;     /* the convex hull stays whole: its edges count as segments (-c) */
     bool ignore_holes;  /* (-O) */
@@ -20,5 +24,9 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
 
 /* Marker 1 for every boundary subsegment and boundary vertex that has marker 0. */
 void tri_mark_boundary(struct tri_mesh *mesh);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -123,6 +123,8 @@ static bool add_start(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t
 enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p, int32_t t)
 {
     assert(tri_is_live(&mesh->tri[t]));
+    if (!tri_is_in_range(p)) /* the circumcentre of a flat triangle: in the disk, perhaps, but in no figure */
+        return TRI_SEARCH_OUTSIDE;
     if (!begin(c, p) || !add_start(c, mesh, t))
         return TRI_SEARCH_NO_MEMORY;
     if (!owns(c, mesh, t))
@@ -160,8 +162,7 @@ static enum tri_search explore_side(struct tri_cavity *c, const struct tri_mesh 
     for (int k = 0; k < 3; k++)
         r[k] = tri_relative(&mesh->xy[start.v[k]], c->p);
     bool distinct = r[0].l != 0 && r[1].l != 0 && r[2].l != 0;
-    if (!c->flips_follow &&
-        (!distinct || !in_circle(mesh, c->p, start.v[0], start.v[1], start.v[2], r[0], r[1], r[2])))
+    if (!distinct || !in_circle(mesh, c->p, start.v[0], start.v[1], start.v[2], r[0], r[1], r[2]))
         return TRI_SEARCH_OUTSIDE;
     enum tri_search found = explore(c, mesh, start.n[f], start.region, start.v[g], start.v[e], r[g], r[e]);
     if (found != TRI_SEARCH_FOUND)

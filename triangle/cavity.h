@@ -21,6 +21,10 @@
 
 #include "triangle/mesh.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 struct tri_relative {
     double x, y, l; /* from the new point; squared distance to it */
 };
@@ -51,7 +55,6 @@ static inline bool tri_fence_holds(const struct tri_fence *f, struct tri_point q
 struct tri_cavity {
     struct tri_point p;
     const struct tri_fence *fence; /* NULL: everything is owned */
-    bool flips_follow;             /* the caller makes the mesh Delaunay again: see tri_cavity_search_split */
     int32_t n_tri, n_rim, n_wall, capacity;
     int32_t n_left_tri;   /* of a split: triangles left of the subsegment, which come first */
     int32_t region;       /* of the triangle at which the search began */
@@ -78,7 +81,7 @@ enum tri_search tri_cavity_search(struct tri_cavity *cavity, const struct tri_me
 /* The same for a point on (within rounding of) subsegment s, which is to be split there: the chain is the rims left of
  * it from its end to its start, then, where there is a triangle on the right, those right of it from start to end.
  * *n_left receives the number of rims on the left. TRI_SEARCH_OUTSIDE also where p does not see every rim,
- * or where it is not in the disk of a triangle beside s (flatter than rounding) and no flips follow. */
+ * or where it is not in the disk of a triangle beside s (flatter than rounding). */
 enum tri_search tri_cavity_search_split(struct tri_cavity *cavity, const struct tri_mesh *mesh, struct tri_point p,
                                         int32_t s, int32_t *n_left);
 
@@ -93,10 +96,15 @@ int32_t tri_cavity_fill_split(struct tri_cavity *cavity, struct tri_mesh *mesh, 
 static inline struct tri_relative tri_relative(const struct tri_point *q, struct tri_point p)
 {
     double x = q->x - p.x, y = q->y - p.y;
-    return (struct tri_relative){x, y, x * x + y * y};
+    struct tri_relative relative = {x, y, x * x + y * y};
+    return relative;
 }
 
 /* Twice the area of the triangle p, a, b. */
 static inline double tri_cross(struct tri_relative a, struct tri_relative b) { return a.x * b.y - a.y * b.x; }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

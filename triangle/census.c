@@ -2,22 +2,33 @@
 #include <assert.h>
 
 #include "triangle/criterion.h"
+#include "triangle/disk.h"
 #include "triangle/small_angle.h"
+
+/* No mesh has triangles of more than this share of their bounds on average. (Measured: 0.63 to 0.67.) */
+static const double MOST_OVER_BOUND = 0.75;
+
+double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+{
+    const struct tri_criterion c = {.mesh = mesh, .options = options};
+    double triangles = 0;
+    if (!(options->max_area > 0 || options->region_areas))
+        return 0;
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        if (tri_is_live(&mesh->tri[t]))
+            triangles += tri_shape_of(mesh->xy, mesh->tri[t].v).area2 / tri_area2_bound(&c, mesh->tri[t].region);
+    return triangles;
+}
 
 enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                                  struct tri_error *error)
 {
-    const struct tri_criterion c = {.mesh = mesh, .options = options};
-    double triangles = 0;
-    if (options->max_steiner >= 0 || !(options->max_area > 0 || options->region_areas))
-        return TRI_OK;
-    for (int32_t t = 0; t < mesh->n_slots; t++)
-        if (tri_is_live(&mesh->tri[t]))
-            triangles += tri_shape_of(mesh->xy, mesh->tri[t].v).area2 / tri_area2_bound(&c, mesh->tri[t].region);
+    double triangles = options->max_steiner < 0 ? tri_area_demand(mesh, options) / MOST_OVER_BOUND : 0;
     if (triangles <= TRI_MAX_TRIANGLES)
         return TRI_OK;
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
-                    "the area bounds ask for more triangles than the %d that a mesh holds", TRI_MAX_TRIANGLES);
+                    "the area bounds ask for more than %.0f million triangles, and a mesh holds %d million",
+                    1e-6 * triangles, TRI_MAX_TRIANGLES / 1000000);
 }
 
 static bool needs_work(const struct tri_criterion *c, int32_t slot)
@@ -28,8 +39,9 @@ static bool needs_work(const struct tri_criterion *c, int32_t slot)
     struct tri_shape shape = tri_shape_of(c->mesh->xy, t->v);
     if (tri_judge(c, t, &shape) != TRI_GOOD)
         return true;
+    double fraction;
     for (int e = 0; c->options->conforming && e < 3; e++)
-        if (t->n[e] < 0 && tri_is_crowded(c->mesh, &c->mesh->sub[~t->n[e]]))
+        if (t->n[e] < 0 && tri_is_crowded(c->mesh, &c->mesh->sub[~t->n[e]], &fraction))
             return true;
     return false;
 }
@@ -64,6 +76,8 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, int32_t slot, c
                                   enum tri_badness badness, const struct tri_refine_report *report)
 {
     const struct tri_triangle *t = &c->mesh->tri[slot];
+    if (tri_is_too_large(c, t, shape))
+        badness = TRI_BAD_SIZE;
     if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, slot, shape))
         return shape->l[shape->shortest] < c->mesh->shortest2 ? TRI_EXCUSE_PRECISION
                : tri_is_channel(c->mesh, slot, shape)      ? TRI_EXCUSE_CHANNEL
@@ -81,15 +95,33 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, int32_t slot, c
     return protected_more ? TRI_EXCUSE_PROTECTED : TRI_EXCUSE_PRECISION; /* behind a protected one that is far away */
 }
 
-int64_t tri_count_encroached(const struct tri_mesh *mesh)
+static enum tri_excuse excuse_for_circle(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                                         const struct tri_refine_report *report, const struct tri_subsegment *s,
+                                         int32_t code)
 {
-    int64_t n = 0;
+    int32_t apex = mesh->tri[tri_of(code)].v[tri_edge(code)];
+    if (tri_is_protected(options, s))
+        return TRI_EXCUSE_PROTECTED;
+    if (report->hit_limit)
+        return TRI_EXCUSE_LIMIT;
+    if (tri_common_end(mesh, s->parent, apex) != TRI_NONE)
+        return TRI_EXCUSE_INPUT_ANGLE;
+    return tri_is_on_parent(mesh, apex) ? TRI_EXCUSE_CHANNEL : TRI_EXCUSE_PRECISION;
+}
+
+void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                          const struct tri_refine_report *report, int64_t count[TRI_EXCUSES])
+{
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        count[k] = 0;
     for (int32_t s = 0; s < mesh->n_subs; s++) {
         const struct tri_subsegment *sub = &mesh->sub[s];
-        n += (sub->side[0] != TRI_NONE && tri_is_in_diametral_disk(mesh, sub, sub->side[0])) ||
-             (sub->side[1] != TRI_NONE && tri_is_in_diametral_disk(mesh, sub, sub->side[1]));
+        for (int side = 0; side < 2; side++)
+            if (sub->side[side] != TRI_NONE && tri_is_in_diametral_disk(mesh, sub, sub->side[side])) {
+                count[excuse_for_circle(mesh, options, report, sub, sub->side[side])]++;
+                break;
+            }
     }
-    return n;
 }
 
 /* A count of bad triangles, in pieces. */

@@ -81,8 +81,12 @@ void *tri_check_zeros(int64_t n, size_t size)
     return (uint64_t)n >= SIZE_MAX / size ? NULL : calloc((size_t)n + 1, size);
 }
 
-enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id)
+enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id,
+                              double tolerance)
 {
+    at = (struct tri_point){tri_round_coordinate(at.x), tri_round_coordinate(at.y)};
+    if (!tri_is_in_range(at))
+        return TRI_OK; /* outside the mesh, all of which is in range */
     if (c->n_queries == c->query_capacity) {
         if (c->query_capacity > INT32_MAX / 2 - 16)
             return TRI_TOO_LARGE;
@@ -93,7 +97,7 @@ enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_c
         c->queries = queries;
         c->query_capacity = capacity;
     }
-    c->queries[c->n_queries++] = (struct check_query){at, kind, id, false};
+    c->queries[c->n_queries++] = (struct check_query){at, kind, id, tolerance, false};
     return TRI_OK;
 }
 

@@ -43,7 +43,11 @@
 #include "triangle/pslg.h"
 #include "triangle/status.h"
 
-enum { TRI_CHECK_ULPS = 64 };
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { TRI_CHECK_ULPS = 8 };
 
 /* The mesh on trial. Indices from 0; nothing is owned. */
 struct tri_check_mesh {
@@ -134,5 +138,9 @@ bool tri_check_passed(const struct tri_check_report *report);
 
 /* A few words for people, such as "orientation"; a constant string. */
 const char *tri_check_name(enum tri_check_kind kind);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

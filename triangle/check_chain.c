@@ -1,8 +1,10 @@
 /* Input segments as chains of subsegments.
  *
  *   1. From the first end of the input segment, depth first along subsegments whose far end lies on its line within
- *      the tolerance, further on and not beyond the end; the best aligned first. Each vertex is visited once per
- *      segment, for what can be reached from it does not depend on the way there.
+ *      the tolerance, not back and not beyond the end; the best aligned first. Each vertex is visited once per segment,
+ *      for what can be reached from it does not depend on the way there. Where nearly coincident segments leave several
+ *      ways, up to the first fork it is certain which subsegments the input segment runs along; the others it may run
+ *      along, and their markers are right if some choice makes them so.
  *   2. Should the second end not be reached, pieces may have been carved. Then all subsegment vertices on the line are
  *      fetched from a grid and sorted along it; chains are followed from each that lies beyond what is covered so far.
  *   3. Whatever stays uncovered must lie outside the mesh: the sweep is asked about points of it. */
@@ -11,12 +13,14 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "triangle/predicates.h"
+
 enum { MAX_GRID_SIDE = 2048 };
 
 struct line { /* the input segment in question */
-    int32_t id;
+    int32_t id, marker;
     struct tri_point a, b;
-    double dx, dy, length;
+    double dx, dy, length, tolerance;
 };
 
 struct stop {  /* a vertex on the line */
@@ -36,8 +40,10 @@ struct chains {
     uint32_t search;   /* number of the current search */
     uint32_t *seen;    /* [n_points] last search that visited the vertex, 0: none */
     int32_t *via;      /* [n_points] fan entry by which it came there, -1: it began there */
+    uint32_t *forked;  /* [n_points] last search that found several ways on from there */
     int32_t *stack;    /* [2 * n_segments + 1] each subsegment is pushed once from each end at most */
-    int32_t *marker;   /* [n_segments] first non-zero marker of the input segments on a subsegment */
+    int32_t *certain;  /* [n_segments] first input segment with a marker that runs along the subsegment, -1: none */
+    int32_t *possible; /* [n_segments] first one with the subsegment's own marker that may run along it, -1: none */
     struct stop *stop; /* [n_points at most] */
     int32_t n_stops, stop_capacity;
     struct grid grid;
@@ -53,10 +59,10 @@ static double away(const struct line *l, struct tri_point p)
     return fabs((p.x - l->a.x) * l->dy - (p.y - l->a.y) * l->dx) / l->length;
 }
 
-static bool is_on(const struct chains *k, const struct line *l, struct tri_point p)
+static bool is_on(const struct line *l, struct tri_point p)
 {
-    double at = along(l, p), tolerance = k->c->tolerance;
-    return away(l, p) <= tolerance && at >= -tolerance && at <= l->length + tolerance;
+    double at = along(l, p);
+    return away(l, p) <= l->tolerance && at >= -l->tolerance && at <= l->length + l->tolerance;
 }
 
 static int32_t other_end(const struct chains *k, int32_t fan_entry)
@@ -64,17 +70,28 @@ static int32_t other_end(const struct chains *k, int32_t fan_entry)
     return k->c->segments[fan_entry ^ 1];
 }
 
-/* Pushes the ways on from vertex u, the best aligned on top. */
+static void may_run_along(struct chains *k, const struct line *l, int32_t subsegment)
+{
+    const int32_t *given = k->c->mesh->segment_markers;
+    if (given != NULL && l->marker != 0 && l->marker == given[subsegment] && k->possible[subsegment] < 0)
+        k->possible[subsegment] = l->id;
+}
+
+/* Pushes the ways on from vertex u, the best aligned on top. Backwards by less than the tolerance counts as on. */
 static int32_t push_ways(struct chains *k, const struct line *l, int32_t u, int32_t top)
 {
     const struct checker *c = k->c;
     struct tri_point from = check_point(c, u);
     double best = INFINITY;
+    int ways = 0;
     for (int32_t i = c->fan_first[u]; i < c->fan_first[u + 1]; i++) {
         int32_t w = other_end(k, c->fan[i]);
         struct tri_point to = check_point(c, w);
-        bool onward = (to.x - from.x) * l->dx + (to.y - from.y) * l->dy > 0;
-        if (k->seen[w] == k->search || !onward || !is_on(k, l, to))
+        if (c->fan[i] == (k->via[u] ^ 1) || along(l, to) - along(l, from) <= -l->tolerance || !is_on(l, to))
+            continue;
+        may_run_along(k, l, c->fan[i] >> 1);
+        ways++;
+        if (k->seen[w] == k->search)
             continue;
         k->stack[top++] = c->fan[i];
         double off = away(l, to);
@@ -86,20 +103,27 @@ static int32_t push_ways(struct chains *k, const struct line *l, int32_t u, int3
             k->stack[top - 1] = other;
         }
     }
+    if (ways > 1)
+        k->forked[u] = k->search;
     return top;
 }
 
-/* Step 1: from vertex u towards `goal`; returns it, or the vertex furthest on if it is out of reach. */
+/* Step 1: from vertex u towards `goal`, along all ways that there are; returns it, or the vertex furthest on if it is
+ * out of reach. */
 static int32_t follow(struct chains *k, const struct line *l, int32_t u, int32_t goal)
 {
     int32_t top = 0, furthest = u;
+    bool arrived = false;
     k->seen[u] = k->search;
     k->via[u] = -1;
-    while (u != goal) {
-        top = push_ways(k, l, u, top);
+    for (;;) {
+        if (u == goal)
+            arrived = true;
+        else
+            top = push_ways(k, l, u, top);
         do {
             if (top == 0)
-                return furthest;
+                return arrived ? goal : furthest;
             u = other_end(k, k->stack[--top]);
         } while (k->seen[u] == k->search);
         k->seen[u] = k->search;
@@ -107,17 +131,28 @@ static int32_t follow(struct chains *k, const struct line *l, int32_t u, int32_t
         if (along(l, check_point(k->c, u)) > along(l, check_point(k->c, furthest)))
             furthest = u;
     }
-    return goal;
 }
 
-static void mark(struct chains *k, const struct line *l, int32_t u)
+/* Do both ends lie exactly on the line? */
+static bool is_exactly_on(const struct chains *k, const struct line *l, int32_t subsegment)
 {
-    int32_t marker = k->c->input->segment_markers != NULL ? k->c->input->segment_markers[l->id] : 0;
-    for (; marker != 0 && k->via[u] >= 0; u = k->c->segments[k->via[u]]) {
-        int32_t *known = &k->marker[k->via[u] >> 1];
-        if (*known == 0)
-            *known = marker;
-    }
+    struct tri_point a = check_point(k->c, k->c->segments[2 * (size_t)subsegment]);
+    struct tri_point b = check_point(k->c, k->c->segments[2 * (size_t)subsegment + 1]);
+    return tri_orient2d(l->a, l->b, a) == 0 && tri_orient2d(l->a, l->b, b) == 0;
+}
+
+/* The input segment runs along the chain by which the search came to u: for certain up to the first fork, or, where
+ * pieces of it are missing (that the chain is its own is a guess then), where the chain is exactly on its line. */
+static void mark(struct chains *k, const struct line *l, int32_t u, bool whole)
+{
+    const struct checker *c = k->c;
+    int32_t end = u;
+    for (; k->via[u] >= 0; u = c->segments[k->via[u]])
+        if (k->forked[c->segments[k->via[u]]] == k->search)
+            end = c->segments[k->via[u]];
+    for (u = end; l->marker != 0 && k->via[u] >= 0; u = c->segments[k->via[u]])
+        if (k->certain[k->via[u] >> 1] < 0 && (whole || is_exactly_on(k, l, k->via[u] >> 1)))
+            k->certain[k->via[u] >> 1] = l->id;
 }
 
 static int32_t cell_index(double x, double low, double width, int32_t side)
@@ -203,7 +238,7 @@ static enum tri_status add_stops_of_cell(struct chains *k, const struct line *l,
     enum tri_status status = TRI_OK;
     for (int32_t i = k->grid.first[cell]; i < k->grid.first[cell + 1] && status == TRI_OK; i++) {
         struct tri_point p = check_point(k->c, k->grid.vertex[i]);
-        if (is_on(k, l, p))
+        if (is_on(l, p))
             status = add_stop(k, along(l, p), k->grid.vertex[i]);
     }
     return status;
@@ -218,9 +253,9 @@ static double clamp(double x, double low, double high)
 static void rows_of(const struct chains *k, const struct line *l, int32_t column, int32_t *from, int32_t *to)
 {
     const struct grid *g = &k->grid;
-    double margin = k->c->tolerance + 1e-9 * g->height, slope = l->dy / l->dx, y[2] = {l->a.y, l->b.y};
+    double margin = l->tolerance + 1e-9 * g->height, slope = l->dy / l->dx, y[2] = {l->a.y, l->b.y};
     for (int i = 0; i < 2 && fabs(l->dx) > g->width * 1e-3; i++) {
-        double x = g->low.x + (column + i) * g->width + (2 * i - 1) * (k->c->tolerance + 1e-9 * g->width);
+        double x = g->low.x + (column + i) * g->width + (2 * i - 1) * (l->tolerance + 1e-9 * g->width);
         y[i] = clamp(l->a.y + (x - l->a.x) * slope, fmin(l->a.y, l->b.y), fmax(l->a.y, l->b.y));
     }
     *from = cell_index(fmin(y[0], y[1]) - margin, g->low.y, g->height, g->side);
@@ -240,7 +275,7 @@ static enum tri_status find_stops(struct chains *k, const struct line *l)
 {
     const struct grid *g = &k->grid;
     enum tri_status status = g->side == 0 ? make_grid(k) : TRI_OK;
-    double margin = k->c->tolerance + 1e-9 * g->width;
+    double margin = l->tolerance + 1e-9 * g->width;
     int32_t left = cell_index(fmin(l->a.x, l->b.x) - margin, g->low.x, g->width, g->side);
     int32_t right = cell_index(fmax(l->a.x, l->b.x) + margin, g->low.x, g->width, g->side);
     k->n_stops = 0;
@@ -260,12 +295,12 @@ static enum tri_status find_stops(struct chains *k, const struct line *l)
 static enum tri_status ask_about(struct chains *k, const struct line *l, double from, double to)
 {
     enum tri_status status = TRI_OK;
-    if (to - from <= 4 * k->c->tolerance)
+    if (to - from <= 4 * l->tolerance)
         return TRI_OK;
     for (int i = 1; i <= 3 && status == TRI_OK; i++) {
         double s = (from + (to - from) * i / 4) / l->length;
         struct tri_point p = {l->a.x + s * l->dx, l->a.y + s * l->dy};
-        status = tri_check_ask(k->c, p, TRI_CHECK_INPUT_SEGMENTS, l->id);
+        status = tri_check_ask(k->c, p, TRI_CHECK_INPUT_SEGMENTS, l->id, l->tolerance);
     }
     return status;
 }
@@ -278,12 +313,13 @@ static enum tri_status cover(struct chains *k, const struct line *l)
     k->search++;
     for (int32_t i = 0; i < k->n_stops && status == TRI_OK; i++) {
         struct stop s = k->stop[i];
-        if (s.at < covered || k->seen[s.vertex] == k->search)
+        if (k->seen[s.vertex] == k->search)
             continue;
-        status = ask_about(k, l, covered, s.at);
+        if (s.at > covered)
+            status = ask_about(k, l, covered, s.at);
         int32_t end = follow(k, l, s.vertex, TRI_NONE);
-        mark(k, l, end);
-        covered = along(l, check_point(k->c, end));
+        mark(k, l, end, false);
+        covered = fmax(covered, along(l, check_point(k->c, end)));
     }
     return status == TRI_OK ? ask_about(k, l, covered, l->length) : status;
 }
@@ -295,13 +331,15 @@ static enum tri_status check_line(struct chains *k, int32_t id)
     if (a < 0 || a >= input->n_points || b < 0 || b >= input->n_points)
         return TRI_OK; /* skipped by the mesher, too */
     const double *p = input->points + 2 * (size_t)a, *q = input->points + 2 * (size_t)b;
-    struct line l = {id, {p[0], p[1]}, {q[0], q[1]}, q[0] - p[0], q[1] - p[1], hypot(q[0] - p[0], q[1] - p[1])};
+    double largest = fmax(fmax(fabs(p[0]), fabs(p[1])), fmax(fabs(q[0]), fabs(q[1])));
+    struct line l = {id, input->segment_markers != NULL ? input->segment_markers[id] : 0, {p[0], p[1]}, {q[0], q[1]},
+                     q[0] - p[0], q[1] - p[1], hypot(q[0] - p[0], q[1] - p[1]), TRI_CHECK_ULPS * 0x1p-52 * largest};
     if (!(l.length > 0) || !isfinite(l.length))
         return TRI_OK;
     int32_t from = k->c->twin[a], to = k->c->twin[b];
     k->search++;
     if (from >= 0 && to >= 0 && follow(k, &l, from, to) == to) {
-        mark(k, &l, to);
+        mark(k, &l, to, true);
         return TRI_OK;
     }
     return cover(k, &l);
@@ -317,12 +355,13 @@ static void check_markers(struct chains *k)
             continue;
         struct check_edge e = tri_check_find_edge(c, a, b);
         bool boundary = e.there < 0 || e.back < 0;
-        int32_t expected = k->marker[s] != 0 ? k->marker[s] : boundary;
-        if (c->mesh->segment_markers[s] == expected)
+        int32_t given = c->mesh->segment_markers[s], first = k->certain[s], own = k->possible[s];
+        int32_t expected = first >= 0 ? c->input->segment_markers[first] : boundary;
+        if (given == expected || (own >= 0 && (first < 0 || own < first)))
             continue;
         tri_check_fault(c, TRI_CHECK_MARKERS, "subsegment %ld (%ld-%ld) has marker %ld, expected %ld",
                         check_number(c, s),
-                        check_number(c, a), check_number(c, b), (long)c->mesh->segment_markers[s], (long)expected);
+                        check_number(c, a), check_number(c, b), (long)given, (long)expected);
     }
 }
 
@@ -332,10 +371,15 @@ enum tri_status tri_check_chains(struct checker *c)
     k.seen = tri_check_zeros(c->mesh->n_points, sizeof *k.seen);
     k.via = tri_check_array(c->mesh->n_points, sizeof *k.via);
     k.stack = tri_check_array(2 * (int64_t)c->n_segments, sizeof *k.stack);
-    k.marker = tri_check_zeros(c->n_segments, sizeof *k.marker);
+    k.forked = tri_check_zeros(c->mesh->n_points, sizeof *k.forked);
+    k.certain = tri_check_array(c->n_segments, sizeof *k.certain);
+    k.possible = tri_check_array(c->n_segments, sizeof *k.possible);
     enum tri_status status = TRI_OK;
-    if (k.seen == NULL || k.via == NULL || k.stack == NULL || k.marker == NULL)
+    if (k.seen == NULL || k.via == NULL || k.forked == NULL || k.stack == NULL || k.certain == NULL ||
+        k.possible == NULL)
         status = TRI_NO_MEMORY;
+    for (int32_t s = 0; s < c->n_segments && status == TRI_OK; s++)
+        k.certain[s] = k.possible[s] = -1;
     for (int32_t id = 0; id < c->input->n_segments && status == TRI_OK; id++)
         status = check_line(&k, id);
     if (status == TRI_OK && c->mesh->segment_markers != NULL)
@@ -343,7 +387,9 @@ enum tri_status tri_check_chains(struct checker *c)
     free(k.seen);
     free(k.via);
     free(k.stack);
-    free(k.marker);
+    free(k.forked);
+    free(k.certain);
+    free(k.possible);
     free(k.stop);
     free(k.grid.first);
     free(k.grid.vertex);

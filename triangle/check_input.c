@@ -120,8 +120,7 @@ static enum tri_status ask_for_lost(struct checker *c, const struct reference *r
             tri_check_fault(c, TRI_CHECK_HULL, "no triangle uses vertex %ld", check_number(c, v));
         }
         struct tri_point p = point_of(r, v);
-        if (isfinite(p.x) && isfinite(p.y))
-            status = tri_check_ask(c, p, TRI_CHECK_LOST_VERTICES, v);
+        status = tri_check_ask(c, p, TRI_CHECK_LOST_VERTICES, v, 0);
     }
     return status;
 }
@@ -133,8 +132,7 @@ static enum tri_status ask_for_holes(struct checker *c)
     enum tri_status status = TRI_OK;
     for (int32_t i = 0; i < c->input->n_holes && status == TRI_OK; i++) {
         struct tri_point p = {c->input->holes[2 * (size_t)i], c->input->holes[2 * (size_t)i + 1]};
-        if (isfinite(p.x) && isfinite(p.y))
-            status = tri_check_ask(c, p, TRI_CHECK_HOLES, i);
+        status = tri_check_ask(c, p, TRI_CHECK_HOLES, i, 0);
     }
     return status;
 }

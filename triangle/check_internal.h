@@ -19,6 +19,7 @@ struct check_query {
     struct tri_point at;
     enum tri_check_kind kind; /* fault to report if it is inside */
     int32_t id;               /* vertex, input segment or hole */
+    double tolerance;         /* nearer to an edge of the boundary it does not count as inside */
     bool inside;              /* the sweep's answer: it is where it should not be */
 };
 
@@ -89,7 +90,9 @@ void tri_check_begin(struct checker *c, enum tri_check_kind kind);
 __attribute__((format(printf, 3, 4)))
 #endif
 void tri_check_fault(struct checker *c, enum tri_check_kind kind, const char *format, ...);
-enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id);
+/* Asks the sweep whether the point, of any size, finite or not, lies inside the mesh. */
+enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id,
+                              double tolerance);
 
 /* O(smaller number of triangles at a and b). */
 struct check_edge tri_check_find_edge(const struct checker *c, int32_t a, int32_t b);

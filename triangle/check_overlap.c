@@ -146,6 +146,16 @@ static bool insert_starting(struct sweep *w, int32_t n, int32_t below)
     return true;
 }
 
+/* Within a distance of an edge's line? Not of edge -1. */
+static bool is_near(const struct sweep *w, int32_t s, struct tri_point p, double distance)
+{
+    if (s < 0 || !(distance > 0))
+        return false;
+    struct tri_point a = w->edge[s].left, b = w->edge[s].right;
+    double x = b.x - a.x, y = b.y - a.y, det = x * (p.y - a.y) - y * (p.x - a.x);
+    return det * det <= distance * distance * (x * x + y * y);
+}
+
 /* On an edge, a lost vertex is as lost as inside; a hole or what is missing of a segment is where it should be. */
 static void answer(struct sweep *w, int32_t number)
 {
@@ -153,6 +163,8 @@ static void answer(struct sweep *w, int32_t number)
     int32_t below, s = find(w, q->at, &below);
     bool on_edge = s >= 0 && side(w, s, q->at) == 0;
     q->inside = on_edge ? q->kind == TRI_CHECK_LOST_VERTICES : below >= 0 && w->edge[below].above;
+    q->inside = q->inside && !is_near(w, below, q->at, q->tolerance) &&
+                !is_near(w, tri_sweep_order_above(&w->order, below), q->at, q->tolerance);
 }
 
 static bool coincide(struct sweep *w, int32_t v, int32_t u)

@@ -1,12 +1,29 @@
-/* Segment recovery by edge flips (Sloan 1993), then Lawson flips to the constrained Delaunay triangulation.
+/* Segments into a Delaunay triangulation: each becomes a chain of subsegments.
  *
- * A segment a -> b is laid piece by piece. From a the walk along the segment meets first either an edge that lies on
- * it, a vertex on it, a subsegment across it, or b. What is met becomes the end of the piece; a subsegment across it is
- * split first, at the crossing. So the channel of a piece holds neither vertices nor subsegments, and flips can clear
- * it.
+ * A segment a -> b is laid piece by piece. A piece is straight; from its start the walk along it meets first a vertex
+ * on it, a vertex beside it, a subsegment across it, or its end. RULES, in this order:
+ *   1. A vertex on the piece ends it.
+ *   2. A vertex within NEAR of the piece (in resolutions, crossing.h; and within BESIDE of the segment's own line) is
+ *      on it for all that coordinates tell: the piece runs through it. Of several the nearest is taken, so the triangle
+ *      that the piece sweeps over holds none of the others.
+ *   3. Where the piece crosses a subsegment, both get a vertex in common: one that is within APART of the crossing,
+ *      else a new one, the rounded crossing of the two input segments (of the pieces, where bends have moved the
+ *      crossing away from that). The subsegment is taken up, and its two parts and those of the piece are laid by the
+ *      same rules.
+ * So a piece that becomes a subsegment meets no vertex and no subsegment; no two chains cross, and whoever shares a
+ * chain shares its subsegments. No vertex ever moves.
+ * THEOREM (distance). A chain is made of vertices of the input within BESIDE resolutions of the segment's line, of
+ * rounded crossings, within one of it, and of vertices within APART of a crossing. What bends add up to is checked for
+ * every subsegment: more than TRI_SEGMENT_ULPS is an error that names the segment.
+ * Termination: a piece is replaced by two shorter ones (rules 1, 2), or a new vertex appears, farther than APART from
+ * its neighbours (rule 3), or the subsegment in the way is bent round a vertex that it was too near to (rule 3, shared
+ * vertex). A bound on the number of pieces stands behind that; reaching it is an error, too.
  *
  * INVARIANT: between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v]
- * is a live triangle at v (TRI_NONE for points that are in no triangle). */
+ * is a live triangle at v (TRI_NONE for points that are in no triangle). The mesh fills the convex hull.
+ *
+ * Source of the idea that vertices attract what passes them within rounding: snap rounding (Hobby, Practical segment
+ * intersection with finite precision output, Computational Geometry 13, 1999), here without a grid. */
 #include "triangle/constrain.h"
 
 #include <assert.h>
@@ -14,26 +31,45 @@
 #include <stdlib.h>
 
 #include "triangle/cavity.h"
+#include "triangle/crossing.h"
 #include "triangle/interpolate.h"
 #include "triangle/predicates.h"
+#include "triangle/recover.h"
 
-enum { MAX_PIECES = 1 << 20, MAX_PASSES = 10000 };
+enum { BESIDE = 3, HUB = 16 };
+
+/* In resolutions: a vertex so near to a piece is on it for all that coordinates tell; a new one keeps so far from
+ * others. */
+static const double NEAR = 0.5, APART = 2;
+
+/* The input segments that run along a piece or a subsegment: the first of them, and the first with a marker. */
+struct course {
+    int32_t first, marked; /* TRI_NONE: there is none */
+};
+
+static const struct course NOBODY = {TRI_NONE, TRI_NONE};
 
 struct piece {
-    int32_t from, to, segment, marker;
+    int32_t from, to;
+    struct course course;
 };
 
 struct layer {
     struct tri_mesh *mesh;
+    const struct tri_pslg *pslg;
     struct tri_cavity cavity;
+    struct tri_recovery recovery;
     bool ties_stay;  /* an edge is flipped only where that makes a difference; else ties are broken by coordinates */
-    int32_t *corner; /* [vertex_capacity] */
+    int32_t *corner; /* [corner_capacity] */
     int32_t corner_capacity;
+    struct course *course; /* [course_capacity] of each subsegment */
+    int32_t course_capacity;
     struct piece *piece; /* stack of what remains of the current segment, and of earlier ones that had to be taken up */
     int32_t n_pieces, piece_capacity;
     int32_t *touched; /* stack of edge codes to test for the Delaunay property */
     int32_t n_touched, touched_capacity;
-    int32_t segment, marker;
+    int32_t segment; /* the input segment that is being laid */
+    uint32_t step; /* see tri_stop_is_due */
     struct tri_constrain_report *report;
     struct tri_error *error;
 };
@@ -47,6 +83,8 @@ static bool reserve(void *array, int32_t *capacity, int32_t need, size_t item)
 {
     if (need <= *capacity)
         return true;
+    if (need > INT32_MAX / 2)
+        return false;
     int32_t wanted = need + need / 2 + 64;
     void **slot = array;
     void *fresh = realloc(*slot, (size_t)wanted * item);
@@ -57,7 +95,7 @@ static bool reserve(void *array, int32_t *capacity, int32_t need, size_t item)
     return true;
 }
 
-static bool push_piece(struct layer *l, int32_t from, int32_t to, int32_t segment, int32_t marker)
+static bool push_piece(struct layer *l, int32_t from, int32_t to, struct course course)
 {
     if (from == to)
         return true;
@@ -65,7 +103,7 @@ static bool push_piece(struct layer *l, int32_t from, int32_t to, int32_t segmen
     bool room = reserve(&array, &l->piece_capacity, l->n_pieces + 1, sizeof *l->piece);
     l->piece = array;
     if (room)
-        l->piece[l->n_pieces++] = (struct piece){from, to, segment, marker};
+        l->piece[l->n_pieces++] = (struct piece){from, to, course};
     return room;
 }
 
@@ -111,45 +149,91 @@ static bool along_left(const struct tri_mesh *mesh, int32_t t, int k, struct tri
     return tri_orient2d(a, left, q) == 0 && (left.x - a.x) * (q.x - a.x) + (left.y - a.y) * (q.y - a.y) > 0;
 }
 
-/* The triangle at vertex a through which the ray to q leaves; its left edge counts only where nothing lies beyond it.
- * Remembered as a's corner, so that the spokes of a fan in order cost O(1) each. */
-static int32_t find_exit(struct layer *l, int32_t a, struct tri_point q)
+/* The search for the triangle at a vertex through which the ray to q leaves, a triangle a step. */
+struct rotation {
+    int32_t vertex, start, t;
+    struct tri_point q;
+    bool clockwise;
+};
+
+static struct rotation rotate_from(const struct layer *l, int32_t a, struct tri_point q)
 {
-    const struct tri_mesh *mesh = l->mesh;
-    int32_t start = l->corner[a], t = start;
-    for (int way = 1; way >= 0; way--) {
-        for (t = start; t != TRI_NONE;) {
-            int k = corner_of(&mesh->tri[t], a);
-            if (leaves_through(mesh, t, k, q) || along_left(mesh, t, k, q))
-                return l->corner[a] = t;
-            t = turn(mesh, t, a, way);
-            if (t == start)
-                return TRI_NONE;
-        }
+    return (struct rotation){a, l->corner[a], l->corner[a], q, false};
+}
+
+/* The triangle, if it is the one at hand (whose left edge counts only where nothing lies beyond it); else TRI_NONE, and
+ * the next one is at hand. After the last one r->t is TRI_NONE. */
+static int32_t rotate(const struct layer *l, struct rotation *r)
+{
+    int32_t t = r->t;
+    int k = corner_of(&l->mesh->tri[t], r->vertex);
+    if (leaves_through(l->mesh, t, k, r->q) || along_left(l->mesh, t, k, r->q))
+        return t;
+    r->t = turn(l->mesh, t, r->vertex, !r->clockwise);
+    if (r->t == TRI_NONE && !r->clockwise) { /* the other way, from the first one's neighbour */
+        r->clockwise = true;
+        r->t = turn(l->mesh, r->start, r->vertex, false);
+    } else if (r->t == r->start) {
+        r->t = TRI_NONE;
     }
     return TRI_NONE;
 }
 
-static bool mark_edge(struct layer *l, int32_t t, int e)
+/* The triangle through which the segment leaves its end *a towards *b. Where *a is a hub, with many triangles, the
+ * search goes on around both ends in turns, and the two are exchanged if it succeeds at *b: so the cost is that of the
+ * end with fewer triangles. Remembered as the corner, so that the spokes of a fan in order cost O(1) each. */
+static int32_t find_exit(struct layer *l, int32_t *a, int32_t *b)
+{
+    int32_t from = *a, to = *b, found = TRI_NONE;
+    struct rotation at[2] = {rotate_from(l, from, l->mesh->xy[to]), rotate_from(l, to, l->mesh->xy[from])};
+    int end = 0;
+    for (int n = 0; at[end].t != TRI_NONE && (found = rotate(l, &at[end])) == TRI_NONE;)
+        end = n < HUB ? (n++, 0) : 1 - end;
+    if (found == TRI_NONE)
+        return TRI_NONE;
+    *a = end == 0 ? from : to;
+    *b = end == 0 ? to : from;
+    return l->corner[*a] = found;
+}
+
+static int32_t lower(int32_t a, int32_t b) { return a == TRI_NONE || (b != TRI_NONE && b < a) ? b : a; }
+
+static struct course both(struct course a, struct course b)
+{
+    return (struct course){lower(a.first, b.first), lower(a.marked, b.marked)};
+}
+
+static int32_t marker_of(const struct layer *l, struct course course)
+{
+    return course.marked == TRI_NONE ? 0 : l->pslg->segment_markers[course.marked];
+}
+
+static bool set_course(struct layer *l, int32_t s, struct course course)
+{
+    void *array = l->course;
+    bool room = reserve(&array, &l->course_capacity, s + 1, sizeof *l->course);
+    l->course = array;
+    if (room)
+        l->course[s] = course;
+    return room;
+}
+
+static bool mark_edge(struct layer *l, int32_t t, int e, struct course course)
 {
     struct tri_mesh *mesh = l->mesh;
     int32_t link = mesh->tri[t].n[e], from = mesh->tri[t].v[tri_next[e]], to = mesh->tri[t].v[tri_prev[e]];
     if (link < 0) {
-        struct tri_subsegment *s = &mesh->sub[~link];
-        if (mesh->parents[s->parent].segment == TRI_NONE)
-            mesh->parents[s->parent].segment = l->segment;
-        if (s->marker == 0)
-            s->marker = l->marker;
+        l->course[~link] = both(l->course[~link], course);
         return true;
     }
     if (tri_mesh_reserve_subs(mesh, 1, l->error))
         return false;
-    int32_t s = tri_mesh_add_sub(mesh, from, to, l->marker, l->segment);
+    int32_t s = tri_mesh_add_sub(mesh, from, to, 0, course.first);
     mesh->sub[s].side[0] = tri_code(t, e);
     mesh->sub[s].side[1] = link;
     mesh->tri[t].n[e] = ~s;
     mesh->tri[tri_of(link)].n[tri_edge(link)] = ~s;
-    return true;
+    return set_course(l, s, course);
 }
 
 /* Flips edge e of t, whose quadrilateral is strictly convex. Near apex n, right r, far apex o, left s: t becomes (n, r,
@@ -212,64 +296,55 @@ static bool legalise(struct layer *l)
     return true;
 }
 
-/* What became of clearing a channel. */
-enum clearing { CLEARED, NOT_YET, CLEARING_FAILED };
+static struct tri_point end_of(const struct layer *l, int32_t segment, int k)
+{
+    return l->mesh->xy[l->pslg->segments[2 * segment + k]];
+}
 
-/* One walk through the channel from a to b that flips every crossing edge it can. CLEARED once edge ab exists;
- * CLEARING_FAILED where memory ran out. */
-static enum clearing clear_pass(struct layer *l, int32_t a, int32_t b)
+/* Does v lie within so many resolutions, those of the segment's larger end, of the line of an input segment? */
+static bool keeps_to(const struct layer *l, int32_t segment, int32_t v, double resolutions)
+{
+    struct tri_point a = end_of(l, segment, 0), b = end_of(l, segment, 1);
+    double resolution = fmax(tri_resolution(a), tri_resolution(b));
+    return tri_line_distance(a, b, l->mesh->xy[v]) <= resolutions * resolution;
+}
+
+static enum tri_status cannot_keep(const struct layer *l, int32_t segment)
+{
+    return tri_fail(l->error, TRI_BAD_INPUT, NULL, 0,
+                    "segment %d cannot be kept to its line: too much lies within rounding of it", (int)segment);
+}
+
+static enum tri_status check_distance(struct layer *l, struct course course, int32_t v)
+{
+    int32_t segment[2] = {course.first, course.marked};
+    for (int k = 0; k < 2; k++)
+        if (segment[k] != TRI_NONE && !keeps_to(l, segment[k], v, TRI_SEGMENT_ULPS))
+            return cannot_keep(l, segment[k]);
+    return TRI_OK;
+}
+
+/* Makes ab, whose channel begins in triangle t, a subsegment. */
+static enum tri_status lay_edge(struct layer *l, int32_t t, int32_t a, int32_t b, struct course course)
 {
     struct tri_mesh *mesh = l->mesh;
-    struct tri_point pa = mesh->xy[a], pb = mesh->xy[b];
-    int32_t t = find_exit(l, a, pb);
-    if (t == TRI_NONE)
-        return NOT_YET;
-    int e = corner_of(&mesh->tri[t], a);
-    if (mesh->tri[t].v[tri_next[e]] == b || mesh->tri[t].v[tri_prev[e]] == b)
-        return CLEARED;
-    for (;;) {
-        int32_t n = mesh->tri[t].v[e], u = tri_of(mesh->tri[t].n[e]);
-        int f = tri_edge(mesh->tri[t].n[e]);
-        int32_t o = mesh->tri[u].v[f];
-        double side = o == b ? 0 : tri_orient2d(pa, pb, mesh->xy[o]);
-        if (is_convex(mesh, t, e)) {
-            u = flip(l, t, e);
-            if (!touch(l, t) || !touch(l, u))
-                return CLEARING_FAILED;
-            if (n == a && o == b)
-                return CLEARED;
-            if (o == b)
-                return NOT_YET;
-            t = side > 0 ? t : u;
-            e = 0;
-        } else {
-            if (o == b)
-                return NOT_YET;
-            t = u;
-            e = side > 0 ? tri_next[f] : tri_prev[f]; /* the edge from right to o, or from o to left */
-        }
-    }
-}
-
-static enum clearing clear_channel(struct layer *l, int32_t a, int32_t b)
-{
-    for (int pass = 0; pass < MAX_PASSES; pass++) {
-        enum clearing done = clear_pass(l, a, b);
-        if (done != NOT_YET)
-            return done;
-    }
-    return NOT_YET;
-}
-
-/* Makes the edge ab a subsegment after its channel is clear. */
-static bool mark_piece(struct layer *l, int32_t a, int32_t b)
-{
-    int32_t t = find_exit(l, a, l->mesh->xy[b]);
-    assert(t != TRI_NONE);
-    int k = corner_of(&l->mesh->tri[t], a);
-    bool right = l->mesh->tri[t].v[tri_next[k]] == b;
-    assert(right || l->mesh->tri[t].v[tri_prev[k]] == b);
-    return mark_edge(l, t, right ? tri_prev[k] : tri_next[k]);
+    enum tri_status status = check_distance(l, course, a);
+    status = status ? status : check_distance(l, course, b);
+    if (status)
+        return status;
+    int k = corner_of(&mesh->tri[t], a);
+    bool right = mesh->tri[t].v[tri_next[k]] == b;
+    if (right || mesh->tri[t].v[tri_prev[k]] == b)
+        return mark_edge(l, t, right ? tri_prev[k] : tri_next[k], course) ? TRI_OK : no_memory(l);
+    int32_t code;
+    status = tri_recover_edge(&l->recovery, mesh, t, a, b, &code, l->error);
+    if (status)
+        return status;
+    for (int32_t i = 0; i < l->recovery.n_crossed; i++)
+        for (int c = 0; c < 3; c++)
+            l->corner[mesh->tri[tri_of(l->recovery.crossed[i])].v[c]] = tri_of(l->recovery.crossed[i]);
+    l->corner[a] = l->corner[b] = tri_of(code);
+    return mark_edge(l, tri_of(code), tri_edge(code), course) ? TRI_OK : no_memory(l);
 }
 
 static bool keep_corners(struct layer *l, int32_t v)
@@ -287,14 +362,6 @@ static bool keep_corners(struct layer *l, int32_t v)
     return l->corner[v] != TRI_NONE;
 }
 
-/* Where segment a -> b crosses subsegment s, as a fraction of s from its start. */
-static double crossing_fraction(const struct tri_mesh *mesh, struct tri_point a, struct tri_point b, int32_t s)
-{
-    double from = fabs(tri_orient2d(a, b, mesh->xy[mesh->sub[s].v[0]]));
-    double to = fabs(tri_orient2d(a, b, mesh->xy[mesh->sub[s].v[1]]));
-    return from / (from + to);
-}
-
 /* Takes subsegment s, which has triangles on both sides, out of the mesh; the last one takes its number. */
 static bool take_up(struct layer *l, int32_t s)
 {
@@ -305,6 +372,7 @@ static bool take_up(struct layer *l, int32_t s)
     mesh->tri[tri_of(right)].n[tri_edge(right)] = left;
     int32_t last = --mesh->n_subs;
     mesh->sub[s] = mesh->sub[last];
+    l->course[s] = l->course[last];
     for (int side = 0; s != last && side < 2; side++)
         if (mesh->sub[s].side[side] != TRI_NONE)
             mesh->tri[tri_of(mesh->sub[s].side[side])].n[tri_edge(mesh->sub[s].side[side])] = ~s;
@@ -317,198 +385,312 @@ static double squared(struct tri_point a, struct tri_point b)
     return x * x + y * y;
 }
 
-/* Square of the distance up to which places on the segment from a to b count as one. */
-static double rounding2(struct tri_point a, struct tri_point b)
+/* The triangle that holds q (TRI_NONE outside the hull), by a walk from triangle t. In a constrained triangulation a
+ * walk may go in circles; the edge it tries first turns with the number of steps. */
+static int32_t locate(const struct tri_mesh *mesh, int32_t t, struct tri_point q)
 {
-    double size = fmax(fmax(fabs(a.x), fabs(a.y)), fmax(fabs(b.x), fabs(b.y)));
-    return size * size * 0x1p-96;
+    for (int64_t steps = 0; steps < 3 * (int64_t)mesh->n_slots; steps++) {
+        const struct tri_triangle *at = &mesh->tri[t];
+        int k = 0, e = 0;
+        for (; k < 3; k++) {
+            e = (int)((k + steps) % 3);
+            if (tri_orient2d(mesh->xy[at->v[tri_next[e]]], mesh->xy[at->v[tri_prev[e]]], q) < 0)
+                break;
+        }
+        if (k == 3)
+            return t;
+        int32_t beyond = tri_across(mesh, tri_code(t, e));
+        if (beyond == TRI_NONE)
+            return TRI_NONE; /* the hull is convex: whoever leaves it does not come back */
+        t = tri_of(beyond);
+    }
+    return TRI_NONE;
 }
 
-static void try_nearer(const struct layer *l, int32_t v, struct tri_point p, int32_t *best)
+/* A subsegment that is an edge of triangle t and has q on it; TRI_NONE if there is none. */
+static int32_t sub_under(const struct tri_mesh *mesh, int32_t t, struct tri_point q)
 {
-    if (v != TRI_NONE && squared(l->mesh->xy[v], p) < squared(l->mesh->xy[*best], p))
-        *best = v;
+    const struct tri_triangle *at = &mesh->tri[t];
+    for (int e = 0; e < 3; e++)
+        if (at->n[e] < 0 && tri_orient2d(mesh->xy[at->v[tri_next[e]]], mesh->xy[at->v[tri_prev[e]]], q) == 0)
+            return ~at->n[e];
+    return TRI_NONE;
 }
 
-static int32_t apex_beside(const struct tri_mesh *mesh, const struct tri_subsegment *s, int side)
+static bool is_hull(const struct tri_mesh *mesh, int32_t s)
 {
-    return s->side[side] == TRI_NONE ? TRI_NONE : mesh->tri[tri_of(s->side[side])].v[tri_edge(s->side[side])];
+    return mesh->sub[s].side[0] == TRI_NONE || mesh->sub[s].side[1] == TRI_NONE;
 }
 
-/* Takes up s and lays it anew through vertex v. */
-static enum tri_status lay_through(struct layer *l, int32_t s, int32_t v)
+/* The triangle with *p in it, off the hull; rounding may have put *p on or beyond that: then it moves to a neighbouring
+ * place. TRI_NONE where there is none. */
+static int32_t find_place(const struct layer *l, int32_t near, struct tri_point *p)
+{
+    static const int way[9][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
+    double step = tri_resolution(*p);
+    for (int i = 0; i < 9; i++) {
+        struct tri_point q = {tri_round_coordinate(p->x + way[i][0] * step),
+                              tri_round_coordinate(p->y + way[i][1] * step)};
+        int32_t t = locate(l->mesh, l->corner[near], q), s = t == TRI_NONE ? TRI_NONE : sub_under(l->mesh, t, q);
+        if (t != TRI_NONE && (s == TRI_NONE || !is_hull(l->mesh, s))) {
+            *p = q;
+            return t;
+        }
+    }
+    return TRI_NONE;
+}
+
+/* Takes subsegment s up to be laid anew through a vertex that is not known yet (see finish_parts). */
+static bool take_apart(struct layer *l, int32_t s)
 {
     const struct tri_subsegment old = l->mesh->sub[s];
-    int32_t segment = l->mesh->parents[old.parent].segment;
-    if (old.side[0] == TRI_NONE || old.side[1] == TRI_NONE)
-        return TRI_OK;
-    bool room = take_up(l, s) && push_piece(l, old.v[0], v, segment, old.marker) &&
-                push_piece(l, v, old.v[1], segment, old.marker);
-    return room ? TRI_OK : no_memory(l);
+    struct course course = l->course[s];
+    return take_up(l, s) && push_piece(l, old.v[0], old.v[1], course);
 }
 
-/* There is no room for a vertex at p, where a -> b crosses subsegment s. Either a vertex is as good as there: both
- * segments run through it. Or a triangle beside s is so flat that p, rounded, lies beyond it: then s runs through its
- * apex, and a -> b is laid again. */
-static enum tri_status bend(struct layer *l, int32_t a, int32_t b, int32_t s, struct tri_point p, int32_t *end)
+/* Cuts the last n - first pieces of the stack at vertex v. */
+static bool finish_parts(struct layer *l, int32_t first, int32_t v)
 {
-    const struct tri_mesh *mesh = l->mesh;
-    const struct tri_subsegment *sub = &mesh->sub[s];
-    int32_t near = sub->v[0], left = apex_beside(mesh, sub, 0), right = apex_beside(mesh, sub, 1);
-    l->report->bent++;
-    try_nearer(l, sub->v[1], p, &near);
-    try_nearer(l, left, p, &near);
-    try_nearer(l, right, p, &near);
-    try_nearer(l, a, p, &near);
-    try_nearer(l, b, p, &near);
-    for (int32_t i = 0; i < l->cavity.n_rim; i++)
-        try_nearer(l, l->cavity.rim[i].a, p, &near);
-    *end = near;
-    struct tri_point from = mesh->xy[sub->v[0]], to = mesh->xy[sub->v[1]];
-    bool is_there = squared(mesh->xy[near], p) <= 4 * rounding2(from, to) || left == TRI_NONE || right == TRI_NONE;
-    if (near == sub->v[0] || near == sub->v[1])
-        return TRI_OK;
-    if (is_there)
-        return lay_through(l, s, near);
-    *end = b;
-    bool flat_left = fabs(tri_orient2d(from, to, mesh->xy[left])) < fabs(tri_orient2d(from, to, mesh->xy[right]));
-    return lay_through(l, s, flat_left ? left : right);
+    for (int32_t i = l->n_pieces - 1; i >= first; i--) {
+        struct piece whole = l->piece[i];
+        if (whole.from == v || whole.to == v)
+            continue;
+        l->piece[i].from = v;
+        if (!push_piece(l, whole.from, v, whole.course))
+            return false;
+    }
+    return true;
 }
 
-/* Is p so near to a corner of its cavity that an edge between them would be all rounding? */
-static bool is_crammed(const struct layer *l, int32_t s, struct tri_point p)
+/* A vertex that pieces may share instead of a crossing of their own. */
+struct choice {
+    int32_t vertex;  /* TRI_NONE: none yet */
+    int before;      /* of how many pieces it lies before the start or beyond the end */
+    double distance; /* squared, from the crossing */
+};
+
+static bool lies_between(const struct layer *l, int32_t v, const struct piece *piece)
 {
-    const struct tri_mesh *mesh = l->mesh;
-    double nearest = HUGE_VAL;
-    for (int32_t i = 0; i < l->cavity.n_rim; i++)
-        nearest = fmin(nearest, squared(mesh->xy[l->cavity.rim[i].a], p));
-    return nearest <= rounding2(mesh->xy[mesh->sub[s].v[0]], mesh->xy[mesh->sub[s].v[1]]);
+    struct tri_point a = l->mesh->xy[piece->from], b = l->mesh->xy[piece->to], q = l->mesh->xy[v];
+    double x = b.x - a.x, y = b.y - a.y, at = x * (q.x - a.x) + y * (q.y - a.y);
+    return v == piece->from || v == piece->to || (at > 0 && at < x * x + y * y);
 }
 
-/* Splits subsegment s where a -> b crosses it. *end receives the new vertex or, where there is no room for one between
- * existing vertices, the nearest of those. */
-static enum tri_status cut(struct layer *l, int32_t a, int32_t b, int32_t s, int32_t *end)
+/* The vertex that leads the fewest of the pieces from number `first` on back, then the nearest. */
+static void try_vertex(const struct layer *l, int32_t first, int32_t v, struct tri_point p, double within,
+                       struct choice *best)
+{
+    struct choice now = {v, 0, squared(l->mesh->xy[v], p)};
+    if (now.distance > within * within)
+        return;
+    for (int32_t i = first; i < l->n_pieces; i++)
+        now.before += !lies_between(l, v, &l->piece[i]);
+    if (best->vertex == TRI_NONE || now.before < best->before ||
+        (now.before == best->before && now.distance < best->distance))
+        *best = now;
+}
+
+/* The best of the ends of those pieces, the corners of triangle t (where there is one) and the vertices around the
+ * cavity of p, as far as they are within a distance of it; TRI_NONE if there is none. */
+static int32_t choose_vertex(const struct layer *l, int32_t first, int32_t t, struct tri_point p, double within)
+{
+    struct choice best = {TRI_NONE, 0, 0};
+    for (int32_t i = first; i < l->n_pieces; i++) {
+        try_vertex(l, first, l->piece[i].from, p, within, &best);
+        try_vertex(l, first, l->piece[i].to, p, within, &best);
+    }
+    for (int k = 0; t != TRI_NONE && k < 3; k++)
+        try_vertex(l, first, l->mesh->tri[t].v[k], p, within, &best);
+    for (int32_t i = 0; t != TRI_NONE && i < l->cavity.n_rim; i++)
+        try_vertex(l, first, l->cavity.rim[i].a, p, within, &best);
+    return best.vertex;
+}
+
+/* A vertex at p, whose cavity has been found, with marker and attributes of the piece `along`. */
+static enum tri_status add_crossing(struct layer *l, struct tri_point p, const struct piece *along, int32_t *vertex)
 {
     struct tri_mesh *mesh = l->mesh;
-    int32_t from = mesh->sub[s].v[0], to = mesh->sub[s].v[1], n_left;
-    double fraction = crossing_fraction(mesh, mesh->xy[a], mesh->xy[b], s);
-    struct tri_point p = tri_point_between(mesh->xy[from], mesh->xy[to], fraction);
-    enum tri_search found = tri_cavity_search_split(&l->cavity, mesh, p, s, &n_left);
-    if (found == TRI_SEARCH_NO_MEMORY)
-        return no_memory(l);
-    if (found != TRI_SEARCH_FOUND || is_crammed(l, s, p))
-        return bend(l, a, b, s, p, end);
     enum tri_status status = tri_mesh_reserve_vertices(mesh, 1, l->error);
     status = status ? status : tri_mesh_reserve_triangles(mesh, 2, l->error);
-    status = status ? status : tri_mesh_reserve_subs(mesh, 1, l->error);
     if (status)
         return status;
-    int32_t v = mesh->n_vertices++;
+    int32_t v = *vertex = mesh->n_vertices++;
+    struct tri_point from = mesh->xy[along->from], to = mesh->xy[along->to];
+    double x = to.x - from.x, y = to.y - from.y;
     mesh->xy[v] = p;
     mesh->on[v] = TRI_VERTEX_INPUT;
-    mesh->vertex_markers[v] = mesh->sub[s].marker;
-    tri_interpolate_edge(mesh, from, to, fraction, v);
-    tri_cavity_fill_split(&l->cavity, mesh, v, s, n_left);
+    mesh->vertex_markers[v] = marker_of(l, along->course);
+    tri_interpolate_edge(mesh, along->from, along->to,
+                         ((p.x - from.x) * x + (p.y - from.y) * y) / (x * x + y * y), v);
+    tri_cavity_fill(&l->cavity, mesh, v);
     l->report->crossings++;
-    *end = v;
-    if (!keep_corners(l, v))
-        return no_memory(l);
-    for (int32_t i = 0; i < l->cavity.n_rim; i++)
-        if (!touch(l, l->cavity.rim[i].slot))
-            return no_memory(l);
-    return legalise(l) ? TRI_OK : no_memory(l);
+    return keep_corners(l, v) ? TRI_OK : no_memory(l);
 }
 
-/* What the segment a -> b meets first: *s, a subsegment that lies across it, else *end, the vertex that ends the first
- * piece (vertices on the segment end a piece); the other becomes TRI_NONE, both where there is no way out of a. */
-static void look_ahead(struct layer *l, int32_t a, int32_t b, int32_t *end, int32_t *s)
+/* Where the pieces cross: at the crossing of their input segments, unless bends have moved it away from there. */
+static struct tri_point crossing_of(const struct layer *l, const struct piece *a, const struct piece *b)
+{
+    const struct tri_point *xy = l->mesh->xy;
+    struct tri_point here = xy[a->from], there;
+    int32_t s = a->course.first, t = b->course.first;
+    bool crosses = tri_crossing(xy[a->from], xy[a->to], xy[b->from], xy[b->to], &here);
+    assert(crosses);
+    (void)crosses;
+    if (s == t || s == TRI_NONE || t == TRI_NONE ||
+        !tri_crossing(end_of(l, s, 0), end_of(l, s, 1), end_of(l, t, 0), end_of(l, t, 1), &there))
+        return here;
+    double reach = BESIDE * tri_resolution(here);
+    return fabs(there.x - here.x) <= reach && fabs(there.y - here.y) <= reach ? there : here;
+}
+
+/* Rule 3: the piece crosses subsegment s. */
+static enum tri_status cross(struct layer *l, const struct piece *piece, int32_t s)
+{
+    int32_t first = l->n_pieces, near = l->mesh->sub[s].v[0], on, t;
+    if (!push_piece(l, piece->from, piece->to, piece->course) || !take_apart(l, s))
+        return no_memory(l);
+    struct tri_point p = crossing_of(l, &l->piece[first], &l->piece[first + 1]);
+    for (;;) {
+        t = find_place(l, near, &p);
+        on = t == TRI_NONE ? TRI_NONE : sub_under(l->mesh, t, p);
+        if (on == TRI_NONE)
+            break;
+        if (!take_apart(l, on))
+            return no_memory(l);
+    }
+    l->cavity.n_rim = 0;
+    enum tri_search found = t == TRI_NONE ? TRI_SEARCH_OUTSIDE : tri_cavity_search(&l->cavity, l->mesh, p, t);
+    if (found == TRI_SEARCH_NO_MEMORY)
+        return no_memory(l);
+    int32_t v = choose_vertex(l, first, t, p, APART * tri_resolution(p));
+    if (v == TRI_NONE && found != TRI_SEARCH_FOUND)
+        return cannot_keep(l, l->segment);
+    if (v != TRI_NONE) {
+        l->report->bent++;
+    } else {
+        bool later = l->piece[first].course.first > l->piece[first + 1].course.first;
+        enum tri_status status = add_crossing(l, p, &l->piece[first + later], &v);
+        if (status)
+            return status;
+    }
+    return finish_parts(l, first, v) ? TRI_OK : no_memory(l);
+}
+
+/* What a piece meets first. */
+struct meeting {
+    int32_t end;    /* the vertex on it, or its own end; TRI_NONE where a subsegment is across it */
+    int32_t across; /* that subsegment, else TRI_NONE */
+    int32_t beside; /* the nearest to it of the vertices passed that are within rounding of it, or TRI_NONE */
+    double distance;
+};
+
+/* Rule 2. */
+static void consider(const struct layer *l, const struct piece *piece, int32_t v, double det, struct meeting *met)
+{
+    const struct tri_point *xy = l->mesh->xy;
+    struct tri_point a = xy[piece->from], b = xy[piece->to], q = xy[v];
+    double x = b.x - a.x, y = b.y - a.y, length2 = x * x + y * y, at = x * (q.x - a.x) + y * (q.y - a.y);
+    double far = fmax(tri_resolution(q), fmax(tri_resolution(a), tri_resolution(b)));
+    if (v == piece->from || v == piece->to || !(at > 0 && at < length2) ||
+        fabs(det) > 8 * far * (fabs(x) + fabs(y)))
+        return;
+    double distance = tri_line_distance(a, b, q), near = NEAR * tri_resolution(q);
+    if (distance > near || fmin(at, length2 - at) <= near * sqrt(length2) ||
+        !keeps_to(l, piece->course.first, v, BESIDE) ||
+        (met->beside != TRI_NONE && met->distance <= distance))
+        return;
+    met->beside = v;
+    met->distance = distance;
+}
+
+/* t: the triangle through which the piece leaves its start. */
+static struct meeting look_ahead(const struct layer *l, const struct piece *piece, int32_t t)
 {
     const struct tri_mesh *mesh = l->mesh;
-    struct tri_point pa = mesh->xy[a], pb = mesh->xy[b];
-    int32_t t = find_exit(l, a, pb);
-    *s = TRI_NONE;
-    *end = TRI_NONE;
+    struct tri_point pa = mesh->xy[piece->from], pb = mesh->xy[piece->to];
+    struct meeting met = {TRI_NONE, TRI_NONE, TRI_NONE, 0};
     if (t == TRI_NONE)
-        return;
-    int e = corner_of(&mesh->tri[t], a);
+        return met;
+    int e = corner_of(&mesh->tri[t], piece->from);
     int32_t right = mesh->tri[t].v[tri_next[e]], left = mesh->tri[t].v[tri_prev[e]];
-    if (tri_orient2d(pa, mesh->xy[right], pb) == 0 || tri_orient2d(pa, mesh->xy[left], pb) == 0) {
-        *end = tri_orient2d(pa, mesh->xy[right], pb) == 0 ? right : left;
-        return;
+    double at_right = tri_orient2d(pa, pb, mesh->xy[right]), at_left = tri_orient2d(pa, pb, mesh->xy[left]);
+    if (at_right == 0 || at_left == 0) {
+        met.end = at_right == 0 ? right : left;
+        return met;
     }
+    consider(l, piece, right, at_right, &met);
+    consider(l, piece, left, at_left, &met);
     for (;;) {
         int32_t link = mesh->tri[t].n[e];
         if (link < 0) {
-            *s = ~link;
-            return;
+            met.across = ~link;
+            return met;
         }
         t = tri_of(link);
         e = tri_edge(link);
         int32_t o = mesh->tri[t].v[e];
-        double side = o == b ? 0 : tri_orient2d(pa, pb, mesh->xy[o]);
+        double side = o == piece->to ? 0 : tri_orient2d(pa, pb, mesh->xy[o]);
         if (side == 0) {
-            *end = o;
-            return;
+            met.end = o;
+            return met;
         }
+        consider(l, piece, o, side, &met);
         e = side > 0 ? tri_next[e] : tri_prev[e];
     }
 }
 
-/* Lays the first part of a piece and puts the rest back on the stack. */
-static enum tri_status lay_piece(struct layer *l, const struct piece *piece)
+/* The piece ends at vertex v for now; the rest waits below it on the stack. */
+static enum tri_status stop_at(struct layer *l, const struct piece *piece, int32_t v)
 {
-    int32_t a = piece->from, b = piece->to, end, s;
-    look_ahead(l, a, b, &end, &s);
-    assert(a != b && (s == TRI_NONE || end == TRI_NONE));
-    if (s != TRI_NONE) {
-        enum tri_status status = cut(l, a, b, s, &end);
-        if (status)
-            return status;
-        /* The rest first: the stack hands out the part from a next. */
-        bool room = push_piece(l, end, b, piece->segment, piece->marker) &&
-                    push_piece(l, a, end, piece->segment, piece->marker);
-        return room ? TRI_OK : no_memory(l);
-    }
-    if (end == TRI_NONE) {
-        l->report->lost++;
-        return TRI_OK;
-    }
-    enum clearing cleared = clear_channel(l, a, end);
-    if (cleared == CLEARING_FAILED)
-        return no_memory(l);
-    if (cleared == NOT_YET)
-        l->report->lost++;
-    if ((cleared == CLEARED && !mark_piece(l, a, end)) || !legalise(l) ||
-        !push_piece(l, end, b, piece->segment, piece->marker))
-        return no_memory(l);
-    return TRI_OK;
+    bool room = push_piece(l, v, piece->to, piece->course) && push_piece(l, piece->from, v, piece->course);
+    return room ? TRI_OK : no_memory(l);
 }
 
-static enum tri_status lay_segment(struct layer *l, int32_t a, int32_t b, int32_t segment, int32_t marker)
+/* Lays the first part of a piece, which may be turned round for it, or cuts it; the rest goes back on the stack. */
+static enum tri_status lay_piece(struct layer *l, struct piece piece)
 {
+    int32_t t = find_exit(l, &piece.from, &piece.to);
+    struct meeting met = look_ahead(l, &piece, t);
+    assert(piece.from != piece.to && (met.end == TRI_NONE || met.across == TRI_NONE));
+    if (met.beside != TRI_NONE && (met.end == TRI_NONE || met.end == piece.to)) {
+        l->report->bent++;
+        return stop_at(l, &piece, met.beside);
+    }
+    if (met.beside != TRI_NONE)
+        return stop_at(l, &piece, met.end);
+    if (met.across != TRI_NONE)
+        return cross(l, &piece, met.across);
+    assert(met.end != TRI_NONE); /* the hull is convex */
+    enum tri_status status = lay_edge(l, t, piece.from, met.end, piece.course);
+    if (status)
+        return status;
+    return push_piece(l, met.end, piece.to, piece.course) ? TRI_OK : no_memory(l);
+}
+
+static enum tri_status lay_segment(struct layer *l, int32_t a, int32_t b, struct course course)
+{
+    /* Five pieces for each subsegment crossed, two for each vertex; ten times that is no coincidence. */
+    int64_t bound = 1000 + 50 * ((int64_t)l->mesh->n_subs + l->mesh->n_vertices);
     l->n_pieces = 0;
-    if (!push_piece(l, a, b, segment, marker))
+    if (!push_piece(l, a, b, course))
         return no_memory(l);
-    for (int32_t n = 0; l->n_pieces > 0; n++) {
+    for (int64_t n = 0; l->n_pieces > 0; n++) {
+        if (tri_stop_is_due(l->mesh->stop, &l->step))
+            return tri_fail_stopped(l->error);
         struct piece next = l->piece[--l->n_pieces];
-        if (n >= MAX_PIECES) {
-            l->report->lost += l->n_pieces + 1;
-            break;
-        }
-        if (l->corner[next.from] == TRI_NONE || l->corner[next.to] == TRI_NONE)
-            continue;
-        l->segment = next.segment;
-        l->marker = next.marker;
-        enum tri_status status = lay_piece(l, &next);
+        if (n >= bound)
+            return cannot_keep(l, l->segment);
+        enum tri_status status = lay_piece(l, next);
         if (status)
             return status;
     }
     return TRI_OK;
 }
 
-static enum tri_status lay_all(struct layer *l, const struct tri_pslg *pslg)
+static enum tri_status lay_all(struct layer *l)
 {
-    const int32_t *twin = l->mesh->twin;
+    const struct tri_pslg *pslg = l->pslg;
+    const int32_t *twin = l->mesh->twin, *markers = pslg->segment_markers;
     for (int32_t k = 0; k < pslg->n_segments; k++) {
         int32_t a = pslg->segments[2 * k], b = pslg->segments[2 * k + 1];
         bool valid = a >= 0 && a < pslg->n_points && b >= 0 && b < pslg->n_points;
@@ -520,7 +702,10 @@ static enum tri_status lay_all(struct layer *l, const struct tri_pslg *pslg)
             l->report->skipped++;
             continue;
         }
-        enum tri_status status = lay_segment(l, a, b, k, pslg->segment_markers ? pslg->segment_markers[k] : 0);
+        if (l->corner[a] == TRI_NONE || l->corner[b] == TRI_NONE)
+            continue; /* all points on one line: there are no triangles */
+        l->segment = k;
+        enum tri_status status = lay_segment(l, a, b, (struct course){k, markers && markers[k] ? k : TRI_NONE});
         if (status)
             return status;
     }
@@ -545,18 +730,46 @@ static enum tri_status find_corners(struct layer *l)
 static void free_layer(struct layer *l)
 {
     tri_cavity_free(&l->cavity);
+    tri_recovery_free(&l->recovery);
     free(l->corner);
+    free(l->course);
     free(l->piece);
     free(l->touched);
+}
+
+/* Hull edges, along which nothing has been laid yet. */
+static enum tri_status list_courses(struct layer *l)
+{
+    for (int32_t s = 0; s < l->mesh->n_subs; s++)
+        if (!set_course(l, s, NOBODY))
+            return no_memory(l);
+    return TRI_OK;
+}
+
+/* Gives each subsegment its marker, and a parent of its own. */
+static enum tri_status settle(struct layer *l)
+{
+    struct tri_mesh *mesh = l->mesh;
+    mesh->n_parents = 0;
+    enum tri_status status = tri_mesh_reserve_subs(mesh, mesh->n_subs, l->error);
+    for (int32_t s = 0; !status && s < mesh->n_subs; s++) {
+        struct tri_subsegment *sub = &mesh->sub[s];
+        sub->marker = marker_of(l, l->course[s]);
+        sub->parent = mesh->n_parents++;
+        mesh->parents[sub->parent] = (struct tri_parent){{sub->v[0], sub->v[1]}, l->course[s].first, {NAN, NAN}};
+    }
+    return status;
 }
 
 enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_constrain_report *report,
                               struct tri_error *error)
 {
-    struct layer l = {.mesh = mesh, .cavity = {.flips_follow = true}, .report = report, .error = error};
+    struct layer l = {.mesh = mesh, .pslg = pslg, .report = report, .error = error};
     *report = (struct tri_constrain_report){0};
     enum tri_status status = find_corners(&l);
-    status = status ? status : lay_all(&l, pslg);
+    status = status ? status : list_courses(&l);
+    status = status ? status : lay_all(&l);
+    status = status ? status : settle(&l);
     free_layer(&l);
     return status;
 }
@@ -578,7 +791,9 @@ enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, struct tri_error *er
     struct layer l = {.mesh = mesh, .ties_stay = true, .error = error};
     enum tri_status status = find_corners(&l);
     for (int32_t t = 0; !status && t < mesh->n_slots; t++)
-        if (!touch_upwards(&l, t) || !legalise(&l))
+        if (tri_stop_is_due(mesh->stop, &l.step))
+            status = tri_fail_stopped(error);
+        else if (!touch_upwards(&l, t) || !legalise(&l))
             status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
     free_layer(&l);
     return status;

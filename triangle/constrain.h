@@ -4,17 +4,25 @@
 
 #include "triangle/mesh.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { TRI_SEGMENT_ULPS = 8 }; /* see tri_constrain */
+
 struct tri_constrain_report {
     int32_t crossings; /* vertices made where segments cross */
-    int32_t bent;      /* times a crossing was too near to a vertex for one of its own: the segment runs through that */
-    int32_t lost;      /* pieces of segments that could not be made part of the mesh (precision) */
+    int32_t bent;      /* times a segment runs through a vertex within rounding of it, or of a crossing */
     int32_t skipped;   /* segments with an end outside the points, or two equal ends */
 };
 
-/* Makes every segment of the PSLG (whose points are the mesh's first vertices) a chain of subsegments. Vertices on a
- * segment split it; crossing segments are cut at a new vertex, which takes marker and interpolated attributes of the
- * segment that came first; where segments overlap the first non-zero marker wins. The result is constrained Delaunay,
- * ties broken by coordinates. Expected near O(crossed edges) per segment. */
+/* Makes every segment of the PSLG (whose points are the mesh's first vertices) a chain of subsegments, whose vertices
+ * are at most TRI_SEGMENT_ULPS * 2^-52 * (the largest coordinate of the segment's ends) off its line. Vertices on a
+ * segment, and within rounding of it, split it; crossing segments are cut at a new vertex, which takes marker and
+ * interpolated attributes of the segment that came first; where segments overlap the first non-zero marker wins. The
+ * result is constrained Delaunay, ties broken by coordinates. Each subsegment has a parent of its own.
+ * TRI_BAD_INPUT, naming the segment, where a chain cannot be kept that near to its line (thousands of near coincidences
+ * at one place). Expected near O(crossed edges) per segment. */
 enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_constrain_report *report,
                               struct tri_error *error);
 
@@ -22,5 +30,9 @@ enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg
  * stays as it is. A slot keeps its region. O(triangles) where little is to do, and near that in practice; flips may be
  * quadratic (a fan of n triangles over a thin ellipse). On TRI_NO_MEMORY the mesh is valid. */
 enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, struct tri_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -1,10 +1,7 @@
-/* Judging triangles and subsegments. */
+/* Judging triangles. */
 #include "triangle/criterion.h"
 
 #include <assert.h>
-
-#include "triangle/cavity.h"
-#include "triangle/small_angle.h"
 
 double tri_area2_bound(const struct tri_criterion *c, int32_t region)
 {
@@ -46,14 +43,17 @@ bool tri_is_unsuitable(const struct tri_criterion *criterion, const int32_t v[3]
                           tri_area_scale(options));
 }
 
+bool tri_is_too_large(const struct tri_criterion *c, const struct tri_triangle *t, const struct tri_shape *shape)
+{
+    return shape->area2 > tri_area2_bound(c, t->region) || (c->options->unsuitable && tri_is_unsuitable(c, t->v));
+}
+
 enum tri_badness tri_judge(const struct tri_criterion *c, const struct tri_triangle *t, const struct tri_shape *shape)
 {
     double product = tri_longer_product(shape->l[0], shape->l[1], shape->l[2]);
     if (shape->area2 * shape->area2 < c->bounds.sin2 * product)
         return TRI_BAD_ANGLE;
-    if (shape->area2 > tri_area2_bound(c, t->region))
-        return TRI_BAD_SIZE;
-    return c->options->unsuitable && tri_is_unsuitable(c, t->v) ? TRI_BAD_SIZE : TRI_GOOD;
+    return tri_is_too_large(c, t, shape) ? TRI_BAD_SIZE : TRI_GOOD;
 }
 
 bool tri_is_protected(const struct tri_refine_options *options, const struct tri_subsegment *s)
@@ -66,26 +66,4 @@ bool tri_is_flat(const struct tri_mesh *mesh, const struct tri_shape *shape)
 {
     double longest2 = fmax(shape->l[0], fmax(shape->l[1], shape->l[2]));
     return shape->area2 * shape->area2 < mesh->shortest2 * longest2;
-}
-
-bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, int32_t code)
-{
-    struct tri_point apex = mesh->xy[mesh->tri[tri_of(code)].v[tri_edge(code)]];
-    struct tri_relative a = tri_relative(&mesh->xy[s->v[0]], apex), b = tri_relative(&mesh->xy[s->v[1]], apex);
-    return a.x * b.x + a.y * b.y < 0;
-}
-
-/* The same, and can it be mended? */
-static bool is_crowded_from(const struct tri_mesh *mesh, const struct tri_subsegment *s, int32_t code)
-{
-    if (!tri_is_in_diametral_disk(mesh, s, code))
-        return false;
-    struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[tri_of(code)].v);
-    return !tri_is_hopeless(mesh, tri_of(code), &shape) && !tri_is_flat(mesh, &shape);
-}
-
-bool tri_is_crowded(const struct tri_mesh *mesh, const struct tri_subsegment *s)
-{
-    return (s->side[0] != TRI_NONE && is_crowded_from(mesh, s, s->side[0])) ||
-           (s->side[1] != TRI_NONE && is_crowded_from(mesh, s, s->side[1]));
 }

@@ -1,5 +1,4 @@
-/* Which triangles are bad, and which subsegments crowded: the criterion that the refinement loop works for, and its
- * census counts.
+/* Which triangles are bad: the criterion that the refinement loop works for, and its census counts.
  *
  * Nothing here changes the mesh. */
 #ifndef TRIANGLE_CRITERION_H
@@ -39,6 +38,10 @@ bool tri_is_refused(const struct tri_refine_options *options, double unit, struc
 /* The same for a triangle with these corners, at options->area_scale. Only where there is a test. */
 bool tri_is_unsuitable(const struct tri_criterion *criterion, const int32_t v[3]);
 
+/* Does the triangle break a bound on sizes, or does the size test refuse it? */
+bool tri_is_too_large(const struct tri_criterion *criterion, const struct tri_triangle *t,
+                      const struct tri_shape *shape);
+
 /* A bad angle counts before a bad size. */
 enum tri_badness tri_judge(const struct tri_criterion *criterion, const struct tri_triangle *t,
                            const struct tri_shape *shape);
@@ -49,11 +52,5 @@ bool tri_is_protected(const struct tri_refine_options *options, const struct tri
 /* Lower than the shortest edge that coordinates can carry: splitting a subsegment beside it would chase the
  * rounding. */
 bool tri_is_flat(const struct tri_mesh *mesh, const struct tri_shape *shape);
-
-/* Does the apex of the triangle with this code lie in the diametral circle of the subsegment? */
-bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, int32_t code);
-
-/* The apex of a triangle beside the subsegment does, and that can be mended. */
-bool tri_is_crowded(const struct tri_mesh *mesh, const struct tri_subsegment *s);
 
 #endif

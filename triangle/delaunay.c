@@ -247,16 +247,21 @@ static int32_t drop_duplicates(struct tri_mesh *mesh, int32_t *order, int32_t n)
     return kept;
 }
 
-static bool build(struct builder *b, int32_t *order, int32_t n)
+static enum tri_status build(struct builder *b, int32_t *order, int32_t n, const struct tri_stop *stop,
+                             struct tri_error *error)
 {
+    uint32_t step = 0;
     if (n < 3 || !find_triangle(b, order, n))
-        return true;
+        return TRI_OK;
     bool left = tri_orient2d(b->xy[0], b->xy[1], b->xy[2]) > 0;
     begin(b, left ? 0 : 1, left ? 1 : 0, 2);
-    for (int32_t v = 3; v < n; v++)
+    for (int32_t v = 3; v < n; v++) {
+        if (tri_stop_is_due(stop, &step))
+            return tri_fail_stopped(error);
         if (!insert(b, v))
-            return false;
-    return true;
+            return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a cavity");
+    }
+    return TRI_OK;
 }
 
 /* Ghosts become subsegments, vertices get their own numbers back. */
@@ -377,8 +382,7 @@ static enum tri_status build_from(struct tri_mesh *mesh, const int32_t *order, i
         arrange_rounds(order, n, arranged);
         for (int32_t i = 0; i < n; i++)
             b.xy[i] = mesh->xy[arranged[i]];
-        if (!build(&b, arranged, n))
-            status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a cavity");
+        status = build(&b, arranged, n, mesh->stop, error);
     }
     if (!status)
         status = finish(mesh, &b, arranged, error);

@@ -8,6 +8,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 struct tri_executor {
     /* Calls task(context, i) exactly once for every i in [0, n_tasks), in any order and on any threads, and returns
      * when all have returned; what they wrote is then visible to the caller. Tasks do not fail and do not call run. */
@@ -35,18 +39,23 @@ struct tri_range {
 
 static inline size_t tri_shares(int32_t n)
 {
-    size_t shares = (size_t)n / TRI_WORTH_A_TASK + 1;
-    return shares < TRI_MOST_SHARES ? shares : TRI_MOST_SHARES;
+    size_t shares = (size_t)n / TRI_WORTH_A_TASK + 1, most = TRI_MOST_SHARES;
+    return shares < most ? shares : most;
 }
 
 /* The items of share i of so many, equal but for one item. */
 static inline struct tri_range tri_share_of(size_t i, size_t shares, int32_t n)
 {
     int64_t k = (int64_t)i, of = (int64_t)shares;
-    return (struct tri_range){(int32_t)(n * k / of), (int32_t)(n * (k + 1) / of)};
+    struct tri_range range = {(int32_t)(n * k / of), (int32_t)(n * (k + 1) / of)};
+    return range;
 }
 
 /* The items of share i < tri_shares(n). */
 static inline struct tri_range tri_share(size_t i, int32_t n) { return tri_share_of(i, tri_shares(n), n); }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

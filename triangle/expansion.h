@@ -6,8 +6,8 @@
  * carries the sign, and approximates the value.
  *
  * Nothing here uses fma: products are split as Dekker did, so results are the same on every machine. What is needed is
- * IEEE double arithmetic without extended precision, contraction or flushing of subnormals, rounding to nearest even,
- * and operands for which no bit is lost to overflow or underflow (predicates.h says why that holds there).
+ * IEEE double arithmetic (triangle/arithmetic.h) without flushing of subnormals, rounding to nearest even, and operands
+ * for which no bit is lost to overflow or underflow (predicates.h says why that holds there).
  *
  * Source: J. R. Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates, Discrete &
  * Computational Geometry 18 (1997), section 2; theorem numbers below are of that paper. */
@@ -15,17 +15,11 @@
 #define TRIANGLE_EXPANSION_H
 
 #include <assert.h>
-#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
-#ifdef __clang__
-#pragma STDC FP_CONTRACT OFF /* gcc does not know the pragma; -std=c11 switches contraction off there */
-#endif
-
-_Static_assert(FLT_EVAL_METHOD == 0, "exact arithmetic needs doubles that are rounded to double after each operation");
-_Static_assert(FLT_RADIX == 2 && DBL_MANT_DIG == 53 && DBL_MIN_EXP == -1021, "double must be the 64-bit IEEE type");
+#include "triangle/arithmetic.h"
 
 enum { TRI_EXPANSION_FACTOR = 16 }; /* most components that a factor of tri_expansion_product may have */
 

@@ -10,6 +10,8 @@
 #include "triangle/triangle.h"
 #include "triangle/tri.h"
 
+#define REAL TRI_REAL /* as clients of Triangle have it */
+
 enum { TRI_IO_MOST_COPIES = 10 };
 
 /* The input, from 0 and in double precision. Arrays that have this form are the caller's own. */

@@ -45,6 +45,14 @@ static enum tri_status add_size_test(struct io_run *run)
     return TRI_OK;
 }
 
+/* --- stop */
+
+static bool is_stopped(void *user)
+{
+    const struct triangulate_options *options = user;
+    return options->stop(options->stop_user) != 0;
+}
+
 /* --- messages */
 
 static void warn(const struct io_run *run, const char *text)
@@ -86,7 +94,6 @@ static void warn_of_input(const struct io_run *run)
     warn_number(run, loose, "segments are no edges of the mesh: they are passed on, but the mesh does not keep them");
     warn_number(run, report->duplicates, "points lie where a point of lower number lies, and are not used");
     warn_number(run, report->constrain.skipped, "segments name no point, or the same point twice, and are skipped");
-    warn_number(run, report->constrain.lost, "pieces of segments are missing: others are too near to tell them apart");
     if (report->quality.hit_limit && run->how.quality.conforming)
         warn(run, "the limit of S was reached before the mesh was conforming");
 }
@@ -122,7 +129,7 @@ static enum tri_status build(struct io_run *run)
         return status ? status : tri_generate(&run->mesh, pslg, &how, &run->report, run->error);
     struct tri_reconstruct_options options = {
         .use_segments = run->how.use_segments, .refine = run->how.refine, .base = !run->switches->from_zero,
-        .is_edge = run->input.is_edge};
+        .is_edge = run->input.is_edge, .stop = run->how.stop};
     return tri_reconstruct(&run->mesh, pslg, &run->input.elements, &options, run->error);
 }
 
@@ -155,6 +162,14 @@ static enum tri_status run_all(struct io_run *run, const struct triangulateio *i
     return status;
 }
 
+/* What a client that did not ask for errors would go by. */
+static void zero_counts(struct triangulateio *io)
+{
+    io->numberofpoints = io->numberofpointattributes = io->numberofedges = 0;
+    io->numberoftriangles = io->numberofcorners = io->numberoftriangleattributes = 0;
+    io->numberofsegments = io->numberofholes = io->numberofregions = 0;
+}
+
 int tri_io_triangulate(const char *switches, const struct triangulateio *in, struct triangulateio *out,
                        struct triangulateio *vorout, const struct triangulate_options *options, tri_io_refine *refine,
                        const struct tri_executor *executor)
@@ -167,11 +182,17 @@ int tri_io_triangulate(const char *switches, const struct triangulateio *in, str
     if (switches && in && out) {
         tri_switches_add(&s, switches);
         struct io_run run = {.switches = &s, .options = options, .how = tri_switches_options(&s), .error = &error};
+        const struct tri_stop stop = {is_stopped, (void *)options}; /* which only reads it */
         run.how.executor = executor;
+        run.how.stop = options->stop ? &stop : NULL;
         status = run_all(&run, in, out, vorout, refine);
     } else {
         status = tri_fail(&error, TRI_BAD_INPUT, NULL, 0, "switches, in and out must not be NULL");
     }
+    if (status && out && out != in)
+        zero_counts(out);
+    if (status && vorout && vorout != in)
+        zero_counts(vorout);
     if (status && options->message)
         options->message(options->message_user, 1, error.text);
     return (int)status;

@@ -184,6 +184,7 @@ enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_psl
     mesh->unit = unit_for(pslg);
     for (int32_t i = 0; i < n; i++) {
         mesh->xy[i] = tri_to_units(mesh, pslg->points[2 * i], pslg->points[2 * i + 1]);
+        assert(tri_is_in_range(mesh->xy[i]));
         mesh->on[i] = TRI_VERTEX_INPUT;
         mesh->vertex_markers[i] = pslg->markers ? pslg->markers[i] : 0;
         mesh->feature[i] = HUGE_VAL;
@@ -198,7 +199,7 @@ int32_t tri_mesh_add_sub(struct tri_mesh *mesh, int32_t from, int32_t to, int32_
 {
     int32_t s = mesh->n_subs++, parent = mesh->n_parents++;
     assert(s < mesh->sub_capacity && parent < mesh->parent_capacity);
-    mesh->parents[parent] = (struct tri_parent){{from, to}, segment};
+    mesh->parents[parent] = (struct tri_parent){{from, to}, segment, {NAN, NAN}};
     mesh->sub[s] = (struct tri_subsegment){{from, to}, {TRI_NONE, TRI_NONE}, marker, parent};
     return s;
 }

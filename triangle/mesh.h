@@ -23,6 +23,11 @@
 #include "triangle/executor.h"
 #include "triangle/pslg.h"
 #include "triangle/status.h"
+#include "triangle/stop.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 enum {
     TRI_NONE = -1,        /* no triangle on this side of a subsegment; no vertex; no parent */
@@ -60,6 +65,7 @@ struct tri_subsegment {
 struct tri_parent {
     int32_t v[2];
     int32_t segment; /* input segment, or TRI_NONE */
+    struct tri_point guard; /* with the ends, a triangle outside that is the parent's own, see split.c; NaN: all is */
 };
 
 struct tri_region {
@@ -104,6 +110,8 @@ struct tri_mesh {
     int32_t owner_id;         /* > 0: who works on this view */
 
     double unit;              /* a power of two: the caller's coordinates are xy * unit */
+
+    const struct tri_stop *stop; /* whoever works on the mesh asks it whether to go on; borrowed; NULL: nobody */
 };
 
 static const int tri_next[3] = {1, 2, 0}, tri_prev[3] = {2, 0, 1};
@@ -114,13 +122,26 @@ static inline int tri_edge(int32_t code) { return code & 3; }
 
 static inline bool tri_is_live(const struct tri_triangle *t) { return t->v[0] >= 0; }
 
-/* A coordinate that the exact predicates can carry: what is too small becomes 0. */
-static inline double tri_round_coordinate(double x) { return fabs(x) < 0x1p-216 ? 0 : x; }
+/* The range of the exact predicates (see predicates.h): 0 and what lies between these magnitudes; 2^-216 and 2^200, in
+ * words that C++11 has. */
+#define TRI_LEAST_COORDINATE (1 / 1.0531229166855719e65)
+#define TRI_LARGEST_COORDINATE 1.6069380442589903e60
+
+/* What is too small for the range becomes 0. What is too large stays so: tri_is_in_range tells. */
+static inline double tri_round_coordinate(double x) { return fabs(x) < TRI_LEAST_COORDINATE ? 0 : x; }
+
+/* Can the predicates carry this point, whose coordinates have been rounded? Every vertex they can, and the range is
+ * convex: so the figure ends before the range does, and a point out of it lies outside the figure. */
+static inline bool tri_is_in_range(struct tri_point p)
+{
+    return fabs(p.x) <= TRI_LARGEST_COORDINATE && fabs(p.y) <= TRI_LARGEST_COORDINATE;
+}
 
 static inline struct tri_point tri_point_between(struct tri_point a, struct tri_point b, double fraction)
 {
-    return (struct tri_point){tri_round_coordinate(a.x + fraction * (b.x - a.x)),
-                              tri_round_coordinate(a.y + fraction * (b.y - a.y))};
+    struct tri_point p = {tri_round_coordinate(a.x + fraction * (b.x - a.x)),
+                          tri_round_coordinate(a.y + fraction * (b.y - a.y))};
+    return p;
 }
 
 /* The attributes of the triangles in a region: n_columns of them, or one where that is 0. */
@@ -136,10 +157,12 @@ static inline void tri_mesh_place(const struct tri_mesh *mesh, int32_t v, double
     at[1] = mesh->xy[v].y * mesh->unit;
 }
 
-/* A place given in the caller's coordinates, in the mesh's. */
+/* A place given in the caller's coordinates, in the mesh's. A vertex is in range then; any other place may be out of
+ * it, or even infinite: tri_is_in_range has to be asked before a predicate sees it. */
 static inline struct tri_point tri_to_units(const struct tri_mesh *mesh, double x, double y)
 {
-    return (struct tri_point){tri_round_coordinate(x / mesh->unit), tri_round_coordinate(y / mesh->unit)};
+    struct tri_point p = {tri_round_coordinate(x / mesh->unit), tri_round_coordinate(y / mesh->unit)};
+    return p;
 }
 
 /* Makes an empty mesh; regions[0] exists. Frees everything and zeroes the struct. */
@@ -201,5 +224,9 @@ void tri_mesh_compact(struct tri_mesh *mesh);
 
 /* Checks the invariants of the links; what it finds first is told in *error. O(triangles). For asserts and tests. */
 enum tri_status tri_mesh_validate(const struct tri_mesh *mesh, struct tri_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

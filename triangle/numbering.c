@@ -311,7 +311,7 @@ enum tri_status tri_number(struct tri_mesh *mesh, int32_t n_kept, const struct t
     assert(mesh->n_hubs <= n_kept && n_kept <= mesh->n_vertices);
     struct numbering n = {
         .mesh = mesh, .executor = executor, .n_kept = n_kept, .vertex_bits = bits_of(mesh->n_vertices)};
-    enum tri_status status = allocate(&n, error);
+    enum tri_status status = tri_stop_is_asked(mesh->stop) ? tri_fail_stopped(error) : allocate(&n, error);
     if (!status)
         renumber(&n);
     free(n.order);

@@ -11,6 +11,10 @@
 #include "triangle/executor.h"
 #include "triangle/mesh.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Numbers a mesh. Free slots, subsegments with v[0] == TRI_NONE and vertices that are TRI_VERTEX_NONE, which nothing
  * refers to, are gone afterwards. The first n_kept vertices keep their numbers: those that parents end at (the first
  * tri_mesh.n_hubs), or more; none of them is free.
@@ -20,5 +24,9 @@
  * slot and 8 a new vertex while it runs. TRI_NO_MEMORY: nothing has changed. */
 enum tri_status tri_number(struct tri_mesh *mesh, int32_t n_kept, const struct tri_executor *executor,
                            struct tri_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

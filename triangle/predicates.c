@@ -123,19 +123,47 @@ static double exact_minor_of_doubles(const struct vector *p, const struct vector
     return left.head != right.head ? left.head - right.head : left.tail - right.tail;
 }
 
-double tri_orient2d_near(struct tri_point a, struct tri_point b, struct tri_point c)
+static double sign_of_minor(const struct vector *p, const struct vector *q)
 {
-    struct vector p = difference(a, c), q = difference(b, c);
-    if (is_double(&p) && is_double(&q)) {
-        return exact_minor_of_doubles(&p, &q);
+    if (is_double(p) && is_double(q)) {
+        return exact_minor_of_doubles(p, q);
     }
     double size, h[16];
-    struct tri_pair minor = doubled_minor(&p, &q, &size);
+    struct tri_pair minor = doubled_minor(p, q, &size);
     double det = minor.head + minor.tail;
     if (fabs(det) > DOUBLED_MINOR_BOUND * size) {
         return det;
     }
-    return tri_expansion_value(exact_minor(&p, &q, h), h);
+    return tri_expansion_value(exact_minor(p, q, h), h);
+}
+
+double tri_orient2d_near(struct tri_point a, struct tri_point b, struct tri_point c)
+{
+    assert(tri_is_exact_point(a) && tri_is_exact_point(b) && tri_is_exact_point(c));
+    struct vector p = difference(a, c), q = difference(b, c);
+    return sign_of_minor(&p, &q);
+}
+
+/* p . q is the minor of p and q turned left. */
+double tri_dot_near(struct tri_point a, struct tri_point b, struct tri_point c)
+{
+    assert(tri_is_exact_point(a) && tri_is_exact_point(b) && tri_is_exact_point(c));
+    struct vector p = difference(a, c), q = difference(b, c);
+    struct vector turned = {{-q.y.head, -q.y.tail}, q.x};
+    return sign_of_minor(&p, &turned);
+}
+
+/* Doubled precision where the error, 2^-102 of size, is below 2^-80 of the result. */
+struct tri_pair tri_orient2d_pair(struct tri_point a, struct tri_point b, struct tri_point c)
+{
+    struct vector p = difference(a, c), q = difference(b, c);
+    double size, h[16];
+    struct tri_pair minor = doubled_minor(&p, &q, &size);
+    if (fabs(minor.head) > 0x1p-22 * size) {
+        return tri_fast_two_sum(minor.head, minor.tail);
+    }
+    int n = exact_minor(&p, &q, h);
+    return (struct tri_pair){n > 0 ? h[n - 1] : 0, n > 1 ? h[n - 2] : 0};
 }
 
 static bool same_sum(double a, double b, double c, double d)
@@ -181,6 +209,7 @@ static double small_incircle(const struct vector *a, const struct vector *b, con
 
 double tri_incircle_near(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)
 {
+    assert(tri_is_exact_point(a) && tri_is_exact_point(b) && tri_is_exact_point(c) && tri_is_exact_point(d));
     if (mirror_pairs(a, b, c, d) || mirror_pairs(a, c, b, d) || mirror_pairs(a, d, b, c)) {
         return 0;
     }

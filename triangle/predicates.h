@@ -19,13 +19,14 @@
 #ifndef TRIANGLE_PREDICATES_H
 #define TRIANGLE_PREDICATES_H
 
-#include <float.h>
+#include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 
+#include "triangle/arithmetic.h"
 #include "triangle/mesh.h"
 
-_Static_assert(FLT_EVAL_METHOD == 0, "the error bounds are those of plain double arithmetic");
+struct tri_pair; /* triangle/expansion.h */
 
 /* With u = 2^-53, half a unit in the last place of 1. Both are exact doubles. */
 #define TRI_ORIENT2D_BOUND (3 * 0x1p-53 + 16 * 0x1p-106)
@@ -33,13 +34,20 @@ _Static_assert(FLT_EVAL_METHOD == 0, "the error bounds are those of plain double
 
 static inline bool tri_is_exact_coordinate(double x)
 {
-    return x == 0 || (fabs(x) >= 0x1p-216 && fabs(x) <= 0x1p200);
+    return x == 0 || (fabs(x) >= TRI_LEAST_COORDINATE && fabs(x) <= TRI_LARGEST_COORDINATE);
+}
+
+/* What every predicate asserts of its points. */
+static inline bool tri_is_exact_point(struct tri_point p)
+{
+    return tri_is_exact_coordinate(p.x) && tri_is_exact_coordinate(p.y);
 }
 
 /* What the inline functions below call when their filter is in doubt: the same results, without that filter.
  * 5 to 50 ns where the structure of the coordinates (points of a grid, mirror images) or doubled precision decides; up
  * to 3 us, and 40 KB of stack, for points that are cocircular within a relative 10^-30 but lie on no grid. */
 double tri_orient2d_near(struct tri_point a, struct tri_point b, struct tri_point c);
+double tri_dot_near(struct tri_point a, struct tri_point b, struct tri_point c);
 double tri_incircle_near(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d);
 bool tri_in_circle_near(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d);
 
@@ -48,9 +56,18 @@ bool tri_in_circle_near(struct tri_point a, struct tri_point b, struct tri_point
  * with the rounding of size and of the bound itself, 3u + 12u^2 + O(u^3) would do. A size of 0 means an exact 0. */
 static inline double tri_orient2d(struct tri_point a, struct tri_point b, struct tri_point c)
 {
+    assert(tri_is_exact_point(a) && tri_is_exact_point(b) && tri_is_exact_point(c));
     double left = (a.x - c.x) * (b.y - c.y), right = (b.x - c.x) * (a.y - c.y);
     double det = left - right, size = fabs(left) + fabs(right);
     return fabs(det) >= TRI_ORIENT2D_BOUND * size ? det : tri_orient2d_near(a, b, c);
+}
+
+/* The sign of (a - c) . (b - c), < 0 where c lies strictly inside the circle with diameter ab. The magnitude
+ * approximates the product. The bound: each term errs by 3 roundings, the sum by 1. */
+static inline double tri_dot(struct tri_point a, struct tri_point b, struct tri_point c)
+{
+    double x = (a.x - c.x) * (b.x - c.x), y = (a.y - c.y) * (b.y - c.y), dot = x + y;
+    return fabs(dot) > 4 * DBL_EPSILON * (fabs(x) + fabs(y)) ? dot : tri_dot_near(a, b, c);
 }
 
 /* The in-circle determinant if its sign is certain, else 0.
@@ -59,6 +76,7 @@ static inline double tri_orient2d(struct tri_point a, struct tri_point b, struct
  * the bound itself, 10u + 74u^2 + O(u^3) would do. */
 static inline double tri_incircle_filter(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)
 {
+    assert(tri_is_exact_point(a) && tri_is_exact_point(b) && tri_is_exact_point(c) && tri_is_exact_point(d));
     double ax = a.x - d.x, ay = a.y - d.y, bx = b.x - d.x, by = b.y - d.y, cx = c.x - d.x, cy = c.y - d.y;
     double bc = bx * cy, cb = cx * by, ca = cx * ay, ac = ax * cy, ab = ax * by, ba = bx * ay;
     double a_lift = ax * ax + ay * ay, b_lift = bx * bx + by * by, c_lift = cx * cx + cy * cy;
@@ -85,5 +103,9 @@ static inline bool tri_in_circle(struct tri_point a, struct tri_point b, struct 
     double det = tri_incircle_filter(a, b, c, d);
     return det != 0 ? det > 0 : tri_in_circle_near(a, b, c, d);
 }
+
+/* The determinant of tri_orient2d to a relative 2^-80 (of exact sign, for constructions rather than decisions): head +
+ * tail. */
+struct tri_pair tri_orient2d_pair(struct tri_point a, struct tri_point b, struct tri_point c);
 
 #endif

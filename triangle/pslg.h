@@ -11,6 +11,10 @@
 
 #include "triangle/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 struct tri_pslg {
     int32_t n_points;
     double *points;         /* [n_points][2]: x, y; finite */
@@ -36,5 +40,9 @@ bool tri_pslg_is_one_place(const struct tri_pslg *pslg);
 
 /* Frees the arrays (malloc'ed) and zeroes the struct. */
 void tri_pslg_free(struct tri_pslg *pslg);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -219,7 +219,7 @@ enum tri_status tri_read_node(const char *path, const struct tri_read_options *o
 {
     *out = (struct tri_pslg){0};
     struct tri_text text;
-    enum tri_status status = tri_text_load(&text, path, options->chunk_bytes, options->executor, error);
+    enum tri_status status = tri_text_load(&text, path, options->chunk_bytes, options->executor, options->stop, error);
     if (status == TRI_OK)
         status = read_node_text(&text, options, out, base, error);
     tri_text_free(&text);
@@ -398,7 +398,8 @@ enum tri_status tri_read_poly(const char *poly_path, const char *node_path, cons
 {
     *out = (struct tri_pslg){0};
     struct tri_text text;
-    enum tri_status status = tri_text_load(&text, poly_path, options->chunk_bytes, options->executor, error);
+    enum tri_status status = tri_text_load(&text, poly_path, options->chunk_bytes, options->executor,
+                                           options->stop, error);
     if (status == TRI_OK)
         status = read_poly_text(&text, node_path, options, out, base, points_in_poly, error);
     tri_text_free(&text);
@@ -490,7 +491,7 @@ enum tri_status tri_read_ele(const char *path, const struct tri_read_options *op
     *out = (struct tri_elements){0};
     const struct element_rows rows = {out, base, n_points};
     struct tri_text text;
-    enum tri_status status = tri_text_load(&text, path, options->chunk_bytes, options->executor, error);
+    enum tri_status status = tri_text_load(&text, path, options->chunk_bytes, options->executor, options->stop, error);
     if (status == TRI_OK)
         status = read_ele_text(&text, options, &rows, error);
     tri_text_free(&text);
@@ -528,7 +529,7 @@ enum tri_status tri_read_area(const char *path, const struct tri_read_options *o
 {
     elements->areas = NULL;
     struct tri_text text;
-    enum tri_status status = tri_text_load(&text, path, options->chunk_bytes, options->executor, error);
+    enum tri_status status = tri_text_load(&text, path, options->chunk_bytes, options->executor, options->stop, error);
     if (status == TRI_OK)
         status = read_area_text(&text, options, elements, error);
     tri_text_free(&text);

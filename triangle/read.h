@@ -19,6 +19,11 @@
 #include "triangle/pslg.h"
 #include "triangle/reconstruct.h"
 #include "triangle/status.h"
+#include "triangle/stop.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 struct tri_read_options {
     int32_t default_base; /* number of the first vertex where the file says neither 0 nor 1: 1, or 0 with -z */
@@ -26,6 +31,7 @@ struct tri_read_options {
     bool refining;        /* a segment that names no vertex is an error; else a warning */
     size_t chunk_bytes;   /* of text for each task; 0: the default. The result does not depend on it */
     const struct tri_executor *executor; /* NULL: one task after another */
+    const struct tri_stop *stop;         /* asked whether to go on; NULL: nobody */
     /* Told of what is skipped, in the order of the lines, by the calling thread; text is one sentence. NULL: nobody. */
     void (*warn)(void *user, const char *file, long line, const char *text);
     void *warn_user;
@@ -51,5 +57,9 @@ enum tri_status tri_read_ele(const char *path, const struct tri_read_options *op
  * none, as where the file has no value. */
 enum tri_status tri_read_area(const char *path, const struct tri_read_options *options, struct tri_elements *elements,
                               struct tri_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -224,6 +224,7 @@ static void add_sub(struct tri_mesh *mesh, int32_t code, int32_t from, int32_t t
 {
     int32_t s = tri_mesh_add_sub(mesh, from, to, marker, segment), other = *link_of(mesh, code);
     int side = tri_side(&mesh->sub[s], mesh->tri[tri_of(code)].v[tri_next[tri_edge(code)]]);
+    mesh->parents[mesh->sub[s].parent].guard = mesh->xy[from]; /* what is outside is not known: nothing is its own */
     mesh->sub[s].side[side] = code;
     *link_of(mesh, code) = ~s;
     if (other == LOOSE)
@@ -400,7 +401,7 @@ static enum tri_status build(struct matcher *m)
 {
     struct tri_mesh *mesh = m->mesh;
     enum tri_status status = tri_mesh_take_points(mesh, m->pslg, m->error);
-    status = status ? status : take_triangles(m);
+    status = status ? status : tri_stop_is_asked(mesh->stop) ? tri_fail_stopped(m->error) : take_triangles(m);
     status = status ? status : allocate_and_match(m);
     status = status ? status : add_subsegments(m);
     if (!status && (m->elements->areas || m->elements->attributes))
@@ -422,6 +423,7 @@ enum tri_status tri_reconstruct(struct tri_mesh *mesh, const struct tri_pslg *ps
     enum tri_status status = tri_pslg_check(pslg, error);
     status = status ? status : check_elements(elements, error);
     status = status ? status : tri_mesh_init(mesh, error);
+    mesh->stop = options->stop;
     status = status ? status : build(&m);
     for (int32_t k = 0; !status && options->is_edge && k < pslg->n_segments; k++)
         options->is_edge[k] = k < m.n_segments && (m.edge_of[k] != TRI_NONE || !names_edge(&m, k));

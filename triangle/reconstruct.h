@@ -4,6 +4,10 @@
 
 #include "triangle/mesh.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 struct tri_used; /* triangle/topology.h */
 
 /* Triangles as a caller or an .ele file gives them. Anything may stand in them: what is no mesh is refused. */
@@ -23,6 +27,7 @@ void tri_elements_free(struct tri_elements *elements);
 struct tri_reconstruct_options {
     bool use_segments; /* the segments of the PSLG that are edges of the mesh become subsegments (-p) */
     bool refine;       /* the mesh is going to be refined: it is made constrained Delaunay first */
+    const struct tri_stop *stop; /* as in struct tri_options */
     int32_t base;      /* of the numbers in errors: of the first triangle and the first vertex */
     bool *is_edge;     /* [n_segments] receives whether the segment is an edge of the mesh, or nothing that
                           could be one; NULL: not asked for */
@@ -57,5 +62,9 @@ enum tri_status tri_reconstruct(struct tri_mesh *mesh, const struct tri_pslg *ps
  * kept->number is NULL. To be freed by tri_used_free. O(vertices + triangles). TRI_NO_MEMORY. */
 enum tri_status tri_kept_make(struct tri_used *kept, const struct tri_mesh *mesh, const struct tri_elements *elements,
                               bool jettison, struct tri_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

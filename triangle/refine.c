@@ -13,11 +13,14 @@
 
 #include "triangle/bad_queue.h"
 #include "triangle/criterion.h"
+#include "triangle/disk.h"
 #include "triangle/feature_size.h"
+#include "triangle/inside.h"
 #include "triangle/interpolate.h"
 #include "triangle/predicates.h"
 #include "triangle/quality.h"
 #include "triangle/small_angle.h"
+#include "triangle/split.h"
 
 /* 4 / sqrt(3): an equilateral triangle of area A has a squared edge of this times A. The point of a triangle that is
  * only too large is placed as if to make an equilateral triangle of IDEAL of that edge, when that is nearer than the
@@ -46,10 +49,12 @@ struct tri_refiner {
     int limit;        /* buckets from here on wait for the second pass */
     int32_t next_seed, n_seeds;
     enum stage stage;
+    enum tri_excuse excuse; /* of the last refusal */
     bool in_hand;     /* `hand` was being treated when there was no room */
     struct tri_entry hand;
     int32_t *crowded; /* stack of subsegments to test for encroachment (conforming only) */
     int32_t n_crowded, crowded_capacity;
+    uint32_t step_of_stop; /* see tri_stop_is_due */
 };
 
 enum { SEED_CHUNK = 1 << 16 };
@@ -58,8 +63,8 @@ enum { SEED_CHUNK = 1 << 16 };
 static const double FARTHEST = 0x1p199;
 
 /* DONE: a point was inserted, or the triangle is gone; AGAIN: a subsegment was split instead, the triangle may still
- * stand. */
-enum outcome { DONE, AGAIN, REFUSED, FAILED };
+ * stand; LEFT: it is somebody else's. */
+enum outcome { DONE, AGAIN, REFUSED, LEFT, FAILED };
 
 struct tri_refine_options tri_refine_defaults(void)
 {
@@ -181,13 +186,15 @@ static const int32_t *corners_around(const struct tri_refiner *r, struct tri_poi
     return r->mesh->tri[r->cavity.tri[0]].v;
 }
 
-/* Inserts p for a triangle with shortest edge ab. */
-static enum outcome insert_free(struct tri_refiner *r, struct tri_point p, int32_t a, int32_t b)
+/* Inserts p, whose cavity has been found, for the sake of the triangle in a slot. */
+static enum outcome insert_free(struct tri_refiner *r, struct tri_point p, int32_t slot, const struct tri_shape *shape)
 {
     if (make_room(r))
         return FAILED;
     int32_t v = add_vertex(r, p, TRI_VERTEX_FREE, 0);
-    r->mesh->feature[v] = tri_feature_inside(r->mesh, a, b, p, r->sized);
+    const int32_t *corner = r->mesh->tri[slot].v;
+    r->mesh->feature[v] = tri_feature_inside(r->mesh, corner[tri_next[shape->shortest]],
+                                             corner[tri_prev[shape->shortest]], p, r->sized);
     if (r->mesh->n_attributes)
         tri_interpolate_triangle(r->mesh, corners_around(r, p), v);
     tri_cavity_fill(&r->cavity, r->mesh, v);
@@ -201,27 +208,31 @@ static enum outcome leave(struct tri_refiner *r, int32_t slot, int64_t *counter)
     ++*counter;
     if (r->options->left)
         r->options->left(r->options->left_user, slot);
-    return REFUSED;
+    return LEFT;
 }
 
 static enum outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
+{
+    r->excuse = excuse;
+    return REFUSED;
+}
+
+static enum outcome give_up(struct tri_refiner *r, enum tri_excuse excuse)
 {
     r->report->refused[excuse]++;
     return REFUSED;
 }
 
-/* Splits subsegment s for the sake of the triangle in a slot. */
-static enum outcome split(struct tri_refiner *r, int32_t s, int32_t slot)
+/* Splits subsegment s, at this fraction of it, for the sake of the triangle in a slot. */
+static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, int32_t slot)
 {
     struct tri_mesh *m = r->mesh;
     const struct tri_subsegment old = m->sub[s];
     int32_t n_left;
     if (tri_is_protected(r->options, &old))
         return refuse(r, TRI_EXCUSE_PROTECTED);
-    double fraction = tri_split_fraction(m, &old);
-    struct tri_point a = m->xy[old.v[0]], b = m->xy[old.v[1]];
-    struct tri_point p = tri_point_between(a, b, fraction);
-    if (!tri_can_split(m, a, b))
+    struct tri_point p;
+    if (!tri_can_split(m, m->xy[old.v[0]], m->xy[old.v[1]]) || !tri_place_split(m, &old, fraction, &p))
         return refuse(r, TRI_EXCUSE_PRECISION);
     enum tri_search found = tri_cavity_search_split(&r->cavity, m, p, s, &n_left);
     if (found == TRI_SEARCH_FENCED)
@@ -243,6 +254,11 @@ static enum outcome split(struct tri_refiner *r, int32_t s, int32_t slot)
     if (room && r->options->conforming)
         room = crowd(r, s) && crowd(r, second);
     return room ? DONE : FAILED;
+}
+
+static enum outcome split(struct tri_refiner *r, int32_t s, int32_t slot)
+{
+    return split_at(r, s, tri_split_fraction(r->mesh, &r->mesh->sub[s]), slot);
 }
 
 /* Where only sizes count, a subsegment that must not be split is no reason not to insert a point beside it. */
@@ -298,11 +314,9 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
     return reach;
 }
 
-static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tri_shape *shape,
-                            enum tri_badness badness)
+/* The cavity of a new point for the triangle in a slot: DONE where it is found and is ours. */
+static enum outcome find_cavity(struct tri_refiner *r, int32_t slot, struct tri_point p)
 {
-    const struct tri_triangle t = r->mesh->tri[slot];
-    struct tri_point p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
     if (!(fabs(p.x) < FARTHEST && fabs(p.y) < FARTHEST))
         return refuse(r, TRI_EXCUSE_PRECISION);
     if (r->options->gate) {
@@ -312,19 +326,44 @@ static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tr
     }
     if (r->options->fence && !tri_fence_holds(r->options->fence, p)) /* then its cavity reaches beyond, too */
         return leave(r, slot, &r->report->deferred);
-    enum tri_search found = tri_cavity_search(&r->cavity, r->mesh, p, slot);
-    if (found == TRI_SEARCH_FOUND) {
-        int32_t s = find_encroached(r);
-        if (s == TRI_NONE)
-            return insert_free(r, p, t.v[tri_next[shape->shortest]], t.v[tri_prev[shape->shortest]]);
-        if (tri_is_flat(r->mesh, shape))
-            return refuse(r, TRI_EXCUSE_PRECISION);
-        enum outcome outcome = split(r, s, slot);
-        return outcome == DONE ? AGAIN : outcome;
+    switch (tri_cavity_search(&r->cavity, r->mesh, p, slot)) {
+    case TRI_SEARCH_FOUND: return DONE;
+    case TRI_SEARCH_FENCED: return leave(r, slot, &r->report->deferred);
+    case TRI_SEARCH_OUTSIDE: return refuse(r, TRI_EXCUSE_PRECISION);
+    default: return FAILED;
     }
-    if (found == TRI_SEARCH_FENCED)
-        return leave(r, slot, &r->report->deferred);
-    return found == TRI_SEARCH_OUTSIDE ? refuse(r, TRI_EXCUSE_PRECISION) : FAILED;
+}
+
+/* The usual point, or the split of a subsegment that it encroaches. */
+static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tri_shape *shape,
+                            enum tri_badness badness)
+{
+    const struct tri_triangle t = r->mesh->tri[slot];
+    struct tri_point p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
+    enum outcome outcome = find_cavity(r, slot, p);
+    if (outcome != DONE)
+        return outcome;
+    int32_t s = find_encroached(r);
+    if (s == TRI_NONE)
+        return insert_free(r, p, slot, shape);
+    if (tri_is_flat(r->mesh, shape))
+        return refuse(r, TRI_EXCUSE_PRECISION);
+    outcome = split(r, s, slot);
+    return outcome == DONE ? AGAIN : outcome;
+}
+
+/* For sizes, where the usual point is refused: see inside.c. */
+static enum outcome propose_inside(struct tri_refiner *r, int32_t slot, const struct tri_shape *shape)
+{
+    int32_t s = tri_long_wall(r->mesh, r->options, slot, shape);
+    enum outcome outcome = s == TRI_NONE ? REFUSED : split(r, s, slot);
+    if (outcome != REFUSED)
+        return outcome == DONE ? AGAIN : outcome;
+    struct tri_point p;
+    if (!tri_centroid(r->mesh, slot, shape, &p))
+        return refuse(r, TRI_EXCUSE_PRECISION);
+    outcome = find_cavity(r, slot, p);
+    return outcome == DONE ? insert_free(r, p, slot, shape) : outcome;
 }
 
 /* Lowers the angle bound that the loop works for; what is already bad by the old one stays. */
@@ -375,17 +414,21 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
             return DONE;
         r->sized = badness == TRI_BAD_SIZE;
         if (badness == TRI_BAD_ANGLE && is_hopeless(r, entry.t, &shape)) {
-            if (shape.area2 <= tri_area2_bound(&r->criterion, t->region))
-                return refuse(r, TRI_EXCUSE_INPUT_ANGLE);
+            if (!tri_is_too_large(&r->criterion, t, &shape))
+                return give_up(r, TRI_EXCUSE_INPUT_ANGLE);
             r->sized = true;
         }
         if (at_limit(r))
-            return refuse(r, TRI_EXCUSE_LIMIT);
+            return give_up(r, TRI_EXCUSE_LIMIT);
         enum outcome outcome = propose(r, entry.t, &shape, badness);
+        if (outcome == REFUSED && tri_is_too_large(&r->criterion, t, &shape)) {
+            r->sized = true;
+            outcome = propose_inside(r, entry.t, &shape);
+        }
         if (outcome == DONE || outcome == AGAIN)
             count_point(r);
         if (outcome != AGAIN)
-            return outcome;
+            return outcome == REFUSED ? give_up(r, r->excuse) : outcome;
     }
 }
 
@@ -397,16 +440,19 @@ static bool split_crowded(struct tri_refiner *r)
         int32_t beside = tri_of(sub->side[sub->side[0] == TRI_NONE]);
         assert(s >= 0 && tri_is_live(&r->mesh->tri[beside]));
         r->n_crowded--;
-        if (!tri_is_crowded(r->mesh, sub) || at_limit(r))
+        double fraction;
+        if (!tri_is_crowded(r->mesh, sub, &fraction) || at_limit(r))
             continue;
         r->sized = false;
-        enum outcome outcome = split(r, s, beside);
+        enum outcome outcome = split_at(r, s, fraction, beside);
         if (outcome == FAILED) {
             r->crowded[r->n_crowded++] = s; /* there is room: it was there a moment ago */
             return false;
         }
         if (outcome == DONE)
             count_point(r);
+        if (outcome == REFUSED)
+            give_up(r, r->excuse);
     }
     return true;
 }
@@ -418,9 +464,17 @@ static bool next_entry(struct tri_refiner *r)
                                  : tri_bad_queue_pop(&r->queue, &r->hand);
 }
 
+/* Somebody asks for the end: between two triangles the mesh is in order. */
+static bool must_stop(struct tri_refiner *r)
+{
+    return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(r->error);
+}
+
 static bool work_off(struct tri_refiner *r)
 {
     for (;;) {
+        if (must_stop(r))
+            return false;
         if (!split_crowded(r))
             return false;
         if (!r->in_hand && !next_entry(r))

@@ -13,6 +13,10 @@
 #include "triangle/cavity.h"
 #include "triangle/executor.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Non-zero: the triangle a, b, c (counter-clockwise) must be refined. Called for triangles that satisfy all other size
  * bounds, by par_refine also for others (sched/par.h). */
 typedef int tri_unsuitable(void *user, const double a[2], const double b[2], const double c[2], double area);
@@ -70,13 +74,17 @@ struct tri_refine_report {
 
 struct tri_refine_options tri_refine_defaults(void);
 
+/* Triangles that the area bounds ask for at least: the sum of all areas over their bounds. O(triangles). */
+double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_options *options);
+
 /* TRI_TOO_LARGE where the area bounds ask for more triangles than one mesh can hold; tri_refine asks first.
  * O(triangles). */
 enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                                  struct tri_error *error);
 
-/* Refines until every bad triangle is refused, gated or deferred. On TRI_NO_MEMORY or TRI_TOO_LARGE the mesh is valid
- * and as far as it got. Terminates for any PSLG and any bound. Amortised O(1) a point in practice. */
+/* Refines until every bad triangle is refused, gated or deferred. On TRI_NO_MEMORY, TRI_TOO_LARGE or TRI_STOPPED
+ * (mesh->stop) the mesh is valid and as far as it got; after the last, once mesh->stop is NULL, another call goes on.
+ * Terminates for any PSLG and any bound. Amortised O(1) a point in practice. */
 enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,
                            struct tri_refine_report *report, struct tri_error *error);
 
@@ -99,13 +107,19 @@ int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_optio
  * O(triangles). */
 enum tri_status tri_refine_prepare(struct tri_mesh *mesh, struct tri_error *error);
 
-/* Counts the subsegments with a vertex of a triangle beside them in their diametral circle: what -D could not mend. */
-int64_t tri_count_encroached(const struct tri_mesh *mesh);
+/* Counts the subsegments with a vertex of a triangle beside them in their diametral circle, which -D could not mend, by
+ * place: at a small angle of the input, between segments near to each other, and so on. */
+void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                          const struct tri_refine_report *report, int64_t count[TRI_EXCUSES]);
 
 /* Counts the triangles that violate the bounds, by reason. A size test is asked by the calling thread alone.
  * O(triangles). */
 void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                    const struct tri_refine_report *report, const struct tri_executor *executor,
                    int64_t count[TRI_EXCUSES]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -87,6 +87,38 @@ static const int32_t *parents_of(const struct tri_mesh *mesh, int32_t v, int32_t
     return mesh->spokes + mesh->spoke_start[v];
 }
 
+bool tri_is_on_parent(const struct tri_mesh *mesh, int32_t v)
+{
+    int32_t n;
+    parents_of(mesh, v, &n);
+    return n > 0;
+}
+
+/* Is there a parent from one vertex to the other? Looks at the shorter of their lists: one may be the hub of a
+ * wheel. */
+static bool are_joined(const struct tri_mesh *mesh, int32_t u, int32_t v)
+{
+    int32_t nu, nv;
+    const int32_t *pu = parents_of(mesh, u, &nu), *pv = parents_of(mesh, v, &nv);
+    for (int32_t i = 0; i < (nu < nv ? nu : nv); i++) {
+        const int32_t *ends = mesh->parents[(nu < nv ? pu : pv)[i]].v;
+        if ((ends[0] == u && ends[1] == v) || (ends[0] == v && ends[1] == u))
+            return true;
+    }
+    return false;
+}
+
+int32_t tri_common_end(const struct tri_mesh *mesh, int32_t parent, int32_t v)
+{
+    const int32_t *ends = mesh->parents[parent].v, on = mesh->on[v];
+    for (int k = 0; k < 2; k++) {
+        const int32_t *others = on >= 0 ? mesh->parents[on].v : NULL;
+        if (others ? others[0] == ends[k] || others[1] == ends[k] : are_joined(mesh, ends[k], v))
+            return ends[k];
+    }
+    return TRI_NONE;
+}
+
 /* At the far end of the shorter one, of length l, they are at most width + l * sine apart. */
 double tri_filling_cost(const struct tri_mesh *mesh, int32_t first, int32_t second, struct tri_point u,
                         struct tri_point v)
@@ -169,13 +201,7 @@ bool tri_is_hopeless(const struct tri_mesh *mesh, int32_t slot, const struct tri
 /* Two corners at least lie on segments. */
 static bool may_bridge(const struct tri_mesh *mesh, const int32_t v[3])
 {
-    int on = 0;
-    for (int k = 0; k < 3; k++) {
-        int32_t n;
-        parents_of(mesh, v[k], &n);
-        on += n > 0;
-    }
-    return on >= 2;
+    return tri_is_on_parent(mesh, v[0]) + tri_is_on_parent(mesh, v[1]) + tri_is_on_parent(mesh, v[2]) >= 2;
 }
 
 /* Which narrow spaces are filled, by their cost. All of them, where a quarter of a million points is enough for

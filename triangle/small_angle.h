@@ -15,6 +15,12 @@ bool tri_can_split(const struct tri_mesh *mesh, struct tri_point a, struct tri_p
 /* Does the shortest edge of the triangle join two segments that touch? */
 bool tri_crosses_angle(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape);
 
+/* Does the vertex lie on a parent? */
+bool tri_is_on_parent(const struct tri_mesh *mesh, int32_t v);
+
+/* The common end of a parent and a parent that vertex v lies on; TRI_NONE where there is none. O(parents at v). */
+int32_t tri_common_end(const struct tri_mesh *mesh, int32_t parent, int32_t v);
+
 /* A bad angle that no point can mend, or that would only move it: see the rules in the .c file. */
 bool tri_is_hopeless(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape);
 

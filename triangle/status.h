@@ -5,6 +5,10 @@
 #ifndef TRIANGLE_STATUS_H
 #define TRIANGLE_STATUS_H
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum tri_status {
     TRI_OK = 0,
     TRI_NO_MEMORY,    /* an allocation failed; what existed before the call is intact */
@@ -13,7 +17,8 @@ enum tri_status {
     TRI_CANNOT_READ,  /* a file cannot be opened or read */
     TRI_CANNOT_WRITE, /* a file cannot be created, written or renamed */
     TRI_NO_ROOM,      /* a view of shared arrays is full; not a failure: make room and call again */
-    TRI_INTERNAL      /* an invariant does not hold: a defect of this library */
+    TRI_INTERNAL,     /* an invariant does not hold: a defect of this library */
+    TRI_STOPPED       /* somebody asked for it, see triangle/stop.h */
 };
 
 struct tri_error {
@@ -29,5 +34,9 @@ __attribute__((format(printf, 5, 6)))
 #endif
 enum tri_status tri_fail(struct tri_error *error, enum tri_status status, const char *file, long line,
                          const char *format, ...);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -119,6 +119,8 @@ static ssize_t read_at(int file, char *at, size_t n, size_t offset)
 static void read_chunk(void *context, size_t i)
 {
     struct load *const load = context;
+    if (tri_stop_is_asked(load->text->stop)) /* whoever ran the tasks will see it, too */
+        return;
     const size_t begin = i * load->text->chunk_bytes;
     const size_t left = load->file_size - begin;
     const size_t n = left < load->text->chunk_bytes ? left : load->text->chunk_bytes;
@@ -136,6 +138,8 @@ static enum tri_status read_sized(struct load *load, const struct tri_executor *
     if (!text->data || !load->errors)
         return tri_fail(error, TRI_NO_MEMORY, text->name, 0, "no memory for %zu bytes of text", load->file_size);
     tri_execute(executor, n_chunks, read_chunk, load);
+    if (tri_stop_is_asked(text->stop))
+        return tri_fail_stopped(error);
     for (size_t i = 0; i < n_chunks; i++)
         if (load->errors[i] < 0)
             return tri_fail(error, TRI_CANNOT_READ, text->name, 0, "the file became shorter while it was read");
@@ -164,6 +168,8 @@ static enum tri_status read_stream(struct tri_text *text, int file, struct tri_e
     for (;;) {
         if (text->size + 1 >= room && !grow_data(text, &room))
             return tri_fail(error, TRI_NO_MEMORY, text->name, 0, "no memory for the file");
+        if (tri_stop_is_asked(text->stop))
+            return tri_fail_stopped(error);
         const ssize_t got = read(file, text->data + text->size, room - 1 - text->size);
         if (got == 0)
             return TRI_OK;
@@ -197,7 +203,9 @@ static enum tri_status read_file(struct tri_text *text, const struct tri_executo
     int file;
     do
         file = open(text->name, O_RDONLY | O_CLOEXEC);
-    while (file < 0 && errno == EINTR);
+    while (file < 0 && errno == EINTR && !tri_stop_is_asked(text->stop)); /* a pipe that nobody writes */
+    if (file < 0 && errno == EINTR)
+        return tri_fail_stopped(error);
     if (file < 0)
         return tri_fail_system(error, TRI_CANNOT_READ, text->name, "cannot open", errno);
     const enum tri_status result = read_open_file(text, file, executor, error);
@@ -227,6 +235,8 @@ static void count_chunk(void *context, size_t i)
     struct tri_text_chunk *const chunk = &text->chunks[i];
     const char *const end = text->data + text->size;
     const char *const stop = i + 1 < text->n_chunks ? text->data + (i + 1) * text->chunk_bytes : end;
+    if (tri_stop_is_asked(text->stop))
+        return;
     const char *line = first_line(text, i);
     chunk->begin = line ? (size_t)(line - text->data) : SIZE_MAX;
     while (line && line < stop) {
@@ -263,6 +273,8 @@ static enum tri_status make_index(struct tri_text *text, const struct tri_execut
     if (!text->chunks)
         return tri_fail(error, TRI_NO_MEMORY, text->name, 0, "no memory for the index of the file");
     tri_execute(executor, text->n_chunks, count_chunk, text);
+    if (tri_stop_is_asked(text->stop))
+        return tri_fail_stopped(error);
     accumulate(text);
     return TRI_OK;
 }
@@ -277,9 +289,10 @@ static long line_of(const char *begin, const char *at)
 }
 
 enum tri_status tri_text_load(struct tri_text *text, const char *path, size_t chunk_bytes,
-                              const struct tri_executor *executor, struct tri_error *error)
+                              const struct tri_executor *executor, const struct tri_stop *stop,
+                              struct tri_error *error)
 {
-    *text = (struct tri_text){.name = path, .chunk_bytes = chunk_bytes ? chunk_bytes : DEFAULT_CHUNK};
+    *text = (struct tri_text){.name = path, .stop = stop, .chunk_bytes = chunk_bytes ? chunk_bytes : DEFAULT_CHUNK};
     const enum tri_status status = read_file(text, executor, error);
     if (status != TRI_OK)
         return status;
@@ -345,6 +358,8 @@ static void parse_chunk(void *context, size_t i)
 {
     struct parse *const parse = context;
     const struct tri_text *const text = parse->begin.text;
+    if (tri_stop_is_asked(text->stop))
+        return;
     const struct tri_text_chunk *const chunk = &text->chunks[parse->first_chunk + i];
     const char *const stop = text->data + chunk[1].begin;
     struct tri_cursor cursor = {text, text->data + chunk->begin, chunk->line, chunk->record};
@@ -422,7 +437,9 @@ enum tri_status tri_cursor_table(struct tri_cursor *cursor, const struct tri_tab
     if (!parse.outcomes)
         return tri_fail(error, TRI_NO_MEMORY, cursor->text->name, 0, "no memory to read a table");
     tri_execute(executor, n_chunks, parse_chunk, &parse);
-    const enum tri_status status = conclude(&parse, n_chunks, cursor, error);
+    const enum tri_status status = tri_stop_is_asked(cursor->text->stop)
+                                       ? tri_fail_stopped(error)
+                                       : conclude(&parse, n_chunks, cursor, error);
     free(parse.outcomes);
     return status;
 }

@@ -21,6 +21,7 @@
 #include "triangle/executor.h"
 #include "triangle/number.h"
 #include "triangle/status.h"
+#include "triangle/stop.h"
 
 struct tri_text_chunk {
     size_t begin;  /* offset of the first line that begins here or later */
@@ -32,15 +33,18 @@ struct tri_text {
     const char *name; /* the path, for errors; borrowed */
     char *data;       /* [size] */
     size_t size;      /* bytes, > 0 */
+    const struct tri_stop *stop; /* asked whether to go on */
     size_t chunk_bytes;
     size_t n_chunks;
     struct tri_text_chunk *chunks; /* [n_chunks + 1]; the last is the end of the text */
 };
 
 /* Reads the file whole and indexes it. chunk_bytes > 0, or 0 for the default. A pipe is read to its end, up to 1 GiB.
- * *text is to be freed in any case; `path` must live as long. Errors: TRI_CANNOT_READ, TRI_NO_MEMORY. O(size). */
+ * *text is to be freed in any case; `path` must live as long. Errors: TRI_CANNOT_READ, TRI_NO_MEMORY,
+ * TRI_STOPPED. O(size). */
 enum tri_status tri_text_load(struct tri_text *text, const char *path, size_t chunk_bytes,
-                              const struct tri_executor *executor, struct tri_error *error);
+                              const struct tri_executor *executor, const struct tri_stop *stop,
+                              struct tri_error *error);
 
 void tri_text_free(struct tri_text *text);
 

@@ -71,6 +71,7 @@ enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg,
     *report = (struct tri_report){0};
     enum tri_status status = tri_pslg_check(pslg, error);
     status = status ? status : tri_mesh_init(mesh, error);
+    mesh->stop = options->stop;
     status = status ? status : triangulate(mesh, pslg, options, report, error);
     if (!status) {
         tri_mark_boundary(mesh);

@@ -18,6 +18,10 @@
 #include "triangle/spatial.h"
 #include "triangle/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum tri_stage { TRI_STAGE_DELAUNAY, TRI_STAGE_SEGMENTS, TRI_STAGE_HOLES, TRI_STAGE_QUALITY, TRI_STAGE_DONE };
 
 struct tri_options {
@@ -30,6 +34,7 @@ struct tri_options {
     bool leave_sorted;   /* vertices stay in spatial order, for a refinement that follows: the caller ends with
                             tri_restore_points (triangle/spatial.h) */
     const struct tri_executor *executor; /* for what is done in pieces; NULL: one after another */
+    const struct tri_stop *stop;         /* asked whether to go on, here and, by mesh->stop, later; NULL: nobody */
     void (*stage)(void *user, enum tri_stage begins); /* told when a stage begins; NULL: nobody */
     void *stage_user;
 };
@@ -43,8 +48,13 @@ struct tri_report {
 struct tri_options tri_defaults(void);
 
 /* Makes *mesh from the PSLG. On failure *mesh is empty, except that what refinement had done when it ran out of memory
- * (TRI_NO_MEMORY, TRI_TOO_LARGE) is a valid mesh. TRI_BAD_INPUT: see tri_pslg_check. The PSLG is only read. */
+ * (TRI_NO_MEMORY, TRI_TOO_LARGE) or was stopped (TRI_STOPPED) is a valid mesh. TRI_BAD_INPUT: see tri_pslg_check.
+ * The PSLG is only read. */
 enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
                              struct tri_report *report, struct tri_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

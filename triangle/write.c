@@ -1,4 +1,4 @@
-/* Writing output files: safe outputs, tables, layouts.
+/* Writing output files: tables and layouts.
  *
  * Why a table is written as it is: rows are formatted in chunks that fit a second-level cache, a wave of chunks at a
  * time; while one wave is formatted, the previous one is written by one more task of the same run. So the order of the
@@ -6,24 +6,16 @@
 #include "triangle/write.h"
 
 #include <assert.h>
-#include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "triangle/number.h"
 #include "triangle/text.h"
 
 enum {
     CHUNK_BYTES = 1 << 18,
-    WAVE_CHUNKS = 64, /* at a time, where there is an executor */
-    MAX_LINKS = 40,
-    MAX_PATH = 4096,
-    MAX_NAMES = 1000, /* temporary names to try */
-    NAME_BYTES = 64   /* of a temporary name */
+    WAVE_CHUNKS = 64 /* at a time, where there is an executor */
 };
 
 _Static_assert((int)TRI_ROW_SLACK >= (int)TRI_REAL_ROOM, "a row may end with a real");
@@ -32,235 +24,6 @@ static char *put(char *at, const char *text, size_t length)
 {
     memcpy(at, text, length);
     return at + length;
-}
-
-/* --- outputs */
-
-void tri_outputs_begin(struct tri_output_set *set) { *set = (struct tri_output_set){0}; }
-
-/* Length of the directory part, final slash included; 0: the working directory. */
-static size_t directory_length(const char *path)
-{
-    const char *const slash = strrchr(path, '/');
-    return slash ? (size_t)(slash - path) + 1 : 0;
-}
-
-/* directory_of's directory followed by name; malloc'ed. */
-static char *beside(const char *directory_of, const char *name)
-{
-    const size_t directory = directory_length(directory_of), length = strlen(name);
-    char *const path = malloc(directory + length + 1);
-    if (path) {
-        memcpy(path, directory_of, directory);
-        memcpy(path + directory, name, length + 1);
-    }
-    return path;
-}
-
-/* What a symbolic link at path points to, malloc'ed; NULL and errno: no link (EINVAL, ENOENT), or trouble. */
-static char *follow(const char *path)
-{
-    char target[MAX_PATH];
-    const ssize_t length = readlink(path, target, sizeof target);
-    if (length < 0)
-        return NULL;
-    if ((size_t)length == sizeof target) {
-        errno = ENAMETOOLONG;
-        return NULL;
-    }
-    target[length] = 0;
-    return beside(target[0] == '/' ? "" : path, target);
-}
-
-/* The path behind all symbolic links, existing or not, malloc'ed; NULL and errno on failure. Renaming onto it keeps the
- * links. */
-static char *resolve(const char *path)
-{
-    char *resolved = beside("", path);
-    for (int i = 0; resolved && i < MAX_LINKS; i++) {
-        char *const next = follow(resolved);
-        if (!next && (errno == EINVAL || errno == ENOENT))
-            return resolved;
-        const int reason = errno;
-        free(resolved);
-        errno = reason;
-        resolved = next;
-    }
-    if (resolved)
-        errno = ELOOP;
-    free(resolved);
-    return NULL;
-}
-
-static enum tri_status cannot_create(const struct tri_output *output, struct tri_error *error)
-{
-    const int reason = errno;
-    if (reason == ENOMEM)
-        return tri_fail(error, TRI_NO_MEMORY, output->path, 0, "no memory to create the file");
-    return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot create", reason);
-}
-
-/* ".tri-<process>-<i>.tmp" beside the path, malloc'ed. Short, since the path's own name may be as long as names can
- * be. */
-static char *temporary_name(const char *path, int i)
-{
-    char name[NAME_BYTES], *at = put(name, ".tri-", 5);
-    at = tri_print_integer(at, getpid(), 0);
-    at = tri_print_integer(put(at, "-", 1), i, 0);
-    *put(at, ".tmp", 4) = 0;
-    return beside(path, name);
-}
-
-/* O_EXCL decides between processes and threads that try the same name. The mode is that of any new file, so that the
- * process's mask applies. */
-static enum tri_status create_temporary(struct tri_output *output, struct tri_error *error)
-{
-    for (int i = 0; i < MAX_NAMES; i++) {
-        char *const name = temporary_name(output->path, i);
-        if (!name)
-            return tri_fail(error, TRI_NO_MEMORY, output->path, 0, "no memory to create the file");
-        output->file = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (output->file >= 0) {
-            output->temporary = name;
-            return TRI_OK;
-        }
-        free(name);
-        if (errno != EEXIST && errno != EINTR)
-            return cannot_create(output, error);
-    }
-    return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "cannot create: no free name for a temporary file");
-}
-
-/* A device or a pipe: there is nothing to replace. */
-static enum tri_status open_in_place(struct tri_output *output, struct tri_error *error)
-{
-    output->file = open(output->path, O_WRONLY | O_CLOEXEC | O_NOCTTY);
-    return output->file < 0 ? cannot_create(output, error) : TRI_OK;
-}
-
-/* Refuses what cannot become a file. */
-static enum tri_status check_target(const struct tri_output *output, const struct stat *old, struct tri_error *error)
-{
-    const bool has_name = output->path[directory_length(output->path)] != 0;
-    if (!has_name || (old && S_ISDIR(old->st_mode))) {
-        errno = EISDIR;
-        return cannot_create(output, error);
-    }
-    return old && access(output->path, W_OK) != 0 ? cannot_create(output, error) : TRI_OK;
-}
-
-static enum tri_status open_output(struct tri_output *output, const char *path, struct tri_error *error)
-{
-    struct stat old;
-    const bool exists = stat(path, &old) == 0, replaces = exists && S_ISREG(old.st_mode);
-    output->path = !exists || replaces ? resolve(path) : beside("", path); /* /dev/stdout must not be followed */
-    if (!output->path)
-        return errno == ENOMEM ? tri_fail(error, TRI_NO_MEMORY, path, 0, "no memory to create the file")
-                               : tri_fail_system(error, TRI_CANNOT_WRITE, path, "cannot create", errno);
-    enum tri_status status = check_target(output, exists ? &old : NULL, error);
-    if (status != TRI_OK)
-        return status;
-    if (exists && !replaces)
-        return open_in_place(output, error);
-    status = create_temporary(output, error);
-    if (status == TRI_OK && replaces && fchmod(output->file, old.st_mode & 0777) != 0)
-        return cannot_create(output, error);
-    return status;
-}
-
-static void discard(struct tri_output *output)
-{
-    if (output->file >= 0)
-        close(output->file);
-    if (output->temporary)
-        unlink(output->temporary);
-    free(output->temporary);
-    free(output->path);
-    *output = (struct tri_output){.file = -1};
-}
-
-enum tri_status tri_output_open(struct tri_output_set *set, const char *path, struct tri_output **output,
-                                struct tri_error *error)
-{
-    *output = NULL;
-    if (set->n == TRI_MAX_OUTPUTS)
-        return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "more than %d files at a time", TRI_MAX_OUTPUTS);
-    struct tri_output new = {.file = -1};
-    const enum tri_status status = open_output(&new, path, error);
-    if (status != TRI_OK) {
-        discard(&new);
-        return status;
-    }
-    set->outputs[set->n] = new;
-    *output = &set->outputs[set->n++];
-    return TRI_OK;
-}
-
-enum tri_status tri_output_try(const char *path, struct tri_error *error)
-{
-    struct tri_output_set set;
-    struct tri_output *output;
-    tri_outputs_begin(&set);
-    enum tri_status status = tri_output_open(&set, path, &output, error);
-    tri_outputs_abort(&set);
-    return status;
-}
-
-enum tri_status tri_output_write(struct tri_output *output, const char *data, size_t size, struct tri_error *error)
-{
-    while (size > 0) {
-        const ssize_t written = write(output->file, data, size);
-        if (written < 0 && errno != EINTR) {
-            output->failed = true;
-            return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot write", errno);
-        }
-        if (written > 0) {
-            data += written;
-            size -= (size_t)written;
-        }
-    }
-    return TRI_OK;
-}
-
-/* Some file systems report only here that the data found no room. */
-static enum tri_status close_output(struct tri_output *output, struct tri_error *error)
-{
-    if (output->failed)
-        return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "the file is not complete");
-    const int result = close(output->file);
-    output->file = -1;
-    if (result != 0 && errno != EINTR) /* after EINTR the descriptor is closed all the same */
-        return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot write", errno);
-    return TRI_OK;
-}
-
-static enum tri_status rename_output(struct tri_output *output, struct tri_error *error)
-{
-    if (!output->temporary)
-        return TRI_OK;
-    if (rename(output->temporary, output->path) != 0)
-        return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot create", errno);
-    free(output->temporary);
-    output->temporary = NULL;
-    return TRI_OK;
-}
-
-enum tri_status tri_outputs_commit(struct tri_output_set *set, struct tri_error *error)
-{
-    enum tri_status status = TRI_OK;
-    for (int i = 0; status == TRI_OK && i < set->n; i++)
-        status = close_output(&set->outputs[i], error);
-    for (int i = 0; status == TRI_OK && i < set->n; i++)
-        status = rename_output(&set->outputs[i], error);
-    tri_outputs_abort(set);
-    return status;
-}
-
-void tri_outputs_abort(struct tri_output_set *set)
-{
-    for (int i = 0; i < set->n; i++)
-        discard(&set->outputs[i]);
-    set->n = 0;
 }
 
 /* --- tables */
@@ -672,15 +435,23 @@ static char *format_off_face(void *user, size_t i, char *at)
     return put(at, "\n", 1);
 }
 
+enum tri_status tri_write_off_header(struct tri_output *output, size_t n_points, size_t n_faces, size_t n_edges,
+                                     struct tri_error *error)
+{
+    char line[3 * (TRI_INTEGER_CHARS + 1) + 4], *at = put(line, "OFF\n", 4);
+    at = tri_print_integer(at, (int64_t)n_points, 0);
+    at = tri_print_integer(put(at, " ", 1), (int64_t)n_faces, 0);
+    at = tri_print_integer(put(at, " ", 1), (int64_t)n_edges, 0);
+    at = put(at, "\n", 1);
+    return tri_output_write(output, line, (size_t)(at - line), error);
+}
+
 enum tri_status tri_write_off(struct tri_output *output, const struct tri_layout *layout, size_t n_points,
                               const double *points, size_t n_triangles, int n_nodes, const int32_t *nodes,
                               size_t n_edges, struct tri_error *error)
 {
     struct arrays arrays = {.n_nodes = n_nodes, .reals = points, .indices = nodes};
-    const int64_t counts[] = {(int64_t)n_points, (int64_t)n_triangles, (int64_t)n_edges};
-    enum tri_status status = tri_output_write(output, "OFF\n", 4, error);
-    if (status == TRI_OK)
-        status = tri_write_counts(output, counts, 3, error);
+    enum tri_status status = tri_write_off_header(output, n_points, n_triangles, n_edges, error);
     if (status == TRI_OK)
         status = write_rows(output, layout, n_points, tri_row_node_bytes(0), format_off_vertex, &arrays, error);
     if (status == TRI_OK)

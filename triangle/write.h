@@ -1,13 +1,12 @@
-/* Writing Triangle's output files: safe outputs, tables of rows, and the layouts of each format.
+/* Writing Triangle's output files: tables of rows, and the layouts of each format.
  *
- * Three floors, each usable without the next:
- *   outputs  a set of files that get their final names together, when all are complete, or not at all;
+ * Floors above triangle/output.h, each usable without the next:
  *   tables   rows made by a callback in any order, in parallel where an executor is given, written in order;
  *   layouts  .node .ele .poly .edge .neigh .off .v.node .v.edge from plain arrays, byte for byte as in Triangle.
  *
  * Reals are printed as %.17g: what is read back is the same number. Indices in arrays count from 0, those in files from
  * the base of the layout. Cost: linear, 500 to 900 MB of text a second on each thread, before the system's write().
- * Errors of all functions: TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
+ * Errors of all functions: those of triangle/output.h. */
 #ifndef TRIANGLE_WRITE_H
 #define TRIANGLE_WRITE_H
 
@@ -16,47 +15,13 @@
 #include <stdint.h>
 
 #include "triangle/executor.h"
+#include "triangle/output.h"
 #include "triangle/pslg.h"
 #include "triangle/status.h"
 
-/* --- outputs */
-
-enum { TRI_MAX_OUTPUTS = 16 };
-
-struct tri_output {
-    char *path;      /* what the file will be called: the caller's path with symbolic links followed */
-    char *temporary; /* what it is called until then; NULL: a device or pipe, written in place */
-    int file;        /* descriptor; -1: closed */
-    bool failed;     /* something could not be written */
-};
-
-/* Files that are written together. INVARIANT: until commit nothing has changed under any final name; after commit or
- * abort no temporary file is left and the set is empty. (Devices and pipes are the exception.) */
-struct tri_output_set {
-    int n;
-    struct tri_output outputs[TRI_MAX_OUTPUTS];
-};
-
-void tri_outputs_begin(struct tri_output_set *set);
-
-/* Creates a temporary file beside `path`, whose name no other process or thread has, and sets *output to it, which
- * belongs to the set. A file that exists is replaced at commit and keeps its permissions; a link to a file goes on
- * pointing to it. Directories and files without permission to write are refused here, before any work is done. */
-enum tri_status tri_output_open(struct tri_output_set *set, const char *path, struct tri_output **output,
-                                struct tri_error *error);
-
-/* Would that succeed? Leaves nothing behind. */
-enum tri_status tri_output_try(const char *path, struct tri_error *error);
-
-/* Appends bytes. */
-enum tri_status tri_output_write(struct tri_output *output, const char *data, size_t size, struct tri_error *error);
-
-/* Closes all files, then renames all. If a file could not be written or closed, aborts. Should a rename fail although
- * the directory let the temporary file be made, the files renamed before it stay. Not synced to the disk. */
-enum tri_status tri_outputs_commit(struct tri_output_set *set, struct tri_error *error);
-
-/* Closes and removes what is not committed. */
-void tri_outputs_abort(struct tri_output_set *set);
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 /* --- tables */
 
@@ -131,10 +96,18 @@ enum tri_status tri_write_neigh(struct tri_output *output, const struct tri_layo
 enum tri_status tri_write_v_edge(struct tri_output *output, const struct tri_layout *layout, size_t n,
                                  const int32_t *ends, const double *directions, struct tri_error *error);
 
+/* How an .off file begins: its name and a line of counts, with single blanks, as readers of the format expect. */
+enum tri_status tri_write_off_header(struct tri_output *output, size_t n_points, size_t n_faces, size_t n_edges,
+                                     struct tri_error *error);
+
 /* .off, which always counts from 0, whatever the base. points[n_points][2]; nodes[n_triangles][n_nodes], of which the
  * first three are written. */
 enum tri_status tri_write_off(struct tri_output *output, const struct tri_layout *layout, size_t n_points,
                               const double *points, size_t n_triangles, int n_nodes, const int32_t *nodes,
                               size_t n_edges, struct tri_error *error);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

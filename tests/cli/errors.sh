@@ -16,6 +16,20 @@ wrote
 run 0 -pa1e-6 letter
 complains "a1e-6.*exponent"
 
+# long options are those of ptriangle; dashes with other things behind them are nothing, as ever
+for word in --min-angle --min-angle=30 --versions --p; do
+    run 1 $word -p letter
+    complains "^triangle: --[a-z=0-9-]*: no such option"
+done
+wrote letter.1.node letter.1.ele letter.1.poly letter.1.edge
+run 0 -- --3 -pQ letter
+for program in triangle ptriangle trianglecheck meshplot; do
+    [ -x "$bin/$program" ] || continue
+    what=$program
+    check "--version" sh -c '"$1" --version | grep -qE "^$2 [0-9]+\.[0-9]+\.[0-9]+$"' sh "$bin/$program" $program
+    check "--help" sh -c '"$1" --help | grep -qi "^usage: $2 "' sh "$bin/$program" $program
+done
+
 fresh nasty/truncated.poly nasty/rubbish.poly nasty/nan.node nasty/identical.node nasty/region_no_value.poly \
     nasty/badindex.poly
 run 1 -p truncated
@@ -109,5 +123,11 @@ if [ -e /dev/full ]; then
     "$bin/triangle" -p letter >/dev/full 2>.err
     check "exit code" test $? -eq 1
     complains "standard output"
-    judge letter.1 --poly letter.poly
+    wrote
 fi
+# who reads no further is no error
+fresh letter.poly
+what="standard output closed by its reader"
+{ "$bin/triangle" -pqV letter 2>.err; echo $? >.code; } | true
+check "exit code" test "$(cat .code)" -eq 0
+judge letter.1 --poly letter.poly --min-angle 20

@@ -125,7 +125,7 @@ run 0 -pg box_hole
 check "box_hole.1.off" awk '
     /^#/ { next }
     NR == 1 { if ($0 != "OFF") exit 1; next }
-    NR == 2 { n = $1; if ($0 != $1 "  " $2 "  " $3) exit 1; next }
+    NR == 2 { n = $1; if ($0 != $1 " " $2 " " $3) exit 1; next }
     NR <= n + 2 { if ($0 != sprintf(" %.17g  %.17g  %.17g", $1, $2, $3) || $3 != 0) exit 1; next }
     { if ($0 != sprintf(" 3   %4d  %4d  %4d", $2, $3, $4) || $2 >= n || $3 >= n || $4 >= n) exit 1; faces++ }
     END { if (faces != 9) exit 1 }' box_hole.1.off

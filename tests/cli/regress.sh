@@ -173,11 +173,32 @@ counts 4 2 5 4 0 4
 ends 20 -pq arrow
 judge arrow.1 --poly arrow.poly --min-angle 20
 
+# --- bounds that were not kept: sizes beside slivers, circles of subsegments beside each other
+fresh regress/ulps_apart.poly regress/needles.poly
+for words in -pa0.0002 -pq30a0.0002 -pq30a0.0002Y -pq30a0.0002YY; do
+    ends 20 $words ulps_apart
+    judge ulps_apart.1 --poly ulps_apart.poly --max-area 0.0002
+done
+for words in -pD -pq20D -pq30Da0.01; do
+    ends 20 $words needles
+    judge needles.1 --poly needles.poly --conforming
+done
+
 fresh nasty/duplicates.poly nasty/crossing_random.poly nasty/huge_offset.poly nasty/overlap.poly nasty/spike.poly \
     nasty/slit_1e-9.poly nasty/tiny_feature.poly nasty/bowtie.poly
 for input in *.poly; do
     ends 60 -pq30 "$input"
     judge "${input%.*}.1" --poly "$input"
+done
+
+# --- holes and regions farther away than exact arithmetic reaches are outside
+fresh regress/far_hole.poly regress/far_places.poly regress/far_places_tiny.poly regress/far_region.poly
+for input in *.poly; do
+    run 0 -pA "$input"
+    judge "${input%.*}.1" --poly "$input"
+    check "no triangle has a region" test "$(records "${input%.*}.1.ele" | awk 'NR > 1 && $5 + 0 != 0' | wc -l)" -eq 0
+    ends 20 -pAq30 "$input"
+    judge "${input%.*}.1" --poly "$input" --min-angle 30
 done
 
 # --- angles that cannot be: it ends, and says so

@@ -109,7 +109,7 @@ header letter.1.edge "114 1"
 header letter.1.neigh "57 3"
 header letter.1.v.node "57 2 1 0"
 header letter.1.v.edge "114 0"
-check "OFF" sh -c 'sed -n "1p;2p" letter.1.off | tr "\n" " " | grep -qx "OFF 57  57  114 "'
+check "OFF" sh -c 'sed -n "1p;2p" letter.1.off | tr "\n" " " | grep -qx "OFF 57 57 114 "'
 check "off counts from 0" \
     sh -c 'awk "NR > 2 && NF == 4 && \$1 == 3 && (\$2 == 0 || \$3 == 0 || \$4 == 0)" letter.1.off | grep -q .'
 check "order of writing" sh -c 'test "$(sed -n "s/^Writing letter\.1\(.*\)\.\$/\1/p" .out | tr "\n" " ")" = \

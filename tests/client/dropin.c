@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifndef SINGLE
+#ifdef SINGLE
+#define REAL float
+#else
 #define REAL double
 #endif
 #define VOID void

@@ -67,8 +67,8 @@ sed -i "/src\/cpp\/triangle\./d
 s|dependencies *: *\[pybind11_dep\]|dependencies: [pybind11_dep, declare_dependency(compile_args: ['-I$prefix/include'], \
 link_args: ['-L$libraries', '-lptriangle', '-ltriangle', '-lm', '-fopenmp'])]|" meson.build
 grep -q lptriangle meson.build
-# The header of its own copy says what a vertex is; Triangle's public one does not.
-sed -i 's|#include "triangle.h"|&\ntypedef REAL *vertex;|' src/cpp/wrap_triangle.cpp
+# The header of its own copy says what REAL and a vertex are; Triangle's public one does not.
+sed -i 's|#include "triangle.h"|#define REAL double\n&\ntypedef REAL *vertex;|' src/cpp/wrap_triangle.cpp
 must_pip install --no-deps --no-build-isolation --no-cache-dir --force-reinstall .
 cd "$work/run"
 "$python" -B -m pytest -q -p no:cacheprovider -k "triangle or point_attributes" "$work/meshpy/test/test_meshpy.py"

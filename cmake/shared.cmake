@@ -1,0 +1,39 @@
+# Shared libraries for clients. Each consists of objects of its own and lets nothing out but the functions that
+# cmake/exports.map lists, so that libptriangle, which needs the inside of libtriangle, contains it: a client links the one
+# or the other.
+
+# Before 1.0 every minor version may change the interface.
+function(ptriangle_shared name)
+    set(target lib${name}_shared)
+    add_library(${target} SHARED ${ARGN})
+    add_library(ptriangle::${name} ALIAS ${target})
+    ptriangle_library_settings(${target} ${name})
+    set_target_properties(${target} PROPERTIES
+        C_VISIBILITY_PRESET default
+        VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+        INSTALL_RPATH $ORIGIN
+        LINK_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map)
+    target_compile_options(${target} PRIVATE -fno-semantic-interposition)
+    target_link_options(${target} PRIVATE
+        LINKER:--version-script=${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map LINKER:-Bsymbolic-functions LINKER:-z,defs)
+    set_target_properties(lib${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+    set_property(GLOBAL APPEND PROPERTY PTRIANGLE_LIBRARIES ${target})
+endfunction()
+
+ptriangle_shared(triangle ${PTRIANGLE_MESHER_SOURCES})
+set_target_properties(libtriangle_shared PROPERTIES OUTPUT_NAME ${PTRIANGLE_PREFIX}triangle)
+ptriangle_dropin(libtriangle_shared)
+target_link_libraries(libtriangle_shared PRIVATE m)
+
+ptriangle_shared(tritext ${PTRIANGLE_TEXT_SOURCES})
+target_link_libraries(libtritext_shared PUBLIC libtriangle_shared)
+target_compile_options(libtritext_shared PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>)
+ptriangle_static_runtime(libtritext_shared)
+
+if(TARGET libptriangle)
+    set(mesher ${PTRIANGLE_MESHER_SOURCES})
+    list(REMOVE_ITEM mesher triangle/triangulate.c) # its triangulate() is the other one
+    ptriangle_shared(ptriangle ${mesher} ${PTRIANGLE_SCHED_SOURCES})
+    ptriangle_dropin(libptriangle_shared)
+    target_link_libraries(libptriangle_shared PRIVATE m $<BUILD_INTERFACE:OpenMP::OpenMP_C>)
+endif()

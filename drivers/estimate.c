@@ -1,0 +1,141 @@
+/* Rates that have been measured (docs/performance.md), and one that is measured here: how long this machine takes for a
+ * triangle. */
+#include "drivers/estimate.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "drivers/resources.h"
+#include "sched/clock.h"
+
+/* Measured: bytes a triangle at the peak, at least and with one refinement loop or the schedule and its numbering; time
+ * of the numbering against that of refining; area of triangles against their bound. */
+static const double LEAST_BYTES = 44, LOOP_BYTES = 52, SCHEDULE_BYTES = 74, NUMBERING = 0.55, MEAN_OVER_BOUND = 0.655;
+static const double SURE = 0.75; /* of an estimate */
+static const double TEXT_BYTES_A_SECOND = 6.5e8, USUAL_SECONDS = 1.25e-7; /* of one thread, where a triangle takes that */
+
+/* --- triangles */
+
+/* What area bounds alone ask for, and what there is already. */
+static double triangles_by_area(const struct run *run)
+{
+    return tri_area_demand(&run->mesh, &run->options.quality) / MEAN_OVER_BOUND + run->mesh.n_slots;
+}
+
+static double triangles_of(const struct run *run)
+{
+    const struct tri_refine_options *quality = &run->options.quality;
+    const struct run_hooks *hooks = run->hooks;
+    double now = run->mesh.n_slots;
+    if (!run->options.refine)
+        return now;
+    double by_area = triangles_by_area(run);
+    double triangles = hooks->estimate ? hooks->estimate(hooks->user, &run->mesh, quality) : by_area;
+    triangles = fmax(triangles, by_area < TRI_MAX_TRIANGLES ? 0 : by_area); /* estimates may end at what a mesh holds */
+    return quality->max_steiner < 0 ? triangles : fmin(triangles, now + 2 * (double)quality->max_steiner);
+}
+
+/* --- bytes */
+
+static double digits(double number) { return number < 10 ? 1 : floor(log10(number)) + 1; }
+
+/* Of the files that are always written. A coordinate takes about 19 characters with its blanks. */
+static double disk_of(const struct run *run, double vertices, double triangles)
+{
+    const struct tri_switches *s = &run->arguments->switches;
+    double v = digits(vertices) + 2, t = digits(triangles) + 4, edges = 1.5 * triangles, points = 2 * 19.5;
+    double node = vertices * (v + 2 + points + 20 * run->mesh.n_attributes + 5 * !s->no_markers);
+    double ele = triangles * (t + (s->second_order ? 6 : 3) * v);
+    double bytes = (s->no_node ? 0 : node) + (s->no_ele ? 0 : ele);
+    bytes += s->edges ? edges * (t + 2 * v + 5) : 0;
+    bytes += s->neighbors ? triangles * (t + 3 * v) : 0;
+    bytes += s->voronoi ? triangles * (t + points) + edges * (t + 2 * v) : 0;
+    bytes += s->second_order && !s->no_node ? edges * (v + points) : 0;
+    return s->off ? bytes + vertices * points + triangles * (3 * v + 5) : bytes;
+}
+
+/* Beside what refining takes: what the mesh has for other reasons, and lists of edges. */
+static double bytes_a_triangle(const struct run *run)
+{
+    const struct tri_switches *s = &run->arguments->switches;
+    bool lists = s->second_order || s->edges || s->voronoi || s->off;
+    return (run->hooks->refine ? SCHEDULE_BYTES : LOOP_BYTES) + 6 * run->mesh.n_attributes + (lists ? 6 : 0) +
+           (s->second_order ? 12 : 0);
+}
+
+/* --- seconds */
+
+/* Of one triangle, on one thread: a small square is refined twice; the second time its memory is there. */
+static double seconds_a_triangle(void)
+{
+    double corners[] = {0, 0, 1, 0, 1, 1, 0, 1}, seconds = 0;
+    struct tri_pslg square = {.n_points = 4, .points = corners};
+    struct tri_options options = tri_defaults();
+    options.quality.min_angle = 20;
+    options.quality.max_area = 1e-4 / 3;
+    for (int i = 0; i < 2; i++) {
+        struct tri_mesh mesh;
+        struct tri_report report;
+        if (tri_generate(&mesh, &square, &options, &report, NULL) != TRI_OK)
+            return USUAL_SECONDS;
+        double began = par_seconds();
+        tri_refine(&mesh, &options.quality, &report.quality, NULL);
+        seconds = (par_seconds() - began) / (mesh.n_slots + 1);
+        tri_mesh_free(&mesh);
+    }
+    return seconds;
+}
+
+static double seconds_of(const struct run *run, double triangles, double disk)
+{
+    double one = seconds_a_triangle(), threads = fmax(run->hooks->threads, 1);
+    double work = run->options.refine ? triangles * one * (run->hooks->refine ? 1 + NUMBERING : 1) : 0;
+    double text = disk / TEXT_BYTES_A_SECOND * (one / USUAL_SECONDS);
+    return (work + text) / threads;
+}
+
+/* --- all together */
+
+struct estimate estimate_make(const struct run *run, bool with_seconds)
+{
+    struct estimate e = {.triangles = triangles_of(run)};
+    double grown = fmax(e.triangles - run->mesh.n_slots, 0);
+    e.vertices = run->mesh.n_vertices + grown / 2;
+    e.memory = resources_memory_used() + grown * bytes_a_triangle(run);
+    e.more = SURE * grown * LEAST_BYTES;
+    e.disk = disk_of(run, e.vertices, e.triangles);
+    e.seconds = with_seconds ? seconds_of(run, e.triangles, e.disk) : 0;
+    return e;
+}
+
+enum tri_status estimate_check(const struct estimate *e, struct tri_error *error)
+{
+    if (SURE * e->triangles > TRI_MAX_TRIANGLES)
+        return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
+                        "the bounds ask for about %.0f million triangles, and a mesh holds %d million",
+                        1e-6 * e->triangles, TRI_MAX_TRIANGLES / 1000000);
+    double available = e->more > 1e8 ? resources_memory() : HUGE_VAL; /* small files, but why read them */
+    if (e->more > available)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
+                        "the bounds ask for about %.3g million triangles, which take at least %.3g GB of memory; %.3g GB "
+                        "are left", 1e-6 * e->triangles, 1e-9 * e->more, 1e-9 * available);
+    return TRI_OK;
+}
+
+static void print_bytes(const char *what, double needed, double available)
+{
+    printf("  %s: %.0f MB", what, ceil(1e-6 * needed));
+    if (available < HUGE_VAL)
+        printf(" (%.0f MB left)", floor(1e-6 * available));
+    putchar('\n');
+}
+
+void estimate_print(const struct estimate *e, const struct run *run)
+{
+    int threads = run->hooks->threads;
+    printf("\nEstimate:\n\n  Triangles: %.3g million\n  Vertices: %.3g million\n", 1e-6 * e->triangles,
+           1e-6 * e->vertices);
+    print_bytes("Memory", e->memory, resources_memory());
+    print_bytes("Disk", e->disk, resources_disk(run->arguments->output));
+    printf("  Time: %.2g s on %d thread%s\n", e->seconds, threads > 1 ? threads : 1, threads > 1 ? "s" : "");
+}

@@ -1,0 +1,124 @@
+/* Small files of the kernel's, read line by line. */
+#include "drivers/resources.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+enum { LINE_BYTES = 512, PATH_BYTES = 4096 };
+
+/* The number behind the word that begins a line of a file; -1: there is none. word "": the first line's number. */
+static double find_number(const char *path, const char *word)
+{
+    char line[LINE_BYTES];
+    double value = -1;
+    FILE *file = fopen(path, "r");
+    while (file && value < 0 && fgets(line, sizeof line, file)) {
+        size_t length = strlen(word);
+        char *end;
+        if (strncmp(line, word, length) != 0)
+            continue;
+        unsigned long long number = strtoull(line + length, &end, 10);
+        value = end > line + length ? (double)number : HUGE_VAL; /* "max" */
+    }
+    if (file)
+        fclose(file);
+    return value;
+}
+
+static double of_machine(void)
+{
+    static const char file[] = "/proc/meminfo";
+    double available = find_number(file, "MemAvailable:"), swap = find_number(file, "SwapFree:");
+    return available < 0 ? HUGE_VAL : 1024 * (available + fmax(swap, 0));
+}
+
+static double of_limit(int resource, double used)
+{
+    struct rlimit limit;
+    if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+        return HUGE_VAL;
+    return fmax((double)limit.rlim_cur - used, 0);
+}
+
+/* Data and stack count against the one, all of the address space against the other. */
+static double of_process(void)
+{
+    double space = find_number("/proc/self/status", "VmSize:"), data = find_number("/proc/self/status", "VmData:");
+    return fmin(of_limit(RLIMIT_AS, 1024 * fmax(space, 0)), of_limit(RLIMIT_DATA, 1024 * fmax(data, 0)));
+}
+
+struct files {
+    const char *limit, *usage, *cache; /* the last: the word in memory.stat for what the kernel gives back */
+};
+
+/* What a group has left, and every group above it. path is shortened. */
+static double of_group(char *path, size_t root, const struct files *files)
+{
+    double least = HUGE_VAL;
+    for (;;) {
+        char file[PATH_BYTES + 64];
+        snprintf(file, sizeof file, "%s/%s", path, files->limit);
+        double limit = find_number(file, "");
+        snprintf(file, sizeof file, "%s/%s", path, files->usage);
+        double usage = find_number(file, "");
+        snprintf(file, sizeof file, "%s/memory.stat", path);
+        double cache = find_number(file, files->cache);
+        if (limit >= 0 && usage >= 0)
+            least = fmin(least, fmax(limit - usage + fmax(cache, 0), 0));
+        char *slash = strrchr(path, '/');
+        if (strlen(path) <= root || !slash)
+            return least;
+        *slash = 0;
+    }
+}
+
+/* The group that this process is in, by a line of /proc/self/cgroup; where the tree is mounted at the group itself, as
+ * in containers, its path does not exist, and the root is all that is looked at. */
+static double of_group_line(const char *line)
+{
+    static const struct files first = {"memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file "},
+                              second = {"memory.max", "memory.current", "inactive_file "};
+    bool unified = strncmp(line, "0::", 3) == 0, memory = strstr(line, ":memory:") != NULL;
+    const char *group = strchr(line, ':') ? strchr(strchr(line, ':') + 1, ':') : NULL;
+    if ((!unified && !memory) || !group)
+        return HUGE_VAL;
+    char path[PATH_BYTES];
+    const char *root = unified ? "/sys/fs/cgroup" : "/sys/fs/cgroup/memory";
+    snprintf(path, sizeof path, "%s%.*s", root, (int)strcspn(group + 1, "\n"), group + 1);
+    if (access(path, F_OK) != 0)
+        snprintf(path, sizeof path, "%s", root);
+    while (strlen(path) > strlen(root) && path[strlen(path) - 1] == '/')
+        path[strlen(path) - 1] = 0;
+    return of_group(path, strlen(root), unified ? &second : &first);
+}
+
+static double of_groups(void)
+{
+    char line[LINE_BYTES];
+    double least = HUGE_VAL;
+    FILE *file = fopen("/proc/self/cgroup", "r");
+    while (file && fgets(line, sizeof line, file))
+        least = fmin(least, of_group_line(line));
+    if (file)
+        fclose(file);
+    return least;
+}
+
+double resources_memory(void) { return fmin(of_machine(), fmin(of_process(), of_groups())); }
+
+double resources_memory_used(void) { return 1024 * fmax(find_number("/proc/self/status", "VmRSS:"), 0); }
+
+double resources_disk(const char *path)
+{
+    char directory[PATH_BYTES];
+    const char *slash = strrchr(path, '/');
+    struct statvfs disk;
+    snprintf(directory, sizeof directory, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
+    return statvfs(directory, &disk) == 0 ? (double)disk.f_bavail * (double)disk.f_frsize : HUGE_VAL;
+}

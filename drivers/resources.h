@@ -1,0 +1,16 @@
+/* What the system has left for this process. */
+#ifndef DRIVERS_RESOURCES_H
+#define DRIVERS_RESOURCES_H
+
+/* Bytes of memory that may be used on top of what is: the least that is left under the limits of the machine
+ * (/proc/meminfo, swap included), of the process (RLIMIT_AS, RLIMIT_DATA) and of its control groups, versions 1 and 2,
+ * up to the root. What of these cannot be read limits nothing; HUGE_VAL: nothing could be. */
+double resources_memory(void);
+
+/* Bytes of memory that it uses now, as far as they are in memory; 0: not known. */
+double resources_memory_used(void);
+
+/* Bytes free on the file system that holds the file's directory; HUGE_VAL: not known. */
+double resources_disk(const char *path);
+
+#endif

@@ -1,0 +1,74 @@
+/* Threads are tried by making them, and letting them wait for each other, so that all are there at once. */
+#include "sched/threads.h"
+
+#ifdef _OPENMP
+#include <omp.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <unistd.h>
+
+/* A forked child has lost the threads that libgomp still counts on, and would wait for them for ever: it works alone.
+ * That needs to be known process-wide, the one thing here that is. */
+static bool is_forked(void)
+{
+    static _Atomic(long) first_process;
+    long none = 0, self = (long)getpid();
+    return !atomic_compare_exchange_strong(&first_process, &none, self) && none != self;
+}
+
+static void *wait_for_end(void *gate)
+{
+    pthread_mutex_lock(gate);
+    pthread_mutex_unlock(gate);
+    return NULL;
+}
+
+/* How many threads can there be beside this one, if no more than n are wanted? Signals do not find them. */
+static int try_threads(int n)
+{
+    pthread_t thread[PAR_MOST_THREADS];
+    pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
+    sigset_t all, before;
+    int made = 0;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    pthread_mutex_lock(&gate);
+    while (made < n && pthread_create(&thread[made], NULL, wait_for_end, &gate) == 0)
+        made++;
+    pthread_mutex_unlock(&gate);
+    for (int i = 0; i < made; i++)
+        pthread_join(thread[i], NULL);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return made;
+}
+
+int par_threads_wanted(int asked)
+{
+    if (is_forked())
+        return 1;
+    int threads = asked > 0 ? asked : omp_get_max_threads();
+    return threads < PAR_MOST_THREADS ? threads : PAR_MOST_THREADS;
+}
+
+int par_threads(int asked, bool wary)
+{
+    int threads = par_threads_wanted(asked);
+    if (threads <= 1 || (!wary && threads <= omp_get_num_procs()))
+        return threads;
+    int made = try_threads(threads - 1);
+    return made == threads - 1 ? threads : made / 2 + 1; /* others, and memory, need some of what there is */
+}
+#else
+int par_threads_wanted(int asked)
+{
+    (void)asked;
+    return 1;
+}
+
+int par_threads(int asked, bool wary)
+{
+    (void)asked, (void)wary;
+    return 1;
+}
+#endif

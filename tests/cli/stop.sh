@@ -1,0 +1,195 @@
+# Runs that are stopped: exit code, one line, all files or none; what a killed run has left is gone after the next.
+#
+# A pipe that nobody reads or writes holds a program where it is to be held, so that no test depends on speed.
+mesher() { # mesher CODE PROGRAM WORDS...: must end with the exit code
+    code=$1
+    program=$2
+    shift 2
+    what="$program $*"
+    checks=$((checks + 1))
+    "$bin/$program" "$@" >.out 2>.err
+    found=$?
+    [ "$found" -eq "$code" ] || fault "exit code $found instead of $code: $(head -n 1 .err)"
+}
+
+await() { # await COMMAND...: until it succeeds
+    tries=0
+    until "$@" 2>/dev/null || [ $tries -ge 200 ]; do
+        tries=$((tries + 1))
+        sleep 0.05
+    done
+    check "has not come about: $*" "$@"
+}
+
+is_there() { ls .tri-*.tmp >/dev/null 2>&1; }
+
+if ! env --default-signal=INT true 2>/dev/null; then
+    echo "cli stop: env cannot reset signals"
+    checks=1
+    return
+fi
+
+start() { # start PROGRAM WORDS...: in the background, where a shell lets its jobs ignore some signals
+    program=$1
+    shift
+    : >.out
+    : >.err
+    env --default-signal "$bin/$program" "$@" >.out 2>.err &
+    job=$!
+}
+
+ended() { # ended CODE: the job ends with it, one line tells of it, and nothing is left
+    wait $job 2>/dev/null
+    found=$?
+    checks=$((checks + 1))
+    [ "$found" -eq "$1" ] || fault "exit code $found instead of $1: $(head -n 1 .err)"
+    check "one line" sh -c 'test "$(wc -l <.err)" -eq 1'
+}
+
+# --- every signal, while files are written and while input is awaited
+for signal in HUP:1 INT:2 QUIT:3 TERM:15 ALRM:14 USR1:10 USR2:12 XCPU:24 VTALRM:26 PROF:27; do
+    number=${signal#*:} # on Linux
+    signal=${signal%:*}
+    for program in triangle ptriangle; do
+        [ -x "$bin/$program" ] || continue
+        fresh letter.poly
+        echo old >letter.1.node
+        mkfifo letter.1.ele
+        ls >.before
+        what="$program, SIG$signal while writing"
+        start $program -p letter
+        await is_there
+        kill -s $signal $job
+        ended $((128 + number))
+        complains "stopped by SIG$signal after [0-9.]+ s while writing: [0-9]+ triangles; nothing was written"
+        wrote
+        check "the old file is there" grep -qx old letter.1.node
+    done
+    fresh letter.poly
+    mkfifo pipe.node
+    what="triangle, SIG$signal while reading"
+    ls >.before
+    start triangle pipe.node
+    exec 9>pipe.node # returns when the other end is open, too
+    kill -s $signal $job
+    ended $((128 + number))
+    exec 9>&-
+    complains "stopped by SIG$signal after [0-9.]+ s while reading; nothing was written"
+    wrote
+done
+
+# --- a time limit
+if [ -x "$bin/ptriangle" ]; then
+    fresh letter.poly
+    mesher 124 ptriangle -Qpq30a0.000005 letter --threads 1 --time-limit 0.3
+    complains "stopped by the time limit after [0-9.]+ s while [a-zA-Z ]+"
+    check "one line" sh -c 'test "$(wc -l <.err)" -eq 1'
+    wrote
+
+    # --- the mesh so far
+    what="ptriangle --write-partial"
+    start ptriangle -pq30a0.000005 letter --threads 1 --write-partial --report report.json --progress
+    await grep -q 'refining' .err
+    kill -s TERM $job
+    wait $job 2>/dev/null
+    check "exit code" test $? -eq 143
+    complains "stopped by SIGTERM .* while refining: [0-9]+ triangles, [0-9]+ of them below the bounds; the mesh so far is written"
+    wrote letter.1.node letter.1.ele letter.1.poly report.json
+    judge letter.1 --poly letter.poly
+    check "the report tells" grep -q '"stopped": "SIGTERM"' report.json
+    fresh letter.poly
+    mesher 0 ptriangle -Qpq30a0.01 letter --time-limit 2h --write-partial
+    judge letter.1 --poly letter.poly --min-angle 30 --max-area 0.01
+    for limit in 0 -1 x 1x 1mm nan 1e99; do
+        mesher 1 ptriangle -p letter --time-limit "$limit"
+        complains 'time-limit: '
+    done
+
+    # --- no file twice, and none that was read
+    fresh letter.poly
+    cksum letter.poly >.expected
+    ln -s letter.poly link
+    ln letter.poly second
+    ln -s nowhere dangling
+    ls >.before
+    for words in "--report letter.poly" "--report link" "--blocks second" "--report ./letter.1.node" "--report a --blocks a" \
+        "--report dangling --blocks nowhere" "--report $PWD/b --blocks b" "--output letter"; do
+        # shellcheck disable=SC2086 # several words
+        mesher 1 ptriangle -p letter $words
+        complains 'would be (overwritten|written twice)'
+        wrote
+    done
+    cksum letter.poly | cmp -s - .expected || fault "the input has changed"
+    mesher 0 ptriangle -pQ letter --report /dev/null --blocks /dev/null
+    if [ -e /dev/full ]; then
+        fresh letter.poly
+        for words in "--report /dev/full" "--blocks /dev/full"; do
+            # shellcheck disable=SC2086
+            mesher 1 ptriangle -pq letter $words
+            complains '^/dev/full: cannot write'
+            wrote
+        done
+    fi
+
+    # --- more threads than there can be
+    fresh letter.poly
+    OMP_NUM_THREADS=100000 mesher 0 ptriangle -pqQ letter
+    judge letter.1 --poly letter.poly --min-angle 20
+
+    # --- estimates
+    fresh letter.poly
+    mesher 0 ptriangle -pq30a0.001 letter --dry-run
+    matches '^  Triangles: 0\.1[0-9]* million$'
+    matches '^  Memory: [0-9]+ MB'
+    matches '^  Disk: [0-9]+ MB'
+    matches '^  Time: [0-9.e+-]+ s on [0-9]+ thread'
+    wrote
+    mesher 1 ptriangle -pa0.0000001 letter --dry-run
+    matches '^  Triangles: [0-9.e+]+ million$'
+    complains 'the bounds ask for about [0-9]+ million triangles, and a mesh holds 536 million'
+    wrote
+fi
+# 0.75 of what a mesh holds, by its least number; what is asked for is about 1.1 times that
+fresh square.poly
+mesher 1 triangle -pa.0000000018 square
+complains 'the bounds ask for about [0-9]+ million triangles, and a mesh holds 536 million'
+wrote
+if (ulimit -v 400000) 2>/dev/null; then
+    what="little memory"
+    (
+        ulimit -v 400000
+        "$bin/triangle" -pqa0.00000003 square >.out 2>.err
+    )
+    check "exit code" test $? -eq 1
+    complains 'the bounds ask for about [0-9.]+ million triangles, which take at least [0-9.]+ GB of memory; [0-9.]+ GB are left|annot allocate'
+    wrote
+fi
+
+# --- a name with a line break
+fresh
+mesher 1 triangle -p "a
+b"
+complains '^a\\nb\.poly: cannot open'
+check "one line" sh -c 'test "$(wc -l <.err)" -eq 1'
+
+# --- what a killed process has left
+fresh letter.poly
+mkfifo letter.1.ele
+ls >.before
+what="killed outright"
+start triangle -p letter
+await is_there
+kill -9 $job
+wait $job 2>/dev/null
+check "something is left" is_there
+rm letter.1.ele
+host=$(ls .tri-*-$job-0.tmp | sed "s/^\.tri-//; s/-$job-0\.tmp\$//")
+: >".tri-$host-$$-0.tmp"            # a process that runs
+: >".tri-another-host-99999999-0.tmp"
+: >".tri-$host-99999999-x.tmp"      # none of ours
+ls -A | grep -v "^\.tri-$host-$job-" | grep -v '^\.before$' >.keep
+mv .keep .before
+mesher 0 triangle -p letter
+wrote letter.1.node letter.1.ele letter.1.poly
+check "another's file is there" test -f ".tri-$host-$$-0.tmp" -a -f .tri-another-host-99999999-0.tmp
+rm -f .tri-*

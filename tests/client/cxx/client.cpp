@@ -1,0 +1,57 @@
+/* A client in C++: triangulate(), its size test by the linker, and the library below it, on a square. */
+#include <cstdio>
+#include <cstdlib>
+
+#define EXTERNAL_TEST
+extern "C" int triunsuitable(double *origin, double *destination, double *apex, double area);
+#include "triangle.h"
+#include "triangle/tri.h"
+
+static int asked;
+
+extern "C" int triunsuitable(double *, double *, double *, double area)
+{
+    asked++;
+    return area > 0.01;
+}
+
+static int by_structs()
+{
+    double points[] = {0, 0, 1, 0, 1, 1, 0, 1};
+    triangulateio in = triangulateio(), out = triangulateio();
+    char switches[] = "quzQ";
+    in.pointlist = points;
+    in.numberofpoints = 4;
+    if (triangulate(switches, &in, &out, nullptr) != TRIANGULATE_OK)
+        return 0;
+    trifree(out.pointlist);
+    trifree(out.pointmarkerlist);
+    trifree(out.trianglelist);
+    return out.numberoftriangles;
+}
+
+static int by_mesh()
+{
+    double points[] = {0, 0, 1, 0, 1, 1, 0, 1};
+    tri_pslg square = tri_pslg();
+    square.n_points = 4;
+    square.points = points;
+    tri_options options = tri_defaults();
+    options.refine = true;
+    options.quality.max_area = 0.01;
+    tri_mesh mesh;
+    tri_report report;
+    tri_error error;
+    if (tri_generate(&mesh, &square, &options, &report, &error) != TRI_OK)
+        return 0;
+    const int n = mesh.n_slots;
+    tri_mesh_free(&mesh);
+    return n;
+}
+
+int main()
+{
+    const int a = by_structs(), b = by_mesh();
+    std::printf("client: %d and %d triangles, %d times asked\n", a, b, asked);
+    return a >= 100 && b >= 100 && asked > a ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,159 @@
+"""For each k the k-th allocation of a program fails: it must end with exit code 1 and one line on standard error, and
+touch no file; or, where it can do without, with the very files of a run that lacked nothing.
+
+Usage: every_allocation.py BIN_FOLDER DATA_FOLDER SHIM WORK_FOLDER fast | all | NUMBER...
+Of the cases below a few small ones, all, or those; see failing_malloc.c for the shim.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+
+# program, arguments, inputs in data/
+FAST = [
+    ("triangle", "-pq30a0.5e letter", ["letter.poly"]),
+    ("ptriangle", "-pq letter --threads 2 --report report.json", ["letter.poly"]),
+    ("ptriangle", "-pq30a0.3 section --threads 2 --dry-run", ["section.poly"]),
+    ("trianglecheck", "square.1 --poly square.poly --quiet", ["square.poly", "mesh:square -pq"]),
+]
+ALL = FAST + [
+    ("triangle", "letter.node", ["letter.poly", "mesh:letter -p", "rename:letter.1.node:letter.node"]),
+    ("triangle", "-pqaAenvgo2 section", ["section.poly"]),
+    ("triangle", "-pqDjC letter", ["letter.poly"]),
+    ("triangle", "-pqYV gear", ["gear.poly"]),
+    ("triangle", "-rpqa0.2 letter.1", ["letter.poly", "mesh:letter -pq"]),
+    ("triangle", "-ra letter.1", ["letter.poly", "mesh:letter -pqa1", "areas:letter.1"]),
+    ("triangle", "-pc crossing_random", ["nasty/crossing_random.poly"]),
+    ("triangle", "-pq36 overlap", ["nasty/overlap.poly"]),
+    ("triangle", "duplicates", ["nasty/duplicates.node"]),
+    ("ptriangle", "-pq33a0.0005 letter --threads 3 --report report.json --blocks b", ["letter.poly"]),
+    ("ptriangle", "-pqa0.0005A section --threads 2 --numbering blocks", ["section.poly"]),
+    ("ptriangle", "-pqa2e9 --max-area 3e9 borders --threads 3", ["coast/borders.poly"]),
+    ("ptriangle", "-rpqa0.0005 letter.1 --threads 2", ["letter.poly", "mesh:letter -pq"]),
+    ("trianglecheck", "section.1 --poly section.poly --quiet --min-angle 20", ["section.poly", "mesh:section -pqaA"]),
+    ("meshplot", "square.1 -o square.svg", ["square.poly", "mesh:square -pq"]),
+]
+
+LONGEST = 60  # seconds of one run
+MOST = 160  # runs of a case in each mode
+
+
+def prepare(folder, inputs, bin_folder, data):
+    """A fresh folder with the inputs of a case."""
+    shutil.rmtree(folder, ignore_errors=True)
+    os.makedirs(folder)
+    for item in inputs:
+        kind, _, rest = item.partition(":")
+        if kind == "mesh":
+            stem, switches = rest.split()
+            subprocess.run([f"{bin_folder}/triangle", switches + "Q", stem], cwd=folder, check=True)
+        elif kind == "rename":
+            old, new = rest.split(":")
+            os.rename(f"{folder}/{old}", f"{folder}/{new}")
+        elif kind == "areas":
+            with open(f"{folder}/{rest}.ele", encoding="ascii") as file:
+                n = int(file.readline().split()[0])
+            with open(f"{folder}/{rest}.area", "w", encoding="ascii") as file:
+                file.write(f"{n}\n" + "".join(f"{i + 1} 0.3\n" for i in range(n)))
+        else:
+            shutil.copy(f"{data}/{item}", folder)
+
+
+def contents(folder):
+    """What the files hold; reports tell seconds, so that of them only the being there counts."""
+    found = {}
+    for name in sorted(os.listdir(folder)):
+        with open(f"{folder}/{name}", "rb") as file:
+            found[name] = b"" if name.endswith(".json") else file.read()
+    return found
+
+
+def restore(folder, before):
+    """The folder as it was."""
+    for name in os.listdir(folder):
+        if name not in before:
+            os.remove(f"{folder}/{name}")
+    for name, text in before.items():
+        with open(f"{folder}/{name}", "rb+") as file:
+            if file.read() != text:
+                file.seek(0)
+                file.truncate()
+                file.write(text)
+
+
+def chosen(n):
+    """The numbers 1 to n; of very many, the first and then as many again, evenly."""
+    if n <= MOST:
+        return range(1, n + 1)
+    half = MOST // 2
+    return [*range(1, half + 1), *(half + 1 + i * (n - half - 1) // half for i in range(half + 1))]
+
+
+def run(program, words, folder, variables):
+    """One run: exit code and both streams."""
+    environment = {**os.environ, "OMP_WAIT_POLICY": "passive", **variables}
+    done = subprocess.run([program, *words], cwd=folder, env=environment, stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, timeout=LONGEST, check=False)
+    return done.returncode, done.stdout, done.stderr.decode(errors="replace")
+
+
+def judge(code, failure, error, before, after, whole):
+    """What is wrong with a run during which memory was short; an empty text: nothing."""
+    if code == 0:
+        return "" if after == whole else f"exit code 0, but files differ: {sorted(after)} for {sorted(whole)}"
+    if code != failure:
+        return f"exit code {code}: {error[-300:]}"
+    if after != before:
+        return f"exit code {code}, but files were touched: {sorted(set(after) ^ set(before))}"
+    lines = [line for line in error.splitlines() if "memory" in line or "annot" in line]
+    return "" if len(lines) == 1 and error.count("\n") == 1 else f"no one line: {error!r}"
+
+
+def try_case(case, bin_folder, data, shim, work):
+    """Faults found, as texts; and the number of runs."""
+    program, words, inputs = case[0], case[1].split(), case[2]
+    folder, count = f"{work}/case", f"{work}/count"
+    path = f"{bin_folder}/{program}"
+    own = {"PTRIANGLE_FAIL_OWN": "1"} if program == "meshplot" else {}  # drawing libraries crash
+    failure = 2 if program == "trianglecheck" else 1
+    prepare(folder, inputs, bin_folder, data)
+    before = contents(folder)
+    code, _, error = run(path, words, folder, {"LD_PRELOAD": shim, "PTRIANGLE_COUNT": count, **own})
+    if code != 0:
+        return [f"{program} {case[1]}: does not run: {error}"], 1
+    whole = contents(folder)
+    with open(count, encoding="ascii") as file:
+        n = int(file.read())
+    faults, runs = [], 0
+    for after in ("0", "1"):
+        for k in chosen(n):
+            restore(folder, before)
+            code, _, error = run(path, words, folder, {
+                "LD_PRELOAD": shim, "PTRIANGLE_FAIL_AT": str(k), "PTRIANGLE_FAIL_AFTER": after, **own})
+            fault = judge(code, failure, error, before, contents(folder), whole)
+            runs += 1
+            if fault:
+                faults.append(f"{program} {case[1]}: allocation {k}{' and all later' if after == '1' else ''}: {fault}")
+    return faults, runs
+
+
+def main():
+    bin_folder, data, shim, work = sys.argv[1:5]
+    named = {"fast": FAST, "all": ALL}
+    cases = named.get(sys.argv[5]) or [ALL[int(i)] for i in sys.argv[5:]]
+    faults, runs = [], 0
+    for case in cases:
+        if os.path.exists(f"{bin_folder}/{case[0]}"):
+            found, n = try_case(case, bin_folder, data, shim, work)
+            print(f"{case[0]} {case[1]}: {n} runs, {len(found)} faults", flush=True)
+            faults += found
+            runs += n
+    for fault in faults[:40]:
+        print(fault)
+    print(f"every allocation: {runs} runs, {len(faults)} faults")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

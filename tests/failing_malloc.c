@@ -1,0 +1,96 @@
+/* A library to be loaded before all others (LD_PRELOAD): one call of malloc, calloc, realloc or aligned_alloc fails, or
+ * that and all later ones, in any program.
+ *
+ *   PTRIANGLE_FAIL_AT=K     the K-th call fails, counted from 1
+ *   PTRIANGLE_FAIL_AFTER=1  so do all behind it
+ *   PTRIANGLE_FAIL_OWN=1    only calls of the program itself are counted, not those of libraries
+ *   PTRIANGLE_COUNT=FILE    receives the number of calls when the program ends
+ *
+ * Calls of the dynamic linker and of OpenMP's library are not counted: that prints a line and ends the program, and
+ * nothing can be done about it (sched/threads.h). */
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <limits.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void *__libc_malloc(size_t bytes);
+void *__libc_calloc(size_t n, size_t bytes);
+void *__libc_realloc(void *block, size_t bytes);
+void *__libc_memalign(size_t alignment, size_t bytes);
+
+static atomic_long calls;
+static long fail_at = LONG_MAX;
+static bool fail_after, own;
+static atomic_bool begun;
+
+__attribute__((constructor)) static void begin(void)
+{
+    const char *at = getenv("PTRIANGLE_FAIL_AT"), *after = getenv("PTRIANGLE_FAIL_AFTER");
+    fail_at = at ? atol(at) : LONG_MAX;
+    fail_after = after && *after == '1';
+    own = getenv("PTRIANGLE_FAIL_OWN");
+    begun = true;
+}
+
+__attribute__((destructor)) static void end(void)
+{
+    const char *name = getenv("PTRIANGLE_COUNT");
+    long n = calls;
+    begun = false;
+    FILE *file = name ? fopen(name, "w") : NULL;
+    if (file) {
+        fprintf(file, "%ld\n", n);
+        fclose(file);
+    }
+}
+
+static bool counts(const void *caller)
+{
+    Dl_info info;
+    if (!begun || !dladdr(caller, &info))
+        return false;
+    const char *file = info.dli_fname;
+    if (own)
+        return !strstr(file, ".so");
+    return !strstr(file, "libgomp") && !strstr(file, "ld-linux") && !strstr(file, "ld-musl");
+}
+
+static bool must_fail(const void *caller)
+{
+    if (!counts(caller))
+        return false;
+    long call = ++calls;
+    bool fails = fail_after ? call >= fail_at : call == fail_at;
+    if (fails)
+        errno = ENOMEM;
+    return fails;
+}
+
+void *malloc(size_t bytes) { return must_fail(__builtin_return_address(0)) ? NULL : __libc_malloc(bytes); }
+
+void *calloc(size_t n, size_t bytes)
+{
+    return must_fail(__builtin_return_address(0)) ? NULL : __libc_calloc(n, bytes);
+}
+
+void *realloc(void *block, size_t bytes)
+{
+    return must_fail(__builtin_return_address(0)) ? NULL : __libc_realloc(block, bytes);
+}
+
+void *aligned_alloc(size_t alignment, size_t bytes)
+{
+    return must_fail(__builtin_return_address(0)) ? NULL : __libc_memalign(alignment, bytes);
+}
+
+int posix_memalign(void **block, size_t alignment, size_t bytes)
+{
+    *block = must_fail(__builtin_return_address(0)) ? NULL : __libc_memalign(alignment, bytes);
+    return *block ? 0 : ENOMEM;
+}

@@ -1,0 +1,91 @@
+#!/bin/sh
+# The package as others take it: static from a build that is there, shared from one of its own, and as a subproject. Clients
+# are a project of C++ alone, the C clients of tests/client/, and what pkg-config says.
+# Usage: run_package.sh SOURCE_ROOT BUILD_DIR WORK_DIR CMAKE C_COMPILER CXX_COMPILER
+set -eu
+root=$1
+build=$2
+work=$3
+cmake=$4
+cc=$5
+cxx=$6
+client=$root/tests/client
+
+fail() { echo "package: $*" >&2; exit 1; }
+
+configure() { # configure FOLDER OPTION...
+    folder=$1
+    shift
+    "$cmake" -S "$root" -B "$folder" -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_BUILD_TYPE=Debug "$@" \
+        >"$folder.log" 2>&1 || fail "$folder: $(tail -n 5 "$folder.log")"
+}
+
+use() { # use PREFIX FOLDER: builds and runs all clients against the package there
+    "$cmake" -S "$client/cxx" -B "$2/cxx" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$1" >"$2.cxx.log" 2>&1 ||
+        fail "find_package in C++: $(tail -n 5 "$2.cxx.log")"
+    "$cmake" --build "$2/cxx" >>"$2.cxx.log" 2>&1 || fail "clients in C++: $(tail -n 20 "$2.cxx.log")"
+    for std in 11 20; do
+        "$2/cxx/client_triangle_$std"
+        "$2/cxx/client_ptriangle_$std"
+    done
+    "$cmake" -S "$client" -B "$2/c" -DCMAKE_C_COMPILER="$cc" -DCMAKE_PREFIX_PATH="$1" >"$2.c.log" 2>&1 ||
+        fail "find_package in C: $(tail -n 5 "$2.c.log")"
+    "$cmake" --build "$2/c" >>"$2.c.log" 2>&1 || fail "clients in C: $(tail -n 20 "$2.c.log")"
+    "$2/c/client" "$root/data/square.poly"
+    "$2/c/dropin" >"$2.sequential"
+    "$2/c/dropin_parallel" | cmp - "$2.sequential"
+}
+
+rm -rf "$work"
+mkdir -p "$work"
+cd "$work"
+
+echo "== static"
+"$cmake" --install "$build" --prefix "$work/static" >install.log
+mkdir static_clients
+use "$work/static" static_clients
+
+echo "== shared, under another prefix of names"
+configure shared -DBUILD_SHARED_LIBS=ON -DPTRIANGLE_PROGRAMS=OFF -DPTRIANGLE_PREFIX=pt-
+"$cmake" --build shared --parallel 2 >shared.log 2>&1 || fail "shared: $(tail -n 20 shared.log)"
+"$cmake" --install shared --prefix "$work/staged" >install.log
+mv staged prefix # an installed tree may be moved
+[ -z "$(find prefix -name '*.a')" ] || fail "static libraries among the shared ones"
+ln -s pt-triangle.h prefix/include/triangle.h # the clients know it by this name
+libraries=$(dirname "$(find prefix -name libptriangle.so)")
+mkdir shared_clients
+use "$work/prefix" shared_clients
+for name in pt-triangle tritext ptriangle; do
+    [ -e "$libraries/lib$name.so.0.1.0" ] || fail "no lib$name.so.0.1.0"
+    readelf -d "$libraries/lib$name.so" | grep -q "SONAME.*\[lib$name\.so\.0\.1\]" || fail "soname of $name"
+    nm -D --defined-only "$libraries/lib$name.so" | awk '{ print $3 }'
+done | sort -u >exported.txt
+sed -n 's/^ *\([a-z0-9_]*\);$/\1/p' "$root/cmake/exports.map" | sort >listed.txt
+diff listed.txt exported.txt || fail "what is exported is not what is listed"
+for name in $(sed -n 's/^ *\(\(tri\|par\)_[a-z0-9_]*\);$/\1/p' "$root/cmake/exports.map"); do
+    grep -rqE "\b$name\(" prefix/include || fail "$name is exported, but in no public header"
+done
+PKG_CONFIG_PATH=$work/$libraries/pkgconfig
+LD_LIBRARY_PATH=$work/$libraries
+export PKG_CONFIG_PATH LD_LIBRARY_PATH
+[ "$(pkg-config --modversion pt-triangle)" = 0.1.0 ] || fail "version of pt-triangle.pc"
+for package in pt-triangle ptriangle; do
+    # shellcheck disable=SC2046 # words
+    "$cc" -std=c11 "$client/dropin.c" $(pkg-config --cflags --libs $package) -o by_hand
+    ./by_hand | cmp - shared_clients.sequential
+done
+unset PKG_CONFIG_PATH LD_LIBRARY_PATH
+
+echo "== names of programs, and no OpenMP"
+configure sequential -DPTRIANGLE_OPENMP=OFF -DPTRIANGLE_PREFIX=pt-
+grep -q '/bin/pt-trianglecheck"' sequential/cmake_install.cmake || fail "programs without their prefix"
+grep -q 'ptriangle\.\(a\|so\)' sequential/cmake_install.cmake && fail "a parallel library without OpenMP"
+
+echo "== subproject"
+"$cmake" -S "$client/cxx" -B sub -DSUBPROJECT="$root" -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" >sub.log 2>&1 ||
+    fail "subproject: $(tail -n 5 sub.log)"
+"$cmake" --build sub --target triangle --parallel 2 >sub.log 2>&1 || fail "subproject: $(tail -n 20 sub.log)"
+sub/triangle
+"$cmake" --install sub --prefix "$work/sub_installed" >install.log
+[ "$(find sub_installed -type f | wc -l)" -eq 1 ] || fail "the subproject installs files of its own"
+echo "package: as it should be"

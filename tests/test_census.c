@@ -1,0 +1,130 @@
+/* What is counted in a whole mesh, against naive counts. */
+#include "tests/support.h"
+#include "triangle/criterion.h"
+
+static struct tri_mesh refined_letter(const struct tri_options *options, struct tri_report *report)
+{
+    struct tri_pslg pslg;
+    assert_true(support_read("letter.poly", &pslg));
+    struct tri_mesh mesh = support_generate(&pslg, options, report);
+    tri_pslg_free(&pslg);
+    return mesh;
+}
+
+/* Work is found slot by slot: any cut into ranges finds the same, and what is found is what the criterion says. */
+static void test_find_work(void **state)
+{
+    (void)state;
+    struct tri_options none = tri_defaults(), asked = support_quality(30, 0.01);
+    struct tri_report report;
+    none.use_segments = true;
+    struct tri_mesh mesh = refined_letter(&none, &report);
+    int32_t whole[1000], pieces[1000], n = 0, naive = 0;
+    assert_true(mesh.n_slots <= 1000);
+    int32_t found = tri_find_work(&mesh, &asked.quality, 0, mesh.n_slots, whole);
+    for (int32_t t = 0; t < mesh.n_slots; t++)
+        n += tri_find_work(&mesh, &asked.quality, t, t + 1, pieces + n);
+    assert_int_equal(found, n);
+    assert_memory_equal(whole, pieces, (size_t)n * sizeof *whole);
+    struct tri_criterion c = {&mesh, &asked.quality, tri_bounds_for(30, false)};
+    for (int32_t t = 0; t < mesh.n_slots; t++) {
+        struct tri_shape shape = tri_shape_of(mesh.xy, mesh.tri[t].v);
+        naive += tri_judge(&c, &mesh.tri[t], &shape) != TRI_GOOD;
+    }
+    assert_int_equal(found, naive);
+    assert_true(found > 0);
+    tri_mesh_free(&mesh);
+}
+
+/* A mesh that keeps its bounds has nothing to count; one that is held to stricter ones has, and each once. */
+static void test_count_bad(void **state)
+{
+    (void)state;
+    struct tri_options options = support_quality(25, 0.02);
+    struct tri_report report;
+    struct tri_mesh mesh = refined_letter(&options, &report);
+    int64_t count[TRI_EXCUSES], backwards[TRI_EXCUSES], sum = 0;
+    tri_count_bad(&mesh, &options.quality, &report.quality, NULL, count);
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        assert_int_equal(count[k], 0);
+    options.quality.max_area = 0.005;
+    int32_t *found = malloc((size_t)mesh.n_slots * sizeof *found);
+    assert_non_null(found);
+    int32_t n = tri_find_work(&mesh, &options.quality, 0, mesh.n_slots, found);
+    tri_count_bad(&mesh, &options.quality, &report.quality, NULL, count);
+    tri_count_bad(&mesh, &options.quality, &report.quality, &support_backwards, backwards);
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        sum += count[k];
+    assert_true(n > 0);
+    assert_int_equal(sum, n);
+    assert_memory_equal(count, backwards, sizeof count);
+    free(found);
+    tri_mesh_free(&mesh);
+}
+
+/* The reasons that a run's own report gives. */
+static void test_excuses(void **state)
+{
+    (void)state;
+    struct tri_options options = support_quality(30, 0.005);
+    struct tri_report report;
+    int64_t count[TRI_EXCUSES];
+    options.quality.max_steiner = 5;
+    struct tri_mesh mesh = refined_letter(&options, &report);
+    assert_true(report.quality.hit_limit);
+    tri_count_bad(&mesh, &options.quality, &report.quality, NULL, count);
+    assert_true(count[TRI_EXCUSE_LIMIT] > 0);
+    tri_mesh_free(&mesh);
+    options = support_quality(30, 0);
+    options.quality.protect = 2;
+    mesh = refined_letter(&options, &report);
+    tri_count_bad(&mesh, &options.quality, &report.quality, NULL, count);
+    assert_true(count[TRI_EXCUSE_PROTECTED] > 0);
+    assert_int_equal(count[TRI_EXCUSE_DEFERRED], 0);
+    tri_mesh_free(&mesh);
+}
+
+static void test_encroached(void **state)
+{
+    (void)state;
+    struct tri_options options = tri_defaults();
+    struct tri_report report;
+    options.use_segments = true;
+    struct tri_mesh mesh = refined_letter(&options, &report);
+    assert_true(tri_count_encroached(&mesh) > 0);
+    tri_mesh_free(&mesh);
+    options = support_quality(20, 0);
+    options.quality.conforming = true;
+    mesh = refined_letter(&options, &report);
+    assert_int_equal(tri_count_encroached(&mesh), 0);
+    tri_mesh_free(&mesh);
+}
+
+/* Bounds that ask for more triangles than a mesh holds are refused before any work, unless points are limited. */
+static void test_check(void **state)
+{
+    (void)state;
+    struct tri_options none = tri_defaults();
+    struct tri_report report;
+    struct tri_error error;
+    struct tri_pslg square = support_square(1, 0, 1);
+    struct tri_mesh mesh = support_generate(&square, &none, &report);
+    struct tri_refine_options quality = tri_refine_defaults();
+    quality.max_area = 1.01 / TRI_MAX_TRIANGLES;
+    assert_int_equal(tri_refine_check(&mesh, &quality, &error), TRI_OK);
+    quality.max_area = 0.99 / TRI_MAX_TRIANGLES;
+    assert_int_equal(tri_refine_check(&mesh, &quality, &error), TRI_TOO_LARGE);
+    quality.max_steiner = 10;
+    assert_int_equal(tri_refine_check(&mesh, &quality, &error), TRI_OK);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&square);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_find_work),  cmocka_unit_test(test_count_bad), cmocka_unit_test(test_excuses),
+        cmocka_unit_test(test_encroached), cmocka_unit_test(test_check),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,146 @@
+/* Which triangles are bad and which subsegments crowded, on triangles whose answer is known. */
+#include "triangle/criterion.h"
+
+#include "tests/support.h"
+
+/* One triangle in region 1, which has an area bound of its own. */
+struct setting {
+    struct tri_point xy[3];
+    struct tri_triangle triangle;
+    struct tri_region regions[2];
+    struct tri_mesh mesh;
+    struct tri_refine_options options;
+};
+
+static void set_up(struct setting *s, struct tri_point a, struct tri_point b, struct tri_point c)
+{
+    *s = (struct setting){.xy = {a, b, c}, .triangle = {.v = {0, 1, 2}, .region = 1}, .regions = {{0, 0}, {7, 0.25}},
+                          .options = tri_refine_defaults()};
+    s->mesh = (struct tri_mesh){.xy = s->xy, .n_vertices = 3, .tri = &s->triangle, .n_slots = 1,
+                                .regions = s->regions, .n_regions = 2, .unit = 1};
+}
+
+static enum tri_badness judge(const struct setting *s)
+{
+    struct tri_criterion c = {&s->mesh, &s->options, tri_bounds_for(s->options.min_angle, s->options.conforming)};
+    struct tri_shape shape = tri_shape_of(s->xy, s->triangle.v);
+    return tri_judge(&c, &s->triangle, &shape);
+}
+
+static void test_angles_before_sizes(void **state)
+{
+    (void)state;
+    struct setting s;
+    set_up(&s, (struct tri_point){0, 0}, (struct tri_point){2, 0}, (struct tri_point){0, 2}); /* 45 degrees, area 2 */
+    s.options.min_angle = 44.9;
+    assert_int_equal(judge(&s), TRI_GOOD);
+    s.options.min_angle = 45.1;
+    s.options.max_area = 1;
+    assert_int_equal(judge(&s), TRI_BAD_ANGLE);
+    s.options.min_angle = 0;
+    assert_int_equal(judge(&s), TRI_BAD_SIZE);
+    s.options.max_area = 2;
+    assert_int_equal(judge(&s), TRI_GOOD);
+}
+
+/* The smaller of the two bounds counts, in the caller's units, times the scale. */
+static void test_area_bounds(void **state)
+{
+    (void)state;
+    struct setting s;
+    set_up(&s, (struct tri_point){0, 0}, (struct tri_point){1, 0}, (struct tri_point){0, 1});
+    struct tri_criterion c = {.mesh = &s.mesh, .options = &s.options};
+    assert_true(tri_area2_bound(&c, 1) == HUGE_VAL);
+    assert_false(tri_has_sizes(&s.options));
+    s.options.max_area = 1;
+    assert_true(tri_has_sizes(&s.options));
+    assert_true(tri_area2_bound(&c, 1) == 2);
+    s.options.region_areas = true;
+    assert_true(tri_area2_bound(&c, 1) == 0.5);
+    assert_true(tri_area2_bound(&c, 0) == 2);
+    s.options.area_scale = 8;
+    assert_true(tri_area2_bound(&c, 1) == 4);
+    s.mesh.unit = 2;
+    assert_true(tri_area2_bound(&c, 1) == 1);
+}
+
+/* Remembers the area and the first corner that it was asked about; refuses what is larger than 1. */
+static int remember(void *user, const double a[2], const double b[2], const double c[2], double area)
+{
+    double *told = user;
+    (void)b, (void)c;
+    told[0] = a[0];
+    told[1] = area;
+    return area > 1;
+}
+
+/* A size test is asked in the caller's units, at another scale about a triangle that is smaller by it. */
+static void test_size_tests(void **state)
+{
+    (void)state;
+    struct setting s;
+    double told[2];
+    set_up(&s, (struct tri_point){0, 0}, (struct tri_point){3, 0}, (struct tri_point){0, 3});
+    s.mesh.unit = 2;
+    s.options.unsuitable = remember;
+    s.options.unsuitable_user = told;
+    assert_int_equal(judge(&s), TRI_BAD_SIZE);
+    assert_true(told[0] == 0 && told[1] == 18);
+    s.options.area_scale = 36;
+    assert_int_equal(judge(&s), TRI_GOOD);
+    assert_true(fabs(told[0] - 2 * (1 - 1 / 6.0)) < 1e-14 && told[1] == 0.5);
+}
+
+static void test_protection(void **state)
+{
+    (void)state;
+    struct tri_subsegment boundary = {.side = {4, TRI_NONE}}, inner = {.side = {4, 9}};
+    struct tri_refine_options options = tri_refine_defaults();
+    assert_false(tri_is_protected(&options, &boundary));
+    options.protect = 1;
+    assert_true(tri_is_protected(&options, &boundary));
+    assert_false(tri_is_protected(&options, &inner));
+    options.protect = 2;
+    assert_true(tri_is_protected(&options, &inner));
+}
+
+/* On the circle is not inside it. */
+static void test_diametral_disk(void **state)
+{
+    (void)state;
+    static const struct {
+        double y;
+        bool inside;
+    } cases[] = {{0.99, true}, {1, false}, {1.01, false}, {0.01, true}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct setting s;
+        set_up(&s, (struct tri_point){-1, 0}, (struct tri_point){1, 0}, (struct tri_point){0, cases[i].y});
+        struct tri_subsegment sub = {.v = {0, 1}, .side = {tri_code(0, 2), TRI_NONE}};
+        assert_int_equal(tri_is_in_diametral_disk(&s.mesh, &sub, tri_code(0, 2)), cases[i].inside);
+    }
+}
+
+static void test_flat(void **state)
+{
+    (void)state;
+    struct setting s;
+    set_up(&s, (struct tri_point){0, 0}, (struct tri_point){1, 0}, (struct tri_point){0.5, 1e-6});
+    struct tri_shape shape = tri_shape_of(s.xy, s.triangle.v);
+    s.mesh.shortest2 = 1e-14;
+    assert_false(tri_is_flat(&s.mesh, &shape));
+    s.mesh.shortest2 = 1e-10;
+    assert_true(tri_is_flat(&s.mesh, &shape));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_angles_before_sizes),
+        cmocka_unit_test(test_area_bounds),
+        cmocka_unit_test(test_size_tests),
+        cmocka_unit_test(test_protection),
+        cmocka_unit_test(test_diametral_disk),
+        cmocka_unit_test(test_flat),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

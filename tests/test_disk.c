@@ -1,0 +1,148 @@
+/* Diametral circles: conforming meshes of segments side by side, and where their circles are not empty. */
+#include "support.h"
+
+#include "triangle/disk.h"
+
+static struct tri_mesh conforming(const struct tri_pslg *pslg, double angle, struct tri_report *report)
+{
+    struct tri_options options = support_quality(angle, 0);
+    options.quality.conforming = true;
+    return support_generate(pslg, &options, report);
+}
+
+/* All circles are empty; by the judge and by the census. */
+static void judge_conforming(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_report *report)
+{
+    struct tri_check_options check = {.delaunay = TRI_CHECK_CONFORMING};
+    struct tri_refine_options options = {.conforming = true};
+    int64_t count[TRI_EXCUSES];
+    support_judge(mesh, pslg, &check, false, NULL);
+    tri_count_encroached(mesh, &options, &report->quality, count);
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        assert_int_equal(count[k], 0);
+}
+
+/* Segments from the middle of a square, at angles between 1e-5 and 1. */
+static struct tri_pslg needles(int32_t n, uint64_t seed)
+{
+    struct support_random random = {seed};
+    struct tri_pslg pslg = support_pslg(n + 5, n + 4, 0, 0);
+    double x = 1, y = 0;
+    for (int32_t i = 0; i < 4; i++) {
+        support_add_point(&pslg, i == 1 || i == 2 ? 2 : -2, i >= 2 ? 2 : -2);
+        support_add_segment(&pslg, i, (i + 1) % 4);
+    }
+    support_add_point(&pslg, 0, 0);
+    for (int32_t i = 0; i < n; i++) {
+        double slope = 1, length = 0.1 + support_unit(&random);
+        for (int32_t k = support_below(&random, 6); k > 0; k--)
+            slope /= 10;
+        double turned_x = x - slope * y, turned_y = y + slope * x, norm = sqrt(turned_x * turned_x + turned_y * turned_y);
+        x = turned_x / norm;
+        y = turned_y / norm;
+        support_add_segment(&pslg, 4, support_add_point(&pslg, length * x, length * y));
+    }
+    return pslg;
+}
+
+static void test_needles_part(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 40; seed++)
+        for (int angle = 0; angle <= 30; angle += 30) {
+            struct tri_report report;
+            struct tri_pslg pslg = needles(7, seed);
+            struct tri_mesh mesh = conforming(&pslg, angle, &report);
+            judge_conforming(&mesh, &pslg, &report);
+            assert_true(angle > 0 || mesh.n_slots < 1000);
+            tri_mesh_free(&mesh);
+            tri_pslg_free(&pslg);
+        }
+}
+
+/* Segments across a square, side by side: n of them take points for their 2 n ends each, not length / width. */
+static void test_bundles_part(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        enum { N = 6 };
+        struct support_random random = {seed};
+        struct tri_report report;
+        struct tri_pslg pslg = support_square(1, 0, 0);
+        struct tri_pslg all = support_pslg(4 + 2 * N, 4 + N, 0, 0);
+        for (int32_t i = 0; i < 4; i++) {
+            support_add_point(&all, pslg.points[2 * i], pslg.points[2 * i + 1]);
+            support_add_segment(&all, i, (i + 1) % 4);
+        }
+        for (int32_t i = 0; i < N; i++) {
+            double left = 0.1 + 0.3 * support_unit(&random), right = 0.6 + 0.3 * support_unit(&random);
+            double y = 0.5 + 1e-6 * i, rise = 1e-7 * support_unit(&random);
+            int32_t a = support_add_point(&all, left, y), b = support_add_point(&all, right, y + rise);
+            support_add_segment(&all, a, b);
+        }
+        struct tri_mesh mesh = conforming(&all, 0, &report);
+        judge_conforming(&mesh, &all, &report);
+        assert_true(mesh.n_slots < 2000);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+        tri_pslg_free(&all);
+    }
+}
+
+/* The loop leaves no subsegment crowded, on anything, and every split leaves a quarter at least on either side. */
+static void test_nothing_stays_that_can_be_split(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 60; seed++) {
+        struct tri_report report;
+        struct tri_pslg pslg = support_tangle(SUPPORT_RANDOM, 10, (int32_t)(seed % 12), seed);
+        struct tri_options options = support_quality(0, 0);
+        struct tri_mesh mesh = support_generate(&pslg, &options, &report);
+        for (int32_t s = 0; s < mesh.n_subs; s++) {
+            double fraction = -1;
+            if (tri_is_crowded(&mesh, &mesh.sub[s], &fraction))
+                assert_true(fraction >= 0.25 && fraction <= 0.75);
+        }
+        options.quality.conforming = true;
+        assert_int_equal(tri_refine(&mesh, &options.quality, &report.quality, NULL), TRI_OK);
+        for (int32_t s = 0; s < mesh.n_subs; s++) {
+            double fraction;
+            assert_false(tri_is_crowded(&mesh, &mesh.sub[s], &fraction));
+        }
+        judge_conforming(&mesh, &pslg, &report);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+    }
+}
+
+/* What -YY forbids is counted by its place. */
+static void test_what_stays_is_counted(void **state)
+{
+    (void)state;
+    int64_t count[TRI_EXCUSES];
+    struct tri_report report;
+    struct tri_pslg pslg = needles(7, 1);
+    struct tri_options options = support_quality(0, 0);
+    options.quality.conforming = true;
+    options.quality.protect = 2;
+    struct tri_mesh mesh = support_generate(&pslg, &options, &report);
+    tri_count_encroached(&mesh, &options.quality, &report.quality, count);
+    assert_true(count[TRI_EXCUSE_PROTECTED] > 0);
+    assert_int_equal(report.quality.inserted_on_segments, 0);
+    options.quality.protect = 0;
+    tri_count_encroached(&mesh, &options.quality, &report.quality, count);
+    assert_true(count[TRI_EXCUSE_INPUT_ANGLE] > 0 && count[TRI_EXCUSE_PROTECTED] == 0);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_needles_part),
+        cmocka_unit_test(test_bundles_part),
+        cmocka_unit_test(test_nothing_stays_that_can_be_split),
+        cmocka_unit_test(test_what_stays_is_counted),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,120 @@
+/* The pool of bad triangles, against looking at every triangle. */
+#include "sched/pool.h"
+
+#include "sched/theory.h"
+#include "tests/support.h"
+
+static void test_slots_grow(void **state)
+{
+    (void)state;
+    struct par_slots slots = {0};
+    for (int32_t i = 0; i < 1000; i++)
+        assert_true(par_slots_add(&slots, 3 * i));
+    assert_int_equal(slots.n, 1000);
+    for (int32_t i = 0; i < 1000; i++)
+        assert_int_equal(slots.item[i], 3 * i);
+    free(slots.item);
+}
+
+/* A square with enough points for several shares, and bounds that about half of its triangles miss. */
+static struct tri_mesh crowd(struct tri_refine_options *quality)
+{
+    struct tri_pslg pslg = support_square(1, 50000, 3);
+    struct tri_options options = tri_defaults();
+    struct tri_report report;
+    struct tri_mesh mesh = support_generate(&pslg, &options, &report);
+    tri_pslg_free(&pslg);
+    *quality = tri_refine_defaults();
+    quality->min_angle = 25;
+    assert_true(tri_shares(mesh.n_slots) > 2);
+    return mesh;
+}
+
+static void assert_holds_all_bad(const struct par_slots *pool, const struct tri_mesh *mesh,
+                                 const struct tri_refine_options *quality, double radius)
+{
+    int32_t *all = malloc((size_t)mesh->n_slots * sizeof *all);
+    double largest2 = 0;
+    assert_non_null(all);
+    int32_t n = tri_find_work(mesh, quality, 0, mesh->n_slots, all);
+    for (int32_t i = 0; i < n; i++) {
+        const int32_t *v = mesh->tri[all[i]].v;
+        largest2 = fmax(largest2, par_radius2(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]));
+    }
+    assert_true(n > 0 && n < mesh->n_slots);
+    assert_int_equal(pool->n, n);
+    assert_memory_equal(pool->item, all, (size_t)n * sizeof *all);
+    assert_true(radius == sqrt(largest2));
+    free(all);
+}
+
+static void test_fill(void **state)
+{
+    (void)state;
+    struct tri_refine_options quality;
+    struct tri_mesh mesh = crowd(&quality);
+    struct par_slots pool = {0};
+    double radius;
+    assert_int_equal(par_pool_fill(&pool, &mesh, &quality, false, &support_backwards, &radius, NULL), TRI_OK);
+    assert_holds_all_bad(&pool, &mesh, &quality, radius);
+    for (int32_t t = 0; t < mesh.n_slots; t++)
+        assert_int_equal(mesh.tri[t].state, 0);
+    free(pool.item);
+    tri_mesh_free(&mesh);
+}
+
+/* After some refinement only the newborn are judged; the pool is the same as if all were. */
+static void test_fill_again(void **state)
+{
+    (void)state;
+    struct tri_refine_options quality;
+    struct tri_mesh mesh = crowd(&quality);
+    struct par_slots pool = {0};
+    struct tri_refine_report report;
+    double radius;
+    assert_int_equal(par_pool_fill(&pool, &mesh, &quality, false, NULL, &radius, NULL), TRI_OK);
+    int32_t before = pool.n;
+    quality.max_steiner = 3000;
+    assert_int_equal(tri_refine(&mesh, &quality, &report, NULL), TRI_OK);
+    assert_int_equal(par_pool_fill(&pool, &mesh, &quality, true, &support_backwards, &radius, NULL), TRI_OK);
+    assert_true(pool.n != before);
+    assert_holds_all_bad(&pool, &mesh, &quality, radius);
+    free(pool.item);
+    tri_mesh_free(&mesh);
+}
+
+static void test_filter(void **state)
+{
+    (void)state;
+    struct tri_refine_options quality, stricter;
+    struct tri_mesh mesh = crowd(&quality);
+    struct par_slots pool = {0}, found = {0};
+    double radius;
+    stricter = tri_refine_defaults();
+    stricter.min_angle = 10;
+    assert_int_equal(par_pool_fill(&pool, &mesh, &quality, false, NULL, &radius, NULL), TRI_OK);
+    assert_true(par_pool_filter(&pool, &mesh, &stricter, &support_backwards, &found));
+    assert_true(found.n > 0 && found.n < pool.n);
+    int32_t expected = 0, one;
+    for (int32_t i = 0; i < pool.n; i++) {
+        if (tri_find_work(&mesh, &stricter, pool.item[i], pool.item[i] + 1, &one) == 0)
+            continue;
+        assert_int_equal(found.item[expected], pool.item[i]);
+        expected++;
+    }
+    assert_int_equal(found.n, expected);
+    free(pool.item);
+    free(found.item);
+    tri_mesh_free(&mesh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_slots_grow),
+        cmocka_unit_test(test_fill),
+        cmocka_unit_test(test_fill_again),
+        cmocka_unit_test(test_filter),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

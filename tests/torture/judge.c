@@ -1,0 +1,250 @@
+/* The stages of a run, as the programs have them, each result before the judges. */
+#include "tests/torture/judge.h"
+
+#include "sched/par.h"
+#include "triangle/reconstruct.h"
+
+enum { MOST_TRIANGLES = 1000 * 1000 };
+
+void judge_fault(struct verdict *verdict, const char *fault, const char *format, ...)
+{
+    if (verdict->fault[0])
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(verdict->detail, sizeof verdict->detail, format, arguments);
+    va_end(arguments);
+    snprintf(verdict->fault, sizeof verdict->fault, "%s", fault);
+}
+
+static void enter(struct verdict *verdict, const char *stage)
+{
+    snprintf(verdict->stage, sizeof verdict->stage, "%s", stage);
+}
+
+/* --- making */
+
+/* Edges no longer than a fifth of the way to the corner of the figure, or than a hundredth of the figure. */
+struct size_test {
+    double corner[2], least2;
+};
+
+static int is_unsuitable(void *user, const double a[2], const double b[2], const double c[2], double area)
+{
+    const struct size_test *test = user;
+    const double *p[3] = {a, b, c};
+    double dx = a[0] - test->corner[0], dy = a[1] - test->corner[1];
+    double limit = fmax((dx * dx + dy * dy) / 25, test->least2);
+    (void)area;
+    for (int k = 0; k < 3; k++) {
+        double x = p[k][0] - p[(k + 1) % 3][0], y = p[k][1] - p[(k + 1) % 3][1];
+        if (x * x + y * y > limit)
+            return 1;
+    }
+    return 0;
+}
+
+static void add_size_test(struct tri_options *options, struct size_test *test, const struct tri_pslg *pslg)
+{
+    struct figure_bounds b = figure_bounds(pslg);
+    double size = fmax(b.high[0] - b.low[0], b.high[1] - b.low[1]);
+    *test = (struct size_test){{b.low[0], b.low[1]}, size * size / 1e4};
+    options->quality.unsuitable = is_unsuitable;
+    options->quality.unsuitable_user = test;
+}
+
+static enum tri_status refine(struct outcome *o, int threads, struct tri_error *error)
+{
+    struct par_options how = par_defaults();
+    struct par_report schedule;
+    if (o->of->block == 0)
+        return tri_refine(&o->mesh, &o->options.quality, &o->report.quality, error);
+    how.threads = threads;
+    how.cell_triangles = o->of->block;
+    how.size_test_in_parallel = true;
+    enum tri_status status = par_refine(&o->mesh, &o->options.quality, &how, &schedule, error);
+    o->report.quality = schedule.total;
+    par_report_free(&schedule);
+    return status;
+}
+
+static enum tri_status generate(struct outcome *o, const struct tri_pslg *pslg, int threads, struct tri_error *error)
+{
+    struct tri_options options = o->options;
+    options.refine = false;
+    options.leave_sorted = o->options.refine;
+    enum tri_status status = tri_generate(&o->mesh, pslg, &options, &o->report, error);
+    if (!status && o->options.refine)
+        status = refine(o, threads, error);
+    if (!status)
+        status = tri_restore_points(&o->mesh, NULL, error);
+    if (!status)
+        tri_mesh_compact(&o->mesh);
+    return status;
+}
+
+/* --- judging */
+
+/* The input as a mesh keeps it: coordinates smaller than 2^-216 of the largest count as 0. The points are the caller's
+ * to free. */
+static struct tri_pslg kept_input(const struct outcome *o, const struct tri_pslg *pslg)
+{
+    struct tri_pslg input = *pslg;
+    size_t n = 2 * (size_t)pslg->n_points;
+    input.points = malloc(n * sizeof *input.points + 1);
+    assert_non_null(input.points);
+    for (size_t i = 0; i < n; i++)
+        input.points[i] = tri_round_coordinate(pslg->points[i] / o->mesh.unit) * o->mesh.unit;
+    if (!o->switches.segments)
+        input.n_segments = input.n_holes = 0;
+    return input;
+}
+
+static bool is_conforming_fault(int kind) { return kind == TRI_CHECK_LOCAL_DELAUNAY || kind == TRI_CHECK_ENCROACHMENT; }
+
+static void judge_mesh(const struct outcome *o, const struct tri_pslg *pslg, bool refined, struct verdict *verdict)
+{
+    struct tri_error error = {0};
+    struct tri_check_report report;
+    struct tri_check_options ask = {.min_angle = o->options.refine ? o->options.quality.min_angle : 0,
+                                    .max_bad = INT64_MAX,
+                                    .convex = o->switches.keep_hull && pslg->n_holes == 0 && !o->options.refine,
+                                    .ignore_holes = o->switches.ignore_holes || refined,
+                                    .ignore_lost = refined,
+                                    .base = 1};
+    bool conforming = o->options.refine && o->options.quality.conforming && o->options.quality.max_steiner < 0;
+    ask.delaunay = conforming && o->switches.protect == 0 ? TRI_CHECK_CONFORMING : TRI_CHECK_CONSTRAINED;
+    verdict->triangles = o->mesh.n_slots;
+    if (tri_mesh_validate(&o->mesh, &error) != TRI_OK)
+        judge_fault(verdict, "links", "%s", error.text);
+    struct support_copy copy = support_copy(&o->mesh);
+    struct tri_pslg input = kept_input(o, pslg);
+    if (tri_check(&copy.mesh, &input, &ask, &report, &error) != TRI_OK)
+        judge_fault(verdict, "checker", "%s", error.text);
+    for (int kind = 0; kind < TRI_N_CHECKS && !verdict->fault[0]; kind++)
+        if (report.item[kind].state == TRI_CHECK_FAILED)
+            judge_fault(verdict, conforming && is_conforming_fault(kind) ? "conforming" : tri_check_name(kind),
+                        "%lld, first: %s", (long long)report.item[kind].count, report.item[kind].text);
+    free(input.points);
+    support_copy_free(&copy);
+    if (!verdict->fault[0])
+        judge_bounds(o, &report, verdict);
+}
+
+static bool same_bytes(const void *a, const void *b, int32_t n, size_t item)
+{
+    return n == 0 || memcmp(a, b, (size_t)n * item) == 0;
+}
+
+static bool same_triangles(const struct tri_mesh *a, const struct tri_mesh *b)
+{
+    for (int32_t t = 0; t < a->n_slots; t++) {
+        const struct tri_triangle *p = &a->tri[t], *q = &b->tri[t];
+        if (!same_bytes(p->v, q->v, 3, sizeof *p->v) || !same_bytes(p->n, q->n, 3, sizeof *p->n) ||
+            p->region != q->region)
+            return false;
+    }
+    return true;
+}
+
+static bool same_meshes(const struct tri_mesh *a, const struct tri_mesh *b)
+{
+    return a->n_vertices == b->n_vertices && a->n_slots == b->n_slots && a->n_subs == b->n_subs &&
+           same_bytes(a->xy, b->xy, a->n_vertices, sizeof *a->xy) &&
+           same_bytes(a->on, b->on, a->n_vertices, sizeof *a->on) &&
+           same_bytes(a->vertex_markers, b->vertex_markers, a->n_vertices, sizeof *a->vertex_markers) &&
+           (a->n_attributes == 0 || same_bytes(a->attributes, b->attributes, a->n_vertices,
+                                               (size_t)a->n_attributes * sizeof *a->attributes)) &&
+           same_bytes(a->sub, b->sub, a->n_subs, sizeof *a->sub) && same_triangles(a, b);
+}
+
+/* The first mesh by three threads. */
+static void judge_threads(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
+{
+    struct tri_error error = {0};
+    struct outcome o = {.of = first->of, .switches = first->switches, .options = first->options};
+    enter(verdict, "meshing on 3 threads");
+    if (generate(&o, pslg, 3, &error))
+        judge_fault(verdict, "threads", "on 3 threads: %s", error.text);
+    else if (!same_meshes(&first->mesh, &o.mesh))
+        judge_fault(verdict, "threads", "%d triangles on 1 thread, another mesh of %d on 3", (int)first->mesh.n_slots,
+                    (int)o.mesh.n_slots);
+    tri_mesh_free(&o.mesh);
+}
+
+/* --- the second step: the mesh as input */
+
+static struct tri_pslg pslg_of(const struct tri_mesh *mesh, const struct support_copy *copy)
+{
+    return (struct tri_pslg){.n_points = mesh->n_vertices,
+                             .points = copy->points,
+                             .markers = mesh->vertex_markers,
+                             .n_segments = mesh->n_subs,
+                             .segments = copy->segments,
+                             .segment_markers = copy->markers};
+}
+
+static void judge_again(const struct outcome *first, struct verdict *verdict)
+{
+    struct tri_error error = {0};
+    struct support_copy copy = support_copy(&first->mesh);
+    struct tri_pslg pslg = pslg_of(&first->mesh, &copy);
+    struct tri_elements elements = {
+        .n = first->mesh.n_slots, .corners = copy.triangles, .n_nodes = 3, .areas = copy.max_areas};
+    struct outcome o = {.of = first->of, .switches = first->switches, .options = first->options};
+    struct tri_reconstruct_options how = {.use_segments = true, .refine = true, .base = 1};
+    enter(verdict, "rebuilding");
+    o.options.quality.max_area /= 2;
+    o.options.quality.region_areas = true;
+    enum tri_status status = tri_reconstruct(&o.mesh, &pslg, &elements, &how, &error);
+    enter(verdict, "refining again");
+    status = status ? status : refine(&o, 1, &error);
+    if (!status)
+        tri_mesh_compact(&o.mesh);
+    enter(verdict, "judging again");
+    if (status)
+        judge_fault(verdict, "error", "again: %s", error.text);
+    else
+        judge_mesh(&o, &pslg, true, verdict);
+    tri_mesh_free(&o.mesh);
+    support_copy_free(&copy);
+}
+
+/* --- all together */
+
+static void judge_first(struct outcome *o, const struct tri_pslg *pslg, struct verdict *verdict)
+{
+    struct tri_error error = {0};
+    enter(verdict, "meshing");
+    if (generate(o, pslg, 1, &error)) {
+        judge_fault(verdict, "error", "%s", error.text);
+        return;
+    }
+    enter(verdict, "judging");
+    judge_mesh(o, pslg, false, verdict);
+    if (o->mesh.n_slots > MOST_TRIANGLES)
+        judge_fault(verdict, "too many", "%d triangles for %d points", (int)o->mesh.n_slots, (int)pslg->n_points);
+    enter(verdict, "carving again");
+    if (!verdict->fault[0])
+        judge_carving(o, verdict);
+}
+
+void judge_case(const struct torture_case *c, struct verdict *verdict)
+{
+    const struct tri_pslg *pslg = &c->figure.pslg;
+    struct outcome o = {.of = c, .switches = tri_switches_none()};
+    struct size_test test;
+    tri_switches_add(&o.switches, c->switches);
+    o.options = tri_switches_options(&o.switches);
+    if (o.switches.user_test)
+        add_size_test(&o.options, &test, pslg);
+    if (!tri_pslg_is_one_place(pslg))
+        judge_first(&o, pslg, verdict);
+    if (!verdict->fault[0] && o.mesh.n_slots > 0 && o.options.refine && c->block > 0)
+        judge_threads(&o, pslg, verdict);
+    if (!verdict->fault[0] && o.mesh.n_slots > 0 && o.options.refine && c->again)
+        judge_again(&o, verdict);
+    enter(verdict, "freeing");
+    tri_mesh_free(&o.mesh);
+    verdict->done = true;
+}

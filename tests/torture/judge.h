@@ -1,0 +1,41 @@
+/* Runs a case and judges what comes out of it. */
+#ifndef TESTS_TORTURE_JUDGE_H
+#define TESTS_TORTURE_JUDGE_H
+
+#include "tests/torture/case.h"
+
+/* Written as the case runs, so that a reader in another process can tell how far a crash came. */
+struct verdict {
+    char stage[48];   /* what was going on last */
+    char fault[48];   /* the first fault's kind; "": none */
+    char detail[320]; /* its first instance, in words */
+    int64_t triangles;
+    bool done;
+};
+
+/* Runs the case; the verdict holds the first fault, if any. */
+void judge_case(const struct torture_case *c, struct verdict *verdict);
+
+/* --- for the files judge_*.c */
+
+/* A mesh and all that is known of it. */
+struct outcome {
+    const struct torture_case *of;
+    struct tri_switches switches;
+    struct tri_options options;
+    struct tri_mesh mesh;
+    struct tri_report report;
+};
+
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+void judge_fault(struct verdict *verdict, const char *fault, const char *format, ...);
+
+/* What was carved and which regions spread where, against a naive twin. */
+void judge_carving(const struct outcome *outcome, struct verdict *verdict);
+
+/* Angles and areas that miss their bounds without a reason, points that a switch forbids. */
+void judge_bounds(const struct outcome *outcome, const struct tri_check_report *report, struct verdict *verdict);
+
+#endif

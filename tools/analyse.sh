@@ -1,0 +1,21 @@
+#!/bin/sh
+# Static analysis of triangle/, sched/ and drivers/: cppcheck (tools/cppcheck.txt says what is let pass, and why) and
+# clang-tidy (.clang-tidy). No finding is left; exit code 1 if there is one.
+# Usage: tools/analyse.sh
+set -eu
+cd "$(dirname "$0")/.."
+folder=${PTRIANGLE_BUILD:-build}/clang-werror
+jobs=$(nproc 2>/dev/null || echo 2)
+for program in cppcheck clang-tidy; do
+    command -v $program >/dev/null || {
+        echo "analyse: $program is missing (Debian: apt-get install $program)" >&2
+        exit 2
+    }
+done
+cppcheck --std=c11 --enable=warning,performance,portability --inline-suppr --suppressions-list=tools/cppcheck.txt \
+    --error-exitcode=1 --quiet -j "$jobs" -I . -D_POSIX_C_SOURCE=200809L \
+    --template='{file}:{line}: {severity}: {message} [{id}]' triangle/*.c sched/*.c drivers/*.c
+cmake --preset clang-werror -B "$folder" >/dev/null # for the commands that compile each file
+printf '%s\n' triangle/*.c sched/*.c drivers/*.c | grep -v 'report_none\.c' |
+    xargs -n 4 -P "$jobs" clang-tidy -p "$folder" --quiet 2>/dev/null
+echo "analyse: no finding"

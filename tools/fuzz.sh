@@ -1,0 +1,45 @@
+#!/bin/sh
+# Builds the fuzz targets (preset fuzz) and runs each for so many seconds; what they find is written to build/fuzz/found.
+# Usage: tools/fuzz.sh [SECONDS [TARGET...]]     default: 60, all of read triangulate mesh schedule
+# Again, with one finding: build/fuzz/bin/fuzz_TARGET build/fuzz/found/TARGET-crash-..
+# PTRIANGLE_FUZZ_IGNORE="area,angle" lets kinds of faults of the mesh pass (see tests/fuzz/fuzz_mesh.c).
+# Says so and succeeds where the compiler has no libFuzzer.
+set -eu
+cd "$(dirname "$0")/.."
+seconds=${1:-60}
+[ $# -eq 0 ] || shift
+[ $# -gt 0 ] || set -- read triangulate mesh schedule
+folder=${PTRIANGLE_BUILD:-build}/fuzz
+
+probe=$(mktemp -d)
+printf '#include <stddef.h>\n#include <stdint.h>\n%s\n' \
+    'int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) { return data && size > 9; }' >"$probe/probe.c"
+if ! clang -fsanitize=fuzzer,address,undefined "$probe/probe.c" -o "$probe/probe" 2>/dev/null; then
+    rm -rf "$probe"
+    echo "fuzz: skipped: clang has no libFuzzer here (Debian: libclang-rt-14-dev, or that of another version)"
+    exit 0
+fi
+rm -rf "$probe"
+
+cmake --preset fuzz -B "$folder" >/dev/null
+# shellcheck disable=SC2046 # one word a target
+cmake --build "$folder" --parallel "$(nproc 2>/dev/null || echo 2)" --target $(printf 'fuzz_%s ' "$@")
+tests/fuzz/seeds.sh data "$folder/corpus"
+mkdir -p "$folder/found"
+failed=0
+for target; do
+    dictionary=""
+    [ ! -f "tests/fuzz/$target.dict" ] || dictionary="-dict=tests/fuzz/$target.dict"
+    log=$folder/$target.log
+    # shellcheck disable=SC2086 # one word or none
+    if OMP_NUM_THREADS=3 OMP_WAIT_POLICY=passive "$folder/bin/fuzz_$target" -max_total_time="$seconds" -timeout=120 \
+        -rss_limit_mb=4096 -max_len=4096 -artifact_prefix="$folder/found/$target-" $dictionary "$folder/corpus/$target" \
+        >"$log" 2>&1; then
+        echo "fuzz: $target: $(tail -n 1 "$log")"
+    else
+        failed=1
+        echo "fuzz: $target: FAILED, see $log"
+        grep -E '^fuzz_|ERROR|runtime error|Assertion|SUMMARY|Test unit' "$log" | head -n 6 || true
+    fi
+done
+exit $failed

@@ -1,0 +1,31 @@
+#!/bin/sh
+# The programs under valgrind, on a few small inputs: reads of what was never written, which no sanitizer of gcc sees.
+# (Leaks are AddressSanitizer's.) Usage: tools/valgrind.sh
+set -eu
+cd "$(dirname "$0")/.."
+folder=${PTRIANGLE_BUILD:-build}/debug
+tools/build.sh debug >/dev/null
+bin=$PWD/$folder/bin
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cp data/letter.poly data/section.poly data/nasty/*.poly data/regress/*.poly "$work"
+cd "$work"
+
+run() { # run PROGRAM WORD...: exit codes other than valgrind's are the program's business
+    code=0
+    valgrind --quiet --leak-check=no --error-exitcode=99 "$@" >log 2>&1 || code=$?
+    [ "$code" -ne 99 ] || {
+        echo "valgrind: $*"
+        cat log
+        exit 1
+    }
+}
+for file in *.poly; do
+    run "$bin/triangle" -pcAaQ "$file"
+done
+run "$bin/triangle" -pq30a0.05enVC letter.poly
+run "$bin/triangle" -rpq33a0.02D letter.1
+run "$bin/triangle" -pq30aADvjo2 section.poly
+run "$bin/trianglecheck" letter.2 --poly letter.poly
+run env OMP_NUM_THREADS=2 PTRIANGLE_TEST_BLOCK=250 "$bin/ptriangle" -pq32a0.01 letter.poly
+echo "valgrind: no fault"

@@ -1,0 +1,92 @@
+/* Diametral circles.
+ *
+ * A vertex crowds a subsegment that it sees at more than 90 degrees. (If any vertex that sees it does, so does the apex
+ * of a triangle beside it.) A crowded subsegment is split; no new point in the plane ever enters a circle (refine.c),
+ * and the circles of the parts lie in that of the whole. So the mesh is conforming once no subsegment is crowded.
+ *
+ * RULE. The point of e level with a vertex v is that at the distance of v from o, where e and v lie on two parents
+ * with the common end o; else the foot of the perpendicular from v. A subsegment to which v is near (an eighth of its
+ * length) is split level with v if that is in its middle half, else, and if v is farther away, where any subsegment is
+ * split (tri_split_fraction).
+ *
+ * THEOREM (levels part two parents for good). Let u, on e, be level with v, on f, and f be all on one side of the line
+ * of e. Then v crowds neither part of e, and u no part of f. Proof. With a common end, circles with a diameter on a
+ * ray from o lie in the ring between the ends of the diameter, and meet its border on the ray alone; u and v lie on
+ * one such border. Else v sees u and any point of e, and u sees v and any point of f, at no more than 90 degrees,
+ * since uv is perpendicular to e. So two parents side by side, however near, take about as many points as they have
+ * vertices, not length / width of them, and a vertex in a bundle of parents is handed on across it once. All rays from
+ * one vertex share their levels: nothing spirals around it (concentric shells: Ruppert 1995).
+ *
+ * THEOREM (end). Each part is at least a quarter of the whole, and none shorter than twice mesh.shortest2's root is
+ * split: so there are finitely many splits, whatever the rest of refinement does.
+ *
+ * Rounding puts the point level with v an ulp beside its place. Where h, the distance of v from e, is so small that
+ * this leaves v in a circle (h^2 < ulp * length), only shorter parts help: length * ulp / h^2 of them. That is done
+ * where MOST_PARTS are enough.
+ *
+ * What stays: where v is nearer to e than the shortest edge, so that it lies on e as far as coordinates tell, or
+ * level with an end of e up to rounding, and h too small to mend that. And where rounding leaves no room for the split
+ * point (cavity.h). Nothing else. */
+#include "triangle/disk.h"
+
+#include "triangle/predicates.h"
+#include "triangle/small_angle.h"
+
+bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, int32_t code)
+{
+    struct tri_point apex = mesh->xy[mesh->tri[tri_of(code)].v[tri_edge(code)]];
+    return tri_dot(mesh->xy[s->v[0]], mesh->xy[s->v[1]], apex) < 0;
+}
+
+/* A unit in the last place of the largest coordinate, in shortest edges. */
+static const double ULP = 0x1p-7;
+
+enum { NARROW = 8, MOST_PARTS = 64 }; /* see the rule; most parts that rounding may ask for */
+
+static double distance(struct tri_point a, struct tri_point b)
+{
+    double x = b.x - a.x, y = b.y - a.y;
+    return sqrt(x * x + y * y);
+}
+
+/* Where on the subsegment from a to b is the point level with v? */
+static double level_with(const struct tri_mesh *mesh, const struct tri_subsegment *s, int32_t v)
+{
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], at = mesh->xy[v];
+    int32_t end = tri_common_end(mesh, s->parent, v);
+    if (end != TRI_NONE) {
+        struct tri_point o = mesh->xy[end];
+        double at_a = distance(o, a), at_b = distance(o, b);
+        return (distance(o, at) - at_a) / (at_b - at_a);
+    }
+    double x = b.x - a.x, y = b.y - a.y;
+    return ((at.x - a.x) * x + (at.y - a.y) * y) / (x * x + y * y);
+}
+
+/* Is the subsegment to be split for the sake of vertex v in its circle, and where? */
+static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegment *s, int32_t v, double *fraction)
+{
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], at = mesh->xy[v];
+    double x = b.x - a.x, y = b.y - a.y, l = x * x + y * y, cross = x * (at.y - a.y) - y * (at.x - a.x);
+    if (!tri_can_split(mesh, a, b) || cross * cross < mesh->shortest2 * l)
+        return false;
+    *fraction = tri_split_fraction(mesh, s);
+    if (NARROW * NARROW * cross * cross >= l * l)
+        return true;
+    double level = level_with(mesh, s, v), nearer = level < 0.5 ? level : 1 - level;
+    if (nearer >= 0.25)
+        *fraction = level;
+    double shortest = sqrt(mesh->shortest2), off = fmax(nearer * sqrt(l), ULP * shortest);
+    return off >= shortest || off * l * sqrt(l) <= MOST_PARTS * cross * cross;
+}
+
+bool tri_is_crowded(const struct tri_mesh *mesh, const struct tri_subsegment *s, double *fraction)
+{
+    for (int side = 0; side < 2; side++) {
+        int32_t code = s->side[side];
+        if (code != TRI_NONE && tri_is_in_diametral_disk(mesh, s, code) &&
+            is_split_for(mesh, s, mesh->tri[tri_of(code)].v[tri_edge(code)], fraction))
+            return true;
+    }
+    return false;
+}

@@ -1,0 +1,50 @@
+/* Sizes, whatever stands in the way.
+ *
+ * The usual point of a triangle that is too large may be out of reach: beyond a wall that cannot be split, since it is
+ * protected or too short or lies an ulp from the next; farther away than coordinates go; on a vertex. Then the
+ * triangle's own longest subsegment is split, if it is among the longer edges; and where that cannot be, its centroid
+ * is inserted, however near to subsegments. Nothing can refuse that one: it lies in its triangle, and hence in the
+ * circumdisk, and sees its whole cavity (cavity.h).
+ *
+ * THEOREM (end). Let every triangle that is too large have an area of at least A, and let D be the diameter of the
+ * mesh. The disk about the centroid, of radius a third of the least height, is in the triangle and so holds no vertex:
+ * a centroid is no nearer than 2 A / 3 D to any vertex that there is. Points so far from each other are finitely many
+ * in a bounded figure. A subsegment that is split is at least half as long as the longest edge of the triangle, hence
+ * longer than the root of A / 2, and is split near its middle: that is done finitely many times, too. Both counts do
+ * not depend on what the rest of refinement inserts in between, for that only takes room away. Where a size test
+ * refuses triangles of any size, the resolution of coordinates bounds both: the disk's radius and the subsegment's
+ * length are at least the shortest edge.
+ *
+ * So the bound on areas is kept by every triangle whose least height is more than three shortest edges, some 400 ulps
+ * of the largest coordinate. */
+#include "triangle/inside.h"
+
+#include "triangle/predicates.h"
+
+static double longest2(const struct tri_shape *shape) { return fmax(shape->l[0], fmax(shape->l[1], shape->l[2])); }
+
+int32_t tri_long_wall(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t slot,
+                      const struct tri_shape *shape)
+{
+    int32_t found = TRI_NONE;
+    double length2 = 0.25 * longest2(shape);
+    for (int e = 0; e < 3; e++) {
+        int32_t link = mesh->tri[slot].n[e];
+        if (link < 0 && shape->l[e] >= length2 && !tri_is_protected(options, &mesh->sub[~link])) {
+            found = ~link;
+            length2 = shape->l[e];
+        }
+    }
+    return found;
+}
+
+bool tri_centroid(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape, struct tri_point *p)
+{
+    const int32_t *v = mesh->tri[slot].v;
+    struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
+    p->x = tri_round_coordinate(a.x + ((b.x - a.x) + (c.x - a.x)) / 3);
+    p->y = tri_round_coordinate(a.y + ((b.y - a.y) + (c.y - a.y)) / 3);
+    if (shape->area2 * shape->area2 < 9 * mesh->shortest2 * longest2(shape))
+        return false;
+    return tri_orient2d(a, b, *p) > 0 && tri_orient2d(b, c, *p) > 0 && tri_orient2d(c, a, *p) > 0;
+}

@@ -1,0 +1,434 @@
+/* Safe outputs: temporary files, locks, names.
+ *
+ * All or nothing: once every file is closed only renames can fail. Before the first of them each file that is going to
+ * be replaced gets a second name, by which it can be put back. */
+#include "triangle/output.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "triangle/text.h"
+
+enum {
+    MAX_LINKS = 40,
+    MAX_PATH = 4096,
+    MAX_NAMES = 1000, /* temporary names to try */
+    HOST_BYTES = 100, /* of the host's name in a temporary name, at most */
+    NAME_BYTES = 200  /* of a temporary name: file systems allow 255 */
+};
+
+void tri_outputs_begin(struct tri_output_set *set) { *set = (struct tri_output_set){0}; }
+
+/* Length of the directory part, final slash included; 0: the working directory. */
+static size_t directory_length(const char *path)
+{
+    const char *const slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* directory_of's directory followed by name; malloc'ed. */
+static char *beside(const char *directory_of, const char *name)
+{
+    const size_t directory = directory_length(directory_of), length = strlen(name);
+    char *const path = malloc(directory + length + 1);
+    if (path) {
+        memcpy(path, directory_of, directory);
+        memcpy(path + directory, name, length + 1);
+    }
+    return path;
+}
+
+/* What a symbolic link at path points to, malloc'ed; NULL and errno: no link (EINVAL, ENOENT), or trouble. */
+static char *follow(const char *path)
+{
+    char target[MAX_PATH];
+    const ssize_t length = readlink(path, target, sizeof target);
+    if (length < 0)
+        return NULL;
+    if ((size_t)length == sizeof target) {
+        errno = ENAMETOOLONG;
+        return NULL;
+    }
+    target[length] = 0;
+    return beside(target[0] == '/' ? "" : path, target);
+}
+
+/* The path behind all symbolic links, existing or not, malloc'ed; NULL and errno on failure. Renaming onto it keeps the
+ * links. */
+static char *resolve(const char *path)
+{
+    char *resolved = beside("", path);
+    for (int i = 0; resolved && i < MAX_LINKS; i++) {
+        char *const next = follow(resolved);
+        if (!next && (errno == EINVAL || errno == ENOENT))
+            return resolved;
+        const int reason = errno;
+        free(resolved);
+        errno = reason;
+        resolved = next;
+    }
+    if (resolved)
+        errno = ELOOP;
+    free(resolved);
+    return NULL;
+}
+
+static enum tri_status cannot_create(const struct tri_output *output, struct tri_error *error)
+{
+    const int reason = errno;
+    if (reason == ENOMEM)
+        return tri_fail(error, TRI_NO_MEMORY, output->path, 0, "no memory to create the file");
+    return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot create", reason);
+}
+
+/* --- temporary files */
+
+/* ".tri-<host>-", with which the names of this host begin. */
+static void put_prefix(char name[NAME_BYTES])
+{
+    char host[HOST_BYTES] = "";
+    if (gethostname(host, sizeof host - 1) != 0) /* a longer name is cut, with or without an error */
+        host[sizeof host - 1] = 0;
+    for (char *at = host; *at; at++)
+        if (*at == '/')
+            *at = '_';
+    snprintf(name, NAME_BYTES, ".tri-%s-", host);
+}
+
+/* A name for process and number i beside the path, malloc'ed. Short, since the path's own name may be as long as names
+ * can be. */
+static char *temporary_name(const char *path, int i)
+{
+    char name[NAME_BYTES];
+    put_prefix(name);
+    size_t length = strlen(name);
+    snprintf(name + length, sizeof name - length, "%ld-%d.tmp", (long)getpid(), i);
+    return beside(path, name);
+}
+
+/* The process in a name of this host; 0: another host's, or no name of a temporary file. */
+static long process_of(const char *name, const char *prefix)
+{
+    size_t length = strlen(prefix);
+    if (strncmp(name, prefix, length) != 0)
+        return 0;
+    const char *at = name + length;
+    size_t process = strspn(at, "0123456789");
+    if (process == 0 || process > 9 || at[process] != '-')
+        return 0;
+    size_t number = strspn(at + process + 1, "0123456789");
+    return number > 0 && strcmp(at + process + 1 + number, ".tmp") == 0 ? strtol(at, NULL, 10) : 0;
+}
+
+enum lock { LOCKED, HELD_BY_ANOTHER, NO_LOCKS };
+
+/* The lock goes when this process closes the file, by any descriptor, or dies. */
+static enum lock try_lock(int file)
+{
+    struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    if (fcntl(file, F_SETLK, &whole) == 0)
+        return LOCKED;
+    return errno == EACCES || errno == EAGAIN ? HELD_BY_ANOTHER : NO_LOCKS;
+}
+
+/* Removes the file if nobody works on it. Who makes one looks, once he has the lock, whether it is still there. */
+static void remove_if_left(int directory, const char *name)
+{
+    struct stat status;
+    int file = openat(directory, name, O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (file < 0)
+        return;
+    if (fstat(file, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid() && try_lock(file) == LOCKED)
+        unlinkat(directory, name, 0);
+    close(file);
+}
+
+/* Temporary files beside `path` whose processes are gone. A file of this process is never opened: to close it again
+ * would drop its lock. */
+static void remove_left(const char *path)
+{
+    char prefix[NAME_BYTES];
+    char *name = beside(path, ".");
+    DIR *directory = name ? opendir(name) : NULL;
+    free(name);
+    put_prefix(prefix);
+    for (struct dirent *entry; directory && (entry = readdir(directory));) {
+        long process = process_of(entry->d_name, prefix);
+        if (process > 0 && process != (long)getpid() && kill((pid_t)process, 0) != 0 && errno == ESRCH)
+            remove_if_left(dirfd(directory), entry->d_name);
+    }
+    if (directory)
+        closedir(directory);
+}
+
+static bool is_same_directory(const char *a, const char *b)
+{
+    size_t length = directory_length(a);
+    return directory_length(b) == length && memcmp(a, b, length) == 0;
+}
+
+static void tidy_up(const struct tri_output_set *set, const char *path)
+{
+    for (int i = 0; i < set->n; i++)
+        if (is_same_directory(set->outputs[i].path, path)) /* done already */
+            return;
+    remove_left(path);
+}
+
+/* Is the file ours, and still there? Somebody who tidied up may have come between its making and its lock. */
+static bool is_kept(int file)
+{
+    struct stat status;
+    return try_lock(file) != HELD_BY_ANOTHER && fstat(file, &status) == 0 && status.st_nlink > 0;
+}
+
+/* O_EXCL decides between processes and threads that try the same name. The mode is that of any new file, so that the
+ * process's mask applies. */
+static enum tri_status create_temporary(struct tri_output *output, struct tri_error *error)
+{
+    for (int i = 0; i < MAX_NAMES; i++) {
+        char *const name = temporary_name(output->path, i);
+        if (!name)
+            return tri_fail(error, TRI_NO_MEMORY, output->path, 0, "no memory to create the file");
+        output->file = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (output->file >= 0 && is_kept(output->file)) {
+            output->temporary = name;
+            return TRI_OK;
+        }
+        const int reason = errno;
+        free(name);
+        if (output->file >= 0) {
+            close(output->file);
+            output->file = -1;
+        } else if (reason != EEXIST && reason != EINTR) {
+            errno = reason;
+            return cannot_create(output, error);
+        }
+    }
+    return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "cannot create: no free name for a temporary file");
+}
+
+/* --- opening */
+
+/* A device or a pipe: there is nothing to replace. */
+static enum tri_status open_in_place(struct tri_output *output, struct tri_error *error)
+{
+    do
+        output->file = open(output->path, O_WRONLY | O_CLOEXEC | O_NOCTTY);
+    while (output->file < 0 && errno == EINTR && !tri_stop_is_asked(output->stop)); /* a pipe that nobody reads */
+    if (output->file < 0)
+        return errno == EINTR ? tri_fail_stopped(error) : cannot_create(output, error);
+    return TRI_OK;
+}
+
+/* Refuses what cannot become a file. */
+static enum tri_status check_target(const struct tri_output *output, const struct stat *old, struct tri_error *error)
+{
+    const bool has_name = output->path[directory_length(output->path)] != 0;
+    if (!has_name || (old && S_ISDIR(old->st_mode))) {
+        errno = EISDIR;
+        return cannot_create(output, error);
+    }
+    return old && access(output->path, W_OK) != 0 ? cannot_create(output, error) : TRI_OK;
+}
+
+static bool stat_directory(const char *path, struct stat *status)
+{
+    char name[MAX_PATH];
+    const size_t length = directory_length(path);
+    if (length + 2 > sizeof name)
+        return false;
+    memcpy(name, path, length);
+    strcpy(name + length, ".");
+    return stat(name, status) == 0;
+}
+
+static bool is_same_node(const struct stat *a, const struct stat *b)
+{
+    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+}
+
+bool tri_is_same_file(const char *a, const char *b)
+{
+    struct stat of_a, of_b;
+    bool is_a = stat(a, &of_a) == 0, is_b = stat(b, &of_b) == 0;
+    if (is_a && is_b)
+        return S_ISREG(of_a.st_mode) && is_same_node(&of_a, &of_b);
+    if (is_a || is_b || strcmp(a + directory_length(a), b + directory_length(b)) != 0)
+        return false;
+    return stat_directory(a, &of_a) && stat_directory(b, &of_b) && is_same_node(&of_a, &of_b);
+}
+
+/* No two outputs are one file: the second would replace the first. */
+static enum tri_status check_others(const struct tri_output_set *set, const struct tri_output *output,
+                                    struct tri_error *error)
+{
+    for (int i = 0; i < set->n; i++)
+        if (tri_is_same_file(set->outputs[i].path, output->path))
+            return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "would be written twice: %.300s is the same file",
+                            set->outputs[i].path);
+    return TRI_OK;
+}
+
+static enum tri_status open_output(const struct tri_output_set *set, struct tri_output *output, const char *path,
+                                   struct tri_error *error)
+{
+    struct stat old;
+    const bool exists = stat(path, &old) == 0, replaces = exists && S_ISREG(old.st_mode);
+    output->path = !exists || replaces ? resolve(path) : beside("", path); /* /dev/stdout must not be followed */
+    if (!output->path)
+        return errno == ENOMEM ? tri_fail(error, TRI_NO_MEMORY, path, 0, "no memory to create the file")
+                               : tri_fail_system(error, TRI_CANNOT_WRITE, path, "cannot create", errno);
+    enum tri_status status = check_target(output, exists ? &old : NULL, error);
+    status = status ? status : check_others(set, output, error);
+    if (status != TRI_OK)
+        return status;
+    if (exists && !replaces)
+        return set->trial ? TRI_OK : open_in_place(output, error);
+    tidy_up(set, output->path);
+    status = create_temporary(output, error);
+    output->replaces = replaces;
+    if (status == TRI_OK && replaces && fchmod(output->file, old.st_mode & 0777) != 0)
+        return cannot_create(output, error);
+    return status;
+}
+
+static void discard(struct tri_output *output)
+{
+    if (output->file >= 0)
+        close(output->file);
+    if (output->temporary)
+        unlink(output->temporary);
+    if (output->old)
+        unlink(output->old);
+    free(output->old);
+    free(output->temporary);
+    free(output->path);
+    *output = (struct tri_output){.file = -1};
+}
+
+enum tri_status tri_output_open(struct tri_output_set *set, const char *path, struct tri_output **output,
+                                struct tri_error *error)
+{
+    *output = NULL;
+    if (set->n == TRI_MAX_OUTPUTS)
+        return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "more than %d files at a time", TRI_MAX_OUTPUTS);
+    struct tri_output new = {.file = -1, .stop = set->stop};
+    const enum tri_status status = open_output(set, &new, path, error);
+    if (status != TRI_OK) {
+        discard(&new);
+        return status;
+    }
+    set->outputs[set->n] = new;
+    *output = &set->outputs[set->n++];
+    return TRI_OK;
+}
+
+/* --- writing and closing */
+
+enum tri_status tri_output_write(struct tri_output *output, const char *data, size_t size, struct tri_error *error)
+{
+    while (size > 0) {
+        if (tri_stop_is_asked(output->stop))
+            return tri_fail_stopped(error);
+        const ssize_t written = write(output->file, data, size);
+        if (written < 0 && errno != EINTR) {
+            output->failed = true;
+            return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot write", errno);
+        }
+        if (written > 0) {
+            data += written;
+            size -= (size_t)written;
+        }
+    }
+    return TRI_OK;
+}
+
+/* Some file systems report only here that the data found no room. */
+static enum tri_status close_output(struct tri_output *output, struct tri_error *error)
+{
+    if (output->failed)
+        return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "the file is not complete");
+    const int result = output->file < 0 ? 0 : close(output->file);
+    output->file = -1;
+    if (result != 0 && errno != EINTR) /* after EINTR the descriptor is closed all the same */
+        return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot write", errno);
+    return TRI_OK;
+}
+
+enum tri_status tri_outputs_close(struct tri_output_set *set, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (int i = 0; status == TRI_OK && i < set->n; i++)
+        status = close_output(&set->outputs[i], error);
+    return status;
+}
+
+/* --- final names */
+
+/* A second name for the file that is going to be replaced, if there is one. */
+static void keep_old(struct tri_output *output)
+{
+    for (int i = 0; output->temporary && !output->old && i < MAX_NAMES; i++) {
+        char *const name = temporary_name(output->path, i);
+        if (name && link(output->path, name) == 0) {
+            output->old = name;
+            return;
+        }
+        const bool taken = name && errno == EEXIST;
+        free(name);
+        if (!taken)
+            return;
+    }
+}
+
+static enum tri_status rename_output(struct tri_output *output, struct tri_error *error)
+{
+    if (!output->temporary)
+        return TRI_OK;
+    if (rename(output->temporary, output->path) != 0)
+        return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot create", errno);
+    free(output->temporary);
+    output->temporary = NULL;
+    output->renamed = true;
+    return TRI_OK;
+}
+
+/* What stood under the name before stands there again: the old file, or none. */
+static void put_back(struct tri_output *output)
+{
+    if (output->renamed && output->old && rename(output->old, output->path) == 0) {
+        free(output->old);
+        output->old = NULL;
+    } else if (output->renamed && !output->old && !output->replaces) {
+        unlink(output->path);
+    }
+}
+
+enum tri_status tri_outputs_commit(struct tri_output_set *set, struct tri_error *error)
+{
+    enum tri_status status = tri_outputs_close(set, error);
+    for (int i = 0; status == TRI_OK && i < set->n; i++)
+        keep_old(&set->outputs[i]);
+    for (int i = 0; status == TRI_OK && i < set->n; i++)
+        status = rename_output(&set->outputs[i], error);
+    for (int i = 0; status != TRI_OK && i < set->n; i++)
+        put_back(&set->outputs[i]);
+    tri_outputs_abort(set);
+    return status;
+}
+
+void tri_outputs_abort(struct tri_output_set *set)
+{
+    for (int i = 0; i < set->n; i++)
+        discard(&set->outputs[i]);
+    set->n = 0;
+}
+

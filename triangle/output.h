@@ -1,0 +1,72 @@
+/* Output files that appear together, when all are complete, or not at all.
+ *
+ * A file is written under another name beside the place where it will be, ".tri-<host>-<process>-<number>.tmp", and
+ * locked as long as its process works on it. What a process left behind that was killed outright is removed by the
+ * next run that writes into the same directory: a file of that name is taken for left behind if this host made it, no
+ * process of its number is in sight, and nobody holds the lock. The kernel drops a lock when its process dies, in
+ * whatever container that ran; so no file that is still written goes, also where directories are shared between hosts,
+ * or process numbers used twice. (From the last close to the new name, microseconds, the process's number alone
+ * protects it; were it removed then, the run would end with an error and leave everything as it was.) Where there are
+ * no locks nothing is removed.
+ *
+ * Errors of all functions: TRI_CANNOT_WRITE, TRI_NO_MEMORY; of tri_output_write also TRI_STOPPED. */
+#ifndef TRIANGLE_OUTPUT_H
+#define TRIANGLE_OUTPUT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "triangle/status.h"
+#include "triangle/stop.h"
+
+enum { TRI_MAX_OUTPUTS = 16 };
+
+struct tri_output {
+    char *path;      /* what the file will be called: the caller's path with symbolic links followed */
+    char *temporary; /* what it is called until then; NULL: a device or pipe, written in place */
+    char *old;       /* while files are renamed: a second name of the one that is replaced; NULL: none */
+    bool replaces;   /* there was a file of that name */
+    bool renamed;    /* it has its name */
+    int file;        /* descriptor; -1: closed */
+    bool failed;     /* something could not be written */
+    const struct tri_stop *stop; /* the set's */
+};
+
+/* Files that are written together. INVARIANT: until commit nothing has changed under any final name; after commit or
+ * abort no temporary file is left and the set is empty. (Devices and pipes are the exception.) */
+struct tri_output_set {
+    int n;
+    struct tri_output outputs[TRI_MAX_OUTPUTS];
+    bool trial;                  /* to see whether all can be opened: devices and pipes are left alone */
+    const struct tri_stop *stop; /* asked by tri_output_write; borrowed; NULL: nobody */
+};
+
+/* An empty set; trial and stop may then be set. */
+void tri_outputs_begin(struct tri_output_set *set);
+
+/* Creates a temporary file beside `path`, whose name no other process or thread has, and sets *output to it, which
+ * belongs to the set. A file that exists is replaced at commit and keeps its permissions; a link to a file goes on
+ * pointing to it. Directories, files without permission to write and a second output for the same file are refused
+ * here, before any work is done. */
+enum tri_status tri_output_open(struct tri_output_set *set, const char *path, struct tri_output **output,
+                                struct tri_error *error);
+
+/* Appends bytes. */
+enum tri_status tri_output_write(struct tri_output *output, const char *data, size_t size, struct tri_error *error);
+
+/* Closes all files, so that nothing is left to do but to give them their names. */
+enum tri_status tri_outputs_close(struct tri_output_set *set, struct tri_error *error);
+
+/* Closes all files, then renames all. If a file could not be written, closed or renamed, every name is as it was before
+ * (where the file system knows second names of a file; else files renamed before the failure stay). Not synced to the
+ * disk. */
+enum tri_status tri_outputs_commit(struct tri_output_set *set, struct tri_error *error);
+
+/* Closes and removes what is not committed. */
+void tri_outputs_abort(struct tri_output_set *set);
+
+/* Do two paths name one regular file, by links of any kind? Where neither exists: would they, if neither is a symbolic
+ * link itself? */
+bool tri_is_same_file(const char *a, const char *b);
+
+#endif

@@ -1,0 +1,63 @@
+/* Places of split points.
+ *
+ * A split point is rounded, so that it lies beside its subsegment. Two things follow from that, if nothing is done:
+ * errors add up from split to split; and a boundary subsegment that moves outwards may meet another part of the
+ * boundary, which is no longer known once what is outside has been carved.
+ *
+ * 1. The place is that on the parent's line, rounded once (or, rarely, a neighbour of it or of the place on the
+ * subsegment, for the sake of 2). So a chain keeps to its line however often it is split.
+ * 2. THEOREM (boundary). Each parent on the boundary has an empty triangle of its own outside: its ends and its guard,
+ * the centroid of the triangle of the constrained Delaunay triangulation that was carved there. If every split point
+ * of a boundary subsegment lies on the inner side of it (or on it), or in the parent's own triangle, the boundary never
+ * meets itself, and never passes a vertex that is not its own. Proof: by induction, what the mesh covers outside its
+ * first domain lies in the triangles of the parents that cover it: a point inside only takes from the domain; a point p
+ * in the triangle adds the triangle of p and the subsegment's ends, whose part outside is in the parent's triangle,
+ * which is convex. These triangles do not overlap, and hold no vertex and no part of the domain. */
+#include "triangle/split.h"
+
+#include "triangle/crossing.h"
+#include "triangle/predicates.h"
+
+/* Is p strictly inside the triangle a, b, c, if that is counter-clockwise? */
+static bool holds(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point p)
+{
+    return tri_orient2d(a, b, p) > 0 && tri_orient2d(b, c, p) > 0 && tri_orient2d(c, a, p) > 0;
+}
+
+/* May a boundary subsegment from `from` to `to`, the mesh on its left, be split at p? */
+static bool keeps_to_itself(const struct tri_mesh *mesh, const struct tri_parent *parent, struct tri_point from,
+                            struct tri_point to, struct tri_point p)
+{
+    struct tri_point a = mesh->xy[parent->v[0]], b = mesh->xy[parent->v[1]], guard = parent->guard;
+    if (tri_orient2d(from, to, p) >= 0 || isnan(guard.x))
+        return true;
+    return holds(a, b, guard, p) || holds(b, a, guard, p);
+}
+
+/* Moves *p to a place at most one resolution away at which the subsegment may be split. */
+static bool find_place(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point *p)
+{
+    static const int way[9][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
+    bool left = s->side[0] != TRI_NONE, boundary = !left || s->side[1] == TRI_NONE;
+    struct tri_point from = mesh->xy[s->v[left ? 0 : 1]], to = mesh->xy[s->v[left ? 1 : 0]], at = *p;
+    double step = tri_resolution(at);
+    for (int i = 0; i < 9; i++) {
+        *p = (struct tri_point){tri_round_coordinate(at.x + way[i][0] * step),
+                                tri_round_coordinate(at.y + way[i][1] * step)};
+        if (!boundary || keeps_to_itself(mesh, &mesh->parents[s->parent], from, to, *p))
+            return true;
+    }
+    return false;
+}
+
+bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction,
+                     struct tri_point *p)
+{
+    const struct tri_parent *parent = &mesh->parents[s->parent];
+    struct tri_point between = tri_point_between(mesh->xy[s->v[0]], mesh->xy[s->v[1]], fraction);
+    *p = tri_onto_line(mesh->xy[parent->v[0]], mesh->xy[parent->v[1]], between);
+    if (find_place(mesh, s, p))
+        return true;
+    *p = between; /* the subsegment itself lies too far inside by now */
+    return find_place(mesh, s, p);
+}
