@@ -4,7 +4,7 @@
 
 #include "triangle/feature_size.h"
 
-static double distance(struct tri_point a, struct tri_point b) { return sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y)); }
+static double distance(struct tri_point a, struct tri_point b) { return hypot(b.x - a.x, b.y - a.y); }
 
 static void test_features_of_an_input(void **state)
 {
@@ -33,15 +33,16 @@ static void test_sizes_are_inherited_and_grow(void **state)
     assert_false(tri_has_run_away(&mesh, 0, 1, 0.032 * 0.032));
 }
 
-/* F of the theorem, over the vertices of the input: no vertex knows of a smaller size, but for split points beside a
- * vertex, which may be at a half of it; and no edge is shorter than a share of it. */
-static void check_against_input(const struct tri_mesh *mesh, const double *of_input)
+/* F of the theorem, with all vertices on segments as sources: no vertex inside knows of a smaller size. And no edge is
+ * shorter than a share of the sizes at its ends. */
+static void check_sizes(const struct tri_mesh *mesh)
 {
     for (int32_t v = 0; v < mesh->n_vertices; v++) {
         double least = HUGE_VAL;
-        for (int32_t w = 0; w < mesh->n_input; w++)
-            least = fmin(least, of_input[w] + 0.5 * distance(mesh->xy[v], mesh->xy[w]));
-        assert_true(mesh->feature[v] >= 0.5 * least);
+        for (int32_t w = 0; w < mesh->n_vertices; w++)
+            if (mesh->on[w] != TRI_VERTEX_FREE)
+                least = fmin(least, mesh->feature[w] + 0.5 * distance(mesh->xy[v], mesh->xy[w]));
+        assert_true(mesh->feature[v] >= 0.999 * least);
     }
     for (int32_t t = 0; t < mesh->n_slots; t++)
         for (int k = 0; k < 3; k++) {
@@ -51,7 +52,7 @@ static void check_against_input(const struct tri_mesh *mesh, const double *of_in
         }
 }
 
-static void test_no_vertex_forgets_the_input(void **state)
+static void test_no_vertex_forgets_its_sources(void **state)
 {
     (void)state;
     static const double angles[] = {20, 33, 34, 36, 45, 60};
@@ -59,14 +60,8 @@ static void test_no_vertex_forgets_the_input(void **state)
         for (uint64_t seed = 1; seed <= 5; seed++) {
             struct tri_pslg pslg = support_square(1, 40, seed);
             struct tri_options options = support_quality(angles[i], 0);
-            options.refine = false;
             struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-            struct tri_refine_report report;
-            double of_input[64];
-            assert_in_range(mesh.n_input, 1, 64);
-            memcpy(of_input, mesh.feature, (size_t)mesh.n_input * sizeof *of_input);
-            assert_int_equal(tri_refine(&mesh, &options.quality, &report, NULL), TRI_OK);
-            check_against_input(&mesh, of_input);
+            check_sizes(&mesh);
             tri_mesh_free(&mesh);
             tri_pslg_free(&pslg);
         }
@@ -84,18 +79,20 @@ static int32_t triangles_at(const struct tri_pslg *pslg, double angle, bool conf
     return n;
 }
 
-/* Whatever the bound: at most so many times the triangles at 25 degrees, a bound that is reached by theory, and a
- * constant where the budget for bounds above 34 degrees has one. */
+/* Up to 34 degrees at most so many times the triangles at 25 degrees, a bound that is reached by theory; beyond at most
+ * so many times those at 34, and a constant, which is in the budget. */
 static void check_bounds(const char *name, const struct tri_pslg *pslg, int32_t most)
 {
-    static const double angles[] = {30, 33, 34, 34.5, 36, 41, 60};
+    static const double angles[] = {33, 34, 34.5, 36, 60};
     for (int conforming = 0; conforming < 2; conforming++) {
         int32_t usual = triangles_at(pslg, 25, conforming);
-        for (int i = 0; i < 7 && usual <= most; i++) {
-            int32_t n = triangles_at(pslg, angles[i], conforming), constant = angles[i] > 34 ? 2000 : 100;
-            double factor = angles[i] > 34 ? 12 : 8;
-            if (n > factor * usual + constant)
+        double limit = 16.0 * usual + 100;
+        for (int i = 0; i < 5 && usual <= most; i++) {
+            int32_t n = triangles_at(pslg, angles[i], conforming);
+            if (n > limit)
                 fail_msg("%s: %d triangles at %g degrees, %d at 25", name, (int)n, angles[i], (int)usual);
+            if (angles[i] == 34)
+                limit = 3.0 * n + 4000;
         }
     }
 }
@@ -111,7 +108,7 @@ static void test_no_bound_runs_away(void **state)
             if (!support_read(*name, &pslg))
                 continue;
             if (pslg.n_segments > 0 && pslg.n_segments < 200)
-                check_bounds(*name, &pslg, 2000);
+                check_bounds(*name, &pslg, 800);
             tri_pslg_free(&pslg);
         }
         support_free_names(names);
@@ -123,7 +120,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_features_of_an_input),
         cmocka_unit_test(test_sizes_are_inherited_and_grow),
-        cmocka_unit_test(test_no_vertex_forgets_the_input),
+        cmocka_unit_test(test_no_vertex_forgets_its_sources),
         cmocka_unit_test(test_no_bound_runs_away),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
