@@ -17,6 +17,7 @@ class Verdict:
     smallest_angle: float
     total_area: float
     checksum: int     # of the files
+    seconds: float    # that the judge took
 
     @property
     def text(self):
@@ -58,6 +59,6 @@ def judge(case):
         said = json.loads(ended.output)
         faults = "; ".join(f"{c['name']}: {c['count']}" for c in said["checks"] if c["state"] == "failed")
         return Verdict(faults, said["vertices"], said["triangles"], said["subsegments"], said["smallest_angle"] or 0.0,
-                       said["total_area"] or 0.0, _checksum(base)), run
+                       said["total_area"] or 0.0, _checksum(base), ended.wall), run
     finally:
         remove(scratch)

@@ -14,6 +14,8 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/crossing.c
     triangle/recover.c
     triangle/constrain.c
+    triangle/sweep_order.c
+    triangle/locate.c
     triangle/carve.c
     triangle/reconstruct.c
     triangle/cavity.c
@@ -32,7 +34,6 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/stats.c
     triangle/check.c
     triangle/check_edges.c
-    triangle/check_sweep.c
     triangle/check_overlap.c
     triangle/check_delaunay.c
     triangle/check_segments.c

@@ -12,7 +12,8 @@
  * of the numbering against that of refining; area of triangles against their bound. */
 static const double LEAST_BYTES = 44, LOOP_BYTES = 52, SCHEDULE_BYTES = 74, NUMBERING = 0.55, MEAN_OVER_BOUND = 0.655;
 static const double SURE = 0.75; /* of an estimate */
-static const double TEXT_BYTES_A_SECOND = 6.5e8, USUAL_SECONDS = 1.25e-7; /* of one thread, where a triangle takes that */
+/* Of one thread; USUAL_SECONDS where a triangle takes that. */
+static const double TEXT_BYTES_A_SECOND = 6.5e8, USUAL_SECONDS = 1.25e-7;
 
 /* --- triangles */
 
@@ -117,8 +118,8 @@ enum tri_status estimate_check(const struct estimate *e, struct tri_error *error
     double available = e->more > 1e8 ? resources_memory() : HUGE_VAL; /* small files, but why read them */
     if (e->more > available)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                        "the bounds ask for about %.3g million triangles, which take at least %.3g GB of memory; %.3g GB "
-                        "are left", 1e-6 * e->triangles, 1e-9 * e->more, 1e-9 * available);
+                        "the bounds ask for about %.3g million triangles, which take at least %.3g GB of memory; "
+                        "%.3g GB are left", 1e-6 * e->triangles, 1e-9 * e->more, 1e-9 * available);
     return TRI_OK;
 }
 

@@ -168,8 +168,8 @@ static json_t *report_of(const struct run *run, const struct par_report *schedul
                                "max_area", q->max_area > 0 ? real(q->max_area) : json_null());
     return json_pack("{s:s, s:s, s:o, s:s?, s:i, s:o, s:o, s:o, s:o, s:o}", "program", run->hooks->program, "version",
                      PTRIANGLE_VERSION, "command", command_of(run->arguments), "stopped", run->stopped, "threads",
-                     threads, "peak_memory_bytes", whole(memory), "bounds", bounds, "seconds", stages_of(run, schedule), "mesh", mesh_of(run),
-                     "schedule", schedule ? schedule_of(schedule) : json_null());
+                     threads, "peak_memory_bytes", whole(memory), "bounds", bounds, "seconds", stages_of(run, schedule),
+                     "mesh", mesh_of(run), "schedule", schedule ? schedule_of(schedule) : json_null());
 }
 
 enum tri_status report_check(struct tri_error *error)

@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "triangle/check.h"
-#include "triangle/check_sweep.h"
+#include "triangle/sweep_order.h"
 
 enum { ROOM = 4096 };
 

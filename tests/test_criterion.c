@@ -1,5 +1,6 @@
 /* Which triangles are bad and which subsegments crowded, on triangles whose answer is known. */
 #include "triangle/criterion.h"
+#include "triangle/disk.h"
 
 #include "tests/support.h"
 

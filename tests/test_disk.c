@@ -37,9 +37,10 @@ static struct tri_pslg needles(int32_t n, uint64_t seed)
         double slope = 1, length = 0.1 + support_unit(&random);
         for (int32_t k = support_below(&random, 6); k > 0; k--)
             slope /= 10;
-        double turned_x = x - slope * y, turned_y = y + slope * x, norm = sqrt(turned_x * turned_x + turned_y * turned_y);
-        x = turned_x / norm;
-        y = turned_y / norm;
+        double turned = x - slope * y;
+        y += slope * x;
+        x = turned;
+        length /= sqrt(x * x + y * y);
         support_add_segment(&pslg, 4, support_add_point(&pslg, length * x, length * y));
     }
     return pslg;

@@ -120,13 +120,14 @@ static int64_t sum_bad(const struct tri_mesh *mesh, const struct tri_refine_opti
     return sum;
 }
 
+/* Areas are kept whatever angles are like, save in a mesh that is not finished. */
 static void judge(const struct start *start, const struct tri_mesh *mesh, int64_t max_bad)
 {
     const struct tri_refine_options *quality = &start->options.quality;
     struct tri_check_options check = {.max_bad = max_bad, .min_angle = quality->min_angle, .ignore_lost = true};
-    check.max_area = quality->max_area; /* kept whatever angles are like */
+    check.max_area = max_bad < INT64_MAX ? quality->max_area : 0;
     check.delaunay = quality->conforming ? TRI_CHECK_CONFORMING : TRI_CHECK_CONSTRAINED;
-    support_judge(mesh, &start->pslg, &check, quality->region_areas, NULL);
+    support_judge(mesh, &start->pslg, &check, quality->region_areas && max_bad < INT64_MAX, NULL);
 }
 
 /* A legal mesh; what is bad in it is about what the sequential loop could not do either. */

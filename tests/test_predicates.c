@@ -225,6 +225,26 @@ static void check_orient(struct tri_point a, struct tri_point b, struct tri_poin
     assert_int_equal(sign_of(tri_orient2d_near(a, b, c)), sign);
 }
 
+static int oracle_dot(struct tri_point a, struct tri_point b, struct tri_point c)
+{
+    struct tri_point p[3] = {a, b, c};
+    load(3, p);
+    for (int k = 0; k < 2; k++) {
+        mpz_sub(tmp[1 + 2 * k], px[k], px[2]);
+        mpz_sub(tmp[2 + 2 * k], py[k], py[2]);
+    }
+    mpz_mul(tmp[0], tmp[1], tmp[3]);
+    mpz_addmul(tmp[0], tmp[2], tmp[4]);
+    return mpz_sgn(tmp[0]);
+}
+
+static void check_dot(struct tri_point a, struct tri_point b, struct tri_point c)
+{
+    int sign = oracle_dot(a, b, c);
+    assert_int_equal(sign_of(tri_dot(a, b, c)), sign);
+    assert_int_equal(sign_of(tri_dot_near(a, b, c)), sign);
+}
+
 static bool collinear(const struct tri_point p[4])
 {
     return oracle_orient(p[0], p[1], p[2]) == 0 && oracle_orient(p[0], p[1], p[3]) == 0;
@@ -463,6 +483,22 @@ static void test_orient2d_near_a_line(void **state)
         check_orient(a, b, c);
         c.x = step(c.x, random_int(-2, 2));
         check_orient(c, a, b);
+    }
+}
+
+/* Right angles up to a few ulps, and anything. */
+static void test_dot(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 40000; i++) {
+        int low = random_int(-216, 199), high = random_int(low, 199), exponent = random_int(-160, 140);
+        check_dot(random_point(low, high), random_point(low, high), random_point(low, high));
+        struct tri_point a = random_point(exponent, exponent + 40), c = random_point(exponent, exponent + 40), b;
+        double t = random_double(-10, 2);
+        b = (struct tri_point){c.x - t * (a.y - c.y), c.y + t * (a.x - c.x)};
+        check_dot(a, b, c);
+        b.x = step(b.x, random_int(-2, 2));
+        check_dot(b, a, c);
     }
 }
 
@@ -769,6 +805,7 @@ int main(void)
         cmocka_unit_test(test_orient2d_random),
         cmocka_unit_test(test_orient2d_grid_of_ulps),
         cmocka_unit_test(test_orient2d_near_a_line),
+        cmocka_unit_test(test_dot),
         cmocka_unit_test(test_orient2d_collinear_in_the_whole_range),
         cmocka_unit_test(test_orient2d_small_integers),
         cmocka_unit_test(test_incircle_random),

@@ -97,6 +97,35 @@ static void test_flat_neighbour_keeps_the_mesh_delaunay(void **state)
     tri_pslg_free(&pslg);
 }
 
+/* The many parents at one vertex are listed in the order in which they go around it, however they were given. */
+static void test_spokes_of_a_hub_are_in_order(void **state)
+{
+    (void)state;
+    enum { N = 200 };
+    struct support_random random = {5};
+    struct tri_pslg pslg = support_pslg(N + 1, N, 0, 0);
+    struct tri_options options = tri_defaults();
+    support_add_point(&pslg, 0.25, -0.5);
+    for (int32_t i = 0; i < N; i++)
+        support_add_point(&pslg, support_unit(&random) - 0.5, support_unit(&random) - 0.75);
+    for (int32_t i = 0; i < N; i++)
+        support_add_segment(&pslg, i % 2 ? 0 : i + 1, i % 2 ? i + 1 : 0);
+    options.use_segments = options.keep_hull = true;
+    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+    int32_t first = mesh.spoke_start[0], n = mesh.spoke_start[1] - first, wraps = 0;
+    assert_true(n >= N);
+    for (int32_t i = 0; i < n; i++) {
+        const int32_t *a = mesh.parents[mesh.spokes[first + i]].v;
+        const int32_t *b = mesh.parents[mesh.spokes[first + (i + 1) % n]].v;
+        struct tri_point p = mesh.xy[a[a[0] == 0]], q = mesh.xy[b[b[0] == 0]];
+        wraps += p.y < -0.5 && q.y >= -0.5;
+        assert_true(tri_orient2d(mesh.xy[0], p, q) > 0);
+    }
+    assert_int_equal(wraps, 1);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -104,6 +133,7 @@ int main(void)
         cmocka_unit_test(test_shells_are_powers_of_two),
         cmocka_unit_test(test_shells_are_near_the_middle),
         cmocka_unit_test(test_flat_neighbour_keeps_the_mesh_delaunay),
+        cmocka_unit_test(test_spokes_of_a_hub_are_in_order),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

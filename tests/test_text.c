@@ -13,7 +13,7 @@ static struct tri_text load(const char *content, size_t chunk_bytes)
     assert_non_null(file);
     assert_int_equal(fwrite(content, 1, strlen(content), file), strlen(content));
     assert_int_equal(fclose(file), 0);
-    assert_int_equal(tri_text_load(&text, "text.txt", chunk_bytes, NULL, &error), TRI_OK);
+    assert_int_equal(tri_text_load(&text, "text.txt", chunk_bytes, NULL, NULL, &error), TRI_OK);
     return text;
 }
 
@@ -122,10 +122,10 @@ static void test_no_file(void **state)
     (void)state;
     struct tri_text text;
     struct tri_error error = {0};
-    assert_int_equal(tri_text_load(&text, "no_such_file", 0, NULL, &error), TRI_CANNOT_READ);
+    assert_int_equal(tri_text_load(&text, "no_such_file", 0, NULL, NULL, &error), TRI_CANNOT_READ);
     assert_string_equal(error.file, "no_such_file");
     tri_text_free(&text);
-    assert_int_equal(tri_text_load(&text, ".", 0, NULL, &error), TRI_CANNOT_READ);
+    assert_int_equal(tri_text_load(&text, ".", 0, NULL, NULL, &error), TRI_CANNOT_READ);
     tri_text_free(&text);
 }
 

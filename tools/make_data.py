@@ -793,10 +793,10 @@ def outline(points):
 
 
 @case("regress/needles.poly", "five segments that meet at small angles, in a box",
-      "-D: conforming with some 80 triangles; was left with 847 crowded subsegments")
+      "-D: conforming with some 80 triangles; was left with 88 crowded subsegments")
 def needles():
-    return figure(((-1.5, -1.5), (1.5, -1.5), (1.5, 1.5), (-1.5, 1.5), (0, 0), (1, 0), (0.83, 0.0001), (0.47, 0.0002),
-                   (0.91, 0.0012), (0.3, 0.1)),
+    return figure(((-1.5, -1.5), (1.5, -1.5), (1.5, 1.5), (-1.5, 1.5), (0, 0), (1, 0), (0.83, 0.001), (0.47, 0.002),
+                   (0.91, 0.012), (0.3, 0.1)),
                   ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (4, 6), (4, 7), (4, 8), (4, 9)))
 
 

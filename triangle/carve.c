@@ -7,13 +7,13 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "triangle/locate.h"
 #include "triangle/predicates.h"
 
 struct flood {
     struct tri_mesh *mesh;
     int32_t *stack;    /* [n_slots]: each triangle is pushed at most once a flood */
     uint8_t *dead;     /* [n_slots] */
-    int32_t near;      /* where the last location ended */
 };
 
 static bool is_wall(const struct tri_mesh *mesh, int32_t link, bool keep_hull)
@@ -49,47 +49,33 @@ static void kill_concavities(struct flood *f)
                 kill_from(f, t);
 }
 
-/* The triangle that holds q, TRI_NONE outside the hull, as everything out of range is. A visibility walk over a
- * constrained triangulation may cycle; the edge it tries first turns with the number of steps, and after too many steps
- * every triangle is looked at. */
-static int32_t locate(struct flood *f, struct tri_point q)
+/* The faces of n places, given `width` numbers apart, x and y first; to be freed. */
+static enum tri_status locate(const struct tri_mesh *mesh, const double *places, int32_t n, int32_t width,
+                              int32_t **faces, struct tri_error *error)
 {
-    const struct tri_mesh *mesh = f->mesh;
-    int32_t t = f->near;
-    if (!tri_is_in_range(q))
-        return TRI_NONE;
-    for (int32_t steps = 0; steps < mesh->n_slots; steps++) {
-        const struct tri_triangle *at = &mesh->tri[t];
-        int k = 0, e = 0;
-        for (; k < 3; k++) {
-            e = (int)((k + steps) % 3);
-            if (tri_orient2d(mesh->xy[at->v[tri_next[e]]], mesh->xy[at->v[tri_prev[e]]], q) < 0)
-                break;
-        }
-        if (k == 3)
-            return f->near = t;
-        int32_t beyond = tri_across(mesh, tri_code(t, e));
-        if (beyond == TRI_NONE)
-            return TRI_NONE; /* the hull is convex: whoever leaves it does not come back */
-        f->near = t = tri_of(beyond);
+    struct tri_point *points = malloc(((size_t)n + 1) * sizeof *points);
+    *faces = malloc(((size_t)n + 1) * sizeof **faces);
+    enum tri_status status = TRI_OK;
+    if (!points || !*faces)
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the places of %d points", (int)n);
+    for (int32_t k = 0; !status && k < n; k++) {
+        const double *at = places + (size_t)k * (size_t)width;
+        points[k] = tri_to_units(mesh, at[0], at[1]);
     }
-    for (t = 0; t < mesh->n_slots; t++) {
-        const int32_t *v = mesh->tri[t].v;
-        struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
-        if (tri_orient2d(a, b, q) >= 0 && tri_orient2d(b, c, q) >= 0 && tri_orient2d(c, a, q) >= 0)
-            return t;
-    }
-    return TRI_NONE;
+    status = status ? status : tri_locate_faces(mesh, points, n, *faces, error);
+    free(points);
+    return status;
 }
 
-static void kill_holes(struct flood *f, const struct tri_pslg *pslg)
+static enum tri_status kill_holes(struct flood *f, const struct tri_pslg *pslg, struct tri_error *error)
 {
-    for (int32_t k = 0; k < pslg->n_holes; k++) {
-        struct tri_point q = tri_to_units(f->mesh, pslg->holes[2 * k], pslg->holes[2 * k + 1]);
-        int32_t t = locate(f, q);
-        if (t != TRI_NONE)
-            kill_from(f, t);
-    }
+    int32_t *faces;
+    enum tri_status status = locate(f->mesh, pslg->holes, pslg->n_holes, 2, &faces, error);
+    for (int32_t k = 0; !status && k < pslg->n_holes; k++)
+        if (faces[k] != TRI_NONE)
+            kill_from(f, faces[k]);
+    free(faces);
+    return status;
 }
 
 /* Gives the region to what no region has reached yet. */
@@ -120,14 +106,16 @@ static enum tri_status spread_regions(struct flood *f, const struct tri_pslg *ps
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for regions");
     mesh->regions = regions;
     mesh->n_regions = pslg->n_regions + 1;
-    for (int32_t k = pslg->n_regions - 1; k >= 0; k--) { /* the last point of a region wins, so it comes first */
-        const double *r = &pslg->regions[4 * k];
+    int32_t *faces;
+    enum tri_status status = locate(mesh, pslg->regions, pslg->n_regions, 4, &faces, error);
+    for (int32_t k = pslg->n_regions - 1; !status && k >= 0; k--) { /* a region's last point wins, so it comes first */
+        const double *r = &pslg->regions[4 * (size_t)k];
         regions[k + 1] = (struct tri_region){r[2], r[3]};
-        int32_t t = locate(f, tri_to_units(mesh, r[0], r[1]));
-        if (t != TRI_NONE && !f->dead[t] && mesh->tri[t].region == 0)
-            spread(f, t, k + 1);
+        if (faces[k] != TRI_NONE && !f->dead[faces[k]] && mesh->tri[faces[k]].region == 0)
+            spread(f, faces[k], k + 1);
     }
-    return TRI_OK;
+    free(faces);
+    return status;
 }
 
 /* Markers of segments pass to vertices without one. */
@@ -222,7 +210,7 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
                           struct tri_error *error)
 {
     size_t n = (size_t)mesh->n_slots + 1;
-    struct flood f = {mesh, malloc(n * sizeof *f.stack), calloc(n, 1), 0};
+    struct flood f = {mesh, malloc(n * sizeof *f.stack), calloc(n, 1)};
     enum tri_status status = TRI_OK;
     if (!f.stack || !f.dead)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)mesh->n_slots);
@@ -231,8 +219,8 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
         if (!options->keep_hull)
             kill_concavities(&f);
         if (!options->ignore_holes)
-            kill_holes(&f, pslg);
-        if (options->spread_regions)
+            status = kill_holes(&f, pslg, error);
+        if (!status && options->spread_regions)
             status = spread_regions(&f, pslg, error);
         if (!status)
             remove_dead(&f);

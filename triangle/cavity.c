@@ -181,12 +181,39 @@ static bool sees_rims(const struct tri_cavity *c, const struct tri_mesh *mesh, i
     return true;
 }
 
+static int compare_links(const void *a, const void *b)
+{
+    const struct tri_pending *p = a, *q = b;
+    return (p->link > q->link) - (p->link < q->link);
+}
+
+/* Is a triangle of the cavity there twice, or beyond a rim? By sorting; no search is pending any more. */
+static bool repeats_itself(const struct tri_cavity *c)
+{
+    size_t n = (size_t)c->n_tri;
+    for (int32_t i = 0; i < c->n_tri; i++)
+        c->pending[i].link = c->tri[i];
+    qsort(c->pending, n, sizeof *c->pending, compare_links);
+    for (int32_t i = 1; i < c->n_tri; i++)
+        if (c->pending[i].link == c->pending[i - 1].link)
+            return true;
+    for (int32_t k = 0; k < c->n_rim; k++) {
+        struct tri_pending beyond = {.link = c->rim[k].outer >> 2};
+        if (c->rim[k].outer >= 0 && bsearch(&beyond, c->pending, n, sizeof *c->pending, compare_links))
+            return true;
+    }
+    return false;
+}
+
 /* Rounding may put a split point beside a vertex, around which the search then comes back to where it has been. */
 static bool overlaps_itself(const struct tri_cavity *c, int32_t s)
 {
+    enum { FEW = 64 };
     for (int32_t i = 0; i < c->n_wall; i++)
         if (c->rim[c->wall[i]].outer == ~s)
             return true;
+    if (c->n_tri > FEW)
+        return repeats_itself(c);
     for (int32_t i = 0; i < c->n_tri; i++) {
         for (int32_t k = 0; k < i; k++)
             if (c->tri[i] == c->tri[k])

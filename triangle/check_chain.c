@@ -15,7 +15,7 @@
 
 #include "triangle/predicates.h"
 
-enum { MAX_GRID_SIDE = 2048 };
+enum { MAX_GRID_SIDE = 2048, HUB = 16 };
 
 struct line { /* the input segment in question */
     int32_t id, marker;
@@ -324,12 +324,24 @@ static enum tri_status cover(struct chains *k, const struct line *l)
     return status == TRI_OK ? ask_about(k, l, covered, l->length) : status;
 }
 
+/* Do many subsegments end at this input point? */
+static bool is_hub(const struct checker *c, int32_t point)
+{
+    int32_t v = c->twin[point];
+    return v >= 0 && c->fan_first[v + 1] - c->fan_first[v] > HUB;
+}
+
 static enum tri_status check_line(struct chains *k, int32_t id)
 {
     const struct tri_pslg *input = k->c->input;
     int32_t a = input->segments[2 * (size_t)id], b = input->segments[2 * (size_t)id + 1];
     if (a < 0 || a >= input->n_points || b < 0 || b >= input->n_points)
         return TRI_OK; /* skipped by the mesher, too */
+    if (is_hub(k->c, a) && !is_hub(k->c, b)) { /* at the end of a search, ways on are not looked at */
+        int32_t hub = a;
+        a = b;
+        b = hub;
+    }
     const double *p = input->points + 2 * (size_t)a, *q = input->points + 2 * (size_t)b;
     double largest = fmax(fmax(fabs(p[0]), fabs(p[1])), fmax(fabs(q[0]), fabs(q[1])));
     struct line l = {id, input->segment_markers != NULL ? input->segment_markers[id] : 0, {p[0], p[1]}, {q[0], q[1]},

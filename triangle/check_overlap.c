@@ -12,7 +12,7 @@
 #include <stdlib.h>
 
 #include "triangle/check_internal.h"
-#include "triangle/check_sweep.h"
+#include "triangle/sweep_order.h"
 
 struct sweep_edge {
     struct tri_point left, right;

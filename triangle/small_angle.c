@@ -23,7 +23,11 @@
 #include <string.h>
 
 #include "triangle/feature_size.h"
+#include "triangle/heap_sort.h"
+#include "triangle/predicates.h"
 #include "triangle/refine.h"
+
+enum { HUB = 16 }; /* a vertex with more parents is one: they are in order of direction */
 
 static bool is_acute(const struct tri_mesh *mesh, int32_t v) { return mesh->on[v] == TRI_VERTEX_ACUTE; }
 
@@ -85,6 +89,50 @@ static const int32_t *parents_of(const struct tri_mesh *mesh, int32_t v, int32_t
         return NULL;
     *n = mesh->spoke_start[v + 1] - mesh->spoke_start[v];
     return mesh->spokes + mesh->spoke_start[v];
+}
+
+/* Is the direction from o to a before that to b, counter-clockwise from that of the axis of x? */
+static bool turns_before(struct tri_point o, struct tri_point a, struct tri_point b)
+{
+    bool a_down = a.y < o.y || (a.y == o.y && a.x < o.x), b_down = b.y < o.y || (b.y == o.y && b.x < o.x);
+    return a_down != b_down ? b_down : tri_orient2d(o, a, b) > 0;
+}
+
+static struct tri_point far_end(const struct tri_mesh *mesh, int32_t parent, int32_t v)
+{
+    const int32_t *ends = mesh->parents[parent].v;
+    return mesh->xy[ends[ends[0] == v]];
+}
+
+/* Of the n parents at a hub, in order of direction, the two before the direction to q, and the two that come next: one
+ * on which q lies, up to rounding, is among them, and those on either side of it. */
+static int list_neighbours(const struct tri_mesh *mesh, int32_t hub, const int32_t *spokes, int32_t n,
+                           struct tri_point q, int32_t *beside)
+{
+    int32_t low = 0, high = n;
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if (turns_before(mesh->xy[hub], far_end(mesh, spokes[middle], hub), q))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (int k = 0; k < 4; k++)
+        beside[k] = spokes[(low + n + k - 2) % n];
+    return 4;
+}
+
+/* The parents at u that bound spaces in which triangle u, v, w may lie: at a hub the next ones around it, else all. */
+static const int32_t *parents_beside(const struct tri_mesh *mesh, int32_t u, int32_t v, int32_t w, int32_t beside[8],
+                                     int32_t *n)
+{
+    const int32_t *spokes = parents_of(mesh, u, n);
+    if (*n <= HUB)
+        return spokes;
+    int32_t all = *n;
+    *n = list_neighbours(mesh, u, spokes, all, mesh->xy[v], beside);
+    *n += list_neighbours(mesh, u, spokes, all, mesh->xy[w], beside + *n);
+    return beside;
 }
 
 bool tri_is_on_parent(const struct tri_mesh *mesh, int32_t v)
@@ -155,8 +203,9 @@ static bool is_beside(const struct tri_mesh *mesh, const struct tri_parent *p, i
  * in; 0 where uv does not bridge any. */
 static double channel_cost(const struct tri_mesh *mesh, int32_t u, int32_t v, int32_t w)
 {
-    int32_t nu, nv;
-    const int32_t *pu = parents_of(mesh, u, &nu), *pv = parents_of(mesh, v, &nv);
+    int32_t nu, nv, beside[2][8];
+    const int32_t *pu = parents_beside(mesh, u, v, w, beside[0], &nu);
+    const int32_t *pv = parents_beside(mesh, v, u, w, beside[1], &nv);
     double dearest = 0;
     for (int32_t i = 0; i < nu; i++)
         for (int32_t k = 0; k < nv; k++) {
@@ -274,6 +323,18 @@ static void find_acute(struct tri_mesh *mesh)
         }
 }
 
+struct hub {
+    const struct tri_mesh *mesh;
+    int32_t vertex;
+};
+
+static bool is_before(const void *context, int32_t a, int32_t b)
+{
+    const struct hub *hub = context;
+    return turns_before(hub->mesh->xy[hub->vertex], far_end(hub->mesh, a, hub->vertex),
+                        far_end(hub->mesh, b, hub->vertex));
+}
+
 void tri_fill_spokes(struct tri_mesh *mesh)
 {
     size_t n = (size_t)mesh->n_hubs;
@@ -288,6 +349,12 @@ void tri_fill_spokes(struct tri_mesh *mesh)
         for (int k = 0; k < 2; k++)
             mesh->spokes[fill[mesh->parents[p].v[k]]++] = p;
     assert(mesh->spoke_start[n] == 2 * mesh->n_parents);
+    for (int32_t v = 0; v < mesh->n_hubs; v++) {
+        struct hub hub = {mesh, v};
+        int32_t first = mesh->spoke_start[v], count = mesh->spoke_start[v + 1] - first;
+        if (count > HUB)
+            tri_heap_sort(mesh->spokes + first, count, is_before, &hub);
+    }
 }
 
 static enum tri_status list_spokes(struct tri_mesh *mesh, struct tri_error *error)

@@ -37,7 +37,8 @@ double tri_channel_cost(const struct tri_mesh *mesh, int32_t slot, const struct 
 bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape);
 
 /* Lists the parents at each vertex, in the arrays that tri_refine_prepare has made; called again when vertices get
- * other numbers. O(vertices + parents). */
+ * other numbers. Where there are many at one vertex, they are in order of direction. O(vertices + parents log parents)
+ * at most. */
 void tri_fill_spokes(struct tri_mesh *mesh);
 
 #endif

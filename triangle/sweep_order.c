@@ -2,12 +2,10 @@
  *
  * INVARIANT: next[0] and next[1] are the neighbours in the in-order walk of the tree, and a parent's priority is never
  * below its children's. */
-#include "triangle/check_sweep.h"
+#include "triangle/sweep_order.h"
 
 #include <assert.h>
 #include <stdlib.h>
-
-#include "triangle/check_internal.h"
 
 static uint32_t priority(int32_t s)
 {
@@ -20,7 +18,7 @@ static uint32_t priority(int32_t s)
 enum tri_status tri_sweep_order_init(struct sweep_order *order, int32_t n)
 {
     order->root = -1;
-    order->node = tri_check_array(n, sizeof *order->node);
+    order->node = malloc(((size_t)n + 1) * sizeof *order->node);
     return order->node == NULL ? TRI_NO_MEMORY : TRI_OK;
 }
 

@@ -3,8 +3,8 @@
  * A treap over segment numbers, threaded from bottom to top. Priorities are a hash of the number, so that the shape is
  * the same in every run. "Below" means before in the order of y on the sweep line; the line is vertical, tilted by a
  * hair so that points of equal x are met from bottom to top, and vertical segments need no special case. */
-#ifndef TRIANGLE_CHECK_SWEEP_H
-#define TRIANGLE_CHECK_SWEEP_H
+#ifndef TRIANGLE_SWEEP_ORDER_H
+#define TRIANGLE_SWEEP_ORDER_H
 
 #include <stdint.h>
 

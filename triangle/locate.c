@@ -1,0 +1,229 @@
+/* Walks first: each from where the last one ended, the points in order along a Hilbert curve. In triangulations whose
+ * triangles are long and thin no order of the points keeps walks short; so they may take as many steps in all as there
+ * are triangles, and the points that are left are found by a sweep.
+ *
+ * THE SWEEP goes over the subsegments from left to right, their order along the sweep line in a tree (Shamos & Hoey
+ * 1976). They do not cross, so the one below a point, and the triangle above that, tell the face. */
+#include "triangle/locate.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "triangle/heap_sort.h"
+#include "triangle/hilbert.h"
+#include "triangle/predicates.h"
+#include "triangle/sweep_order.h"
+
+enum { NOT_FOUND = -2 };
+
+struct walk {
+    const struct tri_mesh *mesh;
+    int32_t at;    /* the triangle where the last one ended */
+    int64_t steps; /* that may still be made */
+};
+
+/* The triangle that holds q, TRI_NONE outside the hull, NOT_FOUND where the steps did not suffice. A visibility walk
+ * over a constrained triangulation may cycle: the edge it tries first turns with the number of steps. */
+static int32_t walk_to(struct walk *w, struct tri_point q)
+{
+    const struct tri_mesh *mesh = w->mesh;
+    for (; w->steps > 0; w->steps--) {
+        const struct tri_triangle *t = &mesh->tri[w->at];
+        int k = 0, e = 0;
+        for (; k < 3; k++) {
+            e = (int)((k + w->steps) % 3);
+            if (tri_orient2d(mesh->xy[t->v[tri_next[e]]], mesh->xy[t->v[tri_prev[e]]], q) < 0)
+                break;
+        }
+        if (k == 3)
+            return w->at;
+        int32_t beyond = tri_across(mesh, tri_code(w->at, e));
+        if (beyond == TRI_NONE)
+            return TRI_NONE; /* the hull is convex: whoever leaves it does not come back */
+        w->at = tri_of(beyond);
+    }
+    return NOT_FOUND;
+}
+
+/* --- the sweep */
+
+struct event {
+    struct tri_point at;
+    int32_t code; /* 2 * subsegment + end (0: left, 1: right), or ~number of a point */
+};
+
+struct sweep {
+    const struct tri_mesh *mesh;
+    struct event *event; /* [2 * n_subs + points] */
+    int32_t n_events;
+    int32_t *start; /* [n_subs] work space: subsegments that start at one place */
+    struct sweep_order order;
+};
+
+static int compare_places(struct tri_point p, struct tri_point q)
+{
+    if (p.x != q.x)
+        return p.x < q.x ? -1 : 1;
+    return (p.y > q.y) - (p.y < q.y);
+}
+
+/* At one place the subsegments come first. */
+static int compare_events(const void *a, const void *b)
+{
+    const struct event *e = a, *f = b;
+    int order = compare_places(e->at, f->at);
+    return order != 0 ? order : (e->code < f->code) - (e->code > f->code);
+}
+
+/* 0 or 1: which end of the subsegment is the left one? */
+static int left_end(const struct tri_mesh *mesh, int32_t s)
+{
+    const int32_t *v = mesh->sub[s].v;
+    return compare_places(mesh->xy[v[0]], mesh->xy[v[1]]) > 0;
+}
+
+static struct tri_point end_of(const struct tri_mesh *mesh, int32_t s, int right)
+{
+    return mesh->xy[mesh->sub[s].v[left_end(mesh, s) ^ right]];
+}
+
+/* > 0: q lies above subsegment s, 0: on its line. */
+static double height_over(const struct tri_mesh *mesh, int32_t s, struct tri_point q)
+{
+    return tri_orient2d(end_of(mesh, s, 0), end_of(mesh, s, 1), q);
+}
+
+/* The highest subsegment below q, or TRI_NONE; *next, the lowest that is not. */
+static int32_t find_below(const struct sweep *w, struct tri_point q, int32_t *next)
+{
+    int32_t s = w->order.root, below = TRI_NONE;
+    *next = TRI_NONE;
+    while (s >= 0) {
+        bool under = height_over(w->mesh, s, q) > 0;
+        *(under ? &below : next) = s;
+        s = w->order.node[s].down[under];
+    }
+    return below;
+}
+
+/* Of two subsegments that start at one place: does a lie below b? */
+static bool is_lower(const void *mesh, int32_t a, int32_t b)
+{
+    return height_over(mesh, a, end_of(mesh, b, 1)) > 0;
+}
+
+/* What happens at one place: subsegments end, others start. */
+static void pass_ends(struct sweep *w, const struct event *event, int32_t n)
+{
+    int32_t n_start = 0, next, below;
+    for (int32_t i = 0; i < n; i++) {
+        if (event[i].code & 1)
+            tri_sweep_order_remove(&w->order, event[i].code >> 1);
+        else
+            w->start[n_start++] = event[i].code >> 1;
+    }
+    tri_heap_sort(w->start, n_start, is_lower, w->mesh);
+    below = find_below(w, event->at, &next);
+    for (int32_t i = 0; i < n_start; i++) {
+        tri_sweep_order_insert(&w->order, w->start[i], below);
+        below = w->start[i];
+    }
+}
+
+/* The triangle above subsegment s; where q lies on it, and there is none, the one below. */
+static int32_t face_at(const struct tri_mesh *mesh, int32_t s, bool is_on)
+{
+    const int32_t *side = mesh->sub[s].side;
+    int above = left_end(mesh, s); /* left of its direction, if it runs to the right */
+    int32_t code = side[above] != TRI_NONE || !is_on ? side[above] : side[1 - above];
+    return code == TRI_NONE ? TRI_NONE : tri_of(code);
+}
+
+static int32_t face_of(const struct sweep *w, struct tri_point q)
+{
+    int32_t next, below = find_below(w, q, &next);
+    if (next != TRI_NONE && height_over(w->mesh, next, q) == 0)
+        return face_at(w->mesh, next, true);
+    return below == TRI_NONE ? TRI_NONE : face_at(w->mesh, below, false);
+}
+
+static void list_events(struct sweep *w, const struct tri_point *points, int32_t n, const int32_t *faces)
+{
+    for (int32_t s = 0; s < w->mesh->n_subs; s++)
+        for (int right = 0; right < 2; right++)
+            w->event[w->n_events++] = (struct event){end_of(w->mesh, s, right), 2 * s + right};
+    for (int32_t i = 0; i < n; i++)
+        if (faces[i] == NOT_FOUND)
+            w->event[w->n_events++] = (struct event){points[i], ~i};
+    qsort(w->event, (size_t)w->n_events, sizeof *w->event, compare_events);
+}
+
+static void sweep(struct sweep *w, int32_t *faces)
+{
+    for (int32_t i = 0, n_ends, end; i < w->n_events; i = end) {
+        for (end = i; end < w->n_events && compare_places(w->event[i].at, w->event[end].at) == 0;)
+            end++;
+        for (n_ends = 0; i + n_ends < end && w->event[i + n_ends].code >= 0;)
+            n_ends++;
+        if (n_ends > 0)
+            pass_ends(w, &w->event[i], n_ends);
+        int32_t face = n_ends > 0 ? face_at(w->mesh, w->event[i].code >> 1, true) : face_of(w, w->event[i].at);
+        for (int32_t k = i + n_ends; k < end; k++)
+            faces[~w->event[k].code] = face;
+    }
+    assert(w->order.root == TRI_NONE);
+}
+
+static enum tri_status sweep_for(const struct tri_mesh *mesh, const struct tri_point *points, int32_t n, int32_t *faces,
+                                 struct tri_error *error)
+{
+    struct sweep w = {.mesh = mesh};
+    size_t n_subs = (size_t)mesh->n_subs;
+    w.event = malloc((2 * n_subs + (size_t)n) * sizeof *w.event);
+    w.start = malloc((n_subs + 1) * sizeof *w.start);
+    bool room = tri_sweep_order_init(&w.order, mesh->n_subs) == TRI_OK && w.event && w.start;
+    if (room) {
+        list_events(&w, points, n, faces);
+        sweep(&w, faces);
+    }
+    free(w.event);
+    free(w.start);
+    tri_sweep_order_clear(&w.order);
+    return room ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the places of %d points", (int)n);
+}
+
+/* --- both */
+
+/* Puts the numbers of the points in range first, along the curve; returns how many they are. */
+static int32_t arrange(const struct tri_point *points, int32_t n, int32_t *order, uint64_t *scratch)
+{
+    int32_t n_order = 0;
+    for (int32_t i = 0; i < n; i++)
+        if (tri_is_in_range(points[i]))
+            order[n_order++] = i;
+    tri_hilbert_order(points, order, n_order, scratch, NULL);
+    return n_order;
+}
+
+enum tri_status tri_locate_faces(const struct tri_mesh *mesh, const struct tri_point *points, int32_t n, int32_t *faces,
+                                 struct tri_error *error)
+{
+    int32_t *order = malloc(((size_t)n + 1) * sizeof *order);
+    uint64_t *scratch = malloc((2 * (size_t)n + 1) * sizeof *scratch);
+    bool room = order && scratch, all = true;
+    if (room) {
+        struct walk w = {mesh, 0, mesh->n_slots};
+        for (int32_t i = 0; i < n; i++)
+            faces[i] = TRI_NONE; /* what is out of range is outside */
+        int32_t n_order = mesh->n_slots > 0 ? arrange(points, n, order, scratch) : 0;
+        for (int32_t i = 0; i < n_order; i++) {
+            faces[order[i]] = walk_to(&w, points[order[i]]);
+            all = all && faces[order[i]] != NOT_FOUND;
+        }
+    }
+    free(order);
+    free(scratch);
+    if (!room)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the places of %d points", (int)n);
+    return all ? TRI_OK : sweep_for(mesh, points, n, faces, error);
+}

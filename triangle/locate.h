@@ -1,0 +1,14 @@
+/* In which face of the segments does a point lie? */
+#ifndef TRIANGLE_LOCATE_H
+#define TRIANGLE_LOCATE_H
+
+#include "triangle/mesh.h"
+
+/* For each of n points, in the mesh's coordinates and anywhere in the plane, a triangle of the face that holds it: one
+ * that is reached from it without crossing a subsegment; TRI_NONE outside. Of a point on a subsegment any face at it
+ * may be told. The mesh fills its convex hull. O((triangles + n) log(triangles + n)) at worst, whatever the shapes;
+ * near O(n log n) in a good triangulation. */
+enum tri_status tri_locate_faces(const struct tri_mesh *mesh, const struct tri_point *points, int32_t n, int32_t *faces,
+                                 struct tri_error *error);
+
+#endif
