@@ -377,7 +377,7 @@ static void lower_bound(struct tri_refiner *r, double degrees)
 /* What the mesh can afford for a bound above the usual one has been spent. */
 static void count_point(struct tri_refiner *r)
 {
-    if (r->stage != BEYOND_STAGE || r->sized || --r->beyond >= 0 || r->report->hit_cap)
+    if (r->stage != BEYOND_STAGE || r->sized || --r->beyond != -1)
         return;
     lower_bound(r, BACK_ANGLE);
     r->report->hit_cap = true;
@@ -397,8 +397,11 @@ static bool is_hopeless(const struct tri_refiner *r, int32_t slot, const struct 
 {
     const int32_t *v = r->mesh->tri[slot].v;
     int k = shape->shortest;
-    return tri_is_hopeless(r->mesh, slot, shape) ||
-           (r->stage == BEYOND_STAGE && tri_has_run_away(r->mesh, v[tri_next[k]], v[tri_prev[k]], shape->l[k] / 64));
+    if (tri_is_hopeless(r->mesh, slot, shape))
+        return true;
+    if (r->stage != BEYOND_STAGE || !tri_has_run_away(r->mesh, v[tri_next[k]], v[tri_prev[k]], shape->l[k] / 64))
+        return false;
+    return r->report->hit_cap = true;
 }
 
 /* Treats one bad triangle until it is gone or refused. */
