@@ -47,7 +47,7 @@ def _cell(measured, n):
 def run(settings):
     sizes = (1_000, 10_000) if settings.small else (10_000, 100_000, 1_000_000)
     lines, rows = [], []
-    for builders, largest in ((worst.TRIANGULATION, sizes[-1]), (worst.QUALITY, sizes[-2])):
+    for builders, largest in ((worst.TRIANGULATION, sizes[-1]), (worst.DEARER, sizes[-2])):
         for build in builders:
             taken = [n for n in sizes if n <= largest]
             measured = [_measured(settings, build, n) for n in taken]

@@ -9,18 +9,17 @@
 #include "sched/clock.h"
 
 /* Measured: bytes a triangle at the peak, at least and with one refinement loop or the schedule and its numbering; time
- * of the numbering against that of refining; area of triangles against their bound. */
-static const double LEAST_BYTES = 44, LOOP_BYTES = 52, SCHEDULE_BYTES = 74, NUMBERING = 0.55, MEAN_OVER_BOUND = 0.655;
-static const double SURE = 0.75; /* of an estimate */
-/* Of one thread; USUAL_SECONDS where a triangle takes that. */
-static const double TEXT_BYTES_A_SECOND = 6.5e8, USUAL_SECONDS = 1.25e-7;
+ * of the numbering against that of refining; triangles against the least number that area bounds ask for. */
+static const double LEAST_BYTES = 44, LOOP_BYTES = 52, SCHEDULE_BYTES = 74, NUMBERING = 0.55, AREA_FACTOR = 1.14;
+/* Text that one thread writes in a second where a triangle takes it the usual time. */
+static const double TEXT_BYTES = 6.5e8, USUAL_SECONDS = 1.25e-7;
 
 /* --- triangles */
 
 /* What area bounds alone ask for, and what there is already. */
 static double triangles_by_area(const struct run *run)
 {
-    return tri_area_demand(&run->mesh, &run->options.quality) / MEAN_OVER_BOUND + run->mesh.n_slots;
+    return AREA_FACTOR * tri_area_demand(&run->mesh, &run->options.quality) + run->mesh.n_slots;
 }
 
 static double triangles_of(const struct run *run)
@@ -91,7 +90,7 @@ static double seconds_of(const struct run *run, double triangles, double disk)
 {
     double one = seconds_a_triangle(), threads = fmax(run->hooks->threads, 1);
     double work = run->options.refine ? triangles * one * (run->hooks->refine ? 1 + NUMBERING : 1) : 0;
-    double text = disk / TEXT_BYTES_A_SECOND * (one / USUAL_SECONDS);
+    double text = disk / TEXT_BYTES * (one / USUAL_SECONDS);
     return (work + text) / threads;
 }
 
@@ -99,27 +98,37 @@ static double seconds_of(const struct run *run, double triangles, double disk)
 
 struct estimate estimate_make(const struct run *run, bool with_seconds)
 {
+    const struct tri_refine_options *quality = &run->options.quality;
     struct estimate e = {.triangles = triangles_of(run)};
+    if (run->options.refine && quality->max_steiner < 0)
+        e.least = tri_area_demand(&run->mesh, quality);
     double grown = fmax(e.triangles - run->mesh.n_slots, 0);
     e.vertices = run->mesh.n_vertices + grown / 2;
-    e.memory = resources_memory_used() + grown * bytes_a_triangle(run);
-    e.more = SURE * grown * LEAST_BYTES;
+    e.more = grown * bytes_a_triangle(run);
+    e.memory = resources_memory_used() + e.more;
     e.disk = disk_of(run, e.vertices, e.triangles);
     e.seconds = with_seconds ? seconds_of(run, e.triangles, e.disk) : 0;
     return e;
 }
 
-enum tri_status estimate_check(const struct estimate *e, struct tri_error *error)
+enum tri_status estimate_check(const struct estimate *e, const struct console *console, struct tri_error *error)
 {
-    if (SURE * e->triangles > TRI_MAX_TRIANGLES)
+    double least = e->least * LEAST_BYTES;
+    double available = fmax(e->more, least) > 1e8 ? resources_memory() : HUGE_VAL; /* no need to look for less */
+    if (e->least > TRI_MAX_TRIANGLES)
         return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
-                        "the bounds ask for about %.0f million triangles, and a mesh holds %d million",
-                        1e-6 * e->triangles, TRI_MAX_TRIANGLES / 1000000);
-    double available = e->more > 1e8 ? resources_memory() : HUGE_VAL; /* small files, but why read them */
-    if (e->more > available)
+                        "the area bounds ask for at least %.0f million triangles, and a mesh holds %d million",
+                        1e-6 * e->least, TRI_MAX_TRIANGLES / 1000000);
+    if (least > available)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                        "the bounds ask for about %.3g million triangles, which take at least %.3g GB of memory; "
-                        "%.3g GB are left", 1e-6 * e->triangles, 1e-9 * e->more, 1e-9 * available);
+                        "the area bounds ask for at least %.3g million triangles, which take %.3g GB of memory; "
+                        "%.3g GB are left", 1e-6 * e->least, 1e-9 * least, 1e-9 * available);
+    if (e->triangles > TRI_MAX_TRIANGLES)
+        console_warn(console, "the bounds may ask for more triangles than the %d million that a mesh holds.\n",
+                     TRI_MAX_TRIANGLES / 1000000);
+    else if (e->more > available)
+        console_warn(console, "the bounds may take about %.3g GB of memory; %.3g GB are left.\n", 1e-9 * e->more,
+                     1e-9 * available);
     return TRI_OK;
 }
 

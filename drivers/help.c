@@ -47,7 +47,9 @@ static const char *const paragraphs[] = {
     "  -h      this help, as --help; --version\n"
     "  -i -F -l -X -w   accepted; the result does not depend on them\n",
 
-    "Exit code: 0, or 1 after an error; then no file has been touched.\n",
+    "Exit code: 0; 1 after an error; 128 + n after signal n (one that would end a program: it ends within\n"
+    "a second and says how far it got). Files appear together, when all are complete and nothing can fail\n"
+    "any more: with any other code than 0 no file has been touched.\n",
 };
 
 static void print_usage(const char *program)

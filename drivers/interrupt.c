@@ -27,7 +27,7 @@ static const struct timespec GRACE = {0, 800000000};
 enum { FREE, HELD, ENDING };  /* the lock */
 enum { NOBODY = 0, TIME_UP = -1 }; /* who asked for the end, else the number of a signal */
 
-static atomic_int lock, asked, must_end, late, going_on;
+static atomic_int lock, asked, must_end, late, going_on, told;
 static _Atomic(const char *) stage;
 static const char *name; /* these are set before the first handler can run */
 static bool patience, has_timer;
@@ -78,17 +78,22 @@ int interrupt_code(void)
     return number == NOBODY ? 0 : number == TIME_UP ? INTERRUPT_TIME_UP : 128 + number;
 }
 
-/* With the lock taken for good. */
-static void end_now(void)
+static void tell(void)
 {
-    const char *what = atomic_load(&stage);
-    remove_temporaries();
     say(name);
     say(": stopped by ");
     say(interrupt_cause());
     say(" while ");
-    say(what ? what : "starting");
+    say(interrupt_stage_now());
     say("; nothing was written\n");
+}
+
+/* With the lock taken for good. */
+static void end_now(void)
+{
+    remove_temporaries();
+    if (!atomic_load(&told))
+        tell();
     _exit(interrupt_code());
 }
 
@@ -240,6 +245,8 @@ const char *interrupt_stage_now(void)
     const char *what = atomic_load(&stage);
     return what ? what : "starting";
 }
+
+void interrupt_told(void) { atomic_store(&told, 1); }
 
 void interrupt_go_on(void) { atomic_store(&going_on, 1); }
 

@@ -28,6 +28,9 @@ const char *interrupt_stage_now(void);
 /* From now on interrupt_stop() says no, though somebody has asked: what is left is to be done. */
 void interrupt_go_on(void);
 
+/* The program has told of the stop itself: a handler that ends it now is silent. */
+void interrupt_told(void);
+
 /* The exit code for whoever was stopped: 128 + number of the signal, or INTERRUPT_TIME_UP; 0: nobody has asked. */
 int interrupt_code(void);
 

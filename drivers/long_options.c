@@ -20,7 +20,7 @@ const char long_options_help[] =
     "  --dry-run          estimate triangles, memory, disk and time; refine and write nothing\n"
     "  --time-limit T     stop after T seconds (also 90s, 10m, 2h), with exit code 124\n"
     "  --write-partial    a run that is stopped while it refines, by the limit or a signal, writes the valid\n"
-    "                     mesh that it has; else it writes nothing\n"
+    "                     mesh that it has, whatever time that takes; else it writes nothing\n"
     "  --progress         say on standard error how far the work is: one line on a terminal (there by\n"
     "  --no-progress      default), else a line for each stage. Never with -Q\n"
     "  --version, --help\n";

@@ -9,8 +9,8 @@
 /* TRI_BAD_INPUT: this program was built without reports. */
 enum tri_status report_check(struct tri_error *error);
 
-/* Writes it into the guarded set (drivers/interrupt.h). schedule: NULL, or what refined the mesh. Takes a pass or two over all
- * triangles. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
+/* Writes it into the guarded set (drivers/interrupt.h). schedule: NULL, or what refined the mesh. Takes a pass or
+ * two over all triangles. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
 enum tri_status report_write(const char *path, struct tri_output_set *set, const struct run *run,
                              const struct par_report *schedule, int threads, struct tri_error *error);
 

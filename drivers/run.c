@@ -290,7 +290,7 @@ static void tell_of_quality(struct runner *r)
 /* Triangles below the bounds, where counting them takes no time to speak of; else -1. */
 static int64_t count_bad(const struct runner *r)
 {
-    enum { SOON_COUNTED = 1 << 24 };
+    enum { SOON_COUNTED = 1 << 22 };
     const struct run *run = &r->run;
     int64_t count[TRI_EXCUSES], sum = 0;
     if (!run->options.refine || run->mesh.n_slots > SOON_COUNTED)
@@ -313,6 +313,8 @@ static void tell_of_stop(struct runner *r, bool partial)
     tri_fail(&line, TRI_STOPPED, NULL, 0, "stopped by %s after %.1f s while %s%s; %s", interrupt_cause(),
              par_seconds() - r->begin, interrupt_stage_now(), far,
              partial ? "the mesh so far is written" : "nothing was written");
+    if (!partial)
+        interrupt_told(); /* before: rather no line, if the handler comes between, than two */
     console_error(&r->console, &line);
 }
 
@@ -417,7 +419,7 @@ static enum tri_status check_files(const struct runner *r, const struct mesh_fil
 static enum tri_status look_ahead(struct runner *r)
 {
     struct estimate estimate = estimate_make(&r->run, false);
-    return r->run.options.refine ? estimate_check(&estimate, r->error) : TRI_OK;
+    return r->run.options.refine ? estimate_check(&estimate, &r->console, r->error) : TRI_OK;
 }
 
 static enum tri_status make_mesh(struct runner *r)
@@ -446,7 +448,7 @@ static enum tri_status print_estimate(struct runner *r)
         return status;
     struct estimate estimate = estimate_make(&r->run, true);
     estimate_print(&estimate, &r->run);
-    return r->run.options.refine ? estimate_check(&estimate, r->error) : TRI_OK;
+    return r->run.options.refine ? estimate_check(&estimate, &r->console, r->error) : TRI_OK;
 }
 
 static enum tri_status run_stages(struct runner *r)

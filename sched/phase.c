@@ -334,51 +334,30 @@ void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *a
     sum->hit_cap |= add->hit_cap;
 }
 
-static bool add_once(struct par_slots *pool, uint64_t *known, int32_t slot)
-{
-    uint64_t bit = UINT64_C(1) << slot % 64;
-    if (known[slot / 64] & bit)
-        return true;
-    known[slot / 64] |= bit;
-    return par_slots_add(pool, slot);
-}
-
-/* What tasks have left goes back into the pool, each triangle once: it is left anew for each subsegment beside it, and
- * by tasks on both sides of one. If it stayed in the pool as often, it would be twice as often there after each phase. */
-static bool pool_left(struct phase *p)
-{
-    struct par_slots *pool = &p->state->pool;
-    uint64_t *known = calloc((size_t)p->state->mesh->n_slots / 64 + 1, sizeof *known);
-    bool memory = known != NULL;
-    for (int32_t i = 0; memory && i < pool->n; i++)
-        known[pool->item[i] / 64] |= UINT64_C(1) << pool->item[i] % 64;
-    for (int32_t i = 0; memory && i < p->n_tasks; i++) {
-        const struct task *task = &p->tasks[i];
-        memory = !task->left_lost;
-        for (int32_t k = 0; memory && k < task->left.n; k++)
-            memory = add_once(pool, known, task->left.item[k]);
-    }
-    free(known);
-    return memory;
-}
-
-/* In canonical order: room of each task goes back, and its report is added up. */
+/* In canonical order: room and left triangles of each task go back, and its report is added up. A triangle goes back
+ * once, however often it was left: one with three crowded walls would count threefold, and ninefold after the next
+ * phase. */
 static enum tri_status collect(struct phase *p, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    bool memory = pool_left(p);
+    struct par_slot_set pooled;
+    bool memory = par_slot_set_of(&pooled, &p->state->pool, p->state->mesh->n_slots);
     for (int32_t i = 0; i < p->n_tasks; i++) {
         struct task *task = &p->tasks[i];
         if (!status && task->status && task->status != TRI_NO_ROOM) { /* that: paused when the phase failed */
             status = task->status;
             tri_fail(error, status, task->error.file, task->error.line, "%s", task->error.text);
         }
+        memory = memory && !task->left_lost;
+        for (int32_t k = 0; memory && k < task->left.n; k++)
+            memory = par_slots_add_new(&p->state->pool, &pooled, task->left.item[k]);
         par_add_up(&p->state->report->total, &task->report);
         memory = memory && report_block(p, task);
         par_room_return(&task->room, &p->state->spare);
         free(task->left.item);
         tri_refiner_free(task->refiner);
     }
+    free(pooled.word);
     return status || memory ? status : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for bad triangles");
 }
 

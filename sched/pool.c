@@ -22,6 +22,23 @@ bool par_slots_add(struct par_slots *slots, int32_t slot)
     return true;
 }
 
+bool par_slot_set_of(struct par_slot_set *set, const struct par_slots *slots, int32_t n_slots)
+{
+    set->word = calloc((size_t)n_slots / 64 + 1, sizeof *set->word);
+    for (int32_t i = 0; set->word && i < slots->n; i++)
+        set->word[slots->item[i] / 64] |= (uint64_t)1 << slots->item[i] % 64;
+    return set->word;
+}
+
+bool par_slots_add_new(struct par_slots *slots, struct par_slot_set *set, int32_t slot)
+{
+    uint64_t bit = (uint64_t)1 << slot % 64;
+    if (set->word[slot / 64] & bit)
+        return true;
+    set->word[slot / 64] |= bit;
+    return par_slots_add(slots, slot);
+}
+
 struct finding {
     struct tri_mesh *mesh;
     const struct tri_refine_options *bounds;

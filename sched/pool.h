@@ -13,6 +13,17 @@ struct par_slots {
 /* Amortised O(1). False: no memory. */
 bool par_slots_add(struct par_slots *slots, int32_t slot);
 
+/* A set of slots, as bits. */
+struct par_slot_set {
+    uint64_t *word; /* [(n_slots + 63) / 64] */
+};
+
+/* The slots of a list, out of n_slots; false: no memory. To be freed by free(set->word). O(n_slots). */
+bool par_slot_set_of(struct par_slot_set *set, const struct par_slots *slots, int32_t n_slots);
+
+/* Adds a slot to the list unless it is in the set, which is that of the list. False: no memory. */
+bool par_slots_add_new(struct par_slots *slots, struct par_slot_set *set, int32_t slot);
+
 /* The pool becomes all triangles that violate the bounds, in the order of their slots; *radius, the largest
  * circumradius among them. known: the pool is that already, for the mesh as it was after the last call; then only
  * triangles born since are judged. (Where options.conforming counts, a triangle may have become bad or good with the

@@ -29,7 +29,7 @@ ALL = FAST + [
     ("triangle", "duplicates", ["nasty/duplicates.node"]),
     ("ptriangle", "-pq33a0.0005 letter --threads 3 --report report.json --blocks b", ["letter.poly"]),
     ("ptriangle", "-pqa0.0005A section --threads 2 --numbering blocks", ["section.poly"]),
-    ("ptriangle", "-pqa2e9 --max-area 3e9 borders --threads 3", ["coast/borders.poly"]),
+    ("ptriangle", "-pqA borders --max-area 3e9 --threads 3", ["coast/borders.poly"]),
     ("ptriangle", "-rpqa0.0005 letter.1 --threads 2", ["letter.poly", "mesh:letter -pq"]),
     ("trianglecheck", "section.1 --poly section.poly --quiet --min-angle 20", ["section.poly", "mesh:section -pqaA"]),
     ("meshplot", "square.1 -o square.svg", ["square.poly", "mesh:square -pq"]),

@@ -160,6 +160,7 @@ for header in $(sed -n '/PTRIANGLE_PUBLIC_HEADERS/,/)/s/^ *\([a-z]*\/[a-z_]*\.h\
     for std in c++11 c++14 c++17 c++20; do
         try yes client.cpp "$cxx" -I "$root" -std=$std -Wconversion
     done
+    grep -q 'extern "C"' "$root/$header" || { echo "header: $header has no C linkage"; failed=$((failed + 1)); }
     public=yes
 done
 [ "${public:-}" = yes ] || { echo "header: no public headers found"; failed=1; }

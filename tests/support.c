@@ -261,24 +261,34 @@ void support_copy_free(struct support_copy *copy)
     *copy = (struct support_copy){0};
 }
 
-void support_judge(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_check_options *options,
-                   bool with_regions, struct tri_check_report *report)
+bool support_passes(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_check_options *options,
+                    bool with_regions, struct tri_check_report *report, char text[SUPPORT_TEXT])
 {
     struct tri_error error = {0};
-    struct tri_check_report own;
     struct tri_check_options asked = *options;
-    report = report ? report : &own;
-    if (tri_mesh_validate(mesh, &error) != TRI_OK)
-        fail_msg("%s", error.text);
+    bool valid = tri_mesh_validate(mesh, &error) == TRI_OK;
+    snprintf(text, SUPPORT_TEXT, "%s", error.text);
+    if (!valid)
+        return false;
     struct support_copy copy = support_copy(mesh);
     if (with_regions)
         asked.max_areas = copy.max_areas;
     assert_int_equal(tri_check(&copy.mesh, pslg, &asked, report, &error), TRI_OK);
-    for (int kind = 0; kind < TRI_N_CHECKS; kind++)
+    for (int kind = TRI_N_CHECKS - 1; kind >= 0; kind--) /* the first one is told */
         if (report->item[kind].state == TRI_CHECK_FAILED)
-            fail_msg("%s (%lld times): %s", tri_check_name((enum tri_check_kind)kind),
+            snprintf(text, SUPPORT_TEXT, "%s (%lld times): %s", tri_check_name((enum tri_check_kind)kind),
                      (long long)report->item[kind].count, report->item[kind].text);
     support_copy_free(&copy);
+    return tri_check_passed(report);
+}
+
+void support_judge(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_check_options *options,
+                   bool with_regions, struct tri_check_report *report)
+{
+    struct tri_check_report own;
+    char text[SUPPORT_TEXT];
+    if (!support_passes(mesh, pslg, options, with_regions, report ? report : &own, text))
+        fail_msg("%s", text);
 }
 
 struct tri_mesh support_generate(const struct tri_pslg *pslg, const struct tri_options *options,

@@ -82,7 +82,13 @@ struct support_copy {
 struct support_copy support_copy(const struct tri_mesh *mesh);
 void support_copy_free(struct support_copy *copy);
 
-/* Validates the links and lets tri_check judge; a fault fails the test with the text of the judge. NULL report:
+enum { SUPPORT_TEXT = 600 };
+
+/* Validates the links and lets tri_check judge. False where there is a fault: the text of the judge. */
+bool support_passes(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_check_options *options,
+                    bool with_regions, struct tri_check_report *report, char text[SUPPORT_TEXT]);
+
+/* The same; a fault fails the test with the text of the judge. NULL report:
  * unwanted. options->max_areas is filled in from the regions where with_regions. */
 void support_judge(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_check_options *options,
                    bool with_regions, struct tri_check_report *report);

@@ -804,6 +804,136 @@ static void broken_markers(void **state)
     expect_good();
 }
 
+/* Two chains from vertex 1 to 4, over 2 and 3, so near to each other that the input segment from 0 to 4 may run along
+ * either; from 0 to 1 there is one way. Input segment 0 is that one, with marker 5, and 1 to 2 has marker 3. */
+static void begin_lens(bool long_one_first)
+{
+    static const int32_t chains[5][2] = {{0, 1}, {1, 2}, {2, 4}, {1, 3}, {3, 4}};
+    static const int32_t rim[4][2] = {{0, 5}, {5, 4}, {4, 6}, {6, 0}};
+    begin();
+    add_point(-4, 0), add_point(0, 0), add_point(1.5, 0x1p-50), add_point(2.5, -0x1p-50), add_point(4, 0);
+    add_point(2, -1), add_point(2, 1);
+    add_triangle(1, 3, 2), add_triangle(3, 4, 2);
+    add_triangle(0, 1, 6), add_triangle(1, 2, 6), add_triangle(2, 4, 6);
+    add_triangle(0, 5, 1), add_triangle(1, 5, 3), add_triangle(3, 5, 4);
+    trial.options.delaunay = TRI_CHECK_NOT_DELAUNAY;
+    for (int k = 0; k < 5; k++)
+        add_segment(chains[k][0], chains[k][1]);
+    for (int k = 0; k < 4; k++)
+        trial.markers[add_segment(rim[k][0], rim[k][1])] = 1;
+    take_as_input();
+    int32_t first = long_one_first ? 0 : 1, second = 1 - first;
+    trial.input.segments[2 * first] = 0, trial.input.segments[2 * first + 1] = 4;
+    trial.input.segments[2 * second] = 1, trial.input.segments[2 * second + 1] = 2;
+    trial.input.segment_markers[first] = 5;
+    trial.input.segment_markers[second] = 3;
+    trial.mesh.segment_markers = trial.markers;
+    trial.markers[0] = 5; /* 0 to 1, which is certain */
+    trial.markers[1] = 3;
+}
+
+static void markers_at_forks(void **state)
+{
+    (void)state;
+    begin_lens(true);
+    expect_good();
+    trial.markers[1] = 5, trial.markers[2] = 5; /* along the one */
+    expect_good();
+    trial.markers[1] = 3, trial.markers[2] = 0, trial.markers[3] = 5, trial.markers[4] = 5; /* along the other */
+    expect_good();
+    trial.markers[3] = 6; /* of nobody */
+    expect(TRI_CHECK_MARKERS, 1, -1);
+    trial.markers[3] = 3; /* of somebody who does not run there */
+    expect(TRI_CHECK_MARKERS, 1, -1);
+    for (int32_t marker = 0; marker < 4; marker++) { /* before the fork there is no choice */
+        begin_lens(true);
+        trial.markers[0] = marker;
+        expect(TRI_CHECK_MARKERS, 1, -1);
+    }
+    begin_lens(false); /* who is there for certain, and comes first, precedes who may be */
+    expect_good();
+    trial.markers[1] = 5;
+    expect(TRI_CHECK_MARKERS, 1, -1);
+}
+
+/* A chain whose inner vertex is so many units of its larger coordinate off the line. */
+static void begin_bend(double ulps)
+{
+    begin();
+    add_point(1, 1), add_point(3, 1), add_point(2, 1 + ulps * 3 * 0x1p-52), add_point(2, 3), add_point(2, -1);
+    add_triangle(0, 2, 3), add_triangle(2, 1, 3), add_triangle(0, 4, 2), add_triangle(2, 4, 1);
+    trial.options.delaunay = TRI_CHECK_NOT_DELAUNAY;
+    list_boundary();
+    add_segment(0, 1);
+    take_as_input();
+    remove_segment(trial.mesh.n_segments - 1);
+    add_segment(0, 2), add_segment(2, 1);
+}
+
+static void bent_segments(void **state)
+{
+    (void)state;
+    begin_bend(0);
+    expect_good();
+    begin_bend(-TRI_CHECK_ULPS + 0.5);
+    expect_good();
+    begin_bend(TRI_CHECK_ULPS + 1);
+    expect(TRI_CHECK_INPUT_SEGMENTS, 1, -1);
+    begin_bend(20);
+    expect(TRI_CHECK_INPUT_SEGMENTS, 1, -1);
+    begin_bend(3);
+    trial.segments[2 * (trial.mesh.n_segments - 1)] = 3; /* one half is missing */
+    judge();
+    assert_int_equal(trial.report.item[TRI_CHECK_INPUT_SEGMENTS].count, 1);
+}
+
+/* A side shorter than the tolerance of where it is: the input segment that ends at its corner, the rest of it carved,
+ * does not run along it, although that is exactly on its line. */
+static void marker_beyond_the_end(void **state)
+{
+    (void)state;
+    double far = 0x1p50;
+    begin();
+    add_point(far, far), add_point(far + 1, far), add_point(far + 1, far + 9), add_point(far, far + 9);
+    add_point(far - 10, far);
+    add_triangle(0, 1, 2), add_triangle(0, 2, 3);
+    list_boundary();
+    trial.mesh.segment_markers = trial.markers;
+    take_as_input();
+    int32_t n = trial.input.n_segments++;
+    trial.input.segments[2 * n] = 4, trial.input.segments[2 * n + 1] = 0;
+    trial.input.segment_markers[n] = 9;
+    for (int32_t s = 0; s < n; s++)
+        trial.markers[s] = 1;
+    expect_good();
+}
+
+/* The unit square, and an input segment from below its lower side to beyond its right one that comes so far into it,
+ * and is not there. */
+static void begin_grazed(double depth)
+{
+    begin();
+    add_point(0, 0), add_point(1, 0), add_point(1, 1), add_point(0, 1);
+    add_triangle(0, 1, 2), add_triangle(0, 2, 3);
+    add_point(0.25, -depth / 2), add_point(1.5, 2 * depth);
+    list_boundary();
+    take_as_input();
+    int32_t last = trial.input.n_segments++;
+    trial.input.segments[2 * last] = 4;
+    trial.input.segments[2 * last + 1] = 5;
+}
+
+static void what_is_missing_beside_the_boundary(void **state)
+{
+    (void)state;
+    begin_grazed(0x1p-50);
+    expect_good();
+    begin_grazed(0x1p-45);
+    expect(TRI_CHECK_INPUT_SEGMENTS, 1, -1);
+    begin_grazed(0.125);
+    expect(TRI_CHECK_INPUT_SEGMENTS, 1, -1);
+}
+
 /* --- input vertices */
 
 static void broken_input_vertices(void **state)
@@ -1037,6 +1167,10 @@ int main(void)
         cmocka_unit_test(broken_input_segments),
         cmocka_unit_test(carved_pieces_are_good),
         cmocka_unit_test(broken_markers),
+        cmocka_unit_test(markers_at_forks),
+        cmocka_unit_test(bent_segments),
+        cmocka_unit_test(marker_beyond_the_end),
+        cmocka_unit_test(what_is_missing_beside_the_boundary),
         cmocka_unit_test(broken_input_vertices),
         cmocka_unit_test(broken_lost_vertex),
         cmocka_unit_test(duplicates_stand_for_each_other),

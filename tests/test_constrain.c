@@ -20,13 +20,11 @@ static void test_tangles_are_naively_constrained_delaunay(void **state)
             struct tri_mesh mesh = support_constrained(&pslg, &report);
             support_assert_cdt(&mesh, true);
             judge(&mesh, &pslg);
-                tri_mesh_free(&mesh);
+            tri_mesh_free(&mesh);
             tri_pslg_free(&pslg);
         }
 }
 
-/* Hundreds of segments on nearly one line are bent again and again: there the judge's tolerance for segments is too
- * narrow. */
 static void test_large_tangles_pass_the_judge(void **state)
 {
     (void)state;
@@ -35,8 +33,7 @@ static void test_large_tangles_pass_the_judge(void **state)
         struct tri_pslg pslg = support_tangle((enum support_kind)kind, 300, 100, 5);
         struct tri_mesh mesh = support_constrained(&pslg, &report);
         support_assert_cdt(&mesh, false);
-        if (kind != SUPPORT_NEAR_LINE)
-            judge(&mesh, &pslg);
+        judge(&mesh, &pslg);
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);
     }
@@ -325,10 +322,55 @@ static void test_all_segment_files(void **state)
             struct tri_mesh mesh = support_constrained(&pslg, &report);
             support_assert_cdt(&mesh, false);
             judge(&mesh, &pslg);
-                tri_mesh_free(&mesh);
+            tri_mesh_free(&mesh);
             tri_pslg_free(&pslg);
         }
         support_free_names(names);
+    }
+}
+
+/* From one vertex segments of all lengths along one line, some twice: where they overlap the first marker wins. */
+static void test_overlaps_from_one_vertex(void **state)
+{
+    (void)state;
+    enum { N = 40 };
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        struct support_random random = {seed};
+        struct tri_constrain_report report;
+        struct tri_pslg pslg = support_pslg(N + 3, N, 0, 0);
+        int32_t markers[N], expected[N] = {0};
+        bool covered[N] = {false};
+        for (int i = 0; i < N; i++)
+            support_add_point(&pslg, 3 * i, i);
+        support_add_point(&pslg, 0, N);
+        support_add_point(&pslg, 3 * N, 0);
+        for (int k = 0; k < N; k++) {
+            int32_t end = 1 + support_below(&random, N - 1);
+            support_add_segment(&pslg, k % 2 ? end : 0, k % 2 ? 0 : end);
+            markers[k] = support_below(&random, 3) ? k + 1 : 0;
+            for (int i = 0; i < end; i++) {
+                covered[i] = true;
+                expected[i] = expected[i] ? expected[i] : markers[k];
+            }
+        }
+        pslg.segment_markers = markers;
+        struct tri_mesh mesh = support_constrained(&pslg, &report);
+        int32_t found = 0;
+        for (int32_t s = 0; s < mesh.n_subs; s++) {
+            int32_t a = mesh.sub[s].v[0], b = mesh.sub[s].v[1], low = a < b ? a : b;
+            if (a >= N || b >= N || abs(a - b) != 1)
+                continue;
+            assert_true(covered[low]);
+            assert_int_equal(mesh.sub[s].marker, expected[low]);
+            found++;
+        }
+        for (int i = 0; i < N; i++)
+            found -= covered[i];
+        assert_int_equal(found, 0);
+        support_assert_cdt(&mesh, true);
+        pslg.segment_markers = NULL;
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
     }
 }
 
@@ -348,6 +390,7 @@ int main(void)
         cmocka_unit_test(test_once_broken),
         cmocka_unit_test(test_no_triangles_no_segments),
         cmocka_unit_test(test_all_segment_files),
+        cmocka_unit_test(test_overlaps_from_one_vertex),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

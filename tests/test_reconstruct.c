@@ -115,6 +115,7 @@ static void assert_same_mesh(const struct tri_mesh *mesh, const struct tri_mesh 
         assert_int_equal(back->sub[s].marker, mesh->sub[s].marker);
         assert_int_equal(back->sub[s].parent, s);
         assert_int_equal(back->parents[s].segment, s);
+        assert_memory_equal(&back->parents[s].guard, &back->xy[back->parents[s].v[0]], sizeof(struct tri_point));
     }
 }
 

@@ -5,7 +5,8 @@
 
 Python 3 standard library only; every run gives the same bytes. Numbers are the shortest decimals that read back as the
 same double. What comes out of sin, cos and the like is rounded to a few decimals, so that it does not depend on the
-mathematics library. data/coast/ comes from make_coast.py, is read here for the tables, and is not written.
+mathematics library. data/coast/ comes from make_coast.py, and a part of data/regress/ from elsewhere: these are read
+here for the tables, and not written.
 
 Each input is one function with the decorator @case, which says what the file is for and what a right program does.
 """
@@ -881,6 +882,36 @@ def far_region():
     return poly
 
 
+# --- what broke once, found elsewhere: files as they are, read here for the tables; tests/cli/regress.sh says how
+
+FOUND = [
+    Case("regress/lost_segment.poly", None, "segments that nearly overlap and cross a third, coordinates of one "
+         "decimal", "keeps to each; once one took a detour over a vertex", ()),
+    Case("regress/lost_overlay.poly", None, "three segments of an overlay, one nearly through the ends of another "
+         "(libgeos/geos issue 1034)", "keeps all segments; once one was missing", ()),
+    Case("regress/lost_ladder.poly", None, "two strips laid over each other, their sides nearly the same "
+         "(libgeos/geos issue 1046)", "keeps all segments; once one was missing", ()),
+    Case("regress/lost_overlay_vertex.poly", None, "the same strips and two segments across (libgeos/geos issue 1046)",
+         "keeps all vertices; once one was no corner", ()),
+    Case("regress/lost_vertex.poly", None, "turned grid, random segments along and across its lines",
+         "-q34D: keeps all vertices; once one was lost", ()),
+    Case("regress/overlap_rings.poly", None, "two triangles that share a side but for an ulp, from "
+         "overlap_water.poly (OpenStreetMap contributors)", "-q20: no overlap; once refinement made one", ()),
+    Case("regress/overlap_water.poly", None, "lakes that share their shores but for an ulp (OpenStreetMap "
+         "contributors)", "-q20: no overlap; once refinement made one", ()),
+    Case("regress/overlap_ulp.poly", None, "turned grid, random segments along its lines",
+         "-a0.0915136812: no overlap; once the boundary met itself, by an ulp", ()),
+    Case("regress/overlap_spikes.poly", None, "star of spikes far from the origin",
+         "-q31: no overlap; once refinement made one", ()),
+    Case("regress/same_place.poly", None, "turned grid, random segments, two attributes",
+         "-q32D: no overlap; once two vertices came to one place", ()),
+    Case("regress/marker_bend.poly", None, "a chain of segments on nearly one line (libgeos/geos issue 275)",
+         "hands the markers to bent segments, too", ()),
+    Case("regress/marker_precincts.poly", None, "borders of precincts that nearly coincide",
+         "hands the markers to bent segments, too", ()),
+]
+
+
 # --- the coast
 
 COAST = [
@@ -915,8 +946,8 @@ README_HEAD = """\
 Small inputs of our own making: shapes, engineering sections, real coasts, and everything a mesh generator should
 survive.
 
-- `tools/make_data.py` writes all of it except `coast/` and `yardstick.txt`, byte for byte the same on every run
-  (Python 3.9, no packages).
+- `tools/make_data.py` writes all of it except `coast/`, `yardstick.txt` and what has no triangles in the table below,
+  byte for byte the same on every run (Python 3.9, no packages).
 - `tools/make_coast.py` writes `coast/` from Natural Earth (`npm pack world-atlas@2.0.2`).
 - `expected.txt` gives, for each run of each input, the numbers that any right program gets; tests read it.
 - `yardstick.txt` gives the sizes of the quality meshes that Triangle 1.6 makes of them (`tools/make_yardstick.py`).
@@ -924,7 +955,8 @@ survive.
   triangulating.
 
 Origin and licence: `coast/` is Natural Earth, public domain. The coordinates in `regress/` come from public bug
-reports, named in the table. All else is made from formulas here, MIT as the rest of the project. Random points come
+reports, named in the table, or from random numbers; the few lake shores there are (c) OpenStreetMap contributors,
+ODbL. All else is made from formulas here, MIT as the rest of the project. Random points come
 from Python's generator with fixed seeds.
 
 Columns: vertices, segments, holes and regions in the file; triangles with the first run of `expected.txt` ("error": the
@@ -942,15 +974,19 @@ def table_row(entry, pslg, facts):
     if pslg is None:
         cells = ["", "", "", "", "error", "", ""]
     else:
+        cells = [len(pslg.points), len(pslg.segments), len(pslg.holes), len(pslg.regions), "", "", ""]
+    if facts is not None:
         angle = "%.4g" % facts.smallest_angle if pslg.segments and facts.smallest_angle < 180 else ""
-        cells = [len(pslg.points), len(pslg.segments), len(pslg.holes), len(pslg.regions), facts.triangles, angle,
-                 "yes" if facts.valid else "no"]
+        cells[4:] = [facts.triangles, angle, "yes" if facts.valid else "no"]
     return "| " + " | ".join(map(str, [entry.name, *cells, entry.what, entry.right])) + " |"
 
 
 def examine(folder, entry):
-    """Facts of each run of an input: (pslg, facts, lines), with None for pslg and facts where it is refused."""
+    """Facts of each run of an input: (pslg, facts, lines), with None for pslg and facts where it is refused, for facts
+    where there is no run."""
     pslg, first, lines = None, None, []
+    if not entry.runs:
+        pslg = pslg_facts.read(os.path.join(folder, entry.name))
     for run in entry.runs:
         try:
             facts = None
@@ -983,7 +1019,7 @@ def main(folder):
     table = ["| file | vertices | segments | holes | regions | triangles | angle | valid | what it is | "
              "a right program |", "|---|---|---|---|---|---|---|---|---|---|"]
     expected = []
-    for entry in CASES + [c for c in COAST if os.path.exists(os.path.join(folder, c.name))]:
+    for entry in CASES + [c for c in FOUND + COAST if os.path.exists(os.path.join(folder, c.name))]:
         pslg, facts, lines = examine(folder, entry)
         table.append(table_row(entry, pslg, facts))
         expected += lines

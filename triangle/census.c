@@ -17,17 +17,17 @@ double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_opti
     for (int32_t t = 0; t < mesh->n_slots; t++)
         if (tri_is_live(&mesh->tri[t]))
             triangles += tri_shape_of(mesh->xy, mesh->tri[t].v).area2 / tri_area2_bound(&c, mesh->tri[t].region);
-    return triangles;
+    return triangles / MOST_OVER_BOUND;
 }
 
 enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                                  struct tri_error *error)
 {
-    double triangles = options->max_steiner < 0 ? tri_area_demand(mesh, options) / MOST_OVER_BOUND : 0;
+    double triangles = options->max_steiner < 0 ? tri_area_demand(mesh, options) : 0;
     if (triangles <= TRI_MAX_TRIANGLES)
         return TRI_OK;
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
-                    "the area bounds ask for more than %.0f million triangles, and a mesh holds %d million",
+                    "the area bounds ask for at least %.0f million triangles, and a mesh holds %d million",
                     1e-6 * triangles, TRI_MAX_TRIANGLES / 1000000);
 }
 

@@ -22,8 +22,9 @@
  *       vertices in the mesh's area are corners of it, hole points lie outside.
  *
  * What is checked within a tolerance, because vertices on segments are rounded: each input segment is a chain of
- * subsegments whose vertices are at most TRI_CHECK_ULPS * 2^-52 * (largest absolute coordinate) off its line. Pieces
- * may be missing only where they are outside the mesh (carved); that is tested at three points of each missing piece.
+ * subsegments whose vertices are at most TRI_CHECK_ULPS * 2^-52 * (the segment's largest coordinate) off its line.
+ * Pieces may be missing only where they are outside the mesh (carved), or no farther than that from its boundary; that
+ * is tested at three points of each missing piece.
  * Angles and areas are computed in double precision and may miss their bounds by a relative 1e-12 (of the squared
  * sine, of the area).
  *
@@ -96,7 +97,8 @@ enum tri_check_kind {
     TRI_CHECK_LOST_VERTICES,  /* input vertex (without input: any vertex) that no triangle uses, in the mesh's area */
     TRI_CHECK_INPUT_SEGMENTS,
     /* Subsegments carry the first non-zero marker of the input segments they lie on, else 1 on the boundary, else 0;
-     * only where input and markers are given. */
+     * only where input and markers are given. Where nearly coincident chains leave it open which of them an input
+     * segment runs along, any choice is good. */
     TRI_CHECK_MARKERS,
     TRI_CHECK_HOLES,
     TRI_CHECK_ANGLES,

@@ -133,12 +133,17 @@ static int32_t follow(struct chains *k, const struct line *l, int32_t u, int32_t
     }
 }
 
-/* Do both ends lie exactly on the line? */
+/* Exactly on the input segment? */
+static bool holds(const struct line *l, struct tri_point p)
+{
+    return p.x >= fmin(l->a.x, l->b.x) && p.x <= fmax(l->a.x, l->b.x) && p.y >= fmin(l->a.y, l->b.y) &&
+           p.y <= fmax(l->a.y, l->b.y) && tri_orient2d(l->a, l->b, p) == 0;
+}
+
 static bool is_exactly_on(const struct chains *k, const struct line *l, int32_t subsegment)
 {
-    struct tri_point a = check_point(k->c, k->c->segments[2 * (size_t)subsegment]);
-    struct tri_point b = check_point(k->c, k->c->segments[2 * (size_t)subsegment + 1]);
-    return tri_orient2d(l->a, l->b, a) == 0 && tri_orient2d(l->a, l->b, b) == 0;
+    const int32_t *ends = k->c->segments + 2 * (size_t)subsegment;
+    return holds(l, check_point(k->c, ends[0])) && holds(l, check_point(k->c, ends[1]));
 }
 
 /* The input segment runs along the chain by which the search came to u: for certain up to the first fork, or, where

@@ -33,6 +33,7 @@
 #include "triangle/cavity.h"
 #include "triangle/crossing.h"
 #include "triangle/interpolate.h"
+#include "triangle/overlap.h"
 #include "triangle/predicates.h"
 #include "triangle/recover.h"
 
@@ -42,17 +43,7 @@ enum { BESIDE = 3, HUB = 16 };
  * others. */
 static const double NEAR = 0.5, APART = 2;
 
-/* The input segments that run along a piece or a subsegment: the first of them, and the first with a marker. */
-struct course {
-    int32_t first, marked; /* TRI_NONE: there is none */
-};
-
-static const struct course NOBODY = {TRI_NONE, TRI_NONE};
-
-struct piece {
-    int32_t from, to;
-    struct course course;
-};
+static const struct tri_course NOBODY = {TRI_NONE, TRI_NONE};
 
 struct layer {
     struct tri_mesh *mesh;
@@ -62,9 +53,9 @@ struct layer {
     bool ties_stay;  /* an edge is flipped only where that makes a difference; else ties are broken by coordinates */
     int32_t *corner; /* [corner_capacity] */
     int32_t corner_capacity;
-    struct course *course; /* [course_capacity] of each subsegment */
+    struct tri_course *course; /* [course_capacity] of each subsegment */
     int32_t course_capacity;
-    struct piece *piece; /* stack of what remains of the current segment, and of earlier ones that had to be taken up */
+    struct tri_piece *piece; /* stack of what remains of the segment, and of earlier ones that had to be taken up */
     int32_t n_pieces, piece_capacity;
     int32_t *touched; /* stack of edge codes to test for the Delaunay property */
     int32_t n_touched, touched_capacity;
@@ -95,7 +86,7 @@ static bool reserve(void *array, int32_t *capacity, int32_t need, size_t item)
     return true;
 }
 
-static bool push_piece(struct layer *l, int32_t from, int32_t to, struct course course)
+static bool push_piece(struct layer *l, int32_t from, int32_t to, struct tri_course course)
 {
     if (from == to)
         return true;
@@ -103,7 +94,7 @@ static bool push_piece(struct layer *l, int32_t from, int32_t to, struct course 
     bool room = reserve(&array, &l->piece_capacity, l->n_pieces + 1, sizeof *l->piece);
     l->piece = array;
     if (room)
-        l->piece[l->n_pieces++] = (struct piece){from, to, course};
+        l->piece[l->n_pieces++] = (struct tri_piece){from, to, course};
     return room;
 }
 
@@ -198,17 +189,17 @@ static int32_t find_exit(struct layer *l, int32_t *a, int32_t *b)
 
 static int32_t lower(int32_t a, int32_t b) { return a == TRI_NONE || (b != TRI_NONE && b < a) ? b : a; }
 
-static struct course both(struct course a, struct course b)
+static struct tri_course both(struct tri_course a, struct tri_course b)
 {
-    return (struct course){lower(a.first, b.first), lower(a.marked, b.marked)};
+    return (struct tri_course){lower(a.first, b.first), lower(a.marked, b.marked)};
 }
 
-static int32_t marker_of(const struct layer *l, struct course course)
+static int32_t marker_of(const struct layer *l, struct tri_course course)
 {
     return course.marked == TRI_NONE ? 0 : l->pslg->segment_markers[course.marked];
 }
 
-static bool set_course(struct layer *l, int32_t s, struct course course)
+static bool set_course(struct layer *l, int32_t s, struct tri_course course)
 {
     void *array = l->course;
     bool room = reserve(&array, &l->course_capacity, s + 1, sizeof *l->course);
@@ -218,7 +209,7 @@ static bool set_course(struct layer *l, int32_t s, struct course course)
     return room;
 }
 
-static bool mark_edge(struct layer *l, int32_t t, int e, struct course course)
+static bool mark_edge(struct layer *l, int32_t t, int e, struct tri_course course)
 {
     struct tri_mesh *mesh = l->mesh;
     int32_t link = mesh->tri[t].n[e], from = mesh->tri[t].v[tri_next[e]], to = mesh->tri[t].v[tri_prev[e]];
@@ -315,7 +306,7 @@ static enum tri_status cannot_keep(const struct layer *l, int32_t segment)
                     "segment %d cannot be kept to its line: too much lies within rounding of it", (int)segment);
 }
 
-static enum tri_status check_distance(struct layer *l, struct course course, int32_t v)
+static enum tri_status check_distance(struct layer *l, struct tri_course course, int32_t v)
 {
     int32_t segment[2] = {course.first, course.marked};
     for (int k = 0; k < 2; k++)
@@ -325,7 +316,7 @@ static enum tri_status check_distance(struct layer *l, struct course course, int
 }
 
 /* Makes ab, whose channel begins in triangle t, a subsegment. */
-static enum tri_status lay_edge(struct layer *l, int32_t t, int32_t a, int32_t b, struct course course)
+static enum tri_status lay_edge(struct layer *l, int32_t t, int32_t a, int32_t b, struct tri_course course)
 {
     struct tri_mesh *mesh = l->mesh;
     enum tri_status status = check_distance(l, course, a);
@@ -444,7 +435,7 @@ static int32_t find_place(const struct layer *l, int32_t near, struct tri_point 
 static bool take_apart(struct layer *l, int32_t s)
 {
     const struct tri_subsegment old = l->mesh->sub[s];
-    struct course course = l->course[s];
+    struct tri_course course = l->course[s];
     return take_up(l, s) && push_piece(l, old.v[0], old.v[1], course);
 }
 
@@ -452,7 +443,7 @@ static bool take_apart(struct layer *l, int32_t s)
 static bool finish_parts(struct layer *l, int32_t first, int32_t v)
 {
     for (int32_t i = l->n_pieces - 1; i >= first; i--) {
-        struct piece whole = l->piece[i];
+        struct tri_piece whole = l->piece[i];
         if (whole.from == v || whole.to == v)
             continue;
         l->piece[i].from = v;
@@ -469,7 +460,7 @@ struct choice {
     double distance; /* squared, from the crossing */
 };
 
-static bool lies_between(const struct layer *l, int32_t v, const struct piece *piece)
+static bool lies_between(const struct layer *l, int32_t v, const struct tri_piece *piece)
 {
     struct tri_point a = l->mesh->xy[piece->from], b = l->mesh->xy[piece->to], q = l->mesh->xy[v];
     double x = b.x - a.x, y = b.y - a.y, at = x * (q.x - a.x) + y * (q.y - a.y);
@@ -507,7 +498,7 @@ static int32_t choose_vertex(const struct layer *l, int32_t first, int32_t t, st
 }
 
 /* A vertex at p, whose cavity has been found, with marker and attributes of the piece `along`. */
-static enum tri_status add_crossing(struct layer *l, struct tri_point p, const struct piece *along, int32_t *vertex)
+static enum tri_status add_crossing(struct layer *l, struct tri_point p, const struct tri_piece *along, int32_t *vertex)
 {
     struct tri_mesh *mesh = l->mesh;
     enum tri_status status = tri_mesh_reserve_vertices(mesh, 1, l->error);
@@ -528,7 +519,7 @@ static enum tri_status add_crossing(struct layer *l, struct tri_point p, const s
 }
 
 /* Where the pieces cross: at the crossing of their input segments, unless bends have moved it away from there. */
-static struct tri_point crossing_of(const struct layer *l, const struct piece *a, const struct piece *b)
+static struct tri_point crossing_of(const struct layer *l, const struct tri_piece *a, const struct tri_piece *b)
 {
     const struct tri_point *xy = l->mesh->xy;
     struct tri_point here = xy[a->from], there;
@@ -544,7 +535,7 @@ static struct tri_point crossing_of(const struct layer *l, const struct piece *a
 }
 
 /* Rule 3: the piece crosses subsegment s. */
-static enum tri_status cross(struct layer *l, const struct piece *piece, int32_t s)
+static enum tri_status cross(struct layer *l, const struct tri_piece *piece, int32_t s)
 {
     int32_t first = l->n_pieces, near = l->mesh->sub[s].v[0], on, t;
     if (!push_piece(l, piece->from, piece->to, piece->course) || !take_apart(l, s))
@@ -585,7 +576,7 @@ struct meeting {
 };
 
 /* Rule 2. */
-static void consider(const struct layer *l, const struct piece *piece, int32_t v, double det, struct meeting *met)
+static void consider(const struct layer *l, const struct tri_piece *piece, int32_t v, double det, struct meeting *met)
 {
     const struct tri_point *xy = l->mesh->xy;
     struct tri_point a = xy[piece->from], b = xy[piece->to], q = xy[v];
@@ -604,7 +595,7 @@ static void consider(const struct layer *l, const struct piece *piece, int32_t v
 }
 
 /* t: the triangle through which the piece leaves its start. */
-static struct meeting look_ahead(const struct layer *l, const struct piece *piece, int32_t t)
+static struct meeting look_ahead(const struct layer *l, const struct tri_piece *piece, int32_t t)
 {
     const struct tri_mesh *mesh = l->mesh;
     struct tri_point pa = mesh->xy[piece->from], pb = mesh->xy[piece->to];
@@ -640,14 +631,14 @@ static struct meeting look_ahead(const struct layer *l, const struct piece *piec
 }
 
 /* The piece ends at vertex v for now; the rest waits below it on the stack. */
-static enum tri_status stop_at(struct layer *l, const struct piece *piece, int32_t v)
+static enum tri_status stop_at(struct layer *l, const struct tri_piece *piece, int32_t v)
 {
     bool room = push_piece(l, v, piece->to, piece->course) && push_piece(l, piece->from, v, piece->course);
     return room ? TRI_OK : no_memory(l);
 }
 
 /* Lays the first part of a piece, which may be turned round for it, or cuts it; the rest goes back on the stack. */
-static enum tri_status lay_piece(struct layer *l, struct piece piece)
+static enum tri_status lay_piece(struct layer *l, struct tri_piece piece)
 {
     int32_t t = find_exit(l, &piece.from, &piece.to);
     struct meeting met = look_ahead(l, &piece, t);
@@ -667,17 +658,18 @@ static enum tri_status lay_piece(struct layer *l, struct piece piece)
     return push_piece(l, met.end, piece.to, piece.course) ? TRI_OK : no_memory(l);
 }
 
-static enum tri_status lay_segment(struct layer *l, int32_t a, int32_t b, struct course course)
+static enum tri_status lay_segment(struct layer *l, const struct tri_piece *segment)
 {
     /* Five pieces for each subsegment crossed, two for each vertex; ten times that is no coincidence. */
     int64_t bound = 1000 + 50 * ((int64_t)l->mesh->n_subs + l->mesh->n_vertices);
     l->n_pieces = 0;
-    if (!push_piece(l, a, b, course))
+    l->segment = segment->course.first;
+    if (!push_piece(l, segment->from, segment->to, segment->course))
         return no_memory(l);
     for (int64_t n = 0; l->n_pieces > 0; n++) {
         if (tri_stop_is_due(l->mesh->stop, &l->step))
             return tri_fail_stopped(l->error);
-        struct piece next = l->piece[--l->n_pieces];
+        struct tri_piece next = l->piece[--l->n_pieces];
         if (n >= bound)
             return cannot_keep(l, l->segment);
         enum tri_status status = lay_piece(l, next);
@@ -687,10 +679,12 @@ static enum tri_status lay_segment(struct layer *l, int32_t a, int32_t b, struct
     return TRI_OK;
 }
 
-static enum tri_status lay_all(struct layer *l)
+/* The segments that have a meaning, as pieces. */
+static int32_t list_segments(struct layer *l, struct tri_piece *piece)
 {
     const struct tri_pslg *pslg = l->pslg;
     const int32_t *twin = l->mesh->twin, *markers = pslg->segment_markers;
+    int32_t n = 0;
     for (int32_t k = 0; k < pslg->n_segments; k++) {
         int32_t a = pslg->segments[2 * k], b = pslg->segments[2 * k + 1];
         bool valid = a >= 0 && a < pslg->n_points && b >= 0 && b < pslg->n_points;
@@ -698,18 +692,23 @@ static enum tri_status lay_all(struct layer *l)
             a = twin[a];
             b = twin[b];
         }
-        if (!valid || a == b) {
+        if (!valid || a == b)
             l->report->skipped++;
-            continue;
-        }
-        if (l->corner[a] == TRI_NONE || l->corner[b] == TRI_NONE)
-            continue; /* all points on one line: there are no triangles */
-        l->segment = k;
-        enum tri_status status = lay_segment(l, a, b, (struct course){k, markers && markers[k] ? k : TRI_NONE});
-        if (status)
-            return status;
+        else if (l->corner[a] != TRI_NONE && l->corner[b] != TRI_NONE) /* else all points are on one line */
+            piece[n++] = (struct tri_piece){a, b, {k, markers && markers[k] ? k : TRI_NONE}};
     }
-    return TRI_OK;
+    return n;
+}
+
+static enum tri_status lay_all(struct layer *l)
+{
+    struct tri_piece *piece = malloc(((size_t)l->pslg->n_segments + 1) * sizeof *piece);
+    int32_t n = piece ? list_segments(l, piece) : 0;
+    enum tri_status status = piece && tri_share_overlaps(l->mesh, piece, n) ? TRI_OK : no_memory(l);
+    for (int32_t k = 0; !status && k < n; k++)
+        status = lay_segment(l, &piece[k]);
+    free(piece);
+    return status;
 }
 
 static enum tri_status find_corners(struct layer *l)

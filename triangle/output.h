@@ -19,6 +19,10 @@
 #include "triangle/status.h"
 #include "triangle/stop.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { TRI_MAX_OUTPUTS = 16 };
 
 struct tri_output {
@@ -68,5 +72,9 @@ void tri_outputs_abort(struct tri_output_set *set);
 /* Do two paths name one regular file, by links of any kind? Where neither exists: would they, if neither is a symbolic
  * link itself? */
 bool tri_is_same_file(const char *a, const char *b);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

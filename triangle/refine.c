@@ -5,7 +5,11 @@
  * triangle, if it still stands, is asked again. Nothing is changed before everything is known, so nothing is ever
  * undone.
  *
- * Termination: see the rules in small_angle.h. */
+ * Angles may be given up; sizes are not: a triangle that is too large and cannot have that point gets another
+ * (inside.c). For -D, subsegments whose diametral circle is not empty are split before anything else (disk.c).
+ *
+ * Termination: for angles by the rules in small_angle.c; the points for sizes and for circles that come on top are
+ * finitely many whatever the others do, see inside.c and disk.c. */
 #include "triangle/refine.h"
 
 #include <assert.h>

@@ -74,7 +74,8 @@ struct tri_refine_report {
 
 struct tri_refine_options tri_refine_defaults(void);
 
-/* Triangles that the area bounds ask for at least: the sum of all areas over their bounds. O(triangles). */
+/* Triangles that the area bounds ask for at least: the sum of all areas over their bounds, and a third more, since no
+ * mesh fills its bounds; 0 without. O(triangles). */
 double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_options *options);
 
 /* TRI_TOO_LARGE where the area bounds ask for more triangles than one mesh can hold; tri_refine asks first.

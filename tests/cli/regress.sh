@@ -201,6 +201,33 @@ for input in *.poly; do
     judge "${input%.*}.1" --poly "$input" --min-angle 30
 done
 
+# --- much that meets within rounding: segments and vertices that were lost, markers, boundaries that met themselves
+everywhere() { # everywhere NAME SWITCHES...: each program, each of the switches, judged
+    name=$1
+    shift
+    for words; do
+        for program in triangle ptriangle; do
+            [ -x "$bin/$program" ] || continue
+            fresh "regress/$name.poly"
+            what="$program $words $name"
+            check "exit code" timeout 20 "$bin/$program" "$words" "$name"
+            judge "$name.1" --poly "$name.poly"
+        done
+    done
+}
+everywhere lost_segment -pc
+everywhere lost_overlay -pc -pq20
+everywhere lost_ladder -pc -pq20
+everywhere lost_overlay_vertex -pq20
+everywhere lost_vertex -pq34D
+everywhere overlap_rings -pq20
+everywhere overlap_water -pq20
+everywhere overlap_ulp -pa0.0915136812
+everywhere overlap_spikes -pq31
+everywhere same_place -pq32D
+everywhere marker_bend -pc
+everywhere marker_precincts -pc
+
 # --- angles that cannot be: it ends, and says so
 fresh letter.poly
 for angle in 35 36 40 45 59 60 61 90; do

@@ -1,5 +1,6 @@
 /* Fuzz target: from a planar straight line graph to a mesh, judged as in tests/torture. Compiled a second time with
- * FUZZ_SCHEDULE, it refines by the schedule with tiny cells, on one thread and on three. */
+ * FUZZ_SCHEDULE, it refines by the schedule with tiny cells, on one thread and on three. Kinds of faults that the
+ * environment variable PTRIANGLE_FUZZ_IGNORE names, with commas between them, are let pass. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -62,16 +63,6 @@ static void take_switches(struct bytes *b, struct torture_case *c)
     c->block = SCHEDULE ? 20 << (angle / 34) : 0;
 }
 
-/* Kinds of faults that PTRIANGLE_FUZZ_IGNORE names, with commas between them, are let pass. */
-static bool is_ignored(const char *fault)
-{
-    const char *ignored = getenv("PTRIANGLE_FUZZ_IGNORE");
-    for (size_t n = strlen(fault); ignored; ignored = strchr(ignored, ',') ? strchr(ignored, ',') + 1 : NULL)
-        if (strncmp(ignored, fault, n) == 0 && (ignored[n] == ',' || ignored[n] == 0))
-            return true;
-    return false;
-}
-
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct bytes b = {data, data + size};
@@ -80,7 +71,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     take_figure(&b, &c.figure);
     take_switches(&b, &c);
     judge_case(&c, &verdict);
-    if (verdict.fault[0] && !is_ignored(verdict.fault)) {
+    if (verdict.fault[0] && !judge_names(getenv("PTRIANGLE_FUZZ_IGNORE"), verdict.fault)) {
         const char *path = getenv("PTRIANGLE_FUZZ_POLY");
         fprintf(stderr, "fuzz_mesh: %s: %s: %s; -%s, blocks of %d%s\n", verdict.stage, verdict.fault, verdict.detail,
                 c.switches, (int)c.block, c.again ? ", again" : "");

@@ -17,6 +17,14 @@ void judge_fault(struct verdict *verdict, const char *fault, const char *format,
     snprintf(verdict->fault, sizeof verdict->fault, "%s", fault);
 }
 
+bool judge_names(const char *names, const char *fault)
+{
+    for (size_t n = strlen(fault); names; names = strchr(names, ',') ? strchr(names, ',') + 1 : NULL)
+        if (strncmp(names, fault, n) == 0 && (names[n] == ',' || names[n] == 0))
+            return true;
+    return false;
+}
+
 static void enter(struct verdict *verdict, const char *stage)
 {
     snprintf(verdict->stage, sizeof verdict->stage, "%s", stage);
@@ -121,10 +129,15 @@ static void judge_mesh(const struct outcome *o, const struct tri_pslg *pslg, boo
     struct tri_pslg input = kept_input(o, pslg);
     if (tri_check(&copy.mesh, &input, &ask, &report, &error) != TRI_OK)
         judge_fault(verdict, "checker", "%s", error.text);
-    for (int kind = 0; kind < TRI_N_CHECKS && !verdict->fault[0]; kind++)
-        if (report.item[kind].state == TRI_CHECK_FAILED)
-            judge_fault(verdict, conforming && is_conforming_fault(kind) ? "conforming" : tri_check_name(kind),
-                        "%lld, first: %s", (long long)report.item[kind].count, report.item[kind].text);
+    for (int kind = 0; kind < TRI_N_CHECKS && !verdict->fault[0]; kind++) {
+        const struct tri_check_item *item = &report.item[kind];
+        if (item->state != TRI_CHECK_FAILED)
+            continue;
+        if (ask.delaunay == TRI_CHECK_CONFORMING && is_conforming_fault(kind))
+            judge_conforming(o, item->count, verdict);
+        else
+            judge_fault(verdict, tri_check_name(kind), "%lld, first: %s", (long long)item->count, item->text);
+    }
     free(input.points);
     support_copy_free(&copy);
     if (!verdict->fault[0])

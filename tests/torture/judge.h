@@ -16,6 +16,9 @@ struct verdict {
 /* Runs the case; the verdict holds the first fault, if any. */
 void judge_case(const struct torture_case *c, struct verdict *verdict);
 
+/* Is the kind of fault one of these names, which have commas between them? NULL: no. */
+bool judge_names(const char *names, const char *fault);
+
 /* --- for the files judge_*.c */
 
 /* A mesh and all that is known of it. */
@@ -34,6 +37,9 @@ void judge_fault(struct verdict *verdict, const char *fault, const char *format,
 
 /* What was carved and which regions spread where, against a naive twin. */
 void judge_carving(const struct outcome *outcome, struct verdict *verdict);
+
+/* A mesh that is not conforming Delaunay although that was asked for, with so many faults. */
+void judge_conforming(const struct outcome *outcome, int64_t faults, struct verdict *verdict);
 
 /* Angles and areas that miss their bounds without a reason, points that a switch forbids. */
 void judge_bounds(const struct outcome *outcome, const struct tri_check_report *report, struct verdict *verdict);

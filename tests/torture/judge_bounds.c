@@ -2,10 +2,14 @@
 #include <stdio.h>
 
 #include "tests/torture/judge.h"
+#include "triangle/disk.h"
 #include "triangle/quality.h"
 
 /* Heights below this share of the largest coordinate are at the resolution of coordinates. */
 static const double RESOLUTION = 1e-12;
+
+/* Circles that small angles share end by concentric shells, of which the smallest are larger than that. */
+static const double RESOLUTION_OF_CIRCLES = 1e-10;
 
 struct bounds {
     const struct outcome *outcome;
@@ -75,10 +79,43 @@ static void judge_angles(const struct outcome *o, const struct bounds *b, const 
                     o->options.quality.min_angle);
     int64_t unexplained = report->n_small - report->n_small_explained;
     if (unexplained > count[TRI_EXCUSE_CHANNEL] + b->too_flat)
-        judge_fault(verdict, "angle", "%lld small angles without a reason (input angle %lld, channel %lld, precision %lld)",
+        judge_fault(verdict, "angle",
+                    "%lld small angles without a reason (input angle %lld, channel %lld, precision %lld)",
                     (long long)(unexplained - count[TRI_EXCUSE_CHANNEL] - b->too_flat),
                     (long long)count[TRI_EXCUSE_INPUT_ANGLE], (long long)count[TRI_EXCUSE_CHANNEL],
                     (long long)count[TRI_EXCUSE_PRECISION]);
+}
+
+/* Is there a triangle of ordinary height on this side of a subsegment, with its apex in the circle? */
+static bool is_resolvable(const struct tri_mesh *mesh, const struct tri_subsegment *s, int side, double least_height)
+{
+    if (s->side[side] == TRI_NONE || !tri_is_in_diametral_disk(mesh, s, s->side[side]))
+        return false;
+    struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[tri_of(s->side[side])].v);
+    double longest2 = fmax(shape.l[0], fmax(shape.l[1], shape.l[2]));
+    return shape.area2 * shape.area2 > least_height * least_height * longest2;
+}
+
+/* What is not conforming must be counted, and lie at the resolution of coordinates or where filling a narrow space would
+ * cost too much. The checker has found so many faults. */
+void judge_conforming(const struct outcome *o, int64_t faults, struct verdict *verdict)
+{
+    struct figure_bounds box = figure_bounds(&o->of->figure.pslg);
+    double least_height = RESOLUTION_OF_CIRCLES * box.largest / o->mesh.unit;
+    int64_t count[TRI_EXCUSES], sum = 0, resolvable = 0;
+    tri_count_encroached(&o->mesh, &o->options.quality, &o->report.quality, count);
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        sum += count[k];
+    for (int32_t s = 0; s < o->mesh.n_subs; s++)
+        resolvable += is_resolvable(&o->mesh, &o->mesh.sub[s], 0, least_height) ||
+                      is_resolvable(&o->mesh, &o->mesh.sub[s], 1, least_height);
+    if (sum == 0)
+        judge_fault(verdict, "conforming uncounted", "%lld faults", (long long)faults);
+    if (resolvable > count[TRI_EXCUSE_CHANNEL])
+        judge_fault(verdict, "conforming",
+                    "%lld subsegments without a reason (input angle %lld, channel %lld, precision %lld)",
+                    (long long)(resolvable - count[TRI_EXCUSE_CHANNEL]), (long long)count[TRI_EXCUSE_INPUT_ANGLE],
+                    (long long)count[TRI_EXCUSE_CHANNEL], (long long)count[TRI_EXCUSE_PRECISION]);
 }
 
 /* Y: no new vertex on the boundary; YY: on no subsegment. */

@@ -27,6 +27,7 @@ static const char usage[] =
     "  --again           refined once more\n"
     "  --out DIR         write the figures of failures there\n"
     "  --minimise        make them small first\n"
+    "  --ignore A,B,..   these kinds of faults are no failure\n"
     "  --seconds S       processor time for a case (20)\n"
     "  --verbose         name all cases\n"
     "Prints a line for each failure and a table of them. Exit code 1: there were some.\n";
@@ -45,7 +46,7 @@ struct torture {
     int32_t count;
     struct torture_range range;
     const struct family *families[MOST_FAMILIES];
-    const char *file, *out;
+    const char *file, *out, *ignored;
     struct torture_case given; /* switches, block, again */
     bool minimise, verbose;
     double seconds;
@@ -203,7 +204,7 @@ static void summarise(const struct torture *t)
 
 /* --- arguments */
 
-enum { SEED = 1, COUNT, FAMILIES, LIST, NEAR, FILE_NAME, SWITCHES, BLOCK, AGAIN, OUT, MINIMISE, SECONDS, VERBOSE };
+enum { SEED = 1, COUNT, FAMILIES, LIST, NEAR, FILE_NAME, SWITCHES, BLOCK, AGAIN, OUT, MINIMISE, IGNORE, SECONDS, VERBOSE };
 
 static const struct option options[] = {{"seed", 1, NULL, SEED},
                                         {"count", 1, NULL, COUNT},
@@ -216,6 +217,7 @@ static const struct option options[] = {{"seed", 1, NULL, SEED},
                                         {"again", 0, NULL, AGAIN},
                                         {"out", 1, NULL, OUT},
                                         {"minimise", 0, NULL, MINIMISE},
+                                        {"ignore", 1, NULL, IGNORE},
                                         {"seconds", 1, NULL, SECONDS},
                                         {"verbose", 0, NULL, VERBOSE},
                                         {0}};
@@ -255,6 +257,7 @@ static bool apply(struct torture *t, int option)
     case AGAIN: t->given.again = true; return true;
     case OUT: t->out = optarg; return mkdir(optarg, 0777) == 0 || errno == EEXIST;
     case MINIMISE: t->minimise = true; return true;
+    case IGNORE: t->ignored = optarg; return true;
     case SECONDS: t->seconds = strtod(optarg, NULL); return t->seconds > 0;
     case VERBOSE: t->verbose = true; return true;
     default: return false;
@@ -301,7 +304,7 @@ static void run_all(struct torture *t)
         }
         run_case(t, &c);
         t->triangles += t->verdict->triangles;
-        if (t->verdict->fault[0])
+        if (t->verdict->fault[0] && !judge_names(t->ignored, t->verdict->fault))
             tell(t, &c);
         case_free(&c);
     }

@@ -1,0 +1,75 @@
+/* What the mesher makes of thousands of tangles (see tangles.h), each put before the judge: triangulated, with hull and
+ * carved, and refined. TANGLES: how many of each family. */
+#include "tangles.h"
+
+static struct tri_options triangulated(void)
+{
+    struct tri_options options = tri_defaults();
+    options.use_segments = true;
+    return options;
+}
+
+/* New points are limited: rounding makes features of any smallness. */
+static struct tri_options refined(double min_angle, bool conforming)
+{
+    struct tri_options options = support_quality(min_angle, 0);
+    options.quality.conforming = conforming;
+    options.quality.max_steiner = 2000;
+    return options;
+}
+
+static void expect_good(int family, uint64_t seed, struct tri_options options)
+{
+    struct tri_pslg pslg = tangles_make(family, seed);
+    struct tri_check_options asked = {.max_bad = INT64_MAX, .ignore_holes = true};
+    struct tri_check_report judgement;
+    struct tri_report report;
+    struct tri_error error = {0};
+    struct tri_mesh mesh;
+    char text[SUPPORT_TEXT];
+    if (tri_generate(&mesh, &pslg, &options, &report, &error) != TRI_OK)
+        fail_msg("%s, seed %d: %s", tangles_name(family), (int)seed, error.text);
+    asked.convex = options.keep_hull && !options.refine && !mesh.twin;
+    if (mesh.n_slots > 0 && !support_passes(&mesh, &pslg, &asked, false, &judgement, text))
+        fail_msg("%s, seed %d: %s", tangles_name(family), (int)seed, text);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+static void expect_all_good(struct tri_options options, int n)
+{
+    for (int family = 0; family < tangles_families(); family++)
+        for (int seed = 0; seed < n; seed++)
+            expect_good(family, (uint64_t)seed, options);
+}
+
+static void test_with_hull(void **state)
+{
+    (void)state;
+    struct tri_options options = triangulated();
+    options.keep_hull = true;
+    expect_all_good(options, TANGLES);
+}
+
+static void test_carved(void **state)
+{
+    (void)state;
+    expect_all_good(triangulated(), TANGLES);
+}
+
+static void test_refined(void **state)
+{
+    (void)state;
+    expect_all_good(refined(20, false), TANGLES / 6);
+    expect_all_good(refined(30, true), TANGLES / 6);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_with_hull),
+        cmocka_unit_test(test_carved),
+        cmocka_unit_test(test_refined),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

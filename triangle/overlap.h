@@ -1,0 +1,23 @@
+/* Segments that run along each other from a common end. */
+#ifndef TRIANGLE_OVERLAP_H
+#define TRIANGLE_OVERLAP_H
+
+#include "triangle/mesh.h"
+
+/* The input segments that run along a piece or a subsegment: the first of them, and the first with a marker. */
+struct tri_course {
+    int32_t first, marked; /* TRI_NONE: there is none */
+};
+
+struct tri_piece {
+    int32_t from, to;
+    struct tri_course course;
+};
+
+/* Where pieces start at one vertex in exactly the same direction, each keeps what reaches beyond the next shorter one,
+ * and the shorter ones take over its course: so the lengths of all pieces at a vertex sum up to the longest, however
+ * many there are. from and to: the ends of each piece, from before to. Empty pieces are left where two are equal. The
+ * others stay as they are. O(n log n) at most, O(n) where few share ends; false: out of memory. */
+bool tri_share_overlaps(const struct tri_mesh *mesh, struct tri_piece *piece, int32_t n);
+
+#endif
