@@ -5,6 +5,7 @@
 
 #include "support.h"
 
+/* The last family has hundreds of segments that cross the first one. */
 int tangles_families(void);
 const char *tangles_name(int family);
 

@@ -105,22 +105,6 @@ static void test_protection(void **state)
     assert_true(tri_is_protected(&options, &inner));
 }
 
-/* On the circle is not inside it. */
-static void test_diametral_disk(void **state)
-{
-    (void)state;
-    static const struct {
-        double y;
-        bool inside;
-    } cases[] = {{0.99, true}, {1, false}, {1.01, false}, {0.01, true}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct setting s;
-        set_up(&s, (struct tri_point){-1, 0}, (struct tri_point){1, 0}, (struct tri_point){0, cases[i].y});
-        struct tri_subsegment sub = {.v = {0, 1}, .side = {tri_code(0, 2), TRI_NONE}};
-        assert_int_equal(tri_is_in_diametral_disk(&s.mesh, &sub, tri_code(0, 2)), cases[i].inside);
-    }
-}
-
 static void test_flat(void **state)
 {
     (void)state;
@@ -140,7 +124,6 @@ int main(void)
         cmocka_unit_test(test_area_bounds),
         cmocka_unit_test(test_size_tests),
         cmocka_unit_test(test_protection),
-        cmocka_unit_test(test_diametral_disk),
         cmocka_unit_test(test_flat),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -137,9 +137,27 @@ static void test_what_stays_is_counted(void **state)
     tri_pslg_free(&pslg);
 }
 
+/* On the circle is not inside it. */
+static void test_the_circle_is_not_inside(void **state)
+{
+    (void)state;
+    static const struct {
+        double y;
+        bool inside;
+    } cases[] = {{0.99, true}, {1, false}, {1.01, false}, {0.01, true}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct tri_point xy[] = {{-1, 0}, {1, 0}, {0, cases[i].y}};
+        struct tri_triangle t = {.v = {0, 1, 2}};
+        struct tri_mesh mesh = {.xy = xy, .tri = &t, .n_vertices = 3, .n_slots = 1};
+        struct tri_subsegment sub = {.v = {0, 1}, .side = {tri_code(0, 2), TRI_NONE}};
+        assert_int_equal(tri_is_in_diametral_disk(&mesh, &sub, tri_code(0, 2)), cases[i].inside);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_circle_is_not_inside),
         cmocka_unit_test(test_needles_part),
         cmocka_unit_test(test_bundles_part),
         cmocka_unit_test(test_nothing_stays_that_can_be_split),

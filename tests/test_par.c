@@ -289,6 +289,31 @@ static void test_the_way_of_numbering_moves_ids_alone(void **state)
     }
 }
 
+/* Triangles with several crowded walls beyond the fences of small blocks are left once each: told of as often as walls
+ * are seen, the pool grew threefold in every phase. */
+static void test_what_is_left_does_not_multiply(void **state)
+{
+    (void)state;
+    static const double place[][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-0.0029265, -0.0026616},
+                                      {0.055498, -0.63862}, {7.4953e-07, -6.5255e-07}, {-0.12927, -0.25733},
+                                      {-1.1001e-07, -6.5239e-08}};
+    static const int32_t ends[][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {8, 7}, {6, 7}};
+    struct par_report report;
+    struct start start = {.pslg = support_pslg(9, 7, 0, 0), .options = support_quality(25, 0)};
+    struct par_options options = small_blocks(60, 2);
+    for (int i = 0; i < 9; i++)
+        support_add_point(&start.pslg, place[i][0], place[i][1]);
+    for (int i = 0; i < 7; i++)
+        support_add_segment(&start.pslg, ends[i][0], ends[i][1]);
+    start.options.quality.conforming = true;
+    struct tri_mesh mesh = refine(&start, &options, &report);
+    judge(&start, &mesh, sum_bad(&mesh, &start.options.quality, &report.total));
+    assert_true(report.rounds > 0 && report.deferred < 20 * (int64_t)mesh.n_slots);
+    par_report_free(&report);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&start.pslg);
+}
+
 static void test_nothing_is_deferred_with_the_margin(void **state)
 {
     (void)state;
@@ -698,6 +723,7 @@ int main(void)
         cmocka_unit_test(test_room_moves_ids_alone),
         cmocka_unit_test(test_the_way_of_numbering_moves_ids_alone),
         cmocka_unit_test(test_nothing_is_deferred_with_the_margin),
+        cmocka_unit_test(test_what_is_left_does_not_multiply),
         cmocka_unit_test(test_default_blocks_cost_no_triangles),
         cmocka_unit_test(test_a_size_test_runs_in_parallel_only_where_allowed),
         cmocka_unit_test(test_limits_and_gates_go_the_sequential_way),

@@ -16,6 +16,24 @@ static void test_slots_grow(void **state)
     free(slots.item);
 }
 
+static void test_a_set_keeps_slots_single(void **state)
+{
+    (void)state;
+    struct par_slots slots = {0};
+    struct par_slot_set set;
+    assert_true(par_slots_add(&slots, 63) && par_slots_add(&slots, 5));
+    assert_true(par_slot_set_of(&set, &slots, 200));
+    for (int32_t i = 0; i < 200; i++)
+        assert_true(par_slots_add_new(&slots, &set, i) && par_slots_add_new(&slots, &set, i));
+    assert_int_equal(slots.n, 200);
+    for (int32_t i = 0, sum = 0; i < 200; i++) {
+        sum += slots.item[i];
+        assert_true(i < 199 || sum == 199 * 100);
+    }
+    free(set.word);
+    free(slots.item);
+}
+
 /* A square with enough points for several shares, and bounds that about half of its triangles miss. */
 static struct tri_mesh crowd(struct tri_refine_options *quality)
 {
@@ -112,6 +130,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_slots_grow),
+        cmocka_unit_test(test_a_set_keeps_slots_single),
         cmocka_unit_test(test_fill),
         cmocka_unit_test(test_fill_again),
         cmocka_unit_test(test_filter),

@@ -1,6 +1,7 @@
 /* What the mesher makes of thousands of tangles (see tangles.h), each put before the judge: triangulated, with hull and
  * carved, and refined. TANGLES: how many of each family. */
 #include "tangles.h"
+#include "triangle/crossing.h"
 
 static struct tri_options triangulated(void)
 {
@@ -64,12 +65,35 @@ static void test_refined(void **state)
     expect_all_good(refined(30, true), TANGLES / 6);
 }
 
+/* Each crossing is that of the input segments, so that errors do not add up along the one that hundreds cross. */
+static void test_crossings_do_not_drift(void **state)
+{
+    (void)state;
+    int32_t crossings = 0;
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        struct tri_constrain_report report;
+        struct tri_pslg pslg = tangles_make(tangles_families() - 1, seed);
+        struct tri_mesh mesh = support_constrained(&pslg, &report);
+        for (int32_t s = 0; report.bent == 0 && s < mesh.n_subs; s++) {
+            struct tri_point p = mesh.xy[mesh.sub[s].v[1]];
+            if (mesh.parents[mesh.sub[s].parent].segment != 0)
+                continue;
+            assert_true(tri_line_distance(mesh.xy[0], mesh.xy[1], p) <= tri_resolution(p));
+            crossings++;
+        }
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+    }
+    assert_true(crossings > 500);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_with_hull),
         cmocka_unit_test(test_carved),
         cmocka_unit_test(test_refined),
+        cmocka_unit_test(test_crossings_do_not_drift),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

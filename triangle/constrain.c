@@ -295,6 +295,9 @@ static struct tri_point end_of(const struct layer *l, int32_t segment, int k)
 /* Does v lie within so many resolutions, those of the segment's larger end, of the line of an input segment? */
 static bool keeps_to(const struct layer *l, int32_t segment, int32_t v, double resolutions)
 {
+    const int32_t *ends = &l->pslg->segments[2 * segment];
+    if (v == ends[0] || v == ends[1])
+        return true; /* nearly always */
     struct tri_point a = end_of(l, segment, 0), b = end_of(l, segment, 1);
     double resolution = fmax(tri_resolution(a), tri_resolution(b));
     return tri_line_distance(a, b, l->mesh->xy[v]) <= resolutions * resolution;
