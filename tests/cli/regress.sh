@@ -255,6 +255,9 @@ few 40000 -pq35 endless_q35_graded
 few 40000 -pq38 endless_q35_graded
 few 200000 -pq38AD slow_q41D_2369
 few 40000 -pq30 ranaway30
+fresh regress/below_dxf.poly # two triangles stayed below the bound without need
+run 0 -pq20 below_dxf
+says 'All triangles keep the bounds.'
 
 # --- input that is nothing
 fresh nasty/identical.node nasty/nan.node nasty/inf.node nasty/inf_word.node nasty/two_points.node nasty/empty.node \
