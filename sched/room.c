@@ -278,6 +278,7 @@ static void move_vertex(struct tri_mesh *mesh, int32_t from, int32_t to)
     mesh->xy[to] = mesh->xy[from];
     mesh->on[to] = mesh->on[from];
     mesh->vertex_markers[to] = mesh->vertex_markers[from];
+    mesh->feature[to] = mesh->feature[from];
     if (n)
         memcpy(mesh->attributes + (size_t)to * n, mesh->attributes + (size_t)from * n, n * sizeof *mesh->attributes);
 }

@@ -712,7 +712,8 @@ static void test_refinement_ends_on_everything(void **state)
                 print_message("  %s %g: %d triangles, %d input vertices, %lld bad, %.2f s\n", *name, angles[k],
                               (int)mesh.n_slots, (int)pslg.n_points, (long long)count_bad(&mesh, &options, &report),
                               seconds);
-                assert_true(mesh.n_slots <= 500 * (int64_t)pslg.n_points + 5000);
+                int64_t corners = pslg.n_points + report.constrain.crossings;
+                assert_true(mesh.n_slots <= 500 * corners + 100000);
                 assert_true(seconds < 20);
                 struct tri_check_options check = {.max_bad = mesh.n_slots, .min_angle = angles[k], .ignore_lost = true};
                 support_judge(&mesh, &pslg, &check, false, NULL);

@@ -78,10 +78,11 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, int32_t slot, c
     const struct tri_triangle *t = &c->mesh->tri[slot];
     if (tri_is_too_large(c, t, shape))
         badness = TRI_BAD_SIZE;
-    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, c->mesh->shortest2, slot, shape))
+    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, slot, shape))
         return shape->l[shape->shortest] < c->mesh->shortest2 ? TRI_EXCUSE_PRECISION
                : tri_is_channel(c->mesh, slot, shape)      ? TRI_EXCUSE_CHANNEL
-                                                           : TRI_EXCUSE_INPUT_ANGLE;
+               : tri_crosses_angle(c->mesh, slot, shape)   ? TRI_EXCUSE_INPUT_ANGLE
+                                                           : TRI_EXCUSE_LIMIT;
     if (report->hit_limit)
         return TRI_EXCUSE_LIMIT;
     if (c->options->protect > 0 && is_beside_protected(c, t))

@@ -68,7 +68,7 @@ static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegmen
 {
     struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], at = mesh->xy[v];
     double x = b.x - a.x, y = b.y - a.y, l = x * x + y * y, cross = x * (at.y - a.y) - y * (at.x - a.x);
-    if (!tri_can_split(mesh->shortest2, a, b) || cross * cross < mesh->shortest2 * l)
+    if (!tri_can_split(mesh, a, b) || cross * cross < mesh->shortest2 * l)
         return false;
     *fraction = tri_split_fraction(mesh, s);
     if (NARROW * NARROW * cross * cross >= l * l)

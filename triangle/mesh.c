@@ -86,6 +86,7 @@ void tri_mesh_free(struct tri_mesh *mesh)
     free(mesh->xy);
     free(mesh->on);
     free(mesh->vertex_markers);
+    free(mesh->feature);
     free(mesh->attributes);
     free(mesh->origin);
     free(mesh->twin);
@@ -111,6 +112,7 @@ enum tri_status tri_mesh_reserve_vertices(struct tri_mesh *mesh, int32_t more, s
     size_t attributes = (size_t)mesh->n_attributes * sizeof *mesh->attributes;
     if (!grow(&mesh->xy, capacity, sizeof *mesh->xy) || !grow(&mesh->on, capacity, sizeof *mesh->on) ||
         !grow(&mesh->vertex_markers, capacity, sizeof *mesh->vertex_markers) ||
+        !grow(&mesh->feature, capacity, sizeof *mesh->feature) ||
         (attributes && !grow(&mesh->attributes, capacity, attributes)))
         return no_memory(error, "vertices", capacity);
     mesh->vertex_capacity = capacity;
@@ -185,6 +187,7 @@ enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_psl
         assert(tri_is_in_range(mesh->xy[i]));
         mesh->on[i] = TRI_VERTEX_INPUT;
         mesh->vertex_markers[i] = pslg->markers ? pslg->markers[i] : 0;
+        mesh->feature[i] = HUGE_VAL;
     }
     if (attributes)
         memcpy(mesh->attributes, pslg->attributes, (size_t)n * (size_t)attributes * sizeof *mesh->attributes);
@@ -239,10 +242,10 @@ static void bring_share(void *context, size_t share)
 void tri_mesh_gather_vertices(struct tri_mesh *mesh, int32_t first, const int32_t *from, int32_t n, void *scratch,
                               const struct tri_executor *executor)
 {
-    void *array[] = {mesh->xy, mesh->on, mesh->vertex_markers, mesh->attributes};
-    const size_t item[] = {sizeof *mesh->xy, sizeof *mesh->on, sizeof *mesh->vertex_markers,
+    void *array[] = {mesh->xy, mesh->on, mesh->vertex_markers, mesh->feature, mesh->attributes};
+    const size_t item[] = {sizeof *mesh->xy, sizeof *mesh->on, sizeof *mesh->vertex_markers, sizeof *mesh->feature,
                            (size_t)mesh->n_attributes * sizeof *mesh->attributes};
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 5; k++) {
         if (n == 0 || item[k] == 0)
             continue;
         struct gathering g = {(char *)array[k] + (size_t)first * item[k], scratch, array[k], item[k], from, n};

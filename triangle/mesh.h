@@ -77,6 +77,7 @@ struct tri_mesh {
     struct tri_point *xy;     /* [n_vertices] */
     int32_t *on;              /* [n_vertices] kind or parent, see tri_vertex_kind */
     int32_t *vertex_markers;  /* [n_vertices] */
+    double *feature;          /* [n_vertices] size of the features around, once refinement has begun (feature_size.h) */
     double *attributes;       /* [n_vertices][n_attributes] */
     int32_t n_attributes;
     int32_t n_vertices, vertex_capacity;

@@ -18,6 +18,7 @@
 #include "triangle/bad_queue.h"
 #include "triangle/criterion.h"
 #include "triangle/disk.h"
+#include "triangle/feature_size.h"
 #include "triangle/inside.h"
 #include "triangle/interpolate.h"
 #include "triangle/predicates.h"
@@ -30,6 +31,9 @@
  * circumcentre: sizes then lie closer to the bound than with circumcentres alone. */
 static const double EQUILATERAL = 2.3094010767585030580, IDEAL = 0.85;
 
+/* In degrees: a bound that is soon reached around points that were inserted for a larger one. */
+static const double BACK_ANGLE = 30;
+
 enum stage { EASY_STAGE, USUAL_STAGE, BEYOND_STAGE, BACK_STAGE, LAST_STAGE };
 
 enum step { NOT_BEGUN, FIRST_PASS, SECOND_PASS };
@@ -40,13 +44,11 @@ struct tri_refiner {
     struct tri_refine_report *report;
     struct tri_error *error;
     struct tri_criterion criterion;
-    double shortest2;   /* square of the shortest edge to make */
-    int least_exponent; /* of it */
+    int least_exponent; /* of mesh->shortest2 */
     struct tri_cavity cavity;
     struct tri_bad_queue queue;
-    int64_t for_angles, for_sizes; /* points inserted for bad angles, and for bad sizes */
-    int64_t angle_cap;
-    int relaxed;      /* how many times the angle bound has been lowered, see relax */
+    bool sized;       /* the triangle in hand asks for a point because of sizes, not of angles */
+    int64_t beyond;   /* how many points more may be inserted for angles above TRI_USUAL_ANGLE */
     enum step step;
     int limit;        /* buckets from here on wait for the second pass */
     int32_t next_seed, n_seeds;
@@ -188,11 +190,15 @@ static const int32_t *corners_around(const struct tri_refiner *r, struct tri_poi
     return r->mesh->tri[r->cavity.tri[0]].v;
 }
 
-static enum outcome insert_free(struct tri_refiner *r, struct tri_point p)
+/* Inserts p, whose cavity has been found, for the sake of the triangle in a slot. */
+static enum outcome insert_free(struct tri_refiner *r, struct tri_point p, int32_t slot, const struct tri_shape *shape)
 {
     if (make_room(r))
         return FAILED;
     int32_t v = add_vertex(r, p, TRI_VERTEX_FREE, 0);
+    const int32_t *corner = r->mesh->tri[slot].v;
+    r->mesh->feature[v] = tri_feature_inside(r->mesh, corner[tri_next[shape->shortest]],
+                                             corner[tri_prev[shape->shortest]], p, r->sized);
     if (r->mesh->n_attributes)
         tri_interpolate_triangle(r->mesh, corners_around(r, p), v);
     tri_cavity_fill(&r->cavity, r->mesh, v);
@@ -230,7 +236,7 @@ static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, 
     if (tri_is_protected(r->options, &old))
         return refuse(r, TRI_EXCUSE_PROTECTED);
     struct tri_point p;
-    if (!tri_can_split(r->shortest2, m->xy[old.v[0]], m->xy[old.v[1]]) || !tri_place_split(m, &old, fraction, &p))
+    if (!tri_can_split(m, m->xy[old.v[0]], m->xy[old.v[1]]) || !tri_place_split(m, &old, fraction, &p))
         return refuse(r, TRI_EXCUSE_PRECISION);
     enum tri_search found = tri_cavity_search_split(&r->cavity, m, p, s, &n_left);
     if (found == TRI_SEARCH_FENCED)
@@ -241,6 +247,7 @@ static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, 
         return FAILED;
     bool boundary = old.side[0] == TRI_NONE || old.side[1] == TRI_NONE;
     int32_t v = add_vertex(r, r->cavity.p, old.parent, old.marker ? old.marker : boundary ? 1 : 0);
+    m->feature[v] = tri_feature_on_segment(m, &r->cavity, s, r->sized);
     tri_interpolate_edge(m, old.v[0], old.v[1], fraction, v);
     int32_t second = tri_cavity_fill_split(&r->cavity, m, v, s, n_left);
     r->report->inserted_on_segments++;
@@ -342,7 +349,7 @@ static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tr
         return outcome;
     int32_t s = find_encroached(r);
     if (s == TRI_NONE)
-        return insert_free(r, p);
+        return insert_free(r, p, slot, shape);
     if (tri_is_flat(r->mesh, shape))
         return refuse(r, TRI_EXCUSE_PRECISION);
     outcome = split(r, s, slot);
@@ -360,7 +367,7 @@ static enum outcome propose_inside(struct tri_refiner *r, int32_t slot, const st
     if (!tri_centroid(r->mesh, slot, shape, &p))
         return refuse(r, TRI_EXCUSE_PRECISION);
     outcome = find_cavity(r, slot, p);
-    return outcome == DONE ? insert_free(r, p) : outcome;
+    return outcome == DONE ? insert_free(r, p, slot, shape) : outcome;
 }
 
 /* Lowers the angle bound that the loop works for; what is already bad by the old one stays. */
@@ -371,26 +378,13 @@ static void lower_bound(struct tri_refiner *r, double degrees)
     r->criterion.bounds.lens_cos2 = degrees > 0 ? r->criterion.bounds.lens_cos2 : lens_cos2;
 }
 
-/* Points for bad angles run away: on with the bound for which refinement ends in practice, then with one for which it
- * provably does, at last with none. */
-static void relax(struct tri_refiner *r)
+/* What the mesh can afford for a bound above the usual one has been spent. */
+static void count_point(struct tri_refiner *r)
 {
-    static const double bound[] = {TRI_USUAL_ANGLE, 25, 0};
-    while (r->relaxed < 3 && bound[r->relaxed] >= r->options->min_angle)
-        r->relaxed++;
-    if (r->relaxed == 3)
+    if (r->stage != BEYOND_STAGE || r->sized || --r->beyond != -1)
         return;
-    lower_bound(r, bound[r->relaxed++]);
-    r->angle_cap *= 2;
+    lower_bound(r, BACK_ANGLE);
     r->report->hit_cap = true;
-}
-
-static void count_point(struct tri_refiner *r, enum tri_badness badness)
-{
-    if (badness == TRI_BAD_SIZE)
-        r->for_sizes++;
-    else if (++r->for_angles > r->angle_cap + 4 * r->for_sizes)
-        relax(r);
 }
 
 static bool at_limit(struct tri_refiner *r)
@@ -399,6 +393,19 @@ static bool at_limit(struct tri_refiner *r)
     if (r->options->max_steiner < 0 || inserted < r->options->max_steiner)
         return false;
     return r->report->hit_limit = true;
+}
+
+/* Beyond the usual angle edges must be eight times as long, so that afterwards there is room for better angles around
+ * them. */
+static bool is_hopeless(const struct tri_refiner *r, int32_t slot, const struct tri_shape *shape)
+{
+    const int32_t *v = r->mesh->tri[slot].v;
+    int k = shape->shortest;
+    if (tri_is_hopeless(r->mesh, slot, shape))
+        return true;
+    if (r->stage != BEYOND_STAGE || !tri_has_run_away(r->mesh, v[tri_next[k]], v[tri_prev[k]], shape->l[k] / 64))
+        return false;
+    return r->report->hit_cap = true;
 }
 
 /* Treats one bad triangle until it is gone or refused. */
@@ -412,18 +419,21 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
         if (badness == TRI_GOOD)
             return DONE;
-        if (badness == TRI_BAD_ANGLE && tri_is_hopeless(r->mesh, r->shortest2, entry.t, &shape) &&
-            !tri_is_too_large(&r->criterion, t, &shape))
-            return give_up(r, TRI_EXCUSE_INPUT_ANGLE);
+        r->sized = badness == TRI_BAD_SIZE;
+        if (badness == TRI_BAD_ANGLE && is_hopeless(r, entry.t, &shape)) {
+            if (!tri_is_too_large(&r->criterion, t, &shape))
+                return give_up(r, TRI_EXCUSE_INPUT_ANGLE);
+            r->sized = true;
+        }
         if (at_limit(r))
             return give_up(r, TRI_EXCUSE_LIMIT);
         enum outcome outcome = propose(r, entry.t, &shape, badness);
         if (outcome == REFUSED && tri_is_too_large(&r->criterion, t, &shape)) {
-            badness = TRI_BAD_SIZE;
+            r->sized = true;
             outcome = propose_inside(r, entry.t, &shape);
         }
         if (outcome == DONE || outcome == AGAIN)
-            count_point(r, badness);
+            count_point(r);
         if (outcome != AGAIN)
             return outcome == REFUSED ? give_up(r, r->excuse) : outcome;
     }
@@ -440,11 +450,14 @@ static bool split_crowded(struct tri_refiner *r)
         double fraction;
         if (!tri_is_crowded(r->mesh, sub, &fraction) || at_limit(r))
             continue;
+        r->sized = false;
         enum outcome outcome = split_at(r, s, fraction, beside);
         if (outcome == FAILED) {
             r->crowded[r->n_crowded++] = s; /* there is room: it was there a moment ago */
             return false;
         }
+        if (outcome == DONE)
+            count_point(r);
         if (outcome == REFUSED)
             give_up(r, r->excuse);
     }
@@ -550,25 +563,12 @@ static bool refine_seeds(struct tri_refiner *r)
     return true;
 }
 
-/* Square of a quarter of the shortest edge in the mesh. */
-static double quarter_of_shortest2(const struct tri_mesh *mesh)
-{
-    double shortest2 = HUGE_VAL;
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
-        if (!tri_is_live(&mesh->tri[t]))
-            continue;
-        struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
-        shortest2 = shape.l[shape.shortest] < shortest2 ? shape.l[shape.shortest] : shortest2;
-    }
-    return shortest2 / 16;
-}
-
 /* Where there are sizes to reach and the angle bound is above TRI_EASY_ANGLE, sizes come first, with an easy bound: bad
  * angles are dear to mend where triangles of different sizes meet, and in a mesh of one size they seldom do
- * (docs/performance.md: up to a sixth fewer triangles). Above TRI_USUAL_ANGLE refinement may feed on itself, with ever
- * shorter edges. So the whole mesh is refined for the usual angle; then for more, as long as that adds less than half
- * as many points again and no edge is much shorter than what is there; where that ran away, for the usual angle again.
- * Within a fence there is only the usual stage. */
+ * (docs/performance.md: up to a sixth fewer triangles). Above TRI_USUAL_ANGLE refinement feeds on itself, until edges
+ * are as short as feature_size.c allows. So the whole mesh is refined for the usual angle; then for more, as long as
+ * that adds less than half as many points again; where it did not end so, what is left is mended for BACK_ANGLE (for
+ * the usual angle it would take several times as many points). Within a fence there is only the usual stage. */
 static void begin_stages(struct tri_refiner *r)
 {
     double usual = fmin(r->options->min_angle, TRI_USUAL_ANGLE);
@@ -579,8 +579,7 @@ static void begin_stages(struct tri_refiner *r)
 
 static void go_beyond(struct tri_refiner *r)
 {
-    r->shortest2 = fmax(r->shortest2, quarter_of_shortest2(r->mesh));
-    r->angle_cap = 1000 + r->for_angles + r->mesh->n_slots / 4;
+    r->beyond = 200 + r->mesh->n_slots / 4;
     lower_bound(r, r->options->min_angle);
     r->stage = BEYOND_STAGE;
 }
@@ -601,8 +600,7 @@ static void next_stage(struct tri_refiner *r)
     case BEYOND_STAGE:
         r->stage = LAST_STAGE;
         if (r->report->hit_cap) {
-            r->shortest2 = r->mesh->shortest2;
-            lower_bound(r, TRI_USUAL_ANGLE);
+            lower_bound(r, BACK_ANGLE);
             r->stage = BACK_STAGE;
         }
         return;
@@ -641,10 +639,8 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
     r->criterion.options = options;
     r->report = report;
     begin_stages(r);
-    r->shortest2 = mesh->shortest2;
-    frexp(r->shortest2, &r->least_exponent);
+    frexp(mesh->shortest2, &r->least_exponent);
     r->cavity.fence = options->fence;
-    r->angle_cap = (options->fence ? 1000 : 20000) + 100 * (int64_t)seed_count(r) + (int64_t)(4 * mesh->channel_points);
     return TRI_OK;
 }
 

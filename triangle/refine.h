@@ -58,7 +58,7 @@ enum tri_excuse { /* why a triangle is still bad */
     TRI_EXCUSE_INPUT_ANGLE, /* at, or across from, a small angle between input segments */
     TRI_EXCUSE_CHANNEL,     /* between two segments so near to each other that filling the space would cost too much */
     TRI_EXCUSE_PROTECTED,   /* -Y or -YY */
-    TRI_EXCUSE_LIMIT,       /* -S, or the cap on angle-driven points */
+    TRI_EXCUSE_LIMIT,       /* -S, or points for angles that would run away (feature_size.h) */
     TRI_EXCUSE_PRECISION,   /* features nearer to each other than coordinates can resolve */
     TRI_EXCUSE_DEFERRED,    /* gate or fence */
     TRI_EXCUSES
@@ -69,7 +69,7 @@ struct tri_refine_report {
     int64_t gated, deferred;          /* times the gate said no; times a cavity reached beyond the fence */
     int64_t refused[TRI_EXCUSES];     /* bad triangles given up during the call, by reason; some vanish later */
     bool hit_limit;                   /* max_steiner stopped the call */
-    bool hit_cap;                     /* angle-driven points ran away and were stopped */
+    bool hit_cap;                     /* a bound above TRI_USUAL_ANGLE would have cost too many points */
 };
 
 struct tri_refine_options tri_refine_defaults(void);

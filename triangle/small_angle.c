@@ -1,8 +1,8 @@
 /* Rules that make refinement end on any PSLG, beside those of the loop.
  *
  * THEORY. Refinement with bounds up to 28.6 degrees ends where segments meet at 60 degrees or more (Chew 1993; Shewchuk
- * 2002; Rand 2011), since every new point is about as far from all others as the features around it. Three things break
- * that:
+ * 2002; Rand 2011), since every new point is about as far from all others as the features around it. Three things
+ * break that:
  *   1. Two segments at a small angle would split each other for ever. They are split on common circles around the
  *      vertex where they meet (concentric shells: Ruppert 1995), and a triangle whose shortest edge joins two of them
  *      on one circle stays (Miller, Pav & Walkington 2003): its length is dictated by the input angle, so nothing
@@ -14,6 +14,7 @@
  *   3. Rounding: points nearer than about 100 units in the last place, flat triangles, split points beside their
  *      segment. An edge or height below mesh.shortest2 stays; a point that does not see its whole cavity is not
  *      inserted (cavity.h).
+ * And above 28.6 degrees points may beget points in ever smaller triangles: feature_size.c says where that ends.
  * What stays is counted by reason (tri_count_bad). */
 #include "triangle/small_angle.h"
 
@@ -21,6 +22,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "triangle/feature_size.h"
 #include "triangle/heap_sort.h"
 #include "triangle/predicates.h"
 #include "triangle/refine.h"
@@ -48,27 +50,31 @@ double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegme
     return at_start ? shell / length : 1 - shell / length;
 }
 
-bool tri_can_split(double shortest2, struct tri_point a, struct tri_point b)
+bool tri_can_split(const struct tri_mesh *mesh, struct tri_point a, struct tri_point b)
 {
-    return squared(a, b) > 4 * shortest2;
+    return squared(a, b) > 4 * mesh->shortest2;
+}
+
+/* The vertex where the parents on which u and v lie meet; TRI_NONE where they do not, or are the same. */
+static int32_t apex_between(const struct tri_mesh *mesh, int32_t u, int32_t v)
+{
+    int32_t pu = mesh->on[u], pv = mesh->on[v];
+    for (int i = 0; pu >= 0 && pv >= 0 && pu != pv && i < 2; i++)
+        for (int k = 0; k < 2; k++)
+            if (mesh->parents[pu].v[i] == mesh->parents[pv].v[k])
+                return mesh->parents[pu].v[i];
+    return TRI_NONE;
 }
 
 /* Both on subsegments of segments that meet at a common vertex, at the same distance from it? Then their distance is
  * dictated by the angle there (Miller, Pav & Walkington 2003). */
 static bool on_one_shell(const struct tri_mesh *mesh, int32_t u, int32_t v, double uv2)
 {
-    int32_t pu = mesh->on[u], pv = mesh->on[v];
-    if (pu < 0 || pv < 0 || pu == pv)
+    int32_t apex = apex_between(mesh, u, v);
+    if (apex == TRI_NONE)
         return false;
-    for (int i = 0; i < 2; i++)
-        for (int k = 0; k < 2; k++)
-            if (mesh->parents[pu].v[i] == mesh->parents[pv].v[k]) {
-                struct tri_point o = mesh->xy[mesh->parents[pu].v[i]];
-                double du = squared(o, mesh->xy[u]), dv = squared(o, mesh->xy[v]);
-                if (du < 1.002 * dv && dv < 1.002 * du && uv2 < 0.99 * du)
-                    return true;
-            }
-    return false;
+    double du = squared(mesh->xy[apex], mesh->xy[u]), dv = squared(mesh->xy[apex], mesh->xy[v]);
+    return du < 1.002 * dv && dv < 1.002 * du && uv2 < 0.99 * du;
 }
 
 /* The parents that vertex v lies on: its own, or those that end there. */
@@ -161,12 +167,11 @@ int32_t tri_common_end(const struct tri_mesh *mesh, int32_t parent, int32_t v)
     return TRI_NONE;
 }
 
-/* How many points, to the order, would it take to fill the space between two parents that are as far apart at one place
- * as v is from the line of p through u? At the far end of the shorter one, of length l, they are at most width + l *
- * sine apart. */
-static double filling_cost(const struct tri_mesh *mesh, const struct tri_parent *p, const struct tri_parent *q,
-                           struct tri_point u, struct tri_point v)
+/* At the far end of the shorter one, of length l, they are at most width + l * sine apart. */
+double tri_filling_cost(const struct tri_mesh *mesh, int32_t first, int32_t second, struct tri_point u,
+                        struct tri_point v)
 {
+    const struct tri_parent *p = &mesh->parents[first], *q = &mesh->parents[second];
     struct tri_point a = mesh->xy[p->v[0]], b = mesh->xy[p->v[1]], c = mesh->xy[q->v[0]], d = mesh->xy[q->v[1]];
     double px = b.x - a.x, py = b.y - a.y, qx = d.x - c.x, qy = d.y - c.y;
     double lp = px * px + py * py, lq = qx * qx + qy * qy, cross = fabs(px * qy - py * qx);
@@ -209,7 +214,7 @@ static double channel_cost(const struct tri_mesh *mesh, int32_t u, int32_t v, in
                 continue;
             if (!is_beside(mesh, p, v) && !is_beside(mesh, q, u))
                 continue; /* one behind the other, as in a smooth curve */
-            double cost = filling_cost(mesh, p, q, mesh->xy[u], mesh->xy[v]);
+            double cost = tri_filling_cost(mesh, pu[i], pv[k], mesh->xy[u], mesh->xy[v]);
             dearest = cost > dearest ? cost : dearest;
         }
     return dearest;
@@ -227,13 +232,19 @@ bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_
     return tri_channel_cost(mesh, slot, shape) > mesh->dearest_channel;
 }
 
-bool tri_is_hopeless(const struct tri_mesh *mesh, double shortest2, int32_t slot, const struct tri_shape *shape)
+bool tri_crosses_angle(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape)
+{
+    const int32_t *v = mesh->tri[slot].v;
+    return apex_between(mesh, v[tri_next[shape->shortest]], v[tri_prev[shape->shortest]]) != TRI_NONE;
+}
+
+bool tri_is_hopeless(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape)
 {
     const struct tri_triangle *t = &mesh->tri[slot];
     int k = shape->shortest;
     int32_t u = t->v[tri_next[k]], v = t->v[tri_prev[k]];
-    return shape->l[k] < shortest2 || on_one_shell(mesh, u, v, shape->l[k]) ||
-           tri_is_channel(mesh, slot, shape);
+    return shape->l[k] < mesh->shortest2 || tri_has_run_away(mesh, u, v, shape->l[k]) ||
+           on_one_shell(mesh, u, v, shape->l[k]) || tri_is_channel(mesh, slot, shape);
 }
 
 /* Two corners at least lie on segments. */
@@ -372,6 +383,7 @@ static double shortest_edge2(const struct tri_mesh *mesh)
 enum tri_status tri_refine_prepare(struct tri_mesh *mesh, struct tri_error *error)
 {
     mesh->shortest2 = shortest_edge2(mesh);
+    tri_estimate_features(mesh);
     find_acute(mesh);
     enum tri_status status = list_spokes(mesh, error);
     if (!status)

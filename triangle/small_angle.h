@@ -9,8 +9,11 @@
  * (concentric shells: Ruppert 1995), and do not encroach each other for ever. */
 double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegment *s);
 
-/* Is the subsegment from a to b long enough to be split, where no edge shall be shorter than the root of shortest2? */
-bool tri_can_split(double shortest2, struct tri_point a, struct tri_point b);
+/* Is the subsegment from a to b long enough to be split? */
+bool tri_can_split(const struct tri_mesh *mesh, struct tri_point a, struct tri_point b);
+
+/* Does the shortest edge of the triangle join two segments that touch? */
+bool tri_crosses_angle(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape);
 
 /* Does the vertex lie on a parent? */
 bool tri_is_on_parent(const struct tri_mesh *mesh, int32_t v);
@@ -19,7 +22,12 @@ bool tri_is_on_parent(const struct tri_mesh *mesh, int32_t v);
 int32_t tri_common_end(const struct tri_mesh *mesh, int32_t parent, int32_t v);
 
 /* A bad angle that no point can mend, or that would only move it: see the rules in the .c file. */
-bool tri_is_hopeless(const struct tri_mesh *mesh, double shortest2, int32_t slot, const struct tri_shape *shape);
+bool tri_is_hopeless(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape);
+
+/* How many points, to the order, would it take to fill the space between two parents, the first through u, the second
+ * through v, that are as far apart there as v is from the line of the first? */
+double tri_filling_cost(const struct tri_mesh *mesh, int32_t first, int32_t second, struct tri_point u,
+                        struct tri_point v);
 
 /* About so many points it would take to fill the space between two parents that the shortest edge of the triangle
  * bridges; 0 where it bridges none. */

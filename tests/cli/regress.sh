@@ -237,6 +237,30 @@ for angle in 35 36 40 45 59 60 61 90; do
     judge letter.1 --poly letter.poly
 done
 
+# --- points for angles that ran away: triangles, at most. (test_feature_size tries all inputs and bounds.)
+fresh regress/endless_q36_small.poly regress/endless_q36_fan.poly regress/endless_q35_graded.poly \
+    regress/slow_q41D_2369.poly regress/ranaway30.poly
+few() { # few TRIANGLES WORDS...: no more of them, in a right mesh
+    most=$1
+    shift
+    run 0 "$@"
+    found=$(records "$2.1.ele" | sed -n 1p | cut -d' ' -f1)
+    check "$found triangles, more than $most" test "$found" -le "$most"
+    judge "$2.1" --poly "$2.poly"
+}
+few 1000 -pq34.5 endless_q36_small
+few 5000 -pq36 endless_q36_small
+few 10000 -pq34 endless_q36_fan
+few 40000 -pq36 endless_q36_fan
+few 10000 -pq34 endless_q35_graded
+few 40000 -pq35 endless_q35_graded
+few 40000 -pq38 endless_q35_graded
+few 200000 -pq38AD slow_q41D_2369
+few 40000 -pq30 ranaway30
+fresh regress/below_dxf.poly # two triangles stayed below the bound without need
+run 0 -pq20 below_dxf
+says 'All triangles keep the bounds.'
+
 # --- input that is nothing
 fresh nasty/identical.node nasty/nan.node nasty/inf.node nasty/inf_word.node nasty/two_points.node nasty/empty.node \
     nasty/collinear.node nasty/collinear.poly

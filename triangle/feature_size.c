@@ -1,0 +1,119 @@
+/* The size of features, and why points for angles cannot run away.
+ *
+ * Above about 28 degrees a new point may lie nearer to its neighbours than the edge that asked for it is long, and
+ * points may beget points in ever smaller triangles. So every vertex v knows the size s(v) of the features around it,
+ * an estimate of Ruppert's local feature size (1995: how far it is to two features that do not touch):
+ *   - for a vertex of the input: how far it is to the vertices and segments that its triangles reach;
+ *   - for a point inserted for a triangle with shortest edge ab: min(s(a), s(b)) + SLOPE * |ap|, inherited as insertion
+ *     radii are in the proofs of Shewchuk (2002);
+ *   - for a split point: the same from all vertices around it, but no more than its distance from features that do not
+ *     touch its segment, unless the space between is a channel too dear to fill (small_angle.h);
+ *   - for a point inserted because of sizes: no more than its distance from its neighbours. A size that is asked for is
+ *     a feature.
+ * RULE. A triangle whose shortest edge ab is shorter than min(s(a), s(b)) / SHRINK is not refined for its angle.
+ *
+ * THEOREM (nothing runs away). Call sources the vertices whose s is not inherited, and let F(x) be the minimum over all
+ * sources w of s(w) + SLOPE * |wx|. F does not grow faster than SLOPE, so s(v) >= F(v) for every vertex, by induction.
+ * Under the rule an edge that asks for a point is at least F / SHRINK long. The point lies at least l / (2 sin bound)
+ * from all vertices, l being the length of that edge; a subsegment that is split instead is longer than a fixed share
+ * of l, since the point sees it under an angle of more than 180 degrees - 2 * bound, or lies behind it. So points for
+ * angles keep a distance from each other of a fixed share of F, and there are at most C * integral of dx / F(x)^2 of
+ * them: to a constant as many as Ruppert's algorithm inserts for a bound for which it is known to end. C does not
+ * depend on the bound, and nothing depends on the order of insertion: it holds for any schedule.
+ *
+ * SLOPE is about the grading of a mesh of 30 degrees. SHRINK: where nothing runs away, one edge in a million is shorter
+ * than s / 16 for bounds up to 34 degrees. */
+#include "triangle/feature_size.h"
+
+#include <assert.h>
+
+#include "triangle/quality.h"
+#include "triangle/small_angle.h"
+
+static const double SLOPE = 0.5, SHRINK = 32;
+
+/* Is the corner beside the edge opposite to it, not before its start or beyond its end? From squared lengths. */
+static bool is_beside(double edge, double left, double right) { return left <= right + edge && right <= left + edge; }
+
+static void estimate_corner(struct tri_mesh *mesh, const struct tri_triangle *t, const struct tri_shape *shape, int k)
+{
+    double edge = shape->l[k], left = shape->l[tri_next[k]], right = shape->l[tri_prev[k]];
+    double size = sqrt(left < right ? left : right);
+    if (t->n[k] < 0 && is_beside(edge, left, right))
+        size = fmin(size, shape->area2 / sqrt(edge));
+    mesh->feature[t->v[k]] = fmin(mesh->feature[t->v[k]], size);
+}
+
+void tri_estimate_features(struct tri_mesh *mesh)
+{
+    for (int32_t v = 0; v < mesh->n_vertices; v++)
+        mesh->feature[v] = HUGE_VAL;
+    for (int32_t i = 0; i < mesh->n_slots; i++) {
+        const struct tri_triangle *t = &mesh->tri[i];
+        if (!tri_is_live(t))
+            continue;
+        struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
+        for (int k = 0; k < 3; k++)
+            estimate_corner(mesh, t, &shape, k);
+    }
+}
+
+double tri_feature_inside(const struct tri_mesh *mesh, int32_t a, int32_t b, struct tri_point p, bool sized)
+{
+    double sa = mesh->feature[a], sb = mesh->feature[b], near = sqrt(tri_relative(&mesh->xy[a], p).l);
+    double inherited = (sa < sb ? sa : sb) + SLOPE * near;
+    return sized && near < inherited ? near : inherited;
+}
+
+/* May a point on parent p have the size of its distance from parent q, at w? */
+static bool counts(const struct tri_mesh *mesh, int32_t p, int32_t q, struct tri_point at, struct tri_point w)
+{
+    const struct tri_parent *a = &mesh->parents[p], *b = &mesh->parents[q];
+    bool touch = p == q || a->v[0] == b->v[0] || a->v[0] == b->v[1] || a->v[1] == b->v[0] || a->v[1] == b->v[1];
+    return !touch && tri_filling_cost(mesh, p, q, at, w) <= mesh->dearest_channel;
+}
+
+/* What vertex v, at `distance` from a point on parent p, says about the size there. */
+static double size_from(const struct tri_mesh *mesh, int32_t p, struct tri_point at, int32_t v, double distance)
+{
+    int32_t on = mesh->on[v];
+    double inherited = mesh->feature[v] + SLOPE * distance;
+    bool is_end = mesh->parents[p].v[0] == v || mesh->parents[p].v[1] == v;
+    bool is_feature = on >= 0 ? counts(mesh, p, on, at, mesh->xy[v]) : on != TRI_VERTEX_FREE && !is_end;
+    return is_feature && distance < inherited ? distance : inherited;
+}
+
+/* The distance of the new point from a subsegment on its rim, where it lies beside it and that counts. */
+static double size_from_wall(const struct tri_mesh *mesh, int32_t p, struct tri_point at, int32_t wall)
+{
+    const struct tri_subsegment *sub = &mesh->sub[wall];
+    struct tri_relative a = tri_relative(&mesh->xy[sub->v[0]], at), b = tri_relative(&mesh->xy[sub->v[1]], at);
+    double x = b.x - a.x, y = b.y - a.y, edge = x * x + y * y;
+    if (!is_beside(edge, a.l, b.l) || !counts(mesh, p, sub->parent, at, mesh->xy[sub->v[0]]))
+        return HUGE_VAL;
+    return fabs(tri_cross(a, b)) / sqrt(edge);
+}
+
+double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavity *cavity, int32_t s, bool sized)
+{
+    const struct tri_subsegment *sub = &mesh->sub[s];
+    double size = HUGE_VAL, half = HUGE_VAL;
+    for (int k = 0; k < 2; k++) {
+        double distance = sqrt(tri_relative(&mesh->xy[sub->v[k]], cavity->p).l);
+        half = fmin(half, distance);
+        size = fmin(size, size_from(mesh, sub->parent, cavity->p, sub->v[k], distance));
+    }
+    for (int32_t i = 0; i < cavity->n_rim; i++) {
+        const struct tri_rim *rim = &cavity->rim[i];
+        size = fmin(size, size_from(mesh, sub->parent, cavity->p, rim->a, sqrt(rim->ra.l)));
+        if (rim->outer < 0)
+            size = fmin(size, size_from_wall(mesh, sub->parent, cavity->p, ~rim->outer));
+    }
+    return sized && half < size ? half : size;
+}
+
+bool tri_has_run_away(const struct tri_mesh *mesh, int32_t a, int32_t b, double l2)
+{
+    double sa = mesh->feature[a], sb = mesh->feature[b], size = sa < sb ? sa : sb;
+    return size * size > SHRINK * SHRINK * l2;
+}

@@ -1,0 +1,20 @@
+/* How small edges may become for the sake of angles: the size of the features around each vertex. */
+#ifndef TRIANGLE_FEATURE_SIZE_H
+#define TRIANGLE_FEATURE_SIZE_H
+
+#include "triangle/cavity.h"
+
+/* Sets mesh->feature of every vertex from the triangles around it, before the first point is inserted. O(triangles). */
+void tri_estimate_features(struct tri_mesh *mesh);
+
+/* The feature size at a point p that is inserted for a triangle with shortest edge ab; sized: because it is too large,
+ * not because of its angles. */
+double tri_feature_inside(const struct tri_mesh *mesh, int32_t a, int32_t b, struct tri_point p, bool sized);
+
+/* The same for a point on subsegment s whose cavity has been found by tri_cavity_search_split. */
+double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavity *cavity, int32_t s, bool sized);
+
+/* Is the edge between vertices a and b, of squared length l2, too short for what is around it? */
+bool tri_has_run_away(const struct tri_mesh *mesh, int32_t a, int32_t b, double l2);
+
+#endif
