@@ -110,12 +110,18 @@ def judge(code, failure, error, before, after, whole):
     return "" if len(lines) == 1 and error.count("\n") == 1 else f"no one line: {error!r}"
 
 
+def needs_memory(program):
+    """Does it use libraries that crash or hang when an allocation of their own fails?"""
+    libraries = subprocess.run(["ldd", program], stdout=subprocess.PIPE, check=True).stdout
+    return b"libomp" in libraries or b"libcairo" in libraries  # LLVM's OpenMP; drawing
+
+
 def try_case(case, bin_folder, data, shim, work):
     """Faults found, as texts; and the number of runs."""
     program, words, inputs = case[0], case[1].split(), case[2]
     folder, count = f"{work}/case", f"{work}/count"
     path = f"{bin_folder}/{program}"
-    own = {"PTRIANGLE_FAIL_OWN": "1"} if program == "meshplot" else {}  # drawing libraries crash
+    own = {"PTRIANGLE_FAIL_OWN": "1"} if needs_memory(path) else {}
     failure = 2 if program == "trianglecheck" else 1
     prepare(folder, inputs, bin_folder, data)
     before = contents(folder)

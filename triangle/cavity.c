@@ -198,8 +198,10 @@ static bool repeats_itself(const struct tri_cavity *c)
         if (c->pending[i].link == c->pending[i - 1].link)
             return true;
     for (int32_t k = 0; k < c->n_rim; k++) {
-        struct tri_pending beyond = {.link = c->rim[k].outer >> 2};
-        if (c->rim[k].outer >= 0 && bsearch(&beyond, c->pending, n, sizeof *c->pending, compare_links))
+        if (c->rim[k].outer < 0)
+            continue;
+        struct tri_pending beyond = {.link = tri_of(c->rim[k].outer)};
+        if (bsearch(&beyond, c->pending, n, sizeof *c->pending, compare_links))
             return true;
     }
     return false;
