@@ -427,7 +427,8 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         }
         if (at_limit(r))
             return give_up(r, TRI_EXCUSE_LIMIT);
-        enum outcome outcome = propose(r, entry.t, &shape, badness);
+        bool resolved = shape.l[shape.shortest] >= r->mesh->shortest2;
+        enum outcome outcome = resolved ? propose(r, entry.t, &shape, badness) : refuse(r, TRI_EXCUSE_PRECISION);
         if (outcome == REFUSED && tri_is_too_large(&r->criterion, t, &shape)) {
             r->sized = true;
             outcome = propose_inside(r, entry.t, &shape);
