@@ -569,8 +569,8 @@ static bool refine_seeds(struct tri_refiner *r)
  * (docs/performance.md: up to a sixth fewer triangles). Above TRI_USUAL_ANGLE refinement feeds on itself, until edges
  * are as short as feature_size.c allows. So the whole mesh is refined for the usual angle; then for more, as long as
  * that adds less than half as many points again; where it did not end so, what is left is mended for BACK_ANGLE (for
- * the usual angle it would take several times as many points). Within a fence there is only the usual stage. Where there
- * are seeds there is no easy one: what it makes bad for the next is not among them. */
+ * the usual angle it would take several times as many points). Within a fence there is only the usual stage. With seeds
+ * there is no easy one: what it makes bad for the next is not among them. */
 static void begin_stages(struct tri_refiner *r)
 {
     double usual = fmin(r->options->min_angle, TRI_USUAL_ANGLE);

@@ -254,8 +254,9 @@ static double cost_across(const struct tri_mesh *mesh, int32_t u, int32_t v, int
     return fmax(channel_cost(mesh, u, v, a), channel_cost(mesh, u, v, b));
 }
 
-/* About so many points it takes to fill the space that a triangle of the input lies in. Where other vertices lie between
- * its two walls, as on the wall that closes its end, no edge bridges it: so the apexes across each edge count, too. */
+/* About so many points it takes to fill the space that a triangle of the input lies in. Where other vertices lie
+ * between its two walls, as on the wall that closes its end, no edge bridges it: so the apexes across each edge count,
+ * too. */
 static double demand_of(const struct tri_mesh *mesh, int32_t slot)
 {
     const struct tri_triangle *t = &mesh->tri[slot];
