@@ -16,9 +16,10 @@
 #define DEGREES (180 / 3.14159265358979323846)
 
 enum {
-    MAX_LEGS = 24,                    /* legs of apexes that one corner is tried for */
-    MAX_STEPS = 4096,                 /* subsegments between a corner and its apex */
-    MAX_ALL_STEPS = 400 * 1000 * 1000 /* of all searches together; what comes later counts as unexplained */
+    MAX_LEGS = 24, /* legs of apexes that one corner is tried for */
+    NO_APEX = -1,
+    UNKNOWN = -2,
+    UNDER_WAY = -3
 };
 
 struct quality {
@@ -26,7 +27,8 @@ struct quality {
     double sine2;       /* squared sine of the bound */
     double apex_cosine; /* signed square of the cosine of the largest small input angle */
     uint8_t *is_apex;   /* [n_points] */
-    int64_t steps_left;
+    uint8_t *is_near;   /* [n_points]: in a triangle with an apex */
+    int32_t *apex_of;   /* [2 n_segments], for each fan entry: the apex that its chain reaches, NO_APEX, UNKNOWN.. */
     double least_sine2;  /* so far; of the smallest angle, which is below 90 degrees */
     double least_cosine; /* so far; signed square of the cosine of the largest angle */
     double sum, rest;    /* of the areas; rest: what rounding took from sum (Neumaier 1974) */
@@ -105,17 +107,21 @@ static int32_t straight_on(const struct checker *c, int32_t u, int32_t v)
     return -1;
 }
 
-/* Apex that the chain reaches which begins with fan entry i, -1: none. */
+/* Apex that the chain reaches which begins with fan entry i. What is found holds for all entries on the way, so that
+ * each is passed twice in all. A chain that comes back to itself reaches none. */
 static int32_t apex_along(struct quality *q, int32_t i)
 {
     const struct checker *c = q->c;
-    for (int step = 0; i >= 0 && step < MAX_STEPS && q->steps_left > 0; step++, q->steps_left--) {
-        int32_t u = c->segments[i], v = c->segments[i ^ 1];
-        if (q->is_apex[v])
-            return v;
-        i = straight_on(c, u, v);
+    int32_t at = i;
+    while (at >= 0 && q->apex_of[at] == UNKNOWN) {
+        int32_t end = c->segments[at ^ 1];
+        q->apex_of[at] = q->is_apex[end] ? end : UNDER_WAY;
+        at = q->is_apex[end] ? at : straight_on(c, c->segments[at], end);
     }
-    return -1;
+    int32_t found = at >= 0 && q->apex_of[at] != UNDER_WAY ? q->apex_of[at] : NO_APEX;
+    for (at = i; at >= 0 && q->apex_of[at] == UNDER_WAY; at = straight_on(c, c->segments[at], c->segments[at ^ 1]))
+        q->apex_of[at] = found;
+    return found;
 }
 
 static int apexes_of(struct quality *q, int32_t v, int32_t *apex)
@@ -147,22 +153,10 @@ static bool spans_legs(struct quality *q, const int32_t *corners)
     return false;
 }
 
-static bool touches_apex(struct quality *q, int32_t v)
-{
-    const struct checker *c = q->c;
-    if (q->is_apex[v])
-        return true;
-    for (int32_t i = c->first[v]; i < c->first[v + 1] && q->steps_left > 0; i++, q->steps_left--) {
-        if (q->is_apex[c->corner[i].next] || q->is_apex[c->corner[i].prev])
-            return true;
-    }
-    return false;
-}
-
 static bool is_explained(struct quality *q, int32_t t)
 {
     const int32_t *v = q->c->mesh->triangles + 3 * (size_t)t;
-    return touches_apex(q, v[0]) || touches_apex(q, v[1]) || touches_apex(q, v[2]) || spans_legs(q, v);
+    return q->is_near[v[0]] || q->is_near[v[1]] || q->is_near[v[2]] || spans_legs(q, v);
 }
 
 static void note_small(struct quality *q, int32_t t, const struct shape *s)
@@ -242,27 +236,50 @@ static double signed_squared_cosine(double degrees)
     return cosine * fabs(cosine);
 }
 
+static void find_apexes(struct quality *q)
+{
+    const struct checker *c = q->c;
+    for (int32_t v = 0; v < c->mesh->n_points; v++) {
+        q->is_apex[v] = is_apex(q, v);
+        c->report->n_apexes += q->is_apex[v];
+    }
+    for (int32_t t = 0; t < c->mesh->n_triangles; t++) {
+        const int32_t *v = c->mesh->triangles + 3 * (size_t)t;
+        if (q->is_apex[v[0]] || q->is_apex[v[1]] || q->is_apex[v[2]])
+            q->is_near[v[0]] = q->is_near[v[1]] = q->is_near[v[2]] = true;
+    }
+    for (int32_t i = 0; i < 2 * c->n_segments; i++)
+        q->apex_of[i] = UNKNOWN;
+}
+
+static void note_all(struct quality *q)
+{
+    const struct tri_check_options *o = q->c->options;
+    struct tri_check_report *r = q->c->report;
+    find_apexes(q);
+    r->smallest_angle_at = r->largest_angle_at = r->smallest_area_at = r->largest_area_at = -1;
+    if (o->min_angle > 0)
+        tri_check_begin(q->c, TRI_CHECK_ANGLES);
+    if (o->max_area > 0 || o->max_areas != NULL)
+        tri_check_begin(q->c, TRI_CHECK_AREAS);
+    for (int32_t t = 0; t < q->c->mesh->n_triangles; t++)
+        note_shape(q, t);
+    summarize(q);
+}
+
 enum tri_status tri_check_quality(struct checker *c)
 {
     const struct tri_check_options *o = c->options;
-    struct tri_check_report *r = c->report;
-    struct quality q = {.c = c, .sine2 = squared_sine(o->min_angle), .steps_left = MAX_ALL_STEPS};
+    struct quality q = {.c = c, .sine2 = squared_sine(o->min_angle)};
     q.is_apex = tri_check_zeros(c->mesh->n_points, 1);
+    q.is_near = tri_check_zeros(c->mesh->n_points, 1);
+    q.apex_of = tri_check_zeros(2 * c->n_segments, sizeof *q.apex_of);
     q.apex_cosine = signed_squared_cosine(o->small_input_angle > 0 ? fmin(o->small_input_angle, 180) : 60);
-    if (q.is_apex == NULL)
-        return TRI_NO_MEMORY;
-    for (int32_t v = 0; v < c->mesh->n_points; v++) {
-        q.is_apex[v] = is_apex(&q, v);
-        r->n_apexes += q.is_apex[v];
-    }
-    r->smallest_angle_at = r->largest_angle_at = r->smallest_area_at = r->largest_area_at = -1;
-    if (o->min_angle > 0)
-        tri_check_begin(c, TRI_CHECK_ANGLES);
-    if (o->max_area > 0 || o->max_areas != NULL)
-        tri_check_begin(c, TRI_CHECK_AREAS);
-    for (int32_t t = 0; t < c->mesh->n_triangles; t++)
-        note_shape(&q, t);
-    summarize(&q);
+    bool room = q.is_apex && q.is_near && q.apex_of;
+    if (room)
+        note_all(&q);
     free(q.is_apex);
-    return TRI_OK;
+    free(q.is_near);
+    free(q.apex_of);
+    return room ? TRI_OK : TRI_NO_MEMORY;
 }

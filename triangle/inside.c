@@ -1,10 +1,11 @@
 /* Sizes, whatever stands in the way.
  *
  * The usual point of a triangle that is too large may be out of reach: beyond a wall that cannot be split, since it is
- * protected or too short or lies an ulp from the next; farther away than coordinates go; on a vertex. Then the
- * triangle's own longest subsegment is split, if it is among the longer edges; and where that cannot be, its centroid
- * is inserted, however near to subsegments. Nothing can refuse that one: it lies in its triangle, and hence in the
- * circumdisk, and sees its whole cavity (cavity.h).
+ * protected or too short or lies an ulp from the next; farther away than coordinates go; on a vertex. And beside an
+ * edge below the shortest it is no use: it would lie as near, and rounding would place it. Then the triangle's own
+ * longest subsegment is split, if it is among the longer edges; and where that cannot be, its centroid is inserted,
+ * however near to subsegments. Nothing can refuse that one: it lies in its triangle, and hence in the circumdisk, and
+ * sees its whole cavity (cavity.h).
  *
  * THEOREM (end). Let every triangle that is too large have an area of at least A, and let D be the diameter of the
  * mesh. The disk about the centroid, of radius a third of the least height, is in the triangle and so holds no vertex:

@@ -427,7 +427,8 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         }
         if (at_limit(r))
             return give_up(r, TRI_EXCUSE_LIMIT);
-        enum outcome outcome = propose(r, entry.t, &shape, badness);
+        bool resolved = shape.l[shape.shortest] >= r->mesh->shortest2;
+        enum outcome outcome = resolved ? propose(r, entry.t, &shape, badness) : refuse(r, TRI_EXCUSE_PRECISION);
         if (outcome == REFUSED && tri_is_too_large(&r->criterion, t, &shape)) {
             r->sized = true;
             outcome = propose_inside(r, entry.t, &shape);
@@ -568,11 +569,13 @@ static bool refine_seeds(struct tri_refiner *r)
  * (docs/performance.md: up to a sixth fewer triangles). Above TRI_USUAL_ANGLE refinement feeds on itself, until edges
  * are as short as feature_size.c allows. So the whole mesh is refined for the usual angle; then for more, as long as
  * that adds less than half as many points again; where it did not end so, what is left is mended for BACK_ANGLE (for
- * the usual angle it would take several times as many points). Within a fence there is only the usual stage. */
+ * the usual angle it would take several times as many points). Within a fence there is only the usual stage. With seeds
+ * there is no easy one: what it makes bad for the next is not among them. */
 static void begin_stages(struct tri_refiner *r)
 {
     double usual = fmin(r->options->min_angle, TRI_USUAL_ANGLE);
-    bool easy = usual > TRI_EASY_ANGLE && tri_has_sizes(r->options) && !r->options->fence;
+    bool easy = usual > TRI_EASY_ANGLE && tri_has_sizes(r->options) && !r->options->fence &&
+                !r->options->seeds;
     r->stage = easy ? EASY_STAGE : USUAL_STAGE;
     r->criterion.bounds = tri_bounds_for(easy ? TRI_SIZES_ANGLE : usual, r->options->conforming);
 }

@@ -247,10 +247,28 @@ bool tri_is_hopeless(const struct tri_mesh *mesh, int32_t slot, const struct tri
            on_one_shell(mesh, u, v, shape->l[k]) || tri_is_channel(mesh, slot, shape);
 }
 
-/* Two corners at least lie on segments. */
-static bool may_bridge(const struct tri_mesh *mesh, const int32_t v[3])
+/* The cost of filling the dearest space between a parent at u and one at v that face each other across the edge ab: u
+ * and v are the apexes on its two sides. */
+static double cost_across(const struct tri_mesh *mesh, int32_t u, int32_t v, int32_t a, int32_t b)
 {
-    return tri_is_on_parent(mesh, v[0]) + tri_is_on_parent(mesh, v[1]) + tri_is_on_parent(mesh, v[2]) >= 2;
+    return fmax(channel_cost(mesh, u, v, a), channel_cost(mesh, u, v, b));
+}
+
+/* About so many points it takes to fill the space that a triangle of the input lies in. Where other vertices lie
+ * between its two walls, as on the wall that closes its end, no edge bridges it: so the apexes across each edge count,
+ * too. */
+static double demand_of(const struct tri_mesh *mesh, int32_t slot)
+{
+    const struct tri_triangle *t = &mesh->tri[slot];
+    struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
+    double demand = tri_channel_cost(mesh, slot, &shape);
+    for (int e = 0; e < 3; e++) {
+        if (t->n[e] < 0 || !tri_is_on_parent(mesh, t->v[e]))
+            continue;
+        int32_t apex = mesh->tri[tri_of(t->n[e])].v[tri_edge(t->n[e])];
+        demand = fmax(demand, cost_across(mesh, t->v[e], apex, t->v[tri_next[e]], t->v[tri_prev[e]]));
+    }
+    return demand;
 }
 
 /* Which narrow spaces are filled, by their cost. All of them, where a quarter of a million points is enough for
@@ -264,10 +282,7 @@ static void choose_channels(struct tri_mesh *mesh)
     const double ALL = 250000, ALLOWANCE = 20000, PER_VERTEX = 4;
     double cost_of[OCTAVES] = {0}, count_of[OCTAVES] = {0}, dearer = 0, cheaper = 0, all = 0;
     for (int32_t t = 0; t < mesh->n_slots; t++) {
-        if (!may_bridge(mesh, mesh->tri[t].v))
-            continue;
-        struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
-        double cost = tri_channel_cost(mesh, t, &shape);
+        double cost = demand_of(mesh, t);
         int octave; /* 2^(octave - 1) <= cost < 2^octave */
         frexp(cost, &octave);
         if (octave > CHEAP) {

@@ -65,6 +65,9 @@ fresh regress/graded_1899.poly # what a block leaves comes back once: else work 
 PTRIANGLE_TEST_BLOCK=60 program 0 -pcOq25DQ --report report.json graded_1899
 check "seeds come back in numbers" awk '/"seeds":/ { gsub(/,/, ""); for (i = 1; i < NF; i++) if ($i == "\"seeds\":") n += $(i + 1) }
     END { exit !(n > 0 && n < 50000) }' report.json
+fresh regress/tangle.poly # what one stage makes bad for the next is in somebody's list
+PTRIANGLE_TEST_BLOCK=250 program 0 -pcq34a1.79824924 tangle
+check "all bad triangles have had their turn" grep -q 'below the bounds: [0-9]* at small angles of the input\.$' .out
 
 # --- long options
 fresh letter.poly

@@ -239,7 +239,7 @@ done
 
 # --- points for angles that ran away: triangles, at most. (test_feature_size tries all inputs and bounds.)
 fresh regress/endless_q36_small.poly regress/endless_q36_fan.poly regress/endless_q35_graded.poly \
-    regress/slow_q41D_2369.poly regress/ranaway30.poly
+    regress/slow_q41D_2369.poly regress/ranaway30.poly regress/thin_comb.poly
 few() { # few TRIANGLES WORDS...: no more of them, in a right mesh
     most=$1
     shift
@@ -257,6 +257,7 @@ few 40000 -pq35 endless_q35_graded
 few 40000 -pq38 endless_q35_graded
 few 200000 -pq38AD slow_q41D_2369
 few 40000 -pq30 ranaway30
+few 10000 -pq33 thin_comb # each bar is a narrow space that no edge of the triangulation bridges
 fresh regress/below_dxf.poly # two triangles stayed below the bound without need
 run 0 -pq20 below_dxf
 says 'All triangles keep the bounds.'

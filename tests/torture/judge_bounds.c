@@ -53,7 +53,10 @@ static void judge_areas(const struct outcome *o, struct bounds *b, struct verdic
                     (long long)b->too_large, (int)b->worst_at, b->worst);
 }
 
-/* The counts that the programs print. */
+/* The counts that the programs print. A point for a triangle beside a flat one may see the flat one from behind, and is
+ * not inserted then: where there are flat triangles, a few around each may be left. */
+enum { AROUND = 10 };
+
 static void judge_angles(const struct outcome *o, const struct bounds *b, const struct tri_check_report *report,
                          struct verdict *verdict)
 {
@@ -77,11 +80,12 @@ static void judge_angles(const struct outcome *o, const struct bounds *b, const 
     if (count[TRI_EXCUSE_LIMIT] > 0)
         judge_fault(verdict, "angle limit", "%lld triangles given up at %g degrees", (long long)count[TRI_EXCUSE_LIMIT],
                     o->options.quality.min_angle);
-    int64_t unexplained = report->n_small - report->n_small_explained;
-    if (unexplained > count[TRI_EXCUSE_CHANNEL] + b->too_flat)
+    int64_t unexplained = report->n_small - report->n_small_explained, beside = AROUND * b->too_flat;
+    int64_t flat = count[TRI_EXCUSE_PRECISION] < beside ? count[TRI_EXCUSE_PRECISION] : beside;
+    if (unexplained > count[TRI_EXCUSE_CHANNEL] + flat)
         judge_fault(verdict, "angle",
                     "%lld small angles without a reason (input angle %lld, channel %lld, precision %lld)",
-                    (long long)(unexplained - count[TRI_EXCUSE_CHANNEL] - b->too_flat),
+                    (long long)(unexplained - count[TRI_EXCUSE_CHANNEL] - flat),
                     (long long)count[TRI_EXCUSE_INPUT_ANGLE], (long long)count[TRI_EXCUSE_CHANNEL],
                     (long long)count[TRI_EXCUSE_PRECISION]);
 }
