@@ -12,12 +12,12 @@
  *      same rules.
  * So a piece that becomes a subsegment meets no vertex and no subsegment; no two chains cross, and whoever shares a
  * chain shares its subsegments. No vertex ever moves.
- * THEOREM (distance). A chain is made of vertices of the input within BESIDE resolutions of the segment's line, of
- * rounded crossings, within one of it, and of vertices within APART of a crossing. What bends add up to is checked for
- * every subsegment: more than TRI_SEGMENT_ULPS is an error that names the segment.
+ * Distance: a chain is made of vertices of the input within BESIDE resolutions of the segment's line, of rounded
+ * crossings, within one of it, and of vertices within APART of a crossing. What bends add up to is checked for every
+ * subsegment: more than TRI_SEGMENT_ULPS is an error that names the segment.
  * Termination: a piece is replaced by two shorter ones (rules 1, 2), or a new vertex appears, farther than APART from
  * its neighbours (rule 3), or the subsegment in the way is bent round a vertex that it was too near to (rule 3, shared
- * vertex). A bound on the number of pieces stands behind that; reaching it is an error, too.
+ * vertex). That this ends soon is experience, not proved: a bound on the number of pieces makes it an error otherwise.
  *
  * INVARIANT: between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v]
  * is a live triangle at v (TRI_NONE for points that are in no triangle). The mesh fills the convex hull.
@@ -663,7 +663,7 @@ static enum tri_status lay_piece(struct layer *l, struct tri_piece piece)
 
 static enum tri_status lay_segment(struct layer *l, const struct tri_piece *segment)
 {
-    /* Five pieces for each subsegment crossed, two for each vertex; ten times that is no coincidence. */
+    /* Five pieces for each subsegment crossed and two for each vertex are usual. */
     int64_t bound = 1000 + 50 * ((int64_t)l->mesh->n_subs + l->mesh->n_vertices);
     l->n_pieces = 0;
     l->segment = segment->course.first;

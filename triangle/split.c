@@ -4,8 +4,9 @@
  * errors add up from split to split; and a boundary subsegment that moves outwards may meet another part of the
  * boundary, which is no longer known once what is outside has been carved.
  *
- * 1. The place is that on the parent's line, rounded once (or, rarely, a neighbour of it or of the place on the
- * subsegment, for the sake of 2). So a chain keeps to its line however often it is split.
+ * 1. The place is that on the parent's line, rounded once, or, for the sake of 2, a neighbour of it or of the place on
+ * the subsegment, not more than ASTRAY away from the line. So a chain keeps to its line however often it is split;
+ * where it cannot it is not split.
  * 2. THEOREM (boundary). Each parent on the boundary has an empty triangle of its own outside: its ends and its guard,
  * the centroid of the triangle of the constrained Delaunay triangulation that was carved there. If every split point
  * of a boundary subsegment lies on the inner side of it (or on it), or in the parent's own triangle, the boundary never
@@ -17,6 +18,9 @@
 
 #include "triangle/crossing.h"
 #include "triangle/predicates.h"
+
+/* Resolutions that a split point may lie off its parent's line. */
+static const double ASTRAY = 4;
 
 /* Is p strictly inside the triangle a, b, c, if that is counter-clockwise? */
 static bool holds(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point p)
@@ -58,6 +62,7 @@ bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s
     *p = tri_onto_line(mesh->xy[parent->v[0]], mesh->xy[parent->v[1]], between);
     if (find_place(mesh, s, p))
         return true;
-    *p = between; /* the subsegment itself lies too far inside by now */
-    return find_place(mesh, s, p);
+    *p = between; /* the subsegment itself lies inside by now */
+    return find_place(mesh, s, p) &&
+           tri_line_distance(mesh->xy[parent->v[0]], mesh->xy[parent->v[1]], *p) <= ASTRAY * tri_resolution(*p);
 }
