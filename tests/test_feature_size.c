@@ -29,8 +29,8 @@ static void test_sizes_are_inherited_and_grow(void **state)
     assert_true(tri_feature_inside(&mesh, 0, 1, (struct tri_point){3, 4}, false) == 1 + 0.5 * 5);
     assert_true(tri_feature_inside(&mesh, 0, 1, (struct tri_point){3, 4}, true) == 3.5);
     assert_true(tri_feature_inside(&mesh, 0, 1, (struct tri_point){0.5, 0}, true) == 0.5);
-    assert_true(tri_has_run_away(&mesh, 0, 1, 0.031 * 0.031));
-    assert_false(tri_has_run_away(&mesh, 0, 1, 0.032 * 0.032));
+    assert_true(tri_has_run_away(&mesh, 0, 1, 0.0156 * 0.0156));
+    assert_false(tri_has_run_away(&mesh, 0, 1, 0.0157 * 0.0157));
 }
 
 /* F of the theorem, with all vertices on segments as sources: no vertex inside knows of a smaller size. And no edge is
@@ -86,7 +86,7 @@ static void check_bounds(const char *name, const struct tri_pslg *pslg, int32_t 
     static const double angles[] = {33, 34, 34.5, 36, 60};
     for (int conforming = 0; conforming < 2; conforming++) {
         int32_t usual = triangles_at(pslg, 25, conforming);
-        double limit = 16.0 * usual + 100;
+        double limit = 16.0 * usual + 200;
         for (int i = 0; i < 5 && usual <= most; i++) {
             int32_t n = triangles_at(pslg, angles[i], conforming);
             if (n > limit)

@@ -30,7 +30,7 @@
 #include "triangle/quality.h"
 #include "triangle/small_angle.h"
 
-static const double SLOPE = 0.5, SHRINK = 32;
+static const double SLOPE = 0.5, SHRINK = 64;
 
 /* Is the corner beside the edge opposite to it, not before its start or beyond its end? From squared lengths. */
 static bool is_beside(double edge, double left, double right) { return left <= right + edge && right <= left + edge; }
