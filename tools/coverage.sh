@@ -1,11 +1,11 @@
 #!/bin/sh
 # Runs the fast tests in a build that counts lines (preset coverage), prints how many lines of triangle/ and sched/ they
-# reach, file by file, and fails where that is below 95% of a file. Needs gcovr (Debian: gcovr; PyPI: gcovr).
+# reach, file by file, and fails where that is below 95% of all or 90% of a file. Needs gcovr (Debian: gcovr; PyPI: gcovr).
 # Usage: tools/coverage.sh [CTEST_OPTION...]     default: -L fast
 set -eu
 cd "$(dirname "$0")/.."
 folder=${PTRIANGLE_BUILD:-build}/coverage
-least=95
+least=90 # per cent of a file; of all of them 95
 [ $# -gt 0 ] || set -- -L fast
 command -v gcovr >/dev/null || {
     echo "coverage: gcovr is missing (Debian: apt-get install gcovr; or pip install gcovr)" >&2
@@ -19,5 +19,6 @@ ctest --test-dir "$folder" --output-on-failure --no-tests=error --parallel "$(np
 gcovr --root . --filter triangle/ --filter sched/ --gcov-ignore-parse-errors "$folder" 2>/dev/null |
     tee "$folder/coverage.txt"
 awk -v least="$least" '
+    $1 == "TOTAL" { least = 95 }
     $4 ~ /%$/ { seen++; if ($4 + 0 < least) { print "coverage: " $1 " has " $4 ", below " least "%"; low++ } }
     END { if (!seen) print "coverage: nothing was counted"; exit low > 0 || !seen }' "$folder/coverage.txt"
