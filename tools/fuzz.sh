@@ -3,6 +3,7 @@
 # Usage: tools/fuzz.sh [SECONDS [TARGET...]]     default: 60, all of read triangulate mesh schedule
 # Again, with one finding: build/fuzz/bin/fuzz_TARGET build/fuzz/found/TARGET-crash-..
 # PTRIANGLE_FUZZ_IGNORE="area,angle" lets kinds of faults of the mesh pass (see tests/fuzz/fuzz_mesh.c).
+# PTRIANGLE_FUZZ_SEED=N makes runs alike, so that a failure speaks of the change; default: another seed each time.
 # Says so and succeeds where the compiler has no libFuzzer.
 set -eu
 cd "$(dirname "$0")/.."
@@ -32,7 +33,7 @@ for target; do
     [ ! -f "tests/fuzz/$target.dict" ] || dictionary="-dict=tests/fuzz/$target.dict"
     log=$folder/$target.log
     # shellcheck disable=SC2086 # one word or none
-    if OMP_NUM_THREADS=3 OMP_WAIT_POLICY=passive "$folder/bin/fuzz_$target" -max_total_time="$seconds" -timeout=120 \
+    if OMP_NUM_THREADS=3 OMP_WAIT_POLICY=passive "$folder/bin/fuzz_$target" -max_total_time="$seconds" -seed="${PTRIANGLE_FUZZ_SEED:-0}" -timeout=120 \
         -rss_limit_mb=4096 -max_len=4096 -artifact_prefix="$folder/found/$target-" $dictionary "$folder/corpus/$target" \
         >"$log" 2>&1; then
         echo "fuzz: $target: $(tail -n 1 "$log")"
