@@ -420,11 +420,8 @@ static bool is_hull(const struct tri_mesh *mesh, int32_t s)
  * place. TRI_NONE where there is none. */
 static int32_t find_place(const struct layer *l, int32_t near, struct tri_point *p)
 {
-    static const int way[9][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
-    double step = tri_resolution(*p);
-    for (int i = 0; i < 9; i++) {
-        struct tri_point q = {tri_round_coordinate(p->x + way[i][0] * step),
-                              tri_round_coordinate(p->y + way[i][1] * step)};
+    for (int i = 0; i < TRI_PLACES; i++) {
+        struct tri_point q = tri_place_beside(*p, i);
         int32_t t = locate(l->mesh, l->corner[near], q), s = t == TRI_NONE ? TRI_NONE : sub_under(l->mesh, t, q);
         if (t != TRI_NONE && (s == TRI_NONE || !is_hull(l->mesh, s))) {
             *p = q;

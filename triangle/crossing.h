@@ -15,6 +15,18 @@ static inline double tri_resolution(struct tri_point p)
     return 0x1p-52 * (fabs(p.x) > fabs(p.y) ? fabs(p.x) : fabs(p.y));
 }
 
+enum { TRI_PLACES = 9 };
+
+/* p itself (i = 0) and the places one resolution away from it, the nearer ones first: i < TRI_PLACES. */
+static inline struct tri_point tri_place_beside(struct tri_point p, int i)
+{
+    static const int way[TRI_PLACES][2] = {{0, 0}, {1, 0},  {-1, 0}, {0, 1},  {0, -1},
+                                           {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
+    double step = tri_resolution(p);
+    struct tri_point q = {tri_round_coordinate(p.x + way[i][0] * step), tri_round_coordinate(p.y + way[i][1] * step)};
+    return q;
+}
+
 /* Distance of q from the line through a and b, to a relative 2^-48 where it is not far below the resolution. */
 double tri_line_distance(struct tri_point a, struct tri_point b, struct tri_point q);
 

@@ -41,13 +41,10 @@ static bool keeps_to_itself(const struct tri_mesh *mesh, const struct tri_parent
 /* Moves *p to a place at most one resolution away at which the subsegment may be split. */
 static bool find_place(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point *p)
 {
-    static const int way[9][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
     bool left = s->side[0] != TRI_NONE, boundary = !left || s->side[1] == TRI_NONE;
     struct tri_point from = mesh->xy[s->v[left ? 0 : 1]], to = mesh->xy[s->v[left ? 1 : 0]], at = *p;
-    double step = tri_resolution(at);
-    for (int i = 0; i < 9; i++) {
-        *p = (struct tri_point){tri_round_coordinate(at.x + way[i][0] * step),
-                                tri_round_coordinate(at.y + way[i][1] * step)};
+    for (int i = 0; i < TRI_PLACES; i++) {
+        *p = tri_place_beside(at, i);
         if (!boundary || keeps_to_itself(mesh, &mesh->parents[s->parent], from, to, *p))
             return true;
     }
