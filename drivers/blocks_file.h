@@ -3,7 +3,7 @@
 #define DRIVERS_BLOCKS_FILE_H
 
 #include "sched/par.h"
-#include "triangle/output.h"
+#include "triangle/text/output.h"
 
 /* Writes a line "block phase" for each triangle in the order of the .ele file: par_block_of, phases from 0; -1 -1 where
  * none. The file becomes part of the guarded set (drivers/interrupt.h). */

@@ -15,7 +15,7 @@
 #include "drivers/run.h"
 #include "sched/par.h"
 #include "sched/threads.h"
-#include "triangle/write.h"
+#include "triangle/text/write.h"
 
 static const char PROGRAM[] = "ptriangle";
 

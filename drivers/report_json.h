@@ -4,7 +4,7 @@
 
 #include "drivers/run.h"
 #include "sched/par.h"
-#include "triangle/output.h"
+#include "triangle/text/output.h"
 
 /* TRI_BAD_INPUT: this program was built without reports. */
 enum tri_status report_check(struct tri_error *error);

@@ -9,7 +9,7 @@
 #include "drivers/arguments.h"
 #include "drivers/mesh_files.h"
 #include "triangle/executor.h"
-#include "triangle/read.h"
+#include "triangle/text/read.h"
 #include "triangle/stats.h"
 #include "triangle/tri.h"
 

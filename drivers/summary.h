@@ -5,7 +5,7 @@
 #include "drivers/console.h"
 #include "triangle/pslg.h"
 #include "triangle/stats.h"
-#include "triangle/switches.h"
+#include "triangle/dropin/switches.h"
 #include "triangle/tri.h"
 
 /* What went otherwise than the input asks: crossings, segments bent. */

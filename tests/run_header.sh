@@ -1,5 +1,5 @@
 #!/bin/sh
-# Compiles triangle/triangle.h in every way that clients of Triangle are known to include theirs: alone, twice, within a
+# Compiles triangle/dropin/triangle.h in every way that clients of Triangle are known to include theirs: alone, twice, within a
 # namespace, within extern "C", with and without their macros, in old and new dialects of C and C++. Then the other
 # public headers in C++.
 # Usage: run_header.sh SOURCE_ROOT WORK_DIR C_COMPILER CXX_COMPILER
@@ -9,7 +9,7 @@ work=$2
 cc=$3
 cxx=$4
 mkdir -p "$work/only"
-cp "$root/triangle/triangle.h" "$work/only/" # nothing else can be included from here
+cp "$root/triangle/dropin/triangle.h" "$work/only/" # nothing else can be included from here
 cd "$work" || exit 2
 failed=0
 count=0

@@ -6,11 +6,11 @@
 
 #include "sched/par.h"
 #include "support.h"
-#include "triangle/output.h"
+#include "triangle/text/output.h"
 #include "triangle/quality.h"
-#include "triangle/read.h"
-#include "triangle/triangle.h"
-#include "triangle/write.h"
+#include "triangle/text/read.h"
+#include "triangle/dropin/triangle.h"
+#include "triangle/text/write.h"
 
 /* Says yes from the question `after` on; any thread may ask. */
 struct trigger {
