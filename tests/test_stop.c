@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "sched/par.h"
+#include "sched/schedule.h"
 #include "support.h"
 #include "triangle/text/output.h"
 #include "triangle/quality.h"
