@@ -4,13 +4,13 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "sched/par.h"
+#include "sched/schedule.h"
 #include "support.h"
-#include "triangle/output.h"
+#include "triangle/text/output.h"
 #include "triangle/quality.h"
-#include "triangle/read.h"
-#include "triangle/triangle.h"
-#include "triangle/write.h"
+#include "triangle/text/read.h"
+#include "triangle/dropin/triangle.h"
+#include "triangle/text/write.h"
 
 /* Says yes from the question `after` on; any thread may ask. */
 struct trigger {

@@ -9,7 +9,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-#include "sched/par.h"
+#include "sched/schedule.h"
 #include "triangle/numbering.h"
 #include "triangle/quality.h"
 
