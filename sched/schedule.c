@@ -142,6 +142,7 @@ static enum tri_status fill_pool(struct par_state *state, const struct tri_refin
                                  struct tri_error *error)
 {
     struct tri_executor executor = par_executor(&state->threads);
+    state->column.n = 0;
     return par_pool_fill(&state->pool, state->mesh, quality, known, &executor, &state->radius, error);
 }
 
@@ -231,16 +232,39 @@ static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, st
     return status;
 }
 
+static enum tri_status run_phases(struct par_state *state, const struct par_partition *partition,
+                                  struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (int colour = 0; !status && colour < PAR_COLOURS && state->pool.n > 0; colour++) {
+        tell(state, colour + 1);
+        status = par_phase(state, partition, colour, TRI_NONE, error);
+    }
+    return status;
+}
+
+/* The same, from left to right: see phase.h, order of columns. */
+static enum tri_status sweep_columns(struct par_state *state, const struct par_partition *partition,
+                                     struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (int32_t odd = 1; !status && odd <= partition->n_columns; odd += 2)
+        for (int colour = 0; !status && colour < PAR_COLOURS; colour++) {
+            int32_t column = colour < 2 ? odd : odd - 1;
+            if (column < partition->n_columns)
+                status = par_phase(state, partition, colour, column, error);
+        }
+    return status;
+}
+
 /* Rounds of four phases until nothing is left to do, each round on blocks four times as large. */
 static enum tri_status run_rounds(struct par_state *state, struct par_partition *partition, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     assert(par_cells(partition) >= 4);
     for (state->round = 0; !status && state->round < MAX_ROUNDS; state->round++) {
-        for (int colour = 0; !status && colour < PAR_COLOURS && state->pool.n > 0; colour++) {
-            tell(state, colour + 1);
-            status = par_phase(state, partition, colour, error);
-        }
+        state->column.n = 0; /* of other blocks than those to come */
+        status = state->options->sweep ? sweep_columns(state, partition, error) : run_phases(state, partition, error);
         state->report->rounds++;
         if (state->pool.n == 0 || par_cells(partition) < FEWEST_TO_COARSEN)
             break;
@@ -266,18 +290,17 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         report->prerefined = state->mesh->n_slots;
     }
     status = status ? status : run_rounds(state, partition, error);
-    bool left_over = state->pool.n > 0;
-    enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number && !left_over, error);
-    status = status ? status : closed;
     double last = par_seconds();
-    if (!status && left_over) /* slots have moved */
-        status = fill_pool(state, quality, false, error);
     if (top)
-        report->left_over = left_over ? state->pool.n : 0;
-    if (!status && left_over)
+        report->left_over = state->pool.n;
+    if (!status && state->pool.n > 0) { /* in the order of the pool, which ids do not show in */
+        par_room_mark(&state->spare, state->mesh);
         status = refine_rest(state, quality, false, error);
-    report->total.gated = report->total.deferred = 0; /* all of them have had their turn */
+    }
     report->seconds_last += par_seconds() - last;
+    enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number, error);
+    status = status ? status : closed;
+    report->total.gated = report->total.deferred = 0; /* all of them have had their turn */
     return status;
 }
 
@@ -375,6 +398,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     if (!status && report->levels > 0 && !options->by_block && !state.numbered)
         status = number_mesh(&state, error);
     free(state.pool.item);
+    free(state.column.item);
     par_room_free(&state.spare);
     report->seconds_total = par_seconds() - began;
     return status;

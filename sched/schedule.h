@@ -29,6 +29,7 @@ struct par_options {
     bool by_block;           /* new vertices and triangles are numbered as blocks made them: quicker. Else what the
                                 schedule made is numbered by the mesh alone, along a curve (triangle/numbering.h): a
                                 solver that goes through the triangles runs twice as fast then */
+    bool sweep;              /* column by column, from left to right; the mesh is the same */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
     int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, and pause often */
     /* Told by the calling thread: the phase that begins (0: pre-refinement, then 1 to 4, at last PAR_NUMBERING),
