@@ -15,7 +15,7 @@ foreach(header IN LISTS PTRIANGLE_PUBLIC_HEADERS)
     get_filename_component(room ${header} DIRECTORY)
     install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/ptriangle/${room})
 endforeach()
-install(FILES triangle/triangle.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} # where Triangle's clients look for it
+install(FILES triangle/dropin/triangle.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} # where Triangle's clients look for it
         RENAME ${PTRIANGLE_PREFIX}triangle.h)
 
 install(EXPORT ptriangleTargets NAMESPACE ptriangle:: DESTINATION ${PTRIANGLE_PACKAGE_DIR})

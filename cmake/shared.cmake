@@ -35,7 +35,7 @@ ptriangle_static_runtime(libtritext_shared)
 
 if(TARGET libptriangle)
     set(mesher ${PTRIANGLE_MESHER_SOURCES})
-    list(REMOVE_ITEM mesher triangle/triangulate.c) # its triangulate() is the other one
+    list(REMOVE_ITEM mesher triangle/dropin/triangulate.c) # its triangulate() is the other one
     ptriangle_shared(ptriangle ${mesher} ${PTRIANGLE_SCHED_SOURCES})
     ptriangle_dropin(libptriangle_shared)
     target_link_libraries(libptriangle_shared PRIVATE m $<BUILD_INTERFACE:OpenMP::OpenMP_C>)

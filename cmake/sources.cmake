@@ -33,13 +33,13 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/numbering.c
     triangle/census.c
     triangle/stats.c
-    triangle/tri.c
-    triangle/switches.c
+    triangle/generate.c
+    triangle/dropin/switches.c
     triangle/topology.c
-    triangle/io_input.c
-    triangle/io_output.c
-    triangle/io_run.c
-    triangle/triangulate.c)
+    triangle/dropin/input.c
+    triangle/dropin/output.c
+    triangle/dropin/run.c
+    triangle/dropin/triangulate.c)
 
 # Room triangle/check/, the judge of meshes. Of the mesher it knows the predicates alone.
 set(PTRIANGLE_CHECK_SOURCES
@@ -56,11 +56,11 @@ set(PTRIANGLE_CHECK_SOURCES
 
 # Room triangle/, text files. The one C++ file wraps std::from_chars and std::to_chars.
 set(PTRIANGLE_TEXT_SOURCES
-    triangle/number.cpp
-    triangle/text.c
-    triangle/read.c
-    triangle/output.c
-    triangle/write.c)
+    triangle/text/decimal.cpp
+    triangle/text/text.c
+    triangle/text/read.c
+    triangle/text/output.c
+    triangle/text/write.c)
 
 # Room sched/, the parallel schedule: with drivers/ptriangle.c, which asks for the number of threads, the only sources
 # compiled with OpenMP.
@@ -71,12 +71,12 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/room.c
     sched/pool.c
     sched/phase.c
-    sched/par.c
+    sched/schedule.c
     sched/triangulate.c)
 
 # Headers that are installed, below include/ptriangle/ at the same path.
 set(PTRIANGLE_PUBLIC_HEADERS
-    triangle/tri.h
+    triangle/generate.h
     triangle/status.h
     triangle/stop.h
     triangle/pslg.h
@@ -91,10 +91,10 @@ set(PTRIANGLE_PUBLIC_HEADERS
     triangle/numbering.h
     triangle/check/check.h
     triangle/executor.h
-    triangle/read.h
-    triangle/output.h
-    triangle/write.h
-    sched/par.h
+    triangle/text/read.h
+    triangle/text/output.h
+    triangle/text/write.h
+    sched/schedule.h
     sched/partition.h)
 
 # Room drivers/: what the executables share, then the executables, each from drivers/<name>.c. The second list of programs

@@ -3,7 +3,7 @@
 #define DRIVERS_ARGUMENTS_H
 
 #include "triangle/status.h"
-#include "triangle/switches.h"
+#include "triangle/dropin/switches.h"
 
 struct arguments {
     int argc; /* the words as given, for the comment in every file */

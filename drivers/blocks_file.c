@@ -2,8 +2,8 @@
 #include "drivers/blocks_file.h"
 
 #include "drivers/interrupt.h"
-#include "triangle/number.h"
-#include "triangle/write.h"
+#include "triangle/text/decimal.h"
+#include "triangle/text/write.h"
 
 enum { ROW_BYTES = 48 };
 

@@ -2,8 +2,8 @@
 #ifndef DRIVERS_BLOCKS_FILE_H
 #define DRIVERS_BLOCKS_FILE_H
 
-#include "sched/par.h"
-#include "triangle/output.h"
+#include "sched/schedule.h"
+#include "triangle/text/output.h"
 
 /* Writes a line "block phase" for each triangle in the order of the .ele file: par_block_of, phases from 0; -1 -1 where
  * none. The file becomes part of the guarded set (drivers/interrupt.h). */

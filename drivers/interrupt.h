@@ -6,7 +6,7 @@
 #ifndef DRIVERS_INTERRUPT_H
 #define DRIVERS_INTERRUPT_H
 
-#include "triangle/output.h"
+#include "triangle/text/output.h"
 #include "triangle/stop.h"
 
 enum { INTERRUPT_TIME_UP = 124 }; /* exit code after a time limit, as that of timeout(1) */

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "triangle/number.h"
+#include "triangle/text/decimal.h"
 
 const char long_options_help[] =
     "Long options (--name VALUE or --name=VALUE; numbers may have exponents)\n"

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 #include "triangle/status.h"
-#include "triangle/switches.h"
+#include "triangle/dropin/switches.h"
 
 enum { LONG_OPTIONS_MAX_THREADS = 1024 }; /* more is a slip of the finger, and the system may refuse them */
 

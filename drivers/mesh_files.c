@@ -8,10 +8,10 @@
 #include <string.h>
 
 #include "drivers/interrupt.h"
-#include "triangle/number.h"
+#include "triangle/text/decimal.h"
 #include "triangle/topology.h"
-#include "triangle/tri.h"
-#include "triangle/write.h"
+#include "triangle/generate.h"
+#include "triangle/text/write.h"
 
 struct writer {
     const struct mesh_files *files;

@@ -6,7 +6,7 @@
 #include "drivers/console.h"
 #include "triangle/executor.h"
 #include "triangle/mesh.h"
-#include "triangle/output.h"
+#include "triangle/text/output.h"
 #include "triangle/pslg.h"
 #include "triangle/reconstruct.h"
 

@@ -14,9 +14,9 @@
 
 #include "drivers/plot.h"
 #include "triangle/pslg.h"
-#include "triangle/read.h"
-#include "triangle/text.h"
-#include "triangle/write.h"
+#include "triangle/text/read.h"
+#include "triangle/text/text.h"
+#include "triangle/text/write.h"
 
 enum { TROUBLE = 1, MISUSE = 2 };
 

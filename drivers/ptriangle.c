@@ -13,9 +13,9 @@
 #include "drivers/progress.h"
 #include "drivers/report_json.h"
 #include "drivers/run.h"
-#include "sched/par.h"
+#include "sched/schedule.h"
 #include "sched/threads.h"
-#include "triangle/write.h"
+#include "triangle/text/write.h"
 
 static const char PROGRAM[] = "ptriangle";
 

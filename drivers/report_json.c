@@ -12,7 +12,7 @@
 
 #include "drivers/interrupt.h"
 #include "drivers/prediction.h"
-#include "triangle/write.h"
+#include "triangle/text/write.h"
 
 /* JSON has no infinity and no NaN: null stands for them. */
 static json_t *real(double value) { return isfinite(value) ? json_real(value) : json_null(); }

@@ -3,8 +3,8 @@
 #define DRIVERS_REPORT_JSON_H
 
 #include "drivers/run.h"
-#include "sched/par.h"
-#include "triangle/output.h"
+#include "sched/schedule.h"
+#include "triangle/text/output.h"
 
 /* TRI_BAD_INPUT: this program was built without reports. */
 enum tri_status report_check(struct tri_error *error);

@@ -9,9 +9,9 @@
 #include "drivers/arguments.h"
 #include "drivers/mesh_files.h"
 #include "triangle/executor.h"
-#include "triangle/read.h"
+#include "triangle/text/read.h"
 #include "triangle/stats.h"
-#include "triangle/tri.h"
+#include "triangle/generate.h"
 
 enum run_stage {
     RUN_READ,     /* files to PSLG or mesh */

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "triangle/check/check.h"
-#include "triangle/tri.h"
+#include "triangle/generate.h"
 
 struct arrays {
     double *points;

@@ -4,7 +4,7 @@
 
 #include "drivers/console.h"
 #include "triangle/mesh.h"
-#include "triangle/switches.h"
+#include "triangle/dropin/switches.h"
 
 /* Checks the mesh with triangle/check/check.h and says two lines, or one per kind of fault and how many there are. A
  * copy of coordinates and corners is made: 36 bytes a triangle. TRI_NO_MEMORY, TRI_TOO_LARGE. */

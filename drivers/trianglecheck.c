@@ -12,8 +12,8 @@
 
 #include "triangle/check/check.h"
 #include "triangle/pslg.h"
-#include "triangle/read.h"
-#include "triangle/text.h"
+#include "triangle/text/read.h"
+#include "triangle/text/text.h"
 
 enum { FAULTS = 1, TROUBLE = 2 };
 

@@ -1,11 +1,11 @@
 /* triangulate() of libptriangle.a: as that of libtriangle.a, but refines on several threads.
  *
- * It defines the same functions as triangle/triangulate.c, and no others: see there. */
-#include "triangle/triangle.h"
+ * It defines the same functions as triangle/dropin/triangulate.c, and no others: see there. */
+#include "triangle/dropin/triangle.h"
 
-#include "sched/par.h"
+#include "sched/schedule.h"
 #include "sched/threads.h"
-#include "triangle/io.h"
+#include "triangle/dropin/io.h"
 
 static enum tri_status refine(const struct triangulate_options *options, struct tri_mesh *mesh,
                               const struct tri_refine_options *quality, struct tri_refine_report *report,

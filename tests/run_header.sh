@@ -1,5 +1,5 @@
 #!/bin/sh
-# Compiles triangle/triangle.h in every way that clients of Triangle are known to include theirs: alone, twice, within a
+# Compiles triangle/dropin/triangle.h in every way that clients of Triangle are known to include theirs: alone, twice, within a
 # namespace, within extern "C", with and without their macros, in old and new dialects of C and C++. Then the other
 # public headers in C++.
 # Usage: run_header.sh SOURCE_ROOT WORK_DIR C_COMPILER CXX_COMPILER
@@ -9,7 +9,7 @@ work=$2
 cc=$3
 cxx=$4
 mkdir -p "$work/only"
-cp "$root/triangle/triangle.h" "$work/only/" # nothing else can be included from here
+cp "$root/triangle/dropin/triangle.h" "$work/only/" # nothing else can be included from here
 cd "$work" || exit 2
 failed=0
 count=0
@@ -165,7 +165,7 @@ for std in c++11 c++14 c++17 c++20; do
     try yes client.cpp "$cxx" -I "$root" -std=$std -Wconversion
 done
 # What they declare has C linkage.
-printf '#include "sched/par.h"\nint main() { par_report_free(0); struct tri_mesh m; tri_mesh_free(&m); }\n' >client.cpp
+printf '#include "sched/schedule.h"\nint main() { par_report_free(0); struct tri_mesh m; tri_mesh_free(&m); }\n' >client.cpp
 "$cxx" -I "$root" -std=c++11 -c client.cpp -o object.o && nm object.o >names.txt
 for name in par_report_free tri_mesh_free; do
     grep -q " U _*$name\$" names.txt || { echo "header: $name has C++ linkage"; failed=$((failed + 1)); }

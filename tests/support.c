@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "triangle/delaunay.h"
-#include "triangle/read.h"
+#include "triangle/text/read.h"
 
 uint64_t support_bits(struct support_random *random)
 {

@@ -10,9 +10,9 @@
 
 #include <cmocka.h>
 
-#include "sched/par.h"
+#include "sched/schedule.h"
 #define REAL TRI_REAL
-#include "triangle/triangle.h"
+#include "triangle/dropin/triangle.h"
 
 static REAL xy[] = {0, 0, 1, 0, 1, 1, 0, 1};
 static int ends[] = {0, 1, 1, 2, 2, 3, 3, 0};

@@ -1,6 +1,6 @@
 /* Reading .node, .poly, .ele and .area files: every lexical rule and every error as a row of a table. Each row is read
  * with chunks of several sizes, down to one byte, and with tasks in reverse order; the result must be the same. */
-#include "triangle/read.h"
+#include "triangle/text/read.h"
 
 #include <math.h>
 #include <setjmp.h>

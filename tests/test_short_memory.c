@@ -8,9 +8,9 @@
 #include <unistd.h>
 
 #include "support.h"
-#include "triangle/output.h"
-#include "triangle/read.h"
-#include "triangle/write.h"
+#include "triangle/text/output.h"
+#include "triangle/text/read.h"
+#include "triangle/text/write.h"
 
 /* One call of something, which frees what it makes; true: it succeeded. */
 typedef enum tri_status attempt(struct tri_error *error);

@@ -1,5 +1,5 @@
 /* Strings of switches: the grammar of numbers, what is ignored, what follows. */
-#include "triangle/switches.h"
+#include "triangle/dropin/switches.h"
 
 #include <locale.h>
 #include <setjmp.h>

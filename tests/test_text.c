@@ -1,5 +1,5 @@
 /* The lexer of the text formats: records and fields of known texts, whichever way they are cut into chunks. */
-#include "triangle/text.h"
+#include "triangle/text/text.h"
 
 #include <stdio.h>
 

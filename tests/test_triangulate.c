@@ -4,7 +4,7 @@
  * written would differ. The program is built once for libtriangle.a and once for libptriangle.a, and linked with --wrap
  * for malloc, calloc, realloc and free (allocations.h). */
 #define REAL TRI_REAL
-#include "triangle/triangle.h"
+#include "triangle/dropin/triangle.h"
 
 #include <locale.h>
 #include <pthread.h>

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "triangle/triangle.h"
+#include "triangle/dropin/triangle.h"
 
 static float xy[] = {0, 0, 4, 0, 4, 3, 0, 3, 1, 1, 2, 1, 2, 2, 1, 2}, attributes[] = {0, 4, 34, 30, 11, 12, 22, 21};
 static float hole[] = {1.5f, 1.5f}, region[] = {3.5f, 0.5f, 7.5f, 0.25f};

@@ -9,7 +9,7 @@
 
 #define EXTERNAL_TEST
 #define REAL TRI_REAL
-#include "triangle/triangle.h"
+#include "triangle/dropin/triangle.h"
 
 static struct {
     int calls;

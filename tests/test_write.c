@@ -1,6 +1,6 @@
 /* Writing: layouts against printf and against expected bytes, tables in any order, and that a failure leaves nothing
  * behind. */
-#include "triangle/write.h"
+#include "triangle/text/write.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -18,7 +18,7 @@
 
 #include <cmocka.h>
 
-#include "triangle/read.h"
+#include "triangle/text/read.h"
 
 #define LENGTH(array) (sizeof(array) / sizeof *(array))
 

@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 #include "triangle/check/check.h"
-#include "triangle/read.h"
+#include "triangle/text/read.h"
 
 static int passes(const struct tri_pslg *square, const int32_t (*corners)[3])
 {

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "tests/fuzz/bytes.h"
-#include "triangle/read.h"
+#include "triangle/text/read.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

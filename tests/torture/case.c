@@ -1,7 +1,7 @@
 /* Draws the figure, a change to all of it, and switches. */
 #include "tests/torture/case.h"
 
-#include "triangle/read.h"
+#include "triangle/text/read.h"
 
 /* --- figure */
 

@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "tests/torture/families.h"
-#include "triangle/switches.h"
+#include "triangle/dropin/switches.h"
 
 struct torture_case {
     uint64_t seed;

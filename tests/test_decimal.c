@@ -1,5 +1,5 @@
 /* Numbers to text and back, against printf and strtod. */
-#include "triangle/number.h"
+#include "triangle/text/decimal.h"
 
 #include <inttypes.h>
 #include <locale.h>

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/io.h"
+#include "triangle/dropin/io.h"
 
 _Static_assert(sizeof(int) == sizeof(int32_t), "the library's int is the mesh's");
 

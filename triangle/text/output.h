@@ -10,8 +10,8 @@
  * no locks nothing is removed.
  *
  * Errors of all functions: TRI_CANNOT_WRITE, TRI_NO_MEMORY; of tri_output_write also TRI_STOPPED. */
-#ifndef TRIANGLE_OUTPUT_H
-#define TRIANGLE_OUTPUT_H
+#ifndef TRIANGLE_TEXT_OUTPUT_H
+#define TRIANGLE_TEXT_OUTPUT_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
 /* The parser walks along the string once; each switch sees what is behind its letter and says where to go on. */
-#include "triangle/switches.h"
+#include "triangle/dropin/switches.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,14 +1,14 @@
-/* Reading .node, .poly, .ele and .area files: each is a sequence of headers and tables over triangle/text.h.
+/* Reading .node, .poly, .ele and .area files: each is a sequence of headers and tables over triangle/text/text.h.
  *
  * No array is allocated before the count in the header has been compared with the records that remain, so that a header
  * of a few bytes cannot ask for gigabytes. */
-#include "triangle/read.h"
+#include "triangle/text/read.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "triangle/mesh.h"
-#include "triangle/text.h"
+#include "triangle/text/text.h"
 
 enum {
     MAX_SEGMENTS = TRI_MAX_TRIANGLES,

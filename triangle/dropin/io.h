@@ -2,13 +2,13 @@
  *
  * Everything that can fail comes before the first change of the caller's structs: the arrays of the output are all
  * allocated before the first of them is filled. */
-#ifndef TRIANGLE_IO_H
-#define TRIANGLE_IO_H
+#ifndef TRIANGLE_DROPIN_IO_H
+#define TRIANGLE_DROPIN_IO_H
 
+#include "triangle/dropin/switches.h"
+#include "triangle/dropin/triangle.h"
 #include "triangle/reconstruct.h"
-#include "triangle/switches.h"
-#include "triangle/triangle.h"
-#include "triangle/tri.h"
+#include "triangle/generate.h"
 
 #define REAL TRI_REAL /* as clients of Triangle have it */
 

@@ -2,7 +2,7 @@
  *
  * All or nothing: once every file is closed only renames can fail. Before the first of them each file that is going to
  * be replaced gets a second name, by which it can be put back. */
-#include "triangle/output.h"
+#include "triangle/text/output.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "triangle/text.h"
+#include "triangle/text/text.h"
 
 enum {
     MAX_LINKS = 40,

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/io.h"
+#include "triangle/dropin/io.h"
 #include "triangle/topology.h"
 
 enum { MOST_ARRAYS = 14 };

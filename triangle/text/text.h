@@ -10,8 +10,8 @@
  * anything is allocated for them, a table of n records is parsed chunk by chunk in any order, and every record knows
  * its line.
  * INVARIANT: data[size - 1] is '\n' (added where missing), so no scan needs to look for the end of the text. */
-#ifndef TRIANGLE_TEXT_H
-#define TRIANGLE_TEXT_H
+#ifndef TRIANGLE_TEXT_TEXT_H
+#define TRIANGLE_TEXT_TEXT_H
 
 #include <math.h>
 #include <stdbool.h>
@@ -19,7 +19,7 @@
 #include <stdint.h>
 
 #include "triangle/executor.h"
-#include "triangle/number.h"
+#include "triangle/text/decimal.h"
 #include "triangle/status.h"
 #include "triangle/stop.h"
 

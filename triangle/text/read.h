@@ -8,8 +8,8 @@
  *
  * Every function sets its output to empty first, and leaves it empty when it fails. Further errors of all:
  * TRI_CANNOT_READ, TRI_NO_MEMORY, TRI_TOO_LARGE. Cost: linear, about 250 MB of text a second on each thread. */
-#ifndef TRIANGLE_READ_H
-#define TRIANGLE_READ_H
+#ifndef TRIANGLE_TEXT_READ_H
+#define TRIANGLE_TEXT_READ_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,21 +1,21 @@
 /* Writing Triangle's output files: tables of rows, and the layouts of each format.
  *
- * Floors above triangle/output.h, each usable without the next:
+ * Floors above triangle/text/output.h, each usable without the next:
  *   tables   rows made by a callback in any order, in parallel where an executor is given, written in order;
  *   layouts  .node .ele .poly .edge .neigh .off .v.node .v.edge from plain arrays, byte for byte as in Triangle.
  *
  * Reals are printed as %.17g: what is read back is the same number. Indices in arrays count from 0, those in files from
  * the base of the layout. Cost: linear, 500 to 900 MB of text a second on each thread, before the system's write().
- * Errors of all functions: those of triangle/output.h. */
-#ifndef TRIANGLE_WRITE_H
-#define TRIANGLE_WRITE_H
+ * Errors of all functions: those of triangle/text/output.h. */
+#ifndef TRIANGLE_TEXT_WRITE_H
+#define TRIANGLE_TEXT_WRITE_H
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #include "triangle/executor.h"
-#include "triangle/output.h"
+#include "triangle/text/output.h"
 #include "triangle/pslg.h"
 #include "triangle/status.h"
 
@@ -25,7 +25,7 @@ extern "C" {
 
 /* --- tables */
 
-enum { TRI_ROW_SLACK = 32 }; /* since numbers are stored in whole blocks, see triangle/number.h */
+enum { TRI_ROW_SLACK = 32 }; /* since numbers are stored in whole blocks, see triangle/text/decimal.h */
 
 /* Writes n_rows rows. format_row stores the text of row i at `at` and returns its end; it may be called for any row by
  * any thread, has max_row_bytes for the text, and may touch TRI_ROW_SLACK bytes behind it. The bytes written do not

@@ -2,11 +2,11 @@
  *
  * libptriangle.a has the same functions (sched/triangulate.c), and a linker that sees it first never comes here: this
  * file defines nothing else. */
-#include "triangle/triangle.h"
+#include "triangle/dropin/triangle.h"
 
 #include <stddef.h>
 
-#include "triangle/io.h"
+#include "triangle/dropin/io.h"
 
 /* What clients in other languages, and objects compiled against Triangle's own header, rely on. */
 #define AT(field, offset) _Static_assert(offsetof(struct triangulateio, field) == (offset), #field " has moved")

@@ -1,7 +1,7 @@
 /* The stages behind triangulate(), and what is told about them. */
 #include <stdio.h>
 
-#include "triangle/io.h"
+#include "triangle/dropin/io.h"
 #include "triangle/quality.h"
 
 /* The client's test for u, if it has one: found by the linker. */

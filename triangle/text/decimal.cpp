@@ -6,7 +6,7 @@
  * routine of the library decides, so the fast path can only be fast or absent, never wrong. The scheme of fast digits
  * with a proof or a refusal is that of Loitsch, "Printing floating-point numbers quickly and accurately with integers"
  * (PLDI 2010), reduced to the one precision that files have; the theorem stands at seventeen_digits. */
-#include "triangle/number.h"
+#include "triangle/text/decimal.h"
 
 #include <cassert>
 #include <charconv>

@@ -1,7 +1,7 @@
 /* A text file in memory as a sequence of records: loading, indexing, and parsing tables by chunks.
  *
  * The file is read, not mapped: reading survives that somebody truncates it meanwhile, and goes in parallel as well. */
-#include "triangle/text.h"
+#include "triangle/text/text.h"
 
 #include <assert.h>
 #include <errno.h>

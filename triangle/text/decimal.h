@@ -5,8 +5,8 @@
  *
  * Measured on one core of an AMD EPYC: 14-28 ns to read a real of 17 digits, 17-29 ns to print one, 7 ns for a small
  * whole one. */
-#ifndef TRIANGLE_NUMBER_H
-#define TRIANGLE_NUMBER_H
+#ifndef TRIANGLE_TEXT_DECIMAL_H
+#define TRIANGLE_TEXT_DECIMAL_H
 
 #include <stdint.h>
 

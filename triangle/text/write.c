@@ -3,15 +3,15 @@
  * Why a table is written as it is: rows are formatted in chunks that fit a second-level cache, a wave of chunks at a
  * time; while one wave is formatted, the previous one is written by one more task of the same run. So the order of the
  * bytes is fixed, nobody waits for the disk, and memory is bounded. */
-#include "triangle/write.h"
+#include "triangle/text/write.h"
 
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/number.h"
-#include "triangle/text.h"
+#include "triangle/text/decimal.h"
+#include "triangle/text/text.h"
 
 enum {
     CHUNK_BYTES = 1 << 18,

@@ -7,13 +7,13 @@
  * Numbers: q and a take the longest run of digits and dots right behind them, read as strtod would; S takes digits.
  * There are no signs and no exponents: a1e-6 is area 1, switch e, and a rest that is skipped. Since hardly anyone
  * means that, it is noted. */
-#ifndef TRIANGLE_SWITCHES_H
-#define TRIANGLE_SWITCHES_H
+#ifndef TRIANGLE_DROPIN_SWITCHES_H
+#define TRIANGLE_DROPIN_SWITCHES_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "triangle/tri.h"
+#include "triangle/generate.h"
 
 enum { TRI_SWITCH_NOTES = 4, TRI_SWITCH_NOTE_CHARS = 32 };
 
