@@ -42,7 +42,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/check_input.c
     triangle/check_scale.c
     triangle/check_quality.c
-    triangle/tri.c
+    triangle/generate.c
     triangle/dropin/switches.c
     triangle/topology.c
     triangle/dropin/input.c
@@ -67,12 +67,12 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/room.c
     sched/pool.c
     sched/phase.c
-    sched/par.c
+    sched/schedule.c
     sched/triangulate.c)
 
 # Headers that are installed, below include/ptriangle/ at the same path.
 set(PTRIANGLE_PUBLIC_HEADERS
-    triangle/tri.h
+    triangle/generate.h
     triangle/status.h
     triangle/stop.h
     triangle/pslg.h
@@ -89,7 +89,7 @@ set(PTRIANGLE_PUBLIC_HEADERS
     triangle/text/read.h
     triangle/text/output.h
     triangle/text/write.h
-    sched/par.h
+    sched/schedule.h
     sched/partition.h)
 
 # Room drivers/: what the executables share, then the executables, each from drivers/<name>.c. The second list of programs

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "triangle/check.h"
-#include "triangle/tri.h"
+#include "triangle/generate.h"
 
 struct arrays {
     double *points;

@@ -3,7 +3,7 @@
  * It defines the same functions as triangle/dropin/triangulate.c, and no others: see there. */
 #include "triangle/dropin/triangle.h"
 
-#include "sched/par.h"
+#include "sched/schedule.h"
 #include "sched/threads.h"
 #include "triangle/dropin/io.h"
 

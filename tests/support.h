@@ -19,7 +19,7 @@
 #include "triangle/check.h"
 #include "triangle/mesh.h"
 #include "triangle/predicates.h"
-#include "triangle/tri.h"
+#include "triangle/generate.h"
 
 /* A generator of random numbers (splitmix64). Start it with any seed. */
 struct support_random {

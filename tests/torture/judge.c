@@ -1,7 +1,7 @@
 /* The stages of a run, as the programs have them, each result before the judges. */
 #include "tests/torture/judge.h"
 
-#include "sched/par.h"
+#include "sched/schedule.h"
 #include "triangle/reconstruct.h"
 
 enum { MOST_TRIANGLES = 1000 * 1000 };

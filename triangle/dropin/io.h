@@ -8,7 +8,7 @@
 #include "triangle/dropin/switches.h"
 #include "triangle/dropin/triangle.h"
 #include "triangle/reconstruct.h"
-#include "triangle/tri.h"
+#include "triangle/generate.h"
 
 #define REAL TRI_REAL /* as clients of Triangle have it */
 

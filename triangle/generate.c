@@ -1,5 +1,5 @@
 /* The stages in their order. */
-#include "triangle/tri.h"
+#include "triangle/generate.h"
 
 #include <stdlib.h>
 

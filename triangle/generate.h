@@ -1,4 +1,4 @@
-/* The native API: from a planar straight line graph to a mesh.
+/* From a planar straight line graph to a mesh: the stages in their order.
  *
  * No global state, no printing, no exit: calls on different meshes may run at the same time. A mesh is made by
  * tri_generate, looked at through triangle/mesh.h, refined further (wholly, or where a gate allows: triangle/refine.h)
@@ -7,8 +7,8 @@
  * Coordinates in a mesh are those of the caller divided by mesh.unit, a power of two that is 1 for all inputs of
  * ordinary size; tri_mesh_place gives a vertex in the caller's coordinates. Gates and size tests always get the
  * caller's coordinates. */
-#ifndef TRIANGLE_TRI_H
-#define TRIANGLE_TRI_H
+#ifndef TRIANGLE_GENERATE_H
+#define TRIANGLE_GENERATE_H
 
 #include "triangle/carve.h"
 #include "triangle/constrain.h"
