@@ -28,6 +28,7 @@ struct par_state {
     int round;
     int32_t n_kept;          /* vertices there were before */
     bool may_number;         /* nothing is refined after this schedule */
+    struct par_tiles *tiles; /* takes what is finished; NULL: nobody, or not yet */
     bool numbered;           /* and nothing was */
 };
 

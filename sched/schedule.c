@@ -248,12 +248,26 @@ static enum tri_status sweep_columns(struct par_state *state, const struct par_p
                                      struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    for (int32_t odd = 1; !status && odd <= partition->n_columns; odd += 2)
+    for (int32_t odd = 1; !status && odd <= partition->n_columns; odd += 2) {
         for (int colour = 0; !status && colour < PAR_COLOURS; colour++) {
             int32_t column = colour < 2 ? odd : odd - 1;
             if (column < partition->n_columns)
                 status = par_phase(state, partition, colour, column, error);
         }
+        double began = par_seconds();
+        if (!status && state->tiles && odd > 2)
+            status = par_tiles_column(state->tiles, odd - 2, true, &state->spare, error);
+        state->report->seconds_number += par_seconds() - began;
+    }
+    return status;
+}
+
+/* All at the end. */
+static enum tri_status hand_out(struct par_state *state, const struct par_partition *partition, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (int32_t odd = 1; !status && odd < partition->n_columns; odd += 2)
+        status = par_tiles_column(state->tiles, odd, false, &state->spare, error);
     return status;
 }
 
@@ -266,7 +280,7 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
         state->column.n = 0; /* of other blocks than those to come */
         status = state->options->sweep ? sweep_columns(state, partition, error) : run_phases(state, partition, error);
         state->report->rounds++;
-        if (state->pool.n == 0 || par_cells(partition) < FEWEST_TO_COARSEN)
+        if (state->pool.n == 0 || par_cells(partition) < FEWEST_TO_COARSEN || (state->tiles && state->options->sweep))
             break;
         par_partition_coarsen(partition);
     }
@@ -289,8 +303,20 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         report->radius_measured = state->radius * state->mesh->unit;
         report->prerefined = state->mesh->n_slots;
     }
+    struct tri_executor executor = par_executor(&state->threads);
+    struct par_tiles tiles = {.mesh = state->mesh, .partition = &report->partition, .executor = &executor,
+                              .n_kept = state->n_kept, .take = state->options->take, .user = state->options->take_user,
+                              .n_vertices = state->n_kept};
+    if (top && state->options->take)
+        state->tiles = &tiles;
     status = status ? status : run_rounds(state, partition, error);
     double last = par_seconds();
+    if (!status && state->tiles && state->options->sweep) {
+        if (state->pool.n > 0)
+            status = tri_fail(error, TRI_TOO_LARGE, NULL, 0, "%d bad triangles are left over", (int)state->pool.n);
+        par_tiles_free(&tiles);
+        return status;
+    }
     if (top)
         report->left_over = state->pool.n;
     if (!status && state->pool.n > 0) { /* in the order of the pool, which ids do not show in */
@@ -298,6 +324,9 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         status = refine_rest(state, quality, false, error);
     }
     report->seconds_last += par_seconds() - last;
+    if (!status && state->tiles)
+        status = hand_out(state, &report->partition, error);
+    par_tiles_free(&tiles);
     enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number, error);
     status = status ? status : closed;
     report->total.gated = report->total.deferred = 0; /* all of them have had their turn */
@@ -395,7 +424,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
             status = refine_rest(&state, quality, true, error);
         report->seconds_last += par_seconds() - last;
     }
-    if (!status && report->levels > 0 && !options->by_block && !state.numbered)
+    if (!status && report->levels > 0 && !options->by_block && !state.numbered && !(options->take && options->sweep))
         status = number_mesh(&state, error);
     free(state.pool.item);
     free(state.column.item);

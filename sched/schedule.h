@@ -9,6 +9,7 @@
 #define SCHED_SCHEDULE_H
 
 #include "sched/partition.h"
+#include "sched/sweep/tiles.h"
 #include "triangle/executor.h"
 #include "triangle/generate.h"
 
@@ -30,6 +31,8 @@ struct par_options {
                                 schedule made is numbered by the mesh alone, along a curve (triangle/numbering.h): a
                                 solver that goes through the triangles runs twice as fast then */
     bool sweep;              /* column by column, from left to right; the mesh is the same */
+    par_take_tile *take;     /* not NULL: takes the finished mesh, tile by tile; with `sweep` what has been taken goes */
+    void *take_user;
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
     int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, and pause often */
     /* Told by the calling thread: the phase that begins (0: pre-refinement, then 1 to 4, at last PAR_NUMBERING),

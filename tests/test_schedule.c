@@ -280,6 +280,75 @@ static void test_a_sweep_makes_the_same_mesh(void **state)
     }
 }
 
+/* Everything that is handed out, one after the other. */
+struct stream {
+    char *byte;
+    size_t n, capacity;
+    int64_t n_vertices, n_triangles;
+};
+
+static void append(struct stream *s, const void *bytes, size_t n)
+{
+    if (s->n + n > s->capacity) {
+        s->capacity = 2 * (s->n + n);
+        s->byte = realloc(s->byte, s->capacity);
+        assert_non_null(s->byte);
+    }
+    memcpy(s->byte + s->n, bytes, n);
+    s->n += n;
+}
+
+static enum tri_status take_tile(void *user, const struct par_tile *tile, struct tri_error *error)
+{
+    struct stream *s = user;
+    (void)error;
+    assert_true(tile->first_vertex == s->n_vertices && tile->first_triangle == s->n_triangles);
+    s->n_vertices += tile->n_vertices;
+    s->n_triangles += tile->n_triangles;
+    append(s, &tile->column, sizeof tile->column);
+    append(s, &tile->row, sizeof tile->row);
+    append(s, tile->xy, (size_t)tile->n_vertices * sizeof *tile->xy);
+    append(s, tile->markers, (size_t)tile->n_vertices * sizeof *tile->markers);
+    append(s, tile->corners, (size_t)tile->n_triangles * sizeof *tile->corners);
+    append(s, tile->regions, (size_t)tile->n_triangles * sizeof *tile->regions);
+    return TRI_OK;
+}
+
+static void test_tiles_are_the_same_swept_and_in_memory(void **state)
+{
+    (void)state;
+    for (int i = 0; i < N_TRIALS; i++) {
+        struct start start = start_of(&trials[i]);
+        struct par_options options = small_blocks(trials[i].block, 2);
+        struct par_report report, swept_report;
+        struct tri_error error = {0};
+        struct tri_mesh mesh = coarse_mesh(&start), swept = coarse_mesh(&start);
+        struct stream whole = {.n_vertices = mesh.n_vertices}, parts = {.n_vertices = mesh.n_vertices};
+        options.take = take_tile;
+        options.take_user = &whole;
+        assert_int_equal(par_refine(&mesh, &start.options.quality, &options, &report, NULL), TRI_OK);
+        assert_true(whole.n_triangles == mesh.n_slots && whole.n_vertices == mesh.n_vertices);
+        options.take_user = &parts;
+        options.sweep = true;
+        options.threads = 3;
+        enum tri_status status = par_refine(&swept, &start.options.quality, &options, &swept_report, &error);
+        print_message("  %-28s %lld triangles, rounds %d: %s, capacity %d of %d\n", trials[i].file, (long long)whole.n_triangles, report.rounds,
+                      status ? error.text : "whole", swept.n_slots, mesh.n_slots);
+        if (!status) {
+            assert_int_equal(parts.n_triangles, whole.n_triangles);
+            assert_int_equal(parts.n, whole.n);
+            assert_memory_equal(parts.byte, whole.byte, whole.n);
+        }
+        free(whole.byte);
+        free(parts.byte);
+        par_report_free(&report);
+        par_report_free(&swept_report);
+        tri_mesh_free(&mesh);
+        tri_mesh_free(&swept);
+        tri_pslg_free(&start.pslg);
+    }
+}
+
 static struct start square(int32_t points, double angle, double max_area)
 {
     return (struct start){support_square(1, points, 5), support_quality(angle, max_area)};
@@ -748,6 +817,7 @@ int main(void)
         cmocka_unit_test(test_bounds_and_size_are_those_of_the_sequential_loop),
         cmocka_unit_test(test_any_number_of_threads_and_order_of_blocks_make_one_mesh),
         cmocka_unit_test(test_a_sweep_makes_the_same_mesh),
+        cmocka_unit_test(test_tiles_are_the_same_swept_and_in_memory),
         cmocka_unit_test(test_room_moves_ids_alone),
         cmocka_unit_test(test_the_way_of_numbering_moves_ids_alone),
         cmocka_unit_test(test_nothing_is_deferred_with_the_margin),
