@@ -22,6 +22,7 @@ struct finds {
 struct column {
     struct par_tiles *tiles;
     int32_t column;
+    int32_t first_tile;
     double end;                     /* everything left of it is final */
     struct finds vertices[SHARES], triangles[SHARES], straddling[SHARES];
     bool no_memory[SHARES];
@@ -47,50 +48,40 @@ static bool add(struct finds *f, int32_t item, int32_t tile)
     return true;
 }
 
-static int32_t row_at(const struct column *c, struct tri_point q)
-{
-    return par_block_at(c->tiles->partition, 0, q) - c->column * c->tiles->partition->n_rows;
-}
-
+/* Vertices from `first` on learn their tiles, if that is in this column or before. */
 static void find_vertices(void *context, size_t share)
 {
     struct column *c = context;
-    const struct tri_mesh *mesh = c->tiles->mesh;
-    struct tri_range range = tri_share_of(share, SHARES, mesh->n_vertices - c->tiles->n_kept);
-    for (int32_t i = range.first; i < range.last; i++) {
-        int32_t v = c->tiles->n_kept + i;
-        if (mesh->on[v] == TRI_VERTEX_NONE || c->tiles->number[v] >= 0 || !(mesh->xy[v].x < c->end))
+    struct par_tiles *tiles = c->tiles;
+    const struct tri_mesh *mesh = tiles->mesh;
+    struct tri_range range = tri_share_of(share, SHARES, mesh->n_vertices);
+    for (int32_t v = range.first; v < range.last; v++) {
+        if (tiles->tile[v] != INT32_MAX || mesh->on[v] == TRI_VERTEX_NONE || !(mesh->xy[v].x < c->end))
             continue;
-        if (!add(&c->vertices[share], v, row_at(c, mesh->xy[v])))
+        tiles->tile[v] = par_block_at(tiles->partition, 0, mesh->xy[v]);
+        if (v >= tiles->n_kept && !add(&c->vertices[share], v, tiles->tile[v] - c->first_tile))
             c->no_memory[share] = true;
     }
-}
-
-/* The last row of the corners in this column; -1 where none is in it. */
-static int32_t last_row(const struct column *c, const int32_t v[3])
-{
-    int32_t last = -1;
-    for (int k = 0; k < 3; k++) {
-        int32_t row = row_at(c, c->tiles->mesh->xy[v[k]]);
-        last = row > last ? row : last;
-    }
-    return last;
 }
 
 static void find_triangles(void *context, size_t share)
 {
     struct column *c = context;
     const struct tri_mesh *mesh = c->tiles->mesh;
+    const int32_t *tile = c->tiles->tile;
     struct tri_range range = tri_share_of(share, SHARES, mesh->n_slots);
     for (int32_t t = range.first; t < range.last; t++) {
         const int32_t *v = mesh->tri[t].v;
         if (v[0] == TRI_NONE)
             continue;
-        int left = (mesh->xy[v[0]].x < c->end) + (mesh->xy[v[1]].x < c->end) + (mesh->xy[v[2]].x < c->end);
-        if (left == 0)
+        int32_t a = tile[v[0]], b = tile[v[1]], d = tile[v[2]];
+        int32_t low = a < b ? a : b, high = a < b ? b : a;
+        low = d < low ? d : low;
+        high = d > high ? d : high;
+        if (low == INT32_MAX || high < c->first_tile)
             continue;
-        int32_t row = left == 3 ? last_row(c, v) : 0;
-        if (row >= 0 && !add(left == 3 ? &c->triangles[share] : &c->straddling[share], t, row))
+        bool final = high != INT32_MAX;
+        if (!add(final ? &c->triangles[share] : &c->straddling[share], t, final ? high - c->first_tile : 0))
             c->no_memory[share] = true;
     }
 }
@@ -119,16 +110,20 @@ static bool by_tile(const struct finds found[SHARES], int32_t n_rows, int32_t **
 
 static bool grow_numbers(struct par_tiles *tiles)
 {
-    int32_t before = tiles->number_capacity, now = tiles->mesh->vertex_capacity;
+    int32_t before = tiles->capacity, now = tiles->mesh->vertex_capacity;
     if (now <= before)
         return true;
-    int64_t *fresh = realloc(tiles->number, (size_t)now * sizeof *fresh);
-    if (!fresh)
+    int64_t *number = realloc(tiles->number, (size_t)now * sizeof *number);
+    tiles->number = number ? number : tiles->number;
+    int32_t *tile = realloc(tiles->tile, (size_t)now * sizeof *tile);
+    tiles->tile = tile ? tile : tiles->tile;
+    if (!number || !tile)
         return false;
-    for (int32_t v = before; v < now; v++)
-        fresh[v] = v < tiles->n_kept ? v : -1;
-    tiles->number = fresh;
-    tiles->number_capacity = now;
+    for (int32_t v = before; v < now; v++) {
+        number[v] = v < tiles->n_kept ? v : -1;
+        tile[v] = INT32_MAX;
+    }
+    tiles->capacity = now;
     return true;
 }
 
@@ -399,6 +394,7 @@ static void let_vertex_go(struct column *c, int32_t v)
 {
     c->tiles->mesh->on[v] = TRI_VERTEX_NONE;
     c->tiles->number[v] = -1;
+    c->tiles->tile[v] = INT32_MAX;
 }
 
 /* Of a list, ascending, those that do not stay; in place. */
@@ -455,6 +451,7 @@ enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, bool l
     assert(column % 2 == 1 && column < tiles->partition->n_columns);
     c->tiles = tiles;
     c->column = column;
+    c->first_tile = column * tiles->partition->n_rows;
     c->end = par_fence(tiles->partition, column, 0).x_max;
     par_room_mark(spare, tiles->mesh);
     if (!find_all(c))
@@ -475,7 +472,9 @@ enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, bool l
 void par_tiles_free(struct par_tiles *tiles)
 {
     free(tiles->number);
+    free(tiles->tile);
     free(tiles->held.item);
     tiles->number = NULL;
+    tiles->tile = NULL;
     tiles->held = (struct par_list){0};
 }

@@ -40,8 +40,10 @@ struct par_tiles {
     int32_t n_kept;               /* vertices that keep their numbers */
     par_take_tile *take;
     void *user;
-    int64_t *number;              /* [number_capacity] of each vertex; -1: none yet */
-    int32_t number_capacity;
+    int64_t *number;              /* [capacity] of each vertex; -1: none yet */
+    int32_t *tile;                /* [capacity] column * n_rows + row of each vertex; INT32_MAX: right of what has been
+                                     handed out, or not there */
+    int32_t capacity;
     int64_t n_vertices, n_triangles; /* numbered so far, those that keep theirs counted in */
     struct par_list held;         /* numbered vertices that triangles beyond the last column still have */
 };
