@@ -1,16 +1,15 @@
-/* One column of tiles at a time: collect what is in it, number, hand out, let go.
- *
- * Each of these steps is done in shares or tile by tile, in parallel; only `take` is called by one thread. */
+/* One column of tiles at a time: find what is in it, number, hand out, let go; in shares or tile by tile, in parallel.
+ * Only `take` is called by one thread. */
 #include "sched/sweep/tiles.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "sched/room.h"
 #include "triangle/hilbert.h"
 #include "triangle/radix.h"
 
+/* Free ids in runs shorter than this are forgotten; so many tiles are made at once. */
 enum { SHORTEST_RUN = 8, BATCH = 8, SHARES = TRI_MOST_SHARES };
 
 /* What one share of the mesh has found, in the order of ids. */
@@ -23,8 +22,9 @@ struct column {
     struct par_tiles *tiles;
     int32_t column;
     int32_t first_tile;
-    double end;                     /* everything left of it is final */
-    struct finds vertices[SHARES], triangles[SHARES], straddling[SHARES];
+    double end;                     /* all triangles left of it are final */
+    struct finds vertices[SHARES], triangles[SHARES]; /* of this column */
+    struct finds straddling[SHARES]; /* triangles that reach beyond it */
     bool no_memory[SHARES];
     int32_t *vertex, *triangle;     /* ids by tile */
     int32_t *vertex_start, *triangle_start; /* [n_rows + 1] */
@@ -153,6 +153,7 @@ struct job {
     bool no_memory;
 };
 
+/* Vertices get their numbers and are copied out. */
 static void number_tile(void *context, size_t index)
 {
     struct job *job = (struct job *)context + index;
@@ -186,78 +187,73 @@ static void corners_of(const struct column *c, int32_t t, int64_t corner[3])
     assert(corner[0] >= 0 && corner[1] >= 0 && corner[2] >= 0);
 }
 
-static bool comes_before(const int64_t a[3], const int64_t b[3])
-{
-    return a[0] != b[0] ? a[0] < b[0] : a[1] < b[1];
-}
-
-static int compare_corners(const void *left, const void *right)
-{
-    const int64_t *a = left, *b = right;
-    return comes_before(b, a) - comes_before(a, b);
-}
-
-/* Where many start at vertices of other columns, or at one. */
 struct numbered {
     int64_t corner[3];
     int32_t triangle;
 };
 
+static int compare_corners(const void *left, const void *right)
+{
+    const struct numbered *a = left, *b = right;
+    int k = a->corner[0] == b->corner[0];
+    return (a->corner[k] > b->corner[k]) - (a->corner[k] < b->corner[k]);
+}
+
 enum { INDEX_BITS = 32 };
 
-/* Sorts by the largest corner, if it was numbered in this column (the others are few: key 0). */
-static void sort_keys(const struct job *job, const int32_t *triangle, int32_t n, uint64_t *item)
+/* Triangles of a tile with their largest corners as keys, sorted: those numbered in this column, after all others, which
+ * are few and have key 0. */
+static void sort_keys(const struct column *c, const int32_t *triangle, int32_t n, uint64_t *item)
 {
-    const struct column *c = job->column;
+    int bits = 2;
     for (int32_t i = 0; i < n; i++) {
         int64_t corner[3];
         corners_of(c, triangle[i], corner);
-        uint64_t key = corner[0] >= c->tiles->n_vertices ? (uint64_t)(corner[0] - c->tiles->n_vertices) + 1 : 0;
-        item[i] = key << INDEX_BITS | (uint32_t)i;
+        int64_t key = corner[0] - c->tiles->n_vertices + 1;
+        item[i] = (uint64_t)(key > 0 ? key : 0) << INDEX_BITS | (uint32_t)i;
     }
-    int bits = 1;
-    while (c->n_vertices >> bits)
+    while (c->n_vertices >> (bits - 1))
         bits++;
     if (n > 0)
-        tri_radix_sort(item, item + n, n, INDEX_BITS, INDEX_BITS + bits + 1, NULL);
+        tri_radix_sort(item, item + n, n, INDEX_BITS, INDEX_BITS + bits, NULL);
+}
+
+/* The triangles of one key in their order. Two mostly. */
+static void sort_fan(const struct column *c, const int32_t *triangle, const uint64_t *item, int32_t n,
+                     struct numbered *fan)
+{
+    for (int32_t i = 0; i < n; i++) {
+        fan[i].triangle = triangle[(uint32_t)item[i]];
+        corners_of(c, fan[i].triangle, fan[i].corner);
+    }
+    if (n == 2 && compare_corners(&fan[1], &fan[0]) < 0) {
+        struct numbered swap = fan[0];
+        fan[0] = fan[1];
+        fan[1] = swap;
+    }
+    if (n > 2)
+        qsort(fan, (size_t)n, sizeof *fan, compare_corners);
 }
 
 static bool sort_tile(struct job *job, const int32_t *triangle, int32_t n)
 {
     const struct column *c = job->column;
     uint64_t *item = malloc((2 * (size_t)n + 1) * sizeof *item);
-    struct numbered *fan = NULL;
-    int32_t room = 0;
-    bool memory = item;
+    struct numbered *fan = malloc(((size_t)n + 1) * sizeof *fan);
+    bool memory = item && fan;
     if (memory)
-        sort_keys(job, triangle, n, item);
+        sort_keys(c, triangle, n, item);
     for (int32_t first = 0, end; memory && first < n; first = end) {
         for (end = first + 1; end < n && item[end] >> INDEX_BITS == item[first] >> INDEX_BITS;)
             end++;
-        if (end - first > room) {
-            free(fan);
-            room = 2 * (end - first) + 16;
-            fan = malloc((size_t)room * sizeof *fan);
-            memory = fan;
-        }
-        for (int32_t i = first; memory && i < end; i++) {
-            fan[i - first].triangle = triangle[(uint32_t)item[i]];
-            corners_of(c, fan[i - first].triangle, fan[i - first].corner);
-        }
-        if (memory && end - first == 2 && comes_before(fan[1].corner, fan[0].corner)) {
-            struct numbered swap = fan[0];
-            fan[0] = fan[1];
-            fan[1] = swap;
-        }
-        if (memory && end - first > 2)
-            qsort(fan, (size_t)(end - first), sizeof *fan, compare_corners);
-        for (int32_t i = first; memory && i < end; i++) {
+        sort_fan(c, triangle, item + first, end - first, fan);
+        for (int32_t i = first; i < end; i++) {
             memcpy(job->corners[i], fan[i - first].corner, sizeof job->corners[i]);
             job->regions[i] = c->tiles->mesh->tri[fan[i - first].triangle].region;
         }
     }
-    free(fan);
     free(item);
+    free(fan);
     return memory;
 }
 
@@ -365,7 +361,7 @@ static int ascending(const void *left, const void *right)
 }
 
 /* Corners of triangles that stay. */
-static bool corners_that_stay(const struct column *c, struct par_list *stay)
+static bool corners_that_stay(const struct column *c, struct par_slots *stay)
 {
     int32_t n = 0;
     for (int s = 0; s < SHARES; s++)
@@ -398,7 +394,7 @@ static void let_vertex_go(struct column *c, int32_t v)
 }
 
 /* Of a list, ascending, those that do not stay; in place. */
-static int32_t leaving(int32_t *item, int32_t n, const struct par_list *stay)
+static int32_t leaving(int32_t *item, int32_t n, const struct par_slots *stay)
 {
     int32_t left = 0;
     for (int32_t i = 0, k = 0; i < n; i++) {
@@ -412,7 +408,7 @@ static int32_t leaving(int32_t *item, int32_t n, const struct par_list *stay)
 
 static bool let_vertices_go(struct column *c, struct par_room *spare)
 {
-    struct par_list stay;
+    struct par_slots stay;
     bool memory = corners_that_stay(c, &stay);
     for (int s = 0; s <= SHARES && memory; s++) {
         int32_t *item = s < SHARES ? c->vertices[s].item : c->tiles->held.item;
@@ -476,5 +472,5 @@ void par_tiles_free(struct par_tiles *tiles)
     free(tiles->held.item);
     tiles->number = NULL;
     tiles->tile = NULL;
-    tiles->held = (struct par_list){0};
+    tiles->held = (struct par_slots){0};
 }

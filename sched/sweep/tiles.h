@@ -13,6 +13,8 @@
 #define SCHED_SWEEP_TILES_H
 
 #include "sched/partition.h"
+#include "sched/pool.h"
+#include "sched/room.h"
 #include "triangle/executor.h"
 
 struct par_tile {
@@ -28,11 +30,6 @@ struct par_tile {
 /* Takes a finished tile, which is gone when the call returns. Called in the order of the tiles by the calling thread. */
 typedef enum tri_status par_take_tile(void *user, const struct par_tile *tile, struct tri_error *error);
 
-struct par_list {
-    int32_t *item;
-    int32_t n;
-};
-
 struct par_tiles {
     struct tri_mesh *mesh;
     const struct par_partition *partition;
@@ -45,14 +42,13 @@ struct par_tiles {
                                      handed out, or not there */
     int32_t capacity;
     int64_t n_vertices, n_triangles; /* numbered so far, those that keep theirs counted in */
-    struct par_list held;         /* numbered vertices that triangles beyond the last column still have */
+    struct par_slots held;         /* numbered vertices that triangles beyond the last column still have */
 };
 
-/* Numbers, and hands out, the tiles of an odd column. Every triangle whose corners lie in it and before it is final, and
- * columns before it have had their turn. What has been handed out is gone from the mesh where `let_go`: free triangles
- * and vertices (TRI_NONE, TRI_VERTEX_NONE) are added to *spare as ranges. O(what is in memory). TRI_NO_MEMORY, or what
- * `take` says. */
-struct par_room;
+/* Numbers, and hands out, the tiles of an odd column. Every triangle whose corners lie in it and before it must be final,
+ * and columns before it have had their turn. let_go: what has been handed out is gone from the mesh, its ids are added to
+ * *spare, and links of triangles beyond the column to it lead nowhere. O(what is in memory). TRI_NO_MEMORY, or what `take`
+ * says. */
 enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, bool let_go, struct par_room *spare,
                                  struct tri_error *error);
 
