@@ -2,7 +2,7 @@
 #ifndef DRIVERS_BLOCKS_FILE_H
 #define DRIVERS_BLOCKS_FILE_H
 
-#include "sched/par.h"
+#include "sched/schedule.h"
 #include "triangle/text/output.h"
 
 /* Writes a line "block phase" for each triangle in the order of the .ele file: par_block_of, phases from 0; -1 -1 where

@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "triangle/tri.h"
+#include "triangle/generate.h"
 
 enum colour { BLACK, WHITE };
 

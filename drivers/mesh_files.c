@@ -10,7 +10,7 @@
 #include "drivers/interrupt.h"
 #include "triangle/text/decimal.h"
 #include "triangle/topology.h"
-#include "triangle/tri.h"
+#include "triangle/generate.h"
 #include "triangle/text/write.h"
 
 struct writer {

@@ -10,7 +10,7 @@
 #ifndef DRIVERS_PREDICTION_H
 #define DRIVERS_PREDICTION_H
 
-#include "sched/par.h"
+#include "sched/schedule.h"
 
 /* Seconds of the phases' parallel parts on so many threads, threads >= 1. first_round: blocks of rounds before it do
  * not count. Negative: no memory. O(n log n + n threads). */

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "sched/clock.h"
-#include "sched/par.h"
+#include "sched/schedule.h"
 
 static const double SECONDS_BETWEEN_LINES = 0.1;
 

@@ -13,7 +13,7 @@
 #include "drivers/progress.h"
 #include "drivers/report_json.h"
 #include "drivers/run.h"
-#include "sched/par.h"
+#include "sched/schedule.h"
 #include "sched/threads.h"
 #include "triangle/text/write.h"
 

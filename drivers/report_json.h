@@ -3,7 +3,7 @@
 #define DRIVERS_REPORT_JSON_H
 
 #include "drivers/run.h"
-#include "sched/par.h"
+#include "sched/schedule.h"
 #include "triangle/text/output.h"
 
 /* TRI_BAD_INPUT: this program was built without reports. */

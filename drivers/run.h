@@ -11,7 +11,7 @@
 #include "triangle/executor.h"
 #include "triangle/text/read.h"
 #include "triangle/stats.h"
-#include "triangle/tri.h"
+#include "triangle/generate.h"
 
 enum run_stage {
     RUN_READ,     /* files to PSLG or mesh */

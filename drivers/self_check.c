@@ -4,8 +4,8 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
-#include "triangle/check.h"
-#include "triangle/tri.h"
+#include "triangle/check/check.h"
+#include "triangle/generate.h"
 
 struct arrays {
     double *points;

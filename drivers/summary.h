@@ -6,7 +6,7 @@
 #include "triangle/pslg.h"
 #include "triangle/stats.h"
 #include "triangle/dropin/switches.h"
-#include "triangle/tri.h"
+#include "triangle/generate.h"
 
 /* What went otherwise than the input asks: crossings, segments bent. */
 void summary_segments(const struct console *console, const struct tri_constrain_report *report);

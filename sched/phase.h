@@ -6,7 +6,7 @@
 #ifndef SCHED_PHASE_H
 #define SCHED_PHASE_H
 
-#include "sched/par.h"
+#include "sched/schedule.h"
 #include "sched/partition.h"
 #include "sched/pool.h"
 #include "sched/room.h"

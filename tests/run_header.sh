@@ -165,7 +165,7 @@ for std in c++11 c++14 c++17 c++20; do
     try yes client.cpp "$cxx" -I "$root" -std=$std -Wconversion
 done
 # What they declare has C linkage.
-printf '#include "sched/par.h"\nint main() { par_report_free(0); struct tri_mesh m; tri_mesh_free(&m); }\n' >client.cpp
+printf '#include "sched/schedule.h"\nint main() { par_report_free(0); struct tri_mesh m; tri_mesh_free(&m); }\n' >client.cpp
 "$cxx" -I "$root" -std=c++11 -c client.cpp -o object.o && nm object.o >names.txt
 for name in par_report_free tri_mesh_free; do
     grep -q " U _*$name\$" names.txt || { echo "header: $name has C++ linkage"; failed=$((failed + 1)); }

@@ -16,10 +16,10 @@
 
 #include <cmocka.h>
 
-#include "triangle/check.h"
+#include "triangle/check/check.h"
 #include "triangle/mesh.h"
 #include "triangle/predicates.h"
-#include "triangle/tri.h"
+#include "triangle/generate.h"
 
 /* A generator of random numbers (splitmix64). Start it with any seed. */
 struct support_random {

@@ -18,7 +18,7 @@ extern "C" {
 #endif
 
 /* Non-zero: the triangle a, b, c (counter-clockwise) must be refined. Called for triangles that satisfy all other size
- * bounds, by par_refine also for others (sched/par.h). */
+ * bounds, by par_refine also for others (sched/schedule.h). */
 typedef int tri_unsuitable(void *user, const double a[2], const double b[2], const double c[2], double area);
 
 /* May the bad triangle whose new point would be p (its circumcentre or off-centre) be refined now? */

@@ -13,7 +13,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "triangle/tri.h"
+#include "triangle/generate.h"
 
 enum { TRI_SWITCH_NOTES = 4, TRI_SWITCH_NOTE_CHARS = 32 };
 

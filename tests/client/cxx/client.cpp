@@ -5,7 +5,7 @@
 #define EXTERNAL_TEST
 extern "C" int triunsuitable(double *origin, double *destination, double *apex, double area);
 #include "triangle.h"
-#include "triangle/tri.h"
+#include "triangle/generate.h"
 
 static int asked;
 

@@ -2,7 +2,7 @@
  *
  * Levels. The pre-refinement of a large mesh is itself large; it is then refined by the same schedule, with a coarser
  * one before it, and so on until a level is small enough for one sequential call. */
-#include "sched/par.h"
+#include "sched/schedule.h"
 
 #include <assert.h>
 #include <stdlib.h>

@@ -5,12 +5,12 @@
  *
  * Source: A. N. Chernikov and N. P. Chrisochoides, ICS 2004 (see sched/theory.h); segments, grading and ownership: see
  * triangle/refine.h and sched/partition.h. */
-#ifndef SCHED_PAR_H
-#define SCHED_PAR_H
+#ifndef SCHED_SCHEDULE_H
+#define SCHED_SCHEDULE_H
 
 #include "sched/partition.h"
 #include "triangle/executor.h"
-#include "triangle/tri.h"
+#include "triangle/generate.h"
 
 #ifdef __cplusplus
 extern "C" {
