@@ -20,15 +20,15 @@ struct par_state {
     const struct par_options *options;
     int threads;
     struct par_slots pool;   /* triangles that may be bad, in canonical order; some may have gone since */
-    struct par_slots column; /* [pool.n] column of the block that left each, ascending, -1 first: those that no block has
-                                had; n == 0: all are of that kind */
+    struct par_slots column; /* [pool.n] column of the block that left each, ascending; -1: none has had it; n == 0: so
+                                are all */
     struct par_room spare;   /* unused ranges of the arrays */
     double radius;           /* largest circumradius in the pool when it was last filled */
     struct par_report *report;
     int round;
     int32_t n_kept;          /* vertices there were before */
     bool may_number;         /* nothing is refined after this schedule */
-    struct par_tiles *tiles; /* takes what is finished; NULL: nobody, or not yet */
+    bool sweeping;           /* columns are handed out, and go, as they are finished */
     bool numbered;           /* and nothing was */
 };
 

@@ -201,8 +201,8 @@ static int compare_corners(const void *left, const void *right)
 
 enum { INDEX_BITS = 32 };
 
-/* Triangles of a tile with their largest corners as keys, sorted: those numbered in this column, after all others, which
- * are few and have key 0. */
+/* Triangles of a tile with their largest corners as keys, sorted: those numbered in this column, after all others,
+ * which are few and have key 0. */
 static void sort_keys(const struct column *c, const int32_t *triangle, int32_t n, uint64_t *item)
 {
     int bits = 2;

@@ -4,11 +4,11 @@
  * rows upwards. A vertex belongs to the tile that holds it, a triangle and a subsegment to the last tile of their
  * corners.
  *
- * NUMBERS. Vertices that there were before refinement keep theirs. The others are numbered tile by tile, along a Hilbert
- * curve over the tile's own vertices; so every corner of a triangle has its number when the triangle's tile has its
- * turn. A triangle starts at its corner with the largest number; the triangles of a tile are sorted by that corner, then
- * by the next one. So numbers depend on the mesh and the partition alone, and are 64 bits wide: only what is in memory
- * at one time must fit 32. */
+ * NUMBERS. Vertices that there were before refinement keep theirs. The others are numbered tile by tile, along a
+ * Hilbert curve over the tile's own vertices; so every corner of a triangle has its number when the triangle's tile has
+ * its turn. A triangle starts at its corner with the largest number; the triangles of a tile are sorted by that corner,
+ * then by the next one. So numbers depend on the mesh and the partition alone, and are 64 bits wide: only what is in
+ * memory at one time must fit 32. */
 #ifndef SCHED_SWEEP_TILES_H
 #define SCHED_SWEEP_TILES_H
 
@@ -27,7 +27,7 @@ struct par_tile {
     const int32_t *regions;       /* [n_triangles] index into the mesh's regions */
 };
 
-/* Takes a finished tile, which is gone when the call returns. Called in the order of the tiles by the calling thread. */
+/* Takes a finished tile, which is gone when the call returns. Called in the order of the tiles, by one thread. */
 typedef enum tri_status par_take_tile(void *user, const struct par_tile *tile, struct tri_error *error);
 
 struct par_tiles {
@@ -45,10 +45,10 @@ struct par_tiles {
     struct par_slots held;         /* numbered vertices that triangles beyond the last column still have */
 };
 
-/* Numbers, and hands out, the tiles of an odd column. Every triangle whose corners lie in it and before it must be final,
- * and columns before it have had their turn. let_go: what has been handed out is gone from the mesh, its ids are added to
- * *spare, and links of triangles beyond the column to it lead nowhere. O(what is in memory). TRI_NO_MEMORY, or what `take`
- * says. */
+/* Numbers, and hands out, the tiles of an odd column. Every triangle whose corners lie in it and before it must be
+ * final, and columns before it have had their turn. let_go: what has been handed out is gone from the mesh, its ids are
+ * added to *spare, and links of triangles beyond the column to it lead nowhere. O(what is in memory). TRI_NO_MEMORY, or
+ * what `take` says. */
 enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, bool let_go, struct par_room *spare,
                                  struct tri_error *error);
 
