@@ -35,15 +35,6 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/numbering.c
     triangle/census.c
     triangle/stats.c
-    triangle/check.c
-    triangle/check_edges.c
-    triangle/check_overlap.c
-    triangle/check_delaunay.c
-    triangle/check_segments.c
-    triangle/check_chain.c
-    triangle/check_input.c
-    triangle/check_scale.c
-    triangle/check_quality.c
     triangle/generate.c
     triangle/dropin/switches.c
     triangle/topology.c
@@ -51,6 +42,19 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/dropin/output.c
     triangle/dropin/run.c
     triangle/dropin/triangulate.c)
+
+# Room triangle/check/, the judge of meshes. Of the mesher it knows the predicates alone.
+set(PTRIANGLE_CHECK_SOURCES
+    triangle/check/check.c
+    triangle/check/scale.c
+    triangle/check/edges.c
+    triangle/check/order.c
+    triangle/check/overlap.c
+    triangle/check/delaunay.c
+    triangle/check/segments.c
+    triangle/check/chain.c
+    triangle/check/input.c
+    triangle/check/quality.c)
 
 # Room triangle/, text files. The one C++ file wraps std::from_chars and std::to_chars.
 set(PTRIANGLE_TEXT_SOURCES
@@ -78,6 +82,7 @@ set(PTRIANGLE_PUBLIC_HEADERS
     triangle/status.h
     triangle/stop.h
     triangle/pslg.h
+    triangle/point.h
     triangle/mesh.h
     triangle/spatial.h
     triangle/carve.h
@@ -86,7 +91,7 @@ set(PTRIANGLE_PUBLIC_HEADERS
     triangle/cavity.h
     triangle/refine.h
     triangle/numbering.h
-    triangle/check.h
+    triangle/check/check.h
     triangle/executor.h
     triangle/text/read.h
     triangle/text/output.h

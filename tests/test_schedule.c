@@ -188,14 +188,14 @@ static void test_any_number_of_threads_and_order_of_blocks_make_one_mesh(void **
     static const struct {
         int threads;
         unsigned shuffle;
-    } runs[] = {{2, 0}, {3, 0}, {4, 0}, {8, 0}, {1, 1}, {2, 77}, {3, 4711}};
+    } runs[] = {{3, 0}, {1, 1}, {8, 0}, {2, 4711}};
     for (int i = 0; i < N_TRIALS; i++) {
         struct start start = start_of(&trials[i]);
         struct par_options options = small_blocks(trials[i].block, 1);
         struct par_report first_report, report;
         print_message("  %s\n", trials[i].file);
         struct tri_mesh first = refine(&start, &options, &first_report);
-        for (int k = 0; k < (i < N_USUAL ? 7 : 2); k++) {
+        for (int k = 0; k < (i < N_USUAL ? 4 : 2); k++) {
             options.threads = runs[k].threads;
             options.shuffle = runs[k].shuffle;
             struct tri_mesh mesh = refine(&start, &options, &report);

@@ -33,8 +33,8 @@ static void assert_legal(const struct tri_mesh *mesh, const struct tri_pslg *psl
 static void test_generation_stops_anywhere(void **state)
 {
     (void)state;
-    struct tri_pslg pslg = support_tangle(SUPPORT_RANDOM, 1500, 60, 1);
-    struct tri_options options = support_quality(25, 1e-3);
+    struct tri_pslg pslg = support_tangle(SUPPORT_RANDOM, 600, 30, 1);
+    struct tri_options options = support_quality(25, 2e-3);
     options.keep_hull = true;
     bool refining_stopped = false;
     enum tri_status status = TRI_STOPPED;

@@ -3,7 +3,7 @@
  * Usage: client square.poly */
 #include <stdio.h>
 
-#include "triangle/check.h"
+#include "triangle/check/check.h"
 #include "triangle/text/read.h"
 
 static int passes(const struct tri_pslg *square, const int32_t (*corners)[3])
