@@ -86,6 +86,18 @@ static enum tri_status take_hull(struct tri_mesh *mesh, struct tri_triangle *tri
 
 /* --- the order */
 
+/* The corner that is the lower end of the shortest edge. Lengths are rounded, and several may be shortest: so they are
+ * asked for with the lowest corner in front, however the triangle is turned. */
+static int first_corner(const struct tri_point *xy, const int32_t v[3])
+{
+    int lowest = v[1] < v[0] ? 1 : 0;
+    lowest = v[2] < v[lowest] ? 2 : lowest;
+    int corner[] = {lowest, tri_next[lowest], tri_prev[lowest]};
+    const int32_t turned[] = {v[corner[0]], v[corner[1]], v[corner[2]]};
+    int shortest = tri_shape_of(xy, turned).shortest;
+    return shortest == 0 && turned[2] < turned[1] ? corner[2] : corner[shortest == 0 ? 1 : 0];
+}
+
 static void list_share(void *context, size_t share)
 {
     const struct sorting *s = context;
@@ -96,8 +108,7 @@ static void list_share(void *context, size_t share)
             s->item[t] = item_of(s->mesh->n_vertices, 0, t);
             continue;
         }
-        int shortest = tri_shape_of(s->mesh->xy, v).shortest, a = tri_next[shortest], b = tri_prev[shortest];
-        int first = v[a] < v[b] ? a : b;
+        int first = first_corner(s->mesh->xy, v);
         s->item[t] = item_of(v[first], first, t);
     }
 }

@@ -27,7 +27,7 @@ enum {
     LEAF = 1 << 14,    /* vertices */
     MOST_LEAVES = 256,
     WIDER = 4,
-    BLOCK = 1024       /* points that a block inserts in a round, about, at least */
+    LEAST_SHARE = 16   /* a block inserts in a round at least, about, one point for so many vertices of a leaf */
 };
 
 _Static_assert(INT64_C(8) * 8 * 8 * 8 * 8 * 8 * 8 * FIRST_ROUND >= TRI_MAX_VERTICES && ROUND_GROWTH == 8,
@@ -49,6 +49,7 @@ struct builder {
     int32_t *waiting;         /* [n_vertices] */
     struct leaf *leaf;
     int32_t n_leaves, n_rounds;
+    int32_t least;            /* points that a block should insert in a round */
     int32_t first[3];         /* corners of the first triangle */
     int32_t round, width;     /* what runs: a round, in blocks of so many leaves */
 };
@@ -235,7 +236,7 @@ static enum tri_status run_round(struct builder *b, struct tri_error *error)
     for (int32_t i = 0; i < b->n_leaves; i++)
         b->leaf[i].n_waiting = b->leaf[i].round[b->round + 1] - b->leaf[i].round[b->round];
     int64_t waiting = count_waiting(b);
-    for (b->width = 1; b->width < b->n_leaves && waiting * b->width < (int64_t)BLOCK * b->n_leaves;)
+    for (b->width = 1; b->width < b->n_leaves && waiting * b->width < (int64_t)b->least * b->n_leaves;)
         b->width *= WIDER;
     for (; !status && waiting > 0; b->width *= WIDER) {
         status = run_phase(b, error);
@@ -263,6 +264,7 @@ static enum tri_status build(struct builder *b, int32_t leaf_size, struct tri_er
     int64_t n = b->mesh->n_vertices;
     for (b->n_leaves = 1; b->n_leaves < MOST_LEAVES && n / (b->n_leaves * WIDER) >= leaf_size;)
         b->n_leaves *= WIDER;
+    b->least = leaf_size / LEAST_SHARE;
     b->n_rounds = 1;
     for (int64_t size = FIRST_ROUND; size < n; size *= ROUND_GROWTH)
         b->n_rounds++;
@@ -287,7 +289,7 @@ enum tri_status tri_delaunay_in_leaves(struct tri_mesh *mesh, int32_t leaf_size,
                                        struct tri_error *error)
 {
     struct builder b = {.mesh = mesh, .executor = executor};
-    assert(mesh->n_slots == 0 && mesh->n_subs == 0 && leaf_size > 0);
+    assert(mesh->origin && mesh->n_slots == 0 && mesh->n_subs == 0 && leaf_size > 0);
     enum tri_status status = list_twins(mesh, executor, error);
     if (status || !find_first(&b))
         return status;
