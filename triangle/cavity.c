@@ -25,7 +25,7 @@ static bool grow(struct tri_cavity *c)
 {
     int32_t capacity = c->capacity ? 2 * c->capacity : 256;
     size_t n = (size_t)capacity;
-    int32_t *tri = realloc(c->tri, n * sizeof *tri);
+    int32_t *tri = realloc(c->tri, (n + 4) * sizeof *tri);
     c->tri = tri ? tri : c->tri;
     struct tri_rim *rim = realloc(c->rim, (n + 4) * sizeof *rim);
     c->rim = rim ? rim : c->rim;
@@ -120,6 +120,13 @@ static bool add_start(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t
     return true;
 }
 
+/* So that whoever goes along the rims need not ask which is the last. The chain on the left of a split ends where that
+ * on the right begins. */
+static void close_chain(struct tri_cavity *c, int32_t end, struct tri_relative at)
+{
+    c->rim[c->n_rim] = (struct tri_rim){TRI_NONE, end, TRI_NONE, TRI_NONE, at};
+}
+
 enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p, int32_t t)
 {
     assert(tri_is_live(&mesh->tri[t]));
@@ -144,6 +151,7 @@ enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *m
         if (found != TRI_SEARCH_FOUND)
             return found;
     }
+    close_chain(c, c->rim[0].a, c->rim[0].ra);
     return TRI_SEARCH_FOUND;
 }
 
@@ -167,17 +175,17 @@ static enum tri_search explore_side(struct tri_cavity *c, const struct tri_mesh 
     enum tri_search found = explore(c, mesh, start.n[f], start.region, start.v[g], start.v[e], r[g], r[e]);
     if (found != TRI_SEARCH_FOUND)
         return found;
-    return explore(c, mesh, start.n[g], start.region, start.v[e], start.v[f], r[e], r[f]);
+    found = explore(c, mesh, start.n[g], start.region, start.v[e], start.v[f], r[e], r[f]);
+    close_chain(c, start.v[f], r[f]);
+    return found;
 }
 
 /* Rounding may place a split point off its subsegment: every rim must still be seen counter-clockwise. */
-static bool sees_rims(const struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end, int32_t last)
+static bool sees_rims(const struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end)
 {
-    for (int32_t i = first; i < end; i++) {
-        int32_t b = i + 1 < end ? c->rim[i + 1].a : last;
-        if (c->rim[i].ra.l == 0 || tri_orient2d(c->p, mesh->xy[c->rim[i].a], mesh->xy[b]) <= 0)
+    for (const struct tri_rim *rim = &c->rim[first]; rim < &c->rim[end]; rim++)
+        if (rim->ra.l == 0 || tri_orient2d(c->p, mesh->xy[rim[0].a], mesh->xy[rim[1].a]) <= 0)
             return false;
-    }
     return true;
 }
 
@@ -235,13 +243,13 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
     if (!begin(c, p))
         return TRI_SEARCH_NO_MEMORY;
     for (int side = 0; side < 2; side++) {
-        int32_t first = c->n_rim, last = sub->v[side];
+        int32_t first = c->n_rim;
         if (sub->side[side] == TRI_NONE)
             continue;
         enum tri_search found = explore_side(c, mesh, sub->side[side]);
         if (found != TRI_SEARCH_FOUND)
             return found;
-        if (!sees_rims(c, mesh, first, c->n_rim, last))
+        if (!sees_rims(c, mesh, first, c->n_rim))
             return TRI_SEARCH_OUTSIDE;
         if (side == 0) {
             *n_left = c->n_rim;
@@ -251,15 +259,16 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
     return overlaps_itself(c, s) ? TRI_SEARCH_OUTSIDE : TRI_SEARCH_FOUND;
 }
 
-/* A slot for the next new triangle: first those of the cavity, then fresh ones. A fan has at least as many triangles as
- * its cavity (Euler), so no slot is ever left over. */
-static inline int32_t take_slot(const struct tri_cavity *c, struct tri_mesh *mesh, int32_t i)
+/* Slots for the fan: those of the cavity's triangles, then fresh ones. A fan has at least as many triangles as its
+ * cavity (Euler), so no slot is ever left over. The first comes again behind the last, as its neighbour. */
+static void take_slots(struct tri_cavity *c, struct tri_mesh *mesh)
 {
-    if (i < c->n_tri)
-        return c->tri[i];
-    assert(mesh->n_slots < mesh->slot_capacity);
-    mesh->tri[mesh->n_slots].state = 0;
-    return mesh->n_slots++;
+    for (int32_t i = c->n_tri; i < c->n_rim; i++) {
+        assert(mesh->n_slots < mesh->slot_capacity);
+        mesh->tri[mesh->n_slots].state = 0;
+        c->tri[i] = mesh->n_slots++;
+    }
+    c->tri[c->n_rim] = c->tri[0];
 }
 
 #ifndef NDEBUG
@@ -287,11 +296,11 @@ static bool is_inside(const struct tri_mesh *mesh, int32_t t, struct tri_point q
 /* Where regions meet without a subsegment between, a new triangle belongs to the region in which its centroid lies: so
  * regions stay where they are. Where rounding hides that, to the one behind its rim. Looks among the cavity's triangles
  * first_tri .. end_tri - 1, which lie on the same side of a split subsegment. */
-static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end, int32_t last,
+static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end,
                           int32_t first_tri, int32_t end_tri)
 {
     for (int32_t i = first; i < end; i++) {
-        struct tri_point a = mesh->xy[c->rim[i].a], b = mesh->xy[i + 1 < end ? c->rim[i + 1].a : last];
+        struct tri_point a = mesh->xy[c->rim[i].a], b = mesh->xy[c->rim[i + 1].a];
         struct tri_point centroid = {(a.x + b.x + c->p.x) / 3, (a.y + b.y + c->p.y) / 3};
         for (int32_t k = first_tri; k < end_tri; k++)
             if (is_inside(mesh, c->tri[k], centroid)) {
@@ -301,26 +310,25 @@ static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int
     }
 }
 
-/* Makes the triangles of rims first .. end - 1, linked with each other; the chain ends at vertex `last`. */
-static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v, int32_t first, int32_t end, int32_t last)
+/* Makes the triangles of rims first .. end - 1. Each is linked with the next and the one before in the round of all
+ * rims, so that nothing has to be asked; where a chain does not close, the caller puts that right. */
+static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v, int32_t first, int32_t end)
 {
-    int32_t before = TRI_NONE;
+    int32_t before = c->tri[first > 0 ? first - 1 : c->n_rim - 1];
     for (int32_t i = first; i < end; i++) {
         struct tri_rim *rim = &c->rim[i];
-        int32_t slot = take_slot(c, mesh, i), b = i + 1 < end ? c->rim[i + 1].a : last;
+        int32_t slot = c->tri[i];
         struct tri_triangle *t = &mesh->tri[slot];
         rim->slot = slot;
         t->v[0] = v;
-        t->v[1] = rim->a;
-        t->v[2] = b;
+        t->v[1] = rim[0].a;
+        t->v[2] = rim[1].a;
         t->n[0] = rim->outer;
+        t->n[1] = tri_code(c->tri[i + 1], 2);
+        t->n[2] = tri_code(before, 1);
         t->region = rim->region;
         t->state++;
         tri_relink(mesh, rim->outer, rim->a, tri_code(slot, 0));
-        if (before != TRI_NONE) {
-            mesh->tri[before].n[1] = tri_code(slot, 2);
-            t->n[2] = tri_code(before, 1);
-        }
         before = slot;
     }
 }
@@ -330,11 +338,9 @@ void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v)
     assert(c->n_tri >= 1 && c->n_rim == c->n_tri + 2);
     assert(claim(c, mesh));
     if (c->mixed)
-        place_regions(c, mesh, 0, c->n_rim, c->rim[0].a, 0, c->n_tri);
-    fill_chain(c, mesh, v, 0, c->n_rim, c->rim[0].a);
-    int32_t first = c->rim[0].slot, last = c->rim[c->n_rim - 1].slot;
-    mesh->tri[first].n[2] = tri_code(last, 1);
-    mesh->tri[last].n[1] = tri_code(first, 2);
+        place_regions(c, mesh, 0, c->n_rim, 0, c->n_tri);
+    take_slots(c, mesh);
+    fill_chain(c, mesh, v, 0, c->n_rim);
 }
 
 int32_t tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v, int32_t s, int32_t n_left)
@@ -344,16 +350,17 @@ int32_t tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, int32
     assert(mesh->n_subs <= mesh->sub_capacity && c->n_rim >= c->n_tri && n_left >= 0 && n_left <= c->n_rim);
     assert(claim(c, mesh));
     if (c->mixed) {
-        place_regions(c, mesh, 0, n_left, old.v[0], 0, c->n_left_tri);
-        place_regions(c, mesh, n_left, c->n_rim, old.v[1], c->n_left_tri, c->n_tri);
+        place_regions(c, mesh, 0, n_left, 0, c->n_left_tri);
+        place_regions(c, mesh, n_left, c->n_rim, c->n_left_tri, c->n_tri);
     }
+    take_slots(c, mesh);
     mesh->sub[s] = (struct tri_subsegment){{old.v[0], v}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
     mesh->sub[second] = (struct tri_subsegment){{v, old.v[1]}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
     for (int side = 0; side < 2; side++) {
         int32_t first = ends[side], end = side == 0 ? n_left : c->n_rim;
         if (first == end)
             continue;
-        fill_chain(c, mesh, v, first, end, old.v[side]);
+        fill_chain(c, mesh, v, first, end);
         /* Seen from the left the chain runs from v[1] to v[0], from the right the other way. */
         int32_t at_start = side == 0 ? second : s, at_end = side == 0 ? s : second;
         mesh->tri[c->rim[first].slot].n[2] = ~at_start;

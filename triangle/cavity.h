@@ -59,8 +59,8 @@ struct tri_cavity {
     int32_t n_left_tri;   /* of a split: triangles left of the subsegment, which come first */
     int32_t region;       /* of the triangle at which the search began */
     uint32_t mixed;       /* not 0: there are triangles of other regions, which no subsegment separates */
-    int32_t *tri;         /* slots of the cavity's triangles */
-    struct tri_rim *rim;  /* at most n_tri + 2 of them */
+    int32_t *tri;         /* slots of the cavity's triangles; once filled, those of the fan */
+    struct tri_rim *rim;  /* at most n_tri + 2 of them, and one more that only says where the last one ends */
     int32_t *wall;        /* indices of the rims whose outer link is a subsegment */
     struct tri_pending *pending;
 };
