@@ -35,11 +35,13 @@ struct tri_rim {
     int32_t region; /* of the cavity triangle inside */
     int32_t slot;   /* of the new triangle on this rim, once filled */
     struct tri_relative ra;
+    double area2; /* twice the area of the triangle on this rim: the cross product of its ends */
 };
 
-struct tri_pending {
+struct tri_pending { /* an edge behind which the search has not looked yet; it starts where the last rim ended */
     int32_t link, end, region;
     struct tri_relative rend;
+    double area2;
 };
 
 /* A half-open box; a triangle is owned if all its corners lie in it. */

@@ -96,7 +96,7 @@ static bool judge_rim(struct tri_refiner *r, const struct tri_rim *rim, double b
 {
     struct tri_relative ra = rim[0].ra, rb = rim[1].ra;
     assert(rim->slot >= 0);
-    double area2 = tri_cross(ra, rb), x = ra.x - rb.x, y = ra.y - rb.y, l = x * x + y * y;
+    double area2 = rim->area2, x = ra.x - rb.x, y = ra.y - rb.y, l = x * x + y * y;
     if (area2 * area2 < r->criterion.bounds.sin2 * tri_longer_product(ra.l, rb.l, l))
         return push(r, rim->slot, TRI_BAD_ANGLE, tri_lesser(ra.l, tri_lesser(rb.l, l)));
     bool is_bad = area2 > bound2;
@@ -261,7 +261,7 @@ static bool encroaches(const struct tri_refiner *r, int32_t i, bool *beyond)
 {
     const struct tri_cavity *c = &r->cavity;
     const struct tri_rim *rim = &c->rim[i], *next = rim + 1;
-    double cross = tri_cross(rim->ra, next->ra), dot = rim->ra.x * next->ra.x + rim->ra.y * next->ra.y;
+    double cross = rim->area2, dot = rim->ra.x * next->ra.x + rim->ra.y * next->ra.y;
     *beyond = false;
     if (dot >= 0 && cross > 0)
         return false;
