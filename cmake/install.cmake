@@ -11,10 +11,7 @@ install(TARGETS ${libraries} EXPORT ptriangleTargets
 if(executables)
     install(TARGETS ${executables} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
-foreach(header IN LISTS PTRIANGLE_PUBLIC_HEADERS)
-    get_filename_component(room ${header} DIRECTORY)
-    install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/ptriangle/${room})
-endforeach()
+install(FILES ${PTRIANGLE_PUBLIC_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/ptriangle)
 install(FILES triangle/dropin/triangle.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} # where Triangle's clients look for it
         RENAME ${PTRIANGLE_PREFIX}triangle.h)
 

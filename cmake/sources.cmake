@@ -43,6 +43,10 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/check_scale.c
     triangle/check_quality.c
     triangle/generate.c
+    triangle/api/figure.c
+    triangle/api/mesh.c
+    triangle/api/arrays.c
+    triangle/api/judge.c
     triangle/dropin/switches.c
     triangle/topology.c
     triangle/dropin/input.c
@@ -56,7 +60,14 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/text.c
     triangle/text/read.c
     triangle/text/output.c
-    triangle/text/write.c)
+    triangle/text/write.c
+    triangle/api/files.c)
+
+# What these need of the mesher: all that the shared library of text files has of it.
+set(PTRIANGLE_TEXT_NEEDS
+    triangle/status.c
+    triangle/pslg.c
+    triangle/api/figure.c)
 
 # Room sched/, the parallel schedule: with drivers/ptriangle.c, which asks for the number of threads, the only sources
 # compiled with OpenMP.
@@ -68,29 +79,15 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/pool.c
     sched/phase.c
     sched/schedule.c
-    sched/triangulate.c)
+    sched/triangulate.c
+    sched/mesh.c)
 
-# Headers that are installed, below include/ptriangle/ at the same path.
+# Headers that are installed, below include/ptriangle/, beside triangle.h, which lies where Triangle's clients look for it.
 set(PTRIANGLE_PUBLIC_HEADERS
-    triangle/generate.h
-    triangle/status.h
-    triangle/stop.h
-    triangle/pslg.h
-    triangle/mesh.h
-    triangle/spatial.h
-    triangle/carve.h
-    triangle/reconstruct.h
-    triangle/constrain.h
-    triangle/cavity.h
-    triangle/refine.h
-    triangle/numbering.h
-    triangle/check.h
-    triangle/executor.h
-    triangle/text/read.h
-    triangle/text/output.h
-    triangle/text/write.h
-    sched/schedule.h
-    sched/partition.h)
+    include/ptriangle/tri.h
+    include/ptriangle/par.h
+    include/ptriangle/files.h
+    include/ptriangle/check.h)
 
 # Room drivers/: what the executables share, then the executables, each from drivers/<name>.c. The second list of programs
 # needs the room sched/ and its library.
