@@ -24,8 +24,8 @@ void tri_file_free(struct tri_figure *figure);
 
 /* Writes base.node, base.ele where the figure has triangles, and base.poly where it has segments, counting from
  * `first`, 0 or 1. Coordinates have 17 digits: what is read back is the same. All files appear together, when all are
- * complete, or none; files that exist are replaced. TRI_CANNOT_WRITE, TRI_NO_MEMORY, TRI_BAD_INPUT (an array has not the shape
- * it should have). */
+ * complete, or none; files that exist are replaced. TRI_CANNOT_WRITE, TRI_NO_MEMORY; TRI_BAD_INPUT: an array has not
+ * the shape it should have. */
 enum tri_status tri_file_write(const char *base, const struct tri_figure *figure, int first, struct tri_error *error);
 
 #ifdef __cplusplus

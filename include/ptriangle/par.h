@@ -5,8 +5,8 @@
  * that tri_mesh_new makes, which inserts points in another order: same bounds, about the same size.
  *
  * A small mesh, settings with most_new_points, gate or fence, or callbacks that must not run in parallel make it one
- * sequential refinement. Calls from several threads, on different meshes, and from within parallel regions are fine. In a
- * child that was forked after a call there is one thread. */
+ * sequential refinement. Calls from several threads, on different meshes, and from within parallel regions are fine.
+ * In a child that was forked after a call there is one thread. */
 #ifndef PTRIANGLE_PAR_H
 #define PTRIANGLE_PAR_H
 

@@ -145,8 +145,8 @@ struct tri_settings {
     int threads;            /* <= 0: OMP_NUM_THREADS, else one for each core */
     bool callbacks_in_parallel; /* edge_length and unsuitable may be called by several threads at once; else one thread
                                    refines where they are set */
-    bool numbered_by_block; /* new points and triangles lie as they were made: quicker. Else along a curve, which is what
-                               the cache of a solver wants */
+    bool numbered_by_block; /* new points and triangles lie as they were made: quicker. Else along a curve, as the
+                               cache of a solver wants it */
 };
 
 static inline struct tri_settings tri_no_settings(void)
@@ -175,24 +175,29 @@ enum tri_status tri_mesh_refine(struct tri_mesh *mesh, const struct tri_settings
 /* NULL is fine. */
 void tri_mesh_delete(struct tri_mesh *mesh);
 
-/* What the mesh consists of. Arrays belong to the mesh, and are valid until it is refined or deleted. Constant time. */
-struct tri_reals tri_mesh_points(const struct tri_mesh *mesh); /* [n][2] those of the figure first, in their order, also
-                                                                  where no triangle uses them */
-struct tri_reals tri_mesh_point_attributes(const struct tri_mesh *mesh); /* [points][as given] */
-struct tri_ints tri_mesh_point_markers(const struct tri_mesh *mesh); /* [points][1] as given, else of a segment there,
-                                                                        else 1 on the boundary */
-struct tri_ints tri_mesh_triangles(const struct tri_mesh *mesh);     /* [n][3] corners, counter-clockwise */
-struct tri_reals tri_mesh_triangle_attributes(const struct tri_mesh *mesh); /* [triangles][1] of their regions (0 where
-                                                                               there is none), or as given; else n is 0 */
-struct tri_ints tri_mesh_segments(const struct tri_mesh *mesh); /* [n][2] pieces of segments and of the boundary */
-struct tri_ints tri_mesh_segment_markers(const struct tri_mesh *mesh); /* [segments][1] as given, else 1 on the boundary */
+/* What the mesh consists of. Arrays belong to the mesh, and are valid until it is refined or deleted. Constant time.
+ *   points             [n][2] those of the figure first, in their order, also where no triangle uses them
+ *   point_attributes   [points][as given]
+ *   point_markers      [points][1] as given, else that of a segment there, else 1 on the boundary
+ *   triangles          [n][3] corners, counter-clockwise
+ *   triangle_attributes [triangles][1] those of regions, 0 where there is none; of a figure with triangles as given; n is
+ *                      0 where none were given
+ *   segments           [n][2] pieces of segments and of the boundary
+ *   segment_markers    [segments][1] as given, else 1 on the boundary */
+struct tri_reals tri_mesh_points(const struct tri_mesh *mesh);
+struct tri_reals tri_mesh_point_attributes(const struct tri_mesh *mesh);
+struct tri_ints tri_mesh_point_markers(const struct tri_mesh *mesh);
+struct tri_ints tri_mesh_triangles(const struct tri_mesh *mesh);
+struct tri_reals tri_mesh_triangle_attributes(const struct tri_mesh *mesh);
+struct tri_ints tri_mesh_segments(const struct tri_mesh *mesh);
+struct tri_ints tri_mesh_segment_markers(const struct tri_mesh *mesh);
 
-/* The same, but made when they are first asked for. O(triangles). TRI_NO_MEMORY. */
-enum tri_status tri_mesh_neighbors(struct tri_mesh *mesh, struct tri_ints *neighbors, /* [triangles][3] triangle opposite
-                                                                                         each corner, or -1 */
-                                   struct tri_error *error);
-enum tri_status tri_mesh_edges(struct tri_mesh *mesh, struct tri_ints *edges, /* [n][2] points */
-                               struct tri_ints *markers, /* [edges][1] of the segment that the edge is, else 0; or NULL */
+/* The same, but made when they are first asked for. O(triangles). TRI_NO_MEMORY.
+ *   neighbors  [triangles][3] the triangle opposite each corner, or -1
+ *   edges      [n][2]
+ *   markers    [edges][1] that of the segment which the edge is, else 0; NULL: not wanted */
+enum tri_status tri_mesh_neighbors(struct tri_mesh *mesh, struct tri_ints *neighbors, struct tri_error *error);
+enum tri_status tri_mesh_edges(struct tri_mesh *mesh, struct tri_ints *edges, struct tri_ints *markers,
                                struct tri_error *error);
 
 /* The arrays above as a figure, for ptriangle/files.h and ptriangle/check.h, or to begin again; figure->size is set. */
@@ -221,8 +226,8 @@ enum tri_reason { /* why a triangle does not keep the bounds */
     TRI_REASONS
 };
 
-/* Triangles that do not keep the bounds of these settings. by_reason[n_reasons] receives how many for each reason, or is
- * NULL; what has a reason beyond is counted in its last. -1: settings that have no meaning. O(triangles); callbacks are
+/* Triangles that do not keep the bounds of these settings. by_reason[n_reasons] receives how many for each reason, or
+ * is NULL; what has a reason beyond is counted in its last. -1: settings that have no meaning. O(triangles); callbacks are
  * called by this thread. */
 int64_t tri_mesh_count_bad(const struct tri_mesh *mesh, const struct tri_settings *settings, int64_t *by_reason,
                            int n_reasons);
