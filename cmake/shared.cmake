@@ -25,6 +25,9 @@ set_target_properties(libtriangle_shared PROPERTIES OUTPUT_NAME ${PTRIANGLE_PREF
 ptriangle_dropin(libtriangle_shared)
 target_link_libraries(libtriangle_shared PRIVATE m)
 
+ptriangle_shared(tricheck ${PTRIANGLE_CHECK_SOURCES} ${PTRIANGLE_CHECK_NEEDS})
+target_link_libraries(libtricheck_shared PRIVATE m)
+
 ptriangle_shared(tritext ${PTRIANGLE_TEXT_SOURCES} ${PTRIANGLE_TEXT_NEEDS})
 target_compile_options(libtritext_shared PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>)
 ptriangle_static_runtime(libtritext_shared)

@@ -33,26 +33,30 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/numbering.c
     triangle/census.c
     triangle/stats.c
-    triangle/check.c
-    triangle/check_edges.c
-    triangle/check_overlap.c
-    triangle/check_delaunay.c
-    triangle/check_segments.c
-    triangle/check_chain.c
-    triangle/check_input.c
-    triangle/check_scale.c
-    triangle/check_quality.c
     triangle/generate.c
     triangle/api/figure.c
     triangle/api/mesh.c
     triangle/api/arrays.c
-    triangle/api/judge.c
     triangle/dropin/switches.c
     triangle/topology.c
     triangle/dropin/input.c
     triangle/dropin/output.c
     triangle/dropin/run.c
     triangle/dropin/triangulate.c)
+
+# Room triangle/check/, the judge of meshes, and its public door. Of the mesher it knows the predicates alone.
+set(PTRIANGLE_CHECK_SOURCES
+    triangle/check/check.c
+    triangle/check/scale.c
+    triangle/check/edges.c
+    triangle/check/order.c
+    triangle/check/overlap.c
+    triangle/check/delaunay.c
+    triangle/check/segments.c
+    triangle/check/chain.c
+    triangle/check/input.c
+    triangle/check/quality.c
+    triangle/api/judge.c)
 
 # Room triangle/, text files. The one C++ file wraps std::from_chars and std::to_chars.
 set(PTRIANGLE_TEXT_SOURCES
@@ -63,11 +67,9 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/write.c
     triangle/api/files.c)
 
-# What these need of the mesher: all that the shared library of text files has of it.
-set(PTRIANGLE_TEXT_NEEDS
-    triangle/status.c
-    triangle/pslg.c
-    triangle/api/figure.c)
+# What these two need of the mesher: all that their shared libraries have of it.
+set(PTRIANGLE_TEXT_NEEDS triangle/status.c triangle/pslg.c triangle/api/figure.c)
+set(PTRIANGLE_CHECK_NEEDS ${PTRIANGLE_TEXT_NEEDS} triangle/predicates.c)
 
 # Room sched/, the parallel schedule: with drivers/ptriangle.c, which asks for the number of threads, the only sources
 # compiled with OpenMP.

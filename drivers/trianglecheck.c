@@ -1,4 +1,4 @@
-/* trianglecheck: judges a mesh from its files, whoever made it. All judgement is triangle/check.h's; here are
+/* trianglecheck: judges a mesh from its files, whoever made it. All judgement is triangle/check/check.h's; here are
  * arguments, files and lines of text. Exit code 0: no fault, 1: faults, 2: wrong usage or unreadable files. */
 #include <errno.h>
 #include <getopt.h>
@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "triangle/check.h"
+#include "triangle/check/check.h"
 #include "triangle/pslg.h"
 #include "triangle/text/read.h"
 #include "triangle/text/text.h"

@@ -28,6 +28,7 @@ struct estimator {
     const struct tri_mesh *mesh;
     const struct tri_refine_options *options;
     double large; /* a size test is probed in pieces no larger than this */
+    struct tri_criterion criterion;
 };
 
 struct sample {
@@ -43,8 +44,7 @@ struct samples {
 /* Triangles that the bounds ask for on one unit of area in this region; 0 without bound. */
 static double density(const struct estimator *e, int32_t region)
 {
-    const struct tri_criterion criterion = {.mesh = e->mesh, .options = e->options};
-    return 2 / (MEAN_OVER_BOUND * tri_area2_bound(&criterion, region));
+    return 2 / (MEAN_OVER_BOUND * tri_area2_bound(&e->criterion, region));
 }
 
 /* Triangles that the caller's size test asks for in this one, by probing: it is asked about the triangle shrunk to a
@@ -145,7 +145,7 @@ static const double BAD = 1.25;
 
 double par_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
 {
-    const struct estimator here = {mesh, options, HUGE_VAL};
+    const struct estimator here = {mesh, options, HUGE_VAL, tri_criterion_of_areas(mesh, options)};
     return tri_is_live(&mesh->tri[t]) ? area_work(&here, t) + BAD * angle_work(mesh, options, t) : 0;
 }
 
@@ -155,7 +155,7 @@ static int32_t survey_step(const struct tri_mesh *mesh) { return mesh->n_slots /
 static struct estimator estimator_for(const struct tri_mesh *mesh, const struct tri_refine_options *options)
 {
     enum { PIECES = 1 << 14 }; /* of the whole mesh */
-    struct estimator e = {mesh, options, HUGE_VAL};
+    struct estimator e = {mesh, options, HUGE_VAL, tri_criterion_of_areas(mesh, options)};
     double all = 0;
     for (int32_t t = 0; options->unsuitable && t < mesh->n_slots; t++)
         if (tri_is_live(&mesh->tri[t])) {

@@ -55,7 +55,7 @@ ln -s pt-triangle.h prefix/include/triangle.h # the clients know it by this name
 libraries=$(dirname "$(find prefix -name libptriangle.so)")
 mkdir shared_clients
 use "$work/prefix" shared_clients
-for name in pt-triangle tritext ptriangle; do
+for name in pt-triangle tritext tricheck ptriangle; do
     [ -e "$libraries/lib$name.so.0.1.0" ] || fail "no lib$name.so.0.1.0"
     readelf -d "$libraries/lib$name.so" | grep -q "SONAME.*\[lib$name\.so\.0\.1\]" || fail "soname of $name"
     nm -D --defined-only "$libraries/lib$name.so" | awk '{ print $3 }'

@@ -16,7 +16,7 @@
 
 #include <cmocka.h>
 
-#include "triangle/check.h"
+#include "triangle/check/check.h"
 #include "triangle/mesh.h"
 #include "triangle/predicates.h"
 #include "triangle/generate.h"

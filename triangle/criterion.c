@@ -3,15 +3,31 @@
 
 #include <assert.h>
 
-double tri_area2_bound(const struct tri_criterion *c, int32_t region)
+/* Twice a bound of the caller's. The unit is a power of two; its square may be beyond the range of doubles. */
+static double to_area2(const struct tri_criterion *c, double bound)
 {
-    double bound = c->options->max_area > 0 ? c->options->max_area : HUGE_VAL;
-    if (c->options->region_areas) {
-        double own = c->mesh->regions[region].max_area;
-        bound = own > 0 && own < bound ? own : bound;
-    }
-    bound *= tri_area_scale(c->options);
-    return 2 * (bound / c->mesh->unit / c->mesh->unit);
+    return 2 * (bound * tri_area_scale(c->options) / c->mesh->unit / c->mesh->unit);
+}
+
+struct tri_criterion tri_criterion_of_areas(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+{
+    struct tri_criterion c = {.mesh = mesh, .options = options, .area2 = HUGE_VAL};
+    if (options->max_area > 0)
+        c.area2 = to_area2(&c, options->max_area);
+    return c;
+}
+
+struct tri_criterion tri_criterion_for(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+{
+    struct tri_criterion c = tri_criterion_of_areas(mesh, options);
+    c.bounds = tri_bounds_for(options->min_angle, options->conforming);
+    return c;
+}
+
+double tri_area2_in_region(const struct tri_criterion *c, int32_t region)
+{
+    double own = c->mesh->regions[region].max_area;
+    return own > 0 ? tri_lesser(to_area2(c, own), c->area2) : c->area2;
 }
 
 static void shrink(double at[2], const double centroid[2], double factor)

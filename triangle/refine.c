@@ -91,12 +91,6 @@ static bool push(struct tri_refiner *r, int32_t slot, enum tri_badness badness, 
                                 : tri_bad_queue_push_size(&r->queue, entry);
 }
 
-static double least(double a, double b, double c)
-{
-    double least = a < b ? a : b;
-    return least < c ? least : c;
-}
-
 /* Judges the triangle of two rims' start points and the new vertex, from the coordinates the cavity search left. */
 static bool judge_rim(struct tri_refiner *r, const struct tri_rim *rim, struct tri_relative rb, double bound2)
 {
@@ -104,7 +98,7 @@ static bool judge_rim(struct tri_refiner *r, const struct tri_rim *rim, struct t
     assert(rim->slot >= 0);
     double area2 = tri_cross(ra, rb), x = ra.x - rb.x, y = ra.y - rb.y, l = x * x + y * y;
     if (area2 * area2 < r->criterion.bounds.sin2 * tri_longer_product(ra.l, rb.l, l))
-        return push(r, rim->slot, TRI_BAD_ANGLE, least(ra.l, rb.l, l));
+        return push(r, rim->slot, TRI_BAD_ANGLE, tri_lesser(ra.l, tri_lesser(rb.l, l)));
     if (area2 > bound2)
         return push(r, rim->slot, TRI_BAD_SIZE, 0);
     if (r->options->unsuitable && tri_is_unsuitable(&r->criterion, r->mesh->tri[rim->slot].v))
@@ -638,8 +632,7 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
     assert(mesh->n_slots == 0 || mesh->n_hubs > 0); /* tri_refine_prepare has been called */
     r->mesh = mesh;
     r->options = options;
-    r->criterion.mesh = mesh;
-    r->criterion.options = options;
+    r->criterion = tri_criterion_for(mesh, options);
     r->report = report;
     begin_stages(r);
     frexp(mesh->shortest2, &r->least_exponent);

@@ -180,8 +180,8 @@ void tri_mesh_delete(struct tri_mesh *mesh);
  *   point_attributes   [points][as given]
  *   point_markers      [points][1] as given, else that of a segment there, else 1 on the boundary
  *   triangles          [n][3] corners, counter-clockwise
- *   triangle_attributes [triangles][1] those of regions, 0 where there is none; of a figure with triangles as given; n is
- *                      0 where none were given
+ *   triangle_attributes [triangles][1] those of regions, 0 where there is none; of a figure with triangles as given; n
+ *                      is 0 where none were given
  *   segments           [n][2] pieces of segments and of the boundary
  *   segment_markers    [segments][1] as given, else 1 on the boundary */
 struct tri_reals tri_mesh_points(const struct tri_mesh *mesh);
@@ -227,8 +227,8 @@ enum tri_reason { /* why a triangle does not keep the bounds */
 };
 
 /* Triangles that do not keep the bounds of these settings. by_reason[n_reasons] receives how many for each reason, or
- * is NULL; what has a reason beyond is counted in its last. -1: settings that have no meaning. O(triangles); callbacks are
- * called by this thread. */
+ * is NULL; what has a reason beyond is counted in its last. -1: settings that have no meaning. O(triangles); callbacks
+ * are called by this thread. */
 int64_t tri_mesh_count_bad(const struct tri_mesh *mesh, const struct tri_settings *settings, int64_t *by_reason,
                            int n_reasons);
 

@@ -1,10 +1,10 @@
-/* The judge of triangle/check.h behind its public header. */
+/* The judge of triangle/check/check.h behind its public header. */
 #include "ptriangle/check.h"
 
 #include <stdio.h>
 
 #include "triangle/api/figure.h"
-#include "triangle/check.h"
+#include "triangle/check/check.h"
 
 _Static_assert((int)TRI_DELAUNAY_CONSTRAINED == (int)TRI_CHECK_CONSTRAINED &&
                    (int)TRI_DELAUNAY_CONFORMING == (int)TRI_CHECK_CONFORMING &&

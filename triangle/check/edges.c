@@ -5,7 +5,7 @@
  * smaller degree is linear in a planar graph (Chiba & Nishizeki 1985). */
 #include <stdlib.h>
 
-#include "triangle/check_internal.h"
+#include "triangle/check/internal.h"
 
 static enum tri_status group_corners(struct checker *c)
 {

@@ -1,5 +1,5 @@
 /* The empty circle, edge by edge; exact. By Delaunay's lemma (constrained form: Lee & Lin 1986) edges suffice. */
-#include "triangle/check_internal.h"
+#include "triangle/check/internal.h"
 
 static void check_edge(struct checker *c, int32_t h)
 {

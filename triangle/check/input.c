@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/check_chain.h"
-#include "triangle/check_internal.h"
+#include "triangle/check/chain.h"
+#include "triangle/check/internal.h"
 
 /* The points that the mesh must do justice to: those of the input, or where it is unknown, all of the mesh. */
 struct reference {

@@ -3,7 +3,7 @@
  * Where the mesh comes without a list, its boundary edges are the subsegments; then nothing can be wrong with them. */
 #include <assert.h>
 
-#include "triangle/check_internal.h"
+#include "triangle/check/internal.h"
 
 static enum tri_status take_boundary(struct checker *c)
 {

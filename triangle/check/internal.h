@@ -1,4 +1,4 @@
-/* What the files check_*.c share: the trial in progress. Private to them.
+/* What the files of the judge share: the trial in progress. Private to them.
  *
  * A half-edge is named 3 * t + k: the edge of triangle t opposite its corner k, directed so that t lies on its left. A
  * corner has the same name. */
@@ -10,8 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "triangle/check.h"
-#include "triangle/mesh.h" /* struct tri_point only */
+#include "triangle/check/check.h"
 #include "triangle/predicates.h"
 
 /* A point whose place, inside or outside the mesh, the sweep is to find out. */
@@ -42,18 +41,18 @@ struct checker {
     struct tri_check_report *report;
     int32_t n_half_edges; /* 3 * n_triangles */
 
-    /* check_scale.c */
+    /* scale.c */
     int exponent; /* the coordinates seen are the given ones times 2^exponent */
     struct tri_check_mesh scaled_mesh;
     struct tri_pslg scaled_input;
     double *scaled[3]; /* their points, the input's, its hole points; NULL: not scaled */
 
-    /* check_edges.c */
+    /* edges.c */
     int32_t *first;              /* [n_points + 1] into corner */
     struct check_corner *corner; /* [n_half_edges] grouped by vertex */
     int32_t *link;               /* [n_half_edges] the same edge in the neighbour; -1: boundary */
 
-    /* check_segments.c; these are the listed subsegments, or where none are given the boundary edges */
+    /* segments.c; these are the listed subsegments, or where none are given the boundary edges */
     int32_t n_segments;
     const int32_t *segments; /* [n_segments][2] */
     int32_t *own_segments;   /* segments, if made here */
@@ -61,7 +60,7 @@ struct checker {
     int32_t *fan_first;      /* [n_points + 1] into fan */
     int32_t *fan; /* [2 * n_segments] 2 * s + end: subsegments, grouped by vertex, which is their given end */
 
-    /* check_input.c */
+    /* input.c */
     int32_t *twin;    /* [input->n_points] used vertex at the place of an input point, -1: none */
     double tolerance; /* distance; see TRI_CHECK_ULPS */
 

@@ -1,8 +1,8 @@
 /* Coordinates of any size: multiplication by a power of two is exact as long as nothing becomes subnormal, and changes
- * no judgement but those on areas, which check_quality.c scales back. */
+ * no judgement but those on areas, which quality.c scales back. */
 #include <math.h>
 
-#include "triangle/check_internal.h"
+#include "triangle/check/internal.h"
 
 /* Exponent that brings the largest coordinate to about 1; 0: there is no need, or none is finite. */
 static int choose_exponent(const struct tri_check_mesh *m)

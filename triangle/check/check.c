@@ -1,8 +1,8 @@
 /* The judge: runs the checks in the order in which they lean on each other, and keeps the report.
  *
- * Each check lives in a check_*.c of its own. A check that needs the outcome of another is skipped when that one
+ * Each check lives in a file of its own. A check that needs the outcome of another is skipped when that one
  * failed: what it would say has no meaning then. */
-#include "triangle/check.h"
+#include "triangle/check/check.h"
 
 #include <assert.h>
 #include <stdarg.h>
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/check_internal.h"
+#include "triangle/check/internal.h"
 
 static const char *const names[TRI_N_CHECKS] = {
     [TRI_CHECK_ARRAYS] = "indices and coordinates",

@@ -8,7 +8,7 @@
  *   2. Should the second end not be reached, pieces may have been carved. Then all subsegment vertices on the line are
  *      fetched from a grid and sorted along it; chains are followed from each that lies beyond what is covered so far.
  *   3. Whatever stays uncovered must lie outside the mesh: the sweep is asked about points of it. */
-#include "triangle/check_chain.h"
+#include "triangle/check/chain.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -322,7 +322,7 @@ static enum tri_status cover(struct chains *k, const struct line *l)
             continue;
         if (s.at > covered)
             status = ask_about(k, l, covered, s.at);
-        int32_t end = follow(k, l, s.vertex, TRI_NONE);
+        int32_t end = follow(k, l, s.vertex, -1);
         mark(k, l, end, false);
         covered = fmax(covered, along(l, check_point(k->c, end)));
     }

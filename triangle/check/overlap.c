@@ -11,8 +11,8 @@
 #include <assert.h>
 #include <stdlib.h>
 
-#include "triangle/check_internal.h"
-#include "triangle/sweep_order.h"
+#include "triangle/check/internal.h"
+#include "triangle/check/order.h"
 
 struct sweep_edge {
     struct tri_point left, right;
@@ -33,7 +33,7 @@ struct sweep {
     struct event *event;      /* [2 * n_edges + n_queries] */
     struct sweep_edge *start; /* [n_edges] work space: the edges that start at one event point ... */
     int32_t n_edges, n_events;
-    struct sweep_order order;
+    struct check_order order;
 };
 
 static int compare_places(struct tri_point p, struct tri_point q)
@@ -62,17 +62,22 @@ static int32_t vertex_at(const struct sweep *w, int32_t s, int end)
     return w->edge[s].above == (end == LEFT_END) ? check_org(w->c, h) : check_dest(w->c, h);
 }
 
-/* Lowest edge that is not below p, -1: none; *below: the edge just below, -1: none. */
-static int32_t find(const struct sweep *w, struct tri_point p, int32_t *below)
+struct place {
+    const struct sweep *sweep;
+    struct tri_point at;
+};
+
+static bool is_below(const void *user, int32_t s)
 {
-    int32_t s = w->order.root, found = -1;
-    *below = -1;
-    while (s >= 0) {
-        bool under = side(w, s, p) > 0;
-        *(under ? below : &found) = s;
-        s = w->order.node[s].down[under];
-    }
-    return found;
+    const struct place *place = user;
+    return side(place->sweep, s, place->at) > 0;
+}
+
+/* The edge just below p, -1: none. */
+static int32_t find_below(const struct sweep *w, struct tri_point p)
+{
+    struct place place = {w, p};
+    return tri_check_order_find(&w->order, is_below, &place);
 }
 
 static bool fault(struct sweep *w, const char *what, int32_t s, int32_t r)
@@ -103,12 +108,13 @@ static bool neighbors_are_good(struct sweep *w, int32_t a, int32_t b)
 /* Steps 1 and 2, the edges that end at p. Leaves in *below the edge under p. */
 static bool remove_ending(struct sweep *w, struct tri_point p, int32_t n_ending, int32_t witness, int32_t *below)
 {
-    int32_t s = find(w, p, below), n = 0;
+    *below = find_below(w, p);
+    int32_t s = tri_check_order_above(&w->order, *below), n = 0;
     while (s >= 0 && side(w, s, p) == 0) {
-        int32_t next = tri_sweep_order_above(&w->order, s);
+        int32_t next = tri_check_order_above(&w->order, s);
         if (!check_same_place(w->edge[s].right, p))
             return fault(w, "a vertex of one lies inside the other", s, witness);
-        tri_sweep_order_remove(&w->order, s);
+        tri_check_order_remove(&w->order, s);
         s = next;
         n++;
     }
@@ -133,12 +139,12 @@ static bool insert_starting(struct sweep *w, int32_t n, int32_t below)
         if (i > 0 && compare_directions(&w->start[i - 1], &w->start[i]) == 0) {
             return fault(w, "one runs along the other", top, s);
         }
-        tri_sweep_order_insert(&w->order, s, top);
+        tri_check_order_insert(&w->order, s, top);
         top = s;
     }
     int32_t a = below;
     for (int32_t i = 0; i <= n; i++) {
-        int32_t b = tri_sweep_order_above(&w->order, a);
+        int32_t b = tri_check_order_above(&w->order, a);
         if (!neighbors_are_good(w, a, b))
             return false;
         a = b;
@@ -160,11 +166,11 @@ static bool is_near(const struct sweep *w, int32_t s, struct tri_point p, double
 static void answer(struct sweep *w, int32_t number)
 {
     struct check_query *q = &w->c->queries[number];
-    int32_t below, s = find(w, q->at, &below);
+    int32_t below = find_below(w, q->at), s = tri_check_order_above(&w->order, below);
     bool on_edge = s >= 0 && side(w, s, q->at) == 0;
     q->inside = on_edge ? q->kind == TRI_CHECK_LOST_VERTICES : below >= 0 && w->edge[below].above;
     q->inside = q->inside && !is_near(w, below, q->at, q->tolerance) &&
-                !is_near(w, tri_sweep_order_above(&w->order, below), q->at, q->tolerance);
+                !is_near(w, s, q->at, q->tolerance);
 }
 
 static bool coincide(struct sweep *w, int32_t v, int32_t u)
@@ -231,7 +237,7 @@ static void sweep(struct sweep *w)
         if (!process(w, w->event + i, j - i))
             return;
     }
-    assert(w->order.root == -1);
+    assert(tri_check_order_above(&w->order, -1) == -1);
 }
 
 enum tri_status tri_check_overlap(struct checker *c)
@@ -243,7 +249,7 @@ enum tri_status tri_check_overlap(struct checker *c)
     w.edge = tri_check_array(n, sizeof *w.edge);
     w.start = tri_check_array(n, sizeof *w.start);
     w.event = tri_check_array(n_events, sizeof *w.event);
-    enum tri_status status = tri_sweep_order_init(&w.order, (int32_t)n);
+    enum tri_status status = tri_check_order_init(&w.order, (int32_t)n);
     if (w.edge == NULL || w.start == NULL || w.event == NULL)
         status = TRI_NO_MEMORY;
     if (status == TRI_OK) {
@@ -253,6 +259,6 @@ enum tri_status tri_check_overlap(struct checker *c)
     free(w.edge);
     free(w.start);
     free(w.event);
-    tri_sweep_order_clear(&w.order);
+    tri_check_order_clear(&w.order);
     return status;
 }

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "triangle/check_internal.h"
+#include "triangle/check/internal.h"
 
 #define SLACK   1e-12
 #define DEGREES (180 / 3.14159265358979323846)
@@ -47,7 +47,7 @@ static struct shape shape_of(const struct checker *c, int32_t t)
     for (int k = 0; k < 3; k++)
         p[k] = check_point(c, c->mesh->triangles[3 * (size_t)t + (size_t)k]);
     for (int k = 0; k < 3; k++) { /* edge opposite corner k */
-        struct tri_point a = p[tri_next[k]], b = p[tri_prev[k]];
+        struct tri_point a = p[(k + 1) % 3], b = p[(k + 2) % 3];
         d[k][0] = b.x - a.x;
         d[k][1] = b.y - a.y;
         l[k] = d[k][0] * d[k][0] + d[k][1] * d[k][1];
@@ -55,8 +55,8 @@ static struct shape shape_of(const struct checker *c, int32_t t)
     int longest = l[0] > l[1] ? (l[0] > l[2] ? 0 : 2) : l[1] > l[2] ? 1 : 2;
     int shortest = l[0] < l[1] ? (l[0] < l[2] ? 0 : 2) : l[1] < l[2] ? 1 : 2;
     if (shortest == longest)
-        shortest = tri_next[longest]; /* equilateral */
-    int i = tri_next[longest], j = tri_prev[longest], m = 3 - longest - shortest;
+        shortest = (longest + 1) % 3; /* equilateral */
+    int i = (longest + 1) % 3, j = (longest + 2) % 3, m = 3 - longest - shortest;
     double cross = d[i][0] * d[j][1] - d[i][1] * d[j][0], dot = -(d[i][0] * d[j][0] + d[i][1] * d[j][1]);
     return (struct shape){cross / 2, cross * cross / (l[longest] * l[m]), dot * fabs(dot) / (l[i] * l[j])};
 }
