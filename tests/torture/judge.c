@@ -76,16 +76,27 @@ static enum tri_status refine(struct outcome *o, int threads, struct tri_error *
     return status;
 }
 
+/* With how many threads to make what. */
+struct making {
+    struct outcome *outcome;
+    int threads;
+};
+
+static enum tri_status refine_call(void *user, struct tri_mesh *mesh, const struct tri_refine_options *options,
+                                   struct tri_refine_report *report, struct tri_error *error)
+{
+    const struct making *making = user;
+    (void)mesh, (void)options, (void)report; /* those of the outcome */
+    return refine(making->outcome, making->threads, error);
+}
+
 static enum tri_status generate(struct outcome *o, const struct tri_pslg *pslg, int threads, struct tri_error *error)
 {
+    struct making making = {o, threads};
     struct tri_options options = o->options;
-    options.refine = false;
-    options.leave_sorted = o->options.refine;
+    options.refine_call = refine_call;
+    options.refine_user = &making;
     enum tri_status status = tri_generate(&o->mesh, pslg, &options, &o->report, error);
-    if (!status && o->options.refine)
-        status = refine(o, threads, error);
-    if (!status)
-        status = tri_restore_points(&o->mesh, NULL, error);
     if (!status)
         tri_mesh_compact(&o->mesh);
     return status;
