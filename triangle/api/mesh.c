@@ -8,7 +8,6 @@
 #include <stdlib.h>
 
 #include "triangle/api/figure.h"
-#include "triangle/reconstruct.h"
 
 /* --- settings */
 
@@ -124,47 +123,16 @@ static enum tri_status make_attributes(struct tri_api_mesh *m, struct tri_error 
 }
 
 /* Brings the invariant about. */
-static enum tri_status settle(struct tri_api_mesh *m, const struct tri_executor *executor, struct tri_error *error)
+static enum tri_status settle(struct tri_api_mesh *m, struct tri_error *error)
 {
     forget(m);
     m->mesh.stop = NULL;
-    enum tri_status status = tri_restore_points(&m->mesh, executor, error);
-    if (status)
-        return status;
     tri_mesh_compact(&m->mesh);
-    status = make_places(m, error);
+    enum tri_status status = make_places(m, error);
     return status ? status : make_attributes(m, error);
 }
 
 /* --- made */
-
-static enum tri_status triangulate(struct tri_api_mesh *m, const struct tri_pslg *pslg, const struct tri_settings *s,
-                                   const struct tri_api_way *way, const struct tri_stop *stop, struct tri_error *error)
-{
-    struct tri_options how = tri_defaults();
-    how.use_segments = pslg->n_segments > 0 || pslg->n_holes > 0 || pslg->n_regions > 0;
-    how.keep_hull = s->keep_hull || pslg->n_segments == 0;
-    how.spread_regions = pslg->n_regions > 0;
-    how.leave_sorted = true; /* until settle */
-    how.executor = way->executor;
-    how.stop = stop;
-    return tri_generate(&m->mesh, pslg, &how, &m->report, error);
-}
-
-static enum tri_status reconstruct(struct tri_api_mesh *m, const struct tri_api_figure *figure,
-                                   const struct tri_stop *stop, struct tri_error *error)
-{
-    size_t n = (size_t)figure->pslg.n_segments;
-    bool *is_edge = malloc(n + 1);
-    struct tri_reconstruct_options how = {.use_segments = n > 0, .refine = true, .stop = stop, .is_edge = is_edge};
-    if (!is_edge)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %zu segments", n);
-    enum tri_status status = tri_reconstruct(&m->mesh, &figure->pslg, &figure->elements, &how, error);
-    for (size_t k = 0; !status && k < n; k++)
-        m->loose += !is_edge[k];
-    free(is_edge);
-    return status;
-}
 
 static void note_sizes(struct tri_api_mesh *m, const struct tri_api_figure *figure)
 {
@@ -181,28 +149,64 @@ static void note_sizes(struct tri_api_mesh *m, const struct tri_api_figure *figu
     }
 }
 
-static enum tri_status refine(struct tri_api_mesh *m, const struct tri_settings *s, const struct tri_api_way *way,
-                              struct tri_error *error)
+/* Whose refinement, for tri_generate. */
+struct refiner {
+    struct tri_api_mesh *m;
+    const struct tri_settings *settings;
+    const struct tri_api_way *way;
+};
+
+static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_refine_options *options,
+                              struct tri_refine_report *report, struct tri_error *error)
 {
+    const struct refiner *refiner = user;
+    const struct tri_settings *s = refiner->settings;
     struct tri_fence fence;
-    const struct tri_refine_options how = quality_of(m, s, &fence);
-    m->report.quality = (struct tri_refine_report){0};
-    return has_bounds(m, s) ? way->refine(&m->mesh, &how, s, &m->report.quality, error) : TRI_OK;
+    const struct tri_refine_options how = quality_of(refiner->m, s, &fence);
+    (void)options;
+    *report = (struct tri_refine_report){0};
+    return has_bounds(refiner->m, s) ? refiner->way->refine(mesh, &how, s, report, error) : TRI_OK;
+}
+
+static enum tri_status generate(struct tri_api_mesh *m, const struct tri_api_figure *figure,
+                                const struct tri_settings *s, const struct tri_api_way *way, bool *is_edge,
+                                struct tri_error *error)
+{
+    const struct tri_pslg *pslg = &figure->pslg;
+    const struct tri_stop stop = {s->stop, s->stop_user};
+    const struct refiner refiner = {m, s, way};
+    struct tri_options how = tri_defaults();
+    how.elements = figure->elements.n > 0 ? &figure->elements : NULL;
+    how.use_segments = pslg->n_segments > 0 || (!how.elements && (pslg->n_holes > 0 || pslg->n_regions > 0));
+    how.keep_hull = s->keep_hull || pslg->n_segments == 0;
+    how.spread_regions = pslg->n_regions > 0;
+    how.refine = how.elements || has_bounds(m, s); /* a mesh may be refined later, and has to be Delaunay then */
+    how.refine_call = refine;
+    how.refine_user = (void *)&refiner; /* which only reads it */
+    how.is_edge = is_edge;
+    how.executor = way->executor;
+    how.stop = s->stop ? &stop : NULL;
+    return tri_generate(&m->mesh, pslg, &how, &m->report, error);
 }
 
 static enum tri_status make(struct tri_api_mesh *m, const struct tri_api_figure *figure, const struct tri_settings *s,
                             const struct tri_api_way *way, struct tri_error *error)
 {
-    const struct tri_stop stop = {s->stop, s->stop_user}, *asked = s->stop ? &stop : NULL;
-    enum tri_status status = figure->elements.n > 0 ? reconstruct(m, figure, asked, error)
-                                                    : triangulate(m, &figure->pslg, s, way, asked, error);
-    if (status)
-        return status;
+    size_t n = figure->elements.n > 0 ? (size_t)figure->pslg.n_segments : 0;
+    bool *is_edge = malloc(n + 1);
+    if (!is_edge)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %zu segments", n);
     note_sizes(m, figure);
-    status = refine(m, s, way, error);
-    if (settle(m, way->executor, status ? NULL : error))
+    enum tri_status status = generate(m, figure, s, way, n > 0 ? is_edge : NULL, error);
+    for (size_t k = 0; m->mesh.regions && k < n; k++)
+        m->loose += !is_edge[k];
+    free(is_edge);
+    if (!m->mesh.regions) /* empty */
+        return status;
+    enum tri_status settled = settle(m, status ? NULL : error);
+    if (settled)
         tri_mesh_free(&m->mesh);
-    return !status && !m->mesh.regions ? TRI_NO_MEMORY : status;
+    return status ? status : settled;
 }
 
 enum tri_status tri_api_mesh_new(struct tri_mesh **mesh, const struct tri_figure *figure,
@@ -229,9 +233,10 @@ enum tri_status tri_api_mesh_refine(struct tri_mesh *mesh, const struct tri_sett
 {
     struct tri_api_mesh *m = (struct tri_api_mesh *)mesh;
     const struct tri_stop stop = {settings->stop, settings->stop_user};
+    struct refiner refiner = {m, settings, way};
     mesh->stop = settings->stop ? &stop : NULL;
-    enum tri_status status = refine(m, settings, way, error);
-    enum tri_status settled = settle(m, way->executor, status ? NULL : error);
+    enum tri_status status = refine(&refiner, mesh, NULL, &m->report.quality, error);
+    enum tri_status settled = settle(m, status ? NULL : error);
     return status ? status : settled;
 }
 
