@@ -176,7 +176,7 @@ int main()
         tri_mesh_figure(mesh, &figure);
     tri_mesh_delete(mesh);
     tri_file_free(&figure);
-    return tri_figure_judge(&figure, NULL, &demands, &verdict, NULL);
+    return tri_check_figure(&figure, NULL, &demands, &verdict, NULL);
 }
 END
 sed 's/int main()/int main(void)/' client.cpp >client.c
@@ -187,7 +187,7 @@ for std in c++11 c++14 c++17 c++20; do
     try yes client.cpp "$cxx" -std=$std -Wconversion
 done
 nm object.o >names.txt
-for name in par_mesh_new tri_mesh_figure tri_file_free tri_figure_judge; do
+for name in par_mesh_new tri_mesh_figure tri_file_free tri_check_figure; do
     grep -q " U _*$name\$" names.txt || { echo "header: $name has C++ linkage"; failed=$((failed + 1)); }
 done
 

@@ -56,7 +56,7 @@ static void assert_sound(const struct tri_mesh *mesh, const struct tri_figure *i
     demands.min_angle = 30;
     demands.max_area = max_area;
     tri_mesh_figure(mesh, &made);
-    assert_int_equal(tri_figure_judge(&made, input, &demands, &verdict, NULL), TRI_OK);
+    assert_int_equal(tri_check_figure(&made, input, &demands, &verdict, NULL), TRI_OK);
     if (verdict.n_faults != 0)
         fail_msg("%s", verdict.text);
     assert_true(verdict.smallest_angle >= 30 && verdict.n_small == 0);

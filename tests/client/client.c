@@ -14,7 +14,7 @@ static int passes(const struct tri_figure *mesh, const struct tri_figure *input,
     struct tri_verdict verdict;
     demands.max_area = max_area;
     demands.min_angle = 30;
-    return tri_figure_judge(mesh, input, &demands, &verdict, NULL) == TRI_OK && verdict.n_faults == 0;
+    return tri_check_figure(mesh, input, &demands, &verdict, NULL) == TRI_OK && verdict.n_faults == 0;
 }
 
 static int judges(const struct tri_figure *square)

@@ -47,7 +47,7 @@ static void pronounce(struct tri_verdict *verdict, const struct tri_check_report
     }
 }
 
-enum tri_status tri_figure_judge(const struct tri_figure *mesh, const struct tri_figure *input,
+enum tri_status tri_check_figure(const struct tri_figure *mesh, const struct tri_figure *input,
                           const struct tri_demands *demands, struct tri_verdict *verdict, struct tri_error *error)
 {
     struct tri_demands own;
