@@ -49,7 +49,7 @@ bool tri_pslg_is_one_place(const struct tri_pslg *pslg)
     for (int32_t i = 1; i < pslg->n_points; i++)
         if (points[2 * (size_t)i] != points[0] || points[2 * (size_t)i + 1] != points[1])
             return false;
-    return true;
+    return pslg->n_points >= 3;
 }
 
 void tri_pslg_free(struct tri_pslg *pslg)

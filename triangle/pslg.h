@@ -35,7 +35,8 @@ struct tri_pslg {
  * TRI_BAD_INPUT; more than 2^28 of anything: TRI_TOO_LARGE. O(n). */
 enum tri_status tri_pslg_check(const struct tri_pslg *pslg, struct tri_error *error);
 
-/* Are all points at one place? Then there is nothing to triangulate; that they are collinear is no error. O(n). */
+/* Are there enough points, but all at one place? Triangle refuses those; tri_generate makes a mesh of no triangles, as
+ * of collinear points. O(n). */
 bool tri_pslg_is_one_place(const struct tri_pslg *pslg);
 
 /* Frees the arrays (malloc'ed) and zeroes the struct. */

@@ -46,12 +46,16 @@ static inline struct tri_shape tri_shape_of(const struct tri_point *xy, const in
     return s;
 }
 
-/* sin^2 of the smallest angle is area2^2 over the product of the two longer squared edges. */
+/* One instruction each, which fmin and fmax are not: those have to say what to do about NaN. */
+static inline double tri_lesser(double a, double b) { return a < b ? a : b; }
+static inline double tri_larger(double a, double b) { return a > b ? a : b; }
+
+/* sin^2 of the smallest angle is area2^2 over the product of the two longer squared edges. That is the largest of the
+ * three products: which two edges are the longer ones is as good as random, and a branch on it would be predicted
+ * wrongly half the time; of products the processor takes the larger without one. */
 static inline double tri_longer_product(double a, double b, double c)
 {
-    double ab = a < b ? b : a, low = a < b ? a : b;
-    double high = ab < c ? c : ab, middle = ab < c ? ab : (low < c ? c : low);
-    return high * middle;
+    return tri_larger(a * b, tri_larger(b * c, c * a));
 }
 
 /* The point that replaces a bad triangle, on the bisector of its shortest edge: the circumcentre or, where that lies

@@ -91,12 +91,6 @@ static bool push(struct tri_refiner *r, int32_t slot, enum tri_badness badness, 
                                 : tri_bad_queue_push_size(&r->queue, entry);
 }
 
-static double least(double a, double b, double c)
-{
-    double least = a < b ? a : b;
-    return least < c ? least : c;
-}
-
 /* Judges the triangle of two rims' start points and the new vertex, from the coordinates the cavity search left. */
 static bool judge_rim(struct tri_refiner *r, const struct tri_rim *rim, struct tri_relative rb, double bound2)
 {
@@ -104,11 +98,25 @@ static bool judge_rim(struct tri_refiner *r, const struct tri_rim *rim, struct t
     assert(rim->slot >= 0);
     double area2 = tri_cross(ra, rb), x = ra.x - rb.x, y = ra.y - rb.y, l = x * x + y * y;
     if (area2 * area2 < r->criterion.bounds.sin2 * tri_longer_product(ra.l, rb.l, l))
-        return push(r, rim->slot, TRI_BAD_ANGLE, least(ra.l, rb.l, l));
+        return push(r, rim->slot, TRI_BAD_ANGLE, tri_lesser(ra.l, tri_lesser(rb.l, l)));
     if (area2 > bound2)
         return push(r, rim->slot, TRI_BAD_SIZE, 0);
     if (r->options->unsuitable && tri_is_unsuitable(&r->criterion, r->mesh->tri[rim->slot].v))
         return push(r, rim->slot, TRI_BAD_SIZE, 0);
+    return true;
+}
+
+/* The same where only what is urgent counts. */
+static bool judge_urgent(struct tri_refiner *r, int32_t first, int32_t last)
+{
+    for (int32_t i = first; i < last; i++) {
+        int32_t slot = r->cavity.rim[i].slot;
+        const struct tri_triangle *t = &r->mesh->tri[slot];
+        struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
+        enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
+        if (badness != TRI_GOOD && !push(r, slot, badness, shape.l[shape.shortest]))
+            return false;
+    }
     return true;
 }
 
@@ -118,6 +126,8 @@ static bool judge_chain(struct tri_refiner *r, int32_t first, int32_t last, stru
     const struct tri_rim *rim = r->cavity.rim;
     int32_t region = TRI_NONE;
     double bound2 = 0;
+    if (r->options->urgent)
+        return judge_urgent(r, first, last);
     for (int32_t i = first; i < last; i++) {
         if (rim[i].region != region) {
             region = rim[i].region;
@@ -308,6 +318,8 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
                        enum tri_badness badness)
 {
     double l = shape->l[shape->shortest];
+    if (r->options->urgent)
+        return HUGE_VAL;
     double reach = r->criterion.bounds.off_centre > 0 ? r->criterion.bounds.off_centre * sqrt(l) : HUGE_VAL;
     double bound2 = tri_area2_bound(&r->criterion, t->region);
     if (badness == TRI_BAD_SIZE && shape->area2 > bound2) {
@@ -638,8 +650,7 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
     assert(mesh->n_slots == 0 || mesh->n_hubs > 0); /* tri_refine_prepare has been called */
     r->mesh = mesh;
     r->options = options;
-    r->criterion.mesh = mesh;
-    r->criterion.options = options;
+    r->criterion = tri_criterion_for(mesh, options);
     r->report = report;
     begin_stages(r);
     frexp(mesh->shortest2, &r->least_exponent);
