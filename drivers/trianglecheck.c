@@ -135,7 +135,18 @@ static enum tri_status judge(const struct settings *s, const struct judged_files
 
 /* --- arguments */
 
-enum long_option { NO_DELAUNAY = 256, SMALL_INPUT_ANGLE, KEEP_HOLES, KEEP_HULL, NO_MARKERS, THREADS, JSON, QUIET, VERSION, HELP };
+enum long_option {
+    NO_DELAUNAY = 256,
+    SMALL_INPUT_ANGLE,
+    KEEP_HOLES,
+    KEEP_HULL,
+    NO_MARKERS,
+    THREADS,
+    JSON,
+    QUIET,
+    VERSION,
+    HELP
+};
 
 static const struct option long_options[] = {
     {"poly", required_argument, NULL, 'p'},
@@ -260,7 +271,8 @@ static int run(const struct settings *s, struct judged_files *f)
     set_threads(s->threads > 0 ? s->threads : usual_threads());
     enum tri_status status = judged_read_mesh(f, s->base, &error);
     if (f->stale_neighbors)
-        fail("%s.neigh is of another mesh than %s.ele, by their numbers of triangles: it is not judged", s->base, s->base);
+        fail("%s.neigh is of another mesh than %s.ele, by their numbers of triangles: it is not judged", s->base,
+             s->base);
     if (status == TRI_OK && s->input != NULL)
         status = judged_read_input(f, s->input, &error);
     if (status == TRI_OK)

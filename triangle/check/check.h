@@ -35,7 +35,7 @@
  * missing as a whole, boundary intact, goes unnoticed.
  *
  * Coordinates that are very large or very small as a whole are multiplied by a power of two first; those below 2^-216
- * then, or of the largest one where that was out of 2^-100 .. 2^199, count as 0, in the mesh as in the input.
+ * then count as 0, in the mesh as in the input.
  *
  * Cost: O(n + b log b) time for n triangles and b boundary edges; about 60 bytes a triangle beside the arrays given.
  * Measured: 15 million triangles in 2.2 s where the numbering is local, 24 s where it is random, on one core. */
