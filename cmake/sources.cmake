@@ -18,6 +18,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/sweep_order.c
     triangle/locate.c
     triangle/carve.c
+    triangle/chain.c
     triangle/reconstruct.c
     triangle/cavity.c
     triangle/interpolate.c
@@ -84,6 +85,7 @@ set(PTRIANGLE_PUBLIC_HEADERS
     triangle/mesh.h
     triangle/spatial.h
     triangle/carve.h
+    triangle/chain.h
     triangle/reconstruct.h
     triangle/constrain.h
     triangle/cavity.h
