@@ -4,9 +4,9 @@
  * on as far as rounding tells. Between two vertices that are none lies a chain of joints. It becomes one parent where
  * all of it keeps to the line between its ends: one joint after the other might go round a curve.
  *
- * The tolerance is what split points and arranged vertices may be off their lines (split.c, constrain.c), so the parents
- * of a refined mesh come back: with them its corners (small_angle.h), narrow spaces and sizes are what they were when
- * it was made, and whatever was given up then is given up again. */
+ * The tolerance is what split points and arranged vertices may be off their lines (split.c, constrain.c), so the
+ * parents of a refined mesh come back: with them its corners (small_angle.h), narrow spaces and sizes are what they
+ * were when it was made, and whatever was given up then is given up again. */
 #include "triangle/chain.h"
 
 #include <assert.h>
@@ -24,9 +24,9 @@ struct chains {
     int32_t *at; /* [n_vertices][2] the subsegments that end at each; TRI_NONE: none; first MANY: more than two */
 };
 
-/* One of them: that starts with subsegment `first` at `from` and ends at `to`. */
+/* One of them: from a vertex to another, the subsegments at these. */
 struct chain {
-    int32_t first, from, to;
+    int32_t first, last, from, to;
 };
 
 static void list_ends(struct chains *c)
@@ -74,12 +74,17 @@ static int32_t beyond(const struct chains *c, int32_t v, int32_t s)
     return at[at[0] == s];
 }
 
+/* The chain that starts or ends with subsegment s at a vertex, and runs its way. */
 static struct chain follow(const struct chains *c, int32_t s, int32_t from)
 {
-    struct chain chain = {s, from, other_end(c->mesh, s, from)};
-    for (; is_joint(c, chain.to); chain.to = other_end(c->mesh, s, chain.to))
-        s = beyond(c, chain.to, s);
-    return chain;
+    struct chain chain = {s, s, from, other_end(c->mesh, s, from)};
+    while (is_joint(c, chain.to)) {
+        chain.last = beyond(c, chain.to, chain.last);
+        chain.to = other_end(c->mesh, chain.last, chain.to);
+    }
+    if (c->mesh->sub[s].v[0] == from)
+        return chain;
+    return (struct chain){chain.last, chain.first, chain.to, chain.from};
 }
 
 static bool is_straight(const struct chains *c, const struct chain *chain)

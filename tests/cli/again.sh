@@ -14,7 +14,7 @@ again() { # again ANGLE FILE
     "$bin/triangle" "-rpq$1Q" "$base.1" >.out 2>.err || fault "exit code $?"
     first=$(size_of "$base.1")
     second=$(size_of "$base.2")
-    check "$second triangles, before $first" test $((second * 50)) -le $((first * 51 + 2500))
+    check "$second triangles, before $first" test $((second * 10)) -le $((first * 11 + 1000))
 }
 
 for input in "$data"/*.poly "$data"/regress/*.poly "$data"/nasty/*.poly "$data"/coast/*.poly; do
