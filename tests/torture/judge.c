@@ -2,6 +2,7 @@
 #include "tests/torture/judge.h"
 
 #include "sched/schedule.h"
+#include "triangle/quality.h"
 #include "triangle/reconstruct.h"
 
 enum { MOST_TRIANGLES = 1000 * 1000 };
