@@ -5,14 +5,22 @@
 
 #include "triangle/check/internal.h"
 
+static bool are_exact(const double *values, int64_t n)
+{
+    for (int64_t i = 0; i < n; i++) {
+        if (!tri_is_exact_coordinate(values[i]))
+            return false;
+    }
+    return true;
+}
+
 /* 0 for coordinates of ordinary size, and where one is not finite; else the exponent that brings the largest to 1. */
-static int choose_exponent(const struct tri_check_mesh *m, bool *needed)
+static int choose_exponent(const struct tri_check_mesh *m)
 {
     double largest = 0;
     for (size_t i = 0; i < 2 * (size_t)m->n_points; i++) {
         if (!isfinite(m->points[i]))
             return 0;
-        *needed = *needed || !tri_is_exact_coordinate(m->points[i]);
         largest = fmax(largest, fabs(m->points[i]));
     }
     return largest == 0 || (largest >= 0x1p-100 && largest <= 0x1p199) ? 0 : -ilogb(largest);
@@ -28,10 +36,11 @@ static double *scale(const double *values, int64_t n, int exponent)
 
 enum tri_status tri_check_scale(struct checker *c)
 {
-    bool needed = false;
-    c->exponent = choose_exponent(c->mesh, &needed);
-    if (!needed)
+    const struct tri_pslg *input = c->input;
+    if (are_exact(c->mesh->points, 2 * (int64_t)c->mesh->n_points) &&
+        (input == NULL || are_exact(input->points, 2 * (int64_t)input->n_points)))
         return TRI_OK;
+    c->exponent = choose_exponent(c->mesh);
     c->scaled[0] = scale(c->mesh->points, 2 * (int64_t)c->mesh->n_points, c->exponent);
     if (c->scaled[0] == NULL)
         return TRI_NO_MEMORY;
