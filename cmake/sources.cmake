@@ -36,6 +36,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/generate.c
     triangle/dropin/switches.c
     triangle/topology.c
+    triangle/grid.c
     triangle/dropin/input.c
     triangle/dropin/output.c
     triangle/dropin/run.c
@@ -60,7 +61,8 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/text.c
     triangle/text/read.c
     triangle/text/output.c
-    triangle/text/write.c)
+    triangle/text/write.c
+    triangle/text/layouts.c)
 
 # Room sched/, the parallel schedule: with drivers/ptriangle.c, which asks for the number of threads, the only sources
 # compiled with OpenMP.
@@ -91,6 +93,7 @@ set(PTRIANGLE_PUBLIC_HEADERS
     triangle/numbering.h
     triangle/check/check.h
     triangle/executor.h
+    triangle/grid.h
     triangle/text/read.h
     triangle/text/output.h
     triangle/text/write.h
