@@ -31,6 +31,10 @@ struct long_options {
 enum tri_status long_options_take(struct long_options *options, struct tri_switches *switches, int argc,
                                   char *const *argv, int *at, struct tri_error *error);
 
+/* Threads to work with: those of --threads, else of OMP_NUM_THREADS, else of SLURM_CPUS_PER_TASK, which a batch system
+ * sets; 0: OpenMP decides, as it does where OMP_NUM_THREADS is set. */
+int long_options_threads(const struct long_options *options);
+
 /* A paragraph about them, for the help. */
 extern const char long_options_help[];
 

@@ -17,7 +17,7 @@
 #include "sched/threads.h"
 #include "triangle/text/write.h"
 
-static const char PROGRAM[] = "ptriangle";
+static const char PROGRAM[] = PTRIANGLE_NAME;
 
 /* What the hooks share. */
 struct program {
@@ -153,7 +153,7 @@ static void add_further(struct file_names *names, const char *name)
 
 static int run_program(struct program *p, const struct arguments *arguments)
 {
-    p->threads = par_threads(p->options.threads, true);
+    p->threads = par_threads(long_options_threads(&p->options), true);
     p->progress = progress_start(PROGRAM, p->options.progress, arguments->switches.quiet);
     const struct tri_executor executor = par_executor(&p->threads);
     const struct long_options *o = &p->options;
@@ -187,8 +187,7 @@ int main(int argc, char **argv)
     } else if (program.options.version) {
         printf("%s %s\n", PROGRAM, PTRIANGLE_VERSION);
     } else if (program.options.help || arguments.switches.help) {
-        help_full(PROGRAM);
-        printf("\n%s", long_options_help);
+        help_full(PROGRAM, "on all cores", long_options_help);
     } else {
         code = run_program(&program, &arguments);
     }

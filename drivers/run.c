@@ -497,7 +497,7 @@ int run_arguments(const struct arguments *arguments, const struct run_hooks *hoo
                        .console = {hooks->program, s->quiet, s->verbosity}, .error = &error};
     enum tri_status status = TRI_OK;
     if (s->help)
-        help_full(hooks->program);
+        help_full(hooks->program, "on one core", NULL); /* another program has taken this word itself */
     else if (!arguments->file)
         help_usage(hooks->program);
     else

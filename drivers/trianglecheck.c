@@ -17,26 +17,23 @@
 
 enum { FAULTS = 1, TROUBLE = 2 };
 
-static const char usage[] = "Usage: trianglecheck [options] BASE\n";
+static const char usage[] = "Usage: " PTRIANGLE_NAME " [options] BASE\n";
 
-static const char help[] =
+static const char help[] = /* in the form that cmake/help.awk makes a manual page of */
+    "\n"
     "Checks the mesh in BASE.node and BASE.ele; also BASE.poly (subsegments) and BASE.neigh where they exist.\n"
     "\n"
-    "  -p, --poly FILE      compare with the input that the mesh was made from, a .poly or .node file: its vertices "
-    "come\n"
-    "                       first and unmoved, its segments are chains of subsegments except where carved, its hole "
-    "points\n"
-    "                       lie outside, no vertex is lost\n"
-    "  -q, --min-angle Q    angle bound in degrees; smaller angles are faults unless a small input angle explains "
-    "them:\n"
-    "                       the triangle touches a vertex where two subsegments meet at less than 60 degrees (or a "
-    "triangle\n"
-    "                       next to it does), or has corners on both of them\n"
+    "  -p, --poly FILE      compare with the input that the mesh was made from, a .poly or .node file: its\n"
+    "                       vertices come first and unmoved, its segments are chains of subsegments except where\n"
+    "                       carved, its hole points lie outside, no vertex is lost\n"
+    "  -q, --min-angle Q    angle bound in degrees; smaller angles are faults unless a small input angle explains\n"
+    "                       them: the triangle touches a vertex where two subsegments meet at less than 60\n"
+    "                       degrees (or a triangle next to it does), or has corners on both of them\n"
     "      --small-input-angle X  what is small there, instead of 60\n"
     "  -b, --max-bad N      instead: up to N triangles may be below the angle bound, for whatever reason\n"
     "  -a, --max-area A     area bound\n"
-    "  -D, --conforming     all triangles truly Delaunay, diametral circles of subsegments empty (default: "
-    "constrained)\n"
+    "  -D, --conforming     all triangles truly Delaunay, diametral circles of subsegments empty (default:\n"
+    "                       constrained)\n"
     "      --no-delaunay    no check of circles\n"
     "  -c, --convex         the mesh fills the convex hull of the vertices\n"
     "  -j, --jettisoned     unused input vertices were dropped: know input vertices by their coordinates\n"
@@ -45,10 +42,10 @@ static const char help[] =
     "      --no-markers     do not compare the markers of subsegments\n"
     "      --json           report in JSON on standard output, instead of lines\n"
     "      --quiet          print faults only\n"
-    "      --version, --help\n"
+    "      --version, --help  name and version; this help\n"
     "\n"
-    "Exit code: 0 no fault, 1 faults, 2 wrong usage or unreadable files (vertex numbers in BASE.ele that do not exist\n"
-    "are found on reading). Numbers printed count as the files do.\n";
+    "Exit code: 0 no fault, 1 faults, 2 wrong usage or unreadable files (vertex numbers in BASE.ele that do not\n"
+    "exist are found on reading). Numbers printed count as the files do.\n";
 
 struct settings {
     const char *base; /* name without suffix */
@@ -70,7 +67,7 @@ static int fail(const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    fputs("trianglecheck: ", stderr);
+    fputs(PTRIANGLE_NAME ": ", stderr);
     vfprintf(stderr, format, arguments);
     fputc('\n', stderr);
     va_end(arguments);
@@ -419,7 +416,7 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     int option;
     while ((option = getopt_long(argc, argv, "p:q:b:a:Dcjr", long_options, NULL)) != -1) {
         if (option == HELP || option == VERSION) {
-            fputs(option == HELP ? usage : "trianglecheck " PTRIANGLE_VERSION "\n", stdout);
+            fputs(option == HELP ? usage : PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", stdout);
             fputs(option == HELP ? help : "", stdout);
             return -1;
         }

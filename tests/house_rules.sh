@@ -12,36 +12,35 @@ breach() {
     breaches=$((breaches + 1))
 }
 
-# Code without comments: what remains is what the compiler sees. Strings stay; a /* in a string would fool it.
-code_of() {
-    awk '{
-        line = $0; out = ""
-        while (line != "") {
-            if (inside) {
-                end = index(line, "*/")
-                if (!end) break
-                line = substr(line, end + 2); inside = 0
-            } else {
-                start = index(line, "/*"); slashes = index(line, "//")
-                if (slashes && (!start || slashes < start)) { out = out substr(line, 1, slashes - 1); break }
-                if (!start) { out = out line; break }
-                out = out substr(line, 1, start - 1) " "; line = substr(line, start + 2); inside = 1
-            }
+# Code without comments, "FILE:LINE: CODE": what remains is what the compiler sees. Strings stay; a /* in one would fool it.
+code=$(mktemp)
+trap 'rm -f "$code"' EXIT
+awk '{
+    if (FNR == 1) inside = 0
+    line = $0; out = ""
+    while (line != "") {
+        if (inside) {
+            end = index(line, "*/")
+            if (!end) break
+            line = substr(line, end + 2); inside = 0
+        } else {
+            start = index(line, "/*"); slashes = index(line, "//")
+            if (slashes && (!start || slashes < start)) { out = out substr(line, 1, slashes - 1); break }
+            if (!start) { out = out line; break }
+            out = out substr(line, 1, start - 1) " "; line = substr(line, start + 2); inside = 1
         }
-        print FNR ": " out
-    }' "$1"
-}
+    }
+    print FILENAME ":" FNR ": " out
+}' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] >"$code"
 
 # refuse PATTERN REASON FILE...
 refuse() {
     pattern=$1
     reason=$2
     shift 2
-    for file; do
-        [ -f "$file" ] || continue
-        found=$(code_of "$file" | grep -v "format(printf" | grep -E "$pattern" | head -n 3)
-        [ -z "$found" ] || breach "$file: $reason: $found"
-    done
+    found=$(grep -E "$pattern" "$code" | grep -v "format(printf" |
+        awk -F: -v files=" $* " 'index(files, " " $1 " ")' | head -n 3)
+    [ -z "$found" ] || breach "$reason: $found"
 }
 
 # 1. Every source file stands in a list, every list entry is a file.

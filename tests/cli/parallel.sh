@@ -121,3 +121,8 @@ OMP_NUM_THREADS=3 program 0 -pq30a0.01 --progress letter
 complains ' on 3 threads'
 OMP_NUM_THREADS=3 program 0 -pq30a0.01 --progress --threads 2 letter
 complains ' on 2 threads'
+(unset OMP_NUM_THREADS && SLURM_CPUS_PER_TASK=3 && export SLURM_CPUS_PER_TASK &&
+    "$bin/ptriangle" -pq30a0.01 --progress letter >.out 2>.err)
+complains ' on 3 threads'
+OMP_NUM_THREADS=2 SLURM_CPUS_PER_TASK=3 program 0 -pq30a0.01 --progress letter
+complains ' on 2 threads'

@@ -229,6 +229,7 @@ everywhere overlap_spikes -pq31
 everywhere same_place -pq32D
 everywhere marker_bend -pc
 everywhere marker_precincts -pc
+everywhere hole_on_segment -pcq24a0.26
 
 # --- angles that cannot be: it ends, and says so
 fresh letter.poly

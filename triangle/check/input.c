@@ -132,7 +132,7 @@ static enum tri_status ask_for_holes(struct checker *c)
     enum tri_status status = TRI_OK;
     for (int32_t i = 0; i < c->input->n_holes && status == TRI_OK; i++) {
         struct tri_point p = {c->input->holes[2 * (size_t)i], c->input->holes[2 * (size_t)i + 1]};
-        status = tri_check_ask(c, p, TRI_CHECK_HOLES, i, 0);
+        status = tri_check_ask(c, p, TRI_CHECK_HOLES, i, c->tolerance); /* beside a wall it means either side */
     }
     return status;
 }
