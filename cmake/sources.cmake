@@ -62,7 +62,13 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/read.c
     triangle/text/output.c
     triangle/text/write.c
-    triangle/text/layouts.c)
+    triangle/text/layouts.c
+    triangle/text/grouping.c
+    triangle/text/boundary.c
+    triangle/text/vtu.c
+    triangle/text/gmsh.c
+    triangle/text/hydro.c
+    triangle/text/formats.c)
 
 # Room sched/, the parallel schedule: with drivers/ptriangle.c, which asks for the number of threads, the only sources
 # compiled with OpenMP.
@@ -97,6 +103,7 @@ set(PTRIANGLE_PUBLIC_HEADERS
     triangle/text/read.h
     triangle/text/output.h
     triangle/text/write.h
+    triangle/text/formats.h
     sched/schedule.h
     sched/partition.h)
 

@@ -5,7 +5,7 @@
 
 #include "drivers/interrupt.h"
 #include "triangle/grid.h"
-#include "triangle/text/write.h"
+#include "triangle/text/formats.h"
 
 enum plan { NOT_ASKED, SUPPRESSED, WRITTEN };
 
@@ -33,6 +33,12 @@ static enum plan plan_off(const struct mesh_files *f) { return asked(f->argument
 static enum plan plan_edge(const struct mesh_files *f) { return asked(f->arguments->switches.edges); }
 static enum plan plan_voronoi(const struct mesh_files *f) { return asked(f->arguments->switches.voronoi); }
 static enum plan plan_neigh(const struct mesh_files *f) { return asked(f->arguments->switches.neighbors); }
+
+/* Not a word about what nobody wants. */
+static enum plan plan_of(const struct mesh_files *files, enum plan (*plan)(const struct mesh_files *files))
+{
+    return files->exports_alone ? NOT_ASKED : plan(files);
+}
 
 static const struct kind {
     const char *suffix, *article;
@@ -65,19 +71,31 @@ static enum tri_status try_file(struct tri_output_set *set, const char *path, co
     return interrupt_open(set, path, &output, error);
 }
 
+static enum tri_status try_export(struct tri_output_set *set, const struct mesh_files *files, const char *path,
+                                  const struct file_names *read, struct tri_error *error)
+{
+    const struct tri_format *format = tri_format_of(path);
+    if (files->arguments->switches.second_order && !format->second_order)
+        return tri_fail(error, TRI_BAD_INPUT, path, 0, "files of %s cannot hold second-order triangles (-o2)",
+                        format->name);
+    return try_file(set, path, read, error);
+}
+
 static enum tri_status try_all(struct tri_output_set *set, const struct mesh_files *files,
                                const struct file_names *further, const struct file_names *read,
                                struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     for (int k = 0; k < N_KINDS && !status; k++) {
-        if (kinds[k].plan(files) != WRITTEN)
+        if (plan_of(files, kinds[k].plan) != WRITTEN)
             continue;
         char *path = joined(files->arguments->output, kinds[k].suffix);
         status = path ? try_file(set, path, read, error)
                       : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
         free(path);
     }
+    for (int i = 0; i < files->exports->n && !status; i++)
+        status = try_export(set, files, files->exports->name[i], read, error);
     for (int i = 0; i < further->n && !status; i++)
         status = try_file(set, further->name[i], read, error);
     return status;
@@ -117,17 +135,29 @@ static enum tri_status write_file(struct writer *w, const struct kind *kind)
     return status ? status : tri_write_comment(output, files->arguments->argc, files->arguments->argv, w->error);
 }
 
+/* In another program's format, which need not know comments. */
+static enum tri_status write_export(struct writer *w, const char *path)
+{
+    struct tri_output *output;
+    console_say(w->files->console, "Writing %s.\n", path);
+    enum tri_status status = interrupt_open(w->set, path, &output, w->error);
+    return status ? status : tri_format_of(path)->write(output, &w->grid, w->files->executor, w->error);
+}
+
 static enum tri_status write_all(struct writer *w)
 {
+    enum tri_status status = TRI_OK;
     for (int k = 0; k < N_KINDS; k++) {
-        enum plan plan = kinds[k].plan(w->files);
+        enum plan plan = plan_of(w->files, kinds[k].plan);
         if (plan == SUPPRESSED)
             console_say(w->files->console, "NOT writing %s %s file.\n", kinds[k].article, kinds[k].suffix);
-        enum tri_status status = plan == WRITTEN ? write_file(w, &kinds[k]) : TRI_OK;
+        status = plan == WRITTEN ? write_file(w, &kinds[k]) : TRI_OK;
         if (status)
             return status;
     }
-    return TRI_OK;
+    for (int i = 0; i < w->files->exports->n && !status; i++)
+        status = write_export(w, w->files->exports->name[i]);
+    return status;
 }
 
 enum tri_status mesh_files_write(const struct mesh_files *files, struct tri_output_set *set, struct tri_error *error)
