@@ -196,6 +196,21 @@ static void judge_threads(const struct outcome *first, const struct tri_pslg *ps
     tri_mesh_free(&o.mesh);
 }
 
+/* The points alone: in one leaf by one thread, and in tiny ones by three. */
+static void judge_points(const struct torture_case *c, struct verdict *verdict)
+{
+    int threads = 3;
+    const struct tri_executor executor = par_executor(&threads);
+    enter(verdict, "triangulating points");
+    struct tri_mesh whole = support_delaunay(&c->figure.pslg, c->figure.pslg.n_points + 1, NULL);
+    struct tri_mesh parts = support_delaunay(&c->figure.pslg, 1 + c->figure.pslg.n_points % 40, &executor);
+    if (!same_meshes(&whole, &parts))
+        judge_fault(verdict, "points", "%d triangles in one leaf, another triangulation of %d in many",
+                    (int)whole.n_slots, (int)parts.n_slots);
+    tri_mesh_free(&whole);
+    tri_mesh_free(&parts);
+}
+
 /* --- how many triangles */
 
 static int32_t triangles_of(const struct torture_case *as, const struct outcome *first, const struct tri_pslg *pslg,
@@ -295,7 +310,8 @@ void judge_case(const struct torture_case *c, struct verdict *verdict)
     o.options = tri_switches_options(&o.switches);
     if (o.switches.user_test)
         add_size_test(&o.options, &test, pslg);
-    if (!tri_pslg_is_one_place(pslg))
+    judge_points(c, verdict);
+    if (!verdict->fault[0] && !tri_pslg_is_one_place(pslg))
         judge_first(&o, pslg, verdict);
     if (!verdict->fault[0] && o.mesh.n_slots > 0 && o.options.refine && c->block > 0)
         judge_threads(&o, pslg, verdict);

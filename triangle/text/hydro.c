@@ -1,10 +1,10 @@
-/* Two text formats of hydrodynamic models, which number from 1 and have the boundary as strings of nodes: SMS (.2dm) and
- * ADCIRC (fort.14).
+/* Two text formats of hydrodynamic models, which number from 1 and have the boundary as strings of nodes: SMS (.2dm)
+ * and ADCIRC (fort.14).
  *
  * Both take the first attribute of a point for its elevation or depth. In .2dm a triangle's material is its first
  * attribute, if that is a whole number above 0, else 1; a node string carries its marker behind the last node. In
- * fort.14 pieces of the boundary with the marker TRI_OPEN_BOUNDARY are open ones; all others are land: mainland on loops
- * round the mesh, islands round holes. (xmswiki.com, "2D Mesh Files *.2dm"; adcirc.org, "ADCIRC Grid and Boundary
+ * fort.14 pieces of the boundary with the marker TRI_OPEN_BOUNDARY are open ones; all others are land: mainland on
+ * loops round the mesh, islands round holes. (xmswiki.com, "2D Mesh Files *.2dm"; adcirc.org, "ADCIRC Grid and Boundary
  * Information File".) */
 #include <string.h>
 
@@ -146,7 +146,10 @@ static bool is_open(const struct tri_boundary_piece *piece)
 }
 
 /* A loop round the mesh ends where it began; that an island does, its type says. */
-static int64_t shown_nodes(const struct tri_boundary_piece *piece) { return piece->n + (piece->closed && piece->outer); }
+static int64_t shown_nodes(const struct tri_boundary_piece *piece)
+{
+    return piece->n + (piece->closed && piece->outer);
+}
 
 static char *boundary_line(void *user, size_t i, char *at)
 {
