@@ -1,8 +1,11 @@
 /* Writing output files: tables.
  *
- * Why a table is written as it is: rows are formatted in chunks that fit a second-level cache, a wave of chunks at a
- * time; while one wave is formatted, the previous one is written by one more task of the same run. So the order of the
- * bytes is fixed, nobody waits for the disk, and memory is bounded. */
+ * Why a table is written as it is: rows are formatted in chunks, a wave of chunks at a time. When a wave is done the
+ * lengths of its chunks are known, and so their places in the file; whoever formats a chunk of the next wave first
+ * writes the chunk that its buffer holds. So the bytes do not depend on who comes first, nobody waits for the disk
+ * alone, and what is written is still in a cache. (Linux lets one thread at a time write into a file: writers that
+ * format between writes keep out of each other's way.) A device or a pipe has no places: each wave is written in order.
+ */
 #include "triangle/text/write.h"
 
 #include <assert.h>
@@ -14,8 +17,8 @@
 #include "triangle/text/text.h"
 
 enum {
-    CHUNK_BYTES = 1 << 18,
-    WAVE_CHUNKS = 64 /* at a time, where there is an executor */
+    CHUNK_BYTES = 1 << 16,
+    WAVE_CHUNKS = 256 /* at a time, where there is an executor */
 };
 
 static char *put(char *at, const char *text, size_t length)
@@ -26,11 +29,11 @@ static char *put(char *at, const char *text, size_t length)
 
 /* --- tables */
 
-/* Chunks that are formatted together, and then written together. */
-struct wave {
-    size_t n;
-    char *buffers; /* [WAVE_CHUNKS][buffer_bytes] */
-    size_t lengths[WAVE_CHUNKS];
+/* A chunk that is formatted and not yet written. */
+struct chunk {
+    size_t length;
+    uint64_t place;
+    int result; /* of writing it */
 };
 
 struct table {
@@ -39,60 +42,87 @@ struct table {
     void *user;
     size_t n_rows, max_row_bytes;
     size_t chunk_rows, buffer_bytes;
-    size_t begin; /* first row of the wave that is formatted */
-    struct wave *formatted, *written;
-    enum tri_status status; /* of writing */
-    struct tri_error *error;
+    size_t begin;     /* first row of the wave that is formatted */
+    size_t n_new;     /* chunks of that wave */
+    size_t n_waiting; /* chunks of the wave before, which are written */
+    struct chunk chunks[WAVE_CHUNKS];
+    char *buffers;    /* [WAVE_CHUNKS][buffer_bytes] */
 };
 
-static void format_chunk(struct table *table, size_t chunk)
+static void write_chunk(struct table *table, size_t i)
 {
-    char *const buffer = table->formatted->buffers + chunk * table->buffer_bytes, *at = buffer;
-    const size_t begin = table->begin + chunk * table->chunk_rows, left = table->n_rows - begin;
+    struct chunk *const chunk = &table->chunks[i];
+    chunk->result =
+        tri_output_write_at(table->output, chunk->place, table->buffers + i * table->buffer_bytes, chunk->length);
+}
+
+static void format_chunk(struct table *table, size_t i)
+{
+    char *const buffer = table->buffers + i * table->buffer_bytes, *at = buffer;
+    const size_t begin = table->begin + i * table->chunk_rows, left = table->n_rows - begin;
     const size_t n = left < table->chunk_rows ? left : table->chunk_rows;
-    for (size_t i = begin; i < begin + n; i++) {
-        char *const end = table->format_row(table->user, i, at);
+    for (size_t row = begin; row < begin + n; row++) {
+        char *const end = table->format_row(table->user, row, at);
         assert((size_t)(end - at) <= table->max_row_bytes);
         at = end;
     }
-    table->formatted->lengths[chunk] = (size_t)(at - buffer);
-}
-
-static void write_wave(struct table *table)
-{
-    const struct wave *const wave = table->written;
-    for (size_t i = 0; i < wave->n && table->status == TRI_OK; i++)
-        table->status =
-            tri_output_write(table->output, wave->buffers + i * table->buffer_bytes, wave->lengths[i], table->error);
+    table->chunks[i].length = (size_t)(at - buffer);
 }
 
 static void table_task(void *context, size_t i)
 {
     struct table *const table = context;
-    if (i == 0)
-        write_wave(table);
-    else
-        format_chunk(table, i - 1);
+    if (i < table->n_waiting)
+        write_chunk(table, i);
+    if (i < table->n_new)
+        format_chunk(table, i);
 }
 
-static void swap_waves(struct table *table)
+/* The first failure among the chunks that were written. */
+static enum tri_status conclude_wave(struct table *table, struct tri_error *error)
 {
-    struct wave *const formatted = table->formatted;
-    table->formatted = table->written;
-    table->written = formatted;
+    for (size_t i = 0; i < table->n_waiting; i++)
+        if (table->chunks[i].result != 0)
+            return tri_output_conclude(table->output, table->chunks[i].result, error);
+    return TRI_OK;
 }
 
-static void run_table(struct table *table, size_t wave_chunks, const struct tri_executor *executor)
+static enum tri_status write_in_order(struct table *table, struct tri_error *error)
 {
-    while (table->begin < table->n_rows && table->status == TRI_OK) {
-        const size_t chunks_left = (table->n_rows - table->begin - 1) / table->chunk_rows + 1;
-        const size_t n = chunks_left < wave_chunks ? chunks_left : wave_chunks;
-        table->formatted->n = n;
-        tri_execute(executor, n + 1, table_task, table);
-        table->begin += n == chunks_left ? table->n_rows - table->begin : n * table->chunk_rows;
-        swap_waves(table);
+    for (size_t i = 0; i < table->n_new; i++) {
+        write_chunk(table, i);
+        if (table->chunks[i].result != 0)
+            return tri_output_conclude(table->output, table->chunks[i].result, error);
     }
-    write_wave(table);
+    return TRI_OK;
+}
+
+/* The chunks that were formatted get their places, or are written now. */
+static enum tri_status place_wave(struct table *table, struct tri_error *error)
+{
+    if (!tri_output_has_places(table->output)) {
+        table->n_waiting = 0;
+        return write_in_order(table, error);
+    }
+    for (size_t i = 0; i < table->n_new; i++)
+        table->chunks[i].place = tri_output_reserve(table->output, table->chunks[i].length);
+    table->n_waiting = table->n_new;
+    return TRI_OK;
+}
+
+static enum tri_status run_table(struct table *table, size_t wave_chunks, const struct tri_executor *executor,
+                                 struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    while (!status && (table->begin < table->n_rows || table->n_waiting > 0)) {
+        const size_t left = (table->n_rows - table->begin + table->chunk_rows - 1) / table->chunk_rows;
+        table->n_new = left < wave_chunks ? left : wave_chunks;
+        tri_execute(executor, table->n_new > table->n_waiting ? table->n_new : table->n_waiting, table_task, table);
+        status = conclude_wave(table, error);
+        status = status ? status : place_wave(table, error);
+        table->begin = table->n_new == left ? table->n_rows : table->begin + table->n_new * table->chunk_rows;
+    }
+    return status;
 }
 
 enum tri_status tri_write_table(struct tri_output *output, size_t n_rows, size_t max_row_bytes,
@@ -103,21 +133,17 @@ enum tri_status tri_write_table(struct tri_output *output, size_t n_rows, size_t
     if (n_rows == 0)
         return TRI_OK;
     const size_t chunk_rows = max_row_bytes < CHUNK_BYTES ? CHUNK_BYTES / max_row_bytes : 1;
-    const size_t buffer_bytes = chunk_rows * max_row_bytes + TRI_ROW_SLACK;
     const size_t all_chunks = (n_rows - 1) / chunk_rows + 1, most = executor ? WAVE_CHUNKS : 1;
     const size_t wave_chunks = all_chunks < most ? all_chunks : most;
-    const int n_waves = all_chunks > wave_chunks ? 2 : 1;
-    char *const buffers = malloc((size_t)n_waves * wave_chunks * buffer_bytes);
-    if (!buffers)
+    struct table table = {.output = output, .format_row = format_row, .user = user, .n_rows = n_rows,
+                          .max_row_bytes = max_row_bytes, .chunk_rows = chunk_rows,
+                          .buffer_bytes = chunk_rows * max_row_bytes + TRI_ROW_SLACK};
+    table.buffers = malloc(wave_chunks * table.buffer_bytes);
+    if (!table.buffers)
         return tri_fail(error, TRI_NO_MEMORY, output->path, 0, "no memory to write a table");
-    struct wave waves[2] = {{.buffers = buffers}, {.buffers = buffers}};
-    if (n_waves == 2)
-        waves[1].buffers += wave_chunks * buffer_bytes;
-    struct table table = {output, format_row, user, n_rows, max_row_bytes, chunk_rows, buffer_bytes, 0, &waves[0],
-                          &waves[1], TRI_OK, error};
-    run_table(&table, wave_chunks, executor);
-    free(buffers);
-    return table.status;
+    const enum tri_status status = run_table(&table, wave_chunks, executor, error);
+    free(table.buffers);
+    return status;
 }
 
 enum tri_status tri_write_counts(struct tri_output *output, const int64_t *counts, int n, struct tri_error *error)
