@@ -14,7 +14,7 @@ What is given (anything that numpy makes an array of; arrays of the right type a
 What is wanted:
     min_angle   degrees, up to 34; above best effort
     max_area    of a triangle
-    size        length of edges: a number, or a function of x and y (of small steps: it is asked at corners and centroids)
+    size        length of edges: a number, or a function of x and y, which is asked at corners and centroids
     unsuitable  function of a, b, c and area: must this triangle be refined?
     conforming, keep_hull, protect (1: no points on the boundary, 2: nor on any segment), max_new_points
     gate        function of x and y: may a point be put here now? fence: x_min, y_min, x_max, y_max

@@ -174,8 +174,10 @@ class Mesh:
         return figure
 
     def refine(self, **wanted):
-        """A finer mesh, by the keywords of mesh(); this one stays as it is. Bounds that came with regions count no more,
-        unless triangle_areas are given anew: mesh(m.points, m.segments, triangles=m.triangles, triangle_areas=...)."""
+        """A finer mesh, by the keywords of mesh(); this one stays as it is.
+
+        Bounds that came with regions count no more. New ones for each triangle:
+        mesh(m.points, m.segments, triangles=m.triangles, triangle_areas=...)."""
         return _make(self._figure(), wanted)
 
     def bad(self, **wanted):

@@ -1,8 +1,8 @@
 """The functions of the package `triangle` (PyPI), so that `import ptriangle.compat as triangle` serves its users.
 
-Dictionaries have the same keys, types and shapes; meshes are ptriangle's own, refined on all cores. Different on purpose:
-what ends the interpreter there is an exception here; input without meaning (NaN, numbers of points that do not exist) is
-refused or skipped; the switch u needs the argument `unsuitable`.
+Dictionaries have the same keys, types and shapes; meshes are ptriangle's own, refined on all cores. Different on
+purpose: what ends the interpreter there is an exception here; input without meaning (NaN, numbers of points that do not
+exist) is refused or skipped; the switch u needs the argument `unsuitable`.
 """
 import os
 from ctypes import POINTER, byref, c_double, c_int, cast, string_at

@@ -7,8 +7,8 @@ import os
 import subprocess
 import sys
 
-SWITCHES = ["", "p", "pq", "pq30", "pqa1", "pe", "pn", "pen", "pc", "pD", "pA", "pqAa", "pj", "pB", "pP", "pN", "pE", "po2", "pv",
-            "e", "n", "o2", "c", "pY", "pqS5", "r", "rp", "rpq", "rpa", "rqen"]
+SWITCHES = ["", "p", "pq", "pq30", "pqa1", "pe", "pn", "pen", "pc", "pD", "pA", "pqAa", "pj", "pB", "pP", "pN",
+            "pE", "po2", "pv", "e", "n", "o2", "c", "pY", "pqS5", "r", "rp", "rpq", "rpa", "rqen"]
 
 KNOWN = {("la.1", None): "its reader takes five numbers of each region there"}
 
@@ -22,7 +22,8 @@ directory = sys.argv[1]
 def run(name, switches):
     data = triangle.load(directory, name)
     if switches is None:
-        return {{k: [v.dtype.str[1:], list(v.shape), np.asarray(v, float).round(9).tolist()[:3]] for k, v in data.items()}}
+        return {{k: [v.dtype.str[1:], list(v.shape), np.asarray(v, float).round(9).tolist()[:3]]
+                for k, v in data.items()}}
     if ("p" in switches) != ("segments" in data) or ("r" in switches) != ("triangles" in data):
         return None
     return form(triangle.triangulate(data, switches))

@@ -124,12 +124,14 @@ def test_examples_are_there():
 
 def test_loads():
     data = triangle.loads(node="3 2 1 1\n1 0 0 7 2 # first\n\n2 1 0 8 3\n3 0 1 9 4\n", ele="1 3 1\n1 1 2 3 5.5\n",
-                          area="1\n1 0.5\n", poly="0 2 0 1\n1 1\n1 1 2 9\n0\n", edge="1 1\n1 1 2 9\n", neigh="1 3\n1 -1 -1 -1\n")
+                          area="1\n1 0.5\n", poly="0 2 0 1\n1 1\n1 1 2 9\n0\n", edge="1 1\n1 1 2 9\n",
+                          neigh="1 3\n1 -1 -1 -1\n")
     assert data["triangles"].tolist() == [[0, 1, 2]] and data["triangle_attributes"].tolist() == [[5.5]]
     assert data["segments"].tolist() == [[0, 1]] and data["segment_markers"].tolist() == [[9]]
     assert data["edges"].tolist() == [[0, 1]] and data["neighbors"].tolist() == [[-1, -1, -1]]
     assert data["vertex_attributes"].tolist() == [[7], [8], [9]] and data["triangle_max_area"].tolist() == [[0.5]]
-    assert triangle.loads(node="3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n", ele="1 3 0\n0 0 1 2\n")["triangles"].tolist() == [[0, 1, 2]]
+    from_zero = triangle.loads(node="3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n", ele="1 3 0\n0 0 1 2\n")
+    assert from_zero["triangles"].tolist() == [[0, 1, 2]]
 
 
 def test_pictures():
