@@ -25,9 +25,11 @@ struct par_state {
     struct par_room spare;   /* unused ranges of the arrays */
     double radius;           /* largest circumradius in the pool when it was last filled */
     struct par_report *report;
+    int32_t n_schedules;     /* begun so far; the last is the one that works */
     int round;
     int32_t n_kept;          /* vertices there were before */
     bool may_number;         /* nothing is refined after this schedule */
+    struct par_partition cells; /* of the last schedule, for handing out what is in memory */
     bool sweeping;           /* columns are handed out, and go, as they are finished */
     bool numbered;           /* and nothing was */
 };

@@ -305,6 +305,7 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
 {
     enum tri_status status = TRI_OK;
     assert(par_cells(partition) >= 4);
+    state->n_schedules++;
     for (state->round = 0; !status && state->round < MAX_ROUNDS; state->round++) {
         state->column.n = 0; /* of other blocks than those to come */
         status = state->sweeping ? sweep_columns(state, partition, error) : run_phases(state, partition, error);
@@ -324,19 +325,22 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     struct par_report *report = state->report;
     enum tri_status status = TRI_OK;
     state->quality = quality;
-    if (top) {
+    if (top && !report->partition.x) {
         report->columns = partition->n_columns;
         report->rows = partition->n_rows;
-        par_partition_free(&report->partition);
         status = par_partition_copy(&report->partition, partition, error);
         report->radius_measured = state->radius * state->mesh->unit;
         report->prerefined = state->mesh->n_slots;
     }
     state->sweeping = top && state->may_number && state->options->sweep && state->options->take;
+    if (!status && top && state->options->take && !state->sweeping) {
+        par_partition_free(&state->cells);
+        status = par_partition_copy(&state->cells, partition, error);
+    }
     status = status ? status : run_rounds(state, partition, error);
     double last = par_seconds();
     if (top)
-        report->left_over = state->pool.n;
+        report->left_over += state->pool.n;
     if (state->sweeping)
         return status;
     if (!status && state->pool.n > 0) { /* in the order of the pool, which ids do not show in */
@@ -451,11 +455,11 @@ static bool must_be_sequential(const struct tri_refine_options *quality, const s
            quality->left || (quality->unsuitable && !options->size_test_in_parallel);
 }
 
-/* All tiles of a mesh that is in memory; of the first schedule's partition, or of one of few cells. */
+/* All tiles of a mesh that is in memory: those of the last schedule, or, without one, a few. */
 static enum tri_status hand_out(struct par_state *state, const struct tri_refine_options *quality,
                                 struct tri_error *error)
 {
-    struct par_partition *partition = &state->report->partition;
+    struct par_partition *partition = &state->cells;
     struct tri_executor executor = par_executor(&state->threads);
     struct par_tiles tiles = tiles_of(state, partition, &executor);
     struct par_room nothing = {0};
@@ -498,6 +502,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
         status = hand_out(&state, quality, error);
     free(state.pool.item);
     free(state.column.item);
+    par_partition_free(&state.cells);
     par_room_free(&state.spare);
     report->seconds_total = par_seconds() - began;
     return status;
