@@ -20,6 +20,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/sweep_order.c
     triangle/locate.c
     triangle/carve.c
+    triangle/chain.c
     triangle/reconstruct.c
     triangle/cavity.c
     triangle/interpolate.c

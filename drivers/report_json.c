@@ -60,8 +60,9 @@ static json_t *blocks_of(const struct par_report *r)
     json_t *blocks = json_array();
     for (int32_t i = 0; i < r->n_blocks; i++) {
         const struct par_block_report *b = &r->blocks[i];
-        json_t *block = json_pack("{s:i, s:i, s:i, s:o, s:o, s:o, s:o}", "round", (int)b->round, "phase", (int)b->phase,
-                                  "block", (int)b->block, "seeds", whole(b->seeds), "inserted", whole(b->inserted),
+        json_t *block = json_pack("{s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:o}", "schedule", (int)b->schedule,
+                                  "round", (int)b->round, "phase", (int)b->phase, "block", (int)b->block,
+                                  "seeds", whole(b->seeds), "inserted", whole(b->inserted),
                                   "deferred", whole(b->deferred), "seconds", real(b->seconds));
         if (json_array_append_new(blocks, block)) {
             json_decref(blocks);
