@@ -10,6 +10,8 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/radix.c
     triangle/hilbert.c
     triangle/spatial.c
+    triangle/insertion.c
+    triangle/curve_sort.c
     triangle/delaunay.c
     triangle/crossing.c
     triangle/recover.c
@@ -18,6 +20,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/sweep_order.c
     triangle/locate.c
     triangle/carve.c
+    triangle/chain.c
     triangle/reconstruct.c
     triangle/cavity.c
     triangle/interpolate.c
@@ -33,22 +36,38 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/numbering.c
     triangle/census.c
     triangle/stats.c
-    triangle/check.c
-    triangle/check_edges.c
-    triangle/check_overlap.c
-    triangle/check_delaunay.c
-    triangle/check_segments.c
-    triangle/check_chain.c
-    triangle/check_input.c
-    triangle/check_scale.c
-    triangle/check_quality.c
     triangle/generate.c
+    triangle/api/figure.c
+    triangle/api/mesh.c
+    triangle/api/arrays.c
     triangle/dropin/switches.c
     triangle/topology.c
+    triangle/grid.c
     triangle/dropin/input.c
     triangle/dropin/output.c
     triangle/dropin/run.c
     triangle/dropin/triangulate.c)
+
+# Room triangle/check/, the judge of meshes, and its public door. Of the mesher it knows the predicates alone.
+set(PTRIANGLE_CHECK_SOURCES
+    triangle/check/check.c
+    triangle/check/scale.c
+    triangle/check/triangles.c
+    triangle/check/edges.c
+    triangle/check/stars.c
+    triangle/check/order.c
+    triangle/check/overlap.c
+    triangle/check/hull.c
+    triangle/check/delaunay.c
+    triangle/check/segments.c
+    triangle/check/line.c
+    triangle/check/chain.c
+    triangle/check/border.c
+    triangle/check/vertex_markers.c
+    triangle/check/input.c
+    triangle/check/apex.c
+    triangle/check/quality.c
+    triangle/api/judge.c)
 
 # Room triangle/, text files. The one C++ file wraps std::from_chars and std::to_chars.
 set(PTRIANGLE_TEXT_SOURCES
@@ -56,7 +75,19 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/text.c
     triangle/text/read.c
     triangle/text/output.c
-    triangle/text/write.c)
+    triangle/text/write.c
+    triangle/text/layouts.c
+    triangle/text/grouping.c
+    triangle/text/boundary.c
+    triangle/text/vtu.c
+    triangle/text/gmsh.c
+    triangle/text/hydro.c
+    triangle/text/formats.c
+    triangle/api/files.c)
+
+# What these two need of the mesher: all that their shared libraries have of it.
+set(PTRIANGLE_TEXT_NEEDS triangle/status.c triangle/pslg.c triangle/api/figure.c)
+set(PTRIANGLE_CHECK_NEEDS ${PTRIANGLE_TEXT_NEEDS} triangle/predicates.c)
 
 # Room sched/, the parallel schedule: with drivers/ptriangle.c, which asks for the number of threads, the only sources
 # compiled with OpenMP.
@@ -64,38 +95,27 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/theory.c
     sched/threads.c
     sched/partition.c
-    sched/room.c
+    sched/room.c sched/sweep/tiles.c
     sched/pool.c
     sched/phase.c
     sched/schedule.c
-    sched/triangulate.c)
+    sched/triangulate.c
+    sched/mesh.c)
 
-# Headers that are installed, below include/ptriangle/ at the same path.
+# Headers that are installed, below include/ptriangle/, beside triangle.h, which lies where Triangle's clients look for it.
 set(PTRIANGLE_PUBLIC_HEADERS
-    triangle/generate.h
-    triangle/status.h
-    triangle/stop.h
-    triangle/pslg.h
-    triangle/mesh.h
-    triangle/spatial.h
-    triangle/carve.h
-    triangle/reconstruct.h
-    triangle/constrain.h
-    triangle/cavity.h
-    triangle/refine.h
-    triangle/numbering.h
-    triangle/check.h
-    triangle/executor.h
-    triangle/text/read.h
-    triangle/text/output.h
-    triangle/text/write.h
-    sched/schedule.h
-    sched/partition.h)
+    include/ptriangle/tri.h
+    include/ptriangle/par.h
+    include/ptriangle/files.h
+    include/ptriangle/check.h)
 
 # Room drivers/: what the executables share, then the executables, each from drivers/<name>.c. The second list of programs
 # needs the room sched/ and its library.
 set(PTRIANGLE_DRIVER_SOURCES)
-set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle trianglecheck)
+set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle)
+set(PTRIANGLE_JUDGE_SOURCES
+    drivers/judged_files.c
+    drivers/verdict.c)
 set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed
 set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
 

@@ -1,16 +1,17 @@
-/* Texts of help. Kept in paragraphs, since a compiler need not take strings of any length. */
+/* Texts of help, in the form that cmake/help.awk makes manual pages of. Kept in paragraphs, since a compiler need not
+ * take strings of any length. */
 #include "drivers/help.h"
 
 #include <stdio.h>
 
 static const char *const paragraphs[] = {
-    "Makes triangle meshes of plane figures: Delaunay triangulations of points, constrained Delaunay\n"
-    "triangulations of points and segments, and meshes whose angles and areas keep bounds.\n"
     "Switches may be joined (-pq30a0.5e) and may stand before or behind the file.\n",
 
     "Input\n"
-    "  file.node   points              file.poly   points, segments, holes, regions (sets -p)\n"
-    "  file.ele    triangles (sets -r) file.area   area bound of each triangle (sets -r and -a)\n"
+    "  file.node  points\n"
+    "  file.poly  points, segments, holes, regions (sets -p)\n"
+    "  file.ele   triangles (sets -r)\n"
+    "  file.area  area bound of each triangle (sets -r and -a)\n"
     "Output goes to file.1.node, file.1.ele and so on; the next run of file.1 writes file.2.\n",
 
     "What to make\n"
@@ -32,8 +33,10 @@ static const char *const paragraphs[] = {
     "  -S100   at most 100 new vertices (segments that cross get theirs beyond that)\n",
 
     "Output\n"
-    "  -e -n   also edges (.edge); neighbours of triangles (.neigh)\n"
-    "  -v -g   also the Voronoi diagram (.v.node, .v.edge); an Object File Format file (.off)\n"
+    "  -e      also edges (.edge)\n"
+    "  -n      also neighbours of triangles (.neigh)\n"
+    "  -v      also the Voronoi diagram (.v.node, .v.edge)\n"
+    "  -g      also an Object File Format file (.off)\n"
     "  -o2     six nodes a triangle: the corners and the middles of the edges\n"
     "  -z      count from 0 where the input file does not say\n"
     "  -j      leave out vertices that no triangle uses\n"
@@ -42,15 +45,19 @@ static const char *const paragraphs[] = {
     "  -I      no iteration number: results are called like the input, which is never overwritten\n",
 
     "Other\n"
-    "  -Q -V   print nothing but errors; print more\n"
+    "  -Q      print nothing but errors\n"
+    "  -V      print more; -VV: still more\n"
     "  -C      check the mesh, and say what came of it\n"
-    "  -h      this help, as --help; --version\n"
+    "  -h, --help  this help\n"
+    "  --version   name and version\n"
     "  -i -F -l -X -w   accepted; the result does not depend on them\n",
+};
 
+static const char exit_codes[] =
     "Exit code: 0; 1 after an error; 128 + n after signal n (one that would end a program: it ends within\n"
     "a second and says how far it got). Files appear together, when all are complete and nothing can fail\n"
-    "any more: with any other code than 0 no file has been touched.\n",
-};
+    "any more: with any other code than 0 no file has been touched.\n";
+
 
 static void print_usage(const char *program)
 {
@@ -66,11 +73,14 @@ void help_usage(const char *program)
          "  -Q  quiet   -V  verbose                -h  all switches");
 }
 
-void help_full(const char *program)
+void help_full(const char *program, const char *where, const char *further)
 {
     print_usage(program);
-    for (size_t i = 0; i < sizeof paragraphs / sizeof *paragraphs; i++) {
-        putchar('\n');
-        fputs(paragraphs[i], stdout);
-    }
+    printf("\nMakes triangle meshes of plane figures %s: Delaunay triangulations of points, constrained\n"
+           "Delaunay triangulations of points and segments, and meshes whose angles and areas keep bounds.\n", where);
+    for (size_t i = 0; i < sizeof paragraphs / sizeof *paragraphs; i++)
+        printf("\n%s", paragraphs[i]);
+    if (further)
+        printf("\n%s", further);
+    printf("\n%s", exit_codes);
 }

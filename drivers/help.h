@@ -3,6 +3,7 @@
 #define DRIVERS_HELP_H
 
 void help_usage(const char *program);
-void help_full(const char *program);
+/* where it works: "on one core"; further: a paragraph about more options, or NULL. */
+void help_full(const char *program, const char *where, const char *further);
 
 #endif

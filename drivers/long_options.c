@@ -1,29 +1,37 @@
 /* One table of names; a value is read by the option that asks for it. */
 #include "drivers/long_options.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "triangle/text/decimal.h"
+#include "triangle/text/formats.h"
 
 const char long_options_help[] =
     "Long options (--name VALUE or --name=VALUE; numbers may have exponents)\n"
-    "  --threads N        threads to work with. Default: OMP_NUM_THREADS, else all cores. The mesh is the\n"
-    "                     same for any number\n"
+    "  --threads N        threads to work with. Default: OMP_NUM_THREADS, else SLURM_CPUS_PER_TASK, else\n"
+    "                     all cores. The mesh is the same for any number\n"
     "  --max-area X       as -aX: no triangle larger than X\n"
     "  --min-angle X      as -qX: no angle below X degrees\n"
     "  --output BASE      results are called BASE.node, BASE.ele, BASE.poly and so on\n"
-    "  --report FILE      seconds, blocks, memory and mesh statistics, as JSON\n"
+    "  --output FILE.vtu | FILE.msh | FILE.2dm | FILE.14 | FILE.grd\n"
+    "                     the mesh for VTK and ParaView, Gmsh, SMS or ADCIRC, in place of BASE.node and so on, or\n"
+    "                     beside them if --output BASE is given, too; up to 4 such files\n"
+    "  --report FILE      seconds, blocks, memory and mesh statistics, as JSON; -: on standard output, where\n"
+    "                     with -Q nothing else is printed\n"
     "  --blocks FILE      block and phase of each triangle, a line each, for meshplot --blocks\n"
-    "  --numbering curve  new vertices and triangles are numbered along a space-filling curve, which makes\n"
-    "                     solvers faster (the default); or, quicker,\n"
-    "  --numbering blocks as the blocks of the schedule made them\n"
+    "  --numbering curve|blocks\n"
+    "                     curve: new vertices and triangles are numbered along a space-filling curve, which\n"
+    "                     makes solvers faster (the default); blocks, quicker: as the blocks of the schedule\n"
+    "                     made them\n"
     "  --dry-run          estimate triangles, memory, disk and time; refine and write nothing\n"
     "  --time-limit T     stop after T seconds (also 90s, 10m, 2h), with exit code 124\n"
     "  --write-partial    a run that is stopped while it refines, by the limit or a signal, writes the valid\n"
     "                     mesh that it has, whatever time that takes; else it writes nothing\n"
     "  --progress         say on standard error how far the work is: one line on a terminal (there by\n"
-    "  --no-progress      default), else a line for each stage. Never with -Q\n"
-    "  --version, --help\n";
+    "                     default), else a line for each stage. Never with -Q\n"
+    "  --no-progress      say nothing of that\n"
+    "  --version, --help  name and version; this help\n";
 
 enum id {
     THREADS, MAX_AREA, MIN_ANGLE, OUTPUT, REPORT, BLOCKS, NUMBERING, DRY_RUN, TIME_LIMIT, WRITE_PARTIAL, PROGRESS,
@@ -57,15 +65,31 @@ static bool is_real(const char *text, double *value)
     return end > text && tri_scan_real(text, end, value) == end;
 }
 
-static enum tri_status take_threads(struct long_options *options, const char *value, struct tri_error *error)
+/* The whole text is a number of threads; 0: it is not. */
+static int number_of_threads(const char *text)
 {
     int64_t threads;
-    const char *end = value + strlen(value);
-    if (end == value || tri_scan_integer(value, end, &threads) != end || threads < 1 ||
-        threads > LONG_OPTIONS_MAX_THREADS)
+    const char *end = text + strlen(text);
+    if (end == text || tri_scan_integer(text, end, &threads) != end || threads < 1)
+        return 0;
+    return threads <= LONG_OPTIONS_MAX_THREADS ? (int)threads : 0;
+}
+
+int long_options_threads(const struct long_options *options)
+{
+    const char *openmp = getenv("OMP_NUM_THREADS"), *slurm = getenv("SLURM_CPUS_PER_TASK");
+    if (options->threads || !slurm || (openmp && *openmp))
+        return options->threads;
+    return number_of_threads(slurm);
+}
+
+static enum tri_status take_threads(struct long_options *options, const char *value, struct tri_error *error)
+{
+    int threads = number_of_threads(value);
+    if (!threads)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--threads: \"%.40s\" is not a whole number from 1 to %d", value,
                         LONG_OPTIONS_MAX_THREADS);
-    options->threads = (int)threads;
+    options->threads = threads;
     return TRI_OK;
 }
 
@@ -126,6 +150,18 @@ static enum tri_status take_name(const char **name, const struct kind *kind, con
     return TRI_OK;
 }
 
+static enum tri_status take_output(struct long_options *options, const struct kind *kind, const char *value,
+                                   struct tri_error *error)
+{
+    if (!tri_format_of(value))
+        return take_name(&options->output, kind, value, error);
+    if (options->n_exports == LONG_OPTIONS_MOST_EXPORTS)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--output: no more than %d files of other formats",
+                        LONG_OPTIONS_MOST_EXPORTS);
+    options->exports[options->n_exports++] = value;
+    return TRI_OK;
+}
+
 static enum tri_status apply(struct long_options *options, struct tri_switches *switches, const struct kind *kind,
                              const char *value, struct tri_error *error)
 {
@@ -133,7 +169,7 @@ static enum tri_status apply(struct long_options *options, struct tri_switches *
     case THREADS: return take_threads(options, value, error);
     case MAX_AREA: return take_area(switches, value, error);
     case MIN_ANGLE: return take_angle(switches, value, error);
-    case OUTPUT: return take_name(&options->output, kind, value, error);
+    case OUTPUT: return take_output(options, kind, value, error);
     case REPORT: return take_name(&options->report, kind, value, error);
     case BLOCKS: return take_name(&options->blocks, kind, value, error);
     case NUMBERING: return take_numbering(options, value, error);

@@ -10,11 +10,15 @@
 
 enum { LONG_OPTIONS_MAX_THREADS = 1024 }; /* more is a slip of the finger, and the system may refuse them */
 
+enum { LONG_OPTIONS_MOST_EXPORTS = 4 };
+
 enum long_options_progress { PROGRESS_DEFAULT, PROGRESS_YES, PROGRESS_NO };
 
 struct long_options {
     int threads;        /* 0: not given */
     const char *output; /* BASE of --output; NULL: not given. Words are borrowed from argv */
+    int n_exports;      /* files in other programs' formats */
+    const char *exports[LONG_OPTIONS_MOST_EXPORTS]; /* [n_exports] FILE of --output, whose suffix names a format */
     const char *report; /* file; NULL: none */
     const char *blocks; /* file; NULL: none */
     enum long_options_progress progress;
@@ -30,6 +34,10 @@ struct long_options {
  * too many, too few or out of range. */
 enum tri_status long_options_take(struct long_options *options, struct tri_switches *switches, int argc,
                                   char *const *argv, int *at, struct tri_error *error);
+
+/* Threads to work with: those of --threads, else of OMP_NUM_THREADS, else of SLURM_CPUS_PER_TASK, which a batch system
+ * sets; 0: OpenMP decides, as it does where OMP_NUM_THREADS is set. */
+int long_options_threads(const struct long_options *options);
 
 /* A paragraph about them, for the help. */
 extern const char long_options_help[];

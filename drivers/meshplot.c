@@ -20,25 +20,27 @@
 
 enum { TROUBLE = 1, MISUSE = 2 };
 
-static const char usage[] = "Usage: meshplot BASE -o FILE.png|FILE.svg [options]\n";
+static const char usage[] = "Usage: " PTRIANGLE_NAME " BASE -o FILE.png|FILE.svg [options]\n";
 
-static const char help[] =
+static const char help[] = /* in the form that cmake/help.awk makes a manual page of */
+    "\n"
     "Draws the mesh in BASE.node and BASE.ele, with the segments of BASE.poly where that exists. Without BASE.ele:\n"
     "the points and segments alone.\n"
     "\n"
     "  -o, --output FILE        FILE.png or FILE.svg\n"
-    "  -c, --color WHAT         quality (default): the smallest angle of each triangle; area; region: the first\n"
-    "                           attribute in BASE.ele; block: see --blocks; none\n"
+    "  -c, --color quality|area|region|block|none\n"
+    "                           quality (default): the smallest angle of each triangle; region: the first\n"
+    "                           attribute in BASE.ele; block: see --blocks\n"
     "  -s, --size WIDTH         of the picture in pixels, 64 to 12000 (default 1200)\n"
-    "  -w, --window X0,Y0,X1,Y1 the part to show (default: all)\n"
-    "  -m, --mark X0,Y0,X1,Y1   a red frame around a part\n"
-    "  -e, --edges WHICH        auto (default): short ones fade; on; off\n"
+    "  -w, --window X0,Y0,X1,Y1  the part to show (default: all)\n"
+    "  -m, --mark X0,Y0,X1,Y1  a red frame around a part\n"
+    "  -e, --edges auto|on|off  auto (default): short ones fade\n"
     "      --segments on|off    (default on)\n"
     "      --legend on|off      (default on)\n"
-    "  -t, --title TEXT\n"
+    "  -t, --title TEXT         a line above the picture\n"
     "  -b, --blocks FILE        one line `block phase` for each triangle, in the order of BASE.ele; a phase\n"
     "                           below 0: in no block\n"
-    "      --version, --help\n"
+    "      --version, --help    name and version; this help\n"
     "\n"
     "Exit code: 0 drawn, 1 files that cannot be read or written, 2 wrong usage.\n";
 
@@ -61,7 +63,7 @@ static int fail(int code, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    fputs("meshplot: ", stderr);
+    fputs(PTRIANGLE_NAME ": ", stderr);
     vfprintf(stderr, format, arguments);
     fputc('\n', stderr);
     va_end(arguments);
@@ -425,7 +427,8 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     int option;
     while ((option = getopt_long(argc, argv, "o:c:s:w:m:e:t:b:", long_options, NULL)) != -1) {
         if (option == HELP || option == VERSION) {
-            printf("%s%s", option == HELP ? usage : "meshplot " PTRIANGLE_VERSION "\n", option == HELP ? help : "");
+            fputs(option == HELP ? usage : PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", stdout);
+            fputs(option == HELP ? help : "", stdout);
             return -1;
         }
         if (option == '?') {

@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "drivers/console.h"
 #include "drivers/estimate.h"
@@ -124,6 +126,19 @@ static enum tri_status read_mesh(struct runner *r, const struct names *names, co
     return tri_read_area(names->area, options, &run->elements, r->error);
 }
 
+/* Who names a file of another kind gets a word on what is read. */
+static void add_hint(const struct runner *r)
+{
+    const char *file = r->run.arguments->file;
+    struct tri_error *error = r->error;
+    bool is_another = error->status == TRI_CANNOT_READ && access(file, F_OK) == 0 && strcmp(file, error->file) != 0;
+    bool is_no_text = error->status == TRI_BAD_INPUT && strstr(error->text, "not a text file");
+    size_t n = strlen(error->text);
+    if (is_another || is_no_text)
+        snprintf(error->text + n, sizeof error->text - n, " (what is read are Triangle's .node, .poly, .ele and .area"
+                 " files)");
+}
+
 static enum tri_status read_input(struct runner *r)
 {
     const struct tri_switches *s = &r->run.arguments->switches;
@@ -139,6 +154,8 @@ static enum tri_status read_input(struct runner *r)
     if (!status && s->mesh)
         status = read_mesh(r, &r->names, &options);
     console_series_end(&r->console, &r->input_warnings, "of this kind");
+    if (status)
+        add_hint(r);
     end_stage(r, RUN_READ);
     return status;
 }
@@ -156,6 +173,29 @@ static void say_carving(const struct runner *r)
     if (r->run.options.spread_regions && pslg->n_regions > 0)
         console_say(&r->console, "Spreading %s%s%s of regions.\n", s->regions ? "attributes" : "",
                     s->regions && s->area_lists ? " and " : "", s->area_lists ? "area bounds" : "");
+}
+
+static void count_loose(struct runner *r)
+{
+    struct run *run = &r->run;
+    for (int32_t k = 0; run->arguments->switches.segments && k < run->pslg.n_segments; k++)
+        run->n_loose += !run->is_edge[k];
+    if (run->n_loose > 0)
+        console_warn(&r->console, "%ld segments are no edges of the mesh. They are copied, but not kept by the mesh.\n",
+                     (long)run->n_loose);
+}
+
+/* There is a mesh. */
+static void say_built(struct runner *r)
+{
+    const struct tri_switches *s = &r->run.arguments->switches;
+    end_stage(r, s->mesh ? RUN_DELAUNAY : RUN_HOLES);
+    if (s->mesh) {
+        say_milliseconds(r, "Mesh reconstruction", r->run.seconds[RUN_DELAUNAY]);
+        count_loose(r);
+    } else if (s->segments) {
+        say_milliseconds(r, "Hole", r->run.seconds[RUN_HOLES]);
+    }
 }
 
 /* Called when a stage begins: the lines that end the one before, then those of the new one. */
@@ -182,73 +222,17 @@ static void follow_stage(void *user, enum tri_stage begins)
             say_milliseconds(r, "Segment", r->run.seconds[RUN_SEGMENTS]);
         say_carving(r);
         break;
-    default:
+    case TRI_STAGE_REBUILD:
+        interrupt_stage("rebuilding the mesh");
+        console_say(&r->console, "Rebuilding the mesh from its triangles.\n");
+        break;
+    case TRI_STAGE_QUALITY:
+        say_built(r);
+        r->built = true;
+        break;
+    case TRI_STAGE_DONE:
         break;
     }
-}
-
-static enum tri_status triangulate(struct runner *r)
-{
-    struct run *run = &r->run;
-    if (run->pslg.n_points >= 3 && tri_pslg_is_one_place(&run->pslg)) /* fewer: tri_generate says so */
-        return tri_fail(r->error, TRI_BAD_INPUT, run->arguments->file, 0, "all vertices are at the same place");
-    struct tri_options options = run->options;
-    options.refine = false; /* is a stage of its own here */
-    options.stage = follow_stage;
-    options.stage_user = r;
-    options.leave_sorted = run->options.refine; /* which restores the order */
-    options.executor = run->hooks->executor;
-    options.stop = interrupt_stop();
-    enum tri_status status = tri_generate(&run->mesh, &run->pslg, &options, &run->report, r->error);
-    end_stage(r, RUN_HOLES);
-    if (status)
-        return status;
-    if (run->arguments->switches.segments)
-        say_milliseconds(r, "Hole", run->seconds[RUN_HOLES]);
-    return TRI_OK;
-}
-
-static void count_loose(struct runner *r)
-{
-    struct run *run = &r->run;
-    for (int32_t k = 0; run->arguments->switches.segments && k < run->pslg.n_segments; k++)
-        run->n_loose += !run->is_edge[k];
-    if (run->n_loose > 0)
-        console_warn(&r->console, "%ld segments are no edges of the mesh. They are copied, but not kept by the mesh.\n",
-                     (long)run->n_loose);
-}
-
-/* The mesh of -r. */
-static enum tri_status reconstruct(struct runner *r)
-{
-    struct run *run = &r->run;
-    run->is_edge = malloc(((size_t)run->pslg.n_segments + 1) * sizeof *run->is_edge);
-    if (!run->is_edge)
-        return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)run->pslg.n_segments);
-    struct tri_reconstruct_options options = {.use_segments = run->arguments->switches.segments,
-                                              .refine = run->options.refine, .base = run->base,
-                                              .stop = interrupt_stop(),
-                                              .is_edge = run->is_edge};
-    interrupt_stage("rebuilding the mesh");
-    console_say(&r->console, "Rebuilding the mesh from its triangles.\n");
-    enum tri_status status = tri_reconstruct(&run->mesh, &run->pslg, &run->elements, &options, r->error);
-    end_stage(r, RUN_DELAUNAY);
-    if (status == TRI_BAD_INPUT)
-        snprintf(r->error->file, sizeof r->error->file, "%s.ele", run->arguments->input);
-    if (status)
-        return status;
-    say_milliseconds(r, "Mesh reconstruction", run->seconds[RUN_DELAUNAY]);
-    run->options.quality.region_areas = run->elements.areas != NULL;
-    count_loose(r);
-    return TRI_OK;
-}
-
-/* The input as a mesh that keeps no bounds yet. */
-static enum tri_status build(struct runner *r)
-{
-    enum tri_status status = r->run.arguments->switches.mesh ? reconstruct(r) : triangulate(r);
-    r->built = !status;
-    return status;
 }
 
 /* A stop that nobody has noticed counts as one up to here. */
@@ -257,18 +241,60 @@ static enum tri_status notice_stop(struct runner *r, enum tri_status status)
     return !status && tri_stop_is_asked(interrupt_stop()) ? tri_fail_stopped(r->error) : status;
 }
 
-static enum tri_status refine(struct runner *r)
+/* Refuses what cannot be before it costs time. */
+static enum tri_status look_ahead(struct runner *r)
 {
-    struct run *run = &r->run;
-    const struct tri_refine_options *quality = &run->options.quality;
-    struct tri_refine_report *report = &run->report.quality;
-    if (!run->options.refine)
-        return notice_stop(r, TRI_OK);
+    struct estimate estimate = estimate_make(&r->run, false);
+    return estimate_check(&estimate, &r->console, r->error);
+}
+
+/* For a dry run. */
+static enum tri_status leave(void *user, struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                             struct tri_refine_report *report, struct tri_error *error)
+{
+    (void)user, (void)mesh, (void)quality, (void)report, (void)error;
+    return TRI_OK;
+}
+
+static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                              struct tri_refine_report *report, struct tri_error *error)
+{
+    struct runner *r = user;
+    const struct run_hooks *hooks = r->run.hooks;
+    enum tri_status status = look_ahead(r);
+    if (status)
+        return status;
     console_say(&r->console, "Adding vertices until the bounds are kept.\n");
     interrupt_stage("refining");
-    enum tri_status status = run->hooks->refine
-                                 ? run->hooks->refine(run->hooks->user, &run->mesh, quality, report, r->error)
-                                 : tri_refine(&run->mesh, quality, report, r->error);
+    status = hooks->refine ? hooks->refine(hooks->user, mesh, quality, report, error)
+                           : tri_refine(mesh, quality, report, error);
+    return notice_stop(r, status);
+}
+
+/* The mesh, refined or, for an estimate, as it is before. */
+static enum tri_status generate(struct runner *r, bool refined)
+{
+    struct run *run = &r->run;
+    const struct tri_switches *s = &run->arguments->switches;
+    struct tri_options options = run->options;
+    if (!s->mesh && tri_pslg_is_one_place(&run->pslg))
+        return tri_fail(r->error, TRI_BAD_INPUT, run->arguments->file, 0, "all vertices are at the same place");
+    run->is_edge = s->mesh ? malloc(((size_t)run->pslg.n_segments + 1) * sizeof *run->is_edge) : NULL;
+    if (s->mesh && !run->is_edge)
+        return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)run->pslg.n_segments);
+    options.refine_call = refined ? refine : leave;
+    options.refine_user = options.stage_user = r;
+    options.stage = follow_stage;
+    options.executor = run->hooks->executor;
+    options.stop = interrupt_stop();
+    options.elements = s->mesh ? &run->elements : NULL;
+    options.is_edge = run->is_edge;
+    options.base = run->base;
+    enum tri_status status = tri_generate(&run->mesh, &run->pslg, &options, &run->report, r->error);
+    if (status == TRI_BAD_INPUT && s->mesh)
+        snprintf(r->error->file, sizeof r->error->file, "%s.ele", run->arguments->input);
+    else if (status == TRI_BAD_INPUT)
+        snprintf(r->error->file, sizeof r->error->file, "%s", run->arguments->file);
     return notice_stop(r, status);
 }
 
@@ -415,22 +441,10 @@ static enum tri_status check_files(const struct runner *r, const struct mesh_fil
     return mesh_files_check(files, &run->hooks->further, &read, r->error);
 }
 
-/* Refuses what cannot be before it costs time. */
-static enum tri_status look_ahead(struct runner *r)
-{
-    struct estimate estimate = estimate_make(&r->run, false);
-    return r->run.options.refine ? estimate_check(&estimate, &r->console, r->error) : TRI_OK;
-}
-
 static enum tri_status make_mesh(struct runner *r)
 {
     struct run *run = &r->run;
-    enum tri_status status = build(r);
-    status = status ? status : look_ahead(r);
-    status = status ? status : refine(r);
-    status = keep_partial(r, status);
-    if (!status && run->options.refine)
-        status = tri_restore_points(&run->mesh, run->hooks->executor, r->error);
+    enum tri_status status = keep_partial(r, generate(r, true));
     end_stage(r, RUN_QUALITY);
     if (status)
         return status;
@@ -443,7 +457,7 @@ static enum tri_status make_mesh(struct runner *r)
 /* A dry run ends here, and says where the true one would be refused. */
 static enum tri_status print_estimate(struct runner *r)
 {
-    enum tri_status status = build(r);
+    enum tri_status status = generate(r, false);
     if (status)
         return status;
     struct estimate estimate = estimate_make(&r->run, true);
@@ -459,8 +473,11 @@ static enum tri_status run_stages(struct runner *r)
     status = status ? status : read_input(r);
     if (status)
         return status;
-    struct mesh_files files = {run->arguments, &r->console, run->hooks->executor, &run->mesh, &run->pslg,
-                               run->points_in_poly, run->base, &run->elements, NULL};
+    struct mesh_files files = {.arguments = run->arguments, .console = &r->console,
+                               .executor = run->hooks->executor, .mesh = &run->mesh, .pslg = &run->pslg,
+                               .points_in_poly = run->points_in_poly, .base = run->base,
+                               .elements = &run->elements, .exports = &run->hooks->exports,
+                               .exports_alone = run->hooks->exports_alone};
     if (run->hooks->limits.dry_run)
         return print_estimate(r);
     status = check_files(r, &files);
@@ -500,7 +517,7 @@ int run_arguments(const struct arguments *arguments, const struct run_hooks *hoo
                        .console = {hooks->program, s->quiet, s->verbosity}, .error = &error};
     enum tri_status status = TRI_OK;
     if (s->help)
-        help_full(hooks->program);
+        help_full(hooks->program, "on one core", NULL); /* another program has taken this word itself */
     else if (!arguments->file)
         help_usage(hooks->program);
     else

@@ -4,7 +4,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
-#include "triangle/check.h"
+#include "triangle/check/check.h"
 #include "triangle/generate.h"
 
 struct arrays {

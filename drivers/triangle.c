@@ -8,7 +8,7 @@
 #include "drivers/help.h"
 #include "drivers/run.h"
 
-static const char PROGRAM[] = "triangle";
+static const char PROGRAM[] = PTRIANGLE_NAME;
 
 /* Triangle has no long options, and would take the letters of --min-angle for switches, which nobody means. */
 static bool is_long(const char *word) { return strncmp(word, "--", 2) == 0 && isalpha((unsigned char)word[2]); }
@@ -22,7 +22,7 @@ static int take_long(const char *word)
     if (strcmp(word, "--version") == 0) {
         printf("%s %s\n", PROGRAM, PTRIANGLE_VERSION);
     } else if (strcmp(word, "--help") == 0) {
-        help_full(PROGRAM);
+        help_full(PROGRAM, "on one core", NULL);
     } else {
         tri_fail(&error, TRI_BAD_INPUT, NULL, 0, "%.60s: no such option; it is ptriangle that has long ones", word);
         console_error(&console, &error);

@@ -28,6 +28,7 @@ struct estimator {
     const struct tri_mesh *mesh;
     const struct tri_refine_options *options;
     double large; /* a size test is probed in pieces no larger than this */
+    struct tri_criterion criterion;
 };
 
 struct sample {
@@ -43,8 +44,7 @@ struct samples {
 /* Triangles that the bounds ask for on one unit of area in this region; 0 without bound. */
 static double density(const struct estimator *e, int32_t region)
 {
-    const struct tri_criterion criterion = {.mesh = e->mesh, .options = e->options};
-    return 2 / (MEAN_OVER_BOUND * tri_area2_bound(&criterion, region));
+    return 2 / (MEAN_OVER_BOUND * tri_area2_bound(&e->criterion, region));
 }
 
 /* Triangles that the caller's size test asks for in this one, by probing: it is asked about the triangle shrunk to a
@@ -126,7 +126,8 @@ static double rough_log2(double x)
 
 /* Triangles that an angle bound makes of one. Sizes grow by a factor from row to row, so that an octave between the
  * shortest edge and the longest takes a number of triangles that the bound alone decides; a narrow space between
- * segments takes as many as it is times longer than wide, and the triangle bridges as much of it as it is long.
+ * segments takes as many as it is times longer than wide, and the triangle bridges as much of it as it is long. A
+ * hopeless triangle stays one.
  * Fitted to 14 coasts, parts and point sets at 20 to 34 degrees: 0.8 to 1.25 times what comes out, with few
  * exceptions (docs/performance.md). */
 static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
@@ -135,7 +136,9 @@ static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_op
     double longest2 = fmax(shape.l[0], fmax(shape.l[1], shape.l[2]));
     double octaves = 0.5 * rough_log2(longest2 / shape.l[shape.shortest]);
     double channel = tri_channel_cost(mesh, t, &shape), angle = fmin(options->min_angle, TRI_USUAL_ANGLE);
-    channel = channel <= mesh->dearest_channel ? fmin(channel, sqrt(longest2 / shape.l[shape.shortest])) : 0;
+    if (tri_is_hopeless(mesh, t, &shape))
+        return 1;
+    channel = fmin(channel, sqrt(longest2 / shape.l[shape.shortest]));
     double work = angle > 0 ? 17 / (40 - angle) * (octaves + 2 * channel) : 0;
     return work < 1 ? 1 : work < TRI_MAX_TRIANGLES ? work : TRI_MAX_TRIANGLES;
 }
@@ -145,7 +148,7 @@ static const double BAD = 1.25;
 
 double par_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
 {
-    const struct estimator here = {mesh, options, HUGE_VAL};
+    const struct estimator here = {mesh, options, HUGE_VAL, tri_criterion_of_areas(mesh, options)};
     return tri_is_live(&mesh->tri[t]) ? area_work(&here, t) + BAD * angle_work(mesh, options, t) : 0;
 }
 
@@ -155,7 +158,7 @@ static int32_t survey_step(const struct tri_mesh *mesh) { return mesh->n_slots /
 static struct estimator estimator_for(const struct tri_mesh *mesh, const struct tri_refine_options *options)
 {
     enum { PIECES = 1 << 14 }; /* of the whole mesh */
-    struct estimator e = {mesh, options, HUGE_VAL};
+    struct estimator e = {mesh, options, HUGE_VAL, tri_criterion_of_areas(mesh, options)};
     double all = 0;
     for (int32_t t = 0; options->unsuitable && t < mesh->n_slots; t++)
         if (tri_is_live(&mesh->tri[t])) {
@@ -167,18 +170,24 @@ static struct estimator estimator_for(const struct tri_mesh *mesh, const struct 
     return e;
 }
 
-/* As the bounds ask for, be it more than any mesh can hold. */
-static double whole_work(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+double par_sure_work(const struct tri_mesh *mesh, const struct tri_refine_options *options)
 {
     const struct estimator e = estimator_for(mesh, options);
-    int32_t step = survey_step(mesh);
-    double sum = 0;
-    for (int32_t t = 0; t < mesh->n_slots; t += step)
-        if (tri_is_live(&mesh->tri[t]))
-            sum += step * angle_work(mesh, options, t);
+    double sum = mesh->n_slots;
     for (int32_t t = 0; tri_has_sizes(options) && t < mesh->n_slots; t++)
         if (tri_is_live(&mesh->tri[t]))
             sum += area_work(&e, t);
+    return sum;
+}
+
+/* As the bounds ask for, be it more than any mesh can hold. */
+static double whole_work(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+{
+    int32_t step = survey_step(mesh);
+    double sum = par_sure_work(mesh, options) - mesh->n_slots;
+    for (int32_t t = 0; t < mesh->n_slots; t += step)
+        if (tri_is_live(&mesh->tri[t]))
+            sum += step * angle_work(mesh, options, t);
     return sum;
 }
 
@@ -480,8 +489,8 @@ static int32_t block_over(int32_t cell, int parity) { return cell % 2 == parity 
 int32_t par_block_at(const struct par_partition *p, int colour, struct tri_point q)
 {
     assert(colour >= 0 && colour < PAR_COLOURS);
-    int32_t column = block_over(cell_at(p->x, p->n_columns, q.x), 1 - (colour & 1));
-    int32_t row = block_over(cell_at(rows_of(p, column), p->n_rows, q.y), 1 - (colour >> 1));
+    int32_t column = block_over(cell_at(p->x, p->n_columns, q.x), 1 - (colour >> 1));
+    int32_t row = block_over(cell_at(rows_of(p, column), p->n_rows, q.y), 1 - (colour & 1));
     return column * p->n_rows + row;
 }
 

@@ -20,6 +20,9 @@
  * pre-refinement to take a few thousandths of the time. (docs/performance.md) */
 static const double CELLS = 128, SMALLEST_CELL = 8192, LARGEST_CELL = 131072, COARSE_PER_CELL = 64;
 
+/* Of the fewest triangles that are worth a schedule, a share that one call makes at once to see whether they come. */
+static const double A_LITTLE = 0.25;
+
 enum { FEWEST_CELLS = 8, FEWEST_COARSE_CELLS = 32, FEWEST_TO_COARSEN = 16, MAX_ROUNDS = 24 };
 
 struct par_options par_defaults(void) { return (struct par_options){0}; }
@@ -61,8 +64,8 @@ static void tell(const struct par_state *state, int phase)
                                  state->mesh->n_slots);
 }
 
-/* The size test of a graded pre-refinement: no edge longer than a share of the cell it lies in. In the mesh's units,
- * where squares neither overflow nor underflow. */
+/* Which bad triangles a graded pre-refinement takes: those with an edge longer than a share of the cell it lies in. In
+ * the mesh's units, where squares neither overflow nor underflow. */
 struct coarse_test {
     const struct par_partition *partition;
     double share2; /* square of it */
@@ -142,21 +145,23 @@ static enum tri_status fill_pool(struct par_state *state, const struct tri_refin
                                  struct tri_error *error)
 {
     struct tri_executor executor = par_executor(&state->threads);
+    state->column.n = 0;
     return par_pool_fill(&state->pool, state->mesh, quality, known, &executor, &state->radius, error);
 }
 
-/* Pre-refinement where the input is already fine in places: only bad triangles with edges that are long against their
- * cell are cut, with no more than one point for 400 triangles of the mesh to come. Fills the pool. */
+/* Pre-refinement where the input is already fine in places: the same refinement for bad triangles alone that have an
+ * edge that is long against their cell, with no more than one point for 400 triangles of the mesh to come. No point
+ * is inserted that the bounds do not ask for: so it makes no triangle that refinement would not. Fills the pool. */
 static enum tri_status prerefine_graded(struct par_state *state, const struct tri_refine_options *quality,
                                         const struct par_partition *partition, struct tri_error *error)
 {
-    struct tri_refine_options coarse = tri_refine_defaults();
+    struct tri_refine_options coarse = *quality;
     struct tri_refine_report report;
     double least = smallest_cell(partition);
     struct coarse_test test = {partition, 1.0 / 16, least * least / 16, state->mesh->unit};
-    coarse.unsuitable = is_too_long;
-    coarse.unsuitable_user = &test;
-    coarse.protect = quality->protect;
+    coarse.conforming = false;
+    coarse.urgent = is_too_long;
+    coarse.urgent_user = &test;
     coarse.max_steiner = (int64_t)(partition->estimate / 400);
     struct par_slots long_ones;
     struct tri_executor executor = par_executor(&state->threads);
@@ -231,18 +236,81 @@ static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, st
     return status;
 }
 
+static enum tri_status run_phases(struct par_state *state, const struct par_partition *partition,
+                                  struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (int colour = 0; !status && colour < PAR_COLOURS && state->pool.n > 0; colour++) {
+        tell(state, colour + 1);
+        status = par_phase(state, partition, colour, TRI_NONE, error);
+    }
+    return status;
+}
+
+static struct par_tiles tiles_of(const struct par_state *state, const struct par_partition *partition,
+                                 const struct tri_executor *executor)
+{
+    return (struct par_tiles){.mesh = state->mesh, .partition = partition, .executor = executor,
+                              .n_kept = state->n_kept, .n_vertices = state->n_kept,
+                              .take = state->options->take, .user = state->options->take_user};
+}
+
+/* Something that no block could do lies left of x, where every block has had its turn. */
+static bool is_left_behind(const struct par_state *state, double x)
+{
+    const struct tri_mesh *mesh = state->mesh;
+    for (int32_t i = 0; i < state->pool.n; i++) {
+        const struct tri_triangle *t = &mesh->tri[state->pool.item[i]];
+        if (tri_is_live(t) && mesh->xy[t->v[0]].x < x && mesh->xy[t->v[1]].x < x && mesh->xy[t->v[2]].x < x)
+            return true;
+    }
+    return false;
+}
+
+/* What is final goes: the tiles of a column, once the even column of blocks behind it is through. */
+static enum tri_status finish_column(struct par_state *state, struct par_tiles *tiles, int32_t column,
+                                     struct tri_error *error)
+{
+    double began = par_seconds();
+    enum tri_status status = TRI_OK;
+    if (is_left_behind(state, par_fence(tiles->partition, column, 0).x_max))
+        status = tri_fail(error, TRI_TOO_LARGE, NULL, 0, "a sweep leaves bad triangles over: keep the mesh in memory");
+    status = status ? status : par_tiles_column(tiles, column, true, &state->spare, error);
+    state->report->seconds_number += par_seconds() - began;
+    return status;
+}
+
+/* The same, from left to right: see phase.h, order of columns. */
+static enum tri_status sweep_columns(struct par_state *state, const struct par_partition *partition,
+                                     struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    struct tri_executor executor = par_executor(&state->threads);
+    struct par_tiles tiles = tiles_of(state, partition, &executor);
+    for (int32_t odd = 1; !status && odd <= partition->n_columns; odd += 2) {
+        for (int colour = 0; !status && colour < PAR_COLOURS; colour++) {
+            int32_t column = colour < 2 ? odd : odd - 1;
+            if (column < partition->n_columns)
+                status = par_phase(state, partition, colour, column, error);
+        }
+        if (!status && odd > 2)
+            status = finish_column(state, &tiles, odd - 2, error);
+    }
+    par_tiles_free(&tiles);
+    return status;
+}
+
 /* Rounds of four phases until nothing is left to do, each round on blocks four times as large. */
 static enum tri_status run_rounds(struct par_state *state, struct par_partition *partition, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     assert(par_cells(partition) >= 4);
+    state->n_schedules++;
     for (state->round = 0; !status && state->round < MAX_ROUNDS; state->round++) {
-        for (int colour = 0; !status && colour < PAR_COLOURS && state->pool.n > 0; colour++) {
-            tell(state, colour + 1);
-            status = par_phase(state, partition, colour, error);
-        }
+        state->column.n = 0; /* of other blocks than those to come */
+        status = state->sweeping ? sweep_columns(state, partition, error) : run_phases(state, partition, error);
         state->report->rounds++;
-        if (state->pool.n == 0 || par_cells(partition) < FEWEST_TO_COARSEN)
+        if (state->pool.n == 0 || par_cells(partition) < FEWEST_TO_COARSEN || state->sweeping)
             break;
         par_partition_coarsen(partition);
     }
@@ -257,27 +325,32 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     struct par_report *report = state->report;
     enum tri_status status = TRI_OK;
     state->quality = quality;
-    if (top) {
+    if (top && !report->partition.x) {
         report->columns = partition->n_columns;
         report->rows = partition->n_rows;
-        par_partition_free(&report->partition);
         status = par_partition_copy(&report->partition, partition, error);
         report->radius_measured = state->radius * state->mesh->unit;
         report->prerefined = state->mesh->n_slots;
     }
+    state->sweeping = top && state->may_number && state->options->sweep && state->options->take;
+    if (!status && top && state->options->take && !state->sweeping) {
+        par_partition_free(&state->cells);
+        status = par_partition_copy(&state->cells, partition, error);
+    }
     status = status ? status : run_rounds(state, partition, error);
-    bool left_over = state->pool.n > 0;
-    enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number && !left_over, error);
-    status = status ? status : closed;
     double last = par_seconds();
-    if (!status && left_over) /* slots have moved */
-        status = fill_pool(state, quality, false, error);
     if (top)
-        report->left_over = left_over ? state->pool.n : 0;
-    if (!status && left_over)
+        report->left_over += state->pool.n;
+    if (state->sweeping)
+        return status;
+    if (!status && state->pool.n > 0) { /* in the order of the pool, which ids do not show in */
+        par_room_mark(&state->spare, state->mesh);
         status = refine_rest(state, quality, false, error);
-    report->total.gated = report->total.deferred = 0; /* all of them have had their turn */
+    }
     report->seconds_last += par_seconds() - last;
+    enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number, error);
+    status = status ? status : closed;
+    report->total.gated = report->total.deferred = 0; /* all of them have had their turn */
     return status;
 }
 
@@ -315,15 +388,49 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
     return status;
 }
 
-/* Refines to these bounds: sequentially if that is little work, else by the schedule. */
+static double estimate_of(struct par_state *state, const struct tri_refine_options *quality)
+{
+    double began = par_seconds(), estimate = par_estimate(state->mesh, quality);
+    state->report->seconds_partition += par_seconds() - began;
+    return estimate;
+}
+
+/* The first points of a sequential call, as many as would make this many triangles; *done: they were enough. */
+static enum tri_status refine_a_little(struct par_state *state, const struct tri_refine_options *quality,
+                                       double triangles, bool *done, struct tri_error *error)
+{
+    struct tri_refine_options options = *quality;
+    struct tri_refine_report report;
+    double began = par_seconds();
+    options.max_steiner = (int64_t)(triangles / 2);
+    enum tri_status status = tri_refine(state->mesh, &options, &report, error);
+    *done = !report.hit_limit;
+    report.hit_limit = false;
+    par_add_up(&state->report->total, &report);
+    state->report->seconds_prerefine += par_seconds() - began;
+    return status;
+}
+
+/* Refines to these bounds: sequentially if that is little work, else by the schedule. What areas and the triangles that
+ * there are ask for is known; what angles ask for is a guess, which small parts of a mesh may spoil by orders of
+ * magnitude. Where the guess alone says that there is much work, a little of it is done first: that may be all, and
+ * what then remains is guessed better. */
 static enum tri_status refine_level(struct par_state *state, const struct tri_refine_options *quality, int level,
                                     struct tri_error *error)
 {
-    double began = par_seconds(), estimate = par_estimate(state->mesh, quality), cell = cell_size(state, estimate);
-    state->report->seconds_partition += par_seconds() - began;
+    double estimate = estimate_of(state, quality), cell = cell_size(state, estimate);
+    double large = cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS);
+    if (estimate >= large && par_sure_work(state->mesh, quality) < large) {
+        bool done;
+        enum tri_status status = refine_a_little(state, quality, large * A_LITTLE, &done, error);
+        if (status || done)
+            return status;
+        estimate = estimate_of(state, quality);
+        cell = cell_size(state, estimate);
+    }
     if (estimate >= cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS))
         return schedule_level(state, quality, level, estimate, cell, error);
-    began = par_seconds();
+    double began = par_seconds();
     enum tri_status status = refine_rest(state, quality, true, error);
     *(level > 0 ? &state->report->seconds_prerefine : &state->report->seconds_last) += par_seconds() - began;
     return status;
@@ -346,6 +453,23 @@ static bool must_be_sequential(const struct tri_refine_options *quality, const s
 {
     return quality->max_steiner >= 0 || quality->gate || quality->fence || quality->seeds || quality->more_room ||
            quality->left || (quality->unsuitable && !options->size_test_in_parallel);
+}
+
+/* All tiles of a mesh that is in memory: those of the last schedule, or, without one, a few. */
+static enum tri_status hand_out(struct par_state *state, const struct tri_refine_options *quality,
+                                struct tri_error *error)
+{
+    struct par_partition *partition = &state->cells;
+    struct tri_executor executor = par_executor(&state->threads);
+    struct par_tiles tiles = tiles_of(state, partition, &executor);
+    struct par_room nothing = {0};
+    enum tri_status status = TRI_OK;
+    if (!partition->x)
+        status = par_partition_make(partition, state->mesh, quality, state->mesh->n_slots, HUGE_VAL, error);
+    for (int32_t odd = 1; !status && odd < partition->n_columns; odd += 2)
+        status = par_tiles_column(&tiles, odd, false, &nothing, error);
+    par_tiles_free(&tiles);
+    return status;
 }
 
 enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
@@ -372,9 +496,13 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
             status = refine_rest(&state, quality, true, error);
         report->seconds_last += par_seconds() - last;
     }
-    if (!status && report->levels > 0 && !options->by_block && !state.numbered)
+    if (!status && report->levels > 0 && !options->by_block && !state.numbered && !state.sweeping)
         status = number_mesh(&state, error);
+    if (!status && options->take && !state.sweeping)
+        status = hand_out(&state, quality, error);
     free(state.pool.item);
+    free(state.column.item);
+    par_partition_free(&state.cells);
     par_room_free(&state.spare);
     report->seconds_total = par_seconds() - began;
     return status;

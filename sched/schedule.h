@@ -9,6 +9,7 @@
 #define SCHED_SCHEDULE_H
 
 #include "sched/partition.h"
+#include "sched/sweep/tiles.h"
 #include "triangle/executor.h"
 #include "triangle/generate.h"
 
@@ -29,6 +30,13 @@ struct par_options {
     bool by_block;           /* new vertices and triangles are numbered as blocks made them: quicker. Else what the
                                 schedule made is numbered by the mesh alone, along a curve (triangle/numbering.h): a
                                 solver that goes through the triangles runs twice as fast then */
+    par_take_tile *take;     /* takes the finished mesh, tile by tile (sched/sweep/tiles.h); NULL: nobody */
+    void *take_user;
+    bool sweep;              /* column by column, from left to right, with few columns in memory at a time, where `take`
+                                takes what is finished; *mesh is not a mesh then, to be freed and no more. The tiles are
+                                the same. TRI_TOO_LARGE where blocks leave something over, which asks for the whole
+                                mesh: tiles that have been taken are worth nothing then. Without `take`, and for bounds
+                                above TRI_USUAL_ANGLE, nothing goes */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
     int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, and pause often */
     /* Told by the calling thread: the phase that begins (0: pre-refinement, then 1 to 4, at last PAR_NUMBERING),
@@ -38,6 +46,7 @@ struct par_options {
 };
 
 struct par_block_report {
+    int32_t schedule; /* which of the meshes that the phases refined, in the order in which that was begun: from 0 */
     int32_t round, phase, block;
     int64_t seeds, inserted, deferred;
     double seconds;
@@ -48,14 +57,15 @@ struct par_report {
     int threads;
     int rounds;                   /* of four phases, of all levels */
     int levels;                   /* meshes that the phases refined: this one, its pre-refinement, ..; 0: none */
-    int32_t columns, rows;        /* of blocks in the first round */
+    int32_t columns, rows;        /* of blocks in the first round; this and what follows of the first phase is told of
+                                     the first schedule of the whole mesh, where sizes and angles have one each */
     struct par_partition partition; /* blocks of the first round, in the mesh's units; none where the call was
                                        sequential. Owned by the report */
     double radius_lemma7, radius_theory; /* the paper's bound and the tight one for what pre-refinement asks for; 0
                                             where it lacks a bound */
     double radius_measured;       /* largest circumradius of a bad triangle when the first phase began */
     int64_t prerefined;           /* triangles when the first phase began */
-    int64_t deferred, left_over;  /* refused by fences in all phases; bad triangles that the last sequential call got */
+    int64_t deferred, left_over;  /* refused by fences in all phases; bad triangles that sequential calls got at last */
     int64_t pauses;               /* times a block waited for room */
     double seconds_prerefine, seconds_partition, seconds_room, seconds_merge, seconds_last, seconds_total;
     double seconds_find;          /* bad triangles, and the block of each; in equal shares */

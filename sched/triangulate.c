@@ -7,10 +7,10 @@
 #include "sched/threads.h"
 #include "triangle/dropin/io.h"
 
-static enum tri_status refine(const struct triangulate_options *options, struct tri_mesh *mesh,
-                              const struct tri_refine_options *quality, struct tri_refine_report *report,
-                              struct tri_error *error)
+static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                              struct tri_refine_report *report, struct tri_error *error)
 {
+    const struct triangulate_options *options = user;
     struct par_options how = par_defaults();
     struct par_report schedule;
     how.threads = options->threads > 0 ? options->threads : 0;

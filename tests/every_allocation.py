@@ -36,7 +36,7 @@ ALL = FAST + [
 ]
 
 LONGEST = 60  # seconds of one run
-MOST = 160  # runs of a case in each mode
+MOST, MOST_FAST = 160, 60  # runs of a case in each mode
 
 
 def prepare(folder, inputs, bin_folder, data):
@@ -82,11 +82,11 @@ def restore(folder, before):
                 file.write(text)
 
 
-def chosen(n):
+def chosen(n, most):
     """The numbers 1 to n; of very many, the first and then as many again, evenly."""
-    if n <= MOST:
+    if n <= most:
         return range(1, n + 1)
-    half = MOST // 2
+    half = most // 2
     return [*range(1, half + 1), *(half + 1 + i * (n - half - 1) // half for i in range(half + 1))]
 
 
@@ -116,7 +116,7 @@ def needs_memory(program):
     return b"libomp" in libraries or b"libcairo" in libraries  # LLVM's OpenMP; drawing
 
 
-def try_case(case, bin_folder, data, shim, work):
+def try_case(case, most, bin_folder, data, shim, work):
     """Faults found, as texts; and the number of runs."""
     program, words, inputs = case[0], case[1].split(), case[2]
     folder, count = f"{work}/case", f"{work}/count"
@@ -133,7 +133,7 @@ def try_case(case, bin_folder, data, shim, work):
         n = int(file.read())
     faults, runs = [], 0
     for after in ("0", "1"):
-        for k in chosen(n):
+        for k in chosen(n, most):
             restore(folder, before)
             code, _, error = run(path, words, folder, {
                 "LD_PRELOAD": shim, "PTRIANGLE_FAIL_AT": str(k), "PTRIANGLE_FAIL_AFTER": after, **own})
@@ -148,10 +148,11 @@ def main():
     bin_folder, data, shim, work = sys.argv[1:5]
     named = {"fast": FAST, "all": ALL}
     cases = named.get(sys.argv[5]) or [ALL[int(i)] for i in sys.argv[5:]]
+    most = MOST_FAST if cases is FAST else MOST
     faults, runs = [], 0
     for case in cases:
         if os.path.exists(f"{bin_folder}/{case[0]}"):
-            found, n = try_case(case, bin_folder, data, shim, work)
+            found, n = try_case(case, most, bin_folder, data, shim, work)
             print(f"{case[0]} {case[1]}: {n} runs, {len(found)} faults", flush=True)
             faults += found
             runs += n

@@ -12,40 +12,39 @@ breach() {
     breaches=$((breaches + 1))
 }
 
-# Code without comments: what remains is what the compiler sees. Strings stay; a /* in a string would fool it.
-code_of() {
-    awk '{
-        line = $0; out = ""
-        while (line != "") {
-            if (inside) {
-                end = index(line, "*/")
-                if (!end) break
-                line = substr(line, end + 2); inside = 0
-            } else {
-                start = index(line, "/*"); slashes = index(line, "//")
-                if (slashes && (!start || slashes < start)) { out = out substr(line, 1, slashes - 1); break }
-                if (!start) { out = out line; break }
-                out = out substr(line, 1, start - 1) " "; line = substr(line, start + 2); inside = 1
-            }
+# Code without comments, "FILE:LINE: CODE": what remains is what the compiler sees. Strings stay; a /* in one would fool it.
+code=$(mktemp)
+trap 'rm -f "$code"' EXIT
+awk '{
+    if (FNR == 1) inside = 0
+    line = $0; out = ""
+    while (line != "") {
+        if (inside) {
+            end = index(line, "*/")
+            if (!end) break
+            line = substr(line, end + 2); inside = 0
+        } else {
+            start = index(line, "/*"); slashes = index(line, "//")
+            if (slashes && (!start || slashes < start)) { out = out substr(line, 1, slashes - 1); break }
+            if (!start) { out = out line; break }
+            out = out substr(line, 1, start - 1) " "; line = substr(line, start + 2); inside = 1
         }
-        print FNR ": " out
-    }' "$1"
-}
+    }
+    print FILENAME ":" FNR ": " out
+}' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] sched/*/*.[ch] >"$code"
 
 # refuse PATTERN REASON FILE...
 refuse() {
     pattern=$1
     reason=$2
     shift 2
-    for file; do
-        [ -f "$file" ] || continue
-        found=$(code_of "$file" | grep -v "format(printf" | grep -E "$pattern" | head -n 3)
-        [ -z "$found" ] || breach "$file: $reason: $found"
-    done
+    found=$(grep -E "$pattern" "$code" | grep -v "format(printf" |
+        awk -F: -v files=" $* " 'index(files, " " $1 " ")' | head -n 3)
+    [ -z "$found" ] || breach "$reason: $found"
 }
 
 # 1. Every source file stands in a list, every list entry is a file.
-for file in triangle/*.c triangle/*/*.c triangle/*/*.cpp sched/*.c; do
+for file in triangle/*.c triangle/*/*.c triangle/*/*.cpp sched/*.c sched/*/*.c; do
     [ -f "$file" ] || continue
     grep -qE "(^|[ (])$file([ )]|\$)" cmake/sources.cmake || breach "$file stands in no list of cmake/sources.cmake"
 done
@@ -55,30 +54,41 @@ for file in tests/test_*.c; do
     grep -qE "ptriangle_test\(${name%.c}[ )]" tests/CMakeLists.txt || breach "$file is not registered in tests/CMakeLists.txt"
 done
 
-# 2. drivers/ -> sched/ -> triangle/, never back; only sched/ knows threads. The folders in triangle/ may include the
-# mesher, the mesher none of them, and they none of each other.
+# 2. drivers/ -> sched/ -> triangle/, never back; only sched/ knows threads, and the judge. The folders in triangle/ may
+# include the mesher, the mesher none of them, and they none of each other, but for api/, the door to all.
 refuse '#[[:space:]]*include[[:space:]]*"(sched|drivers|tests)/' 'includes an upper room' \
     triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp
-refuse '#[[:space:]]*include[[:space:]]*"(drivers|tests)/' 'includes an upper room' sched/*.[ch]
-refuse '#[[:space:]]*include[[:space:]]*"triangle/(text|dropin)/' 'includes a folder of the mesher' triangle/*.[ch]
-refuse '#[[:space:]]*include[[:space:]]*"triangle/dropin/' 'includes another folder' triangle/text/*.[ch]
-refuse '#[[:space:]]*include[[:space:]]*"triangle/text/' 'includes another folder' triangle/dropin/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"(drivers|tests)/' 'includes an upper room' sched/*.[ch] sched/*/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|text|dropin|check)/' 'includes a folder of the mesher' \
+    triangle/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|dropin|check)/' 'includes another folder' triangle/text/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|text|check)/' 'includes another folder' triangle/dropin/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"(triangle|sched|drivers)/' 'is public, and includes what is not' \
+    include/ptriangle/*.h
 refuse '#[[:space:]]*pragma[[:space:]]+omp|<(omp|pthread|threads)\.h>' 'knows threads' \
-    triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp
+    triangle/*.[ch] triangle/api/*.[ch] triangle/text/*.[ch] triangle/dropin/*.[ch] triangle/*/*.cpp # the judge has loops on all cores
+
+# The judge knows nothing of the judged but input, status codes and predicates: nobody is judge of his own cause.
+for file in triangle/check/*.[ch]; do
+    strange=$("$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -I . -I include -MM -x c "$file" | tr ' \\' '\n\n' | grep '^triangle/' |
+        grep -vE '^triangle/(check/[a-z_]+\.[ch]|(pslg|status|predicates|expansion|point|arithmetic)\.h)$')
+    [ -z "$strange" ] || breach "$file includes" $strange
+done
 
 # 3. Libraries neither print nor end the process nor touch the locale.
 refuse '(^|[^_a-zA-Z0-9])(printf|puts|putchar|perror|exit|_exit|abort|setlocale|std(out|err))([^_a-zA-Z0-9]|$)' \
-    'prints, exits or touches the locale' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch]
+    'prints, exits or touches the locale' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp \
+    sched/*.[ch] sched/*/*.[ch]
 
 # 4. No line is longer than 120 characters.
-long=$(LC_ALL=C.UTF-8 grep -nE '^.{121,}$' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] drivers/*.[ch] \
-    tests/*.[ch] | head -n 3)
+long=$(LC_ALL=C.UTF-8 grep -nE '^.{121,}$' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] sched/*/*.[ch] drivers/*.[ch] \
+    tests/*.[ch] include/*/*.h | head -n 3)
 [ -z "$long" ] || breach "lines of more than 120 characters: $long"
 
 # 5. Each header compiles alone.
-for file in triangle/*.h triangle/*/*.h sched/*.h; do
+for file in include/*/*.h triangle/*.h triangle/*/*.h sched/*.h sched/*/*.h; do
     [ -f "$file" ] || continue
-    "$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Wno-unused -I . -fsyntax-only -x c \
+    "$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Wno-unused -I . -I include -fsyntax-only -x c \
         -include "$file" /dev/null || breach "$file does not compile alone"
 done
 

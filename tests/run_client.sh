@@ -69,6 +69,8 @@ echo "== executables"
 for program in "$build/bin/"*; do
     installed=$work/prefix/bin/$(basename "$program")
     [ ! -x "$program" ] || [ -x "$installed" ] || { echo "not installed: $program" >&2; exit 1; }
+    page=$work/prefix/share/man/man1/$(basename "$program").1
+    [ ! -d "$build/documents" ] || [ -f "$page" ] || { echo "not installed: $page" >&2; exit 1; }
 done
 cp "$square" "$work/"
 "$work/prefix/bin/triangle" -pQ "$work/square.poly"

@@ -1,7 +1,7 @@
 #!/bin/sh
 # What the libraries bring into the program of a client: names of their own alone, no way to print or to end it, and two
 # forms of triangulate() of which the linker takes one whole.
-# Usage: run_symbols.sh NM libtriangle.a libptriangle.a libtritext.a
+# Usage: run_symbols.sh NM libtriangle.a libptriangle.a libtritext.a libtricheck.a
 set -u
 nm=$1
 failed=0
@@ -19,12 +19,17 @@ own() {
 own "$2" '^(triangulate|triangulate_with|trifree|tri_[a-z0-9_]+)$'
 own "$3" '^(triangulate|triangulate_with|par_[a-z0-9_]+)$'
 own "$4" '^(tri_[a-z0-9_]+|_Z.*|DW\.ref\..*)$'
+own "$5" '^tri_check[a-z0-9_]*$'
 
 refused='[vf]?printf|__v?f?printf_chk|puts|putchar|fputs|fwrite|perror|std(out|err)|_?exit|abort|longjmp|setlocale'
-for library in "$2" "$3"; do
+for library in "$2" "$3" "$5"; do
     bad=$(names -u "$library" | grep -xE "$refused")
     [ -z "$bad" ] || { echo "symbols: $library uses" $bad; failed=1; }
 done
+
+# The judge takes nothing from the judged but its predicates and, at the public door, how arrays are taken.
+foreign=$(names -u "$5" | grep '^tri' | grep -vE '^tri_(check.*|fail|(orient2d|dot|incircle|in_circle)_near|api_(figure|struct)_[a-z]+)$')
+[ -z "$foreign" ] || { echo "symbols: the judge uses" $foreign; failed=1; }
 
 # Members that define triangulate define the same, so that none of the other library's is needed beside.
 entries() {

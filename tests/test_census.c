@@ -26,7 +26,7 @@ static void test_find_work(void **state)
         n += tri_find_work(&mesh, &asked.quality, t, t + 1, pieces + n);
     assert_int_equal(found, n);
     assert_memory_equal(whole, pieces, (size_t)n * sizeof *whole);
-    struct tri_criterion c = {&mesh, &asked.quality, tri_bounds_for(30, false)};
+    struct tri_criterion c = tri_criterion_for(&mesh, &asked.quality);
     for (int32_t t = 0; t < mesh.n_slots; t++) {
         struct tri_shape shape = tri_shape_of(mesh.xy, mesh.tri[t].v);
         naive += tri_judge(&c, &mesh.tri[t], &shape) != TRI_GOOD;

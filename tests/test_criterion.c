@@ -23,7 +23,7 @@ static void set_up(struct setting *s, struct tri_point a, struct tri_point b, st
 
 static enum tri_badness judge(const struct setting *s)
 {
-    struct tri_criterion c = {&s->mesh, &s->options, tri_bounds_for(s->options.min_angle, s->options.conforming)};
+    struct tri_criterion c = tri_criterion_for(&s->mesh, &s->options);
     struct tri_shape shape = tri_shape_of(s->xy, s->triangle.v);
     return tri_judge(&c, &s->triangle, &shape);
 }
@@ -44,25 +44,30 @@ static void test_angles_before_sizes(void **state)
     assert_int_equal(judge(&s), TRI_GOOD);
 }
 
+static double area2_bound(const struct setting *s, int32_t region)
+{
+    struct tri_criterion c = tri_criterion_for(&s->mesh, &s->options);
+    return tri_area2_bound(&c, region);
+}
+
 /* The smaller of the two bounds counts, in the caller's units, times the scale. */
 static void test_area_bounds(void **state)
 {
     (void)state;
     struct setting s;
     set_up(&s, (struct tri_point){0, 0}, (struct tri_point){1, 0}, (struct tri_point){0, 1});
-    struct tri_criterion c = {.mesh = &s.mesh, .options = &s.options};
-    assert_true(tri_area2_bound(&c, 1) == HUGE_VAL);
+    assert_true(area2_bound(&s, 1) == HUGE_VAL);
     assert_false(tri_has_sizes(&s.options));
     s.options.max_area = 1;
     assert_true(tri_has_sizes(&s.options));
-    assert_true(tri_area2_bound(&c, 1) == 2);
+    assert_true(area2_bound(&s, 1) == 2);
     s.options.region_areas = true;
-    assert_true(tri_area2_bound(&c, 1) == 0.5);
-    assert_true(tri_area2_bound(&c, 0) == 2);
+    assert_true(area2_bound(&s, 1) == 0.5);
+    assert_true(area2_bound(&s, 0) == 2);
     s.options.area_scale = 8;
-    assert_true(tri_area2_bound(&c, 1) == 4);
+    assert_true(area2_bound(&s, 1) == 4);
     s.mesh.unit = 2;
-    assert_true(tri_area2_bound(&c, 1) == 1);
+    assert_true(area2_bound(&s, 1) == 1);
 }
 
 /* Remembers the area and the first corner that it was asked about; refuses what is larger than 1. */

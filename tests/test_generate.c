@@ -254,7 +254,7 @@ static void test_gate_gets_callers_coordinates(void **state)
 static void note_stage(void *user, enum tri_stage begins)
 {
     int *last = user;
-    assert_int_equal(*last + 1, (int)begins);
+    assert_int_equal(*last + 1 + (begins == TRI_STAGE_QUALITY), (int)begins); /* nothing is rebuilt */
     *last = (int)begins;
 }
 

@@ -4,6 +4,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -53,6 +54,30 @@ static void test_both_forms(void **state)
     assert_false(t.options.by_block || t.options.help || t.options.version);
 }
 
+/* A batch system's number counts where nobody asked for another. */
+static void test_threads_of_a_batch_system(void **state)
+{
+    (void)state;
+    struct long_options none = {0}, three = {.threads = 3};
+    unsetenv("OMP_NUM_THREADS");
+    unsetenv("SLURM_CPUS_PER_TASK");
+    assert_int_equal(long_options_threads(&none), 0);
+    setenv("SLURM_CPUS_PER_TASK", "5", 1);
+    assert_int_equal(long_options_threads(&none), 5);
+    assert_int_equal(long_options_threads(&three), 3);
+    setenv("OMP_NUM_THREADS", "", 1);
+    assert_int_equal(long_options_threads(&none), 5);
+    setenv("OMP_NUM_THREADS", "7", 1);
+    assert_int_equal(long_options_threads(&none), 0);
+    assert_int_equal(long_options_threads(&three), 3);
+    unsetenv("OMP_NUM_THREADS");
+    setenv("SLURM_CPUS_PER_TASK", "many", 1);
+    assert_int_equal(long_options_threads(&none), 0);
+    setenv("SLURM_CPUS_PER_TASK", "0", 1);
+    assert_int_equal(long_options_threads(&none), 0);
+    unsetenv("SLURM_CPUS_PER_TASK");
+}
+
 /* Bounds become switches, exponents and all. */
 static void test_bounds(void **state)
 {
@@ -96,7 +121,7 @@ static void test_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_both_forms),
+        cmocka_unit_test(test_both_forms), cmocka_unit_test(test_threads_of_a_batch_system),
         cmocka_unit_test(test_bounds),
         cmocka_unit_test(test_refused),
     };

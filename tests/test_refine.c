@@ -100,7 +100,7 @@ static void test_tangles_are_refined(void **state)
     (void)state;
     static const enum support_kind kinds[] = {SUPPORT_RANDOM, SUPPORT_LATTICE, SUPPORT_RING};
     for (int kind = 0; kind < 3; kind++)
-        for (uint64_t seed = 0; seed < 40; seed++) {
+        for (uint64_t seed = 0; seed < 16; seed++) {
             struct tri_report report;
             struct tri_options options = support_quality(seed % 2 ? 20 : 33, seed % 4 ? 0 : 0.05);
             struct tri_pslg pslg = support_tangle(kinds[kind], 12, (int32_t)(seed % 8), seed);

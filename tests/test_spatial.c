@@ -75,30 +75,37 @@ static void refine_again(struct tri_mesh *mesh, const struct tri_pslg *pslg)
     support_judge(mesh, pslg, &check, false, NULL);
 }
 
-/* Left sorted, refined, restored: the same as in one call; and refinement may go on. */
+/* Refinement sees the points in spatial order. */
+static enum tri_status refine_sorted(void *user, struct tri_mesh *mesh, const struct tri_refine_options *options,
+                                     struct tri_refine_report *report, struct tri_error *error)
+{
+    *(bool *)user = mesh->origin != NULL;
+    return tri_refine(mesh, options, report, error);
+}
+
+/* In one call or with a refinement of the caller's: the same; and refinement may go on. */
 static void test_restoring_after_refinement(void **state)
 {
     (void)state;
     for (enum support_kind kind = SUPPORT_RANDOM; kind <= SUPPORT_LATTICE; kind++) {
+        bool was_sorted = false;
         struct tri_pslg pslg = named_points(kind, 300, 7 + (uint64_t)kind);
         struct tri_options options = support_quality(25, 0.01);
         struct tri_mesh once = support_generate(&pslg, &options, NULL);
-        options.refine = false;
-        options.leave_sorted = true;
+        options.refine_call = refine_sorted;
+        options.refine_user = &was_sorted;
         options.executor = &support_backwards;
-        struct tri_mesh steps = support_generate(&pslg, &options, NULL);
-        struct tri_refine_report report;
-        assert_non_null(steps.origin);
-        assert_int_equal(tri_refine(&steps, &options.quality, &report, NULL), TRI_OK);
-        assert_int_equal(tri_restore_points(&steps, &support_backwards, NULL), TRI_OK);
-        assert_callers_points(&steps, &pslg);
-        assert_int_equal(once.n_slots, steps.n_slots);
+        struct tri_mesh called = support_generate(&pslg, &options, NULL);
+        assert_true(was_sorted);
+        assert_null(called.origin);
+        assert_callers_points(&called, &pslg);
+        assert_int_equal(once.n_slots, called.n_slots);
         for (int32_t t = 0; t < once.n_slots; t++)
-            assert_memory_equal(once.tri[t].v, steps.tri[t].v, sizeof once.tri[t].v);
+            assert_memory_equal(once.tri[t].v, called.tri[t].v, sizeof once.tri[t].v);
         if (kind == SUPPORT_RANDOM) /* the lattice has crossings too near to each other for bounds */
-            refine_again(&steps, &pslg);
+            refine_again(&called, &pslg);
         tri_mesh_free(&once);
-        tri_mesh_free(&steps);
+        tri_mesh_free(&called);
         tri_pslg_free(&pslg);
     }
 }

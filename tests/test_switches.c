@@ -189,7 +189,8 @@ static void test_options(void **state)
     s = parsed("A"); /* regions belong to segments */
     assert_false(tri_switches_options(&s).spread_regions);
     s = parsed("rpAa");
-    assert_false(tri_switches_options(&s).spread_regions || tri_switches_options(&s).quality.region_areas);
+    assert_false(tri_switches_options(&s).spread_regions);
+    assert_true(tri_switches_options(&s).quality.region_areas); /* those of the triangles */
     s = parsed("q180");
     assert_true(tri_switches_options(&s).refine && tri_switches_options(&s).quality.min_angle == 0);
     static const char *const refining[] = {"q", "q0", "a", "a1", "u", "D"};

@@ -10,7 +10,7 @@ static const double MOST_OVER_BOUND = 0.75;
 
 double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_options *options)
 {
-    const struct tri_criterion c = {.mesh = mesh, .options = options};
+    const struct tri_criterion c = tri_criterion_of_areas(mesh, options);
     double triangles = 0;
     if (!(options->max_area > 0 || options->region_areas))
         return 0;
@@ -37,7 +37,10 @@ static bool needs_work(const struct tri_criterion *c, int32_t slot)
     if (!tri_is_live(t))
         return false;
     struct tri_shape shape = tri_shape_of(c->mesh->xy, t->v);
-    if (tri_judge(c, t, &shape) != TRI_GOOD)
+    enum tri_badness badness = tri_judge(c, t, &shape);
+    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, slot, &shape) && !tri_is_too_large(c, t, &shape))
+        badness = TRI_GOOD; /* as good as it will be */
+    if (badness != TRI_GOOD)
         return true;
     double fraction;
     for (int e = 0; c->options->conforming && e < 3; e++)
@@ -49,7 +52,7 @@ static bool needs_work(const struct tri_criterion *c, int32_t slot)
 int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t first,
                       int32_t last, int32_t *found)
 {
-    const struct tri_criterion c = {mesh, options, tri_bounds_for(options->min_angle, options->conforming)};
+    const struct tri_criterion c = tri_criterion_for(mesh, options);
     int32_t n = 0;
     assert(first >= 0 && last <= mesh->n_slots);
     for (int32_t slot = first; slot < last; slot++)
@@ -150,7 +153,7 @@ void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options 
                    const struct tri_refine_report *report, const struct tri_executor *executor,
                    int64_t count[TRI_EXCUSES])
 {
-    struct counting c = {{mesh, options, tri_bounds_for(options->min_angle, options->conforming)}, report, {{0}}};
+    struct counting c = {tri_criterion_for(mesh, options), report, {{0}}};
     size_t shares = tri_shares(mesh->n_slots);
     tri_execute(options->unsuitable ? NULL : executor, shares, count_share, &c);
     for (int k = 0; k < TRI_EXCUSES; k++) {

@@ -11,6 +11,7 @@ struct tri_criterion {
     const struct tri_mesh *mesh;
     const struct tri_refine_options *options;
     struct tri_bounds bounds; /* for the angle that is worked for now, which may be below that of the options */
+    double area2;             /* twice the bound that options have for all areas, in the mesh's units; infinity: none */
 };
 
 /* Is there any bound on sizes? */
@@ -26,8 +27,18 @@ static inline double tri_area_scale(const struct tri_refine_options *options)
 
 enum tri_badness { TRI_GOOD, TRI_BAD_SIZE, TRI_BAD_ANGLE };
 
+/* What these options ask for, and the same for areas alone. Both are borrowed. */
+struct tri_criterion tri_criterion_for(const struct tri_mesh *mesh, const struct tri_refine_options *options);
+struct tri_criterion tri_criterion_of_areas(const struct tri_mesh *mesh, const struct tri_refine_options *options);
+
+/* The smaller of the bound for all areas and that of a region. */
+double tri_area2_in_region(const struct tri_criterion *criterion, int32_t region);
+
 /* Twice the largest area allowed in a region, in the mesh's units; infinity where there is no bound. */
-double tri_area2_bound(const struct tri_criterion *criterion, int32_t region);
+static inline double tri_area2_bound(const struct tri_criterion *criterion, int32_t region)
+{
+    return criterion->options->region_areas ? tri_area2_in_region(criterion, region) : criterion->area2;
+}
 
 /* Does the caller's size test, asked of a mesh with this unit, refuse the triangle? Where scale is not 1 it is asked
  * about the triangle shrunk about its centroid, to 1 / scale of its area: so a test for a mesh `scale` times coarser
@@ -42,7 +53,7 @@ bool tri_is_unsuitable(const struct tri_criterion *criterion, const int32_t v[3]
 bool tri_is_too_large(const struct tri_criterion *criterion, const struct tri_triangle *t,
                       const struct tri_shape *shape);
 
-/* A bad angle counts before a bad size. */
+/* A bad angle counts before a bad size. What is not urgent is good. */
 enum tri_badness tri_judge(const struct tri_criterion *criterion, const struct tri_triangle *t,
                            const struct tri_shape *shape);
 

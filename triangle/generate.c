@@ -64,33 +64,57 @@ static enum tri_status triangulate(struct tri_mesh *mesh, const struct tri_pslg 
     return status;
 }
 
-enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
-                             struct tri_report *report, struct tri_error *error)
+static enum tri_status make(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
+                            struct tri_report *report, struct tri_error *error)
 {
-    *mesh = (struct tri_mesh){0};
-    *report = (struct tri_report){0};
     enum tri_status status = tri_pslg_check(pslg, error);
     status = status ? status : tri_mesh_init(mesh, error);
     mesh->stop = options->stop;
     status = status ? status : triangulate(mesh, pslg, options, report, error);
     if (!status) {
         tri_mark_boundary(mesh);
-        status = tri_refine_prepare(mesh, error);
+        status = tri_refine_prepare(mesh, options->executor, error);
     }
-    if (status) {
+    if (status)
         tri_mesh_free(mesh);
+    return status;
+}
+
+static enum tri_status rebuild(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
+                               struct tri_error *error)
+{
+    const struct tri_reconstruct_options how = {.use_segments = options->use_segments, .refine = options->refine,
+                                                .stop = options->stop, .executor = options->executor,
+                                                .base = options->base, .is_edge = options->is_edge};
+    announce(options, TRI_STAGE_REBUILD);
+    return tri_reconstruct(mesh, pslg, options->elements, &how, error);
+}
+
+static enum tri_status refine(struct tri_mesh *mesh, const struct tri_options *options, struct tri_report *report,
+                              struct tri_error *error)
+{
+    announce(options, TRI_STAGE_QUALITY);
+    if (!options->refine)
+        return TRI_OK;
+    return options->refine_call
+               ? options->refine_call(options->refine_user, mesh, &options->quality, &report->quality, error)
+               : tri_refine(mesh, &options->quality, &report->quality, error);
+}
+
+enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
+                             struct tri_report *report, struct tri_error *error)
+{
+    *mesh = (struct tri_mesh){0};
+    *report = (struct tri_report){0};
+    enum tri_status status = options->elements ? rebuild(mesh, pslg, options, error)
+                                               : make(mesh, pslg, options, report, error);
+    if (status)
         return status;
-    }
-    if (options->refine) {
-        announce(options, TRI_STAGE_QUALITY);
-        status = tri_refine(mesh, &options->quality, &report->quality, error);
-    }
-    if (!options->leave_sorted) {
-        enum tri_status restored = tri_restore_points(mesh, options->executor, error);
-        if (restored) {
-            tri_mesh_free(mesh);
-            return restored;
-        }
+    status = refine(mesh, options, report, error);
+    enum tri_status restored = tri_restore_points(mesh, options->executor, error);
+    if (restored) {
+        tri_mesh_free(mesh);
+        return restored;
     }
     announce(options, TRI_STAGE_DONE);
     return status;

@@ -14,6 +14,7 @@
 #include "triangle/constrain.h"
 #include "triangle/mesh.h"
 #include "triangle/pslg.h"
+#include "triangle/reconstruct.h"
 #include "triangle/refine.h"
 #include "triangle/spatial.h"
 #include "triangle/status.h"
@@ -22,7 +23,20 @@
 extern "C" {
 #endif
 
-enum tri_stage { TRI_STAGE_DELAUNAY, TRI_STAGE_SEGMENTS, TRI_STAGE_HOLES, TRI_STAGE_QUALITY, TRI_STAGE_DONE };
+/* In their order; with tri_options.elements REBUILD stands in place of the first three. QUALITY begins in any case,
+ * with a mesh that keeps no bounds yet. */
+enum tri_stage {
+    TRI_STAGE_DELAUNAY,
+    TRI_STAGE_SEGMENTS,
+    TRI_STAGE_HOLES,
+    TRI_STAGE_REBUILD,
+    TRI_STAGE_QUALITY,
+    TRI_STAGE_DONE
+};
+
+/* Refines as tri_refine does. */
+typedef enum tri_status tri_refine_call(void *user, struct tri_mesh *mesh, const struct tri_refine_options *options,
+                                        struct tri_refine_report *report, struct tri_error *error);
 
 struct tri_options {
     bool use_segments;  /* the segments and holes of the PSLG are part of the input (-p); else its points alone */
@@ -31,8 +45,12 @@ struct tri_options {
     bool spread_regions; /* triangles learn the region they are in (-A, or -a without number) */
     bool refine;        /* the quality stage runs, with the options below */
     struct tri_refine_options quality;
-    bool leave_sorted;   /* vertices stay in spatial order, for a refinement that follows: the caller ends with
-                            tri_restore_points (triangle/spatial.h) */
+    tri_refine_call *refine_call; /* does so in place of tri_refine; NULL: tri_refine */
+    void *refine_user;
+    const struct tri_elements *elements; /* a mesh that is there (-r): it is rebuilt, and use_segments and refine are
+                                            those of tri_reconstruct; NULL: one is made from the points */
+    bool *is_edge;       /* with elements: as in struct tri_reconstruct_options */
+    int32_t base;        /* with elements: likewise */
     const struct tri_executor *executor; /* for what is done in pieces; NULL: one after another */
     const struct tri_stop *stop;         /* asked whether to go on, here and, by mesh->stop, later; NULL: nobody */
     void (*stage)(void *user, enum tri_stage begins); /* told when a stage begins; NULL: nobody */
@@ -40,7 +58,7 @@ struct tri_options {
 };
 
 struct tri_report {
-    int32_t duplicates; /* points that have a twin of lower index */
+    int32_t duplicates; /* points that have a twin of lower index; 0 with elements */
     struct tri_constrain_report constrain;
     struct tri_refine_report quality;
 };
@@ -48,8 +66,8 @@ struct tri_report {
 struct tri_options tri_defaults(void);
 
 /* Makes *mesh from the PSLG. On failure *mesh is empty, except that what refinement had done when it ran out of memory
- * (TRI_NO_MEMORY, TRI_TOO_LARGE) or was stopped (TRI_STOPPED) is a valid mesh. TRI_BAD_INPUT: see tri_pslg_check.
- * The PSLG is only read. */
+ * (TRI_NO_MEMORY, TRI_TOO_LARGE) or was stopped (TRI_STOPPED) is a valid mesh. TRI_BAD_INPUT: see tri_pslg_check and
+ * tri_reconstruct. The PSLG is only read. */
 enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
                              struct tri_report *report, struct tri_error *error);
 

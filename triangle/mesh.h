@@ -21,6 +21,7 @@
 #include <stdint.h>
 
 #include "triangle/executor.h"
+#include "triangle/point.h"
 #include "triangle/pslg.h"
 #include "triangle/status.h"
 #include "triangle/stop.h"
@@ -41,10 +42,6 @@ enum tri_vertex_kind { /* values of tri_mesh.on below 0 */
     TRI_VERTEX_ACUTE = -3, /* as TRI_VERTEX_INPUT, and two subsegments meet there at less than 60 degrees */
     TRI_VERTEX_NONE = -4   /* no vertex: an id that is free (only until tri_number) */
     /* >= 0: made by refinement on the parent with that id */
-};
-
-struct tri_point {
-    double x, y;
 };
 
 struct tri_triangle {
@@ -121,21 +118,6 @@ static inline int32_t tri_of(int32_t code) { return code >> 2; }
 static inline int tri_edge(int32_t code) { return code & 3; }
 
 static inline bool tri_is_live(const struct tri_triangle *t) { return t->v[0] >= 0; }
-
-/* The range of the exact predicates (see predicates.h): 0 and what lies between these magnitudes; 2^-216 and 2^200, in
- * words that C++11 has. */
-#define TRI_LEAST_COORDINATE (1 / 1.0531229166855719e65)
-#define TRI_LARGEST_COORDINATE 1.6069380442589903e60
-
-/* What is too small for the range becomes 0. What is too large stays so: tri_is_in_range tells. */
-static inline double tri_round_coordinate(double x) { return fabs(x) < TRI_LEAST_COORDINATE ? 0 : x; }
-
-/* Can the predicates carry this point, whose coordinates have been rounded? Every vertex they can, and the range is
- * convex: so the figure ends before the range does, and a point out of it lies outside the figure. */
-static inline bool tri_is_in_range(struct tri_point p)
-{
-    return fabs(p.x) <= TRI_LARGEST_COORDINATE && fabs(p.y) <= TRI_LARGEST_COORDINATE;
-}
 
 static inline struct tri_point tri_point_between(struct tri_point a, struct tri_point b, double fraction)
 {

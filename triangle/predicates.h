@@ -24,7 +24,7 @@
 #include <stdbool.h>
 
 #include "triangle/arithmetic.h"
-#include "triangle/mesh.h"
+#include "triangle/point.h"
 
 struct tri_pair; /* triangle/expansion.h */
 

@@ -35,11 +35,26 @@ struct tri_pslg {
  * TRI_BAD_INPUT; more than 2^28 of anything: TRI_TOO_LARGE. O(n). */
 enum tri_status tri_pslg_check(const struct tri_pslg *pslg, struct tri_error *error);
 
-/* Are all points at one place? Then there is nothing to triangulate; that they are collinear is no error. O(n). */
+/* Are there enough points, but all at one place? Triangle refuses those; tri_generate makes a mesh of no triangles, as
+ * of collinear points. O(n). */
 bool tri_pslg_is_one_place(const struct tri_pslg *pslg);
 
 /* Frees the arrays (malloc'ed) and zeroes the struct. */
 void tri_pslg_free(struct tri_pslg *pslg);
+
+/* Triangles as a caller or an .ele file gives them. Anything may stand in them: what is no mesh is refused. */
+struct tri_elements {
+    int32_t n;
+    int32_t *corners;     /* [n][3]: point indices; orientation and shape are not checked on reading */
+    int32_t n_nodes;      /* nodes of a triangle in the file, >= 3 */
+    int32_t n_attributes; /* per triangle, >= 0 */
+    double *attributes;   /* [n][n_attributes], or NULL */
+    double *areas;        /* [n] bounds of single triangles (<= 0: none), or NULL */
+    int32_t *extra;       /* [n][n_nodes - 3]: the nodes behind the third, or TRI_NONE; NULL: not known */
+};
+
+/* Frees the arrays and zeroes the struct. */
+void tri_elements_free(struct tri_elements *elements);
 
 #ifdef __cplusplus
 }

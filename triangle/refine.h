@@ -43,6 +43,9 @@ struct tri_refine_options {
     int64_t max_steiner;   /* < 0: no limit on the points inserted */
     tri_unsuitable *unsuitable;
     void *unsuitable_user;
+    tri_unsuitable *urgent; /* not NULL: of the bad triangles only those that this says yes to are refined, at their
+                               circumcentres: for pre-refinement */
+    void *urgent_user;
     tri_gate *gate;        /* NULL: every bad triangle */
     void *gate_user;
     const struct tri_fence *fence; /* NULL: the whole mesh */
@@ -98,15 +101,15 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
 enum tri_status tri_refiner_run(struct tri_refiner *refiner, struct tri_error *error);
 void tri_refiner_free(struct tri_refiner *refiner);
 
-/* found[last - first] receives the slots from first to last - 1 at which there is something for the loop to do (a bad
- * angle or size; a crowded subsegment if conforming), in order; returns how many. */
+/* found[last - first] receives the slots from first to last - 1 at which there is something for the loop to do (an
+ * angle that is bad and not hopeless, a bad size; a crowded subsegment if conforming), in order; returns how many. */
 int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t first,
                       int32_t last, int32_t *found);
 
 /* Makes the mesh ready for refinement: lists the parents at each vertex, and marks the input vertices at which two
  * subsegments meet at less than 60 degrees inside the mesh (TRI_VERTEX_ACUTE). To be called once, after carving.
  * O(triangles). */
-enum tri_status tri_refine_prepare(struct tri_mesh *mesh, struct tri_error *error);
+enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error);
 
 /* Counts the subsegments with a vertex of a triangle beside them in their diametral circle, which -D could not mend, by
  * place: at a small angle of the input, between segments near to each other, and so on. */

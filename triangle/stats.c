@@ -72,7 +72,6 @@ static int angle_bin(double cosine, const double limits[TRI_ANGLE_BINS])
 }
 
 /* The library's fmin and fmax look out for NaN, which there is none of here, and are calls. */
-static double lesser(double a, double b) { return a < b ? a : b; }
 static double greater(double a, double b) { return a > b ? a : b; }
 
 static void measure(struct tri_shapes *shapes, struct extremes *x, const struct tri_shape *s,
@@ -82,15 +81,15 @@ static void measure(struct tri_shapes *shapes, struct extremes *x, const struct 
     double longest2 = greater(s->l[0], greater(s->l[1], s->l[2])), aspect = longest2 / s->area2;
     widen(x->area2, s->area2);
     x->total_area2 += s->area2;
-    x->least_altitude2 = lesser(x->least_altitude2, s->area2 / longest2 * s->area2);
+    x->least_altitude2 = tri_lesser(x->least_altitude2, s->area2 / longest2 * s->area2);
     x->greatest_aspect = greater(x->greatest_aspect, aspect);
-    x->least_sine2 = lesser(x->least_sine2, s->area2 / tri_longer_product(s->l[0], s->l[1], s->l[2]) * s->area2);
+    x->least_sine2 = tri_lesser(x->least_sine2, s->area2 / tri_longer_product(s->l[0], s->l[1], s->l[2]) * s->area2);
     shapes->aspects[aspect_bin(aspect)]++;
     for (int k = 0; k < 3; k++) {
         double a = s->l[tri_next[k]], b = s->l[tri_prev[k]];
         double cosine = (a + b - s->l[k]) / (2 * root[tri_next[k]] * root[tri_prev[k]]);
         widen(x->length2, s->l[k]);
-        x->least_cosine = lesser(x->least_cosine, cosine);
+        x->least_cosine = tri_lesser(x->least_cosine, cosine);
         shapes->angles[angle_bin(cosine, limits)]++;
     }
 }
@@ -146,10 +145,10 @@ static void add_tally(struct tally *sum, const struct tally *add)
         widen(x->length2, y->length2[k]);
     }
     x->total_area2 += y->total_area2;
-    x->least_altitude2 = lesser(x->least_altitude2, y->least_altitude2);
+    x->least_altitude2 = tri_lesser(x->least_altitude2, y->least_altitude2);
     x->greatest_aspect = greater(x->greatest_aspect, y->greatest_aspect);
-    x->least_sine2 = lesser(x->least_sine2, y->least_sine2);
-    x->least_cosine = lesser(x->least_cosine, y->least_cosine);
+    x->least_sine2 = tri_lesser(x->least_sine2, y->least_sine2);
+    x->least_cosine = tri_lesser(x->least_cosine, y->least_cosine);
 }
 
 void tri_measure_shapes(struct tri_shapes *shapes, const struct tri_mesh *mesh, const struct tri_executor *executor)

@@ -35,6 +35,16 @@ run() { # run CODE WORDS...: triangle must end with the exit code; out and err k
     [ "$found" -eq "$code" ] || fault "exit code $found instead of $code: $(head -n 1 .err)"
 }
 
+program() { # the same for ptriangle
+    code=$1
+    shift
+    what="ptriangle $*"
+    checks=$((checks + 1))
+    "$bin/ptriangle" "$@" >.out 2>.err
+    found=$?
+    [ "$found" -eq "$code" ] || fault "exit code $found instead of $code: $(head -n 1 .err)"
+}
+
 says() { check "does not say: $1" grep -qxF -e "$1" .out; }      # a whole line of standard output
 matches() { check "no line matches: $1" grep -qE -e "$1" .out; } # a part of one
 silent_on() { check "says: $1" sh -c "! grep -qE -e \"\$1\" .out" sh "$1"; }

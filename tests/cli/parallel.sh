@@ -1,60 +1,10 @@
-# ptriangle: the same bytes for any number of threads, long options, the report.
-program() { # program CODE WORDS...: ptriangle must end with the exit code; out and err keep what it printed
-    code=$1
-    shift
-    what="ptriangle $*"
-    checks=$((checks + 1))
-    "$bin/ptriangle" "$@" >.out 2>.err
-    found=$?
-    [ "$found" -eq "$code" ] || fault "exit code $found instead of $code: $(head -n 1 .err)"
-}
-
-sums() { cat ./*.node ./*.ele ./*.poly | cksum; }
-
+# ptriangle: tiny cells, long options, the report.
 without_comments() { grep -v '^#' "$1"; }
 
 alike() { # alike A B: two files are the same but for the comment that quotes the command line
     without_comments "$1" >.expected
     without_comments "$2" | cmp -s - .expected
 }
-
-# same AREA SWITCHES JUDGE_OPTIONS INPUT: all files, with the comment that quotes the command line, are the same for 1, 2, 3,
-# 4 and 8 threads and from one run to the next; there are several blocks; the mesh is right.
-same() {
-    input=$4
-    base=$(basename "${input%.*}")
-    fresh "$input"
-    first=
-    for threads in 1 8 2 4 3 2; do
-        OMP_NUM_THREADS=$threads program 0 "$2Q" --max-area "$1" --report report.json "$base"
-        found=$(sums)
-        [ -n "$first" ] || first=$found
-        checks=$((checks + 1))
-        [ "$found" = "$first" ] || fault "another mesh with $threads threads"
-        [ "$found" = "$first" ] || return
-        check "threads in the report" grep -qx " \"threads\": $threads,\?" report.json
-    done
-    blocks=$(grep -c '"block":' report.json)
-    checks=$((checks + 1))
-    [ "$blocks" -gt 4 ] || fault "$blocks blocks are no schedule"
-    # shellcheck disable=SC2086 # several words
-    judge "$base.1" --poly "$base.poly" $3
-}
-
-# Areas for 100000 to 300000 triangles; the graded inputs have many of them along their boundaries. Where small angles or
-# narrow channels of the input leave triangles below the bound, their number is bounded.
-same 4e-4 -pq30 "--min-angle 30 --max-area 4e-4" letter.poly
-same 6e-6 -pq "--min-angle 20 --max-area 6e-6" square_random1000.poly
-same 6e6 -pq30 "--max-bad 300 --max-area 6e6" coast/norway_sea.poly
-same 3e8 -pq30aA "--max-bad 60 --max-area 3e8" coast/borders.poly
-same 0.004 -pqaA "--min-angle 20 --max-area 0.004" section.poly
-same 0.012 -pq32 "--min-angle 32 --max-area 0.012" gear.poly
-same 6e-6 -pqD "--min-angle 20 --max-area 6e-6 --conforming" koch_lake.poly
-same 0.003 -pq30 "--min-angle 30 --max-area 0.003" perforated.poly
-same 1e-4 -pq30 "--min-angle 30 --max-area 1e-4" naca2412_box.poly
-same 4e-4 -pqY "--max-bad 2000" cracked_plate.poly
-same 1e-5 -pq30 "--max-bad 500 --max-area 1e-5" nasty/slit_1e-9.poly
-same 1e-5 -p "--max-area 1e-5" square.poly
 
 # --- tiny cells, for tests: many blocks in a small mesh
 fresh letter.poly
@@ -111,7 +61,7 @@ complains 'progress takes no value'
 program 1 -- letter
 complains 'no option'
 program 1 -p --output letter letter.poly
-complains 'letter\.poly would be overwritten'
+complains 'letter\.poly: would be overwritten'
 program 1 -p --report nowhere/report.json letter
 complains '^nowhere/report\.json: cannot create'
 program 1 -p --blocks nowhere/blocks letter
@@ -121,7 +71,27 @@ program 1 -p nothing --report report.json
 complains '^nothing\.poly: cannot open'
 wrote
 
+if [ -e /dev/full ]; then
+    what="ptriangle to a full standard output"
+    "$bin/ptriangle" -p letter >/dev/full 2>.err
+    check "exit code" test $? -eq 1
+    check "one line" test "$(wc -l <.err)" -eq 1
+    wrote
+    program 1 -pQ --report /dev/full letter
+    complains '^/dev/full: cannot write'
+    wrote
+fi
+# what is not read may be replaced
+cp "$data/letter.poly" letter.node
+program 0 -pPQ --output letter letter.poly
+header letter.node "57 2 1 1"
+fresh letter.poly
+
 # --- report
+program 0 -pQ --report - letter
+wrote letter.1.node letter.1.ele letter.1.poly
+check "the report on standard output" sh -c 'head -n 1 .out | grep -qx "{" && tail -n 1 .out | grep -qx "}"'
+fresh letter.poly
 program 0 -pq30a0.001Q --threads 2 --report report.json letter
 wrote letter.1.node letter.1.ele letter.1.poly report.json
 for key in threads peak_memory_bytes read delaunay segments holes quality write total prerefine partition find seeds room refine \
@@ -170,4 +140,9 @@ calm
 OMP_NUM_THREADS=3 program 0 -pq30a0.01 --progress letter
 complains ' on 3 threads'
 OMP_NUM_THREADS=3 program 0 -pq30a0.01 --progress --threads 2 letter
+complains ' on 2 threads'
+(unset OMP_NUM_THREADS && SLURM_CPUS_PER_TASK=3 && export SLURM_CPUS_PER_TASK &&
+    "$bin/ptriangle" -pq30a0.01 --progress letter >.out 2>.err)
+complains ' on 3 threads'
+OMP_NUM_THREADS=2 SLURM_CPUS_PER_TASK=3 program 0 -pq30a0.01 --progress letter
 complains ' on 2 threads'

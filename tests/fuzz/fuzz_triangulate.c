@@ -5,7 +5,7 @@
 
 #include "tests/fuzz/bytes.h"
 #include "triangle.h"
-#include "triangle/check.h"
+#include "triangle/check/check.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -8,8 +8,10 @@
 /* Heights below this share of the largest coordinate are at the resolution of coordinates. */
 static const double RESOLUTION = 1e-12;
 
-/* Circles that small angles share end by concentric shells, of which the smallest are larger than that. */
-static const double RESOLUTION_OF_CIRCLES = 1e-10;
+/* A vertex that is level with an end of a subsegment up to rounding, an ulp, leaves the circles of parts not longer than
+ * height^2 / ulp: where more of them than that are needed, the place is not resolved. From SHORTEST ulps on it is not
+ * for rounding that the vertex lies in the circle. */
+enum { MOST_PARTS = 64, SHORTEST = 128 };
 
 struct bounds {
     const struct outcome *outcome;
@@ -90,14 +92,32 @@ static void judge_angles(const struct outcome *o, const struct bounds *b, const 
                     (long long)count[TRI_EXCUSE_PRECISION]);
 }
 
-/* Is there a triangle of ordinary height on this side of a subsegment, with its apex in the circle? */
-static bool is_resolvable(const struct tri_mesh *mesh, const struct tri_subsegment *s, int side, double least_height)
+/* Is a triangle beside the subsegment as flat as rounding? Then that leaves no room for a split point. */
+static bool is_beside_flat(const struct tri_mesh *mesh, const struct tri_subsegment *s, double least_height)
+{
+    for (int side = 0; side < 2; side++) {
+        if (s->side[side] == TRI_NONE)
+            continue;
+        struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[tri_of(s->side[side])].v);
+        if (shape.area2 < least_height * sqrt(fmax(shape.l[0], fmax(shape.l[1], shape.l[2]))))
+            return true;
+    }
+    return false;
+}
+
+/* Is the apex on this side in the circle of the subsegment, although coordinates resolve parts whose circles it is not
+ * in? */
+static bool is_resolvable(const struct tri_mesh *mesh, const struct tri_subsegment *s, int side, double largest)
 {
     if (s->side[side] == TRI_NONE || !tri_is_in_diametral_disk(mesh, s, s->side[side]))
         return false;
-    struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[tri_of(s->side[side])].v);
-    double longest2 = fmax(shape.l[0], fmax(shape.l[1], shape.l[2]));
-    return shape.area2 * shape.area2 > least_height * least_height * longest2;
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]];
+    struct tri_point v = mesh->xy[mesh->tri[tri_of(s->side[side])].v[tri_edge(s->side[side])]];
+    double x = b.x - a.x, y = b.y - a.y, length = sqrt(x * x + y * y), ulp = 0x1p-52 * largest;
+    double height = fabs(x * (v.y - a.y) - y * (v.x - a.x)) / length;
+    double foot = (x * (v.x - a.x) + y * (v.y - a.y)) / length, off = fmin(foot, length - foot);
+    return !is_beside_flat(mesh, s, RESOLUTION * largest) &&
+           (off >= SHORTEST * ulp || fmax(off, ulp) * length <= MOST_PARTS * height * height);
 }
 
 /* What is not conforming must be counted, and lie at the resolution of coordinates or where filling a narrow space would
@@ -105,14 +125,14 @@ static bool is_resolvable(const struct tri_mesh *mesh, const struct tri_subsegme
 void judge_conforming(const struct outcome *o, int64_t faults, struct verdict *verdict)
 {
     struct figure_bounds box = figure_bounds(&o->of->figure.pslg);
-    double least_height = RESOLUTION_OF_CIRCLES * box.largest / o->mesh.unit;
+    double largest = box.largest / o->mesh.unit;
     int64_t count[TRI_EXCUSES], sum = 0, resolvable = 0;
     tri_count_encroached(&o->mesh, &o->options.quality, &o->report.quality, count);
     for (int k = 0; k < TRI_EXCUSES; k++)
         sum += count[k];
     for (int32_t s = 0; s < o->mesh.n_subs; s++)
-        resolvable += is_resolvable(&o->mesh, &o->mesh.sub[s], 0, least_height) ||
-                      is_resolvable(&o->mesh, &o->mesh.sub[s], 1, least_height);
+        resolvable += is_resolvable(&o->mesh, &o->mesh.sub[s], 0, largest) ||
+                      is_resolvable(&o->mesh, &o->mesh.sub[s], 1, largest);
     if (sum == 0)
         judge_fault(verdict, "conforming uncounted", "%lld faults", (long long)faults);
     if (resolvable > count[TRI_EXCUSE_CHANNEL])
@@ -122,6 +142,8 @@ void judge_conforming(const struct outcome *o, int64_t faults, struct verdict *v
                     (long long)count[TRI_EXCUSE_CHANNEL], (long long)count[TRI_EXCUSE_PRECISION]);
 }
 
+static bool is_new(const struct tri_mesh *mesh, int32_t v) { return v >= mesh->n_input && mesh->on[v] >= 0; }
+
 /* Y: no new vertex on the boundary; YY: on no subsegment. */
 static void judge_protection(const struct outcome *o, struct verdict *verdict)
 {
@@ -129,7 +151,7 @@ static void judge_protection(const struct outcome *o, struct verdict *verdict)
     for (int32_t s = 0; s < mesh->n_subs && o->switches.protect > 0; s++) {
         const struct tri_subsegment *sub = &mesh->sub[s];
         bool boundary = sub->side[0] == TRI_NONE || sub->side[1] == TRI_NONE;
-        if ((boundary || o->switches.protect > 1) && (mesh->on[sub->v[0]] >= 0 || mesh->on[sub->v[1]] >= 0))
+        if ((boundary || o->switches.protect > 1) && (is_new(mesh, sub->v[0]) || is_new(mesh, sub->v[1])))
             judge_fault(verdict, "protection", "subsegment %d has a new end", (int)s);
     }
 }

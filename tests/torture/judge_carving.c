@@ -129,7 +129,7 @@ void judge_carving(const struct outcome *o, struct verdict *verdict)
     struct tri_report report;
     struct tri_error error = {0};
     struct tri_options options = o->options;
-    options.refine = options.spread_regions = options.leave_sorted = false;
+    options.refine = options.spread_regions = false;
     options.keep_hull = options.ignore_holes = true;
     if (!o->switches.segments || tri_generate(&f.mesh, &o->of->figure.pslg, &options, &report, &error) != TRI_OK)
         return;

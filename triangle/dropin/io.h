@@ -34,14 +34,10 @@ enum tri_status tri_io_output(const struct tri_mesh *mesh, const struct tri_io_i
                               const struct tri_switches *switches, const struct triangulateio *in,
                               struct triangulateio *out, struct triangulateio *vorout, struct tri_error *error);
 
-/* Refines as tri_refine does. */
-typedef enum tri_status tri_io_refine(const struct triangulate_options *options, struct tri_mesh *mesh,
-                                      const struct tri_refine_options *quality, struct tri_refine_report *report,
-                                      struct tri_error *error);
-
-/* triangulate_with, with the refinement that is given; the executor (or NULL) runs what comes in pieces. */
+/* triangulate_with, with the refinement that is given (its user is the options, never NULL; NULL: tri_refine); the
+ * executor (or NULL) runs what comes in pieces. */
 int tri_io_triangulate(const char *switches, const struct triangulateio *in, struct triangulateio *out,
-                       struct triangulateio *vorout, const struct triangulate_options *options, tri_io_refine *refine,
+                       struct triangulateio *vorout, const struct triangulate_options *options, tri_refine_call *refine,
                        const struct tri_executor *executor);
 
 #endif

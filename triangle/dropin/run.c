@@ -110,38 +110,18 @@ static enum tri_status check_switches(const struct tri_switches *s, const struct
     return TRI_OK;
 }
 
-static enum tri_status check_points(const struct tri_pslg *pslg, struct tri_error *error)
+static enum tri_status run_stages(struct io_run *run, const struct triangulateio *in)
 {
-    enum tri_status status = tri_pslg_check(pslg, error);
-    if (!status && tri_pslg_is_one_place(pslg))
-        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "all points are at the same place");
-    return status;
-}
-
-static enum tri_status build(struct io_run *run)
-{
-    const struct tri_pslg *pslg = &run->input.pslg;
-    struct tri_options how = run->how;
-    how.refine = false; /* is a stage of its own here, and restores the order of the points */
-    how.leave_sorted = run->how.refine;
-    enum tri_status status = check_points(pslg, run->error);
-    if (status || !run->switches->mesh)
-        return status ? status : tri_generate(&run->mesh, pslg, &how, &run->report, run->error);
-    struct tri_reconstruct_options options = {
-        .use_segments = run->how.use_segments, .refine = run->how.refine, .base = !run->switches->from_zero,
-        .is_edge = run->input.is_edge, .stop = run->how.stop};
-    return tri_reconstruct(&run->mesh, pslg, &run->input.elements, &options, run->error);
-}
-
-static enum tri_status run_stages(struct io_run *run, const struct triangulateio *in, tri_io_refine *refine)
-{
-    run->how.quality.region_areas |= run->switches->mesh && run->switches->area_lists;
     enum tri_status status = add_size_test(run);
     status = status ? status : tri_io_input_make(&run->input, in, run->switches, run->error);
-    status = status ? status : build(run);
-    if (!status && run->how.refine)
-        status = refine(run->options, &run->mesh, &run->how.quality, &run->report.quality, run->error);
-    status = status ? status : tri_restore_points(&run->mesh, run->how.executor, run->error);
+    if (!status && tri_pslg_is_one_place(&run->input.pslg))
+        status = tri_fail(run->error, TRI_BAD_INPUT, NULL, 0, "all points are at the same place");
+    if (status)
+        return status;
+    run->how.elements = run->switches->mesh ? &run->input.elements : NULL;
+    run->how.is_edge = run->input.is_edge;
+    run->how.base = !run->switches->from_zero;
+    status = tri_generate(&run->mesh, &run->input.pslg, &run->how, &run->report, run->error);
     if (status)
         return status;
     tri_mesh_compact(&run->mesh);
@@ -151,10 +131,10 @@ static enum tri_status run_stages(struct io_run *run, const struct triangulateio
 }
 
 static enum tri_status run_all(struct io_run *run, const struct triangulateio *in, struct triangulateio *out,
-                               struct triangulateio *vorout, tri_io_refine *refine)
+                               struct triangulateio *vorout)
 {
     enum tri_status status = check_switches(run->switches, vorout, run->error);
-    status = status ? status : run_stages(run, in, refine);
+    status = status ? status : run_stages(run, in);
     if (!status)
         status = tri_io_output(&run->mesh, &run->input, run->switches, in, out, vorout, run->error);
     tri_io_input_free(&run->input);
@@ -171,7 +151,7 @@ static void zero_counts(struct triangulateio *io)
 }
 
 int tri_io_triangulate(const char *switches, const struct triangulateio *in, struct triangulateio *out,
-                       struct triangulateio *vorout, const struct triangulate_options *options, tri_io_refine *refine,
+                       struct triangulateio *vorout, const struct triangulate_options *options, tri_refine_call *refine,
                        const struct tri_executor *executor)
 {
     static const struct triangulate_options none;
@@ -184,8 +164,10 @@ int tri_io_triangulate(const char *switches, const struct triangulateio *in, str
         struct io_run run = {.switches = &s, .options = options, .how = tri_switches_options(&s), .error = &error};
         const struct tri_stop stop = {is_stopped, (void *)options}; /* which only reads it */
         run.how.executor = executor;
+        run.how.refine_call = refine;
+        run.how.refine_user = (void *)options; /* which only reads it */
         run.how.stop = options->stop ? &stop : NULL;
-        status = run_all(&run, in, out, vorout, refine);
+        status = run_all(&run, in, out, vorout);
     } else {
         status = tri_fail(&error, TRI_BAD_INPUT, NULL, 0, "switches, in and out must not be NULL");
     }

@@ -185,6 +185,18 @@ bool tri_switches_use_regions(const struct tri_switches *s)
     return s->segments && !s->mesh && (s->regions || s->area_lists);
 }
 
+bool tri_switches_show_segments(const struct tri_switches *s) { return s->segments || s->keep_hull; }
+
+struct tri_grid_options tri_switches_grid(const struct tri_switches *s, const struct tri_mesh *mesh,
+                                          const struct tri_pslg *pslg, const struct tri_elements *elements)
+{
+    return (struct tri_grid_options){.mesh = mesh, .pslg = pslg, .elements = s->mesh ? elements : NULL,
+                                     .markers = !s->no_markers,
+                                     .regions = s->regions && s->segments && pslg->n_regions > 0,
+                                     .jettison = s->jettison, .second_order = s->second_order,
+                                     .edges = s->edges || s->voronoi};
+}
+
 struct tri_options tri_switches_options(const struct tri_switches *s)
 {
     struct tri_options options = tri_defaults();
@@ -197,7 +209,7 @@ struct tri_options tri_switches_options(const struct tri_switches *s)
      * bound. */
     options.quality.min_angle = s->angle && s->min_angle < 180 ? s->min_angle : 0;
     options.quality.max_area = s->area ? s->max_area : 0;
-    options.quality.region_areas = s->segments && !s->mesh && s->area_lists;
+    options.quality.region_areas = (s->segments || s->mesh) && s->area_lists;
     options.quality.conforming = s->conforming;
     options.quality.protect = s->protect;
     options.quality.max_steiner = s->max_steiner;

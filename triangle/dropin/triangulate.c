@@ -42,18 +42,10 @@ _Static_assert((int)TRIANGULATE_OK == (int)TRI_OK && (int)TRIANGULATE_NO_MEMORY 
                    (int)TRIANGULATE_BAD_INPUT == (int)TRI_BAD_INPUT && (int)TRIANGULATE_INTERNAL == (int)TRI_INTERNAL,
                "the codes of the header are those of the library");
 
-static enum tri_status refine(const struct triangulate_options *options, struct tri_mesh *mesh,
-                              const struct tri_refine_options *quality, struct tri_refine_report *report,
-                              struct tri_error *error)
-{
-    (void)options;
-    return tri_refine(mesh, quality, report, error);
-}
-
 int triangulate_with(const char *switches, const struct triangulateio *in, struct triangulateio *out,
                      struct triangulateio *vorout, const struct triangulate_options *options)
 {
-    return tri_io_triangulate(switches, in, out, vorout, options, refine, NULL);
+    return tri_io_triangulate(switches, in, out, vorout, options, NULL, NULL);
 }
 
 int triangulate(const char *switches, struct triangulateio *in, struct triangulateio *out,

@@ -1,0 +1,11 @@
+/* Input segments as chains of subsegments. Private to the checker. */
+#ifndef TRIANGLE_CHECK_CHAIN_H
+#define TRIANGLE_CHECK_CHAIN_H
+
+#include "triangle/check/internal.h"
+
+/* Looks for a chain for each input segment, asks the sweep about the missing pieces, and compares markers. Needs
+ * c->twin, c->fan, c->tolerance. O(log n) a subsegment on the whole, unless many input segments are incomplete. */
+enum tri_status tri_check_chains(struct checker *c);
+
+#endif

@@ -1,0 +1,34 @@
+/* A point, and the range of coordinates in which arithmetic is exact (triangle/predicates.h says why). */
+#ifndef TRIANGLE_POINT_H
+#define TRIANGLE_POINT_H
+
+#include <math.h>
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct tri_point {
+    double x, y;
+};
+
+/* The range: 0 and what lies between these magnitudes; 2^-216 and 2^200, in words that C++11 has. */
+#define TRI_LEAST_COORDINATE (1 / 1.0531229166855719e65)
+#define TRI_LARGEST_COORDINATE 1.6069380442589903e60
+
+/* What is too small for the range becomes 0. What is too large stays so: tri_is_in_range tells. */
+static inline double tri_round_coordinate(double x) { return fabs(x) < TRI_LEAST_COORDINATE ? 0 : x; }
+
+/* Can the predicates carry this point, whose coordinates have been rounded? Every vertex they can, and the range is
+ * convex: so the figure ends before the range does, and a point out of it lies outside the figure. */
+static inline bool tri_is_in_range(struct tri_point p)
+{
+    return fabs(p.x) <= TRI_LARGEST_COORDINATE && fabs(p.y) <= TRI_LARGEST_COORDINATE;
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
