@@ -70,7 +70,7 @@ static bool counts(const struct tri_mesh *mesh, int32_t p, int32_t q, struct tri
 {
     const struct tri_parent *a = &mesh->parents[p], *b = &mesh->parents[q];
     bool touch = p == q || a->v[0] == b->v[0] || a->v[0] == b->v[1] || a->v[1] == b->v[0] || a->v[1] == b->v[1];
-    return !touch && tri_filling_cost(mesh, p, q, at, w) <= mesh->dearest_channel;
+    return !touch && tri_filling_cost(mesh, p, q, at, w) <= mesh->limits.dearest_channel;
 }
 
 /* What vertex v, at `distance` from a point on parent p, says about the size there. */
