@@ -20,6 +20,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/sweep_order.c
     triangle/locate.c
     triangle/carve.c
+    triangle/chain.c
     triangle/reconstruct.c
     triangle/cavity.c
     triangle/interpolate.c
@@ -42,6 +43,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/api/arrays.c
     triangle/dropin/switches.c
     triangle/topology.c
+    triangle/grid.c
     triangle/dropin/input.c
     triangle/dropin/output.c
     triangle/dropin/run.c
@@ -51,13 +53,20 @@ set(PTRIANGLE_MESHER_SOURCES
 set(PTRIANGLE_CHECK_SOURCES
     triangle/check/check.c
     triangle/check/scale.c
+    triangle/check/triangles.c
     triangle/check/edges.c
+    triangle/check/stars.c
     triangle/check/order.c
     triangle/check/overlap.c
+    triangle/check/hull.c
     triangle/check/delaunay.c
     triangle/check/segments.c
+    triangle/check/line.c
     triangle/check/chain.c
+    triangle/check/border.c
+    triangle/check/vertex_markers.c
     triangle/check/input.c
+    triangle/check/apex.c
     triangle/check/quality.c
     triangle/api/judge.c)
 
@@ -68,6 +77,13 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/read.c
     triangle/text/output.c
     triangle/text/write.c
+    triangle/text/layouts.c
+    triangle/text/grouping.c
+    triangle/text/boundary.c
+    triangle/text/vtu.c
+    triangle/text/gmsh.c
+    triangle/text/hydro.c
+    triangle/text/formats.c
     triangle/api/files.c)
 
 # What these two need of the mesher: all that their shared libraries have of it.
@@ -97,7 +113,10 @@ set(PTRIANGLE_PUBLIC_HEADERS
 # Room drivers/: what the executables share, then the executables, each from drivers/<name>.c. The second list of programs
 # needs the room sched/ and its library.
 set(PTRIANGLE_DRIVER_SOURCES)
-set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle trianglecheck)
+set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle)
+set(PTRIANGLE_JUDGE_SOURCES
+    drivers/judged_files.c
+    drivers/verdict.c)
 set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed
 set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
 

@@ -1,6 +1,8 @@
 /* Meshes from their triangles: round trips, faults, surfaces that are no plane mesh, flips, regions.
  *
  * This program is linked with --wrap for malloc, calloc, realloc and free: see allocations.h. */
+#include <stdio.h>
+
 #include "allocations.h"
 #include "support.h"
 #include "triangle/reconstruct.h"
@@ -95,11 +97,29 @@ static void assert_delaunay(const struct tri_mesh *mesh)
 
 /* --- round trips */
 
+/* Each subsegment is its own parent; or else the subsegments of a parent that was split have one again. */
+static void assert_parents(const struct tri_mesh *mesh, const struct tri_mesh *back, bool united)
+{
+    int32_t *parent = malloc((size_t)mesh->n_parents * sizeof *parent + 1);
+    assert_non_null(parent);
+    memset(parent, 0xff, (size_t)mesh->n_parents * sizeof *parent); /* TRI_NONE */
+    for (int32_t s = 0; s < mesh->n_subs; s++) {
+        const struct tri_parent *now = &back->parents[back->sub[s].parent];
+        int32_t *first = &parent[mesh->sub[s].parent];
+        *first = *first == TRI_NONE ? back->sub[s].parent : *first;
+        assert_int_equal(back->sub[s].parent, united ? *first : s);
+        assert_memory_equal(&now->guard, &back->xy[now->v[0]], sizeof(struct tri_point));
+        for (int k = 0; k < 2; k++)
+            assert_true(mesh->on[mesh->sub[s].v[k]] < 0 || !united || back->on[mesh->sub[s].v[k]] == *first);
+    }
+    assert_true(united ? back->n_parents <= mesh->n_parents : back->n_parents == mesh->n_subs);
+    free(parent);
+}
+
 static void assert_same_mesh(const struct tri_mesh *mesh, const struct tri_mesh *back)
 {
     assert_int_equal(back->n_slots, mesh->n_slots);
     assert_int_equal(back->n_subs, mesh->n_subs);
-    assert_int_equal(back->n_parents, mesh->n_subs);
     assert_int_equal(back->n_vertices, mesh->n_vertices);
     assert_int_equal(back->n_input, mesh->n_vertices);
     assert_memory_equal(back->xy, mesh->xy, (size_t)mesh->n_vertices * sizeof *mesh->xy);
@@ -110,12 +130,12 @@ static void assert_same_mesh(const struct tri_mesh *mesh, const struct tri_mesh 
         assert_int_equal(back->tri[t].region, 0);
     }
     for (int32_t s = 0; s < mesh->n_subs; s++) {
-        assert_memory_equal(back->sub[s].v, mesh->sub[s].v, sizeof mesh->sub[s].v);
-        assert_memory_equal(back->sub[s].side, mesh->sub[s].side, sizeof mesh->sub[s].side);
+        int turned = back->sub[s].v[0] != mesh->sub[s].v[0]; /* so that all of a parent run its way */
+        for (int k = 0; k < 2; k++) {
+            assert_int_equal(back->sub[s].v[k], mesh->sub[s].v[k ^ turned]);
+            assert_int_equal(back->sub[s].side[k], mesh->sub[s].side[k ^ turned]);
+        }
         assert_int_equal(back->sub[s].marker, mesh->sub[s].marker);
-        assert_int_equal(back->sub[s].parent, s);
-        assert_int_equal(back->parents[s].segment, s);
-        assert_memory_equal(&back->parents[s].guard, &back->xy[back->parents[s].v[0]], sizeof(struct tri_point));
     }
 }
 
@@ -129,6 +149,7 @@ static void round_trip(const struct tri_pslg *pslg, double angle, double area)
     for (int refine = 0; refine < 2; refine++) {
         struct tri_mesh back = rebuild(&in, &(struct tri_reconstruct_options){.use_segments = true, .refine = refine});
         assert_same_mesh(&mesh, &back);
+        assert_parents(&mesh, &back, refine);
         if (refine) {
             struct tri_check_options check = {.max_area = area / 4, .max_bad = INT64_MAX, .ignore_lost = true};
             add_steiner(&back, angle, area / 4);
@@ -711,9 +732,66 @@ static void fails_cleanly_without_memory(void **state)
     free_input(&in);
 }
 
+/* --- in shares */
+
+/* So many triangles that they are taken and matched in several shares; numbers have nothing to do with places. */
+static struct input many_triangles(void)
+{
+    struct tri_pslg pslg = support_points(SUPPORT_RANDOM, 40000, 3);
+    struct tri_mesh mesh = support_delaunay(&pslg, 0, NULL);
+    struct input in = input_of(&mesh);
+    assert_true(tri_shares(in.elements.n) >= 3);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+    return in;
+}
+
+/* Flips, too. */
+static void shares_leave_no_trace(void **state)
+{
+    (void)state;
+    struct input in = many_triangles();
+    for (int32_t k = 0; k < 2; k++) {
+        struct tri_reconstruct_options options = {.use_segments = true, .refine = k};
+        struct tri_mesh one = rebuild(&in, &options);
+        options.executor = &support_backwards;
+        struct tri_mesh shares = rebuild(&in, &options);
+        support_assert_same_bytes(&one, &shares);
+        for (int32_t v = 0; v < one.n_vertices; v++)
+            assert_true(one.feature[v] == shares.feature[v]);
+        tri_mesh_free(&one);
+        tri_mesh_free(&shares);
+        for (int32_t v = 0; v < in.pslg.n_points; v += 500) /* not Delaunay any more, if a triangulation still */
+            in.pslg.points[2 * v] += 1e-4;
+    }
+    free_input(&in);
+}
+
+/* A fault is that of the first triangle, in whatever order shares are looked at. */
+static void faults_in_shares(void **state)
+{
+    (void)state;
+    struct input in = many_triangles();
+    struct tri_reconstruct_options options = {.executor = &support_backwards};
+    struct tri_mesh mesh;
+    struct tri_error error = {0};
+    int32_t *corners = in.elements.corners, last = in.elements.n - 1;
+    memcpy(&corners[3 * last], &corners[3 * 7], 3 * sizeof *corners);
+    assert_int_equal(tri_reconstruct(&mesh, &in.pslg, &in.elements, &options, &error), TRI_BAD_INPUT);
+    char text[64];
+    snprintf(text, sizeof text, "triangle %d ", (int)last);
+    assert_ptr_equal(strstr(error.text, text), error.text);
+    corners[3 * (last - 1)] = corners[3 * 50000] = corners[3 * 40000] = -1;
+    assert_int_equal(tri_reconstruct(&mesh, &in.pslg, &in.elements, &options, &error), TRI_BAD_INPUT);
+    assert_string_equal(error.text, "triangle 40000 has a corner that is no vertex");
+    free_input(&in);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shares_leave_no_trace),
+        cmocka_unit_test(faults_in_shares),
         cmocka_unit_test(what_was_meshed_comes_back),
         cmocka_unit_test(boundary_becomes_subsegments),
         cmocka_unit_test(segments_that_are_edges),

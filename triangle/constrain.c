@@ -773,6 +773,30 @@ enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg
     return status;
 }
 
+/* --- flips of a whole mesh */
+
+/* Triangles with an edge that has to be flipped, found in shares of the mesh. An edge is looked at from that of its two
+ * triangles which has the lower number. */
+struct suspicion {
+    struct layer *layer;
+    int32_t *suspect; /* [n_slots] each share's behind one another, with gaps */
+    int32_t n[TRI_MOST_SHARES];
+};
+
+static void suspect_share(void *context, size_t share)
+{
+    struct suspicion *s = context;
+    const struct tri_mesh *mesh = s->layer->mesh;
+    struct tri_range range = tri_share(share, mesh->n_slots);
+    uint32_t step = 0;
+    for (int32_t t = range.first; t < range.last && !tri_stop_is_due(mesh->stop, &step); t++)
+        for (int e = 0; e < 3; e++)
+            if (mesh->tri[t].n[e] > tri_code(t, e) && is_illegal(s->layer, t, e)) {
+                s->suspect[range.first + s->n[share]++] = t;
+                break;
+            }
+}
+
 /* Touches the edges that lead to triangles of higher number: so each edge is touched by one of its two. */
 static bool touch_upwards(struct layer *l, int32_t t)
 {
@@ -785,15 +809,34 @@ static bool touch_upwards(struct layer *l, int32_t t)
     return true;
 }
 
-enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, struct tri_error *error)
+/* An edge that no flip has come near is as it was found; any other has been touched since, and is Delaunay. */
+static enum tri_status flip_suspects(struct layer *l, const struct suspicion *s)
+{
+    enum tri_status status = tri_stop_is_asked(l->mesh->stop) ? tri_fail_stopped(l->error) : TRI_OK;
+    for (size_t share = 0; share < tri_shares(l->mesh->n_slots); share++) {
+        const int32_t *suspect = s->suspect + tri_share(share, l->mesh->n_slots).first;
+        for (int32_t i = 0; !status && i < s->n[share]; i++) {
+            if (!l->corner)
+                status = find_corners(l);
+            if (!status && tri_stop_is_due(l->mesh->stop, &l->step))
+                status = tri_fail_stopped(l->error);
+            if (!status && (!touch_upwards(l, suspect[i]) || !legalise(l)))
+                status = tri_fail(l->error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
+        }
+    }
+    return status;
+}
+
+enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, const struct tri_executor *executor,
+                                     struct tri_error *error)
 {
     struct layer l = {.mesh = mesh, .ties_stay = true, .error = error};
-    enum tri_status status = find_corners(&l);
-    for (int32_t t = 0; !status && t < mesh->n_slots; t++)
-        if (tri_stop_is_due(mesh->stop, &l.step))
-            status = tri_fail_stopped(error);
-        else if (!touch_upwards(&l, t) || !legalise(&l))
-            status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
+    struct suspicion s = {&l, malloc(((size_t)mesh->n_slots + 1) * sizeof *s.suspect), {0}};
+    if (!s.suspect)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
+    tri_execute(executor, tri_shares(mesh->n_slots), suspect_share, &s);
+    enum tri_status status = flip_suspects(&l, &s);
     free_layer(&l);
+    free(s.suspect);
     return status;
 }

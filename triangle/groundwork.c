@@ -64,7 +64,7 @@ static bool is_before(const void *context, int32_t a, int32_t b)
 {
     const struct hub *hub = context;
     return tri_turns_before(hub->mesh->xy[hub->vertex], tri_far_end(hub->mesh, a, hub->vertex),
-                        tri_far_end(hub->mesh, b, hub->vertex));
+                            tri_far_end(hub->mesh, b, hub->vertex));
 }
 
 void tri_incidence_fill(struct tri_mesh *mesh)
@@ -112,13 +112,13 @@ static double shortest_edge2(const struct tri_mesh *mesh)
     return size * 0x1p-45 * (size * 0x1p-45);
 }
 
-enum tri_status tri_refine_prepare(struct tri_mesh *mesh, struct tri_error *error)
+enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
 {
     mesh->limits.shortest2 = shortest_edge2(mesh);
-    tri_estimate_features(mesh);
+    tri_estimate_features(mesh, executor);
     find_acute(mesh);
     enum tri_status status = list_parents(mesh, error);
     if (!status)
-        tri_choose_channels(mesh);
+        tri_choose_channels(mesh, executor);
     return status;
 }

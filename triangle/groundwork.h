@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "triangle/executor.h"
 #include "triangle/point.h"
 #include "triangle/status.h"
 
@@ -35,7 +36,7 @@ struct tri_limits {
 /* Makes the mesh ready for refinement: lists the parents at each vertex, estimates feature sizes, sets the limits, and
  * marks the input vertices at which two subsegments meet at less than 60 degrees inside the mesh (TRI_VERTEX_ACUTE). To
  * be called once, after carving. O(triangles). */
-enum tri_status tri_refine_prepare(struct tri_mesh *mesh, struct tri_error *error);
+enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error);
 
 /* Lists the parents at each vertex, in the arrays that tri_refine_prepare has made; called again when vertices get
  * other numbers. O(vertices + parents log parents) at most. */

@@ -14,6 +14,7 @@ struct tri_reconstruct_options {
     bool use_segments; /* the segments of the PSLG that are edges of the mesh become subsegments (-p) */
     bool refine;       /* the mesh is going to be refined: it is made constrained Delaunay first */
     const struct tri_stop *stop; /* as in struct tri_options */
+    const struct tri_executor *executor; /* as in struct tri_options */
     int32_t base;      /* of the numbers in errors: of the first triangle and the first vertex */
     bool *is_edge;     /* [n_segments] receives whether the segment is an edge of the mesh, or nothing that
                           could be one; NULL: not asked for */
@@ -22,8 +23,9 @@ struct tri_reconstruct_options {
 /* Makes *mesh of the points of the PSLG and these triangles, ready for tri_refine.
  *
  * Every vertex is one of the input, every edge of one triangle is a subsegment. So is, with use_segments, every edge
- * that is a segment: these come first, in the order of the segments, each with a parent of its own; where several
- * segments are one edge, the first of them with a marker gives it. A segment that is no edge is left out; Triangle
+ * that is a segment: these come first, in the order of the segments, each with a parent of its own (with
+ * `refine` straight chains of them share one, see chain.h); where several segments are one edge, the first of them with
+ * a marker gives it. A segment that is no edge is left out; Triangle
  * passes it on to its output. Holes and regions of the PSLG are not looked at.
  *
  * Without `refine` the triangles are those given, in their order, with their first corners first; clockwise ones are

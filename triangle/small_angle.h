@@ -38,6 +38,6 @@ bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_
 
 /* Chooses which narrow spaces are filled, by their cost (mesh->limits): the parents at each vertex are listed.
  * O(triangles). */
-void tri_choose_channels(struct tri_mesh *mesh);
+void tri_choose_channels(struct tri_mesh *mesh, const struct tri_executor *executor);
 
 #endif
