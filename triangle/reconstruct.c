@@ -14,7 +14,7 @@
 #include <string.h>
 
 #include "triangle/carve.h"
-#include "triangle/constrain.h"
+#include "triangle/flip.h"
 #include "triangle/predicates.h"
 #include "triangle/refine.h"
 #include "triangle/topology.h"

@@ -64,7 +64,7 @@ struct tri_refiner {
 enum { SEED_CHUNK = 1 << 16 };
 
 /* Beyond this lies no point that the predicates can carry: the triangle's area has been rounded to nothing. */
-static const double FARTHEST = 0x1p199;
+static const double FARTHEST = TRI_LARGEST_COORDINATE / 2;
 
 /* DONE: a point was inserted, or the triangle is gone; AGAIN: a subsegment was split instead, the triangle may still
  * stand; LEFT: it is somebody else's. */
