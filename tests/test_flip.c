@@ -86,7 +86,8 @@ static void test_ties_stay_where_asked(void **state)
         struct tri_elements elements = {.n = 2, .n_nodes = 3, .corners = corners[turn]};
         for (int i = 0; i < 4; i++)
             support_add_point(&pslg, i == 1 || i == 2, i > 1);
-        assert_int_equal(tri_reconstruct(&mesh, &pslg, &elements, &(struct tri_reconstruct_options){0}, &error), TRI_OK);
+        struct tri_reconstruct_options as_it_is = {0};
+        assert_int_equal(tri_reconstruct(&mesh, &pslg, &elements, &as_it_is, &error), TRI_OK);
         assert_int_equal(tri_flip_to_delaunay(&mesh, &error), TRI_OK);
         assert_memory_equal(mesh.tri[0].v, corners[turn], sizeof mesh.tri[0].v);
         struct tri_flips flips = {.mesh = &mesh};

@@ -1,7 +1,7 @@
-/* Lawson's flips (1977): where the vertex beyond an edge lies in the circle of the triangle before it, the edge gives way
- * to the other diagonal of its quadrilateral, if that is convex. Each flip lowers the surface that the triangulation
- * spans when its vertices are lifted to the paraboloid, so there is an end: the constrained Delaunay triangulation (Lee
- * & Lin 1986). */
+/* Lawson's flips (1977): where the vertex beyond an edge lies in the circle of the triangle before it, the edge gives
+ * way to the other diagonal of its quadrilateral, if that is convex. Each flip lowers the surface that the
+ * triangulation spans when its vertices are lifted to the paraboloid, so there is an end: the constrained Delaunay
+ * triangulation (Lee & Lin 1986). */
 #include "triangle/flip.h"
 
 #include <assert.h>

@@ -402,6 +402,12 @@ static bool is_hopeless(const struct tri_refiner *r, int32_t slot, const struct 
     return r->report->hit_cap = true;
 }
 
+/* Somebody asks for the end: between two points the mesh is in order. */
+static bool must_stop(struct tri_refiner *r)
+{
+    return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(r->error);
+}
+
 /* Treats one bad triangle until it is gone or refused. */
 static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
 {
@@ -431,12 +437,16 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
             count_point(r);
         if (outcome != AGAIN)
             return outcome == REFUSED ? give_up(r, r->excuse) : outcome;
+        if (must_stop(r))
+            return FAILED;
     }
 }
 
 static bool split_crowded(struct tri_refiner *r)
 {
     while (r->n_crowded > 0) {
+        if (must_stop(r))
+            return false;
         int32_t s = r->crowded[r->n_crowded - 1];
         const struct tri_subsegment *sub = &r->mesh->sub[s];
         int32_t beside = tri_of(sub->side[sub->side[0] == TRI_NONE]);
@@ -464,12 +474,6 @@ static bool next_entry(struct tri_refiner *r)
 {
     return r->step == FIRST_PASS ? tri_bad_queue_pop_angle(&r->queue, r->limit, &r->hand)
                                  : tri_bad_queue_pop(&r->queue, &r->hand);
-}
-
-/* Somebody asks for the end: between two triangles the mesh is in order. */
-static bool must_stop(struct tri_refiner *r)
-{
-    return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(r->error);
 }
 
 static bool work_off(struct tri_refiner *r)
