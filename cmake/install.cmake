@@ -1,5 +1,6 @@
 # cmake --install: executables, libraries, public headers, CMake package, pkg-config files. Nothing installed
-# names a folder of the machine that built it: the tree may be moved.
+# names a folder of the machine that built it: the tree may be moved. Components: programs, runtime (shared libraries) and
+# development.
 
 include(CMakePackageConfigHelpers)
 set(PTRIANGLE_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/ptriangle)
@@ -7,31 +8,33 @@ set(PTRIANGLE_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/ptriangle)
 get_property(libraries GLOBAL PROPERTY PTRIANGLE_LIBRARIES)
 get_property(executables GLOBAL PROPERTY PTRIANGLE_EXECUTABLES)
 install(TARGETS ${libraries} EXPORT ptriangleTargets
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development)
 if(executables)
-    install(TARGETS ${executables} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+    install(TARGETS ${executables} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
 endif()
 get_property(documents GLOBAL PROPERTY PTRIANGLE_DOCUMENTS)
 foreach(document IN LISTS documents)
     if(document MATCHES "\\.1$")
-        install(FILES ${document} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+        install(FILES ${document} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT programs)
     else()
-        install(FILES ${document} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+        install(FILES ${document} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT programs)
     endif()
 endforeach()
 foreach(header IN LISTS PTRIANGLE_PUBLIC_HEADERS)
     get_filename_component(room ${header} DIRECTORY)
-    install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/ptriangle/${room})
+    install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/ptriangle/${room} COMPONENT development)
 endforeach()
 install(FILES triangle/dropin/triangle.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} # where Triangle's clients look for it
-        RENAME ${PTRIANGLE_PREFIX}triangle.h)
+        RENAME ${PTRIANGLE_PREFIX}triangle.h COMPONENT development)
 
-install(EXPORT ptriangleTargets NAMESPACE ptriangle:: DESTINATION ${PTRIANGLE_PACKAGE_DIR})
+install(EXPORT ptriangleTargets NAMESPACE ptriangle:: DESTINATION ${PTRIANGLE_PACKAGE_DIR}
+        COMPONENT development)
 configure_package_config_file(cmake/ptriangleConfig.cmake.in ptriangleConfig.cmake
                               INSTALL_DESTINATION ${PTRIANGLE_PACKAGE_DIR})
 write_basic_package_version_file(ptriangleConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/ptriangleConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/ptriangleConfigVersion.cmake
-        DESTINATION ${PTRIANGLE_PACKAGE_DIR})
+        DESTINATION ${PTRIANGLE_PACKAGE_DIR} COMPONENT development)
 
 # pkg-config: the way from the .pc file up to the prefix depends on the library folder (lib, lib64, lib/x86_64-...).
 file(RELATIVE_PATH PTRIANGLE_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
@@ -40,27 +43,28 @@ set(PTRIANGLE_PC_SINGLE "")
 if(PTRIANGLE_SINGLE)
     set(PTRIANGLE_PC_SINGLE " -DSINGLE")
 endif()
-# A shared library knows what it needs; of a static one the client's linker must be told.
+# A shared library knows what it needs; of a static one the client's linker must be told: at once, or, where there are
+# shared ones, when it asks (pkg-config --static), in case static ones were installed beside.
 set(PTRIANGLE_PC_LIBRARY ${PTRIANGLE_PREFIX}triangle)
 set(PTRIANGLE_PC_NEEDS -lm)
-if(NOT TARGET libptriangle)
-    set(PTRIANGLE_PC_PARALLEL "-ltricheck -ltritext -l${PTRIANGLE_PC_LIBRARY}")
-    set(PTRIANGLE_PC_PARALLEL_NEEDS "-l${PTRIANGLE_CXX_RUNTIME} -lm")
-elseif(BUILD_SHARED_LIBS)
-    set(PTRIANGLE_PC_PARALLEL "-lptriangle -ltricheck -ltritext")
-else()
-    set(PTRIANGLE_PC_PARALLEL "-lptriangle -ltricheck -ltritext -l${PTRIANGLE_PC_LIBRARY}")
+set(PTRIANGLE_PC_PARALLEL "-ltricheck -ltritext")
+set(PTRIANGLE_PC_PARALLEL_NEEDS "-l${PTRIANGLE_PC_LIBRARY} -l${PTRIANGLE_CXX_RUNTIME} -lm")
+if(TARGET libptriangle)
     list(TRANSFORM PTRIANGLE_OPENMP_RUNTIME REPLACE "^([^/].*)" "-l\\1" OUTPUT_VARIABLE openmp)
     list(JOIN openmp " " openmp)
-    set(PTRIANGLE_PC_PARALLEL_NEEDS "${openmp} -l${PTRIANGLE_CXX_RUNTIME} -lm")
+    string(PREPEND PTRIANGLE_PC_PARALLEL "-lptriangle ")
+    set(PTRIANGLE_PC_PARALLEL_NEEDS "-l${PTRIANGLE_PC_LIBRARY} ${openmp} -l${PTRIANGLE_CXX_RUNTIME} -lm")
 endif()
 if(BUILD_SHARED_LIBS)
-    set(PTRIANGLE_PC_NEEDS "")
-    set(PTRIANGLE_PC_PARALLEL_NEEDS "")
+    string(PREPEND PTRIANGLE_PC_NEEDS "\nLibs.private: ")
+    string(PREPEND PTRIANGLE_PC_PARALLEL_NEEDS "\nLibs.private: ")
+    if(NOT TARGET libptriangle) # libtritext leaves libtriangle to the client
+        string(APPEND PTRIANGLE_PC_PARALLEL " -l${PTRIANGLE_PC_LIBRARY}")
+    endif()
 endif()
 configure_file(cmake/triangle.pc.in ${PTRIANGLE_PREFIX}triangle.pc @ONLY)
 configure_file(cmake/ptriangle.pc.in ptriangle.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${PTRIANGLE_PREFIX}triangle.pc ${CMAKE_CURRENT_BINARY_DIR}/ptriangle.pc
-        DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)

@@ -10,6 +10,8 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/radix.c
     triangle/hilbert.c
     triangle/spatial.c
+    triangle/insertion.c
+    triangle/curve_sort.c
     triangle/delaunay.c
     triangle/crossing.c
     triangle/recover.c

@@ -41,6 +41,9 @@ struct par_partition {
  * probe for each thousand triangles or so of those to come. */
 double par_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options);
 
+/* That part of it which is no guess: what there is, and what areas and the size test ask for. O(triangles). */
+double par_sure_work(const struct tri_mesh *mesh, const struct tri_refine_options *options);
+
 /* The share of one bad triangle in that. */
 double par_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t);
 

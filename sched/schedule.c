@@ -20,6 +20,9 @@
  * pre-refinement to take a few thousandths of the time. (docs/performance.md) */
 static const double CELLS = 128, SMALLEST_CELL = 8192, LARGEST_CELL = 131072, COARSE_PER_CELL = 64;
 
+/* Of the fewest triangles that are worth a schedule, a share that one call makes at once to see whether they come. */
+static const double A_LITTLE = 0.25;
+
 enum { FEWEST_CELLS = 8, FEWEST_COARSE_CELLS = 32, FEWEST_TO_COARSEN = 16, MAX_ROUNDS = 24 };
 
 struct par_options par_defaults(void) { return (struct par_options){0}; }
@@ -61,8 +64,8 @@ static void tell(const struct par_state *state, int phase)
                                  state->mesh->n_slots);
 }
 
-/* The size test of a graded pre-refinement: no edge longer than a share of the cell it lies in. In the mesh's units,
- * where squares neither overflow nor underflow. */
+/* Which bad triangles a graded pre-refinement takes: those with an edge longer than a share of the cell it lies in. In
+ * the mesh's units, where squares neither overflow nor underflow. */
 struct coarse_test {
     const struct par_partition *partition;
     double share2; /* square of it */
@@ -145,18 +148,19 @@ static enum tri_status fill_pool(struct par_state *state, const struct tri_refin
     return par_pool_fill(&state->pool, state->mesh, quality, known, &executor, &state->radius, error);
 }
 
-/* Pre-refinement where the input is already fine in places: only bad triangles with edges that are long against their
- * cell are cut, with no more than one point for 400 triangles of the mesh to come. Fills the pool. */
+/* Pre-refinement where the input is already fine in places: the same refinement for bad triangles alone that have an
+ * edge that is long against their cell, with no more than one point for 400 triangles of the mesh to come. No point
+ * is inserted that the bounds do not ask for: so it makes no triangle that refinement would not. Fills the pool. */
 static enum tri_status prerefine_graded(struct par_state *state, const struct tri_refine_options *quality,
                                         const struct par_partition *partition, struct tri_error *error)
 {
-    struct tri_refine_options coarse = tri_refine_defaults();
+    struct tri_refine_options coarse = *quality;
     struct tri_refine_report report;
     double least = smallest_cell(partition);
     struct coarse_test test = {partition, 1.0 / 16, least * least / 16, state->mesh->unit};
-    coarse.unsuitable = is_too_long;
-    coarse.unsuitable_user = &test;
-    coarse.protect = quality->protect;
+    coarse.conforming = false;
+    coarse.urgent = is_too_long;
+    coarse.urgent_user = &test;
     coarse.max_steiner = (int64_t)(partition->estimate / 400);
     struct par_slots long_ones;
     struct tri_executor executor = par_executor(&state->threads);
@@ -315,15 +319,49 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
     return status;
 }
 
-/* Refines to these bounds: sequentially if that is little work, else by the schedule. */
+static double estimate_of(struct par_state *state, const struct tri_refine_options *quality)
+{
+    double began = par_seconds(), estimate = par_estimate(state->mesh, quality);
+    state->report->seconds_partition += par_seconds() - began;
+    return estimate;
+}
+
+/* The first points of a sequential call, as many as would make this many triangles; *done: they were enough. */
+static enum tri_status refine_a_little(struct par_state *state, const struct tri_refine_options *quality,
+                                       double triangles, bool *done, struct tri_error *error)
+{
+    struct tri_refine_options options = *quality;
+    struct tri_refine_report report;
+    double began = par_seconds();
+    options.max_steiner = (int64_t)(triangles / 2);
+    enum tri_status status = tri_refine(state->mesh, &options, &report, error);
+    *done = !report.hit_limit;
+    report.hit_limit = false;
+    par_add_up(&state->report->total, &report);
+    state->report->seconds_prerefine += par_seconds() - began;
+    return status;
+}
+
+/* Refines to these bounds: sequentially if that is little work, else by the schedule. What areas and the triangles that
+ * there are ask for is known; what angles ask for is a guess, which small parts of a mesh may spoil by orders of
+ * magnitude. Where the guess alone says that there is much work, a little of it is done first: that may be all, and
+ * what then remains is guessed better. */
 static enum tri_status refine_level(struct par_state *state, const struct tri_refine_options *quality, int level,
                                     struct tri_error *error)
 {
-    double began = par_seconds(), estimate = par_estimate(state->mesh, quality), cell = cell_size(state, estimate);
-    state->report->seconds_partition += par_seconds() - began;
+    double estimate = estimate_of(state, quality), cell = cell_size(state, estimate);
+    double large = cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS);
+    if (estimate >= large && par_sure_work(state->mesh, quality) < large) {
+        bool done;
+        enum tri_status status = refine_a_little(state, quality, large * A_LITTLE, &done, error);
+        if (status || done)
+            return status;
+        estimate = estimate_of(state, quality);
+        cell = cell_size(state, estimate);
+    }
     if (estimate >= cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS))
         return schedule_level(state, quality, level, estimate, cell, error);
-    began = par_seconds();
+    double began = par_seconds();
     enum tri_status status = refine_rest(state, quality, true, error);
     *(level > 0 ? &state->report->seconds_prerefine : &state->report->seconds_last) += par_seconds() - began;
     return status;

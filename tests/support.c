@@ -302,13 +302,28 @@ struct tri_mesh support_generate(const struct tri_pslg *pslg, const struct tri_o
     return mesh;
 }
 
-struct tri_mesh support_constrained(const struct tri_pslg *pslg, struct tri_constrain_report *report)
+struct tri_mesh support_delaunay(const struct tri_pslg *pslg, int32_t leaf_size, const struct tri_executor *executor)
 {
     struct tri_mesh mesh;
     struct tri_error error = {0};
+    int32_t *rank;
     assert_int_equal(tri_mesh_init(&mesh, &error), TRI_OK);
     assert_int_equal(tri_mesh_take_points(&mesh, pslg, &error), TRI_OK);
-    assert_int_equal(tri_delaunay(&mesh, NULL, &error), TRI_OK);
+    assert_int_equal(tri_sort_points(&mesh, &rank, executor, &error), TRI_OK);
+    free(rank);
+    if (leaf_size == 0 ? tri_delaunay(&mesh, executor, &error)
+                       : tri_delaunay_in_leaves(&mesh, leaf_size, executor, &error))
+        fail_msg("%s", error.text);
+    if (tri_mesh_validate(&mesh, &error) != TRI_OK)
+        fail_msg("%s", error.text);
+    assert_int_equal(tri_restore_points(&mesh, executor, &error), TRI_OK);
+    return mesh;
+}
+
+struct tri_mesh support_constrained(const struct tri_pslg *pslg, struct tri_constrain_report *report)
+{
+    struct tri_mesh mesh = support_delaunay(pslg, 0, NULL);
+    struct tri_error error = {0};
     if (tri_constrain(&mesh, pslg, report, &error) != TRI_OK)
         fail_msg("tri_constrain: %s", error.text);
     if (tri_mesh_validate(&mesh, &error) != TRI_OK)

@@ -97,6 +97,9 @@ void support_judge(const struct tri_mesh *mesh, const struct tri_pslg *pslg, con
 struct tri_mesh support_generate(const struct tri_pslg *pslg, const struct tri_options *options,
                                  struct tri_report *report);
 
+/* The Delaunay triangulation of the points, in leaves of this size (0: the usual one); its links are valid. */
+struct tri_mesh support_delaunay(const struct tri_pslg *pslg, int32_t leaf_size, const struct tri_executor *executor);
+
 /* A constrained triangulation of the whole hull, nothing carved; its links are valid. */
 struct tri_mesh support_constrained(const struct tri_pslg *pslg, struct tri_constrain_report *report);
 

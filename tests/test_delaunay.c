@@ -2,18 +2,7 @@
 #include "support.h"
 #include "triangle/delaunay.h"
 
-static struct tri_mesh triangulate(const struct tri_pslg *pslg)
-{
-    struct tri_mesh mesh;
-    struct tri_error error = {0};
-    assert_int_equal(tri_mesh_init(&mesh, &error), TRI_OK);
-    assert_int_equal(tri_mesh_take_points(&mesh, pslg, &error), TRI_OK);
-    if (tri_delaunay(&mesh, NULL, &error) != TRI_OK)
-        fail_msg("%s", error.text);
-    if (tri_mesh_validate(&mesh, &error) != TRI_OK)
-        fail_msg("%s", error.text);
-    return mesh;
-}
+static struct tri_mesh triangulate(const struct tri_pslg *pslg) { return support_delaunay(pslg, 0, NULL); }
 
 static bool is_first(const struct tri_point *xy, int32_t v)
 {
@@ -55,15 +44,21 @@ static struct support_set naive_delaunay(const struct tri_point *xy, int32_t n_p
     return set;
 }
 
-static void compare_with_twin(const struct tri_pslg *pslg)
+static void compare_leaves_with_twin(const struct tri_pslg *pslg, int32_t leaf_size)
 {
-    struct tri_mesh mesh = triangulate(pslg);
+    struct tri_mesh mesh = support_delaunay(pslg, leaf_size, NULL);
     struct support_set fast = support_triangles(&mesh), naive = naive_delaunay(mesh.xy, mesh.n_vertices);
     assert_int_equal(fast.n, naive.n);
     assert_true(support_same(&fast, &naive));
     support_set_free(&fast);
     support_set_free(&naive);
     tri_mesh_free(&mesh);
+}
+
+static void compare_with_twin(const struct tri_pslg *pslg)
+{
+    compare_leaves_with_twin(pslg, 0);
+    compare_leaves_with_twin(pslg, 1);
 }
 
 static void test_equals_naive_twin(void **state)
@@ -191,6 +186,37 @@ static void test_one_point_beside_a_line(void **state)
     }
 }
 
+/* Blocks are a matter of speed: leaves of all sizes, and blocks that run in the other order, make the same mesh. */
+static void test_leaves_leave_no_trace(void **state)
+{
+    (void)state;
+    static const int32_t sizes[] = {30, 300, 3000};
+    for (int kind = 0; kind < SUPPORT_KINDS; kind++)
+        for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
+            struct tri_pslg pslg = support_points((enum support_kind)kind, sizes[s], 3);
+            struct tri_mesh whole = support_delaunay(&pslg, sizes[s], NULL);
+            for (int32_t leaf_size = 1; leaf_size <= sizes[s]; leaf_size *= 5) {
+                struct tri_mesh mesh = support_delaunay(&pslg, leaf_size, &support_backwards);
+                support_assert_same_bytes(&whole, &mesh);
+                tri_mesh_free(&mesh);
+            }
+            tri_mesh_free(&whole);
+            tri_pslg_free(&pslg);
+        }
+}
+
+/* A fan: its hub is a corner of all triangles, so that a single block has work; and its hull has nothing else. */
+static void test_fan_equals_naive_twin(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = support_pslg(40, 0, 0, 0);
+    support_add_point(&pslg, 20, -1000);
+    for (int i = 1; i < 40; i++)
+        support_add_point(&pslg, i, i * (40 - i) / 16.0);
+    compare_with_twin(&pslg);
+    tri_pslg_free(&pslg);
+}
+
 /* Large: judged by counts (Euler), exact local Delaunay property, a convex hull that carries all. */
 static void test_large_sets_pass_the_judge(void **state)
 {
@@ -242,6 +268,8 @@ int main(void)
         cmocka_unit_test(test_signed_zeros_are_one_point),
         cmocka_unit_test(test_collinear_points_give_nothing),
         cmocka_unit_test(test_one_point_beside_a_line),
+        cmocka_unit_test(test_leaves_leave_no_trace),
+        cmocka_unit_test(test_fan_equals_naive_twin),
         cmocka_unit_test(test_large_sets_pass_the_judge),
         cmocka_unit_test(test_all_point_files),
     };

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Builds the fuzz targets (preset fuzz) and runs each for so many seconds; what they find is written to build/fuzz/found.
+# Builds the fuzz targets (preset fuzz) and runs each for so many seconds, as many at a time as there are
+# processors; what they find is written to build/fuzz/found.
 # Usage: tools/fuzz.sh [SECONDS [TARGET...]]     default: 60, all of read triangulate mesh schedule
 # Again, with one finding: build/fuzz/bin/fuzz_TARGET build/fuzz/found/TARGET-crash-..
 # PTRIANGLE_FUZZ_IGNORE="area,angle" lets kinds of faults of the mesh pass (see tests/fuzz/fuzz_mesh.c).
@@ -27,8 +28,10 @@ cmake --preset fuzz -B "$folder" >/dev/null
 cmake --build "$folder" --parallel "$(nproc 2>/dev/null || echo 2)" --target $(printf 'fuzz_%s ' "$@")
 tests/fuzz/seeds.sh data "$folder/corpus"
 mkdir -p "$folder/found"
-failed=0
-for target; do
+rm -f "$folder/failed"
+
+fuzz() { # fuzz TARGET
+    target=$1
     dictionary=""
     [ ! -f "tests/fuzz/$target.dict" ] || dictionary="-dict=tests/fuzz/$target.dict"
     log=$folder/$target.log
@@ -39,9 +42,18 @@ for target; do
         >"$log" 2>&1; then
         echo "fuzz: $target: $(tail -n 1 "$log")"
     else
-        failed=1
+        : >"$folder/failed"
         echo "fuzz: $target: FAILED, see $log"
         grep -E '^fuzz_|ERROR|runtime error|Assertion|SUMMARY|Test unit' "$log" | head -n 6 || true
     fi
+}
+
+jobs=$(nproc 2>/dev/null || echo 2)
+started=0
+for target; do
+    fuzz "$target" &
+    started=$((started + 1))
+    [ $((started % jobs)) -ne 0 ] || wait
 done
-exit $failed
+wait
+[ ! -e "$folder/failed" ]

@@ -20,9 +20,10 @@ run() { # run PROGRAM WORD...: exit codes other than valgrind's are the program'
         exit 1
     }
 }
-for file in *.poly; do
-    run "$bin/triangle" -pcAaQ "$file"
-done
+# shellcheck disable=SC2016 # for the shells that run beside each other
+printf '%s\n' *.poly | xargs -P "$(nproc 2>/dev/null || echo 2)" -I FILE sh -c '
+    valgrind --quiet --leak-check=no --error-exitcode=99 "$1" -pcAaQ "$2" >"$2.log" 2>&1
+    [ $? -ne 99 ] || { echo "valgrind: $*"; cat "$2.log"; exit 1; }' sh "$bin/triangle" FILE
 run "$bin/triangle" -pq30a0.05enVC letter.poly
 run "$bin/triangle" -rpq33a0.02D letter.1
 run "$bin/triangle" -pq30aADvjo2 section.poly

@@ -37,7 +37,10 @@ static bool needs_work(const struct tri_criterion *c, int32_t slot)
     if (!tri_is_live(t))
         return false;
     struct tri_shape shape = tri_shape_of(c->mesh->xy, t->v);
-    if (tri_judge(c, t, &shape) != TRI_GOOD)
+    enum tri_badness badness = tri_judge(c, t, &shape);
+    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, slot, &shape) && !tri_is_too_large(c, t, &shape))
+        badness = TRI_GOOD; /* as good as it will be */
+    if (badness != TRI_GOOD)
         return true;
     double fraction;
     for (int e = 0; c->options->conforming && e < 3; e++)

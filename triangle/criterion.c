@@ -36,10 +36,12 @@ static void shrink(double at[2], const double centroid[2], double factor)
     at[1] = centroid[1] + factor * (at[1] - centroid[1]);
 }
 
-bool tri_is_refused(const struct tri_refine_options *options, double unit, struct tri_point p, struct tri_point q,
-                    struct tri_point r, double scale)
+/* The answer of a test in the caller's units, about a triangle of a mesh with this unit, shrunk as tri_is_refused has
+ * it. */
+static bool says_yes(tri_unsuitable *test, void *user, double unit, struct tri_point p, struct tri_point q,
+                     struct tri_point r, double scale)
 {
-    assert(options->unsuitable && scale > 0);
+    assert(test && scale > 0);
     double a[2] = {p.x * unit, p.y * unit}, b[2] = {q.x * unit, q.y * unit}, c[2] = {r.x * unit, r.y * unit};
     double area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
     if (scale != 1) {
@@ -48,9 +50,14 @@ bool tri_is_refused(const struct tri_refine_options *options, double unit, struc
         shrink(b, centroid, factor);
         shrink(c, centroid, factor);
     }
-    return options->unsuitable(options->unsuitable_user, a, b, c, area / scale) != 0;
+    return test(user, a, b, c, area / scale) != 0;
 }
 
+bool tri_is_refused(const struct tri_refine_options *options, double unit, struct tri_point p, struct tri_point q,
+                    struct tri_point r, double scale)
+{
+    return says_yes(options->unsuitable, options->unsuitable_user, unit, p, q, r, scale);
+}
 bool tri_is_unsuitable(const struct tri_criterion *criterion, const int32_t v[3])
 {
     const struct tri_refine_options *options = criterion->options;
@@ -64,12 +71,21 @@ bool tri_is_too_large(const struct tri_criterion *c, const struct tri_triangle *
     return shape->area2 > tri_area2_bound(c, t->region) || (c->options->unsuitable && tri_is_unsuitable(c, t->v));
 }
 
+static bool can_wait(const struct tri_criterion *c, const int32_t v[3])
+{
+    const struct tri_refine_options *options = c->options;
+    const struct tri_point *xy = c->mesh->xy;
+    return options->urgent && !says_yes(options->urgent, options->urgent_user, c->mesh->unit, xy[v[0]], xy[v[1]],
+                                        xy[v[2]], 1);
+}
+
 enum tri_badness tri_judge(const struct tri_criterion *c, const struct tri_triangle *t, const struct tri_shape *shape)
 {
     double product = tri_longer_product(shape->l[0], shape->l[1], shape->l[2]);
-    if (shape->area2 * shape->area2 < c->bounds.sin2 * product)
-        return TRI_BAD_ANGLE;
-    return tri_is_too_large(c, t, shape) ? TRI_BAD_SIZE : TRI_GOOD;
+    bool flat = shape->area2 * shape->area2 < c->bounds.sin2 * product;
+    if ((!flat && !tri_is_too_large(c, t, shape)) || can_wait(c, t->v))
+        return TRI_GOOD;
+    return flat ? TRI_BAD_ANGLE : TRI_BAD_SIZE;
 }
 
 bool tri_is_protected(const struct tri_refine_options *options, const struct tri_subsegment *s)

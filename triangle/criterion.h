@@ -53,7 +53,7 @@ bool tri_is_unsuitable(const struct tri_criterion *criterion, const int32_t v[3]
 bool tri_is_too_large(const struct tri_criterion *criterion, const struct tri_triangle *t,
                       const struct tri_shape *shape);
 
-/* A bad angle counts before a bad size. */
+/* A bad angle counts before a bad size. What is not urgent is good. */
 enum tri_badness tri_judge(const struct tri_criterion *criterion, const struct tri_triangle *t,
                            const struct tri_shape *shape);
 

@@ -1,207 +1,102 @@
-/* Incremental Delaunay triangulation in biased randomised Hilbert order.
+/* Incremental Delaunay triangulation in biased randomised Hilbert order, by blocks of the curve.
  *
  * Rounds of geometrically growing random samples, each along the Hilbert curve (Amenta, Choi & Rote 2003): the next
  * point lies near the last one, so location is a walk of few steps, and no order of input makes cavities large on
  * average.
  *
- * The plane outside the hull is tiled by ghosts: triangles of a hull edge and a vertex at infinity (GHOST). The
- * "circumdisk" of a ghost is the open half plane beyond its hull edge, and the open edge itself; with that, insertion
- * knows no special case outside the hull. INVARIANT: every edge of every triangle, real or ghost, has a neighbour. At
- * the end ghosts become subsegments of the hull.
- *
- * Work is done on a copy of the points in insertion order, so that what is near in the plane is near in memory. */
+ * Vertices are numbered along the curve, and the curve is cut into leaves of equally many. Within a round, blocks of
+ * leaves insert at the same time what they can (triangle/insertion.h); what lies at their borders waits for blocks of
+ * WIDER times as many leaves, and what is left at last for one block that has all. Borders of blocks with m vertices
+ * each are crossed by some n / sqrt(m) triangles: so each step leaves half of what the one before left, and one block
+ * alone gets some sqrt(n). The triangulation is that of the set of points, whatever the order (cocircular ties are
+ * broken by coordinates); rounds, leaves and blocks follow from the number of points alone; and at the end triangles
+ * are sorted. So the mesh depends on the points alone. */
 #include "triangle/delaunay.h"
 
 #include <assert.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "triangle/hilbert.h"
+#include "triangle/curve_sort.h"
+#include "triangle/insertion.h"
 #include "triangle/predicates.h"
-#include "triangle/quality.h"
 
-enum { GHOST = -2, FIRST_ROUND = 512, ROUND_GROWTH = 8 };
-
-struct rim {
-    int32_t outer, a;
+enum {
+    FIRST_ROUND = 512, /* points */
+    ROUND_GROWTH = 8,
+    MOST_ROUNDS = 8,
+    LEAF = 1 << 14,    /* vertices */
+    MOST_LEAVES = 256,
+    WIDER = 4,
+    LEAST_SHARE = 16   /* a block inserts in a round at least, about, one point for so many vertices of a leaf */
 };
 
-struct pending {
-    int32_t link, end;
+_Static_assert(INT64_C(8) * 8 * 8 * 8 * 8 * 8 * 8 * FIRST_ROUND >= TRI_MAX_VERTICES && ROUND_GROWTH == 8,
+               "the last round takes the rest");
+
+struct leaf {
+    struct tri_range range;
+    int32_t round[MOST_ROUNDS + 1]; /* the points of round r wait at waiting[round[r] .. round[r + 1]) */
+    int32_t n_waiting;              /* in the round that runs: the first so many of these still do */
+    int32_t near;                   /* a triangle near the leaf, when all is quiet */
+    int32_t entry;                  /* a triangle that the block of the leaf owns; TRI_NONE: go on where others ended */
+    enum tri_status status;         /* of the block that begins here */
 };
 
-/* The triangulation while it grows: points in order of insertion. */
 struct builder {
-    struct tri_point *xy;
-    struct tri_triangle *tri;
-    int32_t n_slots, last; /* last: a triangle near the point inserted last */
-    int32_t n_cavity, n_rim, capacity;
-    int32_t *cavity;
-    struct rim *rim;
-    struct pending *pending;
+    struct tri_mesh *mesh;
+    const struct tri_executor *executor;
+    struct tri_triangle *tri; /* [2 n_vertices] */
+    int32_t *waiting;         /* [n_vertices] */
+    struct leaf *leaf;
+    int32_t n_leaves, n_rounds;
+    int32_t least;            /* points that a block should insert in a round */
+    int32_t first[3];         /* corners of the first triangle */
+    int32_t round, width;     /* what runs: a round, in blocks of so many leaves */
 };
 
-static bool grow(struct builder *b)
-{
-    int32_t capacity = b->capacity ? 2 * b->capacity : 256;
-    size_t n = (size_t)capacity + 4;
-    int32_t *cavity = realloc(b->cavity, n * sizeof *cavity);
-    b->cavity = cavity ? cavity : b->cavity;
-    struct rim *rim = realloc(b->rim, n * sizeof *rim);
-    b->rim = rim ? rim : b->rim;
-    struct pending *pending = realloc(b->pending, n * sizeof *pending);
-    b->pending = pending ? pending : b->pending;
-    if (!cavity || !rim || !pending)
-        return false;
-    b->capacity = capacity;
-    return true;
-}
+/* --- duplicates */
 
-static int ghost_corner(const struct tri_triangle *t)
-{
-    return t->v[0] == GHOST ? 0 : t->v[1] == GHOST ? 1 : t->v[2] == GHOST ? 2 : -1;
-}
+struct twins {
+    struct tri_mesh *mesh;
+    int32_t found[TRI_MOST_SHARES];
+};
 
-/* Strictly between a and b, where the three are collinear. */
-static bool between(struct tri_point a, struct tri_point b, struct tri_point q)
+static void find_twins(void *context, size_t share)
 {
-    return a.x != b.x ? (a.x < q.x) != (b.x < q.x) && q.x != a.x && q.x != b.x
-                      : (a.y < q.y) != (b.y < q.y) && q.y != a.y && q.y != b.y;
-}
-
-/* A ghost's hull edge runs from -> to with the outside on its left. */
-static bool in_ghost(const struct builder *b, const struct tri_triangle *t, int ghost, struct tri_point q)
-{
-    struct tri_point from = b->xy[t->v[tri_next[ghost]]], to = b->xy[t->v[tri_prev[ghost]]];
-    double side = tri_orient2d(from, to, q);
-    return side > 0 || (side == 0 && between(from, to, q));
-}
-
-static inline bool in_disk(const struct builder *b, const struct tri_triangle *t, struct tri_point q)
-{
-    if ((t->v[0] | t->v[1] | t->v[2]) < 0)
-        return in_ghost(b, t, ghost_corner(t), q);
-    return tri_in_circle(b->xy[t->v[0]], b->xy[t->v[1]], b->xy[t->v[2]], q);
-}
-
-/* Walks by visibility from a real triangle to one whose disk holds q: it contains q, or is a ghost beyond the hull edge
- * that the walk leaves through. Exact orientations: the walk cannot cycle in a Delaunay triangulation. */
-static int32_t locate(const struct builder *b, struct tri_point q)
-{
-    int32_t t = b->last;
-    int from = -1;
-    for (;;) {
-        const struct tri_triangle *at = &b->tri[t];
-        int k = 0;
-        if (ghost_corner(at) >= 0)
-            return t;
-        for (; k < 3; k++)
-            if (k != from && tri_orient2d(b->xy[at->v[tri_next[k]]], b->xy[at->v[tri_prev[k]]], q) < 0)
-                break;
-        if (k == 3)
-            return t;
-        t = tri_of(at->n[k]);
-        from = tri_edge(at->n[k]);
+    struct twins *twins = context;
+    const struct tri_point *xy = twins->mesh->xy;
+    struct tri_range range = tri_share(share, twins->mesh->n_vertices);
+    for (int32_t v = range.first; v < range.last; v++) {
+        bool again = v > 0 && xy[v].x == xy[v - 1].x && xy[v].y == xy[v - 1].y;
+        twins->mesh->twin[v] = again ? v - 1 : v;
+        twins->found[share] += again;
     }
 }
 
-static bool explore(struct builder *b, struct tri_point q, int32_t link, int32_t a, int32_t end)
+/* Duplicates are neighbours along the curve. */
+static enum tri_status list_twins(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
 {
-    int32_t n_pending = 0;
-    for (;;) {
-        const struct tri_triangle *t = &b->tri[tri_of(link)];
-        int e = tri_edge(link);
-        if (in_disk(b, t, q)) {
-            if (b->n_cavity == b->capacity && !grow(b))
-                return false;
-            b->cavity[b->n_cavity++] = tri_of(link);
-            b->pending[n_pending++] = (struct pending){t->n[tri_prev[e]], end};
-            link = t->n[tri_next[e]];
-            end = t->v[e];
-            continue;
-        }
-        assert(b->n_rim < b->n_cavity + 2 && n_pending <= b->n_cavity);
-        b->rim[b->n_rim++] = (struct rim){link, a};
-        if (n_pending == 0)
-            return true;
-        a = end;
-        link = b->pending[--n_pending].link;
-        end = b->pending[n_pending].end;
+    int32_t n = mesh->n_vertices, found = 0;
+    struct twins twins = {.mesh = mesh};
+    mesh->twin = malloc(((size_t)n + 1) * sizeof *mesh->twin);
+    if (!mesh->twin)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d points", (int)n);
+    tri_execute(executor, tri_shares(n), find_twins, &twins);
+    for (size_t share = 0; share < tri_shares(n); share++)
+        found += twins.found[share];
+    for (int32_t v = 1; found > 0 && v < n; v++)
+        if (mesh->twin[v] != v)
+            mesh->twin[v] = mesh->twin[v - 1];
+    if (found == 0) {
+        free(mesh->twin);
+        mesh->twin = NULL;
     }
+    return TRI_OK;
 }
 
-/* Replaces the cavity by the fan of v; room for two more triangles exists. */
-static void fill(struct builder *b, int32_t v)
-{
-    int32_t before = TRI_NONE, first = TRI_NONE;
-    assert(b->n_rim == b->n_cavity + 2); /* a disk without a vertex inside */
-    for (int32_t i = 0; i < b->n_rim; i++) {
-        int32_t slot = i < b->n_cavity ? b->cavity[i] : b->n_slots++;
-        int32_t outer = b->rim[i].outer, end = b->rim[i + 1 < b->n_rim ? i + 1 : 0].a;
-        struct tri_triangle *t = &b->tri[slot];
-        int32_t link = before == TRI_NONE ? TRI_NONE : tri_code(before, 1);
-        *t = (struct tri_triangle){{v, b->rim[i].a, end}, {outer, TRI_NONE, link}, 0, 0};
-        b->tri[tri_of(outer)].n[tri_edge(outer)] = tri_code(slot, 0);
-        if (before != TRI_NONE)
-            b->tri[before].n[1] = tri_code(slot, 2);
-        else
-            first = slot;
-        before = slot;
-    }
-    b->tri[first].n[2] = tri_code(before, 1);
-    b->tri[before].n[1] = tri_code(first, 2);
-    int ghost = ghost_corner(&b->tri[first]);
-    b->last = ghost < 0 ? first : tri_of(b->tri[first].n[ghost]);
-}
+static bool is_twin(const struct tri_mesh *mesh, int32_t v) { return mesh->twin && mesh->twin[v] != v; }
 
-static bool insert(struct builder *b, int32_t v)
-{
-    struct tri_point q = b->xy[v];
-    int32_t t = locate(b, q);
-    const struct tri_triangle start = b->tri[t];
-    b->n_cavity = b->n_rim = 0;
-    if (b->capacity == 0 && !grow(b))
-        return false;
-    b->cavity[b->n_cavity++] = t;
-    for (int e = 0; e < 3; e++)
-        if (!explore(b, q, start.n[e], start.v[tri_next[e]], start.v[tri_prev[e]]))
-            return false;
-    fill(b, v);
-    return true;
-}
-
-/* The first triangle and its three ghosts, from vertices i, j, k counter-clockwise. Ghost e + 1 sees edge e the other
- * way round; its edge from the hull edge's far end to infinity is shared with the ghost of the edge that starts
- * there. */
-static void begin(struct builder *b, int32_t i, int32_t j, int32_t k)
-{
-    int32_t v[3] = {i, j, k};
-    b->tri[0] = (struct tri_triangle){{i, j, k}, {tri_code(1, 0), tri_code(2, 0), tri_code(3, 0)}, 0, 0};
-    for (int e = 0; e < 3; e++) {
-        int f = tri_next[e], g = tri_prev[e];
-        b->tri[e + 1] = (struct tri_triangle){
-            {GHOST, v[g], v[f]}, {tri_code(0, e), tri_code(g + 1, 2), tri_code(f + 1, 1)}, 0, 0};
-    }
-    b->n_slots = 4;
-    b->last = 0;
-}
-
-/* Moves a vertex that spans a triangle with the first two to place 2; false where all are collinear. */
-static bool find_triangle(struct builder *b, int32_t *order, int32_t n)
-{
-    for (int32_t i = 2; i < n; i++) {
-        if (tri_orient2d(b->xy[0], b->xy[1], b->xy[i]) == 0)
-            continue;
-        struct tri_point q = b->xy[i];
-        int32_t index = order[i];
-        memmove(&b->xy[3], &b->xy[2], (size_t)(i - 2) * sizeof *b->xy);
-        memmove(&order[3], &order[2], (size_t)(i - 2) * sizeof *order);
-        b->xy[2] = q;
-        order[2] = index;
-        return true;
-    }
-    return false;
-}
+/* --- rounds */
 
 static uint32_t scatter(uint32_t i)
 {
@@ -212,240 +107,203 @@ static uint32_t scatter(uint32_t i)
     return i ^ i >> 16;
 }
 
-/* Splits the curve order into rounds: round r of R holds one point in ROUND_GROWTH^(R - r), drawn by a fixed hash. */
-static void arrange_rounds(const int32_t *order, int32_t n, int32_t *arranged)
+/* Round r of R holds one point in ROUND_GROWTH^(R - r), drawn by a fixed hash. */
+static int round_of(const struct builder *b, int32_t v)
 {
-    int rounds = 0;
-    int32_t placed = 0;
-    for (int64_t size = FIRST_ROUND; size < n; size *= ROUND_GROWTH)
-        rounds++;
-    for (int r = rounds; r >= 0; r--)
-        for (int32_t i = 0; i < n; i++) {
-            uint32_t draw = scatter((uint32_t)i);
-            int level = 0; /* how many times in a row the draw says "earlier" */
-            while (level < rounds && draw % ROUND_GROWTH == 0) {
-                draw /= ROUND_GROWTH;
-                level++;
-            }
-            if (level == r)
-                arranged[placed++] = order[i];
-        }
+    int round = b->n_rounds - 1;
+    for (uint32_t draw = scatter((uint32_t)v); round > 0 && draw % ROUND_GROWTH == 0; draw /= ROUND_GROWTH)
+        round--;
+    return round;
 }
 
-/* Drops duplicates, which are neighbours in the order; returns how many points remain. */
-static int32_t drop_duplicates(struct tri_mesh *mesh, int32_t *order, int32_t n)
+static bool is_to_insert(const struct builder *b, int32_t v)
 {
-    int32_t kept = 0;
-    for (int32_t i = 0; i < n; i++) {
-        int32_t last = kept ? order[kept - 1] : TRI_NONE;
-        const struct tri_point *q = &mesh->xy[order[i]];
-        if (last != TRI_NONE && mesh->xy[last].x == q->x && mesh->xy[last].y == q->y)
-            mesh->twin[order[i]] = last;
-        else
-            order[kept++] = order[i];
+    return !is_twin(b->mesh, v) && v != b->first[0] && v != b->first[1] && v != b->first[2];
+}
+
+/* The points of a leaf by rounds, along the curve in each; slots that no point will bring are marked as free. */
+static void arrange_leaf(void *context, size_t index)
+{
+    const struct builder *b = context;
+    struct leaf *leaf = &b->leaf[index];
+    int32_t at[MOST_ROUNDS + 1] = {0};
+    leaf->range = tri_share_of(index, (size_t)b->n_leaves, b->mesh->n_vertices);
+    for (int32_t v = leaf->range.first; v < leaf->range.last; v++) {
+        if (is_to_insert(b, v))
+            at[round_of(b, v) + 1]++;
+        if (is_twin(b->mesh, v))
+            b->tri[2 * v].v[0] = b->tri[2 * v + 1].v[0] = TRI_NONE;
     }
-    return kept;
+    at[0] = leaf->range.first;
+    for (int r = 0; r < MOST_ROUNDS; r++)
+        at[r + 1] += at[r];
+    for (int r = 0; r <= MOST_ROUNDS; r++)
+        leaf->round[r] = at[r];
+    for (int32_t v = leaf->range.first; v < leaf->range.last; v++)
+        if (is_to_insert(b, v))
+            b->waiting[at[round_of(b, v)]++] = v;
+    leaf->near = 2 * b->first[0];
 }
 
-static enum tri_status build(struct builder *b, int32_t *order, int32_t n, const struct tri_stop *stop,
-                             struct tri_error *error)
+/* --- a phase: all blocks of some width */
+
+static struct tri_range block_of(const struct builder *b, int32_t leaf)
 {
+    int32_t first = leaf - leaf % b->width, last = first + b->width < b->n_leaves ? first + b->width : b->n_leaves;
+    return (struct tri_range){b->leaf[first].range.first, b->leaf[last - 1].range.last};
+}
+
+/* Where the block can begin with the points of a leaf: with the first of them whose triangle it owns. Nothing is
+ * inserted meanwhile. A block that owns all can begin anywhere. */
+static void seek_entry(void *context, size_t index)
+{
+    const struct builder *b = context;
+    struct leaf *leaf = &b->leaf[index];
+    struct tri_inserter all = {b->mesh->xy, b->tri, {0, b->mesh->n_vertices}, .last = leaf->near}, block = all;
+    block.block = block_of(b, (int32_t)index);
+    leaf->entry = TRI_NONE;
+    if (b->width >= b->n_leaves) {
+        leaf->entry = index == 0 ? leaf->near : TRI_NONE;
+        return;
+    }
+    for (int32_t i = 0; leaf->entry == TRI_NONE && i < leaf->n_waiting; i++) {
+        int32_t t = tri_inserter_locate(&all, b->mesh->xy[b->waiting[leaf->round[b->round] + i]]);
+        leaf->entry = tri_inserter_owns(&block, &b->tri[t]) ? t : TRI_NONE;
+    }
+}
+
+/* What cannot be inserted stays in the list. */
+static enum tri_status insert_leaf(const struct builder *b, struct leaf *leaf, struct tri_inserter *inserter,
+                                   uint32_t *step)
+{
+    int32_t *waiting = b->waiting + leaf->round[b->round], kept = 0;
+    for (int32_t i = 0; i < leaf->n_waiting; i++) {
+        if (tri_stop_is_due(b->mesh->stop, step))
+            return TRI_STOPPED;
+        enum tri_insertion done = tri_insert(inserter, waiting[i]);
+        if (done == TRI_NO_ROOM_FOR_CAVITY)
+            return TRI_NO_MEMORY;
+        if (done == TRI_NOT_OWNED)
+            waiting[kept++] = waiting[i];
+    }
+    leaf->n_waiting = kept;
+    leaf->near = inserter->last;
+    return TRI_OK;
+}
+
+static void insert_block(void *context, size_t index)
+{
+    const struct builder *b = context;
+    int32_t first = (int32_t)index * b->width;
+    struct tri_inserter inserter = {b->mesh->xy, b->tri, block_of(b, first), .last = TRI_NONE};
+    enum tri_status status = TRI_OK;
     uint32_t step = 0;
-    if (n < 3 || !find_triangle(b, order, n))
-        return TRI_OK;
-    bool left = tri_orient2d(b->xy[0], b->xy[1], b->xy[2]) > 0;
-    begin(b, left ? 0 : 1, left ? 1 : 0, 2);
-    for (int32_t v = 3; v < n; v++) {
-        if (tri_stop_is_due(stop, &step))
+    for (int32_t i = first; !status && i < b->n_leaves && i < first + b->width; i++) {
+        struct leaf *leaf = &b->leaf[i];
+        inserter.last = leaf->entry != TRI_NONE ? leaf->entry : inserter.last;
+        if (inserter.last != TRI_NONE)
+            status = insert_leaf(b, leaf, &inserter, &step);
+    }
+    b->leaf[first].status = status;
+    tri_inserter_free(&inserter);
+}
+
+static enum tri_status run_phase(struct builder *b, struct tri_error *error)
+{
+    size_t n_blocks = (size_t)((b->n_leaves + b->width - 1) / b->width);
+    tri_execute(b->executor, (size_t)b->n_leaves, seek_entry, b);
+    tri_execute(b->executor, n_blocks, insert_block, b);
+    for (int32_t i = 0; i < b->n_leaves; i += b->width) {
+        if (b->leaf[i].status == TRI_STOPPED)
             return tri_fail_stopped(error);
-        if (!insert(b, v))
-            return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a cavity");
+        if (b->leaf[i].status)
+            return tri_fail(error, b->leaf[i].status, NULL, 0, "out of memory for a cavity");
     }
     return TRI_OK;
 }
 
-/* Ghosts become subsegments, vertices get their own numbers back. */
-static enum tri_status finish(struct tri_mesh *mesh, struct builder *b, const int32_t *order, struct tri_error *error)
+static int64_t count_waiting(const struct builder *b)
 {
-    int32_t ghosts = 0;
-    for (int32_t t = 0; t < b->n_slots; t++)
-        ghosts += ghost_corner(&b->tri[t]) >= 0;
-    enum tri_status status = tri_mesh_reserve_subs(mesh, ghosts, error);
-    if (status)
-        return status;
-    mesh->n_slots = b->n_slots;
-    assert(mesh->n_slots <= mesh->slot_capacity);
-    for (int32_t t = 0; t < b->n_slots; t++) {
-        struct tri_triangle *at = &mesh->tri[t];
-        int ghost = ghost_corner(at);
-        if (ghost < 0)
-            continue;
-        int32_t inner = at->n[ghost], from = at->v[tri_prev[ghost]], to = at->v[tri_next[ghost]];
-        int32_t s = tri_mesh_add_sub(mesh, order[from], order[to], 0, TRI_NONE);
-        mesh->sub[s].side[0] = inner;
-        mesh->tri[tri_of(inner)].n[tri_edge(inner)] = ~s;
-    }
-    for (int32_t t = 0; t < b->n_slots; t++) {
-        struct tri_triangle *at = &mesh->tri[t];
-        bool ghost = ghost_corner(at) >= 0;
-        for (int k = 0; k < 3; k++)
-            at->v[k] = ghost ? TRI_NONE : order[at->v[k]];
-    }
-    tri_mesh_compact(mesh);
-    return TRI_OK;
+    int64_t waiting = 0;
+    for (int32_t i = 0; i < b->n_leaves; i++)
+        waiting += b->leaf[i].n_waiting;
+    return waiting;
 }
 
-/* A sort of the triangles by their place on the curve. */
-struct sorting {
-    struct tri_mesh *mesh;
-    const int32_t *rank;         /* of a vertex: its place on the curve; NULL: its number */
-    int32_t *to;                 /* [n_slots] first the place of each triangle on the curve, then its new slot */
-    struct tri_triangle *sorted; /* [n_slots] */
-};
-
-/* A triangle's place is that of its shortest edge: there is the work of refinement, however far the rest reaches. */
-static void rank_share(void *context, size_t share)
+static enum tri_status run_round(struct builder *b, struct tri_error *error)
 {
-    const struct sorting *s = context;
-    struct tri_range range = tri_share(share, s->mesh->n_slots);
-    for (int32_t t = range.first; t < range.last; t++) {
-        const int32_t *v = s->mesh->tri[t].v;
-        int k = tri_shape_of(s->mesh->xy, v).shortest;
-        int32_t a = v[tri_next[k]], b = v[tri_prev[k]];
-        a = s->rank ? s->rank[a] : a;
-        b = s->rank ? s->rank[b] : b;
-        s->to[t] = a < b ? a : b;
+    enum tri_status status = TRI_OK;
+    for (int32_t i = 0; i < b->n_leaves; i++)
+        b->leaf[i].n_waiting = b->leaf[i].round[b->round + 1] - b->leaf[i].round[b->round];
+    int64_t waiting = count_waiting(b);
+    for (b->width = 1; b->width < b->n_leaves && waiting * b->width < (int64_t)b->least * b->n_leaves;)
+        b->width *= WIDER;
+    for (; !status && waiting > 0; b->width *= WIDER) {
+        status = run_phase(b, error);
+        assert(status || b->width < b->n_leaves || count_waiting(b) == 0);
+        waiting = count_waiting(b);
     }
-}
-
-static void move_share(void *context, size_t share)
-{
-    const struct sorting *s = context;
-    struct tri_range range = tri_share(share, s->mesh->n_slots);
-    for (int32_t t = range.first; t < range.last; t++) {
-        struct tri_triangle *at = &s->sorted[s->to[t]];
-        *at = s->mesh->tri[t];
-        for (int e = 0; e < 3; e++)
-            if (at->n[e] >= 0)
-                at->n[e] = tri_code(s->to[tri_of(at->n[e])], tri_edge(at->n[e]));
-    }
-}
-
-/* Places become slots: a counting sort. start[n_vertices] is zero. */
-static void assign_slots(const struct sorting *s, int32_t *start)
-{
-    for (int32_t t = 0; t < s->mesh->n_slots; t++)
-        start[s->to[t]]++;
-    for (int32_t v = 0, sum = 0; v < s->mesh->n_vertices; v++) {
-        int32_t count = start[v];
-        start[v] = sum;
-        sum += count;
-    }
-    for (int32_t t = 0; t < s->mesh->n_slots; t++)
-        s->to[t] = start[s->to[t]]++;
-}
-
-/* Insertion has left triangles where cavities of all rounds were; every later stage runs faster where neighbours are
- * near in memory. O(n). */
-static enum tri_status sort_triangles(struct tri_mesh *mesh, const int32_t *rank, const struct tri_executor *executor,
-                                      struct tri_error *error)
-{
-    size_t n = (size_t)mesh->n_slots;
-    int32_t *start = calloc((size_t)mesh->n_vertices + 1, sizeof *start);
-    struct sorting s = {mesh, rank, malloc((n + 1) * sizeof *s.to), malloc((n + 1) * sizeof *s.sorted)};
-    bool done = start && s.to && s.sorted;
-    if (done) {
-        tri_execute(executor, tri_shares(mesh->n_slots), rank_share, &s);
-        assign_slots(&s, start);
-        tri_execute(executor, tri_shares(mesh->n_slots), move_share, &s);
-        memcpy(mesh->tri, s.sorted, n * sizeof *s.sorted);
-        for (int32_t i = 0; i < mesh->n_subs; i++) {
-            int32_t *side = mesh->sub[i].side;
-            assert(side[0] != TRI_NONE && side[1] == TRI_NONE); /* hull edges, no others */
-            side[0] = tri_code(s.to[tri_of(side[0])], tri_edge(side[0]));
-        }
-    }
-    free(start);
-    free(s.to);
-    free(s.sorted);
-    return done ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sorting %d triangles", (int)n);
-}
-
-static enum tri_status build_from(struct tri_mesh *mesh, const int32_t *order, int32_t *arranged, int32_t n,
-                                  struct tri_error *error)
-{
-    enum tri_status status = tri_mesh_reserve_triangles(mesh, n < 3 ? 8 : 2 * n, error);
-    struct builder b = {.tri = mesh->tri, .last = TRI_NONE, .xy = malloc(((size_t)n + 1) * sizeof *b.xy)};
-    if (!status && !b.xy)
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d points", (int)n);
-    if (!status) {
-        arrange_rounds(order, n, arranged);
-        for (int32_t i = 0; i < n; i++)
-            b.xy[i] = mesh->xy[arranged[i]];
-        status = build(&b, arranged, n, mesh->stop, error);
-    }
-    if (!status)
-        status = finish(mesh, &b, arranged, error);
-    free(b.xy);
-    free(b.cavity);
-    free(b.rim);
-    free(b.pending);
     return status;
 }
 
-/* The vertices along the curve; they are already where the mesh knows their origin. */
-static enum tri_status order_vertices(const struct tri_mesh *mesh, int32_t *order, const struct tri_executor *executor,
-                                      struct tri_error *error)
+/* --- the whole */
+
+/* The first three points that span a triangle; false where all are collinear. */
+static bool find_first(struct builder *b)
 {
-    int32_t n = mesh->n_vertices;
-    for (int32_t v = 0; v < n; v++)
-        order[v] = v;
-    if (mesh->origin)
-        return TRI_OK;
-    uint64_t *scratch = malloc((2 * (size_t)n + 1) * sizeof *scratch);
-    if (!scratch)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sorting %d points", (int)n);
-    tri_hilbert_order(mesh->xy, order, n, scratch, executor);
-    free(scratch);
-    return TRI_OK;
+    const struct tri_point *xy = b->mesh->xy;
+    int32_t found = 0;
+    for (int32_t v = 0; found < 3 && v < b->mesh->n_vertices; v++)
+        if (!is_twin(b->mesh, v) && (found < 2 || tri_orient2d(xy[b->first[0]], xy[b->first[1]], xy[v]) != 0))
+            b->first[found++] = v;
+    return found == 3;
 }
 
-static enum tri_status triangulate(struct tri_mesh *mesh, int32_t *order, int32_t *scratch,
-                                   const struct tri_executor *executor, struct tri_error *error)
+static enum tri_status build(struct builder *b, int32_t leaf_size, struct tri_error *error)
 {
-    bool in_order = mesh->origin;
-    enum tri_status status = order_vertices(mesh, order, executor, error);
-    if (status)
-        return status;
-    int32_t n = drop_duplicates(mesh, order, mesh->n_vertices);
-    if (n == mesh->n_vertices) {
-        free(mesh->twin);
-        mesh->twin = NULL;
+    int64_t n = b->mesh->n_vertices;
+    for (b->n_leaves = 1; b->n_leaves < MOST_LEAVES && n / (b->n_leaves * WIDER) >= leaf_size;)
+        b->n_leaves *= WIDER;
+    b->least = leaf_size / LEAST_SHARE;
+    b->n_rounds = 1;
+    for (int64_t size = FIRST_ROUND; size < n; size *= ROUND_GROWTH)
+        b->n_rounds++;
+    assert(b->n_rounds <= MOST_ROUNDS);
+    enum tri_status status = TRI_OK;
+    b->leaf = calloc((size_t)b->n_leaves, sizeof *b->leaf);
+    b->waiting = malloc((size_t)n * sizeof *b->waiting);
+    if (!b->leaf || !b->waiting)
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d points", (int)n);
+    if (!status) {
+        tri_insert_first(b->mesh->xy, b->tri, b->first);
+        tri_execute(b->executor, (size_t)b->n_leaves, arrange_leaf, b);
     }
-    status = build_from(mesh, order, scratch, n, error);
-    if (status || mesh->n_slots == 0)
+    for (b->round = 0; !status && b->round < b->n_rounds; b->round++)
+        status = run_round(b, error);
+    free(b->leaf);
+    free(b->waiting);
+    return status;
+}
+
+enum tri_status tri_delaunay_in_leaves(struct tri_mesh *mesh, int32_t leaf_size, const struct tri_executor *executor,
+                                       struct tri_error *error)
+{
+    struct builder b = {.mesh = mesh, .executor = executor};
+    assert(mesh->origin && mesh->n_slots == 0 && mesh->n_subs == 0 && leaf_size > 0);
+    enum tri_status status = list_twins(mesh, executor, error);
+    if (status || !find_first(&b))
         return status;
-    int32_t *rank = in_order ? NULL : scratch;
-    for (int32_t i = 0; rank && i < n; i++)
-        rank[order[i]] = i;
-    return sort_triangles(mesh, rank, executor, error);
+    void *raw = malloc(((size_t)mesh->n_vertices + 1) * 2 * sizeof *b.tri);
+    if (!raw)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d points", (int)mesh->n_vertices);
+    b.tri = (struct tri_triangle *)((char *)raw + (-(uintptr_t)raw & 63)); /* a cache line holds two */
+    status = build(&b, leaf_size, error);
+    status = status ? status : tri_curve_sort(mesh, b.tri, 2 * mesh->n_vertices, executor, error);
+    free(raw);
+    return status;
 }
 
 enum tri_status tri_delaunay(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
 {
-    int32_t n = mesh->n_vertices;
-    assert(mesh->n_slots == 0 && mesh->n_subs == 0);
-    int32_t *order = malloc(((size_t)n + 1) * sizeof *order), *scratch = malloc(((size_t)n + 1) * sizeof *scratch);
-    mesh->twin = malloc(((size_t)n + 1) * sizeof *mesh->twin);
-    enum tri_status status = TRI_OK;
-    if (!order || !scratch || !mesh->twin) {
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d points", (int)n);
-    } else {
-        for (int32_t i = 0; i < n; i++)
-            mesh->twin[i] = i;
-        status = triangulate(mesh, order, scratch, executor, error);
-    }
-    free(order);
-    free(scratch);
-    return status;
+    return tri_delaunay_in_leaves(mesh, LEAF, executor, error);
 }

@@ -106,12 +106,28 @@ static bool judge_rim(struct tri_refiner *r, const struct tri_rim *rim, struct t
     return true;
 }
 
+/* The same where only what is urgent counts. */
+static bool judge_urgent(struct tri_refiner *r, int32_t first, int32_t last)
+{
+    for (int32_t i = first; i < last; i++) {
+        int32_t slot = r->cavity.rim[i].slot;
+        const struct tri_triangle *t = &r->mesh->tri[slot];
+        struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
+        enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
+        if (badness != TRI_GOOD && !push(r, slot, badness, shape.l[shape.shortest]))
+            return false;
+    }
+    return true;
+}
+
 /* Queues what is bad among the triangles of a chain of rims; `end` is the place of the chain's last point. */
 static bool judge_chain(struct tri_refiner *r, int32_t first, int32_t last, struct tri_relative end)
 {
     const struct tri_rim *rim = r->cavity.rim;
     int32_t region = TRI_NONE;
     double bound2 = 0;
+    if (r->options->urgent)
+        return judge_urgent(r, first, last);
     for (int32_t i = first; i < last; i++) {
         if (rim[i].region != region) {
             region = rim[i].region;
@@ -302,6 +318,8 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
                        enum tri_badness badness)
 {
     double l = shape->l[shape->shortest];
+    if (r->options->urgent)
+        return HUGE_VAL;
     double reach = r->criterion.bounds.off_centre > 0 ? r->criterion.bounds.off_centre * sqrt(l) : HUGE_VAL;
     double bound2 = tri_area2_bound(&r->criterion, t->region);
     if (badness == TRI_BAD_SIZE && shape->area2 > bound2) {

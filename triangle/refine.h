@@ -43,6 +43,9 @@ struct tri_refine_options {
     int64_t max_steiner;   /* < 0: no limit on the points inserted */
     tri_unsuitable *unsuitable;
     void *unsuitable_user;
+    tri_unsuitable *urgent; /* not NULL: of the bad triangles only those that this says yes to are refined, at their
+                               circumcentres: for pre-refinement */
+    void *urgent_user;
     tri_gate *gate;        /* NULL: every bad triangle */
     void *gate_user;
     const struct tri_fence *fence; /* NULL: the whole mesh */
@@ -98,8 +101,8 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
 enum tri_status tri_refiner_run(struct tri_refiner *refiner, struct tri_error *error);
 void tri_refiner_free(struct tri_refiner *refiner);
 
-/* found[last - first] receives the slots from first to last - 1 at which there is something for the loop to do (a bad
- * angle or size; a crowded subsegment if conforming), in order; returns how many. */
+/* found[last - first] receives the slots from first to last - 1 at which there is something for the loop to do (an
+ * angle that is bad and not hopeless, a bad size; a crowded subsegment if conforming), in order; returns how many. */
 int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t first,
                       int32_t last, int32_t *found);
 

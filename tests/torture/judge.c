@@ -68,7 +68,7 @@ static enum tri_status refine(struct outcome *o, int threads, struct tri_error *
     if (o->of->block == 0)
         return tri_refine(&o->mesh, &o->options.quality, &o->report.quality, error);
     how.threads = threads;
-    how.cell_triangles = o->of->block;
+    how.cell_triangles = o->of->block > 0 ? o->of->block : 0;
     how.size_test_in_parallel = true;
     enum tri_status status = par_refine(&o->mesh, &o->options.quality, &how, &schedule, error);
     o->report.quality = schedule.total;
@@ -196,6 +196,54 @@ static void judge_threads(const struct outcome *first, const struct tri_pslg *ps
     tri_mesh_free(&o.mesh);
 }
 
+/* The points alone: in one leaf by one thread, and in tiny ones by three. */
+static void judge_points(const struct torture_case *c, struct verdict *verdict)
+{
+    int threads = 3;
+    const struct tri_executor executor = par_executor(&threads);
+    enter(verdict, "triangulating points");
+    struct tri_mesh whole = support_delaunay(&c->figure.pslg, c->figure.pslg.n_points + 1, NULL);
+    struct tri_mesh parts = support_delaunay(&c->figure.pslg, 1 + c->figure.pslg.n_points % 40, &executor);
+    if (!same_meshes(&whole, &parts))
+        judge_fault(verdict, "points", "%d triangles in one leaf, another triangulation of %d in many",
+                    (int)whole.n_slots, (int)parts.n_slots);
+    tri_mesh_free(&whole);
+    tri_mesh_free(&parts);
+}
+
+/* --- how many triangles */
+
+static int32_t triangles_of(const struct torture_case *as, const struct outcome *first, const struct tri_pslg *pslg,
+                            struct verdict *verdict)
+{
+    struct tri_error error = {0};
+    struct outcome o = {.of = as, .switches = first->switches, .options = first->options};
+    if (generate(&o, pslg, 1, &error))
+        judge_fault(verdict, "error", "schedule size: %s", error.text);
+    int32_t n = o.mesh.n_slots;
+    tri_mesh_free(&o.mesh);
+    return n;
+}
+
+/* The schedule's mesh has about as many triangles as that of one sequential call, in cells of its own choice nearly
+ * as many; tiny cells have many seams. */
+static void judge_schedule_size(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
+{
+    const double OWN_CELLS = 1.1, TINY_CELLS = 2, FEW = 100;
+    struct torture_case sequential = *first->of, by_itself = *first->of;
+    sequential.block = 0;
+    by_itself.block = -1;
+    enter(verdict, "meshing sequentially");
+    int32_t one_call = triangles_of(&sequential, first, pslg, verdict);
+    enter(verdict, "meshing in the schedule's own cells");
+    int32_t own = triangles_of(&by_itself, first, pslg, verdict);
+    if (own > OWN_CELLS * one_call + FEW)
+        judge_fault(verdict, "schedule size", "%d triangles, sequentially %d", (int)own, (int)one_call);
+    if (first->mesh.n_slots > TINY_CELLS * one_call + FEW)
+        judge_fault(verdict, "schedule size", "%d triangles in tiny cells, sequentially %d",
+                    (int)first->mesh.n_slots, (int)one_call);
+}
+
 /* --- the second step: the mesh as input */
 
 static struct tri_pslg pslg_of(const struct tri_mesh *mesh, const struct support_copy *copy)
@@ -262,10 +310,13 @@ void judge_case(const struct torture_case *c, struct verdict *verdict)
     o.options = tri_switches_options(&o.switches);
     if (o.switches.user_test)
         add_size_test(&o.options, &test, pslg);
-    if (!tri_pslg_is_one_place(pslg))
+    judge_points(c, verdict);
+    if (!verdict->fault[0] && !tri_pslg_is_one_place(pslg))
         judge_first(&o, pslg, verdict);
     if (!verdict->fault[0] && o.mesh.n_slots > 0 && o.options.refine && c->block > 0)
         judge_threads(&o, pslg, verdict);
+    if (!verdict->fault[0] && o.options.refine && o.options.quality.max_steiner < 0 && c->block > 0)
+        judge_schedule_size(&o, pslg, verdict);
     if (!verdict->fault[0] && o.mesh.n_slots > 0 && o.options.refine && c->again)
         judge_again(&o, verdict);
     enter(verdict, "freeing");

@@ -1,0 +1,237 @@
+/* Ghosts become subsegments; triangles are sorted and move.
+ *
+ * THEOREM. The order is total: of the triangles that begin at a vertex each has another second corner, since an edge
+ * has one triangle on its left. So nothing is left to how the triangulation came about. */
+#include "triangle/curve_sort.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "triangle/insertion.h"
+#include "triangle/quality.h"
+#include "triangle/radix.h"
+
+/* What is sorted: a vertex, and the triangle that is sorted by it, with the corner at which that begins. */
+enum { ID_BITS = 29, CORNER_BITS = 2, KEY_SHIFT = ID_BITS + CORNER_BITS, FEW = 24 };
+
+_Static_assert(INT64_C(1) << ID_BITS == TRI_MAX_TRIANGLES, "ids fill their bits");
+
+struct sorting {
+    struct tri_mesh *mesh;
+    struct tri_triangle *tri; /* [n_slots] */
+    int32_t n_slots, n_live;
+    uint64_t *item, *scratch; /* [n_slots] each */
+    int32_t group[TRI_MOST_SHARES + 1]; /* items where shares begin, so that none cuts a group in two */
+    int32_t *to;              /* [n_slots] where a triangle goes: the code of what will be its first corner */
+    int vertex_bits;          /* of the largest number of a vertex, and one more */
+};
+
+static uint64_t item_of(int32_t key, int corner, int32_t id)
+{
+    return (uint64_t)key << KEY_SHIFT | (uint64_t)corner << ID_BITS | (uint64_t)id;
+}
+
+static int32_t key_of(uint64_t item) { return (int32_t)(item >> KEY_SHIFT); }
+static int corner_of(uint64_t item) { return (int)(item >> ID_BITS & 3); }
+static int32_t id_of(uint64_t item) { return (int32_t)(item & ((UINT64_C(1) << ID_BITS) - 1)); }
+
+/* --- the hull */
+
+/* A ghost by the code of its corner at infinity; its hull edge, seen from inside, is start -> end. */
+static int32_t hull_start(const struct tri_triangle *tri, int32_t g) { return tri[tri_of(g)].v[tri_prev[tri_edge(g)]]; }
+static int32_t hull_end(const struct tri_triangle *tri, int32_t g) { return tri[tri_of(g)].v[tri_next[tri_edge(g)]]; }
+
+/* The ghost across the edge from the end to infinity. */
+static int32_t next_ghost(const struct tri_triangle *tri, int32_t g)
+{
+    int32_t link = tri[tri_of(g)].n[tri_prev[tri_edge(g)]];
+    return tri_code(tri_of(link), tri_prev[tri_edge(link)]);
+}
+
+static int32_t any_ghost(const struct tri_triangle *tri)
+{
+    int32_t t = 0;
+    while (tri[t].v[0] == TRI_NONE || tri_ghost_corner(&tri[t]) < 0)
+        t++;
+    return tri_code(t, tri_ghost_corner(&tri[t]));
+}
+
+static int32_t lowest_ghost(const struct tri_triangle *tri, int32_t *count)
+{
+    int32_t end = any_ghost(tri), g = end, lowest = end;
+    *count = 0;
+    do {
+        lowest = hull_start(tri, g) < hull_start(tri, lowest) ? g : lowest;
+        g = next_ghost(tri, g);
+        ++*count;
+    } while (g != end);
+    return lowest;
+}
+
+/* Leaves no ghost. */
+static enum tri_status take_hull(struct tri_mesh *mesh, struct tri_triangle *tri, struct tri_error *error)
+{
+    int32_t count, g = lowest_ghost(tri, &count);
+    enum tri_status status = tri_mesh_reserve_subs(mesh, count, error);
+    for (int32_t i = 0; !status && i < count; i++) {
+        int32_t inner = tri[tri_of(g)].n[tri_edge(g)], next = next_ghost(tri, g);
+        int32_t s = tri_mesh_add_sub(mesh, hull_start(tri, g), hull_end(tri, g), 0, TRI_NONE);
+        mesh->sub[s].side[0] = inner;
+        tri[tri_of(inner)].n[tri_edge(inner)] = ~s;
+        tri[tri_of(g)].v[0] = TRI_NONE;
+        g = next;
+    }
+    return status;
+}
+
+/* --- the order */
+
+/* The corner that is the lower end of the shortest edge. Lengths are rounded, and several may be shortest: so they are
+ * asked for with the lowest corner in front, however the triangle is turned. */
+static int first_corner(const struct tri_point *xy, const int32_t v[3])
+{
+    int lowest = v[1] < v[0] ? 1 : 0;
+    lowest = v[2] < v[lowest] ? 2 : lowest;
+    int corner[] = {lowest, tri_next[lowest], tri_prev[lowest]};
+    const int32_t turned[] = {v[corner[0]], v[corner[1]], v[corner[2]]};
+    int shortest = tri_shape_of(xy, turned).shortest;
+    return shortest == 0 && turned[2] < turned[1] ? corner[2] : corner[shortest == 0 ? 1 : 0];
+}
+
+static void list_share(void *context, size_t share)
+{
+    const struct sorting *s = context;
+    struct tri_range range = tri_share(share, s->n_slots);
+    for (int32_t t = range.first; t < range.last; t++) {
+        const int32_t *v = s->tri[t].v;
+        if (v[0] == TRI_NONE) {
+            s->item[t] = item_of(s->mesh->n_vertices, 0, t);
+            continue;
+        }
+        int first = first_corner(s->mesh->xy, v);
+        s->item[t] = item_of(v[first], first, t);
+    }
+}
+
+/* A group is the triangles that begin at one vertex. */
+static void find_groups(struct sorting *s)
+{
+    size_t shares = tri_shares(s->n_live);
+    for (size_t share = 0; share <= shares; share++) {
+        int32_t at = share < shares ? tri_share(share, s->n_live).first : s->n_live;
+        while (at > 0 && at < s->n_live && key_of(s->item[at]) == key_of(s->item[at - 1]))
+            at++;
+        s->group[share] = at;
+    }
+}
+
+/* By the second corner. */
+static void sort_group(const struct sorting *s, uint64_t *item, int32_t n)
+{
+    for (int32_t i = 0; i < n; i++) {
+        uint64_t next = item_of(s->tri[id_of(item[i])].v[tri_next[corner_of(item[i])]], corner_of(item[i]),
+                                id_of(item[i]));
+        int32_t at = i;
+        for (; n <= FEW && at > 0 && item[at - 1] > next; at--)
+            item[at] = item[at - 1];
+        item[at] = next;
+    }
+    if (n > FEW)
+        tri_radix_sort(item, s->scratch + (item - s->item), n, KEY_SHIFT, KEY_SHIFT + s->vertex_bits, NULL);
+    for (int32_t i = 1; i < n; i++)
+        assert(key_of(item[i - 1]) < key_of(item[i]));
+}
+
+static void place_share(void *context, size_t share)
+{
+    const struct sorting *s = context;
+    for (int32_t begin = s->group[share], end; begin < s->group[share + 1]; begin = end) {
+        for (end = begin + 1; end < s->group[share + 1] && key_of(s->item[end]) == key_of(s->item[begin]);)
+            end++;
+        sort_group(s, s->item + begin, end - begin);
+        for (int32_t i = begin; i < end; i++)
+            s->to[id_of(s->item[i])] = tri_code(i, corner_of(s->item[i]));
+    }
+}
+
+static int bits_of(int32_t number)
+{
+    int bits = 1;
+    while (bits < 31 && number >> bits)
+        bits++;
+    return bits;
+}
+
+static void find_order(struct sorting *s, const struct tri_executor *executor)
+{
+    tri_execute(executor, tri_shares(s->n_slots), list_share, s);
+    tri_radix_sort(s->item, s->scratch, s->n_slots, KEY_SHIFT, KEY_SHIFT + s->vertex_bits, executor);
+    for (s->n_live = s->n_slots; key_of(s->item[s->n_live - 1]) == s->mesh->n_vertices;)
+        s->n_live--;
+    find_groups(s);
+    tri_execute(executor, tri_shares(s->n_live), place_share, s);
+}
+
+/* --- all move */
+
+static int32_t new_code(const struct sorting *s, int32_t code)
+{
+    int32_t to = s->to[tri_of(code)];
+    int e = tri_edge(code) - tri_edge(to);
+    return tri_code(tri_of(to), e < 0 ? e + 3 : e);
+}
+
+static void move_share(void *context, size_t share)
+{
+    const struct sorting *s = context;
+    struct tri_range range = tri_share(share, s->n_slots);
+    for (int32_t t = range.first; t < range.last; t++) {
+        const struct tri_triangle *from = &s->tri[t];
+        if (!tri_is_live(from))
+            continue;
+        struct tri_triangle *at = &s->mesh->tri[tri_of(s->to[t])];
+        for (int k = 0, old = tri_edge(s->to[t]); k < 3; k++, old = tri_next[old]) {
+            at->v[k] = from->v[old];
+            at->n[k] = from->n[old] >= 0 ? new_code(s, from->n[old]) : from->n[old];
+        }
+        at->region = 0;
+        at->state = 0;
+    }
+}
+
+static void move_all(const struct sorting *s, const struct tri_executor *executor)
+{
+    struct tri_mesh *mesh = s->mesh;
+    tri_execute(executor, tri_shares(s->n_slots), move_share, (void *)s);
+    for (int32_t i = 0; i < mesh->n_subs; i++)
+        mesh->sub[i].side[0] = new_code(s, mesh->sub[i].side[0]);
+    mesh->n_slots = s->n_live;
+}
+
+static enum tri_status sort(struct sorting *s, const struct tri_executor *executor, struct tri_error *error)
+{
+    size_t n = (size_t)s->n_slots;
+    s->item = malloc(2 * n * sizeof *s->item);
+    s->to = malloc(n * sizeof *s->to);
+    if (!s->item || !s->to)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sorting %d triangles", (int)n);
+    s->scratch = s->item + n;
+    find_order(s, executor);
+    free(s->item);
+    s->item = NULL;
+    enum tri_status status = tri_mesh_reserve_triangles(s->mesh, s->n_live, error);
+    if (!status)
+        move_all(s, executor);
+    return status;
+}
+
+enum tri_status tri_curve_sort(struct tri_mesh *mesh, struct tri_triangle *tri, int32_t n_slots,
+                               const struct tri_executor *executor, struct tri_error *error)
+{
+    struct sorting s = {.mesh = mesh, .tri = tri, .n_slots = n_slots, .vertex_bits = bits_of(mesh->n_vertices)};
+    enum tri_status status = take_hull(mesh, tri, error);
+    status = status ? status : sort(&s, executor, error);
+    free(s.item);
+    free(s.to);
+    return status;
+}

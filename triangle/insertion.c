@@ -1,0 +1,187 @@
+/* Walk, cavity, fan. */
+#include "triangle/insertion.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "triangle/predicates.h"
+
+/* An edge of the cavity: the code of its triangle outside, and the corner at which it starts. */
+struct tri_rim {
+    int32_t outer, a;
+};
+
+/* A way into the cavity that is still to go. */
+struct tri_detour {
+    int32_t link, end;
+};
+
+void tri_inserter_free(struct tri_inserter *b)
+{
+    free(b->cavity);
+    free(b->rim);
+    free(b->detour);
+}
+
+static bool grow(struct tri_inserter *b)
+{
+    int32_t capacity = b->capacity ? 2 * b->capacity : 256;
+    size_t n = (size_t)capacity + 4;
+    int32_t *cavity = realloc(b->cavity, n * sizeof *cavity);
+    b->cavity = cavity ? cavity : b->cavity;
+    struct tri_rim *rim = realloc(b->rim, n * sizeof *rim);
+    b->rim = rim ? rim : b->rim;
+    struct tri_detour *detour = realloc(b->detour, n * sizeof *detour);
+    b->detour = detour ? detour : b->detour;
+    if (!cavity || !rim || !detour)
+        return false;
+    b->capacity = capacity;
+    return true;
+}
+
+static bool holds(const struct tri_inserter *b, int32_t v)
+{
+    return (v >= b->block.first && v < b->block.last) || v == TRI_GHOST;
+}
+
+bool tri_inserter_owns(const struct tri_inserter *b, const struct tri_triangle *t)
+{
+    return holds(b, t->v[0]) && holds(b, t->v[1]) && holds(b, t->v[2]);
+}
+
+/* Ghost e + 1 sees edge e the other way round; its edge from the hull edge's far end to infinity is shared with the
+ * ghost of the edge that starts there. They take the slots of the first two vertices; those of the third are free. */
+void tri_insert_first(const struct tri_point *xy, struct tri_triangle *tri, const int32_t v[3])
+{
+    const int32_t slot[] = {2 * v[0], 2 * v[0] + 1, 2 * v[1], 2 * v[1] + 1};
+    bool left = tri_orient2d(xy[v[0]], xy[v[1]], xy[v[2]]) > 0;
+    const int32_t c[] = {v[left ? 0 : 1], v[left ? 1 : 0], v[2]};
+    tri[slot[0]] = (struct tri_triangle){
+        {c[0], c[1], c[2]}, {tri_code(slot[1], 0), tri_code(slot[2], 0), tri_code(slot[3], 0)}, 0, 0};
+    for (int e = 0; e < 3; e++) {
+        int f = tri_next[e], g = tri_prev[e];
+        tri[slot[e + 1]] = (struct tri_triangle){
+            {TRI_GHOST, c[g], c[f]}, {tri_code(slot[0], e), tri_code(slot[g + 1], 2), tri_code(slot[f + 1], 1)}, 0, 0};
+    }
+    tri[2 * v[2]].v[0] = tri[2 * v[2] + 1].v[0] = TRI_NONE;
+}
+
+/* Strictly between a and b, where the three are collinear. */
+static bool between(struct tri_point a, struct tri_point b, struct tri_point q)
+{
+    return a.x != b.x ? (a.x < q.x) != (b.x < q.x) && q.x != a.x && q.x != b.x
+                      : (a.y < q.y) != (b.y < q.y) && q.y != a.y && q.y != b.y;
+}
+
+/* A ghost's hull edge runs from -> to with the outside on its left. */
+static bool in_ghost(const struct tri_inserter *b, const struct tri_triangle *t, int ghost, struct tri_point q)
+{
+    struct tri_point from = b->xy[t->v[tri_next[ghost]]], to = b->xy[t->v[tri_prev[ghost]]];
+    double side = tri_orient2d(from, to, q);
+    return side > 0 || (side == 0 && between(from, to, q));
+}
+
+static inline bool in_disk(const struct tri_inserter *b, const struct tri_triangle *t, struct tri_point q)
+{
+    if ((t->v[0] | t->v[1] | t->v[2]) < 0)
+        return in_ghost(b, t, tri_ghost_corner(t), q);
+    return tri_in_circle(b->xy[t->v[0]], b->xy[t->v[1]], b->xy[t->v[2]], q);
+}
+
+/* A walk by visibility: the triangle contains q, or is a ghost beyond the hull edge that the walk leaves through. Exact
+ * orientations: the walk cannot cycle in a Delaunay triangulation. */
+int32_t tri_inserter_locate(struct tri_inserter *b, struct tri_point q)
+{
+    int32_t t = b->last;
+    int from = -1, ghost = tri_ghost_corner(&b->tri[t]);
+    if (ghost >= 0)
+        t = tri_of(b->tri[t].n[ghost]);
+    for (;;) {
+        const struct tri_triangle *at = &b->tri[t];
+        int k = 0;
+        if (!tri_inserter_owns(b, at))
+            return TRI_NONE;
+        if (tri_ghost_corner(at) >= 0)
+            return t;
+        b->last = t;
+        for (; k < 3; k++)
+            if (k != from && tri_orient2d(b->xy[at->v[tri_next[k]]], b->xy[at->v[tri_prev[k]]], q) < 0)
+                break;
+        if (k == 3)
+            return t;
+        t = tri_of(at->n[k]);
+        from = tri_edge(at->n[k]);
+    }
+}
+
+/* Adds what lies across one edge of the first triangle. */
+static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, int32_t link, int32_t a, int32_t end)
+{
+    int32_t n_detours = 0;
+    for (;;) {
+        const struct tri_triangle *t = &b->tri[tri_of(link)];
+        int e = tri_edge(link);
+        if (in_disk(b, t, q)) {
+            if (!tri_inserter_owns(b, t))
+                return TRI_NOT_OWNED;
+            if (b->n_cavity == b->capacity && !grow(b))
+                return TRI_NO_ROOM_FOR_CAVITY;
+            b->cavity[b->n_cavity++] = tri_of(link);
+            b->detour[n_detours++] = (struct tri_detour){t->n[tri_prev[e]], end};
+            link = t->n[tri_next[e]];
+            end = t->v[e];
+            continue;
+        }
+        assert(b->n_rim < b->n_cavity + 2 && n_detours <= b->n_cavity);
+        b->rim[b->n_rim++] = (struct tri_rim){link, a};
+        if (n_detours == 0)
+            return TRI_INSERTED;
+        a = end;
+        link = b->detour[--n_detours].link;
+        end = b->detour[n_detours].end;
+    }
+}
+
+/* Replaces the cavity by the fan of v. */
+static void fill(struct tri_inserter *b, int32_t v)
+{
+    int32_t before = TRI_NONE, first = TRI_NONE;
+    assert(b->n_rim == b->n_cavity + 2); /* a disk without a vertex inside */
+    for (int32_t i = 0; i < b->n_rim; i++) {
+        int32_t slot = i < b->n_cavity ? b->cavity[i] : 2 * v + (i - b->n_cavity);
+        int32_t outer = b->rim[i].outer, end = b->rim[i + 1 < b->n_rim ? i + 1 : 0].a;
+        struct tri_triangle *t = &b->tri[slot];
+        int32_t link = before == TRI_NONE ? TRI_NONE : tri_code(before, 1);
+        *t = (struct tri_triangle){{v, b->rim[i].a, end}, {outer, TRI_NONE, link}, 0, 0};
+        assert(tri_inserter_owns(b, t));
+        b->tri[tri_of(outer)].n[tri_edge(outer)] = tri_code(slot, 0);
+        if (before != TRI_NONE)
+            b->tri[before].n[1] = tri_code(slot, 2);
+        else
+            first = slot;
+        before = slot;
+    }
+    b->tri[first].n[2] = tri_code(before, 1);
+    b->tri[before].n[1] = tri_code(first, 2);
+    b->last = first;
+}
+
+enum tri_insertion tri_insert(struct tri_inserter *b, int32_t v)
+{
+    struct tri_point q = b->xy[v];
+    int32_t t = tri_inserter_locate(b, q);
+    if (t == TRI_NONE)
+        return TRI_NOT_OWNED;
+    const struct tri_triangle start = b->tri[t];
+    b->n_cavity = b->n_rim = 0;
+    if (b->capacity == 0 && !grow(b))
+        return TRI_NO_ROOM_FOR_CAVITY;
+    b->cavity[b->n_cavity++] = t;
+    for (int e = 0; e < 3; e++) {
+        enum tri_insertion found = explore(b, q, start.n[e], start.v[tri_next[e]], start.v[tri_prev[e]]);
+        if (found != TRI_INSERTED)
+            return found;
+    }
+    fill(b, v);
+    return TRI_INSERTED;
+}

@@ -1,0 +1,65 @@
+/* One point more in a Delaunay triangulation, by a worker who keeps to a block of vertices.
+ *
+ * The plane outside the hull is tiled by ghosts: triangles of a hull edge and a vertex at infinity (TRI_GHOST). The
+ * "circumdisk" of a ghost is the open half plane beyond its hull edge, and the open edge itself; with that, insertion
+ * knows no special case outside the hull. INVARIANT: every edge of every triangle, real or ghost, has a neighbour.
+ *
+ * BLOCKS. Vertices are numbered, and a block is a range of numbers. It owns the triangles whose corners all lie in the
+ * range, where infinity counts as in every range. A point is inserted only if the block owns its whole cavity.
+ * THEOREM. Blocks that are disjoint may insert at the same time; the result is that of one after the other, in any
+ * order. Proof: every edge has an end other than infinity, so triangles of different owners share no edge. What a block
+ * writes are triangles it owns, two slots that are the new vertex's alone, and links back to these in triangles just
+ * outside the cavity. Such a triangle shares a corner in the range, so nobody else owns it or changes its corners; and
+ * nobody else reads or writes its link across an edge of the block. What a block reads are corners and links of what it
+ * owns, and corners of their neighbours: the same argument. New triangles have corners of the cavity and the new
+ * vertex, so the block owns them: what it has owned it goes on owning, and what others own it never does.
+ *
+ * A disk without a vertex inside is replaced by two triangles more than it had, whatever its place: so vertex v brings
+ * the slots 2 v and 2 v + 1 along, and nobody needs to be asked for room. */
+#ifndef TRIANGLE_INSERTION_H
+#define TRIANGLE_INSERTION_H
+
+#include "triangle/mesh.h"
+
+enum { TRI_GHOST = -2 };
+
+struct tri_rim;
+struct tri_detour;
+
+struct tri_inserter {
+    const struct tri_point *xy;
+    struct tri_triangle *tri;
+    struct tri_range block;
+    int32_t last; /* a triangle that the block owns, near the last place that was looked at; TRI_NONE: none is known */
+    int32_t n_cavity, n_rim, capacity;
+    int32_t *cavity;
+    struct tri_rim *rim;
+    struct tri_detour *detour;
+};
+
+/* Frees what insertions have allocated. */
+void tri_inserter_free(struct tri_inserter *b);
+
+/* The first triangle, with its three ghosts, of three vertices that are not collinear. */
+void tri_insert_first(const struct tri_point *xy, struct tri_triangle *tri, const int32_t v[3]);
+
+/* Which corner is at infinity? -1: none. */
+static inline int tri_ghost_corner(const struct tri_triangle *t)
+{
+    return t->v[0] == TRI_GHOST ? 0 : t->v[1] == TRI_GHOST ? 1 : t->v[2] == TRI_GHOST ? 2 : -1;
+}
+
+/* Does the block own this triangle? */
+bool tri_inserter_owns(const struct tri_inserter *b, const struct tri_triangle *t);
+
+/* A triangle whose disk holds q, and which the block owns; TRI_NONE where the way there from `last` leaves what it
+ * owns. Sets `last`. */
+int32_t tri_inserter_locate(struct tri_inserter *b, struct tri_point q);
+
+enum tri_insertion { TRI_INSERTED, TRI_NOT_OWNED, TRI_NO_ROOM_FOR_CAVITY };
+
+/* Inserts vertex v, of the block and at a place where no vertex is. TRI_NOT_OWNED: the block does not own the cavity,
+ * or did not find it; nothing has changed. */
+enum tri_insertion tri_insert(struct tri_inserter *b, int32_t v);
+
+#endif
