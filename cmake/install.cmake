@@ -21,10 +21,7 @@ foreach(document IN LISTS documents)
         install(FILES ${document} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT programs)
     endif()
 endforeach()
-foreach(header IN LISTS PTRIANGLE_PUBLIC_HEADERS)
-    get_filename_component(room ${header} DIRECTORY)
-    install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/ptriangle/${room} COMPONENT development)
-endforeach()
+install(FILES ${PTRIANGLE_PUBLIC_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/ptriangle COMPONENT development)
 install(FILES triangle/dropin/triangle.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} # where Triangle's clients look for it
         RENAME ${PTRIANGLE_PREFIX}triangle.h COMPONENT development)
 

@@ -1,6 +1,6 @@
 # Shared libraries for clients. Each consists of objects of its own and lets nothing out but the functions that
-# cmake/exports.map lists, so that libptriangle, which needs the inside of libtriangle, contains it: a client links the one
-# or the other.
+# cmake/exports.map lists, so that libptriangle, which needs the inside of libtriangle, contains it, and libtritext what it
+# needs of it: a client links the one mesher or the other, and libtritext where it reads and writes files.
 
 # Before 1.0 every minor version may change the interface.
 function(ptriangle_shared name)
@@ -25,11 +25,10 @@ set_target_properties(libtriangle_shared PROPERTIES OUTPUT_NAME ${PTRIANGLE_PREF
 ptriangle_dropin(libtriangle_shared)
 target_link_libraries(libtriangle_shared PRIVATE m)
 
-ptriangle_shared(tricheck ${PTRIANGLE_CHECK_SOURCES} triangle/predicates.c triangle/status.c)
+ptriangle_shared(tricheck ${PTRIANGLE_CHECK_SOURCES} ${PTRIANGLE_CHECK_NEEDS})
 target_link_libraries(libtricheck_shared PRIVATE m)
 
-ptriangle_shared(tritext ${PTRIANGLE_TEXT_SOURCES})
-target_link_libraries(libtritext_shared PUBLIC libtriangle_shared)
+ptriangle_shared(tritext ${PTRIANGLE_TEXT_SOURCES} ${PTRIANGLE_TEXT_NEEDS})
 target_compile_options(libtritext_shared PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti>)
 ptriangle_static_runtime(libtritext_shared)
 

@@ -37,6 +37,9 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/census.c
     triangle/stats.c
     triangle/generate.c
+    triangle/api/figure.c
+    triangle/api/mesh.c
+    triangle/api/arrays.c
     triangle/dropin/switches.c
     triangle/topology.c
     triangle/dropin/input.c
@@ -44,7 +47,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/dropin/run.c
     triangle/dropin/triangulate.c)
 
-# Room triangle/check/, the judge of meshes. Of the mesher it knows the predicates alone.
+# Room triangle/check/, the judge of meshes, and its public door. Of the mesher it knows the predicates alone.
 set(PTRIANGLE_CHECK_SOURCES
     triangle/check/check.c
     triangle/check/scale.c
@@ -55,7 +58,8 @@ set(PTRIANGLE_CHECK_SOURCES
     triangle/check/segments.c
     triangle/check/chain.c
     triangle/check/input.c
-    triangle/check/quality.c)
+    triangle/check/quality.c
+    triangle/api/judge.c)
 
 # Room triangle/, text files. The one C++ file wraps std::from_chars and std::to_chars.
 set(PTRIANGLE_TEXT_SOURCES
@@ -63,7 +67,12 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/text.c
     triangle/text/read.c
     triangle/text/output.c
-    triangle/text/write.c)
+    triangle/text/write.c
+    triangle/api/files.c)
+
+# What these two need of the mesher: all that their shared libraries have of it.
+set(PTRIANGLE_TEXT_NEEDS triangle/status.c triangle/pslg.c triangle/api/figure.c)
+set(PTRIANGLE_CHECK_NEEDS ${PTRIANGLE_TEXT_NEEDS} triangle/predicates.c)
 
 # Room sched/, the parallel schedule: with drivers/ptriangle.c, which asks for the number of threads, the only sources
 # compiled with OpenMP.
@@ -75,30 +84,15 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/pool.c
     sched/phase.c
     sched/schedule.c
-    sched/triangulate.c)
+    sched/triangulate.c
+    sched/mesh.c)
 
-# Headers that are installed, below include/ptriangle/ at the same path.
+# Headers that are installed, below include/ptriangle/, beside triangle.h, which lies where Triangle's clients look for it.
 set(PTRIANGLE_PUBLIC_HEADERS
-    triangle/generate.h
-    triangle/status.h
-    triangle/stop.h
-    triangle/pslg.h
-    triangle/point.h
-    triangle/mesh.h
-    triangle/spatial.h
-    triangle/carve.h
-    triangle/reconstruct.h
-    triangle/constrain.h
-    triangle/cavity.h
-    triangle/refine.h
-    triangle/numbering.h
-    triangle/check/check.h
-    triangle/executor.h
-    triangle/text/read.h
-    triangle/text/output.h
-    triangle/text/write.h
-    sched/schedule.h
-    sched/partition.h)
+    include/ptriangle/tri.h
+    include/ptriangle/par.h
+    include/ptriangle/files.h
+    include/ptriangle/check.h)
 
 # Room drivers/: what the executables share, then the executables, each from drivers/<name>.c. The second list of programs
 # needs the room sched/ and its library.

@@ -1,8 +1,8 @@
 /* checkerboard: an example of the hook. Refines the cells of a checkerboard, first the black ones, then the white ones,
- * from outside the library: through tri_generate, and tri_refine with a gate.
+ * from outside the library: through ptriangle/tri.h, tri_mesh_refine with a gate.
  *
  * A gate is asked for each bad triangle, with the point that would remove it. Where it says no, the triangle stays as
- * it is; the next call finds it again. So a schedule of one's own needs nothing but the public headers. What the gate
+ * it is; the next call finds it again. So a schedule of one's own needs nothing but the public header. What the gate
  * decides is where points go, not which triangles change: a cavity may reach across the border of a cell by a triangle
  * or two, and a segment that a new point would encroach is split wherever it lies. (To confine changes as well, set a
  * fence.)
@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "triangle/generate.h"
+#include "ptriangle/tri.h"
 
 enum colour { BLACK, WHITE };
 
@@ -35,57 +35,48 @@ static bool is_open(void *user, const double p[2])
 }
 
 /* The unit square and nothing else, as plain arrays. */
-static enum tri_status make_square(struct tri_mesh *mesh, struct tri_error *error)
+static enum tri_status make_square(struct tri_mesh **mesh, struct tri_error *error)
 {
-    double points[8] = {0, 0, 1, 0, 1, 1, 0, 1};
-    int32_t segments[8] = {0, 1, 1, 2, 2, 3, 3, 0};
-    struct tri_pslg square = {.n_points = 4, .points = points, .n_segments = 4, .segments = segments};
-    struct tri_options options = tri_defaults();
-    struct tri_report report;
-    options.use_segments = true;
-    return tri_generate(mesh, &square, &options, &report, error);
+    const double points[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+    const int32_t segments[8] = {0, 1, 1, 2, 2, 3, 3, 0};
+    struct tri_figure square = tri_no_figure();
+    square.points = tri_reals_of(points, 4, 2);
+    square.segments = tri_ints_of(segments, 4, 2);
+    return tri_mesh_new(mesh, &square, NULL, error);
 }
 
 /* Triangles by the colour of the cell that holds their centroid. */
 static void count_colours(const struct tri_mesh *mesh, const struct board *board, long count[2])
 {
+    struct tri_reals points = tri_mesh_points(mesh);
+    struct tri_ints triangles = tri_mesh_triangles(mesh);
     count[BLACK] = count[WHITE] = 0;
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
-        double centroid[2] = {0, 0}, corner[2];
-        if (!tri_is_live(&mesh->tri[t]))
-            continue;
+    for (int64_t t = 0; t < triangles.n; t++) {
+        const int32_t *corner = triangles.at + t * triangles.stride;
+        double centroid[2] = {0, 0};
         for (int k = 0; k < 3; k++) {
-            tri_mesh_place(mesh, mesh->tri[t].v[k], corner);
-            centroid[0] += corner[0] / 3;
-            centroid[1] += corner[1] / 3;
+            const double *p = points.at + corner[k] * points.stride;
+            centroid[0] += p[0] / 3;
+            centroid[1] += p[1] / 3;
         }
         count[colour_at(board, centroid)]++;
     }
 }
 
-static int64_t count_bad(const struct tri_mesh *mesh, const struct tri_refine_options *options,
-                         const struct tri_refine_report *report)
-{
-    int64_t count[TRI_EXCUSES], sum = 0;
-    tri_count_bad(mesh, options, report, NULL, count);
-    for (int k = 0; k < TRI_EXCUSES; k++)
-        sum += count[k];
-    return sum;
-}
-
 /* One call of the refinement loop; says what it did. *bad: triangles that still violate the bounds. */
-static enum tri_status refine(const char *what, struct tri_mesh *mesh, const struct tri_refine_options *options,
+static enum tri_status refine(const char *what, struct tri_mesh *mesh, const struct tri_settings *settings,
                               const struct board *board, int64_t *bad, struct tri_error *error)
 {
-    struct tri_refine_report report;
     long count[2];
-    enum tri_status status = tri_refine(mesh, options, &report, error);
+    enum tri_status status = tri_mesh_refine(mesh, settings, error);
     if (status)
         return status;
-    *bad = count_bad(mesh, options, &report);
+    *bad = tri_mesh_count_bad(mesh, settings, NULL, 0);
     count_colours(mesh, board, count);
-    printf("%-14s %8lld points inserted, %8lld times refused; ", what,
-           (long long)(report.inserted_free + report.inserted_on_segments), (long long)report.gated);
+    int64_t inserted = tri_mesh_count(mesh, TRI_COUNT_NEW_POINTS) +
+                       tri_mesh_count(mesh, TRI_COUNT_NEW_POINTS_ON_SEGMENTS);
+    printf("%-14s %8lld points inserted, %8lld times refused; ", what, (long long)inserted,
+           (long long)tri_mesh_count(mesh, TRI_COUNT_GATED));
     printf("triangles: %8ld in black cells, %8ld in white, %8lld bad\n", count[BLACK], count[WHITE], (long long)*bad);
     return TRI_OK;
 }
@@ -93,27 +84,27 @@ static enum tri_status refine(const char *what, struct tri_mesh *mesh, const str
 static enum tri_status play(struct tri_mesh *mesh, struct board *board, double max_area, int64_t *bad,
                             struct tri_error *error)
 {
-    struct tri_refine_options options = tri_refine_defaults();
-    options.min_angle = 30;
+    struct tri_settings settings = tri_no_settings();
+    settings.min_angle = 30;
     /* Coarse everywhere first: a triangle larger than a cell belongs to no cell. */
-    options.max_area = 0.1 / ((double)board->cells * board->cells);
-    enum tri_status status = refine("coarse", mesh, &options, board, bad, error);
-    options.max_area = max_area;
-    options.gate = is_open;
-    options.gate_user = board;
+    settings.max_area = 0.1 / ((double)board->cells * board->cells);
+    enum tri_status status = refine("coarse", mesh, &settings, board, bad, error);
+    settings.max_area = max_area;
+    settings.gate = is_open;
+    settings.gate_user = board;
     board->open = BLACK;
-    status = status ? status : refine("black cells", mesh, &options, board, bad, error);
+    status = status ? status : refine("black cells", mesh, &settings, board, bad, error);
     board->open = WHITE;
-    status = status ? status : refine("white cells", mesh, &options, board, bad, error);
-    options.gate = NULL; /* what the white cells have made bad in the black ones, if anything */
-    return status ? status : refine("without gate", mesh, &options, board, bad, error);
+    status = status ? status : refine("white cells", mesh, &settings, board, bad, error);
+    settings.gate = NULL; /* what the white cells have made bad in the black ones, if anything */
+    return status ? status : refine("without gate", mesh, &settings, board, bad, error);
 }
 
 int main(int argc, char **argv)
 {
     struct board board = {argc > 1 ? atoi(argv[1]) : 8, BLACK};
     double max_area = argc > 2 ? atof(argv[2]) : 1e-5;
-    struct tri_mesh mesh;
+    struct tri_mesh *mesh = NULL;
     struct tri_error error;
     int64_t bad = 0;
     if (argc > 3 || board.cells < 1 || board.cells > 1000 || !(max_area > 0)) {
@@ -121,9 +112,9 @@ int main(int argc, char **argv)
         return 2;
     }
     enum tri_status status = make_square(&mesh, &error);
-    status = status ? status : play(&mesh, &board, max_area, &bad, &error);
+    status = status ? status : play(mesh, &board, max_area, &bad, &error);
     if (status)
         fprintf(stderr, "checkerboard: %s\n", error.text);
-    tri_mesh_free(&mesh);
+    tri_mesh_delete(mesh);
     return status || bad ? 1 : 0;
 }

@@ -55,19 +55,22 @@ for file in tests/test_*.c; do
 done
 
 # 2. drivers/ -> sched/ -> triangle/, never back; only sched/ knows threads. The folders in triangle/ may include the
-# mesher, the mesher none of them, and they none of each other.
+# mesher, the mesher none of them, and they none of each other, but for api/, the door to all.
 refuse '#[[:space:]]*include[[:space:]]*"(sched|drivers|tests)/' 'includes an upper room' \
     triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp
 refuse '#[[:space:]]*include[[:space:]]*"(drivers|tests)/' 'includes an upper room' sched/*.[ch]
-refuse '#[[:space:]]*include[[:space:]]*"triangle/(text|dropin|check)/' 'includes a folder of the mesher' triangle/*.[ch]
-refuse '#[[:space:]]*include[[:space:]]*"triangle/(dropin|check)/' 'includes another folder' triangle/text/*.[ch]
-refuse '#[[:space:]]*include[[:space:]]*"triangle/(text|check)/' 'includes another folder' triangle/dropin/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|text|dropin|check)/' 'includes a folder of the mesher' \
+    triangle/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|dropin|check)/' 'includes another folder' triangle/text/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|text|check)/' 'includes another folder' triangle/dropin/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"(triangle|sched|drivers)/' 'is public, and includes what is not' \
+    include/ptriangle/*.h
 refuse '#[[:space:]]*pragma[[:space:]]+omp|<(omp|pthread|threads)\.h>' 'knows threads' \
     triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp
 
 # The judge knows nothing of the judged but input, status codes and predicates: nobody is judge of his own cause.
 for file in triangle/check/*.[ch]; do
-    strange=$("$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -I . -MM -x c "$file" | tr ' \\' '\n\n' | grep '^triangle/' |
+    strange=$("$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -I . -I include -MM -x c "$file" | tr ' \\' '\n\n' | grep '^triangle/' |
         grep -vE '^triangle/(check/[a-z_]+\.[ch]|(pslg|status|predicates|expansion|point|arithmetic)\.h)$')
     [ -z "$strange" ] || breach "$file includes" $strange
 done
@@ -78,13 +81,13 @@ refuse '(^|[^_a-zA-Z0-9])(printf|puts|putchar|perror|exit|_exit|abort|setlocale|
 
 # 4. No line is longer than 120 characters.
 long=$(LC_ALL=C.UTF-8 grep -nE '^.{121,}$' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] drivers/*.[ch] \
-    tests/*.[ch] | head -n 3)
+    tests/*.[ch] include/*/*.h | head -n 3)
 [ -z "$long" ] || breach "lines of more than 120 characters: $long"
 
 # 5. Each header compiles alone.
-for file in triangle/*.h triangle/*/*.h sched/*.h; do
+for file in include/*/*.h triangle/*.h triangle/*/*.h sched/*.h; do
     [ -f "$file" ] || continue
-    "$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Wno-unused -I . -fsyntax-only -x c \
+    "$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Wno-unused -I . -I include -fsyntax-only -x c \
         -include "$file" /dev/null || breach "$file does not compile alone"
 done
 

@@ -23,7 +23,7 @@ cd "$work" || exit 2
 compiles() { # compiles FILE OPTION...
     file=$1
     shift
-    "$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -I "$root" "$@" -c "$root/triangle/$file" -o by_hand.o 2>by_hand.log
+    "$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -I "$root" -I "$root/include" "$@" -c "$root/triangle/$file" -o by_hand.o 2>by_hand.log
 }
 evaluation() { "$cc" "$@" -dM -E -x c /dev/null 2>/dev/null | awk '$2 == "__FLT_EVAL_METHOD__" { print $3 }'; }
 
@@ -44,7 +44,7 @@ for method in 0 1 2; do
 #define FLT_EVAL_METHOD $method
 #include "triangle/arithmetic.h"
 EOF
-    "$cc" -std=c11 -I "$root" -c arithmetic.c -o by_hand.o 2>by_hand.log
+    "$cc" -std=c11 -I "$root" -I "$root/include" -c arithmetic.c -o by_hand.o 2>by_hand.log
     [ $? -eq $((method == 2)) ] || fault "FLT_EVAL_METHOD $method: $(head -n 3 by_hand.log)"
 done
 

@@ -154,20 +154,40 @@ client '' double '#define SINGLE
 in_c no
 in_cxx no
 
-# The library's own headers, in a C++ client that takes no warning.
-headers=$(sed -n '/PTRIANGLE_PUBLIC_HEADERS/,/)/s/^ *\([a-z]*\/[a-z_]*\.h\).*/\1/p' "$root/cmake/sources.cmake")
-[ -n "$headers" ] || { echo "header: no public headers found"; failed=1; }
+# The library's own headers, in clients that take no warning, and what they declare has C linkage.
+headers=$(sed -n 's/^ *include\/\(ptriangle\/[a-z_]*\.h\).*/\1/p' "$root/cmake/sources.cmake")
+[ "$(echo "$headers" | wc -l)" -eq 4 ] || { echo "header: there are not four public headers"; failed=1; }
+cp -r "$root/include/ptriangle" only/
 for header in $headers; do
     printf '#include "%s"\n' "$header"
-    grep -q 'extern "C"' "$root/$header" || { echo "header: $header has no C linkage" >&2; failed=$((failed + 1)); }
 done >client.cpp
-for std in c++11 c++14 c++17 c++20; do
-    try yes client.cpp "$cxx" -I "$root" -std=$std -Wconversion
+cat >>client.cpp <<'END'
+int main()
+{
+    struct tri_figure figure = tri_no_figure();
+    struct tri_settings settings = tri_no_settings();
+    struct tri_demands demands = tri_no_demands();
+    struct tri_verdict verdict;
+    struct tri_mesh *mesh = NULL;
+    const double xy[] = {0, 0, 1, 0, 0, 1};
+    figure.points = tri_reals_of(xy, 3, 2);
+    settings.threads = 1;
+    if (par_mesh_new(&mesh, &figure, &settings, NULL) == TRI_OK)
+        tri_mesh_figure(mesh, &figure);
+    tri_mesh_delete(mesh);
+    tri_file_free(&figure);
+    return tri_check_figure(&figure, NULL, &demands, &verdict, NULL);
+}
+END
+sed 's/int main()/int main(void)/' client.cpp >client.c
+for std in c11 c17 c2x; do
+    try yes client.c "$cc" -std=$std -Wconversion -Wstrict-prototypes -Wmissing-prototypes
 done
-# What they declare has C linkage.
-printf '#include "sched/schedule.h"\nint main() { par_report_free(0); struct tri_mesh m; tri_mesh_free(&m); }\n' >client.cpp
-"$cxx" -I "$root" -std=c++11 -c client.cpp -o object.o && nm object.o >names.txt
-for name in par_report_free tri_mesh_free; do
+for std in c++11 c++14 c++17 c++20; do
+    try yes client.cpp "$cxx" -std=$std -Wconversion
+done
+nm object.o >names.txt
+for name in par_mesh_new tri_mesh_figure tri_file_free tri_check_figure; do
     grep -q " U _*$name\$" names.txt || { echo "header: $name has C++ linkage"; failed=$((failed + 1)); }
 done
 

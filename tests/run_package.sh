@@ -76,10 +76,30 @@ for package in pt-triangle ptriangle; do
 done
 unset PKG_CONFIG_PATH LD_LIBRARY_PATH
 
-echo "== names of programs, and no OpenMP"
-configure sequential -DPTRIANGLE_OPENMP=OFF -DPTRIANGLE_PREFIX=pt-
-grep -q '/bin/pt-trianglecheck"' sequential/cmake_install.cmake || fail "programs without their prefix"
-grep -q 'ptriangle\.\(a\|so\)' sequential/cmake_install.cmake && fail "a parallel library without OpenMP"
+echo "== where there is no OpenMP; names of programs; the C++ runtime of the system"
+configure sequential -DCMAKE_DISABLE_FIND_PACKAGE_OpenMP=ON -DPTRIANGLE_PREFIX=pt- -DPTRIANGLE_STATIC_RUNTIME=OFF
+"$cmake" --build sequential --parallel 2 >sequential.log 2>&1 || fail "sequential: $(tail -n 20 sequential.log)"
+"$cmake" --install sequential --prefix "$work/alone" >install.log
+[ -z "$(find alone -name 'libptriangle.*' -o -path '*/bin/ptriangle')" ] || fail "a parallel library without OpenMP"
+for name in pt-triangle pt-trianglecheck; do
+    "alone/bin/$name" --version | grep -q "^$name " || fail "$name does not know its name"
+    readelf -d "alone/bin/$name" | grep -q 'NEEDED.*libstdc++' || fail "$name carries the C++ runtime inside"
+    ! readelf -d "static/bin/${name#pt-}" | grep -q 'NEEDED.*libstdc++' || fail "${name#pt-} needs a C++ runtime"
+done
+cp "$root/data/square.poly" .
+alone/bin/pt-triangle -pq30Q square.poly
+alone/bin/pt-trianglecheck square.1 --poly square.poly --min-angle 30 --quiet
+PKG_CONFIG_PATH=$(dirname "$(find "$work/alone" -name pt-triangle.pc)")
+export PKG_CONFIG_PATH
+mkdir alone/as_triangle
+cp alone/include/pt-triangle.h alone/as_triangle/triangle.h # the client knows it by this name
+for package in pt-triangle ptriangle; do
+    # shellcheck disable=SC2046 # words
+    "$cc" -std=c11 "$client/dropin.c" -Ialone/as_triangle $(pkg-config --cflags --libs $package) -o by_hand
+    ./by_hand | cmp - static_clients.sequential
+done
+unset PKG_CONFIG_PATH
+configure sequential_tests -DCMAKE_DISABLE_FIND_PACKAGE_OpenMP=ON -DPTRIANGLE_TESTS=ON
 
 echo "== subproject"
 "$cmake" -S "$client/cxx" -B sub -DSUBPROJECT="$root" -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" >sub.log 2>&1 ||

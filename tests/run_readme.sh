@@ -21,7 +21,7 @@ PATH=$build/bin:$PATH
 
 awk '/^```c$/ { inside = 1; next } /^```$/ { inside = 0 } inside' "$root/README.md" >example.c
 [ -s example.c ] || fault "no C program found"
-"$cc" -std=c11 -Wall -Wextra -Werror -I "$root" example.c "$build/libtriangle.a" -lm -o example ||
+"$cc" -std=c11 -Wall -Wextra -Werror -I "$root/include" example.c "$build/libtriangle.a" -lm -o example ||
     fault "the C program does not compile"
 ./example || fault "the program ends with exit code $?"
 

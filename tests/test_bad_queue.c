@@ -2,6 +2,18 @@
 #include "support.h"
 #include "triangle/bad_queue.h"
 
+/* Slot t is in state 3 t, unless a test changes that. */
+enum { SLOTS = 100000 };
+static struct tri_triangle slots[SLOTS];
+
+static int set_up(void **state)
+{
+    (void)state;
+    for (int32_t t = 0; t < SLOTS; t++)
+        slots[t].state = (uint32_t)t * 3;
+    return 0;
+}
+
 static void push_angle(struct tri_bad_queue *queue, int32_t t, int bucket)
 {
     assert_true(tri_bad_queue_push_angle(queue, (struct tri_entry){t, (uint32_t)t * 3}, bucket));
@@ -9,13 +21,13 @@ static void push_angle(struct tri_bad_queue *queue, int32_t t, int bucket)
 
 static void push_size(struct tri_bad_queue *queue, int32_t t)
 {
-    assert_true(tri_bad_queue_push_size(queue, (struct tri_entry){t, (uint32_t)t * 3}));
+    assert_true(tri_bad_queue_push_size(queue, (struct tri_entry){t, (uint32_t)t * 3}, true));
 }
 
 static int32_t pop(struct tri_bad_queue *queue)
 {
     struct tri_entry entry;
-    if (!tri_bad_queue_pop(queue, &entry))
+    if (!tri_bad_queue_pop(queue, slots, &entry))
         return TRI_NONE;
     assert_int_equal(entry.state, (uint32_t)entry.t * 3);
     return entry.t;
@@ -116,6 +128,29 @@ static void test_older_half_is_spilt(void **state)
     tri_bad_queue_free(&queue);
 }
 
+/* Sizes that are out of date when their batch is taken are dropped, and what is not bad has never been there; the order
+ * of the others stays. */
+static void test_only_what_is_up_to_date(void **state)
+{
+    (void)state;
+    enum { N = 1000 };
+    struct tri_bad_queue queue;
+    struct support_random random = {3};
+    bool kept[N];
+    assert_true(tri_bad_queue_init(&queue));
+    for (int32_t t = 0; t < N; t++) {
+        bool bad = support_below(&random, 3) > 0;
+        slots[t].state += support_below(&random, 2) == 0;
+        kept[t] = bad && slots[t].state == (uint32_t)t * 3;
+        assert_true(tri_bad_queue_push_size(&queue, (struct tri_entry){t, (uint32_t)t * 3}, bad));
+    }
+    for (int32_t t = 0; t < N; t++)
+        if (kept[t])
+            assert_int_equal(pop(&queue), t);
+    assert_int_equal(pop(&queue), TRI_NONE);
+    tri_bad_queue_free(&queue);
+}
+
 /* Entries of the pool are used again: steady traffic does not grow it. */
 static void test_pool_is_reused(void **state)
 {
@@ -134,10 +169,11 @@ static void test_pool_is_reused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_equals_naive_twin),
-        cmocka_unit_test(test_sizes_beyond_the_window),
-        cmocka_unit_test(test_older_half_is_spilt),
-        cmocka_unit_test(test_pool_is_reused),
+        cmocka_unit_test_setup(test_equals_naive_twin, set_up),
+        cmocka_unit_test_setup(test_sizes_beyond_the_window, set_up),
+        cmocka_unit_test_setup(test_older_half_is_spilt, set_up),
+        cmocka_unit_test_setup(test_only_what_is_up_to_date, set_up),
+        cmocka_unit_test_setup(test_pool_is_reused, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -71,9 +71,11 @@ static bool check_rims(const struct tri_cavity *cavity, const struct tri_mesh *m
     int32_t walls = 0;
     bool beyond = false;
     assert_int_equal(cavity->n_rim, cavity->n_tri + 2);
+    assert_int_equal(cavity->rim[cavity->n_rim].a, cavity->rim[0].a);
     for (int32_t i = 0; i < cavity->n_rim; i++) {
         const struct tri_rim *rim = &cavity->rim[i];
-        int32_t a = rim->a, b = cavity->rim[(i + 1) % cavity->n_rim].a;
+        int32_t a = rim->a, b = rim[1].a;
+        assert_true(rim->area2 == tri_cross(rim[0].ra, rim[1].ra));
         bool seen = tri_orient2d(cavity->p, mesh->xy[a], mesh->xy[b]) > 0;
         if (rim->outer < 0) {
             const struct tri_subsegment *s = &mesh->sub[~rim->outer];

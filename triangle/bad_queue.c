@@ -61,7 +61,7 @@ bool tri_bad_queue_push_angle(struct tri_bad_queue *queue, struct tri_entry entr
     return true;
 }
 
-static bool spill(struct tri_bad_queue *queue)
+bool tri_bad_queue_spill(struct tri_bad_queue *queue)
 {
     if (queue->n_cold + HALF > queue->cold_capacity) {
         size_t capacity = queue->cold_capacity ? queue->cold_capacity + queue->cold_capacity / 2 : TRI_WINDOW;
@@ -73,14 +73,6 @@ static bool spill(struct tri_bad_queue *queue)
     }
     for (int i = 0; i < HALF; i++)
         queue->cold[queue->n_cold++] = queue->window[queue->head++ & MASK];
-    return true;
-}
-
-bool tri_bad_queue_push_size(struct tri_bad_queue *queue, struct tri_entry entry)
-{
-    if (queue->tail - queue->head == TRI_WINDOW && !spill(queue))
-        return false;
-    queue->window[queue->tail++ & MASK] = entry;
     return true;
 }
 
@@ -126,15 +118,32 @@ bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, struct tri_
     return false;
 }
 
-bool tri_bad_queue_pop(struct tri_bad_queue *queue, struct tri_entry *entry)
+/* Of the next entries in the window, those that are up to date. */
+static void take_batch(struct tri_bad_queue *queue, const struct tri_triangle *tri)
+{
+    uint32_t waiting = queue->tail - queue->head, n = waiting < TRI_BATCH ? waiting : TRI_BATCH;
+    int32_t kept = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        struct tri_entry entry = queue->window[queue->head++ & MASK];
+        queue->batch[kept] = entry;
+        kept += tri[entry.t].state == entry.state;
+    }
+    queue->next = 0;
+    queue->n_batch = kept;
+}
+
+bool tri_bad_queue_pop(struct tri_bad_queue *queue, const struct tri_triangle *tri, struct tri_entry *entry)
 {
     if (tri_bad_queue_pop_angle(queue, TRI_BUCKETS, entry))
         return true;
-    if (queue->head == queue->tail && queue->n_cold > 0)
-        refill(queue);
-    if (queue->head == queue->tail)
-        return false;
-    *entry = queue->window[queue->head++ & MASK];
+    while (queue->next == queue->n_batch) {
+        if (queue->head == queue->tail && queue->n_cold > 0)
+            refill(queue);
+        if (queue->head == queue->tail)
+            return false;
+        take_batch(queue, tri);
+    }
+    *entry = queue->batch[queue->next++];
     return true;
 }
 

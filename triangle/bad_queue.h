@@ -7,7 +7,10 @@
  * is full its older half goes to a stack and is taken back when the window has run empty. So the work stays where the
  * cache is, for any size of mesh.
  *
- * An entry names a slot and the state the slot had; whoever takes an entry compares. */
+ * An entry names a slot and the state the slot had; whoever takes an entry compares. Two of three entries for sizes
+ * are out of date when their turn comes, for the points before them were inserted nearby. So these leave the window in
+ * batches, of which those are kept that are up to date: a loop without a branch that depends on it, which could not be
+ * predicted. */
 #ifndef TRIANGLE_BAD_QUEUE_H
 #define TRIANGLE_BAD_QUEUE_H
 
@@ -15,7 +18,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { TRI_BUCKETS = 512, TRI_WINDOW = 1 << 13 };
+#include "triangle/mesh.h"
+
+enum { TRI_BUCKETS = 512, TRI_WINDOW = 1 << 13, TRI_BATCH = 16 };
 
 struct tri_entry {
     int32_t t;
@@ -36,6 +41,8 @@ struct tri_bad_queue {
 
     struct tri_entry *window; /* ring of TRI_WINDOW */
     uint32_t head, tail;      /* tail - head entries wait in the ring */
+    struct tri_entry batch[TRI_BATCH]; /* taken from the ring, and found to be up to date */
+    int32_t next, n_batch;    /* batch[next .. n_batch - 1] are still to be served */
     struct tri_entry *cold;   /* stack of what the window had no room for */
     size_t n_cold, cold_capacity;
 };
@@ -45,7 +52,19 @@ void tri_bad_queue_free(struct tri_bad_queue *queue);
 
 /* bucket: 0 .. TRI_BUCKETS - 1, the lowest is served first. False where memory ran out. Amortised O(1). */
 bool tri_bad_queue_push_angle(struct tri_bad_queue *queue, struct tri_entry entry, int bucket);
-bool tri_bad_queue_push_size(struct tri_bad_queue *queue, struct tri_entry entry);
+
+/* Moves the older half of a full window to the stack. */
+bool tri_bad_queue_spill(struct tri_bad_queue *queue);
+
+/* Pushes the entry if it is bad, which nobody can predict: it is written in any case, and counted if so. */
+static inline bool tri_bad_queue_push_size(struct tri_bad_queue *queue, struct tri_entry entry, bool is_bad)
+{
+    if (queue->tail - queue->head == TRI_WINDOW && !tri_bad_queue_spill(queue))
+        return false;
+    queue->window[queue->tail % TRI_WINDOW] = entry;
+    queue->tail += is_bad;
+    return true;
+}
 
 /* The bucket that holds the median of all entries in buckets; 0 where there is none. O(buckets). */
 int tri_bad_queue_median(const struct tri_bad_queue *queue);
@@ -53,7 +72,7 @@ int tri_bad_queue_median(const struct tri_bad_queue *queue);
 /* Takes the next entry from the buckets below `limit`. False where none waits there. */
 bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, struct tri_entry *entry);
 
-/* Takes the next entry: bad angles first. False where nothing waits. */
-bool tri_bad_queue_pop(struct tri_bad_queue *queue, struct tri_entry *entry);
+/* Takes the next entry: bad angles first. False where nothing waits. tri: what the entries' slots belong to. */
+bool tri_bad_queue_pop(struct tri_bad_queue *queue, const struct tri_triangle *tri, struct tri_entry *entry);
 
 #endif

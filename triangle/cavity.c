@@ -25,7 +25,7 @@ static bool grow(struct tri_cavity *c)
 {
     int32_t capacity = c->capacity ? 2 * c->capacity : 256;
     size_t n = (size_t)capacity;
-    int32_t *tri = realloc(c->tri, n * sizeof *tri);
+    int32_t *tri = realloc(c->tri, (n + 4) * sizeof *tri);
     c->tri = tri ? tri : c->tri;
     struct tri_rim *rim = realloc(c->rim, (n + 4) * sizeof *rim);
     c->rim = rim ? rim : c->rim;
@@ -46,61 +46,58 @@ static bool owns(const struct tri_cavity *c, const struct tri_mesh *mesh, int32_
                          tri_fence_holds(c->fence, mesh->xy[v[2]]));
 }
 
-/* Is p in the circumdisk of a, b, c, which are the vertices behind the relative coordinates? */
-static inline bool in_circle(const struct tri_mesh *mesh, struct tri_point p, int32_t a, int32_t b, int32_t c,
-                             struct tri_relative ra, struct tri_relative rb, struct tri_relative rc)
+/* Is p in the circumdisk of a, b, c? The determinant has been worked out; where the filter leaves that open, which is
+ * rare, it is decided exactly. The sum of products of the l is written so that what is known first is added first. */
+static inline bool in_circle(const struct tri_mesh *mesh, struct tri_point p, const int32_t v[3], double la, double lb,
+                             double lc, double det)
 {
-    double det = ra.l * tri_cross(rb, rc) + rb.l * tri_cross(rc, ra) + rc.l * tri_cross(ra, rb);
-    double doubt = DOUBT * (ra.l * rb.l + rb.l * rc.l + rc.l * ra.l);
-    if (det > doubt)
-        return true;
-    if (det < -doubt)
-        return false;
-    return tri_in_circle_near(mesh->xy[a], mesh->xy[b], mesh->xy[c], p);
+    if (fabs(det) > DOUBT * (la * lb + (la + lb) * lc))
+        return det > 0;
+    return tri_in_circle_near(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]], p);
 }
 
-/* Explores what lies behind the link of the edge a -> b, depth first and left first, so that rims come out in order. */
-static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t link, int32_t region,
-                               int32_t a, int32_t b, struct tri_relative ra, struct tri_relative rb)
+/* Goes around the cavity, depth first and left first, so that rims come out in order: each edge that waits starts where
+ * the last rim before it has ended; the first at a. Each comes with the cross product of its ends; so of the three
+ * products that a test needs one is known, and the other two are those of the edges behind. */
+static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t n_pending, int32_t a,
+                               struct tri_relative ra)
 {
     const struct tri_triangle *tri = mesh->tri;
     const struct tri_point *xy = mesh->xy, p = c->p;
-    int32_t n_pending = 0;
-    for (;;) {
-        if (link >= 0) {
-            const struct tri_triangle *t = &tri[link >> 2];
-            int e = link & 3;
-            int32_t apex = t->v[e];
+    int32_t n_tri = c->n_tri, n_rim = c->n_rim;
+    while (n_pending > 0) {
+        struct tri_pending edge = c->pending[--n_pending];
+        while (edge.link >= 0) {
+            const struct tri_triangle *t = &tri[edge.link >> 2];
+            int e = edge.link & 3;
+            int32_t apex = t->v[e], corners[3] = {a, apex, edge.end};
             struct tri_relative rapex = tri_relative(&xy[apex], p);
-            if (in_circle(mesh, p, a, apex, b, ra, rapex, rb)) {
-                if (c->fence && !tri_fence_holds(c->fence, xy[apex]))
-                    return TRI_SEARCH_FENCED;
-                if (c->n_tri == c->capacity && !grow(c))
-                    return TRI_SEARCH_NO_MEMORY;
-                c->tri[c->n_tri++] = link >> 2;
-                region = t->region;
-                c->mixed |= (uint32_t)(region ^ c->region);
-                c->pending[n_pending++] = (struct tri_pending){t->n[tri_prev[e]], b, region, rb};
-                link = t->n[tri_next[e]];
-                b = apex;
-                rb = rapex;
-                continue;
-            }
-        } else {
-            c->wall[c->n_wall++] = c->n_rim;
+            double left = tri_cross(ra, rapex), right = tri_cross(rapex, edge.rend);
+            double det = ra.l * right + edge.rend.l * left - rapex.l * edge.area2;
+            if (!in_circle(mesh, p, corners, ra.l, edge.rend.l, rapex.l, det))
+                break;
+            if (c->fence && !tri_fence_holds(c->fence, xy[apex]))
+                return TRI_SEARCH_FENCED;
+            if (n_tri == c->capacity && !grow(c))
+                return TRI_SEARCH_NO_MEMORY;
+            c->tri[n_tri++] = edge.link >> 2;
+            c->mixed |= (uint32_t)(t->region ^ c->region);
+            c->pending[n_pending++] = (struct tri_pending){t->n[tri_prev[e]], edge.end, t->region, edge.rend, right};
+            edge = (struct tri_pending){t->n[tri_next[e]], apex, t->region, rapex, left};
         }
-        assert(c->n_rim < c->n_tri + 2 && n_pending <= c->n_tri);
-        c->rim[c->n_rim++] = (struct tri_rim){link, a, region, TRI_NONE, ra};
-        if (n_pending == 0)
-            return TRI_SEARCH_FOUND;
-        const struct tri_pending *next = &c->pending[--n_pending];
-        a = b;
-        ra = rb;
-        link = next->link;
-        b = next->end;
-        region = next->region;
-        rb = next->rend;
+        if (edge.link < 0)
+            c->wall[c->n_wall++] = n_rim;
+        assert(n_rim < n_tri + 2 && n_pending <= n_tri + 1);
+        c->rim[n_rim++] = (struct tri_rim){edge.link, a, edge.region, TRI_NONE, ra, edge.area2};
+        a = edge.end;
+        ra = edge.rend;
     }
+    /* So that whoever goes along the rims need not ask which is the last. The chain on the left of a split ends where
+     * that on the right begins. */
+    c->rim[n_rim] = (struct tri_rim){TRI_NONE, a, TRI_NONE, TRI_NONE, ra, 0};
+    c->n_tri = n_tri;
+    c->n_rim = n_rim;
+    return TRI_SEARCH_FOUND;
 }
 
 static bool begin(struct tri_cavity *c, struct tri_point p)
@@ -120,64 +117,47 @@ static bool add_start(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t
     return true;
 }
 
+/* Explores what lies in triangle t and behind n of its edges, in turn from the first on. Where p is not in the disk of
+ * t, by rounding or since t is flatter than that, the fan would not be Delaunay. */
+static enum tri_search explore_from(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t t, int first, int n)
+{
+    if (!add_start(c, mesh, t))
+        return TRI_SEARCH_NO_MEMORY;
+    if (!owns(c, mesh, t))
+        return TRI_SEARCH_FENCED;
+    const struct tri_triangle *start = &mesh->tri[t];
+    struct tri_relative r[3];
+    for (int k = 0; k < 3; k++)
+        r[k] = tri_relative(&mesh->xy[start->v[k]], c->p);
+    double area2[3] = {tri_cross(r[1], r[2]), tri_cross(r[2], r[0]), tri_cross(r[0], r[1])};
+    double det = r[0].l * area2[0] + r[1].l * area2[1] + r[2].l * area2[2];
+    bool distinct = r[0].l != 0 && r[1].l != 0 && r[2].l != 0;
+    if (!distinct || !in_circle(mesh, c->p, start->v, r[0].l, r[1].l, r[2].l, det))
+        return TRI_SEARCH_OUTSIDE;
+    int e = first;
+    for (int32_t k = n - 1; k >= 0; k--, e = tri_next[e]) {
+        int end = tri_prev[e];
+        c->pending[k] = (struct tri_pending){start->n[e], start->v[end], start->region, r[end], area2[e]};
+    }
+    return explore(c, mesh, n, start->v[tri_next[first]], r[tri_next[first]]);
+}
+
 enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p, int32_t t)
 {
     assert(tri_is_live(&mesh->tri[t]));
     if (!tri_is_in_range(p)) /* the circumcentre of a flat triangle: in the disk, perhaps, but in no figure */
         return TRI_SEARCH_OUTSIDE;
-    if (!begin(c, p) || !add_start(c, mesh, t))
+    if (!begin(c, p))
         return TRI_SEARCH_NO_MEMORY;
-    if (!owns(c, mesh, t))
-        return TRI_SEARCH_FENCED;
-    const struct tri_triangle start = mesh->tri[t];
-    struct tri_relative r[3];
-    for (int k = 0; k < 3; k++) {
-        r[k] = tri_relative(&mesh->xy[start.v[k]], p);
-        if (r[k].l == 0)
-            return TRI_SEARCH_OUTSIDE;
-    }
-    if (!in_circle(mesh, p, start.v[0], start.v[1], start.v[2], r[0], r[1], r[2]))
-        return TRI_SEARCH_OUTSIDE;
-    for (int e = 0; e < 3; e++) {
-        int f = tri_next[e], g = tri_prev[e];
-        enum tri_search found = explore(c, mesh, start.n[e], start.region, start.v[f], start.v[g], r[f], r[g]);
-        if (found != TRI_SEARCH_FOUND)
-            return found;
-    }
-    return TRI_SEARCH_FOUND;
-}
-
-/* One side of a split: the two other edges of the triangle at the subsegment. Where rounding has put the point outside
- * its disk, a triangle flatter than rounding, the fan would not be Delaunay. */
-static enum tri_search explore_side(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t code)
-{
-    int32_t t = tri_of(code);
-    int e = tri_edge(code), f = tri_next[e], g = tri_prev[e];
-    if (!add_start(c, mesh, t))
-        return TRI_SEARCH_NO_MEMORY;
-    if (!owns(c, mesh, t))
-        return TRI_SEARCH_FENCED;
-    const struct tri_triangle start = mesh->tri[t];
-    struct tri_relative r[3];
-    for (int k = 0; k < 3; k++)
-        r[k] = tri_relative(&mesh->xy[start.v[k]], c->p);
-    bool distinct = r[0].l != 0 && r[1].l != 0 && r[2].l != 0;
-    if (!distinct || !in_circle(mesh, c->p, start.v[0], start.v[1], start.v[2], r[0], r[1], r[2]))
-        return TRI_SEARCH_OUTSIDE;
-    enum tri_search found = explore(c, mesh, start.n[f], start.region, start.v[g], start.v[e], r[g], r[e]);
-    if (found != TRI_SEARCH_FOUND)
-        return found;
-    return explore(c, mesh, start.n[g], start.region, start.v[e], start.v[f], r[e], r[f]);
+    return explore_from(c, mesh, t, 0, 3);
 }
 
 /* Rounding may place a split point off its subsegment: every rim must still be seen counter-clockwise. */
-static bool sees_rims(const struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end, int32_t last)
+static bool sees_rims(const struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end)
 {
-    for (int32_t i = first; i < end; i++) {
-        int32_t b = i + 1 < end ? c->rim[i + 1].a : last;
-        if (c->rim[i].ra.l == 0 || tri_orient2d(c->p, mesh->xy[c->rim[i].a], mesh->xy[b]) <= 0)
+    for (const struct tri_rim *rim = &c->rim[first]; rim < &c->rim[end]; rim++)
+        if (rim->ra.l == 0 || tri_orient2d(c->p, mesh->xy[rim[0].a], mesh->xy[rim[1].a]) <= 0)
             return false;
-    }
     return true;
 }
 
@@ -235,13 +215,14 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
     if (!begin(c, p))
         return TRI_SEARCH_NO_MEMORY;
     for (int side = 0; side < 2; side++) {
-        int32_t first = c->n_rim, last = sub->v[side];
+        int32_t first = c->n_rim;
         if (sub->side[side] == TRI_NONE)
             continue;
-        enum tri_search found = explore_side(c, mesh, sub->side[side]);
+        int32_t code = sub->side[side];
+        enum tri_search found = explore_from(c, mesh, tri_of(code), tri_next[tri_edge(code)], 2);
         if (found != TRI_SEARCH_FOUND)
             return found;
-        if (!sees_rims(c, mesh, first, c->n_rim, last))
+        if (!sees_rims(c, mesh, first, c->n_rim))
             return TRI_SEARCH_OUTSIDE;
         if (side == 0) {
             *n_left = c->n_rim;
@@ -251,15 +232,16 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
     return overlaps_itself(c, s) ? TRI_SEARCH_OUTSIDE : TRI_SEARCH_FOUND;
 }
 
-/* A slot for the next new triangle: first those of the cavity, then fresh ones. A fan has at least as many triangles as
- * its cavity (Euler), so no slot is ever left over. */
-static inline int32_t take_slot(const struct tri_cavity *c, struct tri_mesh *mesh, int32_t i)
+/* Slots for the fan: those of the cavity's triangles, then fresh ones. A fan has at least as many triangles as its
+ * cavity (Euler), so no slot is ever left over. The first comes again behind the last, as its neighbour. */
+static void take_slots(struct tri_cavity *c, struct tri_mesh *mesh)
 {
-    if (i < c->n_tri)
-        return c->tri[i];
-    assert(mesh->n_slots < mesh->slot_capacity);
-    mesh->tri[mesh->n_slots].state = 0;
-    return mesh->n_slots++;
+    for (int32_t i = c->n_tri; i < c->n_rim; i++) {
+        assert(mesh->n_slots < mesh->slot_capacity);
+        mesh->tri[mesh->n_slots].state = 0;
+        c->tri[i] = mesh->n_slots++;
+    }
+    c->tri[c->n_rim] = c->tri[0];
 }
 
 #ifndef NDEBUG
@@ -287,11 +269,11 @@ static bool is_inside(const struct tri_mesh *mesh, int32_t t, struct tri_point q
 /* Where regions meet without a subsegment between, a new triangle belongs to the region in which its centroid lies: so
  * regions stay where they are. Where rounding hides that, to the one behind its rim. Looks among the cavity's triangles
  * first_tri .. end_tri - 1, which lie on the same side of a split subsegment. */
-static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end, int32_t last,
+static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end,
                           int32_t first_tri, int32_t end_tri)
 {
     for (int32_t i = first; i < end; i++) {
-        struct tri_point a = mesh->xy[c->rim[i].a], b = mesh->xy[i + 1 < end ? c->rim[i + 1].a : last];
+        struct tri_point a = mesh->xy[c->rim[i].a], b = mesh->xy[c->rim[i + 1].a];
         struct tri_point centroid = {(a.x + b.x + c->p.x) / 3, (a.y + b.y + c->p.y) / 3};
         for (int32_t k = first_tri; k < end_tri; k++)
             if (is_inside(mesh, c->tri[k], centroid)) {
@@ -301,26 +283,25 @@ static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int
     }
 }
 
-/* Makes the triangles of rims first .. end - 1, linked with each other; the chain ends at vertex `last`. */
-static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v, int32_t first, int32_t end, int32_t last)
+/* Makes the triangles of rims first .. end - 1. Each is linked with the next and the one before in the round of all
+ * rims, so that nothing has to be asked; where a chain does not close, the caller puts that right. */
+static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v, int32_t first, int32_t end)
 {
-    int32_t before = TRI_NONE;
+    int32_t before = c->tri[first > 0 ? first - 1 : c->n_rim - 1];
     for (int32_t i = first; i < end; i++) {
         struct tri_rim *rim = &c->rim[i];
-        int32_t slot = take_slot(c, mesh, i), b = i + 1 < end ? c->rim[i + 1].a : last;
+        int32_t slot = c->tri[i];
         struct tri_triangle *t = &mesh->tri[slot];
         rim->slot = slot;
         t->v[0] = v;
-        t->v[1] = rim->a;
-        t->v[2] = b;
+        t->v[1] = rim[0].a;
+        t->v[2] = rim[1].a;
         t->n[0] = rim->outer;
+        t->n[1] = tri_code(c->tri[i + 1], 2);
+        t->n[2] = tri_code(before, 1);
         t->region = rim->region;
         t->state++;
         tri_relink(mesh, rim->outer, rim->a, tri_code(slot, 0));
-        if (before != TRI_NONE) {
-            mesh->tri[before].n[1] = tri_code(slot, 2);
-            t->n[2] = tri_code(before, 1);
-        }
         before = slot;
     }
 }
@@ -330,11 +311,9 @@ void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v)
     assert(c->n_tri >= 1 && c->n_rim == c->n_tri + 2);
     assert(claim(c, mesh));
     if (c->mixed)
-        place_regions(c, mesh, 0, c->n_rim, c->rim[0].a, 0, c->n_tri);
-    fill_chain(c, mesh, v, 0, c->n_rim, c->rim[0].a);
-    int32_t first = c->rim[0].slot, last = c->rim[c->n_rim - 1].slot;
-    mesh->tri[first].n[2] = tri_code(last, 1);
-    mesh->tri[last].n[1] = tri_code(first, 2);
+        place_regions(c, mesh, 0, c->n_rim, 0, c->n_tri);
+    take_slots(c, mesh);
+    fill_chain(c, mesh, v, 0, c->n_rim);
 }
 
 int32_t tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v, int32_t s, int32_t n_left)
@@ -344,16 +323,17 @@ int32_t tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, int32
     assert(mesh->n_subs <= mesh->sub_capacity && c->n_rim >= c->n_tri && n_left >= 0 && n_left <= c->n_rim);
     assert(claim(c, mesh));
     if (c->mixed) {
-        place_regions(c, mesh, 0, n_left, old.v[0], 0, c->n_left_tri);
-        place_regions(c, mesh, n_left, c->n_rim, old.v[1], c->n_left_tri, c->n_tri);
+        place_regions(c, mesh, 0, n_left, 0, c->n_left_tri);
+        place_regions(c, mesh, n_left, c->n_rim, c->n_left_tri, c->n_tri);
     }
+    take_slots(c, mesh);
     mesh->sub[s] = (struct tri_subsegment){{old.v[0], v}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
     mesh->sub[second] = (struct tri_subsegment){{v, old.v[1]}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
     for (int side = 0; side < 2; side++) {
         int32_t first = ends[side], end = side == 0 ? n_left : c->n_rim;
         if (first == end)
             continue;
-        fill_chain(c, mesh, v, first, end, old.v[side]);
+        fill_chain(c, mesh, v, first, end);
         /* Seen from the left the chain runs from v[1] to v[0], from the right the other way. */
         int32_t at_start = side == 0 ? second : s, at_end = side == 0 ? s : second;
         mesh->tri[c->rim[first].slot].n[2] = ~at_start;

@@ -35,11 +35,13 @@ struct tri_rim {
     int32_t region; /* of the cavity triangle inside */
     int32_t slot;   /* of the new triangle on this rim, once filled */
     struct tri_relative ra;
+    double area2; /* twice the area of the triangle on this rim: the cross product of its ends */
 };
 
-struct tri_pending {
+struct tri_pending { /* an edge behind which the search has not looked yet; it starts where the last rim ended */
     int32_t link, end, region;
     struct tri_relative rend;
+    double area2;
 };
 
 /* A half-open box; a triangle is owned if all its corners lie in it. */
@@ -59,8 +61,8 @@ struct tri_cavity {
     int32_t n_left_tri;   /* of a split: triangles left of the subsegment, which come first */
     int32_t region;       /* of the triangle at which the search began */
     uint32_t mixed;       /* not 0: there are triangles of other regions, which no subsegment separates */
-    int32_t *tri;         /* slots of the cavity's triangles */
-    struct tri_rim *rim;  /* at most n_tri + 2 of them */
+    int32_t *tri;         /* slots of the cavity's triangles; once filled, those of the fan */
+    struct tri_rim *rim;  /* at most n_tri + 2 of them, and one more that only says where the last one ends */
     int32_t *wall;        /* indices of the rims whose outer link is a subsegment */
     struct tri_pending *pending;
 };

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-
 enum { MOST_RECORDS = 1 << 28 }; /* of any kind: four times that is still an int32_t's range of indices */
 
 static enum tri_status check_count(const char *what, int32_t n, const void *array, struct tri_error *error)
@@ -62,4 +61,13 @@ void tri_pslg_free(struct tri_pslg *pslg)
     free(pslg->holes);
     free(pslg->regions);
     *pslg = (struct tri_pslg){0};
+}
+
+void tri_elements_free(struct tri_elements *elements)
+{
+    free(elements->corners);
+    free(elements->attributes);
+    free(elements->areas);
+    free(elements->extra);
+    *elements = (struct tri_elements){0};
 }

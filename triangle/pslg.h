@@ -42,6 +42,20 @@ bool tri_pslg_is_one_place(const struct tri_pslg *pslg);
 /* Frees the arrays (malloc'ed) and zeroes the struct. */
 void tri_pslg_free(struct tri_pslg *pslg);
 
+/* Triangles as a caller or an .ele file gives them. Anything may stand in them: what is no mesh is refused. */
+struct tri_elements {
+    int32_t n;
+    int32_t *corners;     /* [n][3]: point indices; orientation and shape are not checked on reading */
+    int32_t n_nodes;      /* nodes of a triangle in the file, >= 3 */
+    int32_t n_attributes; /* per triangle, >= 0 */
+    double *attributes;   /* [n][n_attributes], or NULL */
+    double *areas;        /* [n] bounds of single triangles (<= 0: none), or NULL */
+    int32_t *extra;       /* [n][n_nodes - 3]: the nodes behind the third, or TRI_NONE; NULL: not known */
+};
+
+/* Frees the arrays and zeroes the struct. */
+void tri_elements_free(struct tri_elements *elements);
+
 #ifdef __cplusplus
 }
 #endif

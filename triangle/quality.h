@@ -30,6 +30,10 @@ struct tri_bounds {
 /* min_angle in degrees, 0 .. 60; conforming: the lens is the whole diametral disk. */
 struct tri_bounds tri_bounds_for(double min_angle, bool conforming);
 
+/* One instruction each, which fmin and fmax are not: those have to say what to do about NaN. */
+static inline double tri_lesser(double a, double b) { return a < b ? a : b; }
+static inline double tri_larger(double a, double b) { return a > b ? a : b; }
+
 /* A triangle's shape: squared lengths opposite the corners, twice its area. */
 struct tri_shape {
     double l[3], area2;
@@ -42,13 +46,10 @@ static inline struct tri_shape tri_shape_of(const struct tri_point *xy, const in
     double bx = xy[v[1]].x - ax, by = xy[v[1]].y - ay, cx = xy[v[2]].x - ax, cy = xy[v[2]].y - ay;
     double dx = bx - cx, dy = by - cy;
     struct tri_shape s = {{dx * dx + dy * dy, cx * cx + cy * cy, bx * bx + by * by}, bx * cy - by * cx, 0};
-    s.shortest = s.l[0] <= s.l[1] ? (s.l[0] <= s.l[2] ? 0 : 2) : (s.l[1] <= s.l[2] ? 1 : 2);
+    int k = s.l[1] < s.l[0];
+    s.shortest = s.l[2] < tri_lesser(s.l[0], s.l[1]) ? 2 : k; /* a conditional move */
     return s;
 }
-
-/* One instruction each, which fmin and fmax are not: those have to say what to do about NaN. */
-static inline double tri_lesser(double a, double b) { return a < b ? a : b; }
-static inline double tri_larger(double a, double b) { return a > b ? a : b; }
 
 /* sin^2 of the smallest angle is area2^2 over the product of the two longer squared edges. That is the largest of the
  * three products: which two edges are the longer ones is as good as random, and a branch on it would be predicted

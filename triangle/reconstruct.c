@@ -458,12 +458,3 @@ enum tri_status tri_kept_make(struct tri_used *kept, const struct tri_mesh *mesh
     }
     return TRI_OK;
 }
-
-void tri_elements_free(struct tri_elements *elements)
-{
-    free(elements->corners);
-    free(elements->attributes);
-    free(elements->areas);
-    free(elements->extra);
-    *elements = (struct tri_elements){0};
-}

@@ -10,20 +10,6 @@ extern "C" {
 
 struct tri_used; /* triangle/topology.h */
 
-/* Triangles as a caller or an .ele file gives them. Anything may stand in them: what is no mesh is refused. */
-struct tri_elements {
-    int32_t n;
-    int32_t *corners;     /* [n][3]: point indices; orientation and shape are not checked on reading */
-    int32_t n_nodes;      /* nodes of a triangle in the file, >= 3 */
-    int32_t n_attributes; /* per triangle, >= 0 */
-    double *attributes;   /* [n][n_attributes], or NULL */
-    double *areas;        /* [n] bounds of single triangles (<= 0: none), or NULL */
-    int32_t *extra;       /* [n][n_nodes - 3]: the nodes behind the third, or TRI_NONE; NULL: not known */
-};
-
-/* Frees the arrays and zeroes the struct. */
-void tri_elements_free(struct tri_elements *elements);
-
 struct tri_reconstruct_options {
     bool use_segments; /* the segments of the PSLG that are edges of the mesh become subsegments (-p) */
     bool refine;       /* the mesh is going to be refined: it is made constrained Delaunay first */

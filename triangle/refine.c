@@ -88,28 +88,28 @@ static bool push(struct tri_refiner *r, int32_t slot, enum tri_badness badness, 
 {
     struct tri_entry entry = {slot, r->mesh->tri[slot].state};
     return badness == TRI_BAD_ANGLE ? tri_bad_queue_push_angle(&r->queue, entry, bucket_of(r, shortest))
-                                : tri_bad_queue_push_size(&r->queue, entry);
+                                    : tri_bad_queue_push_size(&r->queue, entry, badness == TRI_BAD_SIZE);
 }
 
-/* Judges the triangle of two rims' start points and the new vertex, from the coordinates the cavity search left. */
-static bool judge_rim(struct tri_refiner *r, const struct tri_rim *rim, struct tri_relative rb, double bound2)
+/* Judges the triangle of a rim and the new vertex, from the coordinates the cavity search left. */
+static bool judge_rim(struct tri_refiner *r, const struct tri_rim *rim, double bound2)
 {
-    struct tri_relative ra = rim->ra;
+    struct tri_relative ra = rim[0].ra, rb = rim[1].ra;
     assert(rim->slot >= 0);
-    double area2 = tri_cross(ra, rb), x = ra.x - rb.x, y = ra.y - rb.y, l = x * x + y * y;
+    double area2 = rim->area2, x = ra.x - rb.x, y = ra.y - rb.y, l = x * x + y * y;
     if (area2 * area2 < r->criterion.bounds.sin2 * tri_longer_product(ra.l, rb.l, l))
         return push(r, rim->slot, TRI_BAD_ANGLE, tri_lesser(ra.l, tri_lesser(rb.l, l)));
-    if (area2 > bound2)
-        return push(r, rim->slot, TRI_BAD_SIZE, 0);
-    if (r->options->unsuitable && tri_is_unsuitable(&r->criterion, r->mesh->tri[rim->slot].v))
-        return push(r, rim->slot, TRI_BAD_SIZE, 0);
-    return true;
+    bool is_bad = area2 > bound2;
+    if (r->options->unsuitable)
+        is_bad = is_bad || tri_is_unsuitable(&r->criterion, r->mesh->tri[rim->slot].v);
+    struct tri_entry entry = {rim->slot, r->mesh->tri[rim->slot].state};
+    return tri_bad_queue_push_size(&r->queue, entry, is_bad);
 }
 
 /* The same where only what is urgent counts. */
-static bool judge_urgent(struct tri_refiner *r, int32_t first, int32_t last)
+static bool judge_urgent(struct tri_refiner *r)
 {
-    for (int32_t i = first; i < last; i++) {
+    for (int32_t i = 0; i < r->cavity.n_rim; i++) {
         int32_t slot = r->cavity.rim[i].slot;
         const struct tri_triangle *t = &r->mesh->tri[slot];
         struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
@@ -120,20 +120,14 @@ static bool judge_urgent(struct tri_refiner *r, int32_t first, int32_t last)
     return true;
 }
 
-/* Queues what is bad among the triangles of a chain of rims; `end` is the place of the chain's last point. */
-static bool judge_chain(struct tri_refiner *r, int32_t first, int32_t last, struct tri_relative end)
+/* Queues what is bad among the new triangles. */
+static bool judge_fan(struct tri_refiner *r)
 {
-    const struct tri_rim *rim = r->cavity.rim;
-    int32_t region = TRI_NONE;
-    double bound2 = 0;
     if (r->options->urgent)
-        return judge_urgent(r, first, last);
-    for (int32_t i = first; i < last; i++) {
-        if (rim[i].region != region) {
-            region = rim[i].region;
-            bound2 = tri_area2_bound(&r->criterion, region);
-        }
-        if (!judge_rim(r, &rim[i], i + 1 < last ? rim[i + 1].ra : end, bound2))
+        return judge_urgent(r);
+    for (int32_t i = 0; i < r->cavity.n_rim; i++) {
+        const struct tri_rim *rim = &r->cavity.rim[i];
+        if (!judge_rim(r, rim, tri_area2_bound(&r->criterion, rim->region)))
             return false;
     }
     return true;
@@ -213,7 +207,7 @@ static enum outcome insert_free(struct tri_refiner *r, struct tri_point p, int32
         tri_interpolate_triangle(r->mesh, corners_around(r, p), v);
     tri_cavity_fill(&r->cavity, r->mesh, v);
     r->report->inserted_free++;
-    return judge_chain(r, 0, r->cavity.n_rim, r->cavity.rim[0].ra) && crowd_walls(r) ? DONE : FAILED;
+    return judge_fan(r) && crowd_walls(r) ? DONE : FAILED;
 }
 
 /* The gate or the fence stands before this triangle: somebody else's. */
@@ -261,10 +255,7 @@ static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, 
     tri_interpolate_edge(m, old.v[0], old.v[1], fraction, v);
     int32_t second = tri_cavity_fill_split(&r->cavity, m, v, s, n_left);
     r->report->inserted_on_segments++;
-    struct tri_relative at_start = tri_relative(&m->xy[old.v[0]], r->cavity.p);
-    struct tri_relative at_end = tri_relative(&m->xy[old.v[1]], r->cavity.p);
-    bool room = judge_chain(r, 0, n_left, at_start) && judge_chain(r, n_left, r->cavity.n_rim, at_end) &&
-                crowd_walls(r);
+    bool room = judge_fan(r) && crowd_walls(r);
     if (room && r->options->conforming)
         room = crowd(r, s) && crowd(r, second);
     return room ? DONE : FAILED;
@@ -285,8 +276,8 @@ static bool tolerates(const struct tri_refiner *r, const struct tri_rim *rim)
 static bool encroaches(const struct tri_refiner *r, int32_t i, bool *beyond)
 {
     const struct tri_cavity *c = &r->cavity;
-    const struct tri_rim *rim = &c->rim[i], *next = &c->rim[i + 1 < c->n_rim ? i + 1 : 0];
-    double cross = tri_cross(rim->ra, next->ra), dot = rim->ra.x * next->ra.x + rim->ra.y * next->ra.y;
+    const struct tri_rim *rim = &c->rim[i], *next = rim + 1;
+    double cross = rim->area2, dot = rim->ra.x * next->ra.x + rim->ra.y * next->ra.y;
     *beyond = false;
     if (dot >= 0 && cross > 0)
         return false;
@@ -491,7 +482,7 @@ static bool split_crowded(struct tri_refiner *r)
 static bool next_entry(struct tri_refiner *r)
 {
     return r->step == FIRST_PASS ? tri_bad_queue_pop_angle(&r->queue, r->limit, &r->hand)
-                                 : tri_bad_queue_pop(&r->queue, &r->hand);
+                                 : tri_bad_queue_pop(&r->queue, r->mesh->tri, &r->hand);
 }
 
 static bool work_off(struct tri_refiner *r)

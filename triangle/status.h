@@ -5,28 +5,11 @@
 #ifndef TRIANGLE_STATUS_H
 #define TRIANGLE_STATUS_H
 
+#include "ptriangle/tri.h" /* enum tri_status, struct tri_error */
+
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-enum tri_status {
-    TRI_OK = 0,
-    TRI_NO_MEMORY,    /* an allocation failed; what existed before the call is intact */
-    TRI_TOO_LARGE,    /* more than 2^28 vertices or 2^29 triangles in one mesh */
-    TRI_BAD_INPUT,    /* the input's content is at fault; the text says what and where */
-    TRI_CANNOT_READ,  /* a file cannot be opened or read */
-    TRI_CANNOT_WRITE, /* a file cannot be created, written or renamed */
-    TRI_NO_ROOM,      /* a view of shared arrays is full; not a failure: make room and call again */
-    TRI_INTERNAL,     /* an invariant does not hold: a defect of this library */
-    TRI_STOPPED       /* somebody asked for it, see triangle/stop.h */
-};
-
-struct tri_error {
-    enum tri_status status;
-    char file[1024]; /* "" where no file is concerned */
-    long line;       /* 1-based; 0 where no line is concerned */
-    char text[512];  /* one sentence without file, line or final newline */
-};
 
 /* Fills *error (unless NULL) from a printf format and returns status, so that failing is one statement. */
 #if defined(__GNUC__)

@@ -1,35 +1,62 @@
-/* A client of the installed package: reads a .poly file of the unit square and has a mesh of two triangles judged, one
- * that is right and one that is folded. It touches both libraries, and through the reader the C++ runtime.
+/* A client of the installed package: reads a .poly file of the unit square, meshes it, writes the mesh, reads that and
+ * has it judged; then it judges two triangles that are right and two that are folded. It touches both libraries, and
+ * through the reader the C++ runtime.
  * Usage: client square.poly */
 #include <stdio.h>
+#include <stdlib.h>
 
-#include "triangle/check/check.h"
-#include "triangle/text/read.h"
+#include "ptriangle/check.h"
+#include "ptriangle/files.h"
 
-static int passes(const struct tri_pslg *square, const int32_t (*corners)[3])
+static int passes(const struct tri_figure *mesh, const struct tri_figure *input, double max_area)
 {
-    const struct tri_check_mesh mesh = {
-        .n_points = square->n_points, .points = square->points, .n_triangles = 2, .triangles = corners[0]};
-    const struct tri_check_options options = {.min_angle = 45, .max_area = 0.5, .max_bad = -1};
-    struct tri_check_report report;
-    return tri_check(&mesh, square, &options, &report, NULL) == TRI_OK && tri_check_passed(&report);
+    struct tri_demands demands = tri_no_demands();
+    struct tri_verdict verdict;
+    demands.max_area = max_area;
+    demands.min_angle = 30;
+    return tri_check_figure(mesh, input, &demands, &verdict, NULL) == TRI_OK && verdict.n_faults == 0;
+}
+
+static int judges(const struct tri_figure *square)
+{
+    static const int32_t good[6] = {0, 1, 2, 0, 2, 3}, folded[6] = {0, 1, 2, 0, 1, 3};
+    struct tri_figure mesh = tri_no_figure();
+    mesh.points = square->points;
+    mesh.triangles = tri_ints_of(good, 2, 3);
+    int right = passes(&mesh, square, 0.5);
+    mesh.triangles = tri_ints_of(folded, 2, 3);
+    return right && !passes(&mesh, square, 0.5);
+}
+
+static int meshes(const struct tri_figure *square)
+{
+    struct tri_settings settings = tri_no_settings();
+    struct tri_figure made = tri_no_figure(), read = tri_no_figure();
+    struct tri_mesh *mesh = NULL;
+    settings.min_angle = 30;
+    settings.max_area = 0.01;
+    if (tri_mesh_new(&mesh, square, &settings, NULL) != TRI_OK)
+        return 0;
+    tri_mesh_figure(mesh, &made);
+    int right = tri_file_write("client_mesh", &made, 1, NULL) == TRI_OK &&
+                tri_file_read("client_mesh.ele", &read, NULL) == TRI_OK && read.triangles.n == made.triangles.n &&
+                read.segments.n == made.segments.n && passes(&read, square, 0.01) && !passes(&read, square, 0.001);
+    tri_file_free(&read);
+    tri_mesh_delete(mesh);
+    return right;
 }
 
 int main(int argc, char **argv)
 {
-    static const int32_t good[2][3] = {{0, 1, 2}, {0, 2, 3}}, folded[2][3] = {{0, 1, 2}, {0, 1, 3}};
-    struct tri_pslg square;
+    struct tri_figure square = tri_no_figure();
     struct tri_error error;
-    struct tri_read_options options = {.default_base = 1};
-    int32_t base;
-    bool points_in_poly;
-    if (argc != 2 || tri_read_poly(argv[1], NULL, &options, &square, &base, &points_in_poly, &error) != TRI_OK) {
+    if (argc != 2 || tri_file_read(argv[1], &square, &error) != TRI_OK) {
         fprintf(stderr, "client: %s\n", argc == 2 ? error.text : "one argument is needed, a .poly file");
-        return 1;
+        return EXIT_FAILURE;
     }
-    int right = square.n_points == 4 && passes(&square, good) && !passes(&square, folded);
-    printf("client: %d points, %d segments: %s\n", (int)square.n_points, (int)square.n_segments,
+    int right = square.points.n == 4 && judges(&square) && meshes(&square);
+    printf("client: %d points, %d segments: %s\n", (int)square.points.n, (int)square.segments.n,
            right ? "ok" : "wrong");
-    tri_pslg_free(&square);
-    return right ? 0 : 1;
+    tri_file_free(&square);
+    return right ? EXIT_SUCCESS : EXIT_FAILURE;
 }

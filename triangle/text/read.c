@@ -388,7 +388,8 @@ static enum tri_status read_poly_text(const struct tri_text *text, const char *n
         status = read_segments(&cursor, options, out, *base, error);
     if (status == TRI_OK)
         status = read_sites(&cursor, &holes, 2, parse_hole, *base, options, &out->n_holes, &out->holes, error);
-    if (status == TRI_OK && options->want_regions)
+    bool has_more = tri_cursor_remaining(&cursor) > 0;
+    if (status == TRI_OK && (options->want_regions || (options->regions_if_any && has_more)))
         status = read_sites(&cursor, &regions, 4, parse_region, *base, options, &out->n_regions, &out->regions, error);
     return status;
 }

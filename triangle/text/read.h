@@ -28,6 +28,7 @@ extern "C" {
 struct tri_read_options {
     int32_t default_base; /* number of the first vertex where the file says neither 0 nor 1: 1, or 0 with -z */
     bool want_regions;    /* the .poly file must have its section of regions; else that is not looked at */
+    bool regions_if_any;  /* that section is read where it is there */
     bool refining;        /* a segment that names no vertex is an error; else a warning */
     size_t chunk_bytes;   /* of text for each task; 0: the default. The result does not depend on it */
     const struct tri_executor *executor; /* NULL: one task after another */

@@ -5,7 +5,7 @@
 #define EXTERNAL_TEST
 extern "C" int triunsuitable(double *origin, double *destination, double *apex, double area);
 #include "triangle.h"
-#include "triangle/generate.h"
+#include <ptriangle/tri.h>
 
 static int asked;
 
@@ -32,21 +32,18 @@ static int by_structs()
 
 static int by_mesh()
 {
-    double points[] = {0, 0, 1, 0, 1, 1, 0, 1};
-    tri_pslg square = tri_pslg();
-    square.n_points = 4;
-    square.points = points;
-    tri_options options = tri_defaults();
-    options.refine = true;
-    options.quality.max_area = 0.01;
-    tri_mesh mesh;
-    tri_report report;
+    const double points[] = {0, 0, 1, 0, 1, 1, 0, 1};
+    tri_figure square = tri_no_figure();
+    square.points = tri_reals_of(points, 4, 2);
+    tri_settings settings = tri_no_settings();
+    settings.max_area = 0.01;
+    tri_mesh *mesh = nullptr;
     tri_error error;
-    if (tri_generate(&mesh, &square, &options, &report, &error) != TRI_OK)
+    if (tri_mesh_new(&mesh, &square, &settings, &error) != TRI_OK)
         return 0;
-    const int n = mesh.n_slots;
-    tri_mesh_free(&mesh);
-    return n;
+    const tri_ints triangles = tri_mesh_triangles(mesh);
+    tri_mesh_delete(mesh);
+    return static_cast<int>(triangles.n);
 }
 
 int main()

@@ -1,0 +1,35 @@
+/* Triangle's files, read into figures and written from them; in the library tritext. */
+#ifndef PTRIANGLE_FILES_H
+#define PTRIANGLE_FILES_H
+
+#include "ptriangle/tri.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Reads, by the ending of path,
+ *   x.poly  points, segments, holes and regions; the points from x.node where the file has none;
+ *   x.node  points;
+ *   x.ele   a mesh: x.node, x.ele, and the segments of x.poly and the bounds of x.area where there are such files.
+ * Files may count from 0 or from 1; *figure counts from 0. Strict where the format has no meaning, lenient where it has
+ * one: words between numbers, extra fields, missing attributes and markers.
+ *
+ * The arrays belong to *figure, whose size is set, until tri_file_free. Errors, with file and line: TRI_CANNOT_READ,
+ * TRI_BAD_INPUT, TRI_NO_MEMORY, TRI_TOO_LARGE; *figure is empty then. Linear; about 250 MB of text a second. */
+enum tri_status tri_file_read(const char *path, struct tri_figure *figure, struct tri_error *error);
+
+/* Frees the arrays of a figure that was read, and empties it. */
+void tri_file_free(struct tri_figure *figure);
+
+/* Writes base.node, base.ele where the figure has triangles, and base.poly where it has segments, counting from
+ * `first`, 0 or 1. Coordinates have 17 digits: what is read back is the same. All files appear together, when all are
+ * complete, or none; files that exist are replaced. TRI_CANNOT_WRITE, TRI_NO_MEMORY; TRI_BAD_INPUT: an array has not
+ * the shape it should have. */
+enum tri_status tri_file_write(const char *base, const struct tri_figure *figure, int first, struct tri_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

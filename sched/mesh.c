@@ -1,0 +1,47 @@
+/* The functions of ptriangle/par.h. */
+#include "ptriangle/par.h"
+
+#include "sched/schedule.h"
+#include "sched/threads.h"
+#include "triangle/api/mesh.h"
+
+static enum tri_status refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                              const struct tri_settings *settings, struct tri_refine_report *report,
+                              struct tri_error *error)
+{
+    struct par_options how = par_defaults();
+    struct par_report schedule;
+    how.threads = settings->threads > 0 ? settings->threads : 0;
+    how.size_test_in_parallel = settings->callbacks_in_parallel;
+    how.by_block = settings->numbered_by_block;
+    enum tri_status status = par_refine(mesh, quality, &how, &schedule, error);
+    *report = schedule.total;
+    par_report_free(&schedule);
+    return status;
+}
+
+enum tri_status par_mesh_new(struct tri_mesh **mesh, const struct tri_figure *figure,
+                             const struct tri_settings *settings, struct tri_error *error)
+{
+    struct tri_settings own;
+    *mesh = NULL;
+    enum tri_status status = tri_api_settings_take(&own, settings, error);
+    if (status)
+        return status;
+    int threads = par_threads(own.threads, false);
+    const struct tri_executor executor = par_executor(&threads);
+    const struct tri_api_way way = {refine, &executor};
+    return tri_api_mesh_new(mesh, figure, &own, &way, error);
+}
+
+enum tri_status par_mesh_refine(struct tri_mesh *mesh, const struct tri_settings *settings, struct tri_error *error)
+{
+    struct tri_settings own;
+    enum tri_status status = tri_api_settings_take(&own, settings, error);
+    if (status)
+        return status;
+    int threads = par_threads(own.threads, false);
+    const struct tri_executor executor = par_executor(&threads);
+    const struct tri_api_way way = {refine, &executor};
+    return tri_api_mesh_refine(mesh, &own, &way, error);
+}

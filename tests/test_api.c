@@ -1,0 +1,543 @@
+/* The public headers as their users know them: nothing from the inside but the means to make allocations fail.
+ *
+ * Linked with --wrap for malloc, calloc, realloc and free: see allocations.h. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "allocations.h"
+#include "ptriangle/check.h"
+#include "ptriangle/files.h"
+#include "ptriangle/par.h"
+
+/* A square with a square hole in it, two regions on either side of a wall, attributes, markers. */
+static const double points[][2] = {{0, 0}, {4, 0}, {4, 3}, {0, 3}, {1, 1}, {2, 1}, {2, 2}, {1, 2}, {3, 0}, {3, 3}};
+static const int32_t segments[][2] = {{0, 8}, {8, 1}, {1, 2}, {2, 9}, {9, 3}, {3, 0},
+                                      {4, 5}, {5, 6}, {6, 7}, {7, 4}, {8, 9}};
+static const int32_t markers[] = {5, 5, 6, 7, 7, 8, 9, 9, 9, 9, 10};
+static const double hole[2] = {1.5, 1.5}, regions[2][4] = {{0.5, 0.5, 11, 0}, {3.5, 0.5, 12, 0.01}};
+
+static struct tri_figure plate(void)
+{
+    struct tri_figure figure = tri_no_figure();
+    figure.points = tri_reals_of(points[0], 10, 2);
+    figure.segments = tri_ints_of(segments[0], 11, 2);
+    figure.segment_markers = tri_ints_of(markers, 11, 1);
+    figure.holes = tri_reals_of(hole, 1, 2);
+    figure.regions = tri_reals_of(regions[0], 2, 4);
+    return figure;
+}
+
+static struct tri_settings fine(void)
+{
+    struct tri_settings settings = tri_no_settings();
+    settings.min_angle = 30;
+    settings.max_area = 0.05;
+    return settings;
+}
+
+static struct tri_mesh *mesh_of(const struct tri_figure *figure, const struct tri_settings *settings)
+{
+    struct tri_mesh *mesh;
+    struct tri_error error = {0};
+    if (tri_mesh_new(&mesh, figure, settings, &error) != TRI_OK)
+        fail_msg("%s", error.text);
+    return mesh;
+}
+
+static void assert_sound(const struct tri_mesh *mesh, const struct tri_figure *input, double max_area)
+{
+    struct tri_figure made = tri_no_figure();
+    struct tri_demands demands = tri_no_demands();
+    struct tri_verdict verdict;
+    demands.min_angle = 30;
+    demands.max_area = max_area;
+    tri_mesh_figure(mesh, &made);
+    assert_int_equal(tri_check_figure(&made, input, &demands, &verdict, NULL), TRI_OK);
+    if (verdict.n_faults != 0)
+        fail_msg("%s", verdict.text);
+    assert_true(verdict.smallest_angle >= 30 && verdict.n_small == 0);
+}
+
+static const double *place(struct tri_reals xy, int64_t v) { return xy.at + v * xy.stride; }
+static const int32_t *row(struct tri_ints ints, int64_t i) { return ints.at + i * ints.stride; }
+
+static bool same_ints(struct tri_ints a, struct tri_ints b)
+{
+    bool same = a.n == b.n && a.width == b.width;
+    for (int64_t i = 0; same && i < a.n; i++)
+        same = memcmp(row(a, i), row(b, i), (size_t)a.width * sizeof *a.at) == 0;
+    return same;
+}
+
+static bool same_reals(struct tri_reals a, struct tri_reals b)
+{
+    bool same = a.n == b.n && a.width == b.width;
+    for (int64_t i = 0; same && i < a.n; i++)
+        same = memcmp(place(a, i), place(b, i), (size_t)a.width * sizeof *a.at) == 0;
+    return same;
+}
+
+static bool same_meshes(const struct tri_mesh *a, const struct tri_mesh *b)
+{
+    return same_reals(tri_mesh_points(a), tri_mesh_points(b)) &&
+           same_ints(tri_mesh_triangles(a), tri_mesh_triangles(b)) &&
+           same_ints(tri_mesh_segments(a), tri_mesh_segments(b)) &&
+           same_ints(tri_mesh_segment_markers(a), tri_mesh_segment_markers(b)) &&
+           same_ints(tri_mesh_point_markers(a), tri_mesh_point_markers(b)) &&
+           same_reals(tri_mesh_triangle_attributes(a), tri_mesh_triangle_attributes(b));
+}
+
+/* --- meshes */
+
+static double area_of(struct tri_reals xy, const int32_t *v)
+{
+    const double *a = place(xy, v[0]), *b = place(xy, v[1]), *c = place(xy, v[2]);
+    return ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
+}
+
+static void test_a_mesh_keeps_what_was_asked(void **state)
+{
+    (void)state;
+    const struct tri_figure figure = plate();
+    const struct tri_settings settings = fine();
+    struct tri_mesh *mesh = mesh_of(&figure, &settings);
+    struct tri_ints triangles = tri_mesh_triangles(mesh);
+    struct tri_reals xy = tri_mesh_points(mesh), attributes = tri_mesh_triangle_attributes(mesh);
+    double total = 0;
+    assert_sound(mesh, &figure, 0.05);
+    assert_true(attributes.n == triangles.n && attributes.width == 1 && triangles.n > 300);
+    for (int64_t t = 0; t < triangles.n; t++) {
+        const int32_t *v = row(triangles, t);
+        double x = (place(xy, v[0])[0] + place(xy, v[1])[0] + place(xy, v[2])[0]) / 3, area = area_of(xy, v);
+        assert_true(attributes.at[t] == (x < 3 ? 11 : 12));
+        assert_true(area > 0 && area <= (x < 3 ? 0.05 : 0.01) * (1 + 1e-12));
+        total += area;
+    }
+    assert_true(fabs(total - 11) < 1e-9);
+    assert_int_equal(tri_mesh_count_bad(mesh, &settings, NULL, 0), 0);
+    int64_t free_points = tri_mesh_count(mesh, TRI_COUNT_NEW_POINTS);
+    assert_int_equal(free_points + tri_mesh_count(mesh, TRI_COUNT_NEW_POINTS_ON_SEGMENTS), xy.n - 10);
+    assert_true(same_reals(tri_reals_of(xy.at, 10, 2), figure.points));
+    tri_mesh_delete(mesh);
+}
+
+static void test_neighbors_and_edges(void **state)
+{
+    (void)state;
+    const struct tri_figure figure = plate();
+    const struct tri_settings settings = fine();
+    struct tri_mesh *mesh = mesh_of(&figure, &settings);
+    struct tri_ints neighbors, edges, edge_markers, triangles = tri_mesh_triangles(mesh);
+    int64_t boundary = 0, marked = 0;
+    assert_int_equal(tri_mesh_neighbors(mesh, &neighbors, NULL), TRI_OK);
+    assert_int_equal(tri_mesh_edges(mesh, &edges, &edge_markers, NULL), TRI_OK);
+    assert_true(neighbors.n == triangles.n && neighbors.width == 3 && edges.n == edge_markers.n);
+    for (int64_t t = 0; t < triangles.n; t++)
+        for (int k = 0; k < 3; k++) {
+            int32_t other = row(neighbors, t)[k];
+            const int32_t *back = other < 0 ? NULL : row(neighbors, other);
+            boundary += other < 0;
+            assert_true(other < 0 || back[0] == t || back[1] == t || back[2] == t);
+        }
+    for (int64_t i = 0; i < edges.n; i++)
+        marked += edge_markers.at[i] != 0;
+    assert_int_equal(marked, tri_mesh_segments(mesh).n);
+    assert_int_equal(2 * edges.n, 3 * triangles.n + boundary);
+    assert_int_equal(tri_mesh_points(mesh).n - edges.n + triangles.n, 0); /* Euler, one hole */
+    tri_mesh_delete(mesh);
+}
+
+static void test_points_alone(void **state)
+{
+    (void)state;
+    struct tri_figure figure = tri_no_figure();
+    figure.points = tri_reals_of(points[0], 10, 2);
+    struct tri_mesh *mesh = mesh_of(&figure, NULL);
+    assert_int_equal(tri_mesh_points(mesh).n, 10);
+    assert_int_equal(tri_mesh_triangles(mesh).n, 2 * 10 - 2 - 6); /* six on the hull */
+    assert_int_equal(tri_mesh_triangle_attributes(mesh).n, 0);
+    assert_int_equal(tri_mesh_point_attributes(mesh).n, 0);
+    tri_mesh_delete(mesh);
+    tri_mesh_delete(NULL);
+}
+
+/* Rows with gaps, and attributes that are linear in the plane. */
+static void test_strides_and_attributes(void **state)
+{
+    (void)state;
+    double wide[10][5], linear[10][2];
+    for (int v = 0; v < 10; v++) {
+        wide[v][1] = points[v][0];
+        wide[v][2] = points[v][1];
+        linear[v][0] = wide[v][3] = 2 * points[v][0] - points[v][1];
+        linear[v][1] = wide[v][4] = 1;
+        wide[v][0] = NAN;
+    }
+    struct tri_figure tight = plate(), gaps = plate();
+    const struct tri_settings settings = fine();
+    tight.point_attributes = tri_reals_of(linear[0], 10, 2);
+    gaps.points = (struct tri_reals){&wide[0][1], 10, 2, 5};
+    gaps.point_attributes = (struct tri_reals){&wide[0][3], 10, 2, 5};
+    struct tri_mesh *a = mesh_of(&tight, &settings), *b = mesh_of(&gaps, &settings);
+    struct tri_reals xy = tri_mesh_points(b), values = tri_mesh_point_attributes(b);
+    assert_true(same_meshes(a, b));
+    assert_true(values.n == xy.n && values.width == 2);
+    for (int64_t v = 0; v < xy.n; v++) {
+        assert_true(fabs(place(values, v)[0] - (2 * place(xy, v)[0] - place(xy, v)[1])) < 1e-12);
+        assert_true(fabs(place(values, v)[1] - 1) < 1e-12);
+    }
+    tri_mesh_delete(a);
+    tri_mesh_delete(b);
+}
+
+/* A mesh is a figure: what it is made of again has the same triangles, and can be refined. */
+static void test_a_mesh_as_figure(void **state)
+{
+    (void)state;
+    const struct tri_figure figure = plate();
+    struct tri_settings settings = fine();
+    struct tri_mesh *mesh = mesh_of(&figure, &settings);
+    struct tri_figure made = tri_no_figure();
+    tri_mesh_figure(mesh, &made);
+    struct tri_mesh *again = mesh_of(&made, NULL);
+    assert_int_equal(tri_mesh_triangles(again).n, tri_mesh_triangles(mesh).n);
+    assert_true(same_reals(tri_mesh_points(again), tri_mesh_points(mesh)));
+    settings.max_area = 0.02;
+    struct tri_mesh *finer = mesh_of(&made, &settings);
+    struct tri_reals attributes = tri_mesh_triangle_attributes(finer);
+    assert_sound(finer, NULL, 0.02);
+    assert_int_equal(attributes.n, tri_mesh_triangles(finer).n);
+    for (int64_t t = 0; t < attributes.n; t++)
+        assert_true(attributes.at[t] == 11 || attributes.at[t] == 12);
+    tri_mesh_delete(finer);
+    tri_mesh_delete(again);
+    tri_mesh_delete(mesh);
+}
+
+/* Coordinates far beyond the range of the predicates, and with regions whose bounds count in refinement too. */
+static void test_any_unit(void **state)
+{
+    (void)state;
+    double large[10][2], there[2] = {ldexp(1.5, 700), ldexp(1.5, 700)};
+    struct tri_figure figure = plate();
+    struct tri_settings settings = tri_no_settings();
+    settings.min_angle = 30;
+    for (int i = 0; i < 20; i++)
+        large[i / 2][i % 2] = ldexp(points[i / 2][i % 2], 700);
+    figure.regions = tri_reals_of(NULL, 0, 0);
+    struct tri_mesh *mesh = mesh_of(&figure, &settings);
+    figure.points = tri_reals_of(large[0], 10, 2);
+    figure.holes = tri_reals_of(there, 1, 2);
+    struct tri_mesh *huge = mesh_of(&figure, &settings);
+    struct tri_reals xy = tri_mesh_points(mesh), at = tri_mesh_points(huge);
+    assert_true(same_ints(tri_mesh_triangles(mesh), tri_mesh_triangles(huge)) && xy.n == at.n);
+    for (int64_t i = 0; i < 2 * xy.n; i++)
+        assert_true(at.at[i] == ldexp(xy.at[i], 700));
+    tri_mesh_delete(mesh);
+    tri_mesh_delete(huge);
+}
+
+/* --- callbacks */
+
+static double length_at(void *user, const double at[2])
+{
+    ++*(int64_t *)user;
+    return 0.05 + 0.2 * at[0];
+}
+
+static void test_edge_length(void **state)
+{
+    (void)state;
+    int64_t asked = 0;
+    struct tri_figure figure = plate();
+    struct tri_settings settings = tri_no_settings();
+    settings.min_angle = 30;
+    settings.edge_length = length_at;
+    settings.edge_length_user = &asked;
+    struct tri_mesh *mesh = mesh_of(&figure, &settings);
+    struct tri_ints triangles = tri_mesh_triangles(mesh);
+    struct tri_reals xy = tri_mesh_points(mesh);
+    double largest[4] = {0};
+    assert_sound(mesh, &figure, 0);
+    for (int64_t t = 0; t < triangles.n; t++) {
+        const int32_t *v = row(triangles, t);
+        double area = area_of(xy, v), x = fmin(place(xy, v[0])[0], fmin(place(xy, v[1])[0], place(xy, v[2])[0]));
+        double length = 0.05 + 0.2 * x;
+        int column = (int)x;
+        assert_true(area <= sqrt(3) / 4 * length * length * (1 + 1e-12));
+        largest[column] = fmax(largest[column], area);
+    }
+    assert_true(asked > triangles.n && largest[2] > 2 * largest[0]);
+    tri_mesh_delete(mesh);
+}
+
+struct fence_test {
+    bool open;
+    int64_t asked;
+};
+
+static bool is_left(void *user, const double at[2])
+{
+    struct fence_test *test = user;
+    test->asked++;
+    return test->open && at[0] < 1;
+}
+
+static void test_gate_and_fence(void **state)
+{
+    (void)state;
+    const struct tri_figure figure = plate();
+    struct fence_test test = {false, 0};
+    struct tri_settings settings = fine();
+    int64_t by_reason[TRI_REASONS], first[2];
+    settings.gate = is_left;
+    settings.gate_user = &test;
+    struct tri_mesh *mesh = mesh_of(&figure, &settings);
+    assert_int_equal(tri_mesh_points(mesh).n, 10);
+    assert_true(test.asked > 0 && tri_mesh_count(mesh, TRI_COUNT_GATED) > 0);
+    int64_t bad = tri_mesh_count_bad(mesh, &settings, by_reason, TRI_REASONS);
+    assert_true(bad > 0 && by_reason[TRI_REASON_DEFERRED] == bad);
+    assert_int_equal(tri_mesh_count_bad(mesh, &settings, first, 2), bad);
+    assert_true(first[0] == 0 && first[1] == bad);
+    test.open = true;
+    assert_int_equal(tri_mesh_refine(mesh, &settings, NULL), TRI_OK);
+    int64_t n = tri_mesh_points(mesh).n;
+    assert_true(n > 12 && tri_mesh_count_bad(mesh, &settings, NULL, 0) > 0);
+    const double nowhere[4] = {9, 9, 10, 10};
+    settings.gate = NULL;
+    settings.fence = nowhere;
+    assert_int_equal(tri_mesh_refine(mesh, &settings, NULL), TRI_OK);
+    assert_true(tri_mesh_points(mesh).n == n && tri_mesh_count(mesh, TRI_COUNT_FENCED) > 0);
+    settings.fence = NULL;
+    assert_int_equal(tri_mesh_refine(mesh, &settings, NULL), TRI_OK);
+    assert_int_equal(tri_mesh_count_bad(mesh, &settings, NULL, 0), 0);
+    assert_sound(mesh, &figure, 0.05);
+    tri_mesh_delete(mesh);
+}
+
+static bool after_some(void *user) { return ++*(int *)user > 3; }
+
+static void test_stop(void **state)
+{
+    (void)state;
+    const struct tri_figure figure = plate();
+    struct tri_settings settings = fine();
+    struct tri_mesh *mesh = NULL;
+    struct tri_error error;
+    int asked = 0;
+    settings.max_area = 1e-5;
+    settings.stop = after_some;
+    settings.stop_user = &asked;
+    assert_int_equal(tri_mesh_new(&mesh, &figure, &settings, &error), TRI_STOPPED);
+    assert_int_equal(error.status, TRI_STOPPED);
+    if (!mesh) { /* before there was one */
+        settings.stop = NULL;
+        mesh = mesh_of(&figure, NULL);
+        asked = 0;
+        settings.stop = after_some;
+        assert_int_equal(tri_mesh_refine(mesh, &settings, &error), TRI_STOPPED);
+    }
+    assert_true(tri_mesh_triangles(mesh).n > 0);
+    settings = fine();
+    assert_int_equal(tri_mesh_refine(mesh, &settings, NULL), TRI_OK);
+    assert_sound(mesh, &figure, 0.05);
+    tri_mesh_delete(mesh);
+}
+
+/* --- refusals */
+
+static void assert_refused(const struct tri_figure *figure, const struct tri_settings *settings)
+{
+    struct tri_mesh *mesh = (struct tri_mesh *)&mesh;
+    struct tri_error error = {0};
+    assert_int_equal(tri_mesh_new(&mesh, figure, settings, &error), TRI_BAD_INPUT);
+    assert_true(!mesh && error.status == TRI_BAD_INPUT && error.text[0]);
+}
+
+static void test_figures_without_meaning(void **state)
+{
+    (void)state;
+    struct tri_figure figures[10];
+    for (int i = 0; i < 10; i++)
+        figures[i] = plate();
+    figures[0].points.width = 3;
+    figures[1].points.n = -1;
+    figures[2].points.at = NULL;
+    figures[3].segments.stride = 1;
+    figures[4].segment_markers.n = 10;
+    figures[5].regions.width = figures[5].regions.stride = 3;
+    figures[6].size = 0;
+    figures[7].size = sizeof(size_t) - 1;
+    figures[8].point_markers = tri_ints_of(markers, 9, 1);
+    figures[9].points.n = 2;
+    for (int i = 0; i < 10; i++)
+        assert_refused(&figures[i], NULL);
+    assert_refused(NULL, NULL);
+}
+
+static void test_settings_without_meaning(void **state)
+{
+    (void)state;
+    const struct tri_figure figure = plate();
+    struct tri_settings settings[6];
+    for (int i = 0; i < 6; i++)
+        settings[i] = fine();
+    settings[0].min_angle = NAN;
+    settings[1].min_angle = -1;
+    settings[2].max_area = NAN;
+    settings[3].max_area = -1;
+    settings[4].protect = 3;
+    settings[5].size = 1;
+    for (int i = 0; i < 6; i++)
+        assert_refused(&figure, &settings[i]);
+}
+
+/* An older header has fewer members; a newer one more, which must not be set. */
+static void test_headers_of_other_versions(void **state)
+{
+    (void)state;
+    struct {
+        struct tri_settings settings;
+        double later;
+    } newer = {fine(), 0};
+    const struct tri_figure figure = plate();
+    struct tri_settings older = fine();
+    older.size = offsetof(struct tri_settings, threads);
+    older.threads = -77;
+    newer.settings.size = sizeof newer;
+    struct tri_mesh *a = mesh_of(&figure, &older), *b = mesh_of(&figure, &newer.settings);
+    assert_true(same_meshes(a, b));
+    struct tri_figure small = tri_no_figure();
+    small.size = offsetof(struct tri_figure, segments);
+    small.segments.n = 77;
+    tri_mesh_figure(a, &small);
+    assert_true(small.points.n == tri_mesh_points(a).n && small.segments.n == 77);
+    newer.later = 1;
+    assert_refused(&figure, &newer.settings);
+    tri_mesh_delete(a);
+    tri_mesh_delete(b);
+}
+
+/* --- files, threads, memory */
+
+static void test_files(void **state)
+{
+    (void)state;
+    const struct tri_figure figure = plate();
+    const struct tri_settings settings = fine();
+    struct tri_mesh *mesh = mesh_of(&figure, &settings);
+    struct tri_figure made = tri_no_figure(), read = tri_no_figure();
+    struct tri_error error;
+    tri_mesh_figure(mesh, &made);
+    assert_int_equal(tri_file_write("plate", &made, 1, NULL), TRI_OK);
+    assert_int_equal(tri_file_read("plate.ele", &read, NULL), TRI_OK);
+    assert_true(same_reals(read.points, made.points) && same_ints(read.triangles, made.triangles));
+    assert_true(same_ints(read.segments, made.segments) && same_ints(read.segment_markers, made.segment_markers));
+    assert_true(same_reals(read.triangle_attributes, made.triangle_attributes));
+    tri_file_free(&read);
+    tri_file_free(&read);
+    assert_int_equal(tri_file_write("input", &figure, 0, NULL), TRI_OK);
+    assert_int_equal(tri_file_read("input.poly", &read, NULL), TRI_OK);
+    assert_true(same_reals(read.points, figure.points) && same_reals(read.regions, figure.regions));
+    assert_true(same_reals(read.holes, figure.holes) && same_ints(read.segments, figure.segments));
+    tri_file_free(&read);
+    assert_int_equal(tri_file_read("nowhere.poly", &read, &error), TRI_CANNOT_READ);
+    assert_int_equal(tri_file_read("input", &read, &error), TRI_CANNOT_READ);
+    assert_int_equal(tri_file_write("nowhere/x", &figure, 0, &error), TRI_CANNOT_WRITE);
+    assert_true(read.points.n == 0 && error.file[0]);
+    tri_mesh_delete(mesh);
+}
+
+static void test_threads(void **state)
+{
+    (void)state;
+    const struct tri_figure figure = plate();
+    struct tri_settings settings = fine();
+    struct tri_mesh *first = NULL;
+    settings.max_area = 1e-4;
+    for (int threads = 1; threads < 4; threads++) {
+        struct tri_mesh *mesh;
+        settings.threads = threads;
+        assert_int_equal(par_mesh_new(&mesh, &figure, &settings, NULL), TRI_OK);
+        assert_sound(mesh, &figure, 1e-4);
+        if (first) {
+            assert_true(same_meshes(first, mesh));
+            tri_mesh_delete(mesh);
+        } else {
+            first = mesh;
+        }
+    }
+    settings.max_area = 5e-5;
+    assert_int_equal(par_mesh_refine(first, &settings, NULL), TRI_OK);
+    assert_sound(first, &figure, 5e-5);
+    tri_mesh_delete(first);
+}
+
+static void test_every_allocation_may_fail(void **state)
+{
+    (void)state;
+    double wide[10][3], linear[10] = {0}, region[4] = {ldexp(0.5, 250), ldexp(0.5, 250), 11, 0};
+    struct tri_figure figure = plate(), made = tri_no_figure();
+    struct tri_settings settings = fine();
+    for (int i = 0; i < 20; i++)
+        wide[i / 2][i % 2] = ldexp(points[i / 2][i % 2], 250);
+    settings.max_area = ldexp(0.05, 500);
+    figure.regions = tri_reals_of(region, 1, 4);
+    figure.points = (struct tri_reals){wide[0], 10, 2, 3};
+    figure.point_attributes = tri_reals_of(linear, 10, 1);
+    enum tri_status status = TRI_NO_MEMORY;
+    for (int64_t k = 1; status != TRI_OK; k++) {
+        struct tri_mesh *mesh, *again = NULL;
+        struct tri_ints list;
+        int64_t before = support_held;
+        assert_true(k < 10000);
+        support_calls = 0;
+        support_fail_at = k;
+        support_fail_ever_after = true;
+        status = tri_mesh_new(&mesh, &figure, &settings, NULL);
+        status = status ? status : tri_mesh_neighbors(mesh, &list, NULL);
+        status = status ? status : tri_mesh_edges(mesh, &list, NULL, NULL);
+        if (!status) {
+            tri_mesh_figure(mesh, &made);
+            status = tri_mesh_new(&again, &made, NULL, NULL);
+        }
+        support_fail_at = INT64_MAX;
+        assert_true(status == TRI_OK || status == TRI_NO_MEMORY);
+        tri_mesh_delete(again);
+        tri_mesh_delete(mesh);
+        assert_int_equal(support_held, before);
+    }
+}
+
+static void test_version(void **state)
+{
+    (void)state;
+    assert_string_equal(tri_version(), PTRIANGLE_VERSION);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_mesh_keeps_what_was_asked),
+        cmocka_unit_test(test_neighbors_and_edges),
+        cmocka_unit_test(test_points_alone),
+        cmocka_unit_test(test_strides_and_attributes),
+        cmocka_unit_test(test_a_mesh_as_figure),
+        cmocka_unit_test(test_any_unit),
+        cmocka_unit_test(test_edge_length),
+        cmocka_unit_test(test_gate_and_fence),
+        cmocka_unit_test(test_stop),
+        cmocka_unit_test(test_figures_without_meaning),
+        cmocka_unit_test(test_settings_without_meaning),
+        cmocka_unit_test(test_headers_of_other_versions),
+        cmocka_unit_test(test_files),
+        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_every_allocation_may_fail),
+        cmocka_unit_test(test_version),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

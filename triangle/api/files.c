@@ -1,0 +1,183 @@
+/* Figures from Triangle's files, and to them. */
+#include "ptriangle/files.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "triangle/api/figure.h"
+#include "triangle/text/read.h"
+#include "triangle/text/write.h"
+
+/* --- reading */
+
+struct names { /* of the files that belong together */
+    char *node, *poly, *ele, *area;
+};
+
+static char *joined(const char *path, size_t length, const char *ending)
+{
+    char *name = malloc(length + strlen(ending) + 1);
+    if (name) {
+        memcpy(name, path, length);
+        memcpy(name + length, ending, strlen(ending) + 1);
+    }
+    return name;
+}
+
+static void free_names(struct names *names)
+{
+    free(names->node);
+    free(names->poly);
+    free(names->ele);
+    free(names->area);
+}
+
+static enum tri_status make_names(struct names *names, const char *path, size_t length, struct tri_error *error)
+{
+    *names = (struct names){joined(path, length, ".node"), joined(path, length, ".poly"), joined(path, length, ".ele"),
+                            joined(path, length, ".area")};
+    if (names->node && names->poly && names->ele && names->area)
+        return TRI_OK;
+    return tri_fail(error, TRI_NO_MEMORY, path, 0, "out of memory for file names");
+}
+
+static enum tri_status read_mesh(const struct names *names, struct tri_read_options *options, struct tri_pslg *pslg,
+                                 struct tri_elements *elements, struct tri_error *error)
+{
+    bool has_poly = access(names->poly, R_OK) == 0, points_in_poly;
+    int32_t base;
+    options->refining = true;
+    enum tri_status status = has_poly ? tri_read_poly(names->poly, names->node, options, pslg, &base, &points_in_poly,
+                                                      error)
+                                      : tri_read_node(names->node, options, pslg, &base, error);
+    status = status ? status : tri_read_ele(names->ele, options, base, pslg->n_points, elements, error);
+    if (!status && access(names->area, R_OK) == 0)
+        status = tri_read_area(names->area, options, elements, error);
+    return status;
+}
+
+static enum tri_status read_by_ending(const char *ending, const struct names *names, struct tri_pslg *pslg,
+                                      struct tri_elements *elements, struct tri_error *error)
+{
+    struct tri_read_options options = {.default_base = 1, .regions_if_any = true};
+    bool points_in_poly;
+    int32_t base;
+    if (strcmp(ending, ".node") == 0)
+        return tri_read_node(names->node, &options, pslg, &base, error);
+    if (strcmp(ending, ".ele") == 0)
+        return read_mesh(names, &options, pslg, elements, error);
+    return tri_read_poly(names->poly, names->node, &options, pslg, &base, &points_in_poly, error);
+}
+
+/* Their arrays become those of the figure. */
+static void hand_over(struct tri_figure *figure, struct tri_pslg *pslg, struct tri_elements *elements)
+{
+    struct tri_figure own = tri_no_figure();
+    int32_t n = pslg->n_points, m = pslg->n_segments;
+    own.points = tri_reals_of(pslg->points, n, 2);
+    own.point_attributes = tri_reals_of(pslg->attributes, pslg->n_attributes > 0 ? n : 0, pslg->n_attributes);
+    own.point_markers = tri_ints_of(pslg->markers, pslg->markers ? n : 0, 1);
+    own.segments = tri_ints_of(pslg->segments, m, 2);
+    own.segment_markers = tri_ints_of(pslg->segment_markers, pslg->segment_markers ? m : 0, 1);
+    own.holes = tri_reals_of(pslg->holes, pslg->n_holes, 2);
+    own.regions = tri_reals_of(pslg->regions, pslg->n_regions, 4);
+    own.triangles = tri_ints_of(elements->corners, elements->n, 3);
+    own.triangle_attributes = tri_reals_of(elements->attributes, elements->n_attributes > 0 ? elements->n : 0,
+                                           elements->n_attributes);
+    own.triangle_areas = tri_reals_of(elements->areas, elements->areas ? elements->n : 0, 1);
+    free(elements->extra); /* middles of edges */
+    (void)tri_api_struct_give(figure, &own, sizeof own, "tri_figure", NULL);
+}
+
+static bool is_known(const char *ending)
+{
+    return ending && (strcmp(ending, ".node") == 0 || strcmp(ending, ".poly") == 0 || strcmp(ending, ".ele") == 0);
+}
+
+enum tri_status tri_file_read(const char *path, struct tri_figure *figure, struct tri_error *error)
+{
+    const char *ending = strrchr(path, '.');
+    const struct tri_figure none = tri_no_figure();
+    struct tri_pslg pslg = {0};
+    struct tri_elements elements = {0};
+    struct names names;
+    enum tri_status status = tri_api_struct_give(figure, &none, sizeof none, "tri_figure", error);
+    if (status)
+        return status;
+    if (!is_known(ending))
+        return tri_fail(error, TRI_CANNOT_READ, path, 0, "not a file that is known: .poly, .node or .ele");
+    status = make_names(&names, path, (size_t)(ending - path), error);
+    status = status ? status : read_by_ending(ending, &names, &pslg, &elements, error);
+    free_names(&names);
+    if (status) {
+        tri_pslg_free(&pslg);
+        tri_elements_free(&elements);
+        return status;
+    }
+    hand_over(figure, &pslg, &elements);
+    return TRI_OK;
+}
+
+void tri_file_free(struct tri_figure *figure)
+{
+    struct tri_figure own;
+    const struct tri_figure none = tri_no_figure();
+    if (tri_api_struct_take(&own, sizeof own, figure, "tri_figure", NULL))
+        return;
+    const void *arrays[] = {own.points.at, own.point_attributes.at, own.point_markers.at, own.segments.at,
+                            own.segment_markers.at, own.holes.at, own.regions.at, own.triangles.at,
+                            own.triangle_attributes.at, own.triangle_areas.at};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+        free((void *)arrays[i]); /* which tri_file_read has allocated */
+    (void)tri_api_struct_give(figure, &none, sizeof none, "tri_figure", NULL);
+}
+
+/* --- writing */
+
+static enum tri_status open_file(struct tri_output_set *set, const char *base, const char *ending,
+                                 struct tri_output **output, struct tri_error *error)
+{
+    char *path = joined(base, strlen(base), ending);
+    enum tri_status status = path ? tri_output_open(set, path, output, error)
+                                  : tri_fail(error, TRI_NO_MEMORY, base, 0, "out of memory for file names");
+    free(path);
+    return status;
+}
+
+static enum tri_status write_all(struct tri_output_set *set, const char *base, const struct tri_api_figure *figure,
+                                 const struct tri_layout *layout, struct tri_error *error)
+{
+    const struct tri_pslg *pslg = &figure->pslg;
+    const struct tri_elements *elements = &figure->elements;
+    struct tri_output *output;
+    enum tri_status status = open_file(set, base, ".node", &output, error);
+    status = status ? status : tri_write_node(output, layout, (size_t)pslg->n_points, pslg->points, pslg->n_attributes,
+                                              pslg->attributes, pslg->markers, error);
+    if (elements->n > 0) {
+        status = status ? status : open_file(set, base, ".ele", &output, error);
+        status = status ? status : tri_write_ele(output, layout, (size_t)elements->n, 3, elements->corners,
+                                                 elements->n_attributes, elements->attributes, error);
+    }
+    if (pslg->n_segments > 0) {
+        status = status ? status : open_file(set, base, ".poly", &output, error);
+        status = status ? status : tri_write_poly(output, layout, pslg, pslg->segment_markers != NULL, error);
+    }
+    return status;
+}
+
+enum tri_status tri_file_write(const char *base, const struct tri_figure *figure, int first, struct tri_error *error)
+{
+    struct tri_api_figure taken;
+    struct tri_output_set set;
+    const struct tri_layout layout = {first != 0, NULL};
+    enum tri_status status = tri_api_figure_take(&taken, figure, error);
+    if (!status) {
+        tri_outputs_begin(&set);
+        status = write_all(&set, base, &taken, &layout, error);
+        status = status ? status : tri_outputs_commit(&set, error);
+        tri_outputs_abort(&set);
+    }
+    tri_api_figure_free(&taken);
+    return status;
+}

@@ -1,0 +1,41 @@
+/* What lies behind the opaque struct tri_mesh of ptriangle/tri.h, and how a mesh comes to be, whoever refines it. */
+#ifndef TRIANGLE_API_MESH_H
+#define TRIANGLE_API_MESH_H
+
+#include "ptriangle/tri.h"
+#include "triangle/generate.h"
+
+struct tri_api_mesh {
+    struct tri_mesh mesh; /* first: what callers point to. No free slots, points in the order of the caller */
+    struct tri_report report;
+    int64_t loose;        /* segments of a figure with triangles that are no edges */
+    bool has_areas;       /* bounds of sizes came with the figure .. */
+    bool has_attributes;  /* .. and attributes of triangles or regions did */
+    double *places;       /* [n_vertices][2] in the caller's coordinates; NULL: they are mesh.xy */
+    double *attributes;   /* [n_slots][as many as tri_region_attributes has]; NULL where there are none */
+    int32_t *neighbors;   /* [n_slots][3] NULL until they are asked for .. */
+    int32_t *edges;       /* [n_edges][2] .. these too .. */
+    int32_t *edge_markers; /* [n_edges] .. with their markers */
+    int32_t n_edges;
+};
+
+/* Who refines: tri_refine, or a schedule. */
+struct tri_api_way {
+    enum tri_status (*refine)(struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                              const struct tri_settings *settings, struct tri_refine_report *report,
+                              struct tri_error *error);
+    const struct tri_executor *executor;
+};
+
+/* The caller's settings (NULL: none) as this library knows them. TRI_BAD_INPUT: one has no meaning. */
+enum tri_status tri_api_settings_take(struct tri_settings *settings, const struct tri_settings *given,
+                                      struct tri_error *error);
+
+/* tri_mesh_new and tri_mesh_refine; settings have been taken. */
+enum tri_status tri_api_mesh_new(struct tri_mesh **mesh, const struct tri_figure *figure,
+                                 const struct tri_settings *settings, const struct tri_api_way *way,
+                                 struct tri_error *error);
+enum tri_status tri_api_mesh_refine(struct tri_mesh *mesh, const struct tri_settings *settings,
+                                    const struct tri_api_way *way, struct tri_error *error);
+
+#endif
