@@ -21,6 +21,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/sweep_order.c
     triangle/locate.c
     triangle/carve.c
+    triangle/chain.c
     triangle/reconstruct.c
     triangle/cavity.c
     triangle/interpolate.c
@@ -42,6 +43,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/api/arrays.c
     triangle/dropin/switches.c
     triangle/topology.c
+    triangle/grid.c
     triangle/dropin/input.c
     triangle/dropin/output.c
     triangle/dropin/run.c
@@ -68,6 +70,13 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/read.c
     triangle/text/output.c
     triangle/text/write.c
+    triangle/text/layouts.c
+    triangle/text/grouping.c
+    triangle/text/boundary.c
+    triangle/text/vtu.c
+    triangle/text/gmsh.c
+    triangle/text/hydro.c
+    triangle/text/formats.c
     triangle/api/files.c)
 
 # What these two need of the mesher: all that their shared libraries have of it.

@@ -66,6 +66,9 @@ void console_remark(const struct console *console, const char *format, ...)
     va_end(arguments);
 }
 
+/* An error has been told, or that standard output is lost: nothing more is said of that. */
+static bool told;
+
 static bool are_one_place(int a, int b)
 {
     struct stat at_a, at_b;
@@ -101,6 +104,7 @@ void console_error(const struct console *console, const struct tri_error *error)
 {
     print_error(stdout, "Error:  ", error);
     fflush(stdout);
+    told = true;
     if (are_one_place(STDOUT_FILENO, STDERR_FILENO))
         return;
     if (!error->file[0])
@@ -127,6 +131,8 @@ bool console_close(const struct console *console)
 {
     if (console_flush(NULL) == TRI_OK)
         return true;
-    fprintf(stderr, "%s: cannot write to standard output\n", console->program);
+    if (!told)
+        fprintf(stderr, "%s: cannot write to standard output\n", console->program);
+    told = true;
     return false;
 }

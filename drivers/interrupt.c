@@ -1,15 +1,22 @@
-/* Handlers and the program share atomic words, and one lock around the set of temporary files.
+/* Handlers and the program share one word, the state, and the names of the temporary files.
  *
- * THE LOCK is free, held by the program while it changes the set, or taken for good by whoever ends the program. A
- * handler never waits for it: where the program holds it, the handler leaves a note (`must_end`) and returns, and the
- * program ends itself when it lets go. Either the handler's second try for the lock comes after the release and
- * succeeds, or the note was there when the program looked for it behind the release: so no request is lost. Handlers
+ * THE STATE says who has asked for the end, whether the time to end in is over (LATE), whether the program is changing
+ * the set of files (HELD), whether it must end as soon as it no longer is (DUE), and whether somebody ends it (ENDING).
+ * Every transition is one compare-and-exchange of the word:
+ *
+ *     nobody has asked    -- first request -->          asked; the grace begins
+ *     asked               -- grace is over -->          LATE
+ *     LATE, HELD          -- a request or the clock --> DUE; the handler returns
+ *     LATE, not HELD      -- a request or the clock --> ENDING, by the handler
+ *     HELD                -- the set is changed -->     not HELD, or, if DUE, ENDING, by the program
+ *
+ * So a handler never waits, no request is lost, and one alone ends the program, while nobody changes the set. Handlers
  * may run on any thread.
  *
- * INVARIANT: while the lock is free, every temporary file there is stands in the set.
+ * INVARIANT: while the state is not HELD, every temporary file there is stands in `temporaries`.
  *
  * A handler calls write(), unlink(), timer_settime(), signal(), raise() and _exit(), which POSIX allows, and reads and
- * writes lock-free atomics, which C allows. */
+ * writes lock-free atomics, which C allows, and what was set before it was installed. */
 #include "drivers/interrupt.h"
 
 #include <errno.h>
@@ -24,15 +31,23 @@ _Static_assert(ATOMIC_INT_LOCK_FREE == 2 && ATOMIC_POINTER_LOCK_FREE == 2, "hand
 
 static const struct timespec GRACE = {0, 800000000};
 
-enum { FREE, HELD, ENDING };  /* the lock */
-enum { NOBODY = 0, TIME_UP = -1 }; /* who asked for the end, else the number of a signal */
+enum {
+    HELD = 1,
+    ENDING = 2,
+    LATE = 4,      /* a further request ends the program at once */
+    DUE = 8,
+    GOING_ON = 16, /* what is left is to be done, though somebody has asked */
+    TOLD = 32,     /* the program has said why it ends */
+    WHO = 256      /* who has asked, times this */
+};
+enum { NOBODY = 0, TIME_UP = 255 }; /* who, else the number of a signal */
 
-static atomic_int lock, asked, must_end, late, going_on, told;
+static atomic_uint state;
 static _Atomic(const char *) stage;
+static _Atomic(const char *) temporaries[TRI_MAX_OUTPUTS];
 static const char *name; /* these are set before the first handler can run */
 static bool patience, has_timer;
 static timer_t timer;
-static const struct tri_output_set *guarded; /* under the lock */
 
 static const struct kind {
     int number;
@@ -48,24 +63,34 @@ enum { N_ENDS = sizeof ends / sizeof *ends, N_CRASHES = sizeof crashes / sizeof 
 
 /* --- what a handler does */
 
-static bool take_for_good(void)
+/* Sets bits, unless one of `against` is set. Returns the state before. */
+static unsigned set_unless(unsigned bits, unsigned against)
 {
-    int expected = FREE;
-    return atomic_compare_exchange_strong(&lock, &expected, ENDING);
+    unsigned before = atomic_load(&state);
+    while (!(before & against) && !atomic_compare_exchange_weak(&state, &before, before | bits))
+        ;
+    return before;
 }
+
+static unsigned who_asked(void) { return atomic_load(&state) / WHO; }
+
+/* From now on this thread alone ends the program. */
+static bool take_for_good(void) { return !(set_unless(ENDING, HELD | ENDING) & (HELD | ENDING)); }
 
 static void remove_temporaries(void)
 {
-    for (int i = 0; guarded && i < guarded->n; i++)
-        if (guarded->outputs[i].temporary)
-            unlink(guarded->outputs[i].temporary);
+    for (int i = 0; i < TRI_MAX_OUTPUTS; i++) {
+        const char *path = atomic_load(&temporaries[i]);
+        if (path)
+            unlink(path);
+    }
 }
 
 static void say(const char *text) { (void)!write(STDERR_FILENO, text, strlen(text)); }
 
 const char *interrupt_cause(void)
 {
-    int number = atomic_load(&asked);
+    int number = (int)who_asked();
     for (int i = 0; i < N_ENDS; i++)
         if (ends[i].number == number)
             return ends[i].name;
@@ -74,7 +99,7 @@ const char *interrupt_cause(void)
 
 int interrupt_code(void)
 {
-    int number = atomic_load(&asked);
+    int number = (int)who_asked();
     return number == NOBODY ? 0 : number == TIME_UP ? INTERRUPT_TIME_UP : 128 + number;
 }
 
@@ -88,19 +113,23 @@ static void tell(void)
     say("; nothing was written\n");
 }
 
-/* With the lock taken for good. */
+/* After the change to ENDING. */
 static void end_now(void)
 {
     remove_temporaries();
-    if (!atomic_load(&told))
+    if (!(atomic_load(&state) & TOLD))
         tell();
     _exit(interrupt_code());
 }
 
-static void try_to_end(void)
+/* Ends the program, or has it end itself. */
+static void end_when_free(void)
 {
-    atomic_store(&must_end, 1);
-    if (take_for_good())
+    unsigned before = atomic_load(&state), after;
+    do
+        after = before | (before & HELD ? DUE : ENDING);
+    while (!atomic_compare_exchange_weak(&state, &before, after));
+    if (!(before & (HELD | ENDING)))
         end_now();
 }
 
@@ -110,29 +139,29 @@ static void arm(struct timespec delay)
     if (has_timer)
         timer_settime(timer, 0, &once, NULL);
     else
-        atomic_store(&late, 1); /* a second signal ends the program in any case */
+        set_unless(LATE, 0); /* a second signal ends the program in any case */
 }
 
 /* The first to ask gives the program its time to end. */
-static void ask(int who)
+static void ask(unsigned who)
 {
-    int nobody = NOBODY;
-    if (atomic_compare_exchange_strong(&asked, &nobody, who))
+    unsigned before = set_unless(who * WHO, ~0u / WHO * WHO);
+    if (before / WHO == NOBODY)
         arm(GRACE);
-    else if (atomic_load(&late))
-        try_to_end();
+    else if (before & LATE)
+        end_when_free();
 }
 
 /* Our own timer: the limit, or the end of the grace. */
 static void time_is_up(void)
 {
-    if (atomic_load(&asked) == NOBODY) {
+    if (who_asked() == NOBODY) {
         ask(TIME_UP);
         return;
     }
-    atomic_store(&late, 1);
+    set_unless(LATE, 0);
     if (!patience)
-        try_to_end();
+        end_when_free();
 }
 
 static void handle(int number, siginfo_t *info, void *context)
@@ -142,7 +171,7 @@ static void handle(int number, siginfo_t *info, void *context)
     if (number == SIGALRM && info->si_code == SI_TIMER)
         time_is_up();
     else
-        ask(number);
+        ask((unsigned)number);
     errno = reason;
 }
 
@@ -158,18 +187,25 @@ static void crash(int number)
 
 static void hold(void)
 {
-    int expected = FREE;
-    while (!atomic_compare_exchange_strong(&lock, &expected, HELD)) {
+    while (set_unless(HELD, ENDING) & ENDING)
         pause(); /* another thread's handler is ending the program */
-        expected = FREE;
-    }
 }
 
 static void release(void)
 {
-    atomic_store(&lock, FREE);
-    if (atomic_load(&must_end) && take_for_good())
+    unsigned before = atomic_load(&state), after;
+    do
+        after = (before & ~(unsigned)HELD) | (before & DUE ? ENDING : 0);
+    while (!atomic_compare_exchange_weak(&state, &before, after));
+    if (before & DUE)
         end_now();
+}
+
+/* What a handler would have to remove, while the state is HELD. */
+static void publish(const struct tri_output_set *set)
+{
+    for (int i = 0; i < TRI_MAX_OUTPUTS; i++)
+        atomic_store(&temporaries[i], i < set->n ? set->outputs[i].temporary : NULL);
 }
 
 /* Some library calls exit: OpenMP's, where it gets no memory. */
@@ -227,9 +263,9 @@ bool interrupt_start(const char *program, double seconds, bool patient)
 
 static bool is_asked(void *user)
 {
+    const unsigned now = atomic_load_explicit(&state, memory_order_relaxed);
     (void)user;
-    return atomic_load_explicit(&asked, memory_order_relaxed) != NOBODY &&
-           !atomic_load_explicit(&going_on, memory_order_relaxed);
+    return now / WHO != NOBODY && !(now & GOING_ON);
 }
 
 const struct tri_stop *interrupt_stop(void)
@@ -246,16 +282,16 @@ const char *interrupt_stage_now(void)
     return what ? what : "starting";
 }
 
-void interrupt_told(void) { atomic_store(&told, 1); }
+void interrupt_told(void) { set_unless(TOLD, 0); }
 
-void interrupt_go_on(void) { atomic_store(&going_on, 1); }
+void interrupt_go_on(void) { set_unless(GOING_ON, 0); }
 
 void interrupt_begin(struct tri_output_set *set)
 {
     hold();
     tri_outputs_begin(set);
     set->stop = interrupt_stop();
-    guarded = set;
+    publish(set);
     release();
 }
 
@@ -264,6 +300,7 @@ enum tri_status interrupt_open(struct tri_output_set *set, const char *path, str
 {
     hold();
     enum tri_status status = tri_output_open(set, path, output, error);
+    publish(set);
     release();
     return status;
 }
@@ -272,6 +309,7 @@ enum tri_status interrupt_commit(struct tri_output_set *set, struct tri_error *e
 {
     hold();
     enum tri_status status = tri_outputs_commit(set, error);
+    publish(set);
     release();
     return status;
 }
@@ -280,5 +318,6 @@ void interrupt_drop(struct tri_output_set *set)
 {
     hold();
     tri_outputs_abort(set);
+    publish(set);
     release();
 }

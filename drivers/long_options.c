@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "triangle/text/decimal.h"
+#include "triangle/text/formats.h"
 
 const char long_options_help[] =
     "Long options (--name VALUE or --name=VALUE; numbers may have exponents)\n"
@@ -13,7 +14,11 @@ const char long_options_help[] =
     "  --max-area X       as -aX: no triangle larger than X\n"
     "  --min-angle X      as -qX: no angle below X degrees\n"
     "  --output BASE      results are called BASE.node, BASE.ele, BASE.poly and so on\n"
-    "  --report FILE      seconds, blocks, memory and mesh statistics, as JSON\n"
+    "  --output FILE.vtu | FILE.msh | FILE.2dm | FILE.14 | FILE.grd\n"
+    "                     the mesh for VTK and ParaView, Gmsh, SMS or ADCIRC, in place of BASE.node and so on, or\n"
+    "                     beside them if --output BASE is given, too; up to 4 such files\n"
+    "  --report FILE      seconds, blocks, memory and mesh statistics, as JSON; -: on standard output, where\n"
+    "                     with -Q nothing else is printed\n"
     "  --blocks FILE      block and phase of each triangle, a line each, for meshplot --blocks\n"
     "  --numbering curve|blocks\n"
     "                     curve: new vertices and triangles are numbered along a space-filling curve, which\n"
@@ -145,6 +150,18 @@ static enum tri_status take_name(const char **name, const struct kind *kind, con
     return TRI_OK;
 }
 
+static enum tri_status take_output(struct long_options *options, const struct kind *kind, const char *value,
+                                   struct tri_error *error)
+{
+    if (!tri_format_of(value))
+        return take_name(&options->output, kind, value, error);
+    if (options->n_exports == LONG_OPTIONS_MOST_EXPORTS)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--output: no more than %d files of other formats",
+                        LONG_OPTIONS_MOST_EXPORTS);
+    options->exports[options->n_exports++] = value;
+    return TRI_OK;
+}
+
 static enum tri_status apply(struct long_options *options, struct tri_switches *switches, const struct kind *kind,
                              const char *value, struct tri_error *error)
 {
@@ -152,7 +169,7 @@ static enum tri_status apply(struct long_options *options, struct tri_switches *
     case THREADS: return take_threads(options, value, error);
     case MAX_AREA: return take_area(switches, value, error);
     case MIN_ANGLE: return take_angle(switches, value, error);
-    case OUTPUT: return take_name(&options->output, kind, value, error);
+    case OUTPUT: return take_output(options, kind, value, error);
     case REPORT: return take_name(&options->report, kind, value, error);
     case BLOCKS: return take_name(&options->blocks, kind, value, error);
     case NUMBERING: return take_numbering(options, value, error);

@@ -10,11 +10,15 @@
 
 enum { LONG_OPTIONS_MAX_THREADS = 1024 }; /* more is a slip of the finger, and the system may refuse them */
 
+enum { LONG_OPTIONS_MOST_EXPORTS = 4 };
+
 enum long_options_progress { PROGRESS_DEFAULT, PROGRESS_YES, PROGRESS_NO };
 
 struct long_options {
     int threads;        /* 0: not given */
     const char *output; /* BASE of --output; NULL: not given. Words are borrowed from argv */
+    int n_exports;      /* files in other programs' formats */
+    const char *exports[LONG_OPTIONS_MOST_EXPORTS]; /* [n_exports] FILE of --output, whose suffix names a format */
     const char *report; /* file; NULL: none */
     const char *blocks; /* file; NULL: none */
     enum long_options_progress progress;

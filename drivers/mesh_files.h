@@ -10,6 +10,14 @@
 #include "triangle/pslg.h"
 #include "triangle/reconstruct.h"
 
+enum { MESH_FILES_MOST_NAMES = 4 };
+
+/* Names of files, borrowed. */
+struct file_names {
+    int n;
+    const char *name[MESH_FILES_MOST_NAMES];
+};
+
 /* What is written, and how. All borrowed. */
 struct mesh_files {
     const struct arguments *arguments;
@@ -20,21 +28,15 @@ struct mesh_files {
     bool points_in_poly;                 /* the points came from a .poly file */
     int32_t base;                        /* 0 or 1 */
     const struct tri_elements *elements; /* -r: the input's triangles; else n is 0 */
+    const struct file_names *exports;    /* files in the formats that their suffixes name */
+    bool exports_alone;                  /* no others */
     const bool *is_edge;                 /* [n_segments] -rp: the segments of the input that are not are written again;
                                             NULL: no -r */
 };
 
-enum { MESH_FILES_MOST_NAMES = 4 };
-
-/* Names of files, borrowed. */
-struct file_names {
-    int n;
-    const char *name[MESH_FILES_MOST_NAMES];
-};
-
 /* Looks whether all files, and further ones, could be created, so that nobody waits for a mesh that cannot be kept, and
- * whether each is a file of its own that nobody has read. Leaves nothing behind. Only the arguments and points_in_poly
- * must be set. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
+ * whether each is a file of its own that nobody has read. Leaves nothing behind. Only the arguments, exports and
+ * points_in_poly must be set. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
 enum tri_status mesh_files_check(const struct mesh_files *files, const struct file_names *further,
                                  const struct file_names *read, struct tri_error *error);
 

@@ -3,13 +3,11 @@
 
 #include <stdlib.h>
 
-/* Blocks are in canonical order, so their numbers grow within a phase; the phases of a pre-refinement and those of the
- * mesh itself may bear the same numbers, one behind the other. */
 static int32_t end_of_phase(const struct par_block_report *blocks, int32_t n_blocks, int32_t first)
 {
     int32_t end = first + 1;
-    while (end < n_blocks && blocks[end].round == blocks[first].round && blocks[end].phase == blocks[first].phase &&
-           blocks[end].block > blocks[end - 1].block)
+    while (end < n_blocks && blocks[end].schedule == blocks[first].schedule &&
+           blocks[end].round == blocks[first].round && blocks[end].phase == blocks[first].phase)
         end++;
     return end;
 }

@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "drivers/blocks_file.h"
 #include "drivers/console.h"
@@ -92,24 +91,6 @@ static enum tri_status write_further(void *user, const struct run *run, struct t
 
 /* --- arguments */
 
-/* Triangle never overwrites what it has read, and neither does --output. */
-static enum tri_status spare_input(const struct arguments *arguments, struct tri_error *error)
-{
-    static const char *const suffixes[] = {".node", ".ele", ".poly"};
-    enum tri_status status = TRI_OK;
-    for (size_t i = 0; !status && i < sizeof suffixes / sizeof *suffixes; i++) {
-        char *read = joined(arguments->input, suffixes[i]), *written = joined(arguments->output, suffixes[i]);
-        if (!read || !written)
-            status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-        else if (access(read, F_OK) == 0 && tri_is_same_file(read, written))
-            status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--output: %s would be overwritten, a file of the input",
-                              written);
-        free(read);
-        free(written);
-    }
-    return status;
-}
-
 /* --output names the files whatever -I says. */
 static enum tri_status name_output(struct arguments *arguments, const char *base, struct tri_error *error)
 {
@@ -121,7 +102,7 @@ static enum tri_status name_output(struct arguments *arguments, const char *base
     free(arguments->output);
     arguments->output = output;
     arguments->switches.no_iteration = false;
-    return spare_input(arguments, error);
+    return TRI_OK;
 }
 
 static enum tri_status take_words(struct program *p, struct arguments *arguments, struct tri_error *error)
@@ -160,13 +141,16 @@ static int run_program(struct program *p, const struct arguments *arguments)
     struct run_hooks hooks = {.program = PROGRAM, .executor = &executor, .refine = refine, .estimate = estimate,
                               .threads = p->threads, .write = write_further, .user = p,
                               .limits = {o->time_limit, o->write_partial, o->dry_run}};
-    add_further(&hooks.further, o->report);
+    for (int i = 0; i < o->n_exports; i++)
+        add_further(&hooks.exports, o->exports[i]);
+    hooks.exports_alone = o->n_exports > 0 && !o->output;
+    add_further(&hooks.further, o->report && !report_is_printed(o->report) ? o->report : NULL);
     add_further(&hooks.further, o->blocks);
     if (arguments->file)
         progress_stage(&p->progress, "reading and triangulating");
     int code = run_arguments(arguments, &hooks);
     if (!arguments->file)
-        puts("  --threads N  --max-area X  --min-angle X  --output BASE  --report FILE  --blocks FILE"
+        puts("  --threads N  --max-area X  --min-angle X  --output BASE|FILE.vtu|...  --report FILE  --blocks FILE"
              "  --numbering curve|blocks\n"
              "  --dry-run  --time-limit T  --write-partial  --progress  --help");
     par_report_free(&p->schedule);

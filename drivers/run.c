@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "drivers/console.h"
 #include "drivers/estimate.h"
@@ -124,6 +126,19 @@ static enum tri_status read_mesh(struct runner *r, const struct names *names, co
     return tri_read_area(names->area, options, &run->elements, r->error);
 }
 
+/* Who names a file of another kind gets a word on what is read. */
+static void add_hint(const struct runner *r)
+{
+    const char *file = r->run.arguments->file;
+    struct tri_error *error = r->error;
+    bool is_another = error->status == TRI_CANNOT_READ && access(file, F_OK) == 0 && strcmp(file, error->file) != 0;
+    bool is_no_text = error->status == TRI_BAD_INPUT && strstr(error->text, "not a text file");
+    size_t n = strlen(error->text);
+    if (is_another || is_no_text)
+        snprintf(error->text + n, sizeof error->text - n, " (what is read are Triangle's .node, .poly, .ele and .area"
+                 " files)");
+}
+
 static enum tri_status read_input(struct runner *r)
 {
     const struct tri_switches *s = &r->run.arguments->switches;
@@ -139,6 +154,8 @@ static enum tri_status read_input(struct runner *r)
     if (!status && s->mesh)
         status = read_mesh(r, &r->names, &options);
     console_series_end(&r->console, &r->input_warnings, "of this kind");
+    if (status)
+        add_hint(r);
     end_stage(r, RUN_READ);
     return status;
 }
@@ -456,8 +473,11 @@ static enum tri_status run_stages(struct runner *r)
     status = status ? status : read_input(r);
     if (status)
         return status;
-    struct mesh_files files = {run->arguments, &r->console, run->hooks->executor, &run->mesh, &run->pslg,
-                               run->points_in_poly, run->base, &run->elements, NULL};
+    struct mesh_files files = {.arguments = run->arguments, .console = &r->console,
+                               .executor = run->hooks->executor, .mesh = &run->mesh, .pslg = &run->pslg,
+                               .points_in_poly = run->points_in_poly, .base = run->base,
+                               .elements = &run->elements, .exports = &run->hooks->exports,
+                               .exports_alone = run->hooks->exports_alone};
     if (run->hooks->limits.dry_run)
         return print_estimate(r);
     status = check_files(r, &files);

@@ -317,7 +317,7 @@ static bool report_block(const struct phase *p, const struct task *task)
         report->blocks = fresh;
     }
     report->blocks[report->n_blocks++] = (struct par_block_report){
-        p->state->round, p->colour, task->block, task->n_seeds,
+        p->state->n_schedules - 1, p->state->round, p->colour, task->block, task->n_seeds,
         task->report.inserted_free + task->report.inserted_on_segments, task->report.deferred, task->seconds};
     return true;
 }

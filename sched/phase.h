@@ -23,6 +23,7 @@ struct par_state {
     struct par_room spare;   /* unused ranges of the arrays */
     double radius;           /* largest circumradius in the pool when it was last filled */
     struct par_report *report;
+    int32_t n_schedules;     /* begun so far; the last is the one that works */
     int round;
     int32_t n_kept;          /* vertices there were before */
     bool may_number;         /* nothing is refined after this schedule but what it leaves over */

@@ -240,6 +240,7 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
 {
     enum tri_status status = TRI_OK;
     assert(par_cells(partition) >= 4);
+    state->n_schedules++;
     for (state->round = 0; !status && state->round < MAX_ROUNDS; state->round++) {
         for (int colour = 0; !status && colour < PAR_COLOURS && state->pool.n > 0; colour++) {
             tell(state, colour + 1);
@@ -261,10 +262,9 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     struct par_report *report = state->report;
     enum tri_status status = TRI_OK;
     state->quality = quality;
-    if (top) {
+    if (top && !report->partition.x) {
         report->columns = partition->n_columns;
         report->rows = partition->n_rows;
-        par_partition_free(&report->partition);
         status = par_partition_copy(&report->partition, partition, error);
         report->radius_measured = state->radius * state->mesh->unit;
         report->prerefined = state->mesh->n_slots;
@@ -276,8 +276,8 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     double last = par_seconds();
     if (!status && left_over) /* slots have moved */
         status = fill_pool(state, quality, false, error);
-    if (top)
-        report->left_over = left_over ? state->pool.n : 0;
+    if (top && left_over)
+        report->left_over += state->pool.n;
     if (!status && left_over)
         status = refine_rest(state, quality, false, error);
     report->total.gated = report->total.deferred = 0; /* all of them have had their turn */

@@ -38,6 +38,7 @@ struct par_options {
 };
 
 struct par_block_report {
+    int32_t schedule; /* which of the meshes that the phases refined, in the order in which that was begun: from 0 */
     int32_t round, phase, block;
     int64_t seeds, inserted, deferred;
     double seconds;
@@ -48,14 +49,15 @@ struct par_report {
     int threads;
     int rounds;                   /* of four phases, of all levels */
     int levels;                   /* meshes that the phases refined: this one, its pre-refinement, ..; 0: none */
-    int32_t columns, rows;        /* of blocks in the first round */
+    int32_t columns, rows;        /* of blocks in the first round; this and what follows of the first phase is told of
+                                     the first schedule of the whole mesh, where sizes and angles have one each */
     struct par_partition partition; /* blocks of the first round, in the mesh's units; none where the call was
                                        sequential. Owned by the report */
     double radius_lemma7, radius_theory; /* the paper's bound and the tight one for what pre-refinement asks for; 0
                                             where it lacks a bound */
     double radius_measured;       /* largest circumradius of a bad triangle when the first phase began */
     int64_t prerefined;           /* triangles when the first phase began */
-    int64_t deferred, left_over;  /* refused by fences in all phases; bad triangles that the last sequential call got */
+    int64_t deferred, left_over;  /* refused by fences in all phases; bad triangles that sequential calls got at last */
     int64_t pauses;               /* times a block waited for room */
     double seconds_prerefine, seconds_partition, seconds_room, seconds_merge, seconds_last, seconds_total;
     double seconds_find;          /* bad triangles, and the block of each; in equal shares */

@@ -10,9 +10,15 @@
 
 static bool is_near(double a, double b) { return fabs(a - b) < 1e-12; }
 
+static struct par_block_report block_of(int schedule, int round, int phase, int number, double seconds)
+{
+    return (struct par_block_report){
+        .schedule = schedule, .round = round, .phase = phase, .block = number, .seconds = seconds};
+}
+
 static struct par_block_report block(int round, int phase, int number, double seconds)
 {
-    return (struct par_block_report){.round = round, .phase = phase, .block = number, .seconds = seconds};
+    return block_of(1, round, phase, number, seconds);
 }
 
 /* 3 3 2 2 2 on two threads: largest first ends at 7, one above the best. */
@@ -28,11 +34,11 @@ static void test_largest_first(void **state)
     assert_true(is_near(prediction_refine(blocks, 5, 0, 256), 3));
 }
 
-/* A phase waits for the one before, also where the next level begins with the same round and phase. */
+/* A phase waits for the one before, also where the next schedule begins with the same round and phase. */
 static void test_phases_follow_each_other(void **state)
 {
     (void)state;
-    const struct par_block_report blocks[] = {block(0, 0, 0, 1), block(0, 0, 1, 1), block(0, 0, 0, 4),
+    const struct par_block_report blocks[] = {block_of(0, 0, 0, 0, 1), block_of(0, 0, 0, 1, 1), block(0, 0, 2, 4),
                                               block(0, 0, 5, 1), block(0, 1, 6, 2), block(1, 0, 7, 8),
                                               block(1, 0, 9, 8)};
     assert_true(is_near(prediction_refine(blocks, 7, 0, 1), 25));

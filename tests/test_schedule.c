@@ -289,6 +289,37 @@ static void test_the_way_of_numbering_moves_ids_alone(void **state)
     }
 }
 
+static bool is_before(const struct par_block_report *a, const struct par_block_report *b)
+{
+    if (a->schedule != b->schedule)
+        return a->schedule < b->schedule;
+    if (a->round != b->round)
+        return a->round < b->round;
+    return a->phase != b->phase ? a->phase < b->phase : a->block < b->block;
+}
+
+/* Above 31 degrees the mesh is refined by two schedules: blocks tell by which, and the rest of the report is of the
+ * first. */
+static void test_schedules_are_told_apart(void **state)
+{
+    (void)state;
+    struct start start = square(100, 25, 1e-4);
+    struct par_options options = small_blocks(300, 2);
+    struct par_report one, two;
+    struct tri_mesh mesh = refine(&start, &options, &one);
+    tri_mesh_free(&mesh);
+    start.options.quality.min_angle = 33;
+    mesh = refine(&start, &options, &two);
+    for (int32_t i = 1; i < two.n_blocks; i++)
+        assert_true(is_before(&two.blocks[i - 1], &two.blocks[i]));
+    assert_true(two.blocks[two.n_blocks - 1].schedule > one.blocks[one.n_blocks - 1].schedule);
+    assert_true(one.columns == two.columns && one.rows == two.rows && one.prerefined == two.prerefined);
+    par_report_free(&one);
+    par_report_free(&two);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&start.pslg);
+}
+
 /* Triangles with several crowded walls beyond the fences of small blocks are left once each: told of as often as walls
  * are seen, the pool grew threefold in every phase. */
 static void test_what_is_left_does_not_multiply(void **state)
@@ -723,6 +754,7 @@ int main(void)
         cmocka_unit_test(test_room_moves_ids_alone),
         cmocka_unit_test(test_the_way_of_numbering_moves_ids_alone),
         cmocka_unit_test(test_nothing_is_deferred_with_the_margin),
+        cmocka_unit_test(test_schedules_are_told_apart),
         cmocka_unit_test(test_what_is_left_does_not_multiply),
         cmocka_unit_test(test_default_blocks_cost_no_triangles),
         cmocka_unit_test(test_a_size_test_runs_in_parallel_only_where_allowed),

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
+#include "tests/array_grid.h"
 #include "support.h"
 #include "triangle/text/output.h"
 #include "triangle/text/read.h"
@@ -64,17 +65,20 @@ static enum tri_status read_elements(struct tri_error *error)
 
 static enum tri_status write_files(struct tri_error *error)
 {
-    static const struct tri_layout layout = {0, NULL};
     static const int32_t triangles[] = {0, 1, 2, 0, 2, 3};
+    struct array_grid arrays = {.points = square.points, .nodes = triangles, .segments = square.segments,
+                                .grid = {.n_points = 24, .n_triangles = 2, .n_nodes = 3, .has_markers = true,
+                                         .n_segments = square.n_segments, .figure = &square}};
+    const struct tri_grid *grid = array_grid(&arrays);
     struct tri_output_set set;
     struct tri_output *node, *poly, *ele = NULL;
     tri_outputs_begin(&set);
     enum tri_status status = tri_output_open(&set, "memory.node", &node, error);
     status = status ? status : tri_output_open(&set, "memory.poly", &poly, error);
     status = status ? status : tri_output_open(&set, "memory.ele", &ele, error);
-    status = status ? status : tri_write_node(node, &layout, 24, square.points, 0, NULL, NULL, error);
-    status = status ? status : tri_write_poly(poly, &layout, &square, true, error);
-    status = status ? status : tri_write_ele(ele, &layout, 2, 3, triangles, 0, NULL, error);
+    status = status ? status : tri_write_node(node, grid, NULL, error);
+    status = status ? status : tri_write_poly(poly, grid, NULL, error);
+    status = status ? status : tri_write_ele(ele, grid, NULL, error);
     if (!status)
         return tri_outputs_commit(&set, error);
     tri_outputs_abort(&set);

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "sched/schedule.h"
+#include "tests/array_grid.h"
 #include "support.h"
 #include "triangle/text/output.h"
 #include "triangle/quality.h"
@@ -176,13 +177,13 @@ static void test_reading_and_writing_stop(void **state)
     for (int after = 0; status != TRI_OK; after++) {
         struct trigger trigger = {.after = after};
         const struct tri_stop stop = {is_asked, &trigger};
-        const struct tri_layout layout = {0, NULL};
+        struct array_grid arrays = array_grid_of_points(0, pslg.n_points, pslg.points);
         struct tri_output_set set;
         struct tri_output *output;
         tri_outputs_begin(&set);
         set.stop = &stop;
         assert_int_equal(tri_output_open(&set, name, &output, NULL), TRI_OK);
-        status = tri_write_node(output, &layout, (size_t)pslg.n_points, pslg.points, 0, NULL, NULL, NULL);
+        status = tri_write_node(output, array_grid(&arrays), NULL, NULL);
         if (status == TRI_OK)
             assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
         else

@@ -18,6 +18,7 @@
 
 #include <cmocka.h>
 
+#include "tests/array_grid.h"
 #include "triangle/text/read.h"
 
 #define LENGTH(array) (sizeof(array) / sizeof *(array))
@@ -119,9 +120,13 @@ static void put_text(struct tri_output *output, const char *text)
 
 /* --- layouts */
 
-static const struct tri_layout from_1 = {1, NULL}, from_0 = {0, NULL};
 static const double square[] = {0, 0, 10, 0, 0.1, 1e-7, -1.5, 123456.75};
 static const int32_t two_triangles[] = {0, 1, 2, 0, 2, 3}, markers[] = {1, 0, -3, 12345};
+
+static void put_grid(struct tri_output *output, tri_write_call *write, struct array_grid arrays)
+{
+    assert_int_equal(write(output, array_grid(&arrays), NULL, NULL), TRI_OK);
+}
 
 static void layout_node(void **state)
 {
@@ -129,8 +134,10 @@ static void layout_node(void **state)
     struct tri_output_set set;
     struct tri_output *const output = open_one(&set, in_directory("a.node"));
     const double attributes[] = {1, 2, 3, .5, 5, 6, 7, 8};
-    assert_int_equal(tri_write_node(output, &from_1, 4, square, 2, attributes, markers, NULL), TRI_OK);
-    assert_int_equal(tri_write_node(output, &from_0, 2, square, 0, NULL, NULL, NULL), TRI_OK);
+    put_grid(output, tri_write_node,
+             (struct array_grid){.points = square, .attributes = attributes, .markers = markers,
+                                 .grid = {.base = 1, .n_points = 4, .n_attributes = 2, .has_markers = true}});
+    put_grid(output, tri_write_node, array_grid_of_points(0, 2, square));
     assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
     assert_contents(in_directory("a.node"), "4  2  2  1\n"
                                             "   1    0  0  1  2    1\n"
@@ -149,8 +156,10 @@ static void layout_ele(void **state)
     struct tri_output *const output = open_one(&set, in_directory("a.ele"));
     const int32_t six[] = {0, 1, 2, 3, 4, 12345};
     const double attribute = 3;
-    assert_int_equal(tri_write_ele(output, &from_1, 2, 3, two_triangles, 0, NULL, NULL), TRI_OK);
-    assert_int_equal(tri_write_ele(output, &from_0, 1, 6, six, 1, &attribute, NULL), TRI_OK);
+    put_grid(output, tri_write_ele,
+             (struct array_grid){.nodes = two_triangles, .grid = {.base = 1, .n_triangles = 2, .n_nodes = 3}});
+    put_grid(output, tri_write_ele, (struct array_grid){.nodes = six, .columns = &attribute,
+                                                        .grid = {.n_triangles = 1, .n_nodes = 6, .n_columns = 1}});
     assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
     assert_contents(in_directory("a.ele"), "2  3  0\n"
                                            "   1       1     2     3\n"
@@ -166,15 +175,19 @@ static void layout_poly(void **state)
     struct tri_output *const output = open_one(&set, in_directory("a.poly"));
     int32_t segments[] = {0, 1, 1, 2}, segment_markers[] = {5, -1};
     double holes[] = {.5, .25}, regions[] = {1, 2, 3, -1};
-    struct tri_pslg pslg = {.n_attributes = 1, .n_segments = 2, .segments = segments,
-                            .segment_markers = segment_markers, .n_holes = 1, .holes = holes};
-    assert_int_equal(tri_write_poly(output, &from_1, &pslg, true, NULL), TRI_OK);
-    pslg.segment_markers = NULL;
-    pslg.n_holes = 0;
-    pslg.n_regions = 1;
-    pslg.regions = regions;
-    assert_int_equal(tri_write_poly(output, &from_0, &pslg, false, NULL), TRI_OK);
-    assert_int_equal(tri_write_poly(output, &from_0, &pslg, true, NULL), TRI_OK);
+    struct tri_pslg figure = {.n_holes = 1, .holes = holes};
+    struct array_grid arrays = {
+        .segments = segments, .segment_markers = segment_markers,
+        .grid = {.base = 1, .n_attributes = 1, .n_segments = 2, .has_markers = true, .figure = &figure}};
+    put_grid(output, tri_write_poly, arrays);
+    figure = (struct tri_pslg){.n_regions = 1, .regions = regions};
+    arrays.grid.base = 0;
+    arrays.grid.has_markers = false;
+    put_grid(output, tri_write_poly, arrays);
+    arrays.grid.has_markers = true;
+    arrays.segment_markers = NULL;
+    arrays.grid.figure = NULL;
+    put_grid(output, tri_write_poly, arrays);
     assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
     assert_contents(in_directory("a.poly"), "0  2  1  1\n2  1\n"
                                             "   1       1     2       5\n"
@@ -187,7 +200,7 @@ static void layout_poly(void **state)
                                             "0  2  1  1\n2  1\n"
                                             "   0       0     1       0\n"
                                             "   1       1     2       0\n"
-                                            "0\n1\n   0   1  2  3  -1\n");
+                                            "0\n");
 }
 
 static void layout_edge_and_neighbors(void **state)
@@ -196,13 +209,18 @@ static void layout_edge_and_neighbors(void **state)
     struct tri_output_set set;
     struct tri_output *const output = open_one(&set, in_directory("a.edge"));
     const int32_t ends[] = {0, 1, 1, 12344}, neighbors[] = {-1, 1, -1, 0, -1, -1};
-    assert_int_equal(tri_write_edge(output, &from_1, 2, ends, markers, NULL), TRI_OK);
-    assert_int_equal(tri_write_edge(output, &from_0, 1, ends, NULL, NULL), TRI_OK);
-    assert_int_equal(tri_write_neigh(output, &from_1, 2, neighbors, NULL), TRI_OK);
+    struct array_grid arrays = {.ends = ends, .markers = markers, .neighbors = neighbors,
+                                .grid = {.base = 1, .n_edges = 2, .n_triangles = 2, .has_markers = true}};
+    put_grid(output, tri_write_edge, arrays);
+    put_grid(output, tri_write_neigh, arrays);
+    arrays.grid.base = 0;
+    arrays.grid.n_edges = 1;
+    arrays.grid.has_markers = false;
+    put_grid(output, tri_write_edge, arrays);
     assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
     assert_contents(in_directory("a.edge"), "2  1\n   1   1  2  1\n   2   2  12345  0\n"
-                                            "1  0\n   0   0  1\n"
-                                            "2  3\n   1    -1  2  -1\n   2    1  -1  -1\n");
+                                            "2  3\n   1    -1  2  -1\n   2    1  -1  -1\n"
+                                            "1  0\n   0   0  1\n");
 }
 
 static void layout_voronoi_and_off(void **state)
@@ -212,8 +230,11 @@ static void layout_voronoi_and_off(void **state)
     struct tri_output *const output = open_one(&set, in_directory("a.v.edge"));
     const int32_t ends[] = {0, 1, 1, -1};
     const double directions[] = {0, 0, -2.5, 1};
-    assert_int_equal(tri_write_v_edge(output, &from_1, 2, ends, directions, NULL), TRI_OK);
-    assert_int_equal(tri_write_off(output, &from_1, 2, square, 2, 3, two_triangles, 5, NULL), TRI_OK);
+    put_grid(output, tri_write_v_edge,
+             (struct array_grid){.ends = ends, .directions = directions, .grid = {.base = 1, .n_edges = 2}});
+    put_grid(output, tri_write_off,
+             (struct array_grid){.points = square, .nodes = two_triangles,
+                                 .grid = {.base = 1, .n_points = 2, .n_triangles = 2, .n_nodes = 3, .n_edges = 5}});
     assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
     assert_contents(in_directory("a.v.edge"), "2  0\n   1   1  2\n   2   2  -1   -2.5  1\n"
                                               "OFF\n2 2 5\n 0  0  0\n 10  0  0\n"
@@ -233,47 +254,38 @@ static void comment_names_the_command(void **state)
     assert_contents(in_directory("a"), "# Generated by ./triangle -pq two lines\n# Generated by\n");
 }
 
-/* Numbers of every width, against printf with the templates of the format. */
+/* Numbers of every width, and the longest there are, against printf with the templates of the formats. */
 static void rows_like_printf(void **state)
 {
     (void)state;
-    const int32_t values[] = {0, 7, 42, 999, 1000, 9999, 10000, 123456789, INT32_MAX - 1};
+    const int32_t values[] = {0, 7, 42, 999, 1000, 9999, 10000, 123456789, INT32_MAX};
     for (size_t i = 0; i < LENGTH(values); i++) {
-        const int32_t v = values[i], ends[] = {v, v / 3, -1}, marker = -v;
-        const double xy[] = {v / 7.0, -v * 1e30};
-        char text[256], expected[256];
-        *tri_row_node(text, v, xy, xy, 2, &marker) = 0;
-        snprintf(expected, sizeof expected, "%4d    %.17g  %.17g  %.17g  %.17g    %d\n", v, xy[0], xy[1], xy[0], xy[1],
+        struct tri_output_set set;
+        struct tri_output *const output = open_one(&set, in_directory("a"));
+        const int32_t v = values[i], nodes[] = {v, v / 3, INT32_MAX}, marker = v == INT32_MAX ? INT32_MIN : -v;
+        const double xy[] = {v / 7.0, v * -1.2345678901234567e-308};
+        const long a = v + 1L, b = v / 3 + 1;
+        char expected[1024];
+        const struct array_grid arrays = {
+            .points = xy, .attributes = xy, .markers = &marker, .nodes = nodes, .columns = xy, .neighbors = nodes,
+            .segments = nodes, .segment_markers = &marker, .ends = nodes, .directions = xy,
+            .grid = {.base = 1, .n_points = 1, .n_attributes = 2, .n_triangles = 1, .n_nodes = 3, .n_columns = 2,
+                     .n_segments = 1, .n_edges = 1, .has_markers = true}};
+        tri_write_call *const calls[] = {tri_write_node, tri_write_ele, tri_write_edge, tri_write_neigh,
+                                         tri_write_poly};
+        for (size_t k = 0; k < LENGTH(calls); k++)
+            put_grid(output, calls[k], arrays);
+        assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+        snprintf(expected, sizeof expected,
+                 "1  2  2  1\n%4d    %.17g  %.17g  %.17g  %.17g    %d\n"
+                 "1  3  2\n%4d    %4ld  %4ld  2147483648  %.17g  %.17g\n"
+                 "1  1\n%4d   %ld  %ld  %d\n"
+                 "1  3\n%4d    %ld  %ld  2147483648\n"
+                 "0  2  2  1\n1  1\n%4d    %4ld  %4ld    %4d\n0\n",
+                 1, xy[0], xy[1], xy[0], xy[1], marker, 1, a, b, xy[0], xy[1], 1, a, b, marker, 1, a, b, 1, a, b,
                  marker);
-        assert_string_equal(text, expected);
-        *tri_row_segment(text, v, 1, ends, &marker) = 0;
-        snprintf(expected, sizeof expected, "%4ld    %4d  %4d    %4d\n", (long)v, v + 1, v / 3 + 1, marker);
-        assert_string_equal(text, expected);
-        *tri_row_ele(text, v, 1, ends, 2, xy, 1) = 0;
-        snprintf(expected, sizeof expected, "%4ld    %4d  %4d  %.17g\n", (long)v, v + 1, v / 3 + 1, xy[0]);
-        assert_string_equal(text, expected);
-        *tri_row_neigh(text, v, 1, ends) = 0;
-        snprintf(expected, sizeof expected, "%4ld    %d  %d  %d\n", (long)v, v + 1, v / 3 + 1, -1);
-        assert_string_equal(text, expected);
-        *tri_row_v_edge(text, v, 1, ends + 1, xy) = 0;
-        snprintf(expected, sizeof expected, "%4ld   %d  %d   %.17g  %.17g\n", (long)v, v / 3 + 1, -1, xy[0], xy[1]);
-        assert_string_equal(text, expected);
+        assert_contents(in_directory("a"), expected);
     }
-}
-
-/* The longest rows fit what their bounds say. */
-static void rows_fit_their_bounds(void **state)
-{
-    (void)state;
-    const double reals[] = {-1.2345678901234567e-308, -1.2345678901234567e-308};
-    const int32_t indices[] = {INT32_MAX, INT32_MAX, -1, INT32_MAX, INT32_MAX, INT32_MAX}, marker = INT32_MIN;
-    char text[512];
-    assert_in_range(tri_row_node(text, INT64_MIN, reals, reals, 2, &marker) - text, 90, tri_row_node_bytes(2));
-    assert_in_range(tri_row_ele(text, INT64_MIN, 1, indices, 6, reals, 2) - text, 90, tri_row_ele_bytes(6, 2));
-    assert_in_range(tri_row_segment(text, INT64_MIN, 1, indices, &marker) - text, 60, TRI_ROW_SEGMENT_BYTES);
-    assert_in_range(tri_row_edge(text, INT64_MIN, 1, indices, &marker) - text, 50, TRI_ROW_EDGE_BYTES);
-    assert_in_range(tri_row_neigh(text, INT64_MIN, 1, indices + 3) - text, 50, TRI_ROW_NEIGH_BYTES);
-    assert_in_range(tri_row_v_edge(text, INT64_MIN, 1, indices + 1, reals) - text, 80, TRI_ROW_V_EDGE_BYTES);
 }
 
 /* --- tables */
@@ -292,7 +304,8 @@ static void tables_in_any_order(void **state)
     (void)state;
     const struct {
         size_t n_rows, max_bytes;
-    } cases[] = {{0, 8}, {1, 8}, {32767, 8}, {32768, 8}, {32769, 8}, {100000, 300}, {3, 400000}, {70, 300000}};
+    } cases[] = {{0, 8},        {1, 8},           {8191, 8},     {8192, 8},  {8193, 8},
+                 {8192 * 256, 8}, {8192 * 256 + 1, 8}, {100000, 300}, {3, 400000}, {70, 300000}};
     for (size_t i = 0; i < LENGTH(cases); i++) {
         size_t max_bytes = cases[i].max_bytes, n_tasks = 0;
         const struct tri_executor backwards = {run_backwards, &n_tasks};
@@ -305,7 +318,7 @@ static void tables_in_any_order(void **state)
         assert_int_equal(tri_write_table(b, cases[i].n_rows, max_bytes, row_of_words, &max_bytes, &backwards, NULL),
                          TRI_OK);
         assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
-        assert_true(cases[i].n_rows == 0 || n_tasks > 1);
+        assert_true(cases[i].n_rows * max_bytes <= 1 << 16 || n_tasks > 1); /* a chunk is one task */
         char *const text = contents(in_directory("a")), *const other = contents(in_directory("b"));
         assert_string_equal(text, other);
         const char *at = text;
@@ -334,7 +347,9 @@ static void round_trip(void **state)
     }
     struct tri_output_set set;
     struct tri_output *const output = open_one(&set, in_directory("a.node"));
-    assert_int_equal(tri_write_node(output, &from_0, N, points, 1, attributes, point_markers, NULL), TRI_OK);
+    put_grid(output, tri_write_node,
+             (struct array_grid){.points = points, .attributes = attributes, .markers = point_markers,
+                                 .grid = {.n_points = N, .n_attributes = 1, .has_markers = true}});
     assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
     struct tri_pslg pslg;
     int32_t base;
@@ -469,7 +484,8 @@ static void devices_are_written_in_place(void **state)
     if (access("/dev/full", W_OK) != 0)
         return;
     struct tri_output *const output = open_one(&set, "/dev/full");
-    assert_int_equal(tri_write_node(output, &from_0, 4, square, 0, NULL, NULL, &error), TRI_CANNOT_WRITE);
+    struct array_grid arrays = array_grid_of_points(0, 4, square);
+    assert_int_equal(tri_write_node(output, array_grid(&arrays), NULL, &error), TRI_CANNOT_WRITE);
     assert_string_equal(error.file, "/dev/full");
     assert_int_equal(tri_outputs_commit(&set, &error), TRI_CANNOT_WRITE);
     assert_int_equal(access("/dev/full", W_OK), 0);
@@ -535,7 +551,6 @@ int main(void)
         cmocka_unit_test(layout_voronoi_and_off),
         cmocka_unit_test(comment_names_the_command),
         cmocka_unit_test(rows_like_printf),
-        cmocka_unit_test(rows_fit_their_bounds),
         cmocka_unit_test(tables_in_any_order),
         cmocka_unit_test(round_trip),
         cmocka_unit_test(names_appear_at_commit),

@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "triangle/carve.h"
+#include "triangle/chain.h"
 #include "triangle/flip.h"
 #include "triangle/predicates.h"
 #include "triangle/refine.h"
@@ -411,6 +412,8 @@ static enum tri_status build(struct matcher *m)
     tri_mark_boundary(mesh);
     if (m->options->refine)
         status = tri_flip_to_delaunay(mesh, m->error);
+    if (!status && m->options->refine)
+        status = tri_unite_chains(mesh, m->error);
     return status ? status : tri_refine_prepare(mesh, m->error);
 }
 

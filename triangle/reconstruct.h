@@ -22,8 +22,9 @@ struct tri_reconstruct_options {
 /* Makes *mesh of the points of the PSLG and these triangles, ready for tri_refine.
  *
  * Every vertex is one of the input, every edge of one triangle is a subsegment. So is, with use_segments, every edge
- * that is a segment: these come first, in the order of the segments, each with a parent of its own; where several
- * segments are one edge, the first of them with a marker gives it. A segment that is no edge is left out; Triangle
+ * that is a segment: these come first, in the order of the segments, each with a parent of its own (with
+ * `refine` straight chains of them share one, see chain.h); where several segments are one edge, the first of them with
+ * a marker gives it. A segment that is no edge is left out; Triangle
  * passes it on to its output. Holes and regions of the PSLG are not looked at.
  *
  * Without `refine` the triangles are those given, in their order, with their first corners first; clockwise ones are

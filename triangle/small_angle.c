@@ -268,7 +268,8 @@ static double demand_of(const struct tri_mesh *mesh, int32_t slot)
 /* Which narrow spaces are filled, by their cost. All of them, where a quarter of a million points is enough for
  * that: thin layers and slits of ordinary parts. Else, where there are spikes of no width or lines a few units in
  * the last place apart, the cheap ones: up to the largest power of two, 2^10 or more, such that filling every space
- * as far as this cost goes takes no more than PER_VERTEX points for each vertex of the input and an ALLOWANCE. (A
+ * as far as this cost goes takes no more than PER_VERTEX points for each vertex of the input, or each
+ * end of a segment if there are fewer, and an ALLOWANCE. (A
  * dearer space is still filled where it is wide.) */
 static void choose_channels(struct tri_mesh *mesh)
 {
@@ -288,7 +289,7 @@ static void choose_channels(struct tri_mesh *mesh)
         }
     }
     int limit = all <= ALL ? OCTAVES : CHEAP;
-    mesh->channel_points = all <= ALL ? all : ALLOWANCE + PER_VERTEX * mesh->n_input;
+    mesh->channel_points = all <= ALL ? all : ALLOWANCE + PER_VERTEX * fmin(mesh->n_input, 2.0 * mesh->n_parents);
     for (int octave = CHEAP + 1; octave < OCTAVES && all > ALL; octave++) {
         cheaper += cost_of[octave];
         dearer -= count_of[octave];

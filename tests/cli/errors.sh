@@ -22,6 +22,14 @@ for word in --min-angle --min-angle=30 --versions --p; do
     complains "^triangle: --[a-z=0-9-]*: no such option"
 done
 wrote letter.1.node letter.1.ele letter.1.poly letter.1.edge
+# a file of another kind: what is read instead
+printf '{"type": "Polygon"}' >letter.json
+run 1 -p letter.json
+complains "^letter\.json\.poly: cannot open: .*what is read are Triangle's"
+printf 'a\0b' >binary.poly
+run 1 -p binary.poly
+complains "^binary\.poly:1: .*what is read are Triangle's"
+rm letter.json binary.poly
 run 0 -- --3 -pQ letter
 for program in triangle ptriangle trianglecheck meshplot; do
     [ -x "$bin/$program" ] || continue
@@ -123,6 +131,7 @@ if [ -e /dev/full ]; then
     "$bin/triangle" -p letter >/dev/full 2>.err
     check "exit code" test $? -eq 1
     complains "standard output"
+    check "one line" test "$(wc -l <.err)" -eq 1
     wrote
 fi
 # who reads no further is no error

@@ -61,7 +61,7 @@ complains 'progress takes no value'
 program 1 -- letter
 complains 'no option'
 program 1 -p --output letter letter.poly
-complains 'letter\.poly would be overwritten'
+complains 'letter\.poly: would be overwritten'
 program 1 -p --report nowhere/report.json letter
 complains '^nowhere/report\.json: cannot create'
 program 1 -p --blocks nowhere/blocks letter
@@ -71,7 +71,27 @@ program 1 -p nothing --report report.json
 complains '^nothing\.poly: cannot open'
 wrote
 
+if [ -e /dev/full ]; then
+    what="ptriangle to a full standard output"
+    "$bin/ptriangle" -p letter >/dev/full 2>.err
+    check "exit code" test $? -eq 1
+    check "one line" test "$(wc -l <.err)" -eq 1
+    wrote
+    program 1 -pQ --report /dev/full letter
+    complains '^/dev/full: cannot write'
+    wrote
+fi
+# what is not read may be replaced
+cp "$data/letter.poly" letter.node
+program 0 -pPQ --output letter letter.poly
+header letter.node "57 2 1 1"
+fresh letter.poly
+
 # --- report
+program 0 -pQ --report - letter
+wrote letter.1.node letter.1.ele letter.1.poly
+check "the report on standard output" sh -c 'head -n 1 .out | grep -qx "{" && tail -n 1 .out | grep -qx "}"'
+fresh letter.poly
 program 0 -pq30a0.001Q --threads 2 --report report.json letter
 wrote letter.1.node letter.1.ele letter.1.poly report.json
 for key in threads peak_memory_bytes read delaunay segments holes quality write total prerefine partition find seeds room refine \

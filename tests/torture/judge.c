@@ -2,6 +2,7 @@
 #include "tests/torture/judge.h"
 
 #include "sched/schedule.h"
+#include "triangle/quality.h"
 #include "triangle/reconstruct.h"
 
 enum { MOST_TRIANGLES = 1000 * 1000 };
@@ -226,7 +227,7 @@ static int32_t triangles_of(const struct torture_case *as, const struct outcome 
 }
 
 /* The schedule's mesh has about as many triangles as that of one sequential call, in cells of its own choice nearly
- * as many; tiny cells have many seams. */
+ * as many; tiny cells have many seams. Above the usual angle what is given up depends on the order. */
 static void judge_schedule_size(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
     const double OWN_CELLS = 1.1, TINY_CELLS = 2, FEW = 100;
@@ -315,7 +316,8 @@ void judge_case(const struct torture_case *c, struct verdict *verdict)
         judge_first(&o, pslg, verdict);
     if (!verdict->fault[0] && o.mesh.n_slots > 0 && o.options.refine && c->block > 0)
         judge_threads(&o, pslg, verdict);
-    if (!verdict->fault[0] && o.options.refine && o.options.quality.max_steiner < 0 && c->block > 0)
+    if (!verdict->fault[0] && o.options.refine && o.options.quality.max_steiner < 0 && c->block > 0 &&
+        o.options.quality.min_angle <= TRI_USUAL_ANGLE)
         judge_schedule_size(&o, pslg, verdict);
     if (!verdict->fault[0] && o.mesh.n_slots > 0 && o.options.refine && c->again)
         judge_again(&o, verdict);

@@ -142,6 +142,8 @@ void judge_conforming(const struct outcome *o, int64_t faults, struct verdict *v
                     (long long)count[TRI_EXCUSE_CHANNEL], (long long)count[TRI_EXCUSE_PRECISION]);
 }
 
+static bool is_new(const struct tri_mesh *mesh, int32_t v) { return v >= mesh->n_input && mesh->on[v] >= 0; }
+
 /* Y: no new vertex on the boundary; YY: on no subsegment. */
 static void judge_protection(const struct outcome *o, struct verdict *verdict)
 {
@@ -149,7 +151,7 @@ static void judge_protection(const struct outcome *o, struct verdict *verdict)
     for (int32_t s = 0; s < mesh->n_subs && o->switches.protect > 0; s++) {
         const struct tri_subsegment *sub = &mesh->sub[s];
         bool boundary = sub->side[0] == TRI_NONE || sub->side[1] == TRI_NONE;
-        if ((boundary || o->switches.protect > 1) && (mesh->on[sub->v[0]] >= 0 || mesh->on[sub->v[1]] >= 0))
+        if ((boundary || o->switches.protect > 1) && (is_new(mesh, sub->v[0]) || is_new(mesh, sub->v[1])))
             judge_fault(verdict, "protection", "subsegment %d has a new end", (int)s);
     }
 }

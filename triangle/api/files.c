@@ -145,23 +145,67 @@ static enum tri_status open_file(struct tri_output_set *set, const char *base, c
     return status;
 }
 
-static enum tri_status write_all(struct tri_output_set *set, const char *base, const struct tri_api_figure *figure,
-                                 const struct tri_layout *layout, struct tri_error *error)
+/* The grid of a figure. */
+static void point(const void *user, int64_t i, struct tri_grid_point *point)
+{
+    const struct tri_pslg *pslg = &((const struct tri_api_figure *)user)->pslg;
+    *point = (struct tri_grid_point){{pslg->points[2 * i], pslg->points[2 * i + 1]},
+                                     pslg->markers ? pslg->markers[i] : 0};
+}
+
+static double attribute(const void *user, int64_t i, int32_t k)
+{
+    const struct tri_pslg *pslg = &((const struct tri_api_figure *)user)->pslg;
+    return pslg->attributes[i * pslg->n_attributes + k];
+}
+
+static void triangle(const void *user, int64_t i, int64_t nodes[6])
+{
+    const struct tri_elements *elements = &((const struct tri_api_figure *)user)->elements;
+    for (int k = 0; k < 3; k++)
+        nodes[k] = elements->corners[3 * i + k];
+}
+
+static double column(const void *user, int64_t i, int32_t k)
+{
+    const struct tri_elements *elements = &((const struct tri_api_figure *)user)->elements;
+    return elements->attributes[i * elements->n_attributes + k];
+}
+
+static void segment(const void *user, int64_t i, struct tri_grid_edge *segment)
+{
+    const struct tri_pslg *pslg = &((const struct tri_api_figure *)user)->pslg;
+    *segment = (struct tri_grid_edge){{pslg->segments[2 * i], pslg->segments[2 * i + 1]},
+                                      pslg->segment_markers ? pslg->segment_markers[i] : 0, {0}};
+}
+
+static struct tri_grid grid_of(const struct tri_api_figure *figure, int first)
 {
     const struct tri_pslg *pslg = &figure->pslg;
     const struct tri_elements *elements = &figure->elements;
+    return (struct tri_grid){.user = figure, .base = first != 0, .n_points = pslg->n_points,
+                             .n_attributes = pslg->n_attributes, .n_triangles = elements->n, .n_nodes = 3,
+                             .n_columns = elements->n_attributes, .n_segments = pslg->n_segments, .figure = pslg,
+                             .point = point, .attribute = attribute, .triangle = triangle, .column = column,
+                             .segment = segment};
+}
+
+static enum tri_status write_all(struct tri_output_set *set, const char *base, const struct tri_api_figure *figure,
+                                 int first, struct tri_error *error)
+{
+    struct tri_grid grid = grid_of(figure, first);
     struct tri_output *output;
     enum tri_status status = open_file(set, base, ".node", &output, error);
-    status = status ? status : tri_write_node(output, layout, (size_t)pslg->n_points, pslg->points, pslg->n_attributes,
-                                              pslg->attributes, pslg->markers, error);
-    if (elements->n > 0) {
+    grid.has_markers = figure->pslg.markers != NULL;
+    status = status ? status : tri_write_node(output, &grid, NULL, error);
+    if (grid.n_triangles > 0) {
         status = status ? status : open_file(set, base, ".ele", &output, error);
-        status = status ? status : tri_write_ele(output, layout, (size_t)elements->n, 3, elements->corners,
-                                                 elements->n_attributes, elements->attributes, error);
+        status = status ? status : tri_write_ele(output, &grid, NULL, error);
     }
-    if (pslg->n_segments > 0) {
+    if (grid.n_segments > 0) {
+        grid.has_markers = figure->pslg.segment_markers != NULL;
         status = status ? status : open_file(set, base, ".poly", &output, error);
-        status = status ? status : tri_write_poly(output, layout, pslg, pslg->segment_markers != NULL, error);
+        status = status ? status : tri_write_poly(output, &grid, NULL, error);
     }
     return status;
 }
@@ -170,11 +214,10 @@ enum tri_status tri_file_write(const char *base, const struct tri_figure *figure
 {
     struct tri_api_figure taken;
     struct tri_output_set set;
-    const struct tri_layout layout = {first != 0, NULL};
     enum tri_status status = tri_api_figure_take(&taken, figure, error);
     if (!status) {
         tri_outputs_begin(&set);
-        status = write_all(&set, base, &taken, &layout, error);
+        status = write_all(&set, base, &taken, first, error);
         status = status ? status : tri_outputs_commit(&set, error);
         tri_outputs_abort(&set);
     }

@@ -185,6 +185,18 @@ bool tri_switches_use_regions(const struct tri_switches *s)
     return s->segments && !s->mesh && (s->regions || s->area_lists);
 }
 
+bool tri_switches_show_segments(const struct tri_switches *s) { return s->segments || s->keep_hull; }
+
+struct tri_grid_options tri_switches_grid(const struct tri_switches *s, const struct tri_mesh *mesh,
+                                          const struct tri_pslg *pslg, const struct tri_elements *elements)
+{
+    return (struct tri_grid_options){.mesh = mesh, .pslg = pslg, .elements = s->mesh ? elements : NULL,
+                                     .markers = !s->no_markers,
+                                     .regions = s->regions && s->segments && pslg->n_regions > 0,
+                                     .jettison = s->jettison, .second_order = s->second_order,
+                                     .edges = s->edges || s->voronoi};
+}
+
 struct tri_options tri_switches_options(const struct tri_switches *s)
 {
     struct tri_options options = tri_defaults();

@@ -14,6 +14,7 @@
 #include <stdint.h>
 
 #include "triangle/generate.h"
+#include "triangle/grid.h"
 
 enum { TRI_SWITCH_NOTES = 4, TRI_SWITCH_NOTE_CHARS = 32 };
 
@@ -61,6 +62,13 @@ bool tri_switches_refine(const struct tri_switches *switches);
 
 /* Is the section of regions of a .poly file (or the list of regions) part of the input? */
 bool tri_switches_use_regions(const struct tri_switches *switches);
+
+/* Are there segments in the output, where nobody suppresses them? */
+bool tri_switches_show_segments(const struct tri_switches *switches);
+
+/* What of a mesh is handed out; base and is_edge are the caller's to set. The elements count with r alone. */
+struct tri_grid_options tri_switches_grid(const struct tri_switches *switches, const struct tri_mesh *mesh,
+                                          const struct tri_pslg *pslg, const struct tri_elements *elements);
 
 /* What tri_generate is to do. The user's test (u) and a mesh as input (r) are the caller's to add. */
 struct tri_options tri_switches_options(const struct tri_switches *switches);

@@ -333,22 +333,53 @@ enum tri_status tri_output_open(struct tri_output_set *set, const char *path, st
 
 /* --- writing and closing */
 
-enum tri_status tri_output_write(struct tri_output *output, const char *data, size_t size, struct tri_error *error)
+enum { STOPPED = -1 };
+
+/* write() or, for files, pwrite() of as much as the system takes at once. */
+static ssize_t write_some(const struct tri_output *output, uint64_t place, const char *data, size_t size)
+{
+    return tri_output_has_places(output) ? pwrite(output->file, data, size, (off_t)place)
+                                         : write(output->file, data, size);
+}
+
+int tri_output_write_at(const struct tri_output *output, uint64_t place, const char *data, size_t size)
 {
     while (size > 0) {
         if (tri_stop_is_asked(output->stop))
-            return tri_fail_stopped(error);
-        const ssize_t written = write(output->file, data, size);
-        if (written < 0 && errno != EINTR) {
-            output->failed = true;
-            return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot write", errno);
-        }
+            return STOPPED;
+        const ssize_t written = write_some(output, place, data, size);
+        if (written < 0 && errno != EINTR)
+            return errno;
         if (written > 0) {
             data += written;
+            place += (uint64_t)written;
             size -= (size_t)written;
         }
     }
-    return TRI_OK;
+    return 0;
+}
+
+enum tri_status tri_output_conclude(struct tri_output *output, int result, struct tri_error *error)
+{
+    if (result == 0)
+        return TRI_OK;
+    if (result == STOPPED)
+        return tri_fail_stopped(error);
+    output->failed = true;
+    return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot write", result);
+}
+
+uint64_t tri_output_reserve(struct tri_output *output, size_t size)
+{
+    const uint64_t place = output->size;
+    output->size += size;
+    return place;
+}
+
+enum tri_status tri_output_write(struct tri_output *output, const char *data, size_t size, struct tri_error *error)
+{
+    const uint64_t place = tri_output_reserve(output, size);
+    return tri_output_conclude(output, tri_output_write_at(output, place, data, size), error);
 }
 
 /* Some file systems report only here that the data found no room. */

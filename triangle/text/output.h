@@ -15,6 +15,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "triangle/status.h"
 #include "triangle/stop.h"
@@ -32,6 +33,7 @@ struct tri_output {
     bool replaces;   /* there was a file of that name */
     bool renamed;    /* it has its name */
     int file;        /* descriptor; -1: closed */
+    uint64_t size;   /* bytes written or reserved */
     bool failed;     /* something could not be written */
     const struct tri_stop *stop; /* the set's */
 };
@@ -57,6 +59,16 @@ enum tri_status tri_output_open(struct tri_output_set *set, const char *path, st
 
 /* Appends bytes. */
 enum tri_status tri_output_write(struct tri_output *output, const char *data, size_t size, struct tri_error *error);
+
+/* Appending in pieces, by several threads: a file has a place for each byte, a device or pipe has not. */
+static inline bool tri_output_has_places(const struct tri_output *output) { return output->temporary != NULL; }
+
+/* The place of the next `size` bytes, which are then to be written there. */
+uint64_t tri_output_reserve(struct tri_output *output, size_t size);
+
+/* Writes bytes to a reserved place; by any thread. Returns 0, or what tri_output_conclude makes an error of. */
+int tri_output_write_at(const struct tri_output *output, uint64_t place, const char *data, size_t size);
+enum tri_status tri_output_conclude(struct tri_output *output, int result, struct tri_error *error);
 
 /* Closes all files, so that nothing is left to do but to give them their names. */
 enum tri_status tri_outputs_close(struct tri_output_set *set, struct tri_error *error);

@@ -233,10 +233,11 @@ static void count_chunk(void *context, size_t i)
 {
     struct tri_text *const text = context;
     struct tri_text_chunk *const chunk = &text->chunks[i];
-    const char *const end = text->data + text->size;
-    const char *const stop = i + 1 < text->n_chunks ? text->data + (i + 1) * text->chunk_bytes : end;
+    const char *const own = text->data + i * text->chunk_bytes, *const end = text->data + text->size;
+    const char *const stop = i + 1 < text->n_chunks ? own + text->chunk_bytes : end;
     if (tri_stop_is_asked(text->stop))
         return;
+    chunk->has_nul = memchr(own, 0, (size_t)(stop - own)) != NULL;
     const char *line = first_line(text, i);
     chunk->begin = line ? (size_t)(line - text->data) : SIZE_MAX;
     while (line && line < stop) {
@@ -251,7 +252,7 @@ static void count_chunk(void *context, size_t i)
  * the next. */
 static void accumulate(struct tri_text *text)
 {
-    struct tri_text_chunk before = {0, 0, 0};
+    struct tri_text_chunk before = {0};
     for (size_t i = 0; i <= text->n_chunks; i++) {
         struct tri_text_chunk *const chunk = &text->chunks[i];
         const struct tri_text_chunk own = *chunk;
@@ -266,6 +267,27 @@ static void accumulate(struct tri_text *text)
             text->chunks[i].begin = text->chunks[i + 1].begin;
 }
 
+/* The number of the line that holds the byte at `at`. */
+static long line_of(const char *begin, const char *at)
+{
+    long line = 1;
+    for (; begin < at; begin++)
+        line += *begin == '\n';
+    return line;
+}
+
+/* A number would end at a NUL, and be read wrong: UTF-16, or no text at all. */
+static enum tri_status check_nul(const struct tri_text *text, struct tri_error *error)
+{
+    for (size_t i = 0; i < text->n_chunks; i++)
+        if (text->chunks[i].has_nul) {
+            const char *const nul = memchr(text->data, 0, text->size);
+            return tri_fail(error, TRI_BAD_INPUT, text->name, line_of(text->data, nul),
+                            "holds a NUL byte: this is not a text file");
+        }
+    return TRI_OK;
+}
+
 static enum tri_status make_index(struct tri_text *text, const struct tri_executor *executor, struct tri_error *error)
 {
     text->n_chunks = (text->size - 1) / text->chunk_bytes + 1;
@@ -276,16 +298,7 @@ static enum tri_status make_index(struct tri_text *text, const struct tri_execut
     if (tri_stop_is_asked(text->stop))
         return tri_fail_stopped(error);
     accumulate(text);
-    return TRI_OK;
-}
-
-/* The number of the line that holds the byte at `at`. */
-static long line_of(const char *begin, const char *at)
-{
-    long line = 1;
-    for (; begin < at; begin++)
-        line += *begin == '\n';
-    return line;
+    return check_nul(text, error);
 }
 
 enum tri_status tri_text_load(struct tri_text *text, const char *path, size_t chunk_bytes,
@@ -296,12 +309,6 @@ enum tri_status tri_text_load(struct tri_text *text, const char *path, size_t ch
     const enum tri_status status = read_file(text, executor, error);
     if (status != TRI_OK)
         return status;
-    const char *nul = text->size ? memchr(text->data, 0, text->size) : NULL;
-    if (nul) { /* a number would end there, and be read wrong: UTF-16, or no text at all */
-        const long line = line_of(text->data, nul);
-        tri_text_free(text);
-        return tri_fail(error, TRI_BAD_INPUT, path, line, "holds a NUL byte: this is not a text file");
-    }
     if (text->size == 0 || text->data[text->size - 1] != '\n')
         text->data[text->size++] = '\n';
     return make_index(text, executor, error);

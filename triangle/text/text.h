@@ -27,6 +27,7 @@ struct tri_text_chunk {
     size_t begin;  /* offset of the first line that begins here or later */
     size_t line;   /* lines before `begin` */
     size_t record; /* records before `begin` */
+    bool has_nul;  /* there is a NUL among the chunk's bytes: no text */
 };
 
 struct tri_text {

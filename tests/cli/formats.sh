@@ -1,0 +1,39 @@
+# Files in other programs' formats, as --output names them.
+fresh section.poly
+program 0 -pq30aAQ --output x.vtu --output sub.d.msh section.poly
+wrote x.vtu sub.d.msh
+check "a .vtu" sh -c 'head -n 2 x.vtu | grep -q "<VTKFile type=\"UnstructuredGrid\""'
+check "a .msh" sh -c 'head -n 2 sub.d.msh | grep -q "^4.1 1 8$"'
+cp x.vtu 1.vtu
+cp sub.d.msh 1.msh
+PTRIANGLE_TEST_BLOCK=60 "$bin/ptriangle" -pq30aAQ --threads 1 --output s.vtu --output s.msh section.poly
+PTRIANGLE_TEST_BLOCK=60 "$bin/ptriangle" -pq30aAQ --threads 3 --output t.vtu --output t.msh section.poly
+check "the same .vtu on three threads" cmp s.vtu t.vtu
+check "the same .msh on three threads" cmp s.msh t.msh
+fresh letter.poly
+program 0 -pq30 --output base --output fort.14 --output x.2dm --output x.grd letter.poly
+wrote base.node base.ele base.poly fort.14 x.2dm x.grd
+says "Writing fort.14."
+judge base --poly letter.poly --min-angle 30
+check "ADCIRC's two suffixes" cmp fort.14 x.grd
+
+# all or nothing, and nothing where it cannot be
+fresh letter.poly
+echo old >x.vtu
+program 1 -pq30 --output x.vtu --output nowhere/x.msh letter.poly
+complains '^nowhere/x\.msh: cannot create'
+check "the old file" grep -qx old x.vtu
+wrote x.vtu
+fresh letter.poly
+program 1 -pq30o2 --output x.vtu --output fort.14 letter.poly
+complains '^fort\.14: files of ADCIRC cannot hold second-order triangles'
+program 1 -pq30 --output x.vtu --output ./x.vtu letter.poly
+complains 'would be written twice'
+program 1 -p --output 1.vtu --output 2.vtu --output 3.vtu --output 4.vtu --output 5.vtu letter.poly
+complains 'no more than 4'
+if [ -e /dev/full ]; then
+    ln -s /dev/full x.14
+    program 1 -pq30 --output y.vtu --output x.14 letter.poly
+    complains 'cannot write'
+    wrote x.14
+fi

@@ -1,0 +1,154 @@
+"""Reads STEM.vtu, .msh, .2dm and .14 with readers of others, and compares them with STEM.node, .ele and .poly.
+
+Usage: formats.py STEM ORDER      ORDER is 1 or 2 (with -o2, there is no .14)
+The files count from 1; vertices have one attribute, triangles one."""
+import sys
+
+import meshio
+import numpy as np
+
+stem, order = sys.argv[1], int(sys.argv[2])
+
+
+def table(name, skip=0):
+    lines = [line.split("#")[0].split() for line in open(name)]
+    return [line for line in lines if line][skip:]
+
+
+node = table(stem + ".node")
+points = np.array([[float(x) for x in row[1:3]] for row in node[1:]])
+attributes = np.array([float(row[3]) for row in node[1:]])
+markers = np.array([int(row[4]) for row in node[1:]])
+ele = table(stem + ".ele")
+triangles = np.array([[int(x) - 1 for x in row[1:4]] for row in ele[1:]])
+regions = np.array([float(row[-1]) for row in ele[1:]])
+poly = table(stem + ".poly")
+segments = np.array([[int(x) for x in row[1:4]] for row in poly[2:2 + int(poly[1][0])]])
+segments[:, :2] -= 1
+assert len(triangles) > 100 and len(set(regions)) > 1 and len(set(segments[:, 2])) > 1
+
+
+def same(what, a, b):
+    assert np.array_equal(np.asarray(a), np.asarray(b)), what
+
+
+def middles_lie_amid(nodes, at):
+    """Second-order nodes in the order of the edges from corner to corner."""
+    for k in range(3):
+        middle = (at[nodes[:, k]] + at[nodes[:, (k + 1) % 3]]) / 2
+        assert np.allclose(at[nodes[:, 3 + k]], middle, atol=1e-9), "middle nodes"
+
+
+def by_meshio(name, attribute):
+    mesh = meshio.read(name)
+    kind = "triangle" if order == 1 else "triangle6"
+    cells = {block.type: [] for block in mesh.cells}
+    for i, block in enumerate(mesh.cells):
+        cells[block.type].append((block.data, {k: v[i] for k, v in mesh.cell_data.items()}))
+    same("points", mesh.points[:, :2], points)
+    same("markers", np.ravel(mesh.point_data["marker"]), markers)
+    same("attributes", np.ravel(mesh.point_data[attribute]), attributes)
+    corner = np.vstack([data for data, _ in cells[kind]])
+    region = np.concatenate([np.ravel(values[attribute]) for _, values in cells[kind]])
+    line = np.vstack([data for data, _ in cells["line"]])
+    marker = np.concatenate([np.ravel(values["marker"]) for _, values in cells["line"]])
+    if order == 2:
+        middles_lie_amid(corner, mesh.points[:, :2])
+    found = sorted(map(tuple, np.column_stack([corner[:, :3], region]).tolist()))
+    same("triangles", found, sorted(map(tuple, np.column_stack([triangles, regions]).tolist())))
+    found = sorted(map(tuple, np.column_stack([line, marker]).astype(int).tolist()))
+    same("segments", found, sorted(map(tuple, segments.tolist())))
+    return mesh
+
+
+def by_vtk():
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(stem + ".vtu")
+    reader.Update()
+    grid = reader.GetOutput()
+    same("points", vtk_to_numpy(grid.GetPoints().GetData())[:, :2], points)
+    assert grid.GetNumberOfCells() == len(triangles) + len(segments)
+    same("first", [grid.GetCell(0).GetPointId(k) for k in range(3)], triangles[0])
+    same("last", [grid.GetCell(grid.GetNumberOfCells() - 1).GetPointId(k) for k in range(2)], segments[-1][:2])
+    same("regions", vtk_to_numpy(grid.GetCellData().GetArray("attributes"))[:len(triangles)], regions)
+
+
+def by_gmsh():
+    import gmsh
+    gmsh.initialize(["gmsh", "-v", "0"])
+    gmsh.open(stem + ".msh")
+    tags, at, _ = gmsh.model.mesh.getNodes()
+    same("points", at.reshape(-1, 3)[np.argsort(tags), :2], points)
+    groups = gmsh.model.getPhysicalGroups()
+    assert set(r for r in regions if r >= 1) <= set(tag for dim, tag in groups if dim == 2)
+    assert set(m for m in segments[:, 2] if m > 0) <= set(tag for dim, tag in groups if dim == 1)
+    for dim, tag in groups:
+        if tag not in (regions if dim == 2 else segments[:, 2]):
+            continue
+        n = sum(len(gmsh.model.mesh.getElements(dim, entity)[1][0])
+                for entity in gmsh.model.getEntitiesForPhysicalGroup(dim, tag))
+        assert n == (sum(regions == tag) if dim == 2 else sum(segments[:, 2] == tag)), (dim, tag)
+    gmsh.finalize()
+
+
+def boundary():
+    """Edges of one triangle, that on their left."""
+    edges = [tuple(t[[k, (k + 1) % 3]]) for t in triangles for k in range(3)]
+    all_of_them = set(edges)
+    return sorted((int(a), int(b)) for a, b in edges if (b, a) not in all_of_them)
+
+
+def by_py2dm():
+    import py2dm
+    with py2dm.Reader(stem + ".2dm") as mesh:
+        same("points", [n.pos for n in mesh.iter_nodes()], np.column_stack([points, attributes]))
+        elements = list(mesh.iter_elements())
+        corner = np.array([e.nodes for e in elements]) - 1
+        if order == 2:
+            middles_lie_amid(corner[:, [0, 2, 4, 1, 3, 5]], points)
+            corner = corner[:, [0, 2, 4]]
+        same("triangles", corner, triangles)
+        same("materials", [e.materials[0] for e in elements], np.where(regions >= 1, regions, 1))
+        edges = []
+        for string in mesh.iter_node_strings():
+            edges += [(a - 1, b - 1) for a, b in zip(string.nodes, string.nodes[1:])]
+    same("boundary", sorted(edges), boundary())
+
+
+def by_words():
+    """fort.14, as ADCIRC reads it: numbers at the beginning of each line."""
+    lines = [line.split() for line in open(stem + ".14")][1:]
+    n, m = int(lines[0][0]), int(lines[0][1])
+    same("points", [[float(x) for x in row[1:4]] for row in lines[1:1 + m]], np.column_stack([points, attributes]))
+    same("triangles", [[int(x) - 1 for x in row[2:5]] for row in lines[1 + m:1 + m + n]], triangles)
+    rest = [int(line[0]) if len(line) < 2 or line[1] == "=" else [int(x) for x in line] for line in lines[1 + m + n:]]
+    marker = {frozenset(s[:2].tolist()): s[2] for s in segments}
+    edges = []
+    for open_ones in (True, False):
+        pieces, total = rest[:2]
+        del rest[:2]
+        for _ in range(pieces):
+            length, kind = rest[0]
+            nodes = [x - 1 for x in rest[1:1 + length]]
+            del rest[:1 + length]
+            total -= length
+            if kind == 1 and not open_ones:
+                nodes.append(nodes[0])
+            edges += list(zip(nodes, nodes[1:]))
+            for a, b in zip(nodes, nodes[1:]):
+                assert kind == 1 or (marker[frozenset((a, b))] == 2) == open_ones, "open boundary"
+        assert total == 0
+    same("boundary", sorted(edges), boundary())
+    assert not rest
+
+
+by_meshio(stem + ".vtu", "attributes")
+by_meshio(stem + ".msh", "attribute 0")
+by_vtk()
+by_gmsh()
+by_py2dm()
+if order == 1:
+    by_words()
+print("formats:", stem, len(points), "points,", len(triangles), "triangles: all readers agree")

@@ -1,0 +1,178 @@
+/* Formats of other programs: bytes of small meshes, chains of the boundary, groups. What other programs read of them:
+ * tests/clients/run_formats.sh. */
+#include "triangle/text/formats.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "tests/array_grid.h"
+#include "triangle/text/boundary.h"
+#include "triangle/text/grouping.h"
+
+/* A square of 3 x 3 points less its upper right quarter; two regions; the marker 2 below, 0 left, else 1. Segment 6 is
+ * inside. */
+static const double points[] = {0, 0, 1, 0, 2, 0, 0, 1, 1, 1, 2, 1, 0, 2, 1, 2};
+static const double depths[] = {1, 2, 3, 4, 5, 6, 7, 8};
+static const int32_t corners[] = {0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4, 3, 4, 7, 3, 7, 6};
+static const int32_t across[] = {3, 1, -1, 4, -1, 0, -1, 3, -1, -1, 0, 2, -1, 5, 1, -1, -1, 4};
+static const double regions[] = {7, 7, 3, 3, 0.5, 7};
+static const int32_t segments[] = {0, 1, 1, 2, 2, 5, 5, 4, 4, 7, 7, 6, 1, 4, 6, 3, 3, 0};
+static const int32_t segment_markers[] = {2, 2, 1, 1, 1, 1, 0, 0, 0};
+
+static struct array_grid ell(void)
+{
+    return (struct array_grid){.points = points, .attributes = depths, .nodes = corners, .columns = regions,
+                               .neighbors = across, .segments = segments, .segment_markers = segment_markers,
+                               .grid = {.n_points = 8, .n_attributes = 1, .n_triangles = 6, .n_nodes = 3,
+                                        .n_columns = 1, .n_segments = 9, .has_markers = true}};
+}
+
+/* The bytes that a writer makes, malloc'ed, with a final 0. */
+static char *bytes_of(tri_write_call *write, const struct tri_grid *grid, size_t *size)
+{
+    const char *name = "test_formats.out";
+    struct tri_output_set set;
+    struct tri_output *output;
+    tri_outputs_begin(&set);
+    assert_int_equal(tri_output_open(&set, name, &output, NULL), TRI_OK);
+    assert_int_equal(write(output, grid, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+    FILE *file = fopen(name, "rb");
+    char *bytes = malloc(1 << 16);
+    assert_true(file && bytes);
+    *size = fread(bytes, 1, (1 << 16) - 1, file);
+    bytes[*size] = 0;
+    fclose(file);
+    unlink(name);
+    return bytes;
+}
+
+static void test_boundary(void **state)
+{
+    (void)state;
+    struct array_grid arrays = ell();
+    struct tri_boundary boundary;
+    assert_int_equal(tri_boundary_make(&boundary, array_grid(&arrays), NULL), TRI_OK);
+    assert_int_equal(boundary.n_pieces, 3);
+    static const int64_t nodes[] = {0, 1, 2, 2, 5, 4, 7, 6, 6, 3, 0};
+    static const int64_t n[] = {3, 5, 3};
+    static const int32_t markers[] = {2, 1, 0};
+    assert_memory_equal(boundary.nodes, nodes, sizeof nodes);
+    for (int p = 0; p < 3; p++) {
+        assert_int_equal(boundary.pieces[p].n, n[p]);
+        assert_int_equal(boundary.pieces[p].marker, markers[p]);
+        assert_true(boundary.pieces[p].outer && !boundary.pieces[p].closed);
+    }
+    tri_boundary_free(&boundary);
+    arrays.grid.n_segments = 0; /* one marker: one loop */
+    assert_int_equal(tri_boundary_make(&boundary, array_grid(&arrays), NULL), TRI_OK);
+    assert_int_equal(boundary.n_pieces, 1);
+    assert_true(boundary.pieces[0].closed && boundary.pieces[0].n == 8);
+    tri_boundary_free(&boundary);
+}
+
+static void test_groups(void **state)
+{
+    (void)state;
+    struct array_grid arrays = ell();
+    struct tri_grouping groups;
+    assert_int_equal(tri_group(&groups, 6, tri_triangle_group, array_grid(&arrays), NULL), TRI_OK);
+    static const int64_t order[] = {4, 2, 3, 0, 1, 5}, first[] = {0, 1, 3, 6};
+    assert_int_equal(groups.n, 3);
+    assert_true(groups.value[0] == 0.5 && groups.value[1] == 3 && groups.value[2] == 7);
+    assert_memory_equal(groups.order, order, sizeof order);
+    assert_memory_equal(groups.first, first, sizeof first);
+    tri_grouping_free(&groups);
+    assert_true(tri_group_tag(0.5) == 0 && tri_group_tag(0) == 0 && tri_group_tag(-3) == 0 && tri_group_tag(7) == 7);
+    assert_true(tri_group_tag(2147483647.0) == INT32_MAX && tri_group_tag(2147483648.0) == 0);
+}
+
+static double place(const struct tri_grid *grid, int64_t i)
+{
+    (void)grid;
+    return (double)i;
+}
+
+static void test_too_many_groups_are_one(void **state)
+{
+    (void)state;
+    struct tri_grouping groups;
+    assert_int_equal(tri_group(&groups, TRI_MOST_GROUPS, place, NULL, NULL), TRI_OK);
+    assert_int_equal(groups.n, TRI_MOST_GROUPS);
+    tri_grouping_free(&groups);
+    assert_int_equal(tri_group(&groups, TRI_MOST_GROUPS + 1, place, NULL, NULL), TRI_OK);
+    assert_true(groups.n == 1 && groups.value[0] == 0 && groups.first[1] == TRI_MOST_GROUPS + 1 && !groups.order);
+    tri_grouping_free(&groups);
+}
+
+static void test_texts(void **state)
+{
+    (void)state;
+    struct array_grid arrays = ell();
+    size_t size;
+    char *sms = bytes_of(tri_write_2dm, array_grid(&arrays), &size);
+    assert_string_equal(sms, "MESH2D\nNUM_MATERIALS_PER_ELEM 1\n"
+                             "E3T 1 1 2 5 7\nE3T 2 1 5 4 7\nE3T 3 2 3 6 3\nE3T 4 2 6 5 3\nE3T 5 4 5 8 1\n"
+                             "E3T 6 4 8 7 7\n"
+                             "ND 1 0 0 1\nND 2 1 0 2\nND 3 2 0 3\nND 4 0 1 4\nND 5 1 1 5\nND 6 2 1 6\nND 7 0 2 7\n"
+                             "ND 8 1 2 8\n"
+                             "NS 1 2 -3 2\nNS 3 6 5 8 -7 1\nNS 7 4 -1 0\n");
+    free(sms);
+    char *adcirc = bytes_of(tri_write_14, array_grid(&arrays), &size);
+    assert_string_equal(adcirc, "ptriangle\n 6 8\n"
+                                " 1 0 0 1\n 2 1 0 2\n 3 2 0 3\n 4 0 1 4\n 5 1 1 5\n 6 2 1 6\n 7 0 2 7\n 8 1 2 8\n"
+                                " 1 3 1 2 5\n 2 3 1 5 4\n 3 3 2 3 6\n 4 3 2 6 5\n 5 3 4 5 8\n 6 3 4 8 7\n"
+                                " 1 = open boundaries\n 3 = nodes of them all\n 3 0\n 1\n 2\n 3\n"
+                                " 2 = land boundaries\n 8 = nodes of them all\n"
+                                " 5 0\n 3\n 6\n 5\n 8\n 7\n 3 0\n 7\n 4\n 1\n");
+    free(adcirc);
+}
+
+static void test_sizes_of_binary_files(void **state)
+{
+    (void)state;
+    struct array_grid arrays = ell();
+    size_t size;
+    char *vtu = bytes_of(tri_write_vtu, array_grid(&arrays), &size);
+    const char *data = strstr(vtu, "<AppendedData encoding=\"raw\">\n_");
+    assert_non_null(data);
+    /* sizes; markers, depths; markers and regions of 15 cells; places; 36 indices, 15 ends, 15 types */
+    size_t n = 8 * 8 + 8 * 4 + 8 * 8 + 15 * 4 + 15 * 8 + 8 * 24 + 36 * 4 + 15 * 4 + 15;
+    const char *end = strchr(data, '_') + 1 + n;
+    assert_string_equal(end, "\n</AppendedData>\n</VTKFile>\n");
+    free(vtu);
+    char *msh = bytes_of(tri_write_msh, array_grid(&arrays), &size);
+    assert_memory_equal(msh, "$MeshFormat\n4.1 1 8\n\1\0\0\0\n$EndMeshFormat\n$Entities\n\0\0\0\0\0\0\0\0\3", 58);
+    assert_memory_equal(msh + size - 16, "$EndElementData\n", 16);
+    free(msh);
+}
+
+static void test_names(void **state)
+{
+    (void)state;
+    assert_ptr_equal(tri_format_of("a.b/x.vtu")->write, tri_write_vtu);
+    assert_ptr_equal(tri_format_of("fort.14")->write, tri_write_14);
+    assert_null(tri_format_of("x.1"));
+    assert_null(tri_format_of("vtu"));
+    assert_null(tri_format_of(""));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_boundary),
+        cmocka_unit_test(test_groups),
+        cmocka_unit_test(test_too_many_groups_are_one),
+        cmocka_unit_test(test_texts),
+        cmocka_unit_test(test_sizes_of_binary_files),
+        cmocka_unit_test(test_names),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,12 @@
+/* The segments that the subsegments of a refined mesh are pieces of. */
+#ifndef TRIANGLE_CHAIN_H
+#define TRIANGLE_CHAIN_H
+
+#include "triangle/mesh.h"
+
+/* Subsegments that continue each other on one straight line, as far as rounding tells, get one parent; the vertices
+ * between them lie on it (mesh->on). Each subsegment has a parent of its own before. Subsegments keep their order; some
+ * turn round. O(vertices + subsegments). TRI_NO_MEMORY: nothing has changed. */
+enum tri_status tri_unite_chains(struct tri_mesh *mesh, struct tri_error *error);
+
+#endif

@@ -1,0 +1,192 @@
+/* Chains of boundary edges.
+ *
+ * Edges of one triangle are listed with the triangle on their left, sorted by their first node, and get the markers of
+ * the segments they are. At every node as many of them arrive as leave; so a walk along unused edges ends where it
+ * began: a loop. Where loops touch at a node a walk takes the first edge that leaves it. A loop is cut where the marker
+ * changes. */
+#include "triangle/text/boundary.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+struct side {
+    int64_t from, to;
+    int32_t marker;
+    bool used;
+};
+
+struct builder {
+    const struct tri_grid *grid;
+    struct side *sides; /* [n], by from and to */
+    int64_t n;
+    int64_t *loop;      /* [n] the sides of the loop that is walked */
+    struct tri_boundary *boundary;
+    int64_t n_nodes;
+};
+
+static int compare(const void *left, const void *right)
+{
+    const struct side *a = left, *b = right;
+    if (a->from != b->from)
+        return a->from < b->from ? -1 : 1;
+    return (a->to > b->to) - (a->to < b->to);
+}
+
+static int64_t count_sides(const struct tri_grid *grid)
+{
+    int64_t n = 0;
+    for (int64_t t = 0; t < grid->n_triangles; t++) {
+        int64_t neighbors[3];
+        grid->neighbors(grid->user, t, neighbors);
+        n += (neighbors[0] < 0) + (neighbors[1] < 0) + (neighbors[2] < 0);
+    }
+    return n;
+}
+
+static void list_sides(struct builder *b)
+{
+    int64_t n = 0;
+    for (int64_t t = 0; t < b->grid->n_triangles; t++) {
+        int64_t neighbors[3], nodes[6];
+        b->grid->neighbors(b->grid->user, t, neighbors);
+        b->grid->triangle(b->grid->user, t, nodes);
+        for (int k = 0; k < 3; k++)
+            if (neighbors[k] < 0)
+                b->sides[n++] = (struct side){nodes[(k + 1) % 3], nodes[(k + 2) % 3], 0, false};
+    }
+    assert(n == b->n);
+    qsort(b->sides, (size_t)n, sizeof *b->sides, compare);
+}
+
+/* The first side that is not before (from, to). */
+static int64_t find(const struct builder *b, int64_t from, int64_t to)
+{
+    const struct side wanted = {.from = from, .to = to};
+    int64_t low = 0, high = b->n;
+    while (low < high) {
+        int64_t middle = low + (high - low) / 2;
+        if (compare(&b->sides[middle], &wanted) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static void mark_side(struct builder *b, int64_t from, int64_t to, int32_t marker)
+{
+    int64_t i = find(b, from, to);
+    if (i < b->n && b->sides[i].from == from && b->sides[i].to == to)
+        b->sides[i].marker = marker;
+}
+
+static void mark_sides(struct builder *b)
+{
+    for (int64_t s = 0; s < b->grid->n_segments; s++) {
+        struct tri_grid_edge segment;
+        b->grid->segment(b->grid->user, s, &segment);
+        mark_side(b, segment.ends[0], segment.ends[1], segment.marker);
+        mark_side(b, segment.ends[1], segment.ends[0], segment.marker);
+    }
+}
+
+/* An unused side that leaves the node; -1: none. */
+static int64_t next_side(const struct builder *b, int64_t node)
+{
+    for (int64_t i = find(b, node, INT64_MIN); i < b->n && b->sides[i].from == node; i++)
+        if (!b->sides[i].used)
+            return i;
+    return -1;
+}
+
+static int64_t walk(struct builder *b, int64_t side)
+{
+    int64_t n = 0;
+    for (; side >= 0; side = next_side(b, b->sides[side].to)) {
+        b->sides[side].used = true;
+        b->loop[n++] = side;
+    }
+    assert(b->sides[b->loop[n - 1]].to == b->sides[b->loop[0]].from);
+    return n;
+}
+
+/* Twice the area within, from its first node, so that no large numbers cancel. */
+static double area_of(const struct builder *b, int64_t n)
+{
+    struct tri_grid_point origin, p, q;
+    double area2 = 0;
+    b->grid->point(b->grid->user, b->sides[b->loop[0]].from, &origin);
+    for (int64_t i = 0; i < n; i++) {
+        b->grid->point(b->grid->user, b->sides[b->loop[i]].from, &p);
+        b->grid->point(b->grid->user, b->sides[b->loop[i]].to, &q);
+        area2 += (p.at[0] - origin.at[0]) * (q.at[1] - origin.at[1]) -
+                 (q.at[0] - origin.at[0]) * (p.at[1] - origin.at[1]);
+    }
+    return area2;
+}
+
+/* Where a loop of n sides may be cut: behind a side with another marker; n: nowhere. */
+static int64_t first_cut(const struct builder *b, int64_t n)
+{
+    for (int64_t i = 0; i < n; i++)
+        if (b->sides[b->loop[i]].marker != b->sides[b->loop[(i + n - 1) % n]].marker)
+            return i;
+    return n;
+}
+
+static void add_piece(struct builder *b, bool outer, int32_t marker, bool closed)
+{
+    struct tri_boundary *boundary = b->boundary;
+    boundary->pieces[boundary->n_pieces++] = (struct tri_boundary_piece){b->n_nodes, 0, marker, closed, outer};
+}
+
+static void add_node(struct builder *b, int64_t node)
+{
+    b->boundary->nodes[b->n_nodes++] = node;
+    b->boundary->pieces[b->boundary->n_pieces - 1].n++;
+}
+
+static void add_loop(struct builder *b, int64_t n)
+{
+    int64_t cut = first_cut(b, n);
+    bool closed = cut == n, outer = area_of(b, n) > 0;
+    for (int64_t i = 0; i < n; i++) {
+        const struct side *side = &b->sides[b->loop[(cut + i) % n]];
+        const struct side *before = &b->sides[b->loop[(cut + i + n - 1) % n]];
+        if (i == 0 || side->marker != before->marker) {
+            if (i > 0)
+                add_node(b, side->from);
+            add_piece(b, outer, side->marker, closed);
+        }
+        add_node(b, side->from);
+    }
+    if (!closed)
+        add_node(b, b->sides[b->loop[cut]].from);
+}
+
+enum tri_status tri_boundary_make(struct tri_boundary *boundary, const struct tri_grid *grid, struct tri_error *error)
+{
+    struct builder b = {.grid = grid, .n = count_sides(grid), .boundary = boundary};
+    const size_t n = (size_t)b.n + 1;
+    b.sides = malloc(n * sizeof *b.sides);
+    b.loop = malloc(n * sizeof *b.loop);
+    *boundary = (struct tri_boundary){0, malloc(n * sizeof *boundary->pieces), malloc(2 * n * sizeof *boundary->nodes)};
+    bool enough = b.sides && b.loop && boundary->pieces && boundary->nodes;
+    if (enough) {
+        list_sides(&b);
+        mark_sides(&b);
+    }
+    for (int64_t i = 0; enough && i < b.n; i++)
+        if (!b.sides[i].used)
+            add_loop(&b, walk(&b, i));
+    free(b.sides);
+    free(b.loop);
+    return enough ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the boundary");
+}
+
+void tri_boundary_free(struct tri_boundary *boundary)
+{
+    free(boundary->pieces);
+    free(boundary->nodes);
+    *boundary = (struct tri_boundary){0};
+}

@@ -1,0 +1,25 @@
+/* The boundary of a mesh as chains of nodes, for formats that want it so. */
+#ifndef TRIANGLE_TEXT_BOUNDARY_H
+#define TRIANGLE_TEXT_BOUNDARY_H
+
+#include "triangle/grid.h"
+
+/* A maximal run of boundary edges with one marker, the mesh on its left. */
+struct tri_boundary_piece {
+    int64_t first, n; /* its nodes; of a closed piece each once */
+    int32_t marker;
+    bool closed;      /* a whole loop */
+    bool outer;       /* of a loop that goes round the mesh, counter-clockwise; else round a hole */
+};
+
+struct tri_boundary {
+    int64_t n_pieces;
+    struct tri_boundary_piece *pieces;
+    int64_t *nodes;
+};
+
+/* O(triangles + segments, and n log n for n edges of the boundary). TRI_NO_MEMORY. To be freed in any case. */
+enum tri_status tri_boundary_make(struct tri_boundary *boundary, const struct tri_grid *grid, struct tri_error *error);
+void tri_boundary_free(struct tri_boundary *boundary);
+
+#endif

@@ -1,0 +1,21 @@
+/* Which writer a name asks for. */
+#include "triangle/text/formats.h"
+
+#include <string.h>
+
+static const struct tri_format formats[] = {
+    {".vtu", "VTK", true, tri_write_vtu},    {".msh", "Gmsh", true, tri_write_msh},
+    {".2dm", "SMS", true, tri_write_2dm},    {".14", "ADCIRC", false, tri_write_14},
+    {".grd", "ADCIRC", false, tri_write_14},
+};
+
+const struct tri_format *tri_format_of(const char *name)
+{
+    const size_t n = strlen(name);
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+        const size_t m = strlen(formats[i].suffix);
+        if (n >= m && strcmp(name + n - m, formats[i].suffix) == 0)
+            return &formats[i];
+    }
+    return NULL;
+}

@@ -1,0 +1,36 @@
+/* A mesh in files of other programs.
+ *
+ * All carry the nodes, the triangles and the boundary with its markers; what else each can hold, and how it is read
+ * again: docs/formats.md. Numbers are exact: bytes, or %.17g. Sizes are 64 bits wide. Each writer is a tri_write_call
+ * (triangle/text/write.h): rows are worked out one by one, so that the grid may lie anywhere. */
+#ifndef TRIANGLE_TEXT_FORMATS_H
+#define TRIANGLE_TEXT_FORMATS_H
+
+#include "triangle/text/write.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { TRI_OPEN_BOUNDARY = 2 }; /* marker by which fort.14 tells open boundaries from land */
+
+tri_write_call tri_write_vtu; /* VTK XML, unstructured grid: binary, appended raw */
+tri_write_call tri_write_msh; /* Gmsh 4.1, binary */
+tri_write_call tri_write_2dm; /* SMS */
+tri_write_call tri_write_14;  /* ADCIRC; no second-order triangles: TRI_BAD_INPUT */
+
+struct tri_format {
+    const char *suffix; /* of the files' names */
+    const char *name;   /* whose format */
+    bool second_order;  /* it can hold second-order triangles */
+    tri_write_call *write;
+};
+
+/* The format that the name of a file asks for by its end; NULL: none of these. */
+const struct tri_format *tri_format_of(const char *name);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

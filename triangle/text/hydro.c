@@ -1,0 +1,203 @@
+/* Two text formats of hydrodynamic models, which number from 1 and have the boundary as strings of nodes: SMS (.2dm)
+ * and ADCIRC (fort.14).
+ *
+ * Both take the first attribute of a point for its elevation or depth. In .2dm a triangle's material is its first
+ * attribute, if that is a whole number above 0, else 1; a node string carries its marker behind the last node. In
+ * fort.14 pieces of the boundary with the marker TRI_OPEN_BOUNDARY are open ones; all others are land: mainland on
+ * loops round the mesh, islands round holes. (xmswiki.com, "2D Mesh Files *.2dm"; adcirc.org, "ADCIRC Grid and Boundary
+ * Information File".) */
+#include <string.h>
+
+#include "triangle/text/boundary.h"
+#include "triangle/text/decimal.h"
+#include "triangle/text/grouping.h"
+#include "triangle/text/formats.h"
+
+enum { INTEGER_BYTES = TRI_INTEGER_CHARS + 4, REAL_BYTES = TRI_REAL_CHARS + 4, NODES_A_LINE = 10 };
+
+struct hydro {
+    const struct tri_grid *grid;
+    struct tri_output *output;
+    const struct tri_executor *executor;
+    struct tri_error *error;
+    struct tri_boundary boundary;
+    const struct tri_boundary_piece *piece; /* whose rows are written */
+};
+
+static char *put(char *at, const char *text)
+{
+    const size_t n = strlen(text);
+    memcpy(at, text, n);
+    return at + n;
+}
+
+static char *put_integer(char *at, int64_t value) { return tri_print_integer(put(at, " "), value, 0); }
+static char *put_real(char *at, double value) { return tri_print_real(put(at, " "), value); }
+
+static enum tri_status put_text(const struct hydro *h, const char *text)
+{
+    return tri_output_write(h->output, text, strlen(text), h->error);
+}
+
+static enum tri_status put_rows(struct hydro *h, int64_t n, size_t bytes, char *(*row)(void *, size_t, char *))
+{
+    return tri_write_table(h->output, (size_t)n, bytes, row, h, h->executor, h->error);
+}
+
+/* Number, place, and the first attribute. */
+static char *put_node(char *at, const struct tri_grid *grid, size_t i)
+{
+    struct tri_grid_point point;
+    grid->point(grid->user, (int64_t)i, &point);
+    at = put_integer(at, (int64_t)i + 1);
+    at = put_real(put_real(at, point.at[0]), point.at[1]);
+    return put(put_real(at, grid->n_attributes > 0 ? grid->attribute(grid->user, (int64_t)i, 0) : 0), "\n");
+}
+
+static enum tri_status write_all(enum tri_status (*write)(struct hydro *h), struct tri_output *output,
+                                 const struct tri_grid *grid, const struct tri_executor *executor,
+                                 struct tri_error *error)
+{
+    struct hydro h = {.grid = grid, .output = output, .executor = executor, .error = error};
+    enum tri_status status = tri_boundary_make(&h.boundary, grid, error);
+    status = status ? status : write(&h);
+    tri_boundary_free(&h.boundary);
+    return status;
+}
+
+/* --- .2dm */
+
+/* The nodes of second-order triangles go round, beginning with a corner. */
+static char *element_card(void *user, size_t i, char *at)
+{
+    static const int order[6] = {0, 5, 1, 3, 2, 4};
+    const struct hydro *h = user;
+    int64_t nodes[6];
+    h->grid->triangle(h->grid->user, (int64_t)i, nodes);
+    at = put_integer(put(at, h->grid->n_nodes == 6 ? "E6T" : "E3T"), (int64_t)i + 1);
+    for (int k = 0; k < h->grid->n_nodes; k++)
+        at = put_integer(at, nodes[h->grid->n_nodes == 6 ? order[k] : k] + 1);
+    int32_t material = tri_group_tag(tri_triangle_group(h->grid, (int64_t)i));
+    return put(put_integer(at, material > 0 ? material : 1), "\n");
+}
+
+static char *node_card(void *user, size_t i, char *at)
+{
+    const struct hydro *h = user;
+    return put_node(put(at, "ND"), h->grid, i);
+}
+
+/* Ten nodes a line; the last is negative. */
+static char *string_card(void *user, size_t i, char *at)
+{
+    const struct hydro *h = user;
+    const struct tri_boundary_piece *piece = h->piece;
+    const int64_t n = piece->n + piece->closed, begin = (int64_t)i * NODES_A_LINE;
+    at = put(at, "NS");
+    for (int64_t k = begin; k < n && k < begin + NODES_A_LINE; k++) {
+        int64_t node = h->boundary.nodes[piece->first + k % piece->n] + 1;
+        at = put_integer(at, k == n - 1 ? -node : node);
+    }
+    return put(begin + NODES_A_LINE < n ? at : put_integer(at, piece->marker), "\n");
+}
+
+static enum tri_status write_2dm(struct hydro *h)
+{
+    const size_t element_bytes = 3 + 8 * INTEGER_BYTES + 1, node_bytes = 2 + INTEGER_BYTES + 3 * REAL_BYTES + 1;
+    enum tri_status status = put_text(h, "MESH2D\nNUM_MATERIALS_PER_ELEM 1\n");
+    status = status ? status : put_rows(h, h->grid->n_triangles, element_bytes, element_card);
+    status = status ? status : put_rows(h, h->grid->n_points, node_bytes, node_card);
+    for (int64_t p = 0; p < h->boundary.n_pieces && !status; p++) {
+        h->piece = &h->boundary.pieces[p];
+        const int64_t lines = (h->piece->n + h->piece->closed - 1) / NODES_A_LINE + 1;
+        status = put_rows(h, lines, (NODES_A_LINE + 1) * INTEGER_BYTES + 3, string_card);
+    }
+    return status;
+}
+
+enum tri_status tri_write_2dm(struct tri_output *output, const struct tri_grid *grid,
+                              const struct tri_executor *executor, struct tri_error *error)
+{
+    return write_all(write_2dm, output, grid, executor, error);
+}
+
+/* --- fort.14 */
+
+static char *node_line(void *user, size_t i, char *at)
+{
+    const struct hydro *h = user;
+    return put_node(at, h->grid, i);
+}
+
+static char *element_line(void *user, size_t i, char *at)
+{
+    const struct hydro *h = user;
+    int64_t nodes[6];
+    h->grid->triangle(h->grid->user, (int64_t)i, nodes);
+    at = put_integer(put_integer(at, (int64_t)i + 1), 3);
+    for (int k = 0; k < 3; k++)
+        at = put_integer(at, nodes[k] + 1);
+    return put(at, "\n");
+}
+
+static bool is_open(const struct tri_boundary_piece *piece)
+{
+    return piece->outer && piece->marker == TRI_OPEN_BOUNDARY;
+}
+
+/* A loop round the mesh ends where it began; that an island does, its type says. */
+static int64_t shown_nodes(const struct tri_boundary_piece *piece)
+{
+    return piece->n + (piece->closed && piece->outer);
+}
+
+static char *boundary_line(void *user, size_t i, char *at)
+{
+    const struct hydro *h = user;
+    return put(put_integer(at, h->boundary.nodes[h->piece->first + (int64_t)i % h->piece->n] + 1), "\n");
+}
+
+static enum tri_status put_numbers(const struct hydro *h, int64_t a, int64_t b, const char *what)
+{
+    char line[2 * INTEGER_BYTES + 64], *at = put_integer(line, a);
+    at = put(put(b < 0 ? at : put_integer(at, b), what), "\n");
+    return tri_output_write(h->output, line, (size_t)(at - line), h->error);
+}
+
+static enum tri_status write_pieces(struct hydro *h, bool open)
+{
+    int64_t n = 0, nodes = 0;
+    for (int64_t p = 0; p < h->boundary.n_pieces; p++)
+        if (is_open(&h->boundary.pieces[p]) == open) {
+            n++;
+            nodes += shown_nodes(&h->boundary.pieces[p]);
+        }
+    enum tri_status status = put_numbers(h, n, -1, open ? " = open boundaries" : " = land boundaries");
+    status = status ? status : put_numbers(h, nodes, -1, " = nodes of them all");
+    for (int64_t p = 0; p < h->boundary.n_pieces && !status; p++) {
+        h->piece = &h->boundary.pieces[p];
+        if (is_open(h->piece) != open)
+            continue;
+        status = put_numbers(h, shown_nodes(h->piece), open ? 0 : !h->piece->outer, "");
+        status = status ? status : put_rows(h, shown_nodes(h->piece), INTEGER_BYTES + 1, boundary_line);
+    }
+    return status;
+}
+
+static enum tri_status write_14(struct hydro *h)
+{
+    enum tri_status status = put_text(h, "ptriangle\n");
+    status = status ? status : put_numbers(h, h->grid->n_triangles, h->grid->n_points, "");
+    status = status ? status : put_rows(h, h->grid->n_points, INTEGER_BYTES + 3 * REAL_BYTES + 1, node_line);
+    status = status ? status : put_rows(h, h->grid->n_triangles, 5 * INTEGER_BYTES + 1, element_line);
+    status = status ? status : write_pieces(h, true);
+    return status ? status : write_pieces(h, false);
+}
+
+enum tri_status tri_write_14(struct tri_output *output, const struct tri_grid *grid,
+                             const struct tri_executor *executor, struct tri_error *error)
+{
+    if (grid->n_nodes == 6)
+        return tri_fail(error, TRI_BAD_INPUT, output->path, 0, "the format has no second-order triangles (-o2)");
+    return write_all(write_14, output, grid, executor, error);
+}

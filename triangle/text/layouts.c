@@ -1,0 +1,265 @@
+/* The layouts of Triangle's files, row by row.
+ *
+ * A row begins with the number of its item, four wide; widths and blanks are those of Triangle, byte for byte. */
+#include <string.h>
+
+#include "triangle/text/decimal.h"
+#include "triangle/text/write.h"
+
+_Static_assert((int)TRI_ROW_SLACK >= (int)TRI_REAL_ROOM, "a row may end with a real");
+
+/* Longest texts of an integer and of a real, with the blanks before them. */
+enum { INTEGER_BYTES = TRI_INTEGER_CHARS + 4, REAL_BYTES = TRI_REAL_CHARS + 4 };
+
+static char *put(char *at, const char *text, size_t length)
+{
+    memcpy(at, text, length);
+    return at + length;
+}
+
+static char *put_real(char *at, const char *blanks, size_t n_blanks, double value)
+{
+    return tri_print_real(put(at, blanks, n_blanks), value);
+}
+
+static char *put_integer(char *at, const char *blanks, size_t n_blanks, int64_t value, int width)
+{
+    return tri_print_integer(put(at, blanks, n_blanks), value, width);
+}
+
+static char *put_marker(char *at, const struct tri_grid *grid, const char *blanks, size_t n_blanks, int32_t marker,
+                        int width)
+{
+    return grid->has_markers ? put_integer(at, blanks, n_blanks, marker, width) : at;
+}
+
+/* -1 means nothing in every base. */
+static int64_t shown(const struct tri_grid *grid, int64_t index) { return index < 0 ? index : index + grid->base; }
+
+static char *put_number(char *at, const struct tri_grid *grid, size_t i)
+{
+    return tri_print_integer(at, (int64_t)i + grid->base, 4);
+}
+
+static enum tri_status write_rows(struct tri_output *output, const struct tri_grid *grid, int64_t n,
+                                  size_t max_row_bytes, char *(*row)(void *, size_t, char *),
+                                  const struct tri_executor *executor, struct tri_error *error)
+{
+    return tri_write_table(output, (size_t)n, max_row_bytes, row, (void *)grid, executor, error);
+}
+
+/* --- .node */
+
+static size_t node_bytes(const struct tri_grid *grid)
+{
+    return 2 * INTEGER_BYTES + (2 + (size_t)grid->n_attributes) * REAL_BYTES + 1;
+}
+
+static char *node_row(void *user, size_t i, char *at)
+{
+    const struct tri_grid *grid = user;
+    struct tri_grid_point point;
+    grid->point(grid->user, (int64_t)i, &point);
+    at = put_number(at, grid, i);
+    at = put_real(at, "    ", 4, point.at[0]);
+    at = put_real(at, "  ", 2, point.at[1]);
+    for (int32_t k = 0; k < grid->n_attributes; k++)
+        at = put_real(at, "  ", 2, grid->attribute(grid->user, (int64_t)i, k));
+    return put(put_marker(at, grid, "    ", 4, point.marker, 0), "\n", 1);
+}
+
+enum tri_status tri_write_node(struct tri_output *output, const struct tri_grid *grid,
+                               const struct tri_executor *executor, struct tri_error *error)
+{
+    const int64_t counts[] = {grid->n_points, 2, grid->n_attributes, grid->has_markers};
+    enum tri_status status = tri_write_counts(output, counts, 4, error);
+    return status ? status
+                  : write_rows(output, grid, grid->n_points, node_bytes(grid), node_row, executor, error);
+}
+
+/* --- .ele */
+
+static char *ele_row(void *user, size_t i, char *at)
+{
+    const struct tri_grid *grid = user;
+    int64_t nodes[6];
+    grid->triangle(grid->user, (int64_t)i, nodes);
+    at = put(put_number(at, grid, i), "  ", 2);
+    for (int k = 0; k < grid->n_nodes; k++)
+        at = put_integer(at, "  ", 2, nodes[k] + grid->base, 4);
+    for (int32_t k = 0; k < grid->n_columns; k++)
+        at = put_real(at, "  ", 2, grid->column(grid->user, (int64_t)i, k));
+    return put(at, "\n", 1);
+}
+
+enum tri_status tri_write_ele(struct tri_output *output, const struct tri_grid *grid,
+                              const struct tri_executor *executor, struct tri_error *error)
+{
+    const int64_t counts[] = {grid->n_triangles, grid->n_nodes, grid->n_columns};
+    const size_t row_bytes = (2 + (size_t)grid->n_nodes) * INTEGER_BYTES + (size_t)grid->n_columns * REAL_BYTES + 1;
+    enum tri_status status = tri_write_counts(output, counts, 3, error);
+    return status ? status : write_rows(output, grid, grid->n_triangles, row_bytes, ele_row, executor, error);
+}
+
+/* --- .poly: no vertices; segments, holes, regions */
+
+static char *segment_row(void *user, size_t i, char *at)
+{
+    const struct tri_grid *grid = user;
+    struct tri_grid_edge segment;
+    grid->segment(grid->user, (int64_t)i, &segment);
+    at = put_number(at, grid, i);
+    at = put_integer(at, "    ", 4, segment.ends[0] + grid->base, 4);
+    at = put_integer(at, "  ", 2, segment.ends[1] + grid->base, 4);
+    return put(put_marker(at, grid, "    ", 4, segment.marker, 4), "\n", 1);
+}
+
+static enum tri_status write_segments(struct tri_output *output, const struct tri_grid *grid,
+                                      const struct tri_executor *executor, struct tri_error *error)
+{
+    enum tri_status status = tri_write_counts(output, (int64_t[]){grid->n_segments, grid->has_markers}, 2, error);
+    return status ? status
+                  : write_rows(output, grid, grid->n_segments, 4 * INTEGER_BYTES + 1, segment_row, executor, error);
+}
+
+/* Holes or regions: so many reals in each row. */
+struct sites {
+    int32_t base;
+    size_t n_reals;
+    const double *reals;
+};
+
+static char *site_row(void *user, size_t i, char *at)
+{
+    const struct sites *sites = user;
+    at = tri_print_integer(at, (int64_t)i + sites->base, 4);
+    at = put_real(at, "   ", 3, sites->reals[i * sites->n_reals]);
+    for (size_t k = 1; k < sites->n_reals; k++)
+        at = put_real(at, "  ", 2, sites->reals[i * sites->n_reals + k]);
+    return put(at, "\n", 1);
+}
+
+static enum tri_status write_sites(struct tri_output *output, struct sites sites, int32_t n, struct tri_error *error)
+{
+    enum tri_status status = tri_write_counts(output, (int64_t[]){n}, 1, error);
+    const size_t row_bytes = INTEGER_BYTES + sites.n_reals * REAL_BYTES + 1;
+    return status ? status : tri_write_table(output, (size_t)n, row_bytes, site_row, &sites, NULL, error);
+}
+
+enum tri_status tri_write_poly(struct tri_output *output, const struct tri_grid *grid,
+                               const struct tri_executor *executor, struct tri_error *error)
+{
+    static const struct tri_pslg none;
+    const struct tri_pslg *figure = grid->figure ? grid->figure : &none;
+    const int64_t counts[] = {0, 2, grid->n_attributes, grid->has_markers};
+    enum tri_status status = tri_write_counts(output, counts, 4, error);
+    status = status ? status : write_segments(output, grid, executor, error);
+    const struct sites holes = {grid->base, 2, figure->holes}, regions = {grid->base, 4, figure->regions};
+    status = status ? status : write_sites(output, holes, figure->n_holes, error);
+    return status || figure->n_regions == 0 ? status : write_sites(output, regions, figure->n_regions, error);
+}
+
+/* --- .edge, .v.edge, .neigh */
+
+static char *put_ends(char *at, const struct tri_grid *grid, size_t i, const int64_t ends[2])
+{
+    at = put_integer(put_number(at, grid, i), "   ", 3, ends[0] + grid->base, 0);
+    return put_integer(at, "  ", 2, shown(grid, ends[1]), 0);
+}
+
+static char *edge_row(void *user, size_t i, char *at)
+{
+    const struct tri_grid *grid = user;
+    struct tri_grid_edge edge;
+    grid->edge(grid->user, (int64_t)i, &edge);
+    return put(put_marker(put_ends(at, grid, i, edge.ends), grid, "  ", 2, edge.marker, 0), "\n", 1);
+}
+
+enum tri_status tri_write_edge(struct tri_output *output, const struct tri_grid *grid,
+                               const struct tri_executor *executor, struct tri_error *error)
+{
+    enum tri_status status = tri_write_counts(output, (int64_t[]){grid->n_edges, grid->has_markers}, 2, error);
+    return status ? status
+                  : write_rows(output, grid, grid->n_edges, 4 * INTEGER_BYTES + 1, edge_row, executor, error);
+}
+
+static char *v_edge_row(void *user, size_t i, char *at)
+{
+    const struct tri_grid *grid = user;
+    struct tri_grid_edge edge;
+    grid->edge(grid->user, (int64_t)i, &edge);
+    at = put_ends(at, grid, i, edge.ends);
+    if (edge.ends[1] < 0) {
+        at = put_real(at, "   ", 3, edge.direction[0]);
+        at = put_real(at, "  ", 2, edge.direction[1]);
+    }
+    return put(at, "\n", 1);
+}
+
+enum tri_status tri_write_v_edge(struct tri_output *output, const struct tri_grid *grid,
+                                 const struct tri_executor *executor, struct tri_error *error)
+{
+    const size_t row_bytes = 3 * INTEGER_BYTES + 2 * REAL_BYTES + 1;
+    enum tri_status status = tri_write_counts(output, (int64_t[]){grid->n_edges, 0}, 2, error);
+    return status ? status : write_rows(output, grid, grid->n_edges, row_bytes, v_edge_row, executor, error);
+}
+
+static char *neigh_row(void *user, size_t i, char *at)
+{
+    const struct tri_grid *grid = user;
+    int64_t neighbors[3];
+    grid->neighbors(grid->user, (int64_t)i, neighbors);
+    at = put_integer(put_number(at, grid, i), "    ", 4, shown(grid, neighbors[0]), 0);
+    at = put_integer(at, "  ", 2, shown(grid, neighbors[1]), 0);
+    return put(put_integer(at, "  ", 2, shown(grid, neighbors[2]), 0), "\n", 1);
+}
+
+enum tri_status tri_write_neigh(struct tri_output *output, const struct tri_grid *grid,
+                                const struct tri_executor *executor, struct tri_error *error)
+{
+    enum tri_status status = tri_write_counts(output, (int64_t[]){grid->n_triangles, 3}, 2, error);
+    return status ? status
+                  : write_rows(output, grid, grid->n_triangles, 4 * INTEGER_BYTES + 1, neigh_row, executor, error);
+}
+
+/* --- .off: always counts from 0, has corners alone, and z, which is 0 */
+
+static char *off_vertex_row(void *user, size_t i, char *at)
+{
+    const struct tri_grid *grid = user;
+    struct tri_grid_point point;
+    grid->point(grid->user, (int64_t)i, &point);
+    at = put_real(at, " ", 1, point.at[0]);
+    at = put_real(at, "  ", 2, point.at[1]);
+    return put(at, "  0\n", 4);
+}
+
+static char *off_face_row(void *user, size_t i, char *at)
+{
+    const struct tri_grid *grid = user;
+    int64_t nodes[6];
+    grid->triangle(grid->user, (int64_t)i, nodes);
+    at = put_integer(at, " 3   ", 5, nodes[0], 4);
+    at = put_integer(at, "  ", 2, nodes[1], 4);
+    return put(put_integer(at, "  ", 2, nodes[2], 4), "\n", 1);
+}
+
+static enum tri_status write_off_header(struct tri_output *output, const struct tri_grid *grid,
+                                        struct tri_error *error)
+{
+    char line[4 + 3 * INTEGER_BYTES + 1], *at = put(line, "OFF\n", 4);
+    at = tri_print_integer(at, grid->n_points, 0);
+    at = put_integer(at, " ", 1, grid->n_triangles, 0);
+    at = put(put_integer(at, " ", 1, grid->n_edges, 0), "\n", 1);
+    return tri_output_write(output, line, (size_t)(at - line), error);
+}
+
+enum tri_status tri_write_off(struct tri_output *output, const struct tri_grid *grid,
+                              const struct tri_executor *executor, struct tri_error *error)
+{
+    enum tri_status status = write_off_header(output, grid, error);
+    status = status ? status
+                    : write_rows(output, grid, grid->n_points, 2 * REAL_BYTES + 8, off_vertex_row, executor, error);
+    return status ? status
+                  : write_rows(output, grid, grid->n_triangles, 4 * INTEGER_BYTES, off_face_row, executor, error);
+}
