@@ -44,7 +44,7 @@ static void test_fans_become_delaunay(void **state)
     struct tri_error error = {0};
     for (int32_t n = 3; n < 40; n++) {
         struct tri_mesh mesh = fan(n, 0.01 * n);
-        assert_int_equal(tri_flip_to_delaunay(&mesh, &error), TRI_OK);
+        assert_int_equal(tri_flip_to_delaunay(&mesh, NULL, &error), TRI_OK);
         assert_int_equal(mesh.n_slots, n - 2);
         assert_naively_delaunay(&mesh);
         tri_mesh_free(&mesh);
@@ -88,7 +88,7 @@ static void test_ties_stay_where_asked(void **state)
             support_add_point(&pslg, i == 1 || i == 2, i > 1);
         struct tri_reconstruct_options as_it_is = {0};
         assert_int_equal(tri_reconstruct(&mesh, &pslg, &elements, &as_it_is, &error), TRI_OK);
-        assert_int_equal(tri_flip_to_delaunay(&mesh, &error), TRI_OK);
+        assert_int_equal(tri_flip_to_delaunay(&mesh, NULL, &error), TRI_OK);
         assert_memory_equal(mesh.tri[0].v, corners[turn], sizeof mesh.tri[0].v);
         struct tri_flips flips = {.mesh = &mesh};
         assert_true(tri_flip_touch(&flips, 0) && tri_flip_legalise(&flips));

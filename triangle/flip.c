@@ -89,6 +89,30 @@ bool tri_flip_legalise(struct tri_flips *f)
     return true;
 }
 
+/* --- flips of a whole mesh */
+
+/* Triangles with an edge that has to be flipped, found in shares of the mesh. An edge is looked at from that of its two
+ * triangles which has the lower number. */
+struct suspicion {
+    struct tri_flips *flips;
+    int32_t *suspect; /* [n_slots] each share's behind one another, with gaps */
+    int32_t n[TRI_MOST_SHARES];
+};
+
+static void suspect_share(void *context, size_t share)
+{
+    struct suspicion *s = context;
+    const struct tri_mesh *mesh = s->flips->mesh;
+    struct tri_range range = tri_share(share, mesh->n_slots);
+    uint32_t step = 0;
+    for (int32_t t = range.first; t < range.last && !tri_stop_is_due(mesh->stop, &step); t++)
+        for (int e = 0; e < 3; e++)
+            if (mesh->tri[t].n[e] > tri_code(t, e) && is_illegal(s->flips, t, e)) {
+                s->suspect[range.first + s->n[share]++] = t;
+                break;
+            }
+}
+
 /* Touches the edges that lead to triangles of higher number: so each edge is touched by one of its two. */
 static bool touch_upwards(struct tri_flips *f, int32_t t)
 {
@@ -100,16 +124,33 @@ static bool touch_upwards(struct tri_flips *f, int32_t t)
     return true;
 }
 
-enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, struct tri_error *error)
+/* An edge that no flip has come near is as it was found; any other has been touched since, and is Delaunay. */
+static enum tri_status flip_suspects(const struct suspicion *s, struct tri_error *error)
+{
+    struct tri_flips *f = s->flips;
+    enum tri_status status = tri_stop_is_asked(f->mesh->stop) ? tri_fail_stopped(error) : TRI_OK;
+    uint32_t step = 0;
+    for (size_t share = 0; share < tri_shares(f->mesh->n_slots); share++) {
+        const int32_t *suspect = s->suspect + tri_share(share, f->mesh->n_slots).first;
+        for (int32_t i = 0; !status && i < s->n[share]; i++)
+            if (tri_stop_is_due(f->mesh->stop, &step))
+                status = tri_fail_stopped(error);
+            else if (!touch_upwards(f, suspect[i]) || !tri_flip_legalise(f))
+                status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
+    }
+    return status;
+}
+
+enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, const struct tri_executor *executor,
+                                     struct tri_error *error)
 {
     struct tri_flips f = {.mesh = mesh, .ties_stay = true};
-    enum tri_status status = TRI_OK;
-    uint32_t step = 0;
-    for (int32_t t = 0; !status && t < mesh->n_slots; t++)
-        if (tri_stop_is_due(mesh->stop, &step))
-            status = tri_fail_stopped(error);
-        else if (!touch_upwards(&f, t) || !tri_flip_legalise(&f))
-            status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
+    struct suspicion s = {&f, malloc(((size_t)mesh->n_slots + 1) * sizeof *s.suspect), {0}};
+    if (!s.suspect)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
+    tri_execute(executor, tri_shares(mesh->n_slots), suspect_share, &s);
+    enum tri_status status = flip_suspects(&s, error);
     tri_flips_free(&f);
+    free(s.suspect);
     return status;
 }

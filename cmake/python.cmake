@@ -1,0 +1,33 @@
+# The one shared library of the Python package (python/): everything in one, with the C++ runtime inside and the OpenMP
+# runtime beside it, so that a wheel needs neither a compiler nor packages of the system.
+set(sources ${PTRIANGLE_MESHER_SOURCES} ${PTRIANGLE_CHECK_SOURCES} ${PTRIANGLE_TEXT_SOURCES})
+if(TARGET libptriangle)
+    list(REMOVE_ITEM sources triangle/dropin/triangulate.c) # the other triangulate() is that of sched/
+    list(APPEND sources ${PTRIANGLE_SCHED_SOURCES})
+endif()
+add_library(libptriangle_python SHARED ${sources})
+ptriangle_library_settings(libptriangle_python ptriangle_python)
+ptriangle_dropin(libptriangle_python)
+ptriangle_static_runtime(libptriangle_python)
+set_target_properties(libptriangle_python PROPERTIES
+    C_VISIBILITY_PRESET default INSTALL_RPATH $ORIGIN BUILD_WITH_INSTALL_RPATH OFF
+    LINK_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map)
+target_compile_options(libptriangle_python PRIVATE
+    -fno-semantic-interposition $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions> $<$<COMPILE_LANGUAGE:CXX>:-fno-rtti>)
+target_link_options(libptriangle_python PRIVATE
+    LINKER:--version-script=${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map LINKER:-Bsymbolic-functions LINKER:-z,defs)
+target_link_libraries(libptriangle_python PRIVATE m)
+install(TARGETS libptriangle_python LIBRARY DESTINATION ptriangle COMPONENT python EXCLUDE_FROM_ALL)
+
+if(TARGET libptriangle)
+    target_link_libraries(libptriangle_python PRIVATE OpenMP::OpenMP_C)
+    foreach(library IN LISTS OpenMP_C_LIBRARIES)
+        get_filename_component(name ${library} NAME_WE)
+        execute_process(COMMAND ${CMAKE_C_COMPILER} -print-file-name=${name}.so.1 OUTPUT_VARIABLE runtime
+                        OUTPUT_STRIP_TRAILING_WHITESPACE)
+        if(name MATCHES "omp" AND IS_ABSOLUTE "${runtime}")
+            file(REAL_PATH ${runtime} runtime)
+            install(FILES ${runtime} DESTINATION ptriangle RENAME ${name}.so.1 COMPONENT python EXCLUDE_FROM_ALL)
+        endif()
+    endforeach()
+endif()

@@ -1,0 +1,137 @@
+"""Triangle's text files as dictionaries, as the package `triangle` has them."""
+import os
+
+import numpy as np
+
+ENDINGS = ("node", "ele", "poly", "area", "edge", "neigh")
+
+
+class _Numbers:
+    """The records of a file: lines of numbers; comments and empty lines are left out."""
+
+    def __init__(self, text):
+        lines = (line.split("#", 1)[0].split() for line in text.splitlines())
+        self.records = [words for words in lines if words]
+        self.at = 0
+
+    def next(self):
+        self.at += 1
+        return self.records[self.at - 1]
+
+    def header(self, n):
+        """The next record as n integers, 0 for those that are missing."""
+        words = self.next() if self.at < len(self.records) else []
+        return [int(word) for word in words[:n]] + [0] * (n - len(words))
+
+    def table(self, n, width):
+        """n records: the number of the first, and `width` values each, 0 where there are fewer."""
+        rows = [self.next() for _ in range(n)]
+        values = np.zeros((n, width))
+        for row, words in zip(values, rows):
+            found = [float(word) for word in words[1:width + 1]]
+            row[:len(found)] = found
+        return int(rows[0][0]) if rows else 0, values
+
+    def regions(self, n):
+        """n regions: x, y, attribute, largest area; a single value behind the place is the area."""
+        single = [len(words) == 4 for words in self.records[self.at:self.at + n]]
+        values = self.table(n, 4)[1]
+        values[single, 2:] = values[single, 2:][:, ::-1]
+        return values
+
+
+def _vertices(numbers, data):
+    """The vertices at the head of .node and .poly files; the number of the first, or None without vertices."""
+    n, _, attributes, markers = numbers.header(4)
+    if n == 0:
+        return None
+    first, rows = numbers.table(n, 2 + attributes + markers)
+    data["vertices"] = rows[:, :2].copy()
+    if attributes:
+        data["vertex_attributes"] = rows[:, 2:2 + attributes].copy()
+    if markers:
+        data["vertex_markers"] = rows[:, 2 + attributes:].astype(np.int32)
+    return first
+
+
+def _node(numbers, data, first):
+    found = _vertices(numbers, data)
+    return first if found is None else found
+
+
+def _poly(numbers, data, first):
+    found = _vertices(numbers, data)
+    first = first if found is None else found
+    n, markers = numbers.header(2)
+    if n:
+        _, rows = numbers.table(n, 2 + markers)
+        data["segments"] = rows[:, :2].astype(np.int32) - np.int32(first)
+        if markers:
+            data["segment_markers"] = rows[:, 2:].astype(np.int32)
+    n, = numbers.header(1)
+    if n:
+        data["holes"] = numbers.table(n, 2)[1]
+    n, = numbers.header(1)
+    if n:
+        data["regions"] = numbers.regions(n)
+    return first
+
+
+def _ele(numbers, data, first):
+    n, nodes, attributes = numbers.header(3)
+    if n:
+        _, rows = numbers.table(n, nodes + attributes)
+        data["triangles"] = rows[:, :nodes].astype(np.int32) - np.int32(first)
+        if attributes:
+            data["triangle_attributes"] = rows[:, nodes:].copy()
+    return first
+
+
+def _area(numbers, data, first):
+    n, = numbers.header(1)
+    if n:
+        data["triangle_max_area"] = numbers.table(n, 1)[1]
+    return first
+
+
+def _edge(numbers, data, first):
+    n, markers = numbers.header(2)
+    if n:
+        _, rows = numbers.table(n, 2 + markers)
+        data["edges"] = rows[:, :2].astype(np.int32) - np.int32(first)
+        if markers:
+            data["edge_markers"] = rows[:, 2:].astype(np.int32)
+    return first
+
+
+def _neigh(numbers, data, first):
+    n, _ = numbers.header(2)
+    if n:
+        found, rows = numbers.table(n, 3)
+        rows = rows.astype(np.int32)
+        data["neighbors"] = np.where(rows < 0, np.int32(-1), rows - np.int32(found))
+    return first
+
+
+_READERS = {"node": _node, "poly": _poly, "ele": _ele, "area": _area, "edge": _edge, "neigh": _neigh}
+
+
+def loads(node=None, ele=None, poly=None, area=None, edge=None, neigh=None):
+    """The arrays of files that are given as texts; indices count from 0, whatever the files do."""
+    texts = {"node": node, "poly": poly, "ele": ele, "area": area, "edge": edge, "neigh": neigh}
+    data, first = {}, 1
+    for ending, text in texts.items():
+        if text is not None:
+            first = _READERS[ending](_Numbers(text), data, first)
+    return data
+
+
+def load(directory, name):
+    """The arrays of the files name.node, name.poly, name.ele and so on in a directory, as far as there are any."""
+    texts = {}
+    for ending in ENDINGS:
+        path = os.path.join(directory, name + "." + ending)
+        if os.path.isfile(path):
+            with open(path, encoding="utf-8") as file:
+                texts[ending] = file.read()
+    return loads(**texts)

@@ -1,0 +1,70 @@
+"""Pictures of meshes by matplotlib, as the package `triangle` draws them: what is given is drawn."""
+import numpy as np
+
+
+def _lines(ax, ends, **style):
+    from matplotlib.collections import LineCollection
+    ax.add_collection(LineCollection(ends, **style))
+
+
+def _rays(ax, origins, directions):
+    """Rays are drawn as far as the figure is wide."""
+    length = np.ptp(np.asarray(ax.dataLim.get_points(), float)).max() if ax.has_data() else 1.0
+    norms = np.linalg.norm(directions, axis=1, keepdims=True)
+    tips = origins + length * directions / np.where(norms > 0, norms, 1)
+    _lines(ax, np.stack([origins, tips], axis=1), colors="black", linestyles="dashed", linewidths=0.8)
+
+
+def _numbers(ax, places, markers):
+    for (x, y), marker in zip(places, np.ravel(markers)):
+        ax.annotate(str(int(marker)), (x, y), textcoords="offset points", xytext=(3, 3), fontsize=7)
+
+
+def _triangles(ax, at, kw):
+    corners = np.asarray(kw["triangles"])[:, :3]
+    ax.triplot(at[:, 0], at[:, 1], corners, color="black", linewidth=0.7)
+    if "triangle_attributes" in kw:
+        _numbers(ax, at[corners].mean(axis=1), np.asarray(kw["triangle_attributes"])[:, 0])
+
+
+def plot(ax, **kw):
+    """Draws arrays as triangulate() takes and gives them, or (vertices, edges, rays as ray_origins and ray_directions)
+    as voronoi() does, on the axes of matplotlib."""
+    at = np.asarray(kw["vertices"], float)
+    if "triangles" in kw:
+        _triangles(ax, at, kw)
+    if "edges" in kw and "triangles" not in kw:
+        _lines(ax, at[np.asarray(kw["edges"])], colors="black", linewidths=0.8)
+    if "segments" in kw:
+        _lines(ax, at[np.asarray(kw["segments"])], colors="tab:red", linewidths=1.4)
+    ax.plot(at[:, 0], at[:, 1], "o", color="tab:blue", markersize=3)
+    if "holes" in kw:
+        holes = np.asarray(kw["holes"], float)
+        ax.plot(holes[:, 0], holes[:, 1], "x", color="tab:red", markersize=7)
+    if "regions" in kw:
+        regions = np.asarray(kw["regions"], float)
+        _numbers(ax, regions[:, :2], regions[:, 2])
+    if "ray_origins" in kw:
+        _rays(ax, at[np.asarray(kw["ray_origins"])], np.asarray(kw["ray_directions"], float))
+    ax.set_aspect("equal")
+    ax.get_xaxis().set_visible(False)
+    ax.get_yaxis().set_visible(False)
+
+
+def _side_by_side(plt, rows, columns, figures, figsize):
+    plt.figure(figsize=figsize)
+    first = None
+    for k, figure in enumerate(figures):
+        first = plt.subplot(rows, columns, k + 1, sharex=first, sharey=first)
+        plot(first, **figure)
+    plt.tight_layout()
+
+
+def compare(plt, A, B, figsize=(6, 3)):
+    """Two figures side by side."""
+    _side_by_side(plt, 1, 2, (A, B), figsize)
+
+
+def comparev(plt, A, B, figsize=(3, 6)):
+    """Two figures, one above the other."""
+    _side_by_side(plt, 2, 1, (A, B), figsize)

@@ -1,0 +1,245 @@
+"""The shared library, by ctypes: its structs, as ptriangle/tri.h and triangle.h declare them, and its functions.
+
+The library lies beside this file. PTRIANGLE_LIBRARY names another one.
+"""
+import ctypes
+import ctypes.util
+import os
+from ctypes import (CFUNCTYPE, POINTER, Structure, byref, c_bool, c_char, c_char_p, c_double, c_int, c_int32, c_int64,
+                    c_long, c_size_t, c_void_p, sizeof)
+from pathlib import Path
+
+import numpy as np
+
+
+class Reals(Structure):
+    _fields_ = [("at", c_void_p), ("n", c_int64), ("width", c_int64), ("stride", c_int64)]
+    dtype = np.dtype(np.float64)
+
+
+class Ints(Structure):
+    _fields_ = [("at", c_void_p), ("n", c_int64), ("width", c_int64), ("stride", c_int64)]
+    dtype = np.dtype(np.int32)
+
+
+class ErrorDetail(Structure):
+    _fields_ = [("status", c_int), ("file", c_char * 1024), ("line", c_long), ("text", c_char * 512)]
+
+
+class Sized(Structure):
+    """A struct that begins with its size; the rest is 0."""
+
+    def __init__(self, **fields):
+        super().__init__(size=sizeof(self), **fields)
+
+
+class Figure(Sized):
+    _fields_ = [("size", c_size_t), ("points", Reals), ("point_attributes", Reals), ("point_markers", Ints),
+                ("segments", Ints), ("segment_markers", Ints), ("holes", Reals), ("regions", Reals),
+                ("triangles", Ints), ("triangle_attributes", Reals), ("triangle_areas", Reals)]
+
+
+Length = CFUNCTYPE(c_double, c_void_p, POINTER(c_double))
+Unsuitable = CFUNCTYPE(c_int, c_void_p, POINTER(c_double), POINTER(c_double), POINTER(c_double), c_double)
+Gate = CFUNCTYPE(c_bool, c_void_p, POINTER(c_double))
+Stop = CFUNCTYPE(c_bool, c_void_p)
+
+
+class Settings(Sized):
+    _fields_ = [("size", c_size_t), ("min_angle", c_double), ("max_area", c_double), ("conforming", c_bool),
+                ("keep_hull", c_bool), ("protect", c_int), ("most_new_points", c_int64),
+                ("edge_length", Length), ("edge_length_user", c_void_p),
+                ("unsuitable", Unsuitable), ("unsuitable_user", c_void_p),
+                ("gate", Gate), ("gate_user", c_void_p), ("fence", POINTER(c_double)),
+                ("stop", Stop), ("stop_user", c_void_p),
+                ("threads", c_int), ("callbacks_in_parallel", c_bool), ("numbered_by_block", c_bool)]
+
+
+class Demands(Sized):
+    _fields_ = [("size", c_size_t), ("min_angle", c_double), ("max_area", c_double), ("delaunay", c_int),
+                ("convex", c_bool), ("ignore_holes", c_bool), ("renumbered", c_bool)]
+
+
+class VerdictDetail(Structure):
+    _fields_ = [("n_faults", c_int64), ("text", c_char * 256), ("n_points", c_int64), ("n_edges", c_int64),
+                ("n_boundary_edges", c_int64), ("smallest_angle", c_double), ("largest_angle", c_double),
+                ("smallest_area", c_double), ("largest_area", c_double), ("total_area", c_double),
+                ("n_small", c_int64), ("n_small_explained", c_int64)]
+
+
+class TriangulateIO(Structure):
+    """struct triangulateio of triangle.h"""
+    _fields_ = [("pointlist", c_void_p), ("pointattributelist", c_void_p), ("pointmarkerlist", c_void_p),
+                ("numberofpoints", c_int), ("numberofpointattributes", c_int),
+                ("trianglelist", c_void_p), ("triangleattributelist", c_void_p), ("trianglearealist", c_void_p),
+                ("neighborlist", c_void_p), ("numberoftriangles", c_int), ("numberofcorners", c_int),
+                ("numberoftriangleattributes", c_int),
+                ("segmentlist", c_void_p), ("segmentmarkerlist", c_void_p), ("numberofsegments", c_int),
+                ("holelist", c_void_p), ("numberofholes", c_int), ("regionlist", c_void_p), ("numberofregions", c_int),
+                ("edgelist", c_void_p), ("edgemarkerlist", c_void_p), ("normlist", c_void_p), ("numberofedges", c_int)]
+
+
+SizeTest = CFUNCTYPE(c_int, c_void_p, POINTER(c_double), POINTER(c_double), POINTER(c_double), c_double)
+Message = CFUNCTYPE(None, c_void_p, c_int, c_char_p)
+StopTest = CFUNCTYPE(c_int, c_void_p)
+
+
+class TriangulateOptions(Structure):
+    _fields_ = [("unsuitable", SizeTest), ("unsuitable_user", c_void_p), ("unsuitable_in_parallel", c_int),
+                ("threads", c_int), ("message", Message), ("message_user", c_void_p),
+                ("stop", StopTest), ("stop_user", c_void_p)]
+
+
+def _candidates():
+    if os.environ.get("PTRIANGLE_LIBRARY"):
+        yield os.environ["PTRIANGLE_LIBRARY"]
+        return
+    here = Path(__file__).resolve().parent
+    for name in ("libptriangle_python.so", "libptriangle_python.dylib"):
+        if (here / name).exists():
+            yield str(here / name)
+    found = ctypes.util.find_library("ptriangle")
+    if found:
+        yield found
+
+
+def _load():
+    faults = []
+    for name in _candidates():
+        try:
+            return ctypes.CDLL(name)
+        except OSError as fault:
+            faults.append(str(fault))
+    raise ImportError("ptriangle: the shared library cannot be loaded: " + ("; ".join(faults) or "there is none"))
+
+
+library = _load()
+
+
+def _declare(name, result, *arguments):
+    function = getattr(library, name, None)
+    if function is not None:
+        function.restype = result
+        function.argtypes = arguments
+
+
+_mesh, _error = c_void_p, POINTER(ErrorDetail)
+for _way in ("tri", "par"):
+    _declare(_way + "_mesh_new", c_int, POINTER(_mesh), POINTER(Figure), POINTER(Settings), _error)
+    _declare(_way + "_mesh_refine", c_int, _mesh, POINTER(Settings), _error)
+_declare("tri_mesh_delete", None, _mesh)
+for _name in ("points", "point_attributes", "triangle_attributes"):
+    _declare("tri_mesh_" + _name, Reals, _mesh)
+for _name in ("point_markers", "triangles", "segments", "segment_markers"):
+    _declare("tri_mesh_" + _name, Ints, _mesh)
+_declare("tri_mesh_neighbors", c_int, _mesh, POINTER(Ints), _error)
+_declare("tri_mesh_edges", c_int, _mesh, POINTER(Ints), POINTER(Ints), _error)
+_declare("tri_mesh_figure", None, _mesh, POINTER(Figure))
+_declare("tri_mesh_count", c_int64, _mesh, c_int)
+_declare("tri_mesh_count_bad", c_int64, _mesh, POINTER(Settings), POINTER(c_int64), c_int)
+_declare("tri_version", c_char_p)
+_declare("tri_check_figure", c_int, POINTER(Figure), POINTER(Figure), POINTER(Demands), POINTER(VerdictDetail), _error)
+_declare("tri_file_read", c_int, c_char_p, POINTER(Figure), _error)
+_declare("tri_file_free", None, POINTER(Figure))
+_declare("tri_file_write", c_int, c_char_p, POINTER(Figure), c_int, _error)
+_declare("triangulate_with", c_int, c_char_p, POINTER(TriangulateIO), POINTER(TriangulateIO), POINTER(TriangulateIO),
+         POINTER(TriangulateOptions))
+_declare("trifree", None, c_void_p)
+
+
+# --- errors
+
+class Error(Exception):
+    """A call of the library failed; the text is the library's. status: enum tri_status."""
+
+    def __init__(self, text, status=0):
+        super().__init__(text)
+        self.status = status
+
+
+class InputError(Error, ValueError):
+    """The input has no meaning; the text says what and where."""
+
+
+class TooLargeError(Error, MemoryError):
+    """More memory than there is, or more triangles than one mesh holds."""
+
+
+class FileError(Error, OSError):
+    """A file cannot be read or written."""
+
+    def __str__(self):
+        return self.args[0]
+
+
+class StoppedError(Error):
+    """Somebody asked for it."""
+
+
+_KINDS = {1: TooLargeError, 2: TooLargeError, 3: InputError, 4: FileError, 5: FileError, 8: StoppedError}
+
+
+def exception_of(status, text):
+    return _KINDS.get(status, Error)(text, status)
+
+
+def raise_error(status, error):
+    text = error.text.decode("utf-8", "replace")
+    if error.file:
+        where = error.file.decode("utf-8", "replace") + (":%d" % error.line if error.line else "")
+        text = where + ": " + text
+    raise exception_of(status, text)
+
+
+def check(status, error):
+    if status:
+        raise_error(status, error)
+
+
+# --- arrays
+
+class _View:
+    """What numpy needs to see an array of the library, and who owns that."""
+
+    def __init__(self, array, owner):
+        size = array.dtype.itemsize
+        self.owner = owner
+        self.__array_interface__ = {
+            "version": 3, "typestr": array.dtype.str, "data": (array.at, True),
+            "shape": (array.n, array.width), "strides": (array.stride * size, size)}
+
+
+def to_numpy(array, owner):
+    """[n][width], without a copy, read-only: it belongs to the owner, who lives as long as it does."""
+    if array.n == 0:
+        return np.empty((0, array.width), array.dtype)
+    return np.asarray(_View(array, owner))
+
+
+def _refuse_other_ints(rows, name):
+    if rows.dtype.kind not in "iub":
+        raise InputError("%s: %s instead of integers" % (name, rows.dtype), 3)
+    if rows.max() > np.iinfo(np.int32).max or rows.min() < np.iinfo(np.int32).min:
+        raise InputError("%s: beyond the range of 32 bits" % name, 3)
+
+
+def from_numpy(kind, given, name, width=None):
+    """(array of the library, numpy array that must live as long). Rows of equal steps are passed without a copy."""
+    if given is None:
+        return kind(), None
+    rows = np.asarray(given)
+    if rows.size == 0:
+        return kind(), None
+    if kind is Ints and rows.dtype != kind.dtype:
+        _refuse_other_ints(rows, name)
+    rows = rows.astype(kind.dtype, copy=False)
+    if rows.ndim == 1 and width in (None, 1):
+        rows = rows.reshape(-1, 1)
+    if rows.ndim != 2 or (width is not None and rows.shape[1] != width):
+        raise InputError("%s: shape %s instead of (n, %s)" % (name, rows.shape, "any" if width is None else width), 3)
+    item = rows.dtype.itemsize
+    plain = rows.strides[1] == item and rows.strides[0] % item == 0 and rows.strides[0] >= rows.shape[1] * item
+    if not plain or not rows.flags.aligned:
+        rows = np.ascontiguousarray(rows)
+    stride = rows.strides[0] // item if rows.shape[0] > 1 else rows.shape[1]
+    return kind(rows.ctypes.data, rows.shape[0], rows.shape[1], max(stride, rows.shape[1])), rows

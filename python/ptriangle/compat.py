@@ -1,0 +1,172 @@
+"""The functions of the package `triangle` (PyPI), so that `import ptriangle.compat as triangle` serves its users.
+
+Dictionaries have the same keys, types and shapes; meshes are ptriangle's own, refined on all cores. Different on
+purpose: what ends the interpreter there is an exception here; input without meaning (NaN, numbers of points that do not
+exist) is refused or skipped; the switch u needs the argument `unsuitable`.
+"""
+import os
+from ctypes import POINTER, byref, c_double, c_int, cast, string_at
+
+import numpy as np
+
+from . import _library as lib
+from ._compat_files import load, loads
+from ._compat_plot import compare, comparev, plot
+from ._library import Ints, Reals, TriangulateIO, TriangulateOptions, library
+
+__version__ = "20250106"  # of the package whose functions these are
+__all__ = ["compare", "comparev", "convex_hull", "delaunay", "get_data", "load", "loads", "plot", "show_data",
+           "triangulate", "voronoi"]
+
+# key: (type, list of the struct, count of the struct, columns: a number or the count that tells)
+_FIELDS = {
+    "vertices": (np.float64, "pointlist", "numberofpoints", 2),
+    "vertex_attributes": (np.float64, "pointattributelist", "numberofpoints", "numberofpointattributes"),
+    "vertex_markers": (np.int32, "pointmarkerlist", "numberofpoints", 1),
+    "triangles": (np.int32, "trianglelist", "numberoftriangles", "numberofcorners"),
+    "triangle_attributes": (np.float64, "triangleattributelist", "numberoftriangles", "numberoftriangleattributes"),
+    "triangle_max_area": (np.float64, "trianglearealist", "numberoftriangles", 1),
+    "neighbors": (np.int32, "neighborlist", "numberoftriangles", 3),
+    "segments": (np.int32, "segmentlist", "numberofsegments", 2),
+    "segment_markers": (np.int32, "segmentmarkerlist", "numberofsegments", 1),
+    "holes": (np.float64, "holelist", "numberofholes", 2),
+    "regions": (np.float64, "regionlist", "numberofregions", 4),
+    "edges": (np.int32, "edgelist", "numberofedges", 2),
+    "edge_markers": (np.int32, "edgemarkerlist", "numberofedges", 1),
+}
+_VORONOI = {
+    "edges": (np.int32, "edgelist", "numberofedges", 2),
+    "directions": (np.float64, "normlist", "numberofedges", 2),
+    "vertices": _FIELDS["vertices"],
+}
+
+
+def _fill(io, key, given):
+    """Sets the fields of one key; the array that must live as long, or None."""
+    dtype, list_name, count_name, width = _FIELDS[key]
+    rows = np.asarray(given, dtype)
+    if rows.size == 0:
+        return None
+    if rows.ndim == 1:
+        rows = rows.reshape(-1, 1)
+    if rows.ndim != 2 or (isinstance(width, int) and rows.shape[1] != width):
+        raise lib.InputError("%s: shape %s is not (n, %s)" % (key, np.shape(given), width), 3)
+    there = getattr(io, count_name)
+    if there not in (0, len(rows)):
+        raise lib.InputError("%s: %d rows instead of %d" % (key, len(rows), there), 3)
+    rows = np.ascontiguousarray(rows)
+    setattr(io, count_name, len(rows))
+    if isinstance(width, str):
+        setattr(io, width, rows.shape[1])
+    setattr(io, list_name, rows.ctypes.data)
+    return rows
+
+
+def _taken(io, fields):
+    """The arrays of a struct, copied; the ones that are empty are left out."""
+    taken = {}
+    for key, (dtype, list_name, count_name, width) in fields.items():
+        columns = width if isinstance(width, int) else getattr(io, width)
+        rows, address = getattr(io, count_name), getattr(io, list_name)
+        if address and rows > 0 and columns > 0:
+            text = string_at(address, rows * columns * np.dtype(dtype).itemsize)
+            taken[key] = np.frombuffer(bytearray(text), dtype).reshape(rows, columns)
+    return taken
+
+
+def _release(io, borrowed):
+    """Frees what the library has allocated."""
+    for name, kind in io._fields_:
+        address = getattr(io, name)
+        if kind is lib.c_void_p and address and address not in borrowed:
+            library.trifree(address)
+
+
+def _options_of(unsuitable, faults, words):
+    options = TriangulateOptions()
+
+    def tell(_user, is_error, text):
+        if is_error:
+            words.append(text.decode("utf-8", "replace"))
+
+    def ask(_user, a, b, c, area):
+        try:
+            return int(not faults and bool(unsuitable((a[0], a[1]), (b[0], b[1]), (c[0], c[1]), area)))
+        except BaseException as fault:
+            faults.append(fault)
+            return 0
+
+    options.message = lib.Message(tell)
+    if unsuitable is not None:
+        options.unsuitable = lib.SizeTest(ask)
+    options.stop = lib.StopTest(lambda _user: int(bool(faults)))
+    return options
+
+
+def _call(tri, opts, unsuitable=None, with_voronoi=False):
+    data, out, vorout, kept, faults, words = TriangulateIO(), TriangulateIO(), TriangulateIO(), [], [], []
+    if np.asarray(tri.get("vertices", ())).size < 6:
+        raise lib.InputError("Input must have at least three vertices.", 3)
+    for key, given in tri.items():
+        if key not in _FIELDS:
+            raise KeyError(key)
+        if key not in ("edges", "edge_markers", "neighbors"):
+            kept.append(_fill(data, key, given))
+    opts = opts.encode() if isinstance(opts, str) else bytes(opts)
+    options = _options_of(unsuitable, faults, words)
+    status = library.triangulate_with(b"zQ" + opts, byref(data), byref(out), byref(vorout), byref(options))
+    borrowed = {data.holelist, data.regionlist}  # which `out` names as well
+    try:
+        if faults:
+            raise faults[0]
+        if status:
+            raise lib.exception_of(status, words[-1] if words else "error %d" % status)
+        mesh = _taken(out, _FIELDS)
+        return (mesh, _taken(vorout, _VORONOI)) if with_voronoi else mesh
+    finally:
+        _release(out, borrowed)
+        _release(vorout, borrowed)
+
+
+def triangulate(tri, opts="", unsuitable=None):
+    """Triangulates a dictionary of arrays by Triangle's switches; z and Q are always set.
+
+    Keys of `tri`: vertices [n, 2]; optional vertex_attributes, vertex_markers, segments [s, 2], segment_markers,
+    holes [h, 2], regions [r, 4]; with r also triangles, triangle_attributes, triangle_max_area. The result has those of
+    vertices, vertex_attributes, vertex_markers, triangles, triangle_attributes, neighbors (n), segments and
+    segment_markers, holes and regions (p), edges and edge_markers (e) that are not empty; markers are [n, 1].
+
+    unsuitable(a, b, c, area), for the switch u: must this triangle be refined?
+    """
+    return _call(tri, opts, unsuitable)
+
+
+def delaunay(pts):
+    """Triangles [m, 3] of the Delaunay triangulation of points."""
+    return triangulate({"vertices": pts})["triangles"]
+
+
+def convex_hull(pts):
+    """Segments [h, 2] of the convex hull of points, clockwise order of their own."""
+    return triangulate({"vertices": pts}, "c")["segments"]
+
+
+def voronoi(pts):
+    """Vertices [m, 2], edges [e, 2], numbers of the vertices at which rays begin [r], their directions [r, 2]."""
+    _, diagram = _call({"vertices": pts}, "v", with_voronoi=True)
+    ends = diagram.get("edges", np.empty((0, 2), np.int32))
+    is_ray = ends[:, 1] == -1
+    directions = diagram.get("directions", np.empty((0, 2)))
+    return diagram.get("vertices", np.empty((0, 2))), ends[~is_ray], ends[is_ray, 0], directions[is_ray]
+
+
+def get_data(name):
+    """An example: its arrays, by the name of its files; {} where there is none of that name."""
+    return load(os.path.join(os.path.dirname(os.path.abspath(__file__)), "data"), name)
+
+
+def show_data(name):
+    """Draws an example, and waits until the window is closed."""
+    import matplotlib.pyplot as plt
+    plot(plt.axes(), **get_data(name))
+    plt.show()
