@@ -74,12 +74,10 @@ static bool push_piece(struct layer *l, int32_t from, int32_t to, struct tri_cou
 {
     if (from == to)
         return true;
-    struct tri_piece *piece = tri_grown(l->piece, &l->piece_capacity, l->n_pieces + 1, sizeof *piece);
-    if (!piece)
-        return false;
-    l->piece = piece;
-    piece[l->n_pieces++] = (struct tri_piece){from, to, course};
-    return true;
+    bool room = tri_grow(&l->piece, &l->piece_capacity, l->n_pieces + 1, sizeof *l->piece);
+    if (room)
+        l->piece[l->n_pieces++] = (struct tri_piece){from, to, course};
+    return room;
 }
 
 static int corner_of(const struct tri_triangle *t, int32_t v)
@@ -168,12 +166,10 @@ static int32_t marker_of(const struct layer *l, struct tri_course course)
 
 static bool set_course(struct layer *l, int32_t s, struct tri_course course)
 {
-    struct tri_course *all = tri_grown(l->course, &l->course_capacity, s + 1, sizeof *all);
-    if (!all)
-        return false;
-    l->course = all;
-    all[s] = course;
-    return true;
+    bool room = tri_grow(&l->course, &l->course_capacity, s + 1, sizeof *l->course);
+    if (room)
+        l->course[s] = course;
+    return room;
 }
 
 static bool mark_edge(struct layer *l, int32_t t, int e, struct tri_course course)
@@ -250,10 +246,10 @@ static enum tri_status lay_edge(struct layer *l, int32_t t, int32_t a, int32_t b
 
 static bool keep_corners(struct layer *l, int32_t v)
 {
-    int32_t *corner = tri_grown(l->corner, &l->corner_capacity, l->mesh->n_vertices, sizeof *corner);
-    if (!corner)
+    bool room = tri_grow(&l->corner, &l->corner_capacity, l->mesh->n_vertices, sizeof *l->corner);
+    if (!room)
         return false;
-    l->corner = l->flips.corner = corner;
+    l->flips.corner = l->corner;
     for (int32_t i = 0; i < l->cavity.n_rim; i++) {
         const struct tri_triangle *t = &l->mesh->tri[l->cavity.rim[i].slot];
         for (int k = 0; k < 3; k++)

@@ -14,9 +14,7 @@ void tri_flips_free(struct tri_flips *f) { free(f->touched); }
 
 static bool make_room(struct tri_flips *f)
 {
-    int32_t *touched = tri_grown(f->touched, &f->capacity, f->n_touched + 3, sizeof *touched);
-    f->touched = touched ? touched : f->touched;
-    return touched;
+    return tri_grow(&f->touched, &f->capacity, f->n_touched + 3, sizeof *f->touched);
 }
 
 bool tri_flip_touch(struct tri_flips *f, int32_t t)
