@@ -52,6 +52,7 @@ static void share(struct star *s, const int32_t *item, int32_t n)
         int32_t to = end_of(s, item[k]);
         shorter->course.first = earlier(shorter->course.first, longer->course.first);
         shorter->course.marked = earlier(shorter->course.marked, longer->course.marked);
+        shorter->course.odd ^= longer->course.odd;
         longer->from = end_of(s, item[k - 1]);
         longer->to = to;
     }

@@ -4,9 +4,11 @@
 
 #include "triangle/mesh.h"
 
-/* The input segments that run along a piece or a subsegment: the first of them, and the first with a marker. */
+/* The input segments that run along a piece or a subsegment: the first of them, the first with a marker, and whether
+ * they are odd in number. */
 struct tri_course {
     int32_t first, marked; /* TRI_NONE: there is none */
+    bool odd;
 };
 
 struct tri_piece {
