@@ -1,6 +1,8 @@
 /* Meshes from their triangles: round trips, faults, surfaces that are no plane mesh, flips, regions.
  *
  * This program is linked with --wrap for malloc, calloc, realloc and free: see allocations.h. */
+#include <stdio.h>
+
 #include "allocations.h"
 #include "support.h"
 #include "triangle/reconstruct.h"
@@ -730,9 +732,66 @@ static void fails_cleanly_without_memory(void **state)
     free_input(&in);
 }
 
+/* --- in shares */
+
+/* So many triangles that they are taken and matched in several shares; numbers have nothing to do with places. */
+static struct input many_triangles(void)
+{
+    struct tri_pslg pslg = support_points(SUPPORT_RANDOM, 40000, 3);
+    struct tri_mesh mesh = support_delaunay(&pslg, 0, NULL);
+    struct input in = input_of(&mesh);
+    assert_true(tri_shares(in.elements.n) >= 3);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+    return in;
+}
+
+/* Flips, too. */
+static void shares_leave_no_trace(void **state)
+{
+    (void)state;
+    struct input in = many_triangles();
+    for (int32_t k = 0; k < 2; k++) {
+        struct tri_reconstruct_options options = {.use_segments = true, .refine = k};
+        struct tri_mesh one = rebuild(&in, &options);
+        options.executor = &support_backwards;
+        struct tri_mesh shares = rebuild(&in, &options);
+        support_assert_same_bytes(&one, &shares);
+        for (int32_t v = 0; v < one.n_vertices; v++)
+            assert_true(one.feature[v] == shares.feature[v]);
+        tri_mesh_free(&one);
+        tri_mesh_free(&shares);
+        for (int32_t v = 0; v < in.pslg.n_points; v += 500) /* not Delaunay any more, if a triangulation still */
+            in.pslg.points[2 * v] += 1e-4;
+    }
+    free_input(&in);
+}
+
+/* A fault is that of the first triangle, in whatever order shares are looked at. */
+static void faults_in_shares(void **state)
+{
+    (void)state;
+    struct input in = many_triangles();
+    struct tri_reconstruct_options options = {.executor = &support_backwards};
+    struct tri_mesh mesh;
+    struct tri_error error = {0};
+    int32_t *corners = in.elements.corners, last = in.elements.n - 1;
+    memcpy(&corners[3 * last], &corners[3 * 7], 3 * sizeof *corners);
+    assert_int_equal(tri_reconstruct(&mesh, &in.pslg, &in.elements, &options, &error), TRI_BAD_INPUT);
+    char text[64];
+    snprintf(text, sizeof text, "triangle %d ", (int)last);
+    assert_ptr_equal(strstr(error.text, text), error.text);
+    corners[3 * (last - 1)] = corners[3 * 50000] = corners[3 * 40000] = -1;
+    assert_int_equal(tri_reconstruct(&mesh, &in.pslg, &in.elements, &options, &error), TRI_BAD_INPUT);
+    assert_string_equal(error.text, "triangle 40000 has a corner that is no vertex");
+    free_input(&in);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shares_leave_no_trace),
+        cmocka_unit_test(faults_in_shares),
         cmocka_unit_test(what_was_meshed_comes_back),
         cmocka_unit_test(boundary_becomes_subsegments),
         cmocka_unit_test(segments_that_are_edges),

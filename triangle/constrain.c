@@ -32,6 +32,7 @@
 
 #include "triangle/cavity.h"
 #include "triangle/crossing.h"
+#include "triangle/grow.h"
 #include "triangle/interpolate.h"
 #include "triangle/overlap.h"
 #include "triangle/predicates.h"
@@ -70,29 +71,11 @@ static enum tri_status no_memory(struct layer *l)
     return tri_fail(l->error, TRI_NO_MEMORY, NULL, 0, "out of memory for segment %d", (int)l->segment);
 }
 
-static bool reserve(void *array, int32_t *capacity, int32_t need, size_t item)
-{
-    if (need <= *capacity)
-        return true;
-    if (need > INT32_MAX / 2)
-        return false;
-    int32_t wanted = need + need / 2 + 64;
-    void **slot = array;
-    void *fresh = realloc(*slot, (size_t)wanted * item);
-    if (!fresh)
-        return false;
-    *slot = fresh;
-    *capacity = wanted;
-    return true;
-}
-
 static bool push_piece(struct layer *l, int32_t from, int32_t to, struct tri_course course)
 {
     if (from == to)
         return true;
-    void *array = l->piece;
-    bool room = reserve(&array, &l->piece_capacity, l->n_pieces + 1, sizeof *l->piece);
-    l->piece = array;
+    bool room = tri_grow(&l->piece, &l->piece_capacity, l->n_pieces + 1, sizeof *l->piece);
     if (room)
         l->piece[l->n_pieces++] = (struct tri_piece){from, to, course};
     return room;
@@ -100,9 +83,7 @@ static bool push_piece(struct layer *l, int32_t from, int32_t to, struct tri_cou
 
 static bool touch(struct layer *l, int32_t t)
 {
-    void *array = l->touched;
-    bool room = reserve(&array, &l->touched_capacity, l->n_touched + 3, sizeof *l->touched);
-    l->touched = array;
+    bool room = tri_grow(&l->touched, &l->touched_capacity, l->n_touched + 3, sizeof *l->touched);
     for (int e = 0; room && e < 3; e++)
         l->touched[l->n_touched++] = tri_code(t, e);
     return room;
@@ -201,9 +182,7 @@ static int32_t marker_of(const struct layer *l, struct tri_course course)
 
 static bool set_course(struct layer *l, int32_t s, struct tri_course course)
 {
-    void *array = l->course;
-    bool room = reserve(&array, &l->course_capacity, s + 1, sizeof *l->course);
-    l->course = array;
+    bool room = tri_grow(&l->course, &l->course_capacity, s + 1, sizeof *l->course);
     if (room)
         l->course[s] = course;
     return room;
@@ -343,9 +322,7 @@ static enum tri_status lay_edge(struct layer *l, int32_t t, int32_t a, int32_t b
 
 static bool keep_corners(struct layer *l, int32_t v)
 {
-    void *array = l->corner;
-    bool room = reserve(&array, &l->corner_capacity, l->mesh->n_vertices, sizeof *l->corner);
-    l->corner = array;
+    bool room = tri_grow(&l->corner, &l->corner_capacity, l->mesh->n_vertices, sizeof *l->corner);
     if (!room)
         return false;
     for (int32_t i = 0; i < l->cavity.n_rim; i++) {
@@ -774,6 +751,30 @@ enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg
     return status;
 }
 
+/* --- flips of a whole mesh */
+
+/* Triangles with an edge that has to be flipped, found in shares of the mesh. An edge is looked at from that of its two
+ * triangles which has the lower number. */
+struct suspicion {
+    struct layer *layer;
+    int32_t *suspect; /* [n_slots] each share's behind one another, with gaps */
+    int32_t n[TRI_MOST_SHARES];
+};
+
+static void suspect_share(void *context, size_t share)
+{
+    struct suspicion *s = context;
+    const struct tri_mesh *mesh = s->layer->mesh;
+    struct tri_range range = tri_share(share, mesh->n_slots);
+    uint32_t step = 0;
+    for (int32_t t = range.first; t < range.last && !tri_stop_is_due(mesh->stop, &step); t++)
+        for (int e = 0; e < 3; e++)
+            if (mesh->tri[t].n[e] > tri_code(t, e) && is_illegal(s->layer, t, e)) {
+                s->suspect[range.first + s->n[share]++] = t;
+                break;
+            }
+}
+
 /* Touches the edges that lead to triangles of higher number: so each edge is touched by one of its two. */
 static bool touch_upwards(struct layer *l, int32_t t)
 {
@@ -786,15 +787,34 @@ static bool touch_upwards(struct layer *l, int32_t t)
     return true;
 }
 
-enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, struct tri_error *error)
+/* An edge that no flip has come near is as it was found; any other has been touched since, and is Delaunay. */
+static enum tri_status flip_suspects(struct layer *l, const struct suspicion *s)
+{
+    enum tri_status status = tri_stop_is_asked(l->mesh->stop) ? tri_fail_stopped(l->error) : TRI_OK;
+    for (size_t share = 0; share < tri_shares(l->mesh->n_slots); share++) {
+        const int32_t *suspect = s->suspect + tri_share(share, l->mesh->n_slots).first;
+        for (int32_t i = 0; !status && i < s->n[share]; i++) {
+            if (!l->corner)
+                status = find_corners(l);
+            if (!status && tri_stop_is_due(l->mesh->stop, &l->step))
+                status = tri_fail_stopped(l->error);
+            if (!status && (!touch_upwards(l, suspect[i]) || !legalise(l)))
+                status = tri_fail(l->error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
+        }
+    }
+    return status;
+}
+
+enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, const struct tri_executor *executor,
+                                     struct tri_error *error)
 {
     struct layer l = {.mesh = mesh, .ties_stay = true, .error = error};
-    enum tri_status status = find_corners(&l);
-    for (int32_t t = 0; !status && t < mesh->n_slots; t++)
-        if (tri_stop_is_due(mesh->stop, &l.step))
-            status = tri_fail_stopped(error);
-        else if (!touch_upwards(&l, t) || !legalise(&l))
-            status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
+    struct suspicion s = {&l, malloc(((size_t)mesh->n_slots + 1) * sizeof *s.suspect), {0}};
+    if (!s.suspect)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
+    tri_execute(executor, tri_shares(mesh->n_slots), suspect_share, &s);
+    enum tri_status status = flip_suspects(&l, &s);
     free_layer(&l);
+    free(s.suspect);
     return status;
 }

@@ -148,7 +148,8 @@ static void place_share(void *context, size_t share)
     for (int32_t begin = s->group[share], end; begin < s->group[share + 1]; begin = end) {
         for (end = begin + 1; end < s->group[share + 1] && key_of(s->item[end]) == key_of(s->item[begin]);)
             end++;
-        sort_group(s, s->item + begin, end - begin);
+        if (end - begin > 1)
+            sort_group(s, s->item + begin, end - begin);
         for (int32_t i = begin; i < end; i++)
             s->to[id_of(s->item[i])] = tri_code(i, corner_of(s->item[i]));
     }
@@ -166,8 +167,8 @@ static void find_order(struct sorting *s, const struct tri_executor *executor)
 {
     tri_execute(executor, tri_shares(s->n_slots), list_share, s);
     tri_radix_sort(s->item, s->scratch, s->n_slots, KEY_SHIFT, KEY_SHIFT + s->vertex_bits, executor);
-    for (s->n_live = s->n_slots; key_of(s->item[s->n_live - 1]) == s->mesh->n_vertices;)
-        s->n_live--;
+    assert(key_of(s->item[s->n_live - 1]) < s->mesh->n_vertices);
+    assert(s->n_live == s->n_slots || key_of(s->item[s->n_live]) == s->mesh->n_vertices);
     find_groups(s);
     tri_execute(executor, tri_shares(s->n_live), place_share, s);
 }
@@ -208,30 +209,31 @@ static void move_all(const struct sorting *s, const struct tri_executor *executo
     mesh->n_slots = s->n_live;
 }
 
+/* Items wait where triangles will be. */
 static enum tri_status sort(struct sorting *s, const struct tri_executor *executor, struct tri_error *error)
 {
-    size_t n = (size_t)s->n_slots;
-    s->item = malloc(2 * n * sizeof *s->item);
-    s->to = malloc(n * sizeof *s->to);
-    if (!s->item || !s->to)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sorting %d triangles", (int)n);
-    s->scratch = s->item + n;
-    find_order(s, executor);
-    free(s->item);
-    s->item = NULL;
-    enum tri_status status = tri_mesh_reserve_triangles(s->mesh, s->n_live, error);
-    if (!status)
+    _Static_assert(sizeof *s->tri == 4 * sizeof *s->item, "room for two lists of items in half as many triangles");
+    int32_t room = s->n_slots / 2 + 1;
+    enum tri_status status = tri_mesh_reserve_triangles(s->mesh, s->n_live > room ? s->n_live : room, error);
+    s->to = malloc((size_t)s->n_slots * sizeof *s->to);
+    if (!status && !s->to)
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sorting %d triangles", (int)s->n_slots);
+    if (!status) {
+        s->item = (uint64_t *)(void *)s->mesh->tri;
+        s->scratch = s->item + s->n_slots;
+        find_order(s, executor);
         move_all(s, executor);
+    }
+    free(s->to);
     return status;
 }
 
 enum tri_status tri_curve_sort(struct tri_mesh *mesh, struct tri_triangle *tri, int32_t n_slots,
-                               const struct tri_executor *executor, struct tri_error *error)
+                               int32_t n_live, const struct tri_executor *executor, struct tri_error *error)
 {
-    struct sorting s = {.mesh = mesh, .tri = tri, .n_slots = n_slots, .vertex_bits = bits_of(mesh->n_vertices)};
+    struct sorting s = {.mesh = mesh, .tri = tri, .n_slots = n_slots, .n_live = n_live,
+                        .vertex_bits = bits_of(mesh->n_vertices)};
     enum tri_status status = take_hull(mesh, tri, error);
-    status = status ? status : sort(&s, executor, error);
-    free(s.item);
-    free(s.to);
-    return status;
+    s.n_live -= mesh->n_subs; /* ghosts */
+    return status ? status : sort(&s, executor, error);
 }

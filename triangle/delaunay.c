@@ -24,7 +24,7 @@ enum {
     FIRST_ROUND = 512, /* points */
     ROUND_GROWTH = 8,
     MOST_ROUNDS = 8,
-    LEAF = 1 << 14,    /* vertices */
+    LEAF = 1 << 15,    /* vertices */
     MOST_LEAVES = 256,
     WIDER = 4,
     LEAST_SHARE = 16   /* a block inserts in a round at least, about, one point for so many vertices of a leaf */
@@ -74,7 +74,8 @@ static void find_twins(void *context, size_t share)
 }
 
 /* Duplicates are neighbours along the curve. */
-static enum tri_status list_twins(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
+static enum tri_status list_twins(struct tri_mesh *mesh, int32_t *n_twins, const struct tri_executor *executor,
+                                  struct tri_error *error)
 {
     int32_t n = mesh->n_vertices, found = 0;
     struct twins twins = {.mesh = mesh};
@@ -91,6 +92,7 @@ static enum tri_status list_twins(struct tri_mesh *mesh, const struct tri_execut
         free(mesh->twin);
         mesh->twin = NULL;
     }
+    *n_twins = found;
     return TRI_OK;
 }
 
@@ -290,7 +292,8 @@ enum tri_status tri_delaunay_in_leaves(struct tri_mesh *mesh, int32_t leaf_size,
 {
     struct builder b = {.mesh = mesh, .executor = executor};
     assert(mesh->origin && mesh->n_slots == 0 && mesh->n_subs == 0 && leaf_size > 0);
-    enum tri_status status = list_twins(mesh, executor, error);
+    int32_t n_twins = 0, n_slots = 2 * mesh->n_vertices;
+    enum tri_status status = list_twins(mesh, &n_twins, executor, error);
     if (status || !find_first(&b))
         return status;
     void *raw = malloc(((size_t)mesh->n_vertices + 1) * 2 * sizeof *b.tri);
@@ -298,7 +301,8 @@ enum tri_status tri_delaunay_in_leaves(struct tri_mesh *mesh, int32_t leaf_size,
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d points", (int)mesh->n_vertices);
     b.tri = (struct tri_triangle *)((char *)raw + (-(uintptr_t)raw & 63)); /* a cache line holds two */
     status = build(&b, leaf_size, error);
-    status = status ? status : tri_curve_sort(mesh, b.tri, 2 * mesh->n_vertices, executor, error);
+    int32_t n_live = n_slots - 2 * n_twins - 2; /* two a vertex, and four instead of six for the first three */
+    status = status ? status : tri_curve_sort(mesh, b.tri, n_slots, n_live, executor, error);
     free(raw);
     return status;
 }

@@ -42,27 +42,70 @@ static const double SLOPE = 0.5, SHRINK = 64, SHARP = 256;
 /* Is the corner beside the edge opposite to it, not before its start or beyond its end? From squared lengths. */
 static bool is_beside(double edge, double left, double right) { return left <= right + edge && right <= left + edge; }
 
+/* Estimates in shares of the triangles. Each share has vertices of its own: triangles that are sorted along a curve, by
+ * vertices that are, begin share by share with higher ones. Corners that are another share's come afterwards; the least
+ * of all estimates is the same in any order. */
+struct estimate {
+    struct tri_mesh *mesh;
+    int32_t own[TRI_MOST_SHARES + 1]; /* share i: vertices own[i] .. own[i + 1] - 1 */
+};
+
+static void divide_vertices(struct estimate *e)
+{
+    size_t shares = tri_shares(e->mesh->n_slots);
+    e->own[0] = 0;
+    for (size_t i = 1; i < shares; i++) {
+        int32_t v = e->mesh->tri[tri_share(i, e->mesh->n_slots).first].v[0];
+        e->own[i] = v > e->own[i - 1] ? v : e->own[i - 1];
+    }
+    e->own[shares] = e->mesh->n_vertices;
+}
+
 static void estimate_corner(struct tri_mesh *mesh, const struct tri_triangle *t, const struct tri_shape *shape, int k)
 {
     double edge = shape->l[k], left = shape->l[tri_next[k]], right = shape->l[tri_prev[k]];
     double size = sqrt(left < right ? left : right);
     if (t->n[k] < 0 && is_beside(edge, left, right))
         size = fmin(size, shape->area2 / sqrt(edge));
-    mesh->feature[t->v[k]] = fmin(mesh->feature[t->v[k]], size);
+    mesh->feature[t->v[k]] = tri_lesser(mesh->feature[t->v[k]], size);
 }
 
-void tri_estimate_features(struct tri_mesh *mesh)
+/* The share's triangles at its own vertices, or at others. */
+static void estimate_share(const struct estimate *e, size_t share, bool own)
 {
-    for (int32_t v = 0; v < mesh->n_vertices; v++)
-        mesh->feature[v] = HUGE_VAL;
-    for (int32_t i = 0; i < mesh->n_slots; i++) {
+    struct tri_mesh *mesh = e->mesh;
+    struct tri_range range = tri_share(share, mesh->n_slots);
+    for (int32_t i = range.first; i < range.last; i++) {
         const struct tri_triangle *t = &mesh->tri[i];
         if (!tri_is_live(t))
             continue;
+        bool is_mine[3], any = false;
+        for (int k = 0; k < 3; k++)
+            any |= is_mine[k] = (t->v[k] >= e->own[share] && t->v[k] < e->own[share + 1]) == own;
+        if (!any)
+            continue;
         struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
         for (int k = 0; k < 3; k++)
-            estimate_corner(mesh, t, &shape, k);
+            if (is_mine[k])
+                estimate_corner(mesh, t, &shape, k);
     }
+}
+
+static void estimate_own(void *context, size_t share)
+{
+    const struct estimate *e = context;
+    for (int32_t v = e->own[share]; v < e->own[share + 1]; v++)
+        e->mesh->feature[v] = HUGE_VAL;
+    estimate_share(e, share, true);
+}
+
+void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *executor)
+{
+    struct estimate e = {.mesh = mesh};
+    divide_vertices(&e);
+    tri_execute(executor, tri_shares(mesh->n_slots), estimate_own, &e);
+    for (size_t share = 0; share < tri_shares(mesh->n_slots); share++)
+        estimate_share(&e, share, false);
 }
 
 double tri_feature_inside(const struct tri_mesh *mesh, int32_t a, int32_t b, struct tri_point p, bool sized)

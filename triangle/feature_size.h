@@ -5,7 +5,7 @@
 #include "triangle/cavity.h"
 
 /* Sets mesh->feature of every vertex from the triangles around it, before the first point is inserted. O(triangles). */
-void tri_estimate_features(struct tri_mesh *mesh);
+void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *executor);
 
 /* The feature size at a point p that is inserted for a triangle with shortest edge ab; sized: because it is too large,
  * not because of its angles. */

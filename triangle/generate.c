@@ -74,7 +74,7 @@ static enum tri_status make(struct tri_mesh *mesh, const struct tri_pslg *pslg, 
     status = status ? status : triangulate(mesh, pslg, options, report, error);
     if (!status) {
         tri_mark_boundary(mesh);
-        status = tri_refine_prepare(mesh, error);
+        status = tri_refine_prepare(mesh, options->executor, error);
     }
     if (status)
         tri_mesh_free(mesh);
@@ -85,8 +85,8 @@ static enum tri_status rebuild(struct tri_mesh *mesh, const struct tri_pslg *psl
                                struct tri_error *error)
 {
     const struct tri_reconstruct_options how = {.use_segments = options->use_segments, .refine = options->refine,
-                                                .stop = options->stop, .base = options->base,
-                                                .is_edge = options->is_edge};
+                                                .stop = options->stop, .executor = options->executor,
+                                                .base = options->base, .is_edge = options->is_edge};
     announce(options, TRI_STAGE_REBUILD);
     return tri_reconstruct(mesh, pslg, options->elements, &how, error);
 }

@@ -39,9 +39,9 @@ static bool grow(struct tri_inserter *b)
     return true;
 }
 
-static bool holds(const struct tri_inserter *b, int32_t v)
+static inline bool holds(const struct tri_inserter *b, int32_t v)
 {
-    return (v >= b->block.first && v < b->block.last) || v == TRI_GHOST;
+    return (uint32_t)(v - b->block.first) < (uint32_t)(b->block.last - b->block.first) || v == TRI_GHOST;
 }
 
 bool tri_inserter_owns(const struct tri_inserter *b, const struct tri_triangle *t)
@@ -89,19 +89,23 @@ static inline bool in_disk(const struct tri_inserter *b, const struct tri_triang
 }
 
 /* A walk by visibility: the triangle contains q, or is a ghost beyond the hull edge that the walk leaves through. Exact
- * orientations: the walk cannot cycle in a Delaunay triangulation. */
-int32_t tri_inserter_locate(struct tri_inserter *b, struct tri_point q)
+ * orientations: the walk cannot cycle in a Delaunay triangulation. Of a neighbour of what the block owns it is the
+ * corner across the edge that tells whether the block owns it, too. */
+static inline int32_t locate(struct tri_inserter *b, struct tri_point q)
 {
     int32_t t = b->last;
     int from = -1, ghost = tri_ghost_corner(&b->tri[t]);
+    assert(tri_inserter_owns(b, &b->tri[t]));
     if (ghost >= 0)
         t = tri_of(b->tri[t].n[ghost]);
+    if (ghost >= 0 && !tri_inserter_owns(b, &b->tri[t]))
+        return TRI_NONE;
     for (;;) {
         const struct tri_triangle *at = &b->tri[t];
         int k = 0;
-        if (!tri_inserter_owns(b, at))
+        if (from >= 0 && !holds(b, at->v[from]))
             return TRI_NONE;
-        if (tri_ghost_corner(at) >= 0)
+        if ((at->v[0] | at->v[1] | at->v[2]) < 0)
             return t;
         b->last = t;
         for (; k < 3; k++)
@@ -114,6 +118,8 @@ int32_t tri_inserter_locate(struct tri_inserter *b, struct tri_point q)
     }
 }
 
+int32_t tri_inserter_locate(struct tri_inserter *b, struct tri_point q) { return locate(b, q); }
+
 /* Adds what lies across one edge of the first triangle. */
 static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, int32_t link, int32_t a, int32_t end)
 {
@@ -122,7 +128,7 @@ static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, in
         const struct tri_triangle *t = &b->tri[tri_of(link)];
         int e = tri_edge(link);
         if (in_disk(b, t, q)) {
-            if (!tri_inserter_owns(b, t))
+            if (!holds(b, t->v[e]))
                 return TRI_NOT_OWNED;
             if (b->n_cavity == b->capacity && !grow(b))
                 return TRI_NO_ROOM_FOR_CAVITY;
@@ -169,7 +175,7 @@ static void fill(struct tri_inserter *b, int32_t v)
 enum tri_insertion tri_insert(struct tri_inserter *b, int32_t v)
 {
     struct tri_point q = b->xy[v];
-    int32_t t = tri_inserter_locate(b, q);
+    int32_t t = locate(b, q);
     if (t == TRI_NONE)
         return TRI_NOT_OWNED;
     const struct tri_triangle start = b->tri[t];

@@ -1,12 +1,11 @@
 /* Triangles to a mesh: their edges are matched, boundary and segments become subsegments, attributes regions.
  *
- * Every triangle contributes three half-edges. They are sorted into buckets by their lower end (counting sort); within
- * a bucket an array over all vertices, `seen`, tells which half-edge was the first to reach the upper end. So each is
- * matched in O(1), whatever the degrees.
+ * Every triangle contributes three half-edges. They are dealt to ranges of vertices by their lower end, and sorted
+ * within a range by it, then by the upper end: so the two sides of an edge are neighbours. Ranges are matched at the
+ * same time, since an edge has one lower end. Whatever the degrees, this takes O(triangles).
  *
- * INVARIANT: behind a bucket with first half-edge `first`, seen[v] >= first says that the edge from its vertex to v
- * exists; entries of earlier buckets are smaller and never have to be cleared. Until an edge has found its other side
- * its link is LOOSE, which no code and no subsegment equals. */
+ * Until an edge has found its other side its link is LOOSE, which no code and no subsegment equals. Of several faults
+ * the first is told: by triangle as they are taken; by lower end, then by half-edge, as they are matched. */
 #include "triangle/reconstruct.h"
 
 #include <assert.h>
@@ -17,14 +16,22 @@
 #include "triangle/chain.h"
 #include "triangle/constrain.h"
 #include "triangle/predicates.h"
+#include "triangle/radix.h"
 #include "triangle/refine.h"
 #include "triangle/topology.h"
 
 enum { LOOSE = INT32_MAX };
 
-struct half {
-    int32_t high; /* the upper end, ~ of it where the half-edge runs from there down */
-    int32_t code;
+/* A half-edge is an item to sort: its code, and above it, at first, its lower end counted from the first of the range;
+ * then its upper end, and whether it runs down from there. */
+enum { CODE_BITS = 31, HIGH_SHIFT = CODE_BITS + 1, FEW = 24 };
+
+_Static_assert(4 * INT64_C(1) * TRI_MAX_TRIANGLES == INT64_C(1) << CODE_BITS, "codes fill their bits");
+
+/* A triangle that belongs to no mesh. */
+struct fault {
+    int32_t code;     /* of it, and of its edge that is amiss */
+    const char *what; /* NULL: there is none */
 };
 
 struct matcher {
@@ -32,13 +39,19 @@ struct matcher {
     const struct tri_pslg *pslg;
     const struct tri_elements *elements;
     const struct tri_reconstruct_options *options;
-    struct half *half; /* [3 n] by lower end */
-    int32_t *start;    /* [n_vertices + 1] buckets in it */
-    int32_t *seen;     /* [n_vertices] */
+    uint64_t *half;    /* [3 n] by range */
+    int32_t width;     /* vertices in a range */
+    int32_t at[TRI_MOST_SHARES][TRI_MOST_SHARES]; /* [share][range] where the next half-edge goes */
+    int32_t end[TRI_MOST_SHARES];                 /* of each range in half[] */
+    struct fault fault[TRI_MOST_SHARES];          /* of each share of triangles, or of each range */
+    bool no_room[TRI_MOST_SHARES];
     int32_t *head;     /* [n_vertices] first segment with this lower end; then on by next[n_segments] */
     int32_t *next;
     int32_t *edge_of;  /* [n_segments] code of the edge that is the segment, or TRI_NONE */
     int32_t n_segments;
+    int32_t *loose;    /* [n_loose] codes of edges that have one side, in order */
+    int32_t n_loose;
+    int32_t loose_at[TRI_MOST_SHARES + 1]; /* of each share */
     struct tri_error *error;
 };
 
@@ -47,74 +60,103 @@ static enum tri_status no_memory(struct tri_error *error, int32_t n)
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a mesh of %d triangles", (int)n);
 }
 
-static enum tri_status bad_triangle(const struct matcher *m, int32_t t, const char *fault)
+static size_t n_shares(const struct matcher *m) { return tri_shares(m->elements->n); }
+
+/* The first fault is that of the lowest share. */
+static enum tri_status first_fault(const struct matcher *m)
 {
-    return tri_fail(m->error, TRI_BAD_INPUT, NULL, 0, "triangle %lld %s", (long long)t + m->options->base, fault);
+    for (size_t i = 0; i < n_shares(m); i++) {
+        if (m->no_room[i])
+            return no_memory(m->error, m->elements->n);
+        if (m->fault[i].what)
+            return tri_fail(m->error, TRI_BAD_INPUT, NULL, 0, "triangle %lld %s",
+                            (long long)tri_of(m->fault[i].code) + m->options->base, m->fault[i].what);
+    }
+    return TRI_OK;
 }
 
 /* --- triangles */
 
-/* Turns the triangle counter-clockwise. */
-static enum tri_status orient(const struct matcher *m, int32_t t, int32_t v[3])
+/* Turns the triangle counter-clockwise; or says what is wrong with it. */
+static const char *orient(const struct tri_mesh *mesh, int32_t v[3])
 {
-    const struct tri_mesh *mesh = m->mesh;
     for (int k = 0; k < 3; k++)
         if (v[k] < 0 || v[k] >= mesh->n_vertices)
-            return bad_triangle(m, t, "has a corner that is no vertex");
+            return "has a corner that is no vertex";
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0])
-        return bad_triangle(m, t, "has two equal corners");
+        return "has two equal corners";
     double area = tri_orient2d(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]);
     if (area == 0)
-        return bad_triangle(m, t, "has no area");
+        return "has no area";
     if (area < 0) {
         int32_t second = v[1];
         v[1] = v[2];
         v[2] = second;
     }
-    return TRI_OK;
+    return NULL;
+}
+
+static int32_t low_of(const struct tri_triangle *t, int e)
+{
+    int32_t from = t->v[tri_next[e]], to = t->v[tri_prev[e]];
+    return from < to ? from : to;
+}
+
+static void take_share(void *context, size_t share)
+{
+    struct matcher *m = context;
+    struct tri_range range = tri_share(share, m->elements->n);
+    for (int32_t t = range.first; t < range.last; t++) {
+        struct tri_triangle *at = &m->mesh->tri[t];
+        *at = (struct tri_triangle){.n = {LOOSE, LOOSE, LOOSE}};
+        memcpy(at->v, &m->elements->corners[3 * (size_t)t], sizeof at->v);
+        m->fault[share] = (struct fault){tri_code(t, 0), orient(m->mesh, at->v)};
+        if (m->fault[share].what)
+            return;
+        for (int e = 0; e < 3; e++)
+            m->at[share][low_of(at, e) / m->width]++;
+    }
 }
 
 static enum tri_status take_triangles(struct matcher *m)
 {
-    struct tri_mesh *mesh = m->mesh;
     int32_t n = m->elements->n;
-    enum tri_status status = tri_mesh_reserve_triangles(mesh, n, m->error);
-    for (int32_t t = 0; !status && t < n; t++) {
-        struct tri_triangle *at = &mesh->tri[t];
-        *at = (struct tri_triangle){.n = {LOOSE, LOOSE, LOOSE}};
-        memcpy(at->v, &m->elements->corners[3 * (size_t)t], sizeof at->v);
-        status = orient(m, t, at->v);
-    }
-    mesh->n_slots = status ? 0 : n;
+    enum tri_status status = tri_mesh_reserve_triangles(m->mesh, n, m->error);
+    if (status)
+        return status;
+    m->width = m->mesh->n_vertices / (int32_t)n_shares(m) + 1;
+    tri_execute(m->options->executor, n_shares(m), take_share, m);
+    status = first_fault(m);
+    m->mesh->n_slots = status ? 0 : n;
     return status;
 }
 
 /* --- matching */
 
-static struct half half_of(const struct tri_triangle *t, int32_t code, int32_t *low)
+/* Counts become places: range by range, in each the shares in order. */
+static void divide_ranges(struct matcher *m)
 {
-    int32_t from = t->v[tri_next[tri_edge(code)]], to = t->v[tri_prev[tri_edge(code)]];
-    *low = from < to ? from : to;
-    return (struct half){from < to ? to : ~from, code};
+    int32_t sum = 0;
+    for (size_t range = 0; range < n_shares(m); range++) {
+        for (size_t share = 0; share < n_shares(m); share++) {
+            int32_t count = m->at[share][range];
+            m->at[share][range] = sum;
+            sum += count;
+        }
+        m->end[range] = sum;
+    }
+    assert(sum == 3 * m->mesh->n_slots);
 }
 
-static void fill_buckets(struct matcher *m)
+static void deal_share(void *context, size_t share)
 {
-    const struct tri_mesh *mesh = m->mesh;
-    int32_t *fill = m->start + 1, low; /* shifted by one, so that filling leaves the starts in place */
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    struct matcher *m = context;
+    struct tri_range range = tri_share(share, m->mesh->n_slots);
+    for (int32_t t = range.first; t < range.last; t++)
         for (int e = 0; e < 3; e++) {
-            half_of(&mesh->tri[t], tri_code(t, e), &low);
-            fill[low + 1]++;
+            int32_t low = low_of(&m->mesh->tri[t], e), to = low / m->width;
+            m->half[m->at[share][to]++] = (uint64_t)(low - to * m->width) << CODE_BITS | (uint64_t)tri_code(t, e);
         }
-    for (int32_t v = 0; v < mesh->n_vertices; v++)
-        fill[v + 1] += fill[v];
-    for (int32_t t = 0; t < mesh->n_slots; t++)
-        for (int e = 0; e < 3; e++) {
-            struct half half = half_of(&mesh->tri[t], tri_code(t, e), &low);
-            m->half[fill[low]++] = half;
-        }
-    assert(m->start[0] == 0 && m->start[mesh->n_vertices] == 3 * mesh->n_slots);
 }
 
 static int32_t *link_of(const struct tri_mesh *mesh, int32_t code)
@@ -122,16 +164,53 @@ static int32_t *link_of(const struct tri_mesh *mesh, int32_t code)
     return &mesh->tri[tri_of(code)].n[tri_edge(code)];
 }
 
-static enum tri_status join(const struct matcher *m, struct half a, struct half b)
+static int32_t code_of(uint64_t half) { return (int32_t)(half & ((UINT64_C(1) << CODE_BITS) - 1)); }
+static int32_t high_of(uint64_t half) { return (int32_t)(half >> HIGH_SHIFT); }
+static bool runs_down(uint64_t half) { return half >> CODE_BITS & 1; }
+
+/* The half-edges at one lower end by their upper ends; those with the same ends in order of their triangles. */
+static void sort_bucket(const struct tri_mesh *mesh, uint64_t *half, int32_t n, uint64_t *scratch)
 {
-    int32_t *link_a = link_of(m->mesh, a.code), *link_b = link_of(m->mesh, b.code);
-    if (*link_a != LOOSE)
-        return bad_triangle(m, tri_of(b.code), "has an edge that two other triangles have, too");
-    if ((a.high < 0) == (b.high < 0))
-        return bad_triangle(m, tri_of(b.code), "lies on the same side of an edge as another triangle");
-    *link_a = b.code;
-    *link_b = a.code;
-    return TRI_OK;
+    for (int32_t i = 0; i < n; i++) {
+        int32_t code = code_of(half[i]);
+        const struct tri_triangle *t = &mesh->tri[tri_of(code)];
+        int32_t from = t->v[tri_next[tri_edge(code)]], to = t->v[tri_prev[tri_edge(code)]];
+        uint64_t next = (uint64_t)(from < to ? to : from) << HIGH_SHIFT | (uint64_t)(from > to) << CODE_BITS |
+                        (uint64_t)code;
+        int32_t at = i;
+        for (; n <= FEW && at > 0 && high_of(half[at - 1]) > high_of(next); at--)
+            half[at] = half[at - 1];
+        half[at] = next;
+    }
+    if (n > FEW)
+        tri_radix_sort(half, scratch, n, HIGH_SHIFT, 64, NULL);
+}
+
+/* Joins two sides of an edge; or finds a fault in a third, or in a second that is like the first. */
+static struct fault join(const struct tri_mesh *mesh, const uint64_t *half, int32_t n)
+{
+    if (n > 1 && runs_down(half[0]) == runs_down(half[1]))
+        return (struct fault){code_of(half[1]), "lies on the same side of an edge as another triangle"};
+    if (n > 2)
+        return (struct fault){code_of(half[2]), "has an edge that two other triangles have, too"};
+    if (n == 2) {
+        *link_of(mesh, code_of(half[0])) = code_of(half[1]);
+        *link_of(mesh, code_of(half[1])) = code_of(half[0]);
+    }
+    return (struct fault){0, NULL};
+}
+
+static struct fault match_bucket(const struct tri_mesh *mesh, const uint64_t *half, int32_t n)
+{
+    struct fault first = {0, NULL};
+    for (int32_t i = 0, end; i < n; i = end) {
+        for (end = i + 1; end < n && high_of(half[end]) == high_of(half[i]);)
+            end++;
+        struct fault fault = join(mesh, half + i, end - i);
+        if (fault.what && (!first.what || fault.code < first.code))
+            first = fault;
+    }
+    return first;
 }
 
 static bool names_edge(const struct matcher *m, int32_t k)
@@ -155,64 +234,65 @@ static void list_segments(struct matcher *m)
     }
 }
 
-/* Looks the segments of a bucket's vertex up among its edges. */
-static void find_segments(struct matcher *m, int32_t low, int32_t first)
+/* Looks the segments with this lower end up among its edges. */
+static void find_segments(const struct matcher *m, int32_t low, const uint64_t *half, int32_t n)
 {
     for (int32_t k = m->head[low]; k != TRI_NONE; k = m->next[k]) {
         const int32_t *v = &m->pslg->segments[2 * (size_t)k];
-        int32_t at = m->seen[v[0] == low ? v[1] : v[0]];
-        if (at >= first)
-            m->edge_of[k] = m->half[at].code;
+        int32_t high = v[0] == low ? v[1] : v[0], first = 0, last = n;
+        while (first < last) {
+            int32_t middle = first + (last - first) / 2;
+            if (high_of(half[middle]) < high)
+                first = middle + 1;
+            else
+                last = middle;
+        }
+        if (first < n && high_of(half[first]) == high)
+            m->edge_of[k] = code_of(half[first]);
     }
 }
 
-static enum tri_status match_bucket(struct matcher *m, int32_t low)
+static void match_range(void *context, size_t range)
 {
-    int32_t first = m->start[low], end = m->start[low + 1];
-    for (int32_t i = first; i < end; i++) {
-        struct half half = m->half[i];
-        int32_t *seen = &m->seen[half.high < 0 ? ~half.high : half.high];
-        assert(half.high < 0 ? ~half.high > low : half.high > low);
-        if (*seen < first) {
-            *seen = i;
-            continue;
-        }
-        enum tri_status status = join(m, m->half[*seen], half);
-        if (status)
-            return status;
+    struct matcher *m = context;
+    int32_t first = range > 0 ? m->end[range - 1] : 0, n = m->end[range] - first;
+    uint64_t *half = m->half + first, *scratch = malloc(((size_t)n + 1) * sizeof *scratch);
+    m->no_room[range] = !scratch;
+    m->fault[range].what = NULL;
+    if (scratch)
+        tri_radix_sort(half, scratch, n, CODE_BITS, 64, NULL);
+    for (int32_t i = 0, end; scratch && !m->fault[range].what && i < n; i = end) {
+        uint64_t low = half[i] >> CODE_BITS;
+        for (end = i + 1; end < n && half[end] >> CODE_BITS == low;)
+            end++;
+        sort_bucket(m->mesh, half + i, end - i, scratch);
+        m->fault[range] = match_bucket(m->mesh, half + i, end - i);
+        if (m->n_segments > 0)
+            find_segments(m, (int32_t)range * m->width + (int32_t)low, half + i, end - i);
     }
-    if (m->n_segments > 0)
-        find_segments(m, low, first);
-    return TRI_OK;
+    free(scratch);
 }
 
 static enum tri_status match(struct matcher *m)
 {
-    enum tri_status status = TRI_OK;
-    for (int32_t v = 0; v < m->mesh->n_vertices; v++)
-        m->seen[v] = TRI_NONE;
     if (m->n_segments > 0)
         list_segments(m);
-    fill_buckets(m);
-    for (int32_t v = 0; !status && v < m->mesh->n_vertices; v++)
-        status = match_bucket(m, v);
-    return status;
+    divide_ranges(m);
+    tri_execute(m->options->executor, n_shares(m), deal_share, m);
+    tri_execute(m->options->executor, n_shares(m), match_range, m);
+    return first_fault(m);
 }
 
 static enum tri_status allocate_and_match(struct matcher *m)
 {
     size_t n = (size_t)m->mesh->n_vertices, n_segments = (size_t)m->n_segments, n_half = 3 * (size_t)m->mesh->n_slots;
     m->half = malloc((n_half + 1) * sizeof *m->half);
-    m->start = calloc(n + 2, sizeof *m->start);
-    m->seen = malloc((n + 1) * sizeof *m->seen);
     m->edge_of = malloc((n_segments + 1) * sizeof *m->edge_of);
     m->next = malloc((n_segments + 1) * sizeof *m->next);
     m->head = malloc((n_segments > 0 ? n + 1 : 1) * sizeof *m->head);
-    bool room = m->half && m->start && m->seen && m->edge_of && m->next && m->head;
+    bool room = m->half && m->edge_of && m->next && m->head;
     enum tri_status status = room ? match(m) : no_memory(m->error, m->elements->n);
     free(m->half);
-    free(m->start);
-    free(m->seen);
     free(m->next);
     free(m->head);
     return status;
@@ -258,32 +338,67 @@ static void add_segments(const struct matcher *m)
     }
 }
 
-static void add_boundary(struct tri_mesh *mesh)
+static void add_boundary(const struct matcher *m)
 {
-    for (int32_t t = 0; t < mesh->n_slots; t++)
-        for (int e = 0; e < 3; e++) {
-            const struct tri_triangle *at = &mesh->tri[t];
-            if (at->n[e] == LOOSE)
-                add_sub(mesh, tri_code(t, e), at->v[tri_next[e]], at->v[tri_prev[e]], 0, TRI_NONE);
-        }
+    struct tri_mesh *mesh = m->mesh;
+    for (int32_t i = 0; i < m->n_loose; i++) {
+        int32_t code = m->loose[i];
+        const int32_t *v = mesh->tri[tri_of(code)].v;
+        if (*link_of(mesh, code) == LOOSE)
+            add_sub(mesh, code, v[tri_next[tri_edge(code)]], v[tri_prev[tri_edge(code)]], 0, TRI_NONE);
+    }
 }
 
-static enum tri_status add_subsegments(const struct matcher *m)
+static void count_loose(void *context, size_t share)
 {
-    int64_t n = 0;
-    for (int32_t k = 0; k < m->n_segments; k++)
-        n += m->edge_of[k] != TRI_NONE;
-    for (int32_t t = 0; t < m->mesh->n_slots; t++)
+    struct matcher *m = context;
+    struct tri_range range = tri_share(share, m->mesh->n_slots);
+    int32_t n = 0;
+    for (int32_t t = range.first; t < range.last; t++)
         for (int e = 0; e < 3; e++)
             n += m->mesh->tri[t].n[e] == LOOSE;
-    if (n > TRI_MAX_TRIANGLES)
-        return tri_fail(m->error, TRI_TOO_LARGE, NULL, 0, "too many subsegments for one mesh");
-    enum tri_status status = tri_mesh_reserve_subs(m->mesh, (int32_t)n, m->error);
-    if (status)
-        return status;
-    add_segments(m);
-    add_boundary(m->mesh);
+    m->loose_at[share + 1] = n;
+}
+
+static void list_loose(void *context, size_t share)
+{
+    struct matcher *m = context;
+    struct tri_range range = tri_share(share, m->mesh->n_slots);
+    int32_t *next = m->loose + m->loose_at[share], *end = m->loose + m->loose_at[share + 1];
+    for (int32_t t = range.first; next < end && t < range.last; t++)
+        for (int e = 0; e < 3; e++)
+            if (m->mesh->tri[t].n[e] == LOOSE)
+                *next++ = tri_code(t, e);
+}
+
+static enum tri_status find_loose(struct matcher *m)
+{
+    tri_execute(m->options->executor, n_shares(m), count_loose, m);
+    for (size_t share = 0; share < n_shares(m); share++)
+        m->loose_at[share + 1] += m->loose_at[share];
+    m->n_loose = m->loose_at[n_shares(m)];
+    m->loose = malloc(((size_t)m->n_loose + 1) * sizeof *m->loose);
+    if (!m->loose)
+        return no_memory(m->error, m->elements->n);
+    tri_execute(m->options->executor, n_shares(m), list_loose, m);
     return TRI_OK;
+}
+
+static enum tri_status add_subsegments(struct matcher *m)
+{
+    enum tri_status status = find_loose(m);
+    int64_t n = m->n_loose;
+    for (int32_t k = 0; k < m->n_segments; k++)
+        n += m->edge_of[k] != TRI_NONE;
+    if (!status && n > TRI_MAX_TRIANGLES)
+        status = tri_fail(m->error, TRI_TOO_LARGE, NULL, 0, "too many subsegments for one mesh");
+    status = status ? status : tri_mesh_reserve_subs(m->mesh, (int32_t)n, m->error);
+    if (!status) {
+        add_segments(m);
+        add_boundary(m);
+    }
+    free(m->loose);
+    return status;
 }
 
 /* --- attributes and area bounds as regions */
@@ -411,10 +526,10 @@ static enum tri_status build(struct matcher *m)
         return status;
     tri_mark_boundary(mesh);
     if (m->options->refine)
-        status = tri_flip_to_delaunay(mesh, m->error);
+        status = tri_flip_to_delaunay(mesh, m->options->executor, m->error);
     if (!status && m->options->refine)
         status = tri_unite_chains(mesh, m->error);
-    return status ? status : tri_refine_prepare(mesh, m->error);
+    return status ? status : tri_refine_prepare(mesh, m->options->executor, m->error);
 }
 
 enum tri_status tri_reconstruct(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_elements *elements,

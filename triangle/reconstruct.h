@@ -14,6 +14,7 @@ struct tri_reconstruct_options {
     bool use_segments; /* the segments of the PSLG that are edges of the mesh become subsegments (-p) */
     bool refine;       /* the mesh is going to be refined: it is made constrained Delaunay first */
     const struct tri_stop *stop; /* as in struct tri_options */
+    const struct tri_executor *executor; /* as in struct tri_options */
     int32_t base;      /* of the numbers in errors: of the first triangle and the first vertex */
     bool *is_edge;     /* [n_segments] receives whether the segment is an edge of the mesh, or nothing that
                           could be one; NULL: not asked for */

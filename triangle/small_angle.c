@@ -271,34 +271,70 @@ static double demand_of(const struct tri_mesh *mesh, int32_t slot)
     return demand;
 }
 
+enum { CHEAP = 10, OCTAVES = 64 };
+
+/* Costs and numbers of the triangles that are not cheap, by octave of their cost, in a share of the mesh. */
+struct demand {
+    double cost[OCTAVES], count[OCTAVES], all;
+};
+
+struct demands {
+    const struct tri_mesh *mesh;
+    struct demand share[TRI_MOST_SHARES]; /* added up in their order: the same for any number of threads */
+};
+
+static void demand_share(void *context, size_t index)
+{
+    struct demands *d = context;
+    struct demand *sum = &d->share[index];
+    struct tri_range range = tri_share(index, d->mesh->n_slots);
+    *sum = (struct demand){{0}, {0}, 0};
+    for (int32_t t = range.first; t < range.last; t++) {
+        double cost = demand_of(d->mesh, t);
+        int octave; /* 2^(octave - 1) <= cost < 2^octave */
+        frexp(cost, &octave);
+        if (octave > CHEAP) {
+            octave = octave < OCTAVES ? octave : OCTAVES - 1;
+            sum->cost[octave] += cost;
+            sum->count[octave]++;
+            sum->all += cost;
+        }
+    }
+}
+
+static struct demand whole_demand(const struct tri_mesh *mesh, const struct tri_executor *executor)
+{
+    struct demands d = {.mesh = mesh};
+    tri_execute(executor, tri_shares(mesh->n_slots), demand_share, &d);
+    for (size_t i = 1; i < tri_shares(mesh->n_slots); i++) {
+        for (int octave = 0; octave < OCTAVES; octave++) {
+            d.share[0].cost[octave] += d.share[i].cost[octave];
+            d.share[0].count[octave] += d.share[i].count[octave];
+        }
+        d.share[0].all += d.share[i].all;
+    }
+    return d.share[0];
+}
+
 /* Which narrow spaces are filled, by their cost. All of them, where a quarter of a million points is enough for
  * that: thin layers and slits of ordinary parts. Else, where there are spikes of no width or lines a few units in
  * the last place apart, the cheap ones: up to the largest power of two, 2^10 or more, such that filling every space
  * as far as this cost goes takes no more than PER_VERTEX points for each vertex of the input, or each
  * end of a segment if there are fewer, and an ALLOWANCE. (A
  * dearer space is still filled where it is wide.) */
-static void choose_channels(struct tri_mesh *mesh)
+static void choose_channels(struct tri_mesh *mesh, const struct tri_executor *executor)
 {
-    enum { CHEAP = 10, OCTAVES = 64 };
     const double ALL = 250000, ALLOWANCE = 20000, PER_VERTEX = 4;
-    double cost_of[OCTAVES] = {0}, count_of[OCTAVES] = {0}, dearer = 0, cheaper = 0, all = 0;
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
-        double cost = demand_of(mesh, t);
-        int octave; /* 2^(octave - 1) <= cost < 2^octave */
-        frexp(cost, &octave);
-        if (octave > CHEAP) {
-            octave = octave < OCTAVES ? octave : OCTAVES - 1;
-            cost_of[octave] += cost;
-            count_of[octave]++;
-            dearer++;
-            all += cost;
-        }
-    }
-    int limit = all <= ALL ? OCTAVES : CHEAP;
-    mesh->channel_points = all <= ALL ? all : ALLOWANCE + PER_VERTEX * fmin(mesh->n_input, 2.0 * mesh->n_parents);
-    for (int octave = CHEAP + 1; octave < OCTAVES && all > ALL; octave++) {
-        cheaper += cost_of[octave];
-        dearer -= count_of[octave];
+    const struct demand demand = whole_demand(mesh, executor);
+    double dearer = 0, cheaper = 0;
+    for (int octave = CHEAP + 1; octave < OCTAVES; octave++)
+        dearer += demand.count[octave];
+    int limit = demand.all <= ALL ? OCTAVES : CHEAP;
+    mesh->channel_points = demand.all <= ALL ? demand.all
+                                              : ALLOWANCE + PER_VERTEX * fmin(mesh->n_input, 2.0 * mesh->n_parents);
+    for (int octave = CHEAP + 1; octave < OCTAVES && demand.all > ALL; octave++) {
+        cheaper += demand.cost[octave];
+        dearer -= demand.count[octave];
         if (cheaper + ldexp(dearer, octave) > mesh->channel_points)
             break;
         limit = octave;
@@ -396,13 +432,13 @@ static double shortest_edge2(const struct tri_mesh *mesh)
     return size * 0x1p-45 * (size * 0x1p-45);
 }
 
-enum tri_status tri_refine_prepare(struct tri_mesh *mesh, struct tri_error *error)
+enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
 {
     mesh->shortest2 = shortest_edge2(mesh);
-    tri_estimate_features(mesh);
+    tri_estimate_features(mesh, executor);
     find_acute(mesh);
     enum tri_status status = list_spokes(mesh, error);
     if (!status)
-        choose_channels(mesh);
+        choose_channels(mesh, executor);
     return status;
 }
