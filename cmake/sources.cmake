@@ -95,7 +95,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/theory.c
     sched/threads.c
     sched/partition.c
-    sched/room.c
+    sched/room.c sched/sweep/tiles.c
     sched/pool.c
     sched/phase.c
     sched/schedule.c
