@@ -39,6 +39,8 @@ def _command(case, base):
     domain, command = case.domain, [case.settings.program("trianglecheck"), base, "--json", "--no-markers", *case.check]
     if case.compare_input:
         command += ["--poly", domain.path]
+    if "c" in domain.switches:
+        command += ["--keep-hull"]
     if domain.path.endswith(".node") and not domain.angle:  # vertices put on the hull are rounded
         command += ["--convex"]
     if domain.angle and case.bounds_area:

@@ -31,7 +31,8 @@ set(PTRIANGLE_STRICT_WARNINGS
     -Wpedantic -Wconversion -Wno-sign-conversion -Wvla -Wundef -Wwrite-strings
     $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes>
     $<$<COMPILE_LANGUAGE:C>:-Wmissing-prototypes>
-    $<$<COMPILE_LANGUAGE:C>:-Wold-style-definition>)
+    $<$<COMPILE_LANGUAGE:C>:-Wold-style-definition>
+    -Wno-unknown-pragmas) # OpenMP's, where it is left out
 
 # Each operation on doubles is rounded to a double as it is written, or the exact predicates break and meshes differ
 # between compilers (triangle/arithmetic.h): no fused multiply-add, no -ffast-math, no x87. These options stand behind

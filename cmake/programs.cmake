@@ -17,6 +17,13 @@ endfunction()
 foreach(name IN LISTS PTRIANGLE_SEQUENTIAL_PROGRAMS)
     ptriangle_program(${name} libtricheck libtritext libtriangle)
 endforeach()
+# The judge, on all cores where there is OpenMP: it is compiled into the program once more, so that the library, which is
+# in other programs too, needs no OpenMP.
+ptriangle_program(trianglecheck libtritext libtriangle)
+target_sources(trianglecheck PRIVATE ${PTRIANGLE_JUDGE_SOURCES} ${PTRIANGLE_CHECK_SOURCES})
+if(OpenMP_C_FOUND)
+    target_link_libraries(trianglecheck PRIVATE OpenMP::OpenMP_C)
+endif()
 foreach(name IN LISTS PTRIANGLE_EXAMPLES)
     add_executable(${name} drivers/${name}.c)
     target_link_libraries(${name} PRIVATE libtriangle)

@@ -52,13 +52,20 @@ set(PTRIANGLE_MESHER_SOURCES
 set(PTRIANGLE_CHECK_SOURCES
     triangle/check/check.c
     triangle/check/scale.c
+    triangle/check/triangles.c
     triangle/check/edges.c
+    triangle/check/stars.c
     triangle/check/order.c
     triangle/check/overlap.c
+    triangle/check/hull.c
     triangle/check/delaunay.c
     triangle/check/segments.c
+    triangle/check/line.c
     triangle/check/chain.c
+    triangle/check/border.c
+    triangle/check/vertex_markers.c
     triangle/check/input.c
+    triangle/check/apex.c
     triangle/check/quality.c
     triangle/api/judge.c)
 
@@ -105,7 +112,10 @@ set(PTRIANGLE_PUBLIC_HEADERS
 # Room drivers/: what the executables share, then the executables, each from drivers/<name>.c. The second list of programs
 # needs the room sched/ and its library.
 set(PTRIANGLE_DRIVER_SOURCES)
-set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle trianglecheck)
+set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle)
+set(PTRIANGLE_JUDGE_SOURCES
+    drivers/judged_files.c
+    drivers/verdict.c)
 set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed
 set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
 

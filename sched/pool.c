@@ -6,18 +6,12 @@
 
 #include "sched/theory.h"
 
+#include "triangle/grow.h"
+
 bool par_slots_add(struct par_slots *slots, int32_t slot)
 {
-    if (slots->n == slots->capacity) {
-        if (slots->capacity > INT32_MAX / 2)
-            return false;
-        int32_t capacity = slots->capacity ? 2 * slots->capacity : 64;
-        int32_t *fresh = realloc(slots->item, (size_t)capacity * sizeof *fresh);
-        if (!fresh)
-            return false;
-        slots->item = fresh;
-        slots->capacity = capacity;
-    }
+    if (!tri_grow(&slots->item, &slots->capacity, slots->n + 1, sizeof *slots->item))
+        return false;
     slots->item[slots->n++] = slot;
     return true;
 }

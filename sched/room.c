@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "triangle/grow.h"
+
 enum { LEAST_RANGE = 64 };
 
 /* What one insertion takes at most. */
@@ -17,15 +19,7 @@ static enum tri_status no_memory(struct tri_error *error)
 
 static bool reserve_ranges(struct par_ranges *ranges, int32_t need)
 {
-    if (need <= ranges->capacity)
-        return true;
-    int32_t capacity = need + need / 2 + 8;
-    struct par_range *fresh = realloc(ranges->item, (size_t)capacity * sizeof *fresh);
-    if (!fresh)
-        return false;
-    ranges->item = fresh;
-    ranges->capacity = capacity;
-    return true;
+    return tri_grow(&ranges->item, &ranges->capacity, need, sizeof *ranges->item);
 }
 
 /* The view's count and capacity of a kind, as pointers. */

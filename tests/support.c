@@ -246,7 +246,7 @@ struct support_copy support_copy(const struct tri_mesh *mesh)
         c.markers[s] = mesh->sub[s].marker;
     }
     c.mesh = (struct tri_check_mesh){mesh->n_vertices, c.points, mesh->n_slots, c.triangles, c.neighbors,
-                                     mesh->n_subs, c.segments, c.markers};
+                                     mesh->n_subs, c.segments, c.markers, NULL};
     return c;
 }
 

@@ -21,6 +21,7 @@ enum { ROOM = 4096 };
 struct trial {
     double points[2 * ROOM];
     int32_t triangles[3 * ROOM], neighbors[3 * ROOM], segments[2 * ROOM], markers[ROOM];
+    int32_t point_markers[ROOM];
     double max_areas[ROOM];
     struct tri_check_mesh mesh;
     struct tri_pslg input;
@@ -184,6 +185,15 @@ static void take_as_input(void)
     trial.has_input = true;
 }
 
+/* Points get the last non-zero marker of a subsegment at them. */
+static void mark_points(void)
+{
+    trial.mesh.point_markers = trial.point_markers;
+    for (int32_t i = 0; i < 2 * trial.mesh.n_segments; i++)
+        if (trial.markers[i / 2] != 0)
+            trial.point_markers[trial.segments[i]] = trial.markers[i / 2];
+}
+
 static void judge(void)
 {
     struct tri_error error = {0};
@@ -239,6 +249,7 @@ static void good_patch(void **state)
     take_as_input();
     for (int32_t s = 0; s < trial.mesh.n_segments; s++)
         trial.markers[s] = 1;
+    mark_points();
     trial.options.min_angle = 50;
     trial.options.max_area = 0.4;
     trial.options.delaunay = TRI_CHECK_CONFORMING;
@@ -353,7 +364,7 @@ static void good_rounded_chain(void **state)
     trial.options.delaunay = TRI_CHECK_NOT_DELAUNAY;
     expect_good();
     trial.points[2 * p] += 1e-9;
-    expect(TRI_CHECK_INPUT_SEGMENTS, 1, -1);
+    expect(TRI_CHECK_INPUT_SEGMENTS, 1, TRI_CHECK_BORDER);
 }
 
 static void good_any_scale(void **state)
@@ -509,8 +520,8 @@ static void broken_hanging_vertex(void **state)
     add_triangle(0, 1, 2), add_triangle(3, 4, 5);
     expect(TRI_CHECK_OVERLAP, 1, -1);
     assert_non_null(strstr(trial.report.item[TRI_CHECK_OVERLAP].text, "a vertex of one lies inside the other"));
-    trial.points[2 * 3 + 1] = -1e-300; /* apart by a hair: no overlap, but out of the range of the predicates */
-    expect(TRI_CHECK_ARRAYS, 1, -1);
+    trial.points[2 * 3 + 1] = -1e-300; /* apart by a hair, which counts as 0 */
+    expect(TRI_CHECK_OVERLAP, 1, -1);
     trial.points[2 * 3 + 1] = -1e-60;
     expect_good();
 }
@@ -713,13 +724,14 @@ static void broken_input_segments(void **state)
     assert_non_null(strstr(trial.report.item[TRI_CHECK_INPUT_SEGMENTS].text, "segment 18 (7-8)"));
     begin_patch(); /* a long one, of which one subsegment is missing */
     take_as_input();
-    trial.input.segments[0] = at(0, 2), trial.input.segments[1] = at(5, 2);
+    int32_t *ends = &trial.input.segments[2 * trial.input.n_segments++];
+    ends[0] = at(0, 2), ends[1] = at(5, 2);
     for (int32_t i = 0; i < 5; i++)
         add_segment(at(i, 2), at(i + 1, 2));
     expect_good();
     remove_segment(trial.mesh.n_segments - 3);
     expect(TRI_CHECK_INPUT_SEGMENTS, 1, -1);
-    trial.input.segments[0] = -5; /* not a segment */
+    ends[0] = -5; /* not a segment */
     expect_good();
 }
 
@@ -803,6 +815,82 @@ static void broken_markers(void **state)
     for (int32_t k = 0; k < s; k++)
         trial.markers[k] = 1;
     trial.markers[s] = 5;
+    expect_good();
+}
+
+static void broken_vertex_markers(void **state)
+{
+    (void)state;
+    begin_patch();
+    int32_t inside = at(2, 2), rim = at(2, 0);
+    trial.markers[add_segment(at(1, 1), at(2, 1))] = 9;
+    trial.mesh.segment_markers = trial.markers;
+    take_as_input();
+    for (int32_t s = 0; s + 1 < trial.mesh.n_segments; s++)
+        trial.markers[s] = 1;
+    mark_points();
+    expect_good();
+    trial.point_markers[inside] = 1; /* of nobody */
+    expect(TRI_CHECK_VERTEX_MARKERS, 1, -1);
+    trial.point_markers[inside] = 0;
+    trial.point_markers[rim] = 0; /* on the boundary */
+    expect(TRI_CHECK_VERTEX_MARKERS, 1, -1);
+    trial.point_markers[rim] = 9; /* of a segment elsewhere */
+    expect(TRI_CHECK_VERTEX_MARKERS, 1, -1);
+    trial.point_markers[rim] = 1;
+    trial.point_markers[at(1, 1)] = 0; /* on a segment with a marker */
+    expect(TRI_CHECK_VERTEX_MARKERS, 1, -1);
+    int32_t own[ROOM] = {0};
+    own[rim] = 4; /* a marker of its own, which must stay */
+    trial.input.markers = own;
+    trial.point_markers[at(1, 1)] = 9;
+    expect(TRI_CHECK_VERTEX_MARKERS, 1, -1);
+    trial.point_markers[rim] = 4;
+    expect_good();
+}
+
+/* Triangles are cut off at the rim: the mesh falls short inside, its new rim is listed. */
+static void broken_border(void **state)
+{
+    (void)state;
+    for (int32_t t = 0; t < 40; t++) {
+        begin_patch();
+        take_as_input();
+        remove_triangle(t);
+        trial.mesh.n_segments = 0;
+        list_boundary();
+        list_neighbors();
+        judge();
+        assert_true(failed(TRI_CHECK_BORDER));
+        trial.options.border = TRI_CHECK_BORDER_HULL;
+        judge();
+        assert_true(failed(TRI_CHECK_BORDER));
+        trial.options.border = TRI_CHECK_BORDER_ANY;
+        judge();
+        assert_false(failed(TRI_CHECK_BORDER));
+    }
+}
+
+/* Without segments the mesh may end along the hull, and nowhere else. */
+static void border_of_points(void **state)
+{
+    (void)state;
+    begin();
+    add_point(0, 0), add_point(3, 0), add_point(3, 2), add_point(0, 2), add_point(1, 1);
+    add_triangle(0, 1, 4), add_triangle(1, 2, 4), add_triangle(2, 3, 4), add_triangle(3, 0, 4);
+    take_as_input();
+    trial.input.n_segments = 0;
+    expect_good();
+    remove_triangle(3);
+    judge();
+    assert_int_equal(trial.report.item[TRI_CHECK_BORDER].count, 2);
+    begin(); /* a point made on the hull is rounded */
+    add_point(0.1, 0.1), add_point(1.3, 0.7), add_point(0, 2);
+    take_as_input();
+    add_point(0.1 + (1.3 - 0.1) / 3, 0.1 + (0.7 - 0.1) / 3);
+    add_triangle(0, 3, 2), add_triangle(3, 1, 2);
+    list_boundary();
+    trial.options.delaunay = TRI_CHECK_NOT_DELAUNAY;
     expect_good();
 }
 
@@ -1201,6 +1289,9 @@ int main(void)
         cmocka_unit_test(broken_input_segments),
         cmocka_unit_test(carved_pieces_are_good),
         cmocka_unit_test(broken_markers),
+        cmocka_unit_test(broken_vertex_markers),
+        cmocka_unit_test(broken_border),
+        cmocka_unit_test(border_of_points),
         cmocka_unit_test(markers_at_forks),
         cmocka_unit_test(bent_segments),
         cmocka_unit_test(marker_beyond_the_end),

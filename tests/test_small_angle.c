@@ -92,7 +92,8 @@ static void test_flat_neighbour_keeps_the_mesh_delaunay(void **state)
     struct tri_report report;
     options.keep_hull = true;
     struct tri_mesh mesh = support_generate(&pslg, &options, &report);
-    support_judge(&mesh, &pslg, &(struct tri_check_options){.max_bad = mesh.n_slots}, false, NULL);
+    struct tri_check_options asked = {.max_bad = mesh.n_slots, .border = TRI_CHECK_BORDER_HULL};
+    support_judge(&mesh, &pslg, &asked, false, NULL);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
 }

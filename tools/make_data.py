@@ -929,6 +929,8 @@ FOUND = [
          "the same", ()),
     Case("regress/thin_comb.poly", None, "comb of long bars that nearly touch, on a base as thin as they are",
          "-q33: at most 10,000 triangles; each bar is a narrow space that no edge of the triangulation bridges", ()),
+    Case("regress/denormal_coordinate.poly", None, "segments from a point at the least double",
+         "-pc: that coordinate counts as 0, for the judge, too", ()),
     Case("regress/below_dxf.poly", None, "outline from a drawing, nearly a rectangle",
          "-q20: no angle below; two triangles stayed so without need", ()),
 ]

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "triangle/grow.h"
+
 enum { MASK = TRI_WINDOW - 1, HALF = TRI_WINDOW / 2, NIL = -1 };
 
 bool tri_bad_queue_init(struct tri_bad_queue *queue)
@@ -31,17 +33,8 @@ static int32_t take_node(struct tri_bad_queue *queue)
         queue->free_node = queue->node[node].next;
         return node;
     }
-    if (queue->n_nodes == queue->node_capacity) {
-        if (queue->node_capacity > INT32_MAX / 2)
-            return NIL;
-        int32_t capacity = queue->node_capacity ? 2 * queue->node_capacity : 1024;
-        struct tri_node *fresh = realloc(queue->node, (size_t)capacity * sizeof *fresh);
-        if (!fresh)
-            return NIL;
-        queue->node = fresh;
-        queue->node_capacity = capacity;
-    }
-    return queue->n_nodes++;
+    bool room = tri_grow(&queue->node, &queue->node_capacity, queue->n_nodes + 1, sizeof *queue->node);
+    return room ? queue->n_nodes++ : NIL;
 }
 
 bool tri_bad_queue_push_angle(struct tri_bad_queue *queue, struct tri_entry entry, int bucket)

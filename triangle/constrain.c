@@ -32,6 +32,7 @@
 
 #include "triangle/cavity.h"
 #include "triangle/crossing.h"
+#include "triangle/grow.h"
 #include "triangle/interpolate.h"
 #include "triangle/overlap.h"
 #include "triangle/predicates.h"
@@ -70,29 +71,11 @@ static enum tri_status no_memory(struct layer *l)
     return tri_fail(l->error, TRI_NO_MEMORY, NULL, 0, "out of memory for segment %d", (int)l->segment);
 }
 
-static bool reserve(void *array, int32_t *capacity, int32_t need, size_t item)
-{
-    if (need <= *capacity)
-        return true;
-    if (need > INT32_MAX / 2)
-        return false;
-    int32_t wanted = need + need / 2 + 64;
-    void **slot = array;
-    void *fresh = realloc(*slot, (size_t)wanted * item);
-    if (!fresh)
-        return false;
-    *slot = fresh;
-    *capacity = wanted;
-    return true;
-}
-
 static bool push_piece(struct layer *l, int32_t from, int32_t to, struct tri_course course)
 {
     if (from == to)
         return true;
-    void *array = l->piece;
-    bool room = reserve(&array, &l->piece_capacity, l->n_pieces + 1, sizeof *l->piece);
-    l->piece = array;
+    bool room = tri_grow(&l->piece, &l->piece_capacity, l->n_pieces + 1, sizeof *l->piece);
     if (room)
         l->piece[l->n_pieces++] = (struct tri_piece){from, to, course};
     return room;
@@ -100,9 +83,7 @@ static bool push_piece(struct layer *l, int32_t from, int32_t to, struct tri_cou
 
 static bool touch(struct layer *l, int32_t t)
 {
-    void *array = l->touched;
-    bool room = reserve(&array, &l->touched_capacity, l->n_touched + 3, sizeof *l->touched);
-    l->touched = array;
+    bool room = tri_grow(&l->touched, &l->touched_capacity, l->n_touched + 3, sizeof *l->touched);
     for (int e = 0; room && e < 3; e++)
         l->touched[l->n_touched++] = tri_code(t, e);
     return room;
@@ -201,9 +182,7 @@ static int32_t marker_of(const struct layer *l, struct tri_course course)
 
 static bool set_course(struct layer *l, int32_t s, struct tri_course course)
 {
-    void *array = l->course;
-    bool room = reserve(&array, &l->course_capacity, s + 1, sizeof *l->course);
-    l->course = array;
+    bool room = tri_grow(&l->course, &l->course_capacity, s + 1, sizeof *l->course);
     if (room)
         l->course[s] = course;
     return room;
@@ -343,9 +322,7 @@ static enum tri_status lay_edge(struct layer *l, int32_t t, int32_t a, int32_t b
 
 static bool keep_corners(struct layer *l, int32_t v)
 {
-    void *array = l->corner;
-    bool room = reserve(&array, &l->corner_capacity, l->mesh->n_vertices, sizeof *l->corner);
-    l->corner = array;
+    bool room = tri_grow(&l->corner, &l->corner_capacity, l->mesh->n_vertices, sizeof *l->corner);
     if (!room)
         return false;
     for (int32_t i = 0; i < l->cavity.n_rim; i++) {

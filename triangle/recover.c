@@ -29,6 +29,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "triangle/grow.h"
 #include "triangle/predicates.h"
 
 /* A place in one of the two chains: those of the left one come first. Place i and place i + 1 are joined by wall i.
@@ -71,14 +72,8 @@ void tri_recovery_free(struct tri_recovery *r)
 
 static bool add_crossed(struct tri_recovery *r, int32_t code)
 {
-    if (r->n_crossed == r->crossed_capacity) {
-        int32_t capacity = 64 + r->crossed_capacity + r->crossed_capacity / 2;
-        int32_t *fresh = realloc(r->crossed, (size_t)capacity * sizeof *fresh);
-        if (!fresh)
-            return false;
-        r->crossed = fresh;
-        r->crossed_capacity = capacity;
-    }
+    if (!tri_grow(&r->crossed, &r->crossed_capacity, r->n_crossed + 1, sizeof *r->crossed))
+        return false;
     r->crossed[r->n_crossed++] = code;
     return true;
 }

@@ -19,6 +19,7 @@
 #include "triangle/criterion.h"
 #include "triangle/disk.h"
 #include "triangle/feature_size.h"
+#include "triangle/grow.h"
 #include "triangle/inside.h"
 #include "triangle/interpolate.h"
 #include "triangle/predicates.h"
@@ -135,16 +136,8 @@ static bool judge_fan(struct tri_refiner *r)
 
 static bool crowd(struct tri_refiner *r, int32_t s)
 {
-    if (r->n_crowded == r->crowded_capacity) {
-        if (r->crowded_capacity > INT32_MAX / 2)
-            return false;
-        int32_t capacity = r->crowded_capacity ? 2 * r->crowded_capacity : 256;
-        int32_t *fresh = realloc(r->crowded, (size_t)capacity * sizeof *fresh);
-        if (!fresh)
-            return false;
-        r->crowded = fresh;
-        r->crowded_capacity = capacity;
-    }
+    if (!tri_grow(&r->crowded, &r->crowded_capacity, r->n_crowded + 1, sizeof *r->crowded))
+        return false;
     r->crowded[r->n_crowded++] = s;
     return true;
 }

@@ -15,6 +15,7 @@ reference() { # reference INPUT SWITCHES COUNTS...
     counts "$@"
     convex=""
     holes=""
+    case $switches in *c*) convex=--keep-hull ;; esac
     case $switches in -z) convex=--convex ;; *O*) convex=--convex holes=--keep-holes ;; esac
     # shellcheck disable=SC2086 # one word or none
     judge "${input%.*}.1" --poly "$input" $convex $holes

@@ -161,7 +161,7 @@ for input in *.poly; do
     for words in -p -pc -pq -pq30 -pcq33D -pqa10YY -pi -pF; do
         case $input$words in near_coll*q* | *_apart*q*) words=${words}S1000 ;; esac
         ends 20 $words "$input"
-        case $words in *S1000) more="" ;; *) more="--poly $input" ;; esac
+        case $words in *S1000) more="" ;; *c*) more="--poly $input --keep-hull" ;; *) more="--poly $input" ;; esac
         # shellcheck disable=SC2086
         [ "$(records "${input%.*}.1.ele" | sed -n 1p | cut -d' ' -f1)" = 0 ] || judge "${input%.*}.1" $more
     done
@@ -213,7 +213,9 @@ everywhere() { # everywhere NAME SWITCHES...: each program, each of the switches
             fresh "regress/$name.poly"
             what="$program $words $name"
             check "exit code" timeout 20 "$bin/$program" "$words" "$name"
-            judge "$name.1" --poly "$name.poly"
+            case $words in *c*) more=--keep-hull ;; *) more= ;; esac
+            # shellcheck disable=SC2086 # one word or none
+            judge "$name.1" --poly "$name.poly" $more
         done
     done
 }

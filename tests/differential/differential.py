@@ -92,6 +92,7 @@ def judge_words(case, switches):
     # A hull edge that is split at a rounded point has a corner there, seen exactly.
     if whole and "r" not in switches and not refines(switches):
         words.append("--convex")
+    words += ["--keep-hull"] * ("c" in switches and "r" not in switches)
     words += ["--keep-holes"] * ("O" in switches) + ["--jettisoned"] * ("j" in switches)
     words += ["--conforming"] * ("D" in switches and "Y" not in switches and "sharp" not in case.traits)
     if "q" in switches and refines(switches) and not any(k in switches for k in "YS"):

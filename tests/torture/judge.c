@@ -129,6 +129,9 @@ static void judge_mesh(const struct outcome *o, const struct tri_pslg *pslg, boo
     struct tri_check_options ask = {.min_angle = o->options.refine ? o->options.quality.min_angle : 0,
                                     .max_bad = INT64_MAX,
                                     .convex = o->switches.keep_hull && pslg->n_holes == 0 && !o->options.refine,
+                                    .border = refined                   ? TRI_CHECK_BORDER_ANY
+                                              : o->switches.keep_hull ? TRI_CHECK_BORDER_HULL
+                                                                        : TRI_CHECK_BORDER_SEGMENTS,
                                     .ignore_holes = o->switches.ignore_holes || refined,
                                     .ignore_lost = refined,
                                     .base = 1};

@@ -1,5 +1,7 @@
 /* Input segments as chains of subsegments.
  *
+ *   0. Where exactly straight subsegments lead from its one end to the other, and none leaves nearly straight on, they
+ *      are it (line.h): that is looked up, however many input segments overlap. Else:
  *   1. From the first end of the input segment, depth first along subsegments whose far end lies on its line within
  *      the tolerance, not back and not beyond the end; the best aligned first. Each vertex is visited once per segment,
  *      for what can be reached from it does not depend on the way there. Where nearly coincident segments leave several
@@ -13,6 +15,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "triangle/check/line.h"
 #include "triangle/predicates.h"
 
 enum { MAX_GRID_SIDE = 2048, HUB = 16 };
@@ -44,6 +47,11 @@ struct chains {
     int32_t *stack;    /* [2 * n_segments + 1] each subsegment is pushed once from each end at most */
     int32_t *certain;  /* [n_segments] first input segment with a marker that runs along the subsegment, -1: none */
     int32_t *possible; /* [n_segments] first one with the subsegment's own marker that may run along it, -1: none */
+    int32_t *unmarked; /* [n_segments + 1] nearest place from each on whose subsegment nobody with a marker runs along
+                          yet, or one on the way there */
+    int32_t *passed;   /* [n_segments + 1] how many more input segments run along a place than along the one before */
+    struct check_lines lines;
+    struct check_stretch *stretch; /* [input segments] */
     struct stop *stop; /* [n_points at most] */
     int32_t n_stops, stop_capacity;
     struct grid grid;
@@ -90,6 +98,7 @@ static int32_t push_ways(struct chains *k, const struct line *l, int32_t u, int3
         if (c->fan[i] == (k->via[u] ^ 1) || along(l, to) - along(l, from) <= -l->tolerance || !is_on(l, to))
             continue;
         may_run_along(k, l, c->fan[i] >> 1);
+        c->is_along[c->fan[i] >> 1] = 1;
         ways++;
         if (k->seen[w] == k->search)
             continue;
@@ -329,6 +338,33 @@ static enum tri_status cover(struct chains *k, const struct line *l)
     return status == TRI_OK ? ask_about(k, l, covered, l->length) : status;
 }
 
+static bool names_points(const struct tri_pslg *input, int32_t id)
+{
+    const int32_t *ends = input->segments + 2 * (size_t)id;
+    return ends[0] >= 0 && ends[0] < input->n_points && ends[1] >= 0 && ends[1] < input->n_points;
+}
+
+static void find_stretches(struct chains *k)
+{
+    const struct checker *c = k->c;
+#pragma omp parallel for schedule(dynamic, 1024)
+    for (int32_t id = 0; id < c->input->n_segments; id++) {
+        const int32_t *ends = c->input->segments + 2 * (size_t)id;
+        int32_t a = names_points(c->input, id) ? c->twin[ends[0]] : -1, b = a >= 0 ? c->twin[ends[1]] : -1;
+        k->stretch[id] = b >= 0 && a != b ? tri_check_stretch(&k->lines, a, b) : (struct check_stretch){-1, -1};
+    }
+}
+
+/* The first unmarked place from i on; what was passed is shortened (Tarjan 1975, by halving). */
+static int32_t skip_marked(struct chains *k, int32_t i)
+{
+    while (k->unmarked[i] != i) {
+        k->unmarked[i] = k->unmarked[k->unmarked[i]];
+        i = k->unmarked[i];
+    }
+    return i;
+}
+
 /* Do many subsegments end at this input point? */
 static bool is_hub(const struct checker *c, int32_t point)
 {
@@ -336,11 +372,27 @@ static bool is_hub(const struct checker *c, int32_t point)
     return v >= 0 && c->fan_first[v + 1] - c->fan_first[v] > HUB;
 }
 
+/* Step 0 has found it. */
+static void take_stretch(struct chains *k, int32_t id)
+{
+    struct check_stretch stretch = k->stretch[id];
+    const int32_t *markers = k->c->input->segment_markers;
+    k->passed[stretch.first]++;
+    k->passed[stretch.last]--;
+    if (markers == NULL || markers[id] == 0)
+        return;
+    for (int32_t i = skip_marked(k, stretch.first); i < stretch.last; i = skip_marked(k, i)) {
+        int32_t *certain = &k->certain[k->lines.at[i]];
+        *certain = *certain < 0 ? id : *certain;
+        k->unmarked[i] = i + 1;
+    }
+}
+
 static enum tri_status check_line(struct chains *k, int32_t id)
 {
     const struct tri_pslg *input = k->c->input;
     int32_t a = input->segments[2 * (size_t)id], b = input->segments[2 * (size_t)id + 1];
-    if (a < 0 || a >= input->n_points || b < 0 || b >= input->n_points)
+    if (!names_points(input, id))
         return TRI_OK; /* skipped by the mesher, too */
     if (is_hub(k->c, a) && !is_hub(k->c, b)) { /* at the end of a search, ways on are not looked at */
         int32_t hub = a;
@@ -382,33 +434,74 @@ static void check_markers(struct chains *k)
     }
 }
 
+static enum tri_status allocate(struct chains *k)
+{
+    struct checker *c = k->c;
+    int32_t n = c->mesh->n_points, n_segments = c->n_segments;
+    k->seen = tri_check_zeros(n, sizeof *k->seen);
+    k->via = tri_check_array(n, sizeof *k->via);
+    k->stack = tri_check_array(2 * (int64_t)n_segments, sizeof *k->stack);
+    k->forked = tri_check_zeros(n, sizeof *k->forked);
+    k->certain = tri_check_array(n_segments, sizeof *k->certain);
+    k->possible = tri_check_array(n_segments, sizeof *k->possible);
+    k->unmarked = tri_check_array(n_segments, sizeof *k->unmarked);
+    k->passed = tri_check_zeros(n_segments, sizeof *k->passed);
+    k->stretch = tri_check_array(c->input->n_segments, sizeof *k->stretch);
+    c->is_along = tri_check_zeros(n_segments, 1);
+    return k->seen && k->via && k->stack && k->forked && k->certain && k->possible && k->unmarked && k->passed &&
+                   k->stretch && c->is_along
+               ? tri_check_lines_make(&k->lines, c)
+               : TRI_NO_MEMORY;
+}
+
+static void release(struct chains *k)
+{
+    free(k->seen);
+    free(k->via);
+    free(k->stack);
+    free(k->forked);
+    free(k->certain);
+    free(k->possible);
+    free(k->unmarked);
+    free(k->passed);
+    free(k->stretch);
+    free(k->stop);
+    free(k->grid.first);
+    free(k->grid.vertex);
+    tri_check_lines_free(&k->lines);
+}
+
+static enum tri_status check_lines(struct chains *k)
+{
+    struct checker *c = k->c;
+    enum tri_status status = TRI_OK;
+    for (int32_t s = 0; s < c->n_segments; s++) {
+        k->certain[s] = k->possible[s] = -1;
+        k->unmarked[s] = s;
+    }
+    k->unmarked[c->n_segments] = c->n_segments;
+    find_stretches(k);
+    for (int32_t id = 0; id < c->input->n_segments && status == TRI_OK; id++) {
+        if (k->stretch[id].first >= 0)
+            take_stretch(k, id);
+        else
+            status = check_line(k, id);
+    }
+    for (int32_t i = 0, n = 0; i < k->lines.begin[k->lines.n_lines]; i++) {
+        n += k->passed[i];
+        c->is_along[k->lines.at[i]] |= n > 0;
+    }
+    return status;
+}
+
 enum tri_status tri_check_chains(struct checker *c)
 {
     struct chains k = {.c = c};
-    k.seen = tri_check_zeros(c->mesh->n_points, sizeof *k.seen);
-    k.via = tri_check_array(c->mesh->n_points, sizeof *k.via);
-    k.stack = tri_check_array(2 * (int64_t)c->n_segments, sizeof *k.stack);
-    k.forked = tri_check_zeros(c->mesh->n_points, sizeof *k.forked);
-    k.certain = tri_check_array(c->n_segments, sizeof *k.certain);
-    k.possible = tri_check_array(c->n_segments, sizeof *k.possible);
-    enum tri_status status = TRI_OK;
-    if (k.seen == NULL || k.via == NULL || k.forked == NULL || k.stack == NULL || k.certain == NULL ||
-        k.possible == NULL)
-        status = TRI_NO_MEMORY;
-    for (int32_t s = 0; s < c->n_segments && status == TRI_OK; s++)
-        k.certain[s] = k.possible[s] = -1;
-    for (int32_t id = 0; id < c->input->n_segments && status == TRI_OK; id++)
-        status = check_line(&k, id);
+    enum tri_status status = allocate(&k);
+    if (status == TRI_OK)
+        status = check_lines(&k);
     if (status == TRI_OK && c->mesh->segment_markers != NULL)
         check_markers(&k);
-    free(k.seen);
-    free(k.via);
-    free(k.stack);
-    free(k.forked);
-    free(k.certain);
-    free(k.possible);
-    free(k.stop);
-    free(k.grid.first);
-    free(k.grid.vertex);
+    release(&k);
     return status;
 }

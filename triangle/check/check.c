@@ -28,6 +28,8 @@ static const char *const names[TRI_N_CHECKS] = {
     [TRI_CHECK_LOST_VERTICES] = "no lost vertices",
     [TRI_CHECK_INPUT_SEGMENTS] = "input segments",
     [TRI_CHECK_MARKERS] = "segment markers",
+    [TRI_CHECK_BORDER] = "boundary along the input",
+    [TRI_CHECK_VERTEX_MARKERS] = "vertex markers",
     [TRI_CHECK_HOLES] = "holes",
     [TRI_CHECK_ANGLES] = "angles",
     [TRI_CHECK_AREAS] = "areas",
@@ -67,6 +69,25 @@ void tri_check_fault(struct checker *c, enum tri_check_kind kind, const char *fo
     va_end(arguments);
 }
 
+void tri_check_each(struct checker *c, enum tri_check_kind kind, int32_t n,
+                    bool (*is_bad)(const struct checker *c, int32_t i), void (*tell)(struct checker *c, int32_t i))
+{
+    int64_t n_bad = 0, before = c->report->item[kind].count;
+    int32_t first = n;
+    tri_check_begin(c, kind);
+#pragma omp parallel for schedule(static) reduction(+ : n_bad) reduction(min : first)
+    for (int32_t i = 0; i < n; i++) {
+        if (is_bad(c, i)) {
+            n_bad++;
+            first = i < first ? i : first;
+        }
+    }
+    if (n_bad == 0)
+        return;
+    tell(c, first);
+    c->report->item[kind].count = before + n_bad;
+}
+
 void *tri_check_array(int64_t n, size_t size)
 {
     assert(n >= 0 && size > 0);
@@ -101,47 +122,13 @@ enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_c
     return TRI_OK;
 }
 
-static void check_arrays(struct checker *c)
-{
-    const struct tri_check_mesh *m = c->mesh;
-    tri_check_begin(c, TRI_CHECK_ARRAYS);
-    for (int32_t h = 0; h < c->n_half_edges; h++) {
-        int32_t v = m->triangles[h];
-        if (v >= 0 && v < m->n_points)
-            continue;
-        tri_check_fault(c, TRI_CHECK_ARRAYS, "triangle %ld has corner %ld, which is not a vertex",
-                        check_number(c, h / 3), check_number(c, v));
-    }
-    for (int32_t v = 0; v < m->n_points; v++) {
-        struct tri_point p = check_point(c, v);
-        if (tri_is_exact_coordinate(p.x) && tri_is_exact_coordinate(p.y))
-            continue;
-        tri_check_fault(c, TRI_CHECK_ARRAYS, "vertex %ld at (%.17g, %.17g) is beyond the range of exact arithmetic",
-                        check_number(c, v), check_given(c, p.x), check_given(c, p.y));
-    }
-}
-
-static void check_orientation(struct checker *c)
-{
-    tri_check_begin(c, TRI_CHECK_ORIENTATION);
-    for (int32_t t = 0; t < c->mesh->n_triangles; t++) {
-        const int32_t *v = c->mesh->triangles + 3 * (size_t)t;
-        double sign = tri_orient2d(check_point(c, v[0]), check_point(c, v[1]), check_point(c, v[2]));
-        if (sign > 0)
-            continue;
-        tri_check_fault(c, TRI_CHECK_ORIENTATION, "triangle %ld (%ld %ld %ld) is %s", check_number(c, t),
-                        check_number(c, v[0]), check_number(c, v[1]), check_number(c, v[2]),
-                        sign < 0 ? "clockwise" : "flat");
-    }
-}
-
 /* The checks proper, each on what the earlier ones allow. */
 static enum tri_status run(struct checker *c)
 {
-    check_arrays(c);
+    tri_check_arrays(c);
     if (!check_good(c, TRI_CHECK_ARRAYS))
         return TRI_OK;
-    check_orientation(c);
+    tri_check_orientation(c);
     enum tri_status status = tri_check_edges(c);
     if (status == TRI_OK)
         status = tri_check_subsegments(c);
@@ -158,9 +145,7 @@ static enum tri_status run(struct checker *c)
     if (status != TRI_OK || !check_good(c, TRI_CHECK_OVERLAP))
         return status;
     tri_check_answers(c);
-    if (c->options->convex)
-        tri_check_hull(c);
-    return TRI_OK;
+    return c->options->convex ? tri_check_hull(c) : TRI_OK;
 }
 
 static void release(struct checker *c)
@@ -168,13 +153,17 @@ static void release(struct checker *c)
     for (int i = 0; i < 3; i++)
         free(c->scaled[i]);
     free(c->first);
-    free(c->corner);
+    free(c->entry);
     free(c->link);
+    free(c->used);
+    free(c->turns);
+    free(c->on_boundary);
     free(c->own_segments);
     free(c->constrained);
     free(c->fan_first);
     free(c->fan);
     free(c->twin);
+    free(c->is_along);
     free(c->queries);
 }
 

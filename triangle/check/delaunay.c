@@ -1,39 +1,45 @@
 /* The empty circle, edge by edge; exact. By Delaunay's lemma (constrained form: Lee & Lin 1986) edges suffice. */
 #include "triangle/check/internal.h"
 
-static void check_edge(struct checker *c, int32_t h)
+static bool is_conforming(const struct checker *c)
 {
-    int32_t a = check_org(c, h), b = check_dest(c, h), p = check_apex(c, h), q = check_apex(c, c->link[h]);
-    struct tri_point pa = check_point(c, a), pb = check_point(c, b);
-    if (tri_incircle(pa, pb, check_point(c, p), check_point(c, q)) <= 0)
-        return;
-    tri_check_fault(c, TRI_CHECK_LOCAL_DELAUNAY,
-                    "vertex %ld lies inside the circumcircle of triangle %ld (edge %ld-%ld)",
-                    check_number(c, q), check_number(c, h / 3), check_number(c, a), check_number(c, b));
+    return c->options->delaunay == TRI_CHECK_CONFORMING;
 }
 
-static void check_diametral_circle(struct checker *c, int32_t h)
+static bool is_not_delaunay(const struct checker *c, int32_t h)
 {
-    int32_t a = check_org(c, h), b = check_dest(c, h), p = check_apex(c, h);
-    if (tri_dot(check_point(c, a), check_point(c, b), check_point(c, p)) >= 0)
-        return;
+    if (h > c->link[h] || (!is_conforming(c) && check_is_constrained(c, h)))
+        return false;
+    return tri_incircle(check_point(c, check_org(c, h)), check_point(c, check_dest(c, h)),
+                        check_point(c, check_apex(c, h)), check_point(c, check_apex(c, c->link[h]))) > 0;
+}
+
+static void tell_circle(struct checker *c, int32_t h)
+{
+    tri_check_fault(c, TRI_CHECK_LOCAL_DELAUNAY,
+                    "vertex %ld lies inside the circumcircle of triangle %ld (edge %ld-%ld)",
+                    check_number(c, check_apex(c, c->link[h])), check_number(c, h / 3),
+                    check_number(c, check_org(c, h)), check_number(c, check_dest(c, h)));
+}
+
+static bool is_encroached(const struct checker *c, int32_t h)
+{
+    return check_is_constrained(c, h) && tri_dot(check_point(c, check_org(c, h)), check_point(c, check_dest(c, h)),
+                                                 check_point(c, check_apex(c, h))) < 0;
+}
+
+static void tell_encroached(struct checker *c, int32_t h)
+{
     tri_check_fault(c, TRI_CHECK_ENCROACHMENT, "vertex %ld lies inside the diametral circle of subsegment %ld-%ld",
-                    check_number(c, p), check_number(c, a), check_number(c, b));
+                    check_number(c, check_apex(c, h)), check_number(c, check_org(c, h)),
+                    check_number(c, check_dest(c, h)));
 }
 
 void tri_check_delaunay(struct checker *c)
 {
     if (c->options->delaunay == TRI_CHECK_NOT_DELAUNAY)
         return;
-    bool conforming = c->options->delaunay == TRI_CHECK_CONFORMING;
-    tri_check_begin(c, TRI_CHECK_LOCAL_DELAUNAY);
-    if (conforming)
-        tri_check_begin(c, TRI_CHECK_ENCROACHMENT);
-    for (int32_t h = 0; h < c->n_half_edges; h++) {
-        bool constrained = check_is_constrained(c, h);
-        if (h < c->link[h] && (conforming || !constrained))
-            check_edge(c, h);
-        if (conforming && constrained)
-            check_diametral_circle(c, h);
-    }
+    tri_check_each(c, TRI_CHECK_LOCAL_DELAUNAY, c->n_half_edges, is_not_delaunay, tell_circle);
+    if (is_conforming(c))
+        tri_check_each(c, TRI_CHECK_ENCROACHMENT, c->n_half_edges, is_encroached, tell_encroached);
 }

@@ -163,7 +163,9 @@ enum tri_status tri_check_input(struct checker *c)
         status = ask_for_holes(c);
     if (status == TRI_OK && c->input != NULL && c->mesh->segments != NULL)
         status = tri_check_chains(c);
-    return status;
+    if (status == TRI_OK && c->input != NULL)
+        status = tri_check_border(c);
+    return status == TRI_OK ? tri_check_vertex_markers(c) : status;
 }
 
 static void report_inside(struct checker *c, const struct check_query *query)

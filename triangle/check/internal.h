@@ -22,16 +22,10 @@ struct check_query {
     bool inside;              /* the sweep's answer: it is where it should not be */
 };
 
-/* A corner in the list of its vertex. */
-struct check_corner {
-    int32_t name;       /* 3 * t + k */
-    int32_t next, prev; /* vertices at the other corners of t, counter-clockwise */
-};
-
 /* The half-edges between two vertices a and b. */
 struct check_edge {
-    int32_t there, back; /* one from a to b, and from b to a; -1: none */
-    int n_there, n_back; /* how many there are */
+    int32_t there, back;     /* the first from a to b, and from b to a; -1: none */
+    int32_t n_there, n_back; /* how many there are */
 };
 
 struct checker {
@@ -48,9 +42,14 @@ struct checker {
     double *scaled[3]; /* their points, the input's, its hole points; NULL: not scaled */
 
     /* edges.c */
-    int32_t *first;              /* [n_points + 1] into corner */
-    struct check_corner *corner; /* [n_half_edges] grouped by vertex */
-    int32_t *link;               /* [n_half_edges] the same edge in the neighbour; -1: boundary */
+    int32_t *first;  /* [n_points + 1] into entry */
+    uint64_t *entry; /* [n_half_edges] see there */
+    int32_t *link;   /* [n_half_edges] the same edge in the neighbour; -1: boundary */
+    uint8_t *used;   /* [n_points] is it a corner? */
+
+    /* stars.c */
+    int32_t *turns;       /* [n_points] */
+    uint8_t *on_boundary; /* [n_points] */
 
     /* segments.c; these are the listed subsegments, or where none are given the boundary edges */
     int32_t n_segments;
@@ -64,17 +63,24 @@ struct checker {
     int32_t *twin;    /* [input->n_points] used vertex at the place of an input point, -1: none */
     double tolerance; /* distance; see TRI_CHECK_ULPS */
 
+    /* chain.c */
+    uint8_t *is_along; /* [n_segments] does the subsegment lie along an input segment? */
+
     struct check_query *queries; /* for the sweep */
     int32_t n_queries, query_capacity;
 };
 
+void tri_check_arrays(struct checker *c);
+void tri_check_orientation(struct checker *c);            /* needs ARRAYS */
 enum tri_status tri_check_edges(struct checker *c);       /* needs ARRAYS: pairs the half-edges, compares neighbours */
 enum tri_status tri_check_stars(struct checker *c);       /* needs EDGES, ORIENTATION */
 enum tri_status tri_check_overlap(struct checker *c);     /* needs the same; answers the queries */
-void tri_check_hull(struct checker *c);                   /* needs OVERLAP */
+enum tri_status tri_check_hull(struct checker *c);        /* needs OVERLAP */
 enum tri_status tri_check_subsegments(struct checker *c); /* needs EDGES; fills the fields above */
 void tri_check_delaunay(struct checker *c);               /* needs EDGES, ORIENTATION, subsegments */
 enum tri_status tri_check_input(struct checker *c);       /* needs ARRAYS, subsegments; adds queries */
+enum tri_status tri_check_border(struct checker *c);      /* needs chains */
+enum tri_status tri_check_vertex_markers(struct checker *c); /* needs EDGES, subsegments, twins */
 void tri_check_answers(struct checker *c);                /* where overlap has found nothing: judges the answers */
 enum tri_status tri_check_quality(struct checker *c);     /* needs EDGES, subsegments */
 
@@ -89,11 +95,15 @@ void tri_check_begin(struct checker *c, enum tri_check_kind kind);
 __attribute__((format(printf, 3, 4)))
 #endif
 void tri_check_fault(struct checker *c, enum tri_check_kind kind, const char *format, ...);
+/* Looks at items 0 .. n - 1, on all cores: all that is_bad says so of are faults of this kind, which begins here; the
+ * first of them is told. The same report whatever the number of threads. */
+void tri_check_each(struct checker *c, enum tri_check_kind kind, int32_t n,
+                    bool (*is_bad)(const struct checker *c, int32_t i), void (*tell)(struct checker *c, int32_t i));
 /* Asks the sweep whether the point, of any size, finite or not, lies inside the mesh. */
 enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id,
                               double tolerance);
 
-/* O(smaller number of triangles at a and b). */
+/* O(log n). */
 struct check_edge tri_check_find_edge(const struct checker *c, int32_t a, int32_t b);
 
 /* n * size bytes, never a null pointer for n = 0. */
@@ -133,11 +143,18 @@ static inline struct tri_point check_point(const struct checker *c, int32_t v)
 }
 static inline bool check_is_used(const struct checker *c, int32_t v)
 {
-    return c->first[v] < c->first[v + 1];
+    return c->used[v] != 0;
 }
 static inline bool check_same_place(struct tri_point p, struct tri_point q)
 {
     return p.x == q.x && p.y == q.y;
+}
+
+/* Are the ends of subsegment s two vertices? */
+static inline bool check_is_listed_well(const struct checker *c, int32_t s)
+{
+    int32_t a = c->segments[2 * (size_t)s], b = c->segments[2 * (size_t)s + 1], n = c->mesh->n_points;
+    return a >= 0 && a < n && b >= 0 && b < n && a != b;
 }
 
 static inline bool check_is_constrained(const struct checker *c, int32_t half_edge)

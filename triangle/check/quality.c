@@ -1,38 +1,18 @@
-/* Angles and areas, and which small angles the input is to blame for.
+/* Angles and areas.
  *
  * In floating point: squared sines are good to a relative error of about 1e-14 (coordinate differences are correctly
  * rounded, and the cross product of a triangle with a smallest angle of x radians cancels by a factor of 1/x at most).
  * A bound counts as missed from a relative 1e-12 on.
  *
- * An apex is a vertex where two subsegments meet at less than 60 degrees (or what the options say) with the mesh
- * between them. Near it no mesher can keep a bound: triangles at the apex, those that touch one at it, and those that
- * span its legs further out (across two concentric shells; Miller, Pav & Walkington 2003) are explained by it. */
+ * Triangles are looked at in blocks of a fixed size, what is found put together in their order: so sums are rounded in
+ * the same way whatever the number of threads. */
 #include <math.h>
 #include <stdlib.h>
 
+#include "triangle/check/apex.h"
 #include "triangle/check/internal.h"
 
-#define SLACK   1e-12
-#define DEGREES (180 / 3.14159265358979323846)
-
-enum {
-    MAX_LEGS = 24, /* legs of apexes that one corner is tried for */
-    NO_APEX = -1,
-    UNKNOWN = -2,
-    UNDER_WAY = -3
-};
-
-struct quality {
-    struct checker *c;
-    double sine2;       /* squared sine of the bound */
-    double apex_cosine; /* signed square of the cosine of the largest small input angle */
-    uint8_t *is_apex;   /* [n_points] */
-    uint8_t *is_near;   /* [n_points]: in a triangle with an apex */
-    int32_t *apex_of;   /* [2 n_segments], for each fan entry: the apex that its chain reaches, NO_APEX, UNKNOWN.. */
-    double least_sine2;  /* so far; of the smallest angle, which is below 90 degrees */
-    double least_cosine; /* so far; signed square of the cosine of the largest angle */
-    double sum, rest;    /* of the areas; rest: what rounding took from sum (Neumaier 1974) */
-};
+enum { BLOCK = 1 << 14 };
 
 struct shape {
     double area;    /* signed */
@@ -61,114 +41,42 @@ static struct shape shape_of(const struct checker *c, int32_t t)
     return (struct shape){cross / 2, cross * cross / (l[longest] * l[m]), dot * fabs(dot) / (l[i] * l[j])};
 }
 
-static bool is_wedge(const struct quality *w, int32_t v, int32_t a, int32_t b)
+/* Least or largest of something, and the first triangle that has it; -1: none yet. */
+struct extreme {
+    double value;
+    int32_t at;
+};
+
+struct sum { /* Neumaier 1974 */
+    double total, rest;
+};
+
+struct block {
+    struct extreme sine2, cosine2, smallest, largest; /* as in struct shape; cosine2: the least, of the largest angle */
+    struct sum area;
+    int32_t n_small, n_large, first_large; /* below the bound of angles, above that of areas */
+};
+
+struct quality {
+    struct checker *c;
+    double sine2; /* squared sine of the bound */
+    int32_t n_blocks;
+    struct block *block;
+    int32_t *small; /* triangles below the bound, ascending */
+    int32_t n_small;
+};
+
+static void note(struct extreme *e, double value, int32_t t, bool larger)
 {
-    const struct checker *c = w->c;
-    struct tri_point o = check_point(c, v), p = check_point(c, a), q = check_point(c, b);
-    double ax = p.x - o.x, ay = p.y - o.y, bx = q.x - o.x, by = q.y - o.y, dot = ax * bx + ay * by;
-    if (dot * fabs(dot) <= (w->apex_cosine + SLACK) * (ax * ax + ay * ay) * (bx * bx + by * by))
-        return false;
-    bool left = ax * by - ay * bx > 0;
-    return tri_check_find_edge(c, v, left ? a : b).there >= 0; /* a triangle between them? */
+    if (e->at < 0 || (larger ? value > e->value : value < e->value))
+        *e = (struct extreme){value, t};
 }
 
-/* More than 24 subsegments enclose an angle of 15 degrees at most: no need to compare them all. */
-static bool is_apex(const struct quality *q, int32_t v)
+static void add(struct sum *s, double x)
 {
-    const struct checker *c = q->c;
-    const int32_t *fan = c->fan + c->fan_first[v];
-    int32_t n = c->fan_first[v + 1] - c->fan_first[v];
-    if (n > 24)
-        return true;
-    for (int32_t i = 0; i < n; i++) {
-        for (int32_t j = i + 1; j < n; j++) {
-            if (is_wedge(q, v, c->segments[fan[i] ^ 1], c->segments[fan[j] ^ 1]))
-                return true;
-        }
-    }
-    return false;
-}
-
-static bool is_straight(const struct checker *c, int32_t from, int32_t by, int32_t to)
-{
-    struct tri_point p = check_point(c, from), q = check_point(c, by), r = check_point(c, to);
-    double ax = q.x - p.x, ay = q.y - p.y, bx = r.x - q.x, cy = r.y - q.y, dot = ax * bx + ay * cy;
-    double length = sqrt(ax * ax + ay * ay) + sqrt(bx * bx + cy * cy);
-    return dot > 0 && fabs(ax * cy - ay * bx) <= 1e-9 * dot + c->tolerance * length;
-}
-
-/* The subsegment that goes straight on from u to v and beyond; its fan entry at v, -1: none. */
-static int32_t straight_on(const struct checker *c, int32_t u, int32_t v)
-{
-    for (int32_t i = c->fan_first[v]; i < c->fan_first[v + 1]; i++) {
-        if (is_straight(c, u, v, c->segments[c->fan[i] ^ 1]))
-            return c->fan[i];
-    }
-    return -1;
-}
-
-/* Apex that the chain reaches which begins with fan entry i. What is found holds for all entries on the way, so that
- * each is passed twice in all. A chain that comes back to itself reaches none. */
-static int32_t apex_along(struct quality *q, int32_t i)
-{
-    const struct checker *c = q->c;
-    int32_t at = i;
-    while (at >= 0 && q->apex_of[at] == UNKNOWN) {
-        int32_t end = c->segments[at ^ 1];
-        q->apex_of[at] = q->is_apex[end] ? end : UNDER_WAY;
-        at = q->is_apex[end] ? at : straight_on(c, c->segments[at], end);
-    }
-    int32_t found = at >= 0 && q->apex_of[at] != UNDER_WAY ? q->apex_of[at] : NO_APEX;
-    for (at = i; at >= 0 && q->apex_of[at] == UNDER_WAY; at = straight_on(c, c->segments[at], c->segments[at ^ 1]))
-        q->apex_of[at] = found;
-    return found;
-}
-
-static int apexes_of(struct quality *q, int32_t v, int32_t *apex)
-{
-    int n = 0;
-    for (int32_t i = q->c->fan_first[v]; i < q->c->fan_first[v + 1] && n < MAX_LEGS; i++) {
-        int32_t found = apex_along(q, q->c->fan[i]);
-        if (found >= 0)
-            apex[n++] = found;
-    }
-    return n;
-}
-
-static bool spans_legs(struct quality *q, const int32_t *corners)
-{
-    int32_t apex[3][MAX_LEGS];
-    int n[3];
-    for (int k = 0; k < 3; k++) {
-        n[k] = apexes_of(q, corners[k], apex[k]);
-        for (int m = 0; m < k; m++) {
-            for (int i = 0; i < n[k]; i++) {
-                for (int j = 0; j < n[m]; j++) {
-                    if (apex[k][i] == apex[m][j])
-                        return true;
-                }
-            }
-        }
-    }
-    return false;
-}
-
-static bool is_explained(struct quality *q, int32_t t)
-{
-    const int32_t *v = q->c->mesh->triangles + 3 * (size_t)t;
-    return q->is_near[v[0]] || q->is_near[v[1]] || q->is_near[v[2]] || spans_legs(q, v);
-}
-
-static void note_small(struct quality *q, int32_t t, const struct shape *s)
-{
-    struct checker *c = q->c;
-    c->report->n_small++;
-    bool explained = is_explained(q, t);
-    c->report->n_small_explained += explained;
-    if (c->options->max_bad >= 0 ? c->report->n_small <= c->options->max_bad : explained)
-        return;
-    tri_check_fault(c, TRI_CHECK_ANGLES, "triangle %ld has an angle of %.6g degrees", check_number(c, t),
-                    asin(fmin(1, sqrt(s->sine2))) * DEGREES);
+    double total = s->total + x;
+    s->rest += fabs(s->total) >= fabs(x) ? (s->total - total) + x : (x - total) + s->total;
+    s->total = total;
 }
 
 static double given_area(const struct checker *c, double area)
@@ -176,110 +84,165 @@ static double given_area(const struct checker *c, double area)
     return c->exponent == 0 ? area : ldexp(area, -2 * c->exponent);
 }
 
-static void note_area(struct quality *q, int32_t t, double area)
+static double area_bound(const struct checker *c, int32_t t)
 {
-    struct tri_check_report *r = q->c->report;
-    if (r->smallest_area_at < 0 || area < r->smallest_area)
-        r->smallest_area = area, r->smallest_area_at = t;
-    if (r->largest_area_at < 0 || area > r->largest_area)
-        r->largest_area = area, r->largest_area_at = t;
-    double sum = q->sum + area;
-    q->rest += fabs(q->sum) >= fabs(area) ? (q->sum - sum) + area : (area - sum) + q->sum;
-    q->sum = sum;
-    const struct tri_check_options *o = q->c->options;
+    const struct tri_check_options *o = c->options;
     double bound = o->max_area > 0 ? o->max_area : INFINITY;
-    if (o->max_areas != NULL && o->max_areas[t] > 0)
-        bound = fmin(bound, o->max_areas[t]);
-    if (given_area(q->c, area) <= bound * (1 + SLACK))
-        return;
-    tri_check_fault(q->c, TRI_CHECK_AREAS, "triangle %ld has an area of %.17g, above the bound of %.17g",
-                    check_number(q->c, t), given_area(q->c, area), bound);
+    return o->max_areas != NULL && o->max_areas[t] > 0 ? fmin(bound, o->max_areas[t]) : bound;
 }
 
-static void note_shape(struct quality *q, int32_t t)
+static bool is_small(const struct quality *q, const struct shape *s)
 {
-    struct tri_check_report *r = q->c->report;
+    return q->sine2 > 0 && !(s->sine2 >= q->sine2 * (1 - TRI_CHECK_SLACK));
+}
+
+static void note_shape(const struct quality *q, struct block *b, int32_t t)
+{
     struct shape s = shape_of(q->c, t);
-    note_area(q, t, s.area);
-    if (s.sine2 < q->least_sine2 || r->smallest_angle_at < 0)
-        q->least_sine2 = s.sine2, r->smallest_angle_at = t;
-    if (s.cosine2 < q->least_cosine || r->largest_angle_at < 0)
-        q->least_cosine = s.cosine2, r->largest_angle_at = t;
-    if (q->sine2 > 0 && !(s.sine2 >= q->sine2 * (1 - SLACK)))
-        note_small(q, t, &s);
+    note(&b->sine2, s.sine2, t, false);
+    note(&b->cosine2, s.cosine2, t, false);
+    note(&b->smallest, s.area, t, false);
+    note(&b->largest, s.area, t, true);
+    add(&b->area, s.area);
+    b->n_small += is_small(q, &s);
+    if (!(given_area(q->c, s.area) <= area_bound(q->c, t) * (1 + TRI_CHECK_SLACK)) && b->n_large++ == 0)
+        b->first_large = t;
 }
 
-static void summarize(struct quality *q)
+static int32_t end_of_block(const struct quality *q, int32_t i)
 {
-    struct tri_check_report *r = q->c->report;
-    r->total_area = given_area(q->c, q->sum + q->rest);
-    r->smallest_area = given_area(q->c, r->smallest_area);
-    r->largest_area = given_area(q->c, r->largest_area);
-    if (r->smallest_angle_at >= 0)
-        r->smallest_angle = asin(fmin(1, sqrt(q->least_sine2))) * DEGREES;
-    double cosine = copysign(sqrt(fmin(1, fabs(q->least_cosine))), q->least_cosine);
-    if (r->largest_angle_at >= 0)
-        r->largest_angle = acos(cosine) * DEGREES;
+    int32_t n = q->c->mesh->n_triangles;
+    return n - i * BLOCK < BLOCK ? n : (i + 1) * BLOCK;
+}
+
+static void look(struct quality *q)
+{
+    static const struct extreme none = {0, -1};
+#pragma omp parallel for schedule(dynamic)
+    for (int32_t i = 0; i < q->n_blocks; i++) {
+        q->block[i] = (struct block){.sine2 = none, .cosine2 = none, .smallest = none, .largest = none};
+        for (int32_t t = i * BLOCK; t < end_of_block(q, i); t++)
+            note_shape(q, &q->block[i], t);
+    }
+}
+
+static void put_together(const struct quality *q, struct block *all)
+{
+    static const struct extreme none = {0, -1};
+    *all = (struct block){.sine2 = none, .cosine2 = none, .smallest = none, .largest = none};
+    for (int32_t i = 0; i < q->n_blocks; i++) {
+        const struct block *b = &q->block[i];
+        note(&all->sine2, b->sine2.value, b->sine2.at, false);
+        note(&all->cosine2, b->cosine2.value, b->cosine2.at, false);
+        note(&all->smallest, b->smallest.value, b->smallest.at, false);
+        note(&all->largest, b->largest.value, b->largest.at, true);
+        add(&all->area, b->area.total);
+        all->area.rest += b->area.rest;
+        if (b->n_large > 0 && all->n_large == 0)
+            all->first_large = b->first_large;
+        all->n_large += b->n_large;
+        all->n_small += b->n_small;
+    }
+}
+
+static double degrees_of_sine2(double sine2)
+{
+    return asin(fmin(1, sqrt(sine2))) / TRI_CHECK_RADIANS;
+}
+
+static void summarize(struct checker *c, const struct block *all)
+{
+    struct tri_check_report *r = c->report;
+    r->smallest_angle_at = all->sine2.at;
+    r->largest_angle_at = all->cosine2.at;
+    r->smallest_area_at = all->smallest.at;
+    r->largest_area_at = all->largest.at;
+    r->total_area = given_area(c, all->area.total + all->area.rest);
+    r->smallest_area = given_area(c, all->smallest.value);
+    r->largest_area = given_area(c, all->largest.value);
+    if (all->sine2.at < 0)
+        return;
+    double cosine = copysign(sqrt(fmin(1, fabs(all->cosine2.value))), all->cosine2.value);
+    r->smallest_angle = degrees_of_sine2(all->sine2.value);
+    r->largest_angle = acos(cosine) / TRI_CHECK_RADIANS;
+}
+
+static void judge_areas(struct checker *c, const struct block *all)
+{
+    if (!(c->options->max_area > 0) && c->options->max_areas == NULL)
+        return;
+    tri_check_begin(c, TRI_CHECK_AREAS);
+    if (all->n_large == 0)
+        return;
+    int32_t t = all->first_large;
+    tri_check_fault(c, TRI_CHECK_AREAS, "triangle %ld has an area of %.17g, above the bound of %.17g",
+                    check_number(c, t), given_area(c, shape_of(c, t).area), area_bound(c, t));
+    c->report->item[TRI_CHECK_AREAS].count = all->n_large;
+}
+
+/* The triangles below the bound; few, as a rule. */
+static enum tri_status list_small(struct quality *q, int32_t n)
+{
+    q->small = tri_check_array(n, sizeof *q->small);
+    if (q->small == NULL)
+        return TRI_NO_MEMORY;
+    for (int32_t i = 0; i < q->n_blocks; i++) {
+        for (int32_t t = i * BLOCK; q->block[i].n_small > 0 && t < end_of_block(q, i); t++) {
+            struct shape s = shape_of(q->c, t);
+            if (is_small(q, &s))
+                q->small[q->n_small++] = t;
+        }
+    }
+    return TRI_OK;
+}
+
+static void judge_small(struct checker *c, struct apexes *apexes, int32_t t)
+{
+    bool explained = tri_check_is_explained(apexes, t);
+    c->report->n_small++;
+    c->report->n_small_explained += explained;
+    if (c->options->max_bad >= 0 ? c->report->n_small <= c->options->max_bad : explained)
+        return;
+    tri_check_fault(c, TRI_CHECK_ANGLES, "triangle %ld has an angle of %.6g degrees", check_number(c, t),
+                    degrees_of_sine2(shape_of(c, t).sine2));
+}
+
+static enum tri_status judge_angles(struct quality *q, int32_t n_small)
+{
+    struct apexes apexes;
+    enum tri_status status = tri_check_find_apexes(&apexes, q->c);
+    if (q->c->options->min_angle > 0)
+        tri_check_begin(q->c, TRI_CHECK_ANGLES);
+    if (status == TRI_OK)
+        status = list_small(q, n_small);
+    for (int32_t i = 0; status == TRI_OK && i < q->n_small; i++)
+        judge_small(q->c, &apexes, q->small[i]);
+    tri_check_free_apexes(&apexes);
+    free(q->small);
+    return status;
 }
 
 static double squared_sine(double degrees)
 {
     if (degrees <= 0)
         return 0;
-    double sine = sin(fmin(degrees, 90) / DEGREES);
+    double sine = sin(fmin(degrees, 90) * TRI_CHECK_RADIANS);
     return sine * sine;
-}
-
-static double signed_squared_cosine(double degrees)
-{
-    double cosine = cos(degrees / DEGREES);
-    return cosine * fabs(cosine);
-}
-
-static void find_apexes(struct quality *q)
-{
-    const struct checker *c = q->c;
-    for (int32_t v = 0; v < c->mesh->n_points; v++) {
-        q->is_apex[v] = is_apex(q, v);
-        c->report->n_apexes += q->is_apex[v];
-    }
-    for (int32_t t = 0; t < c->mesh->n_triangles; t++) {
-        const int32_t *v = c->mesh->triangles + 3 * (size_t)t;
-        if (q->is_apex[v[0]] || q->is_apex[v[1]] || q->is_apex[v[2]])
-            q->is_near[v[0]] = q->is_near[v[1]] = q->is_near[v[2]] = true;
-    }
-    for (int32_t i = 0; i < 2 * c->n_segments; i++)
-        q->apex_of[i] = UNKNOWN;
-}
-
-static void note_all(struct quality *q)
-{
-    const struct tri_check_options *o = q->c->options;
-    struct tri_check_report *r = q->c->report;
-    find_apexes(q);
-    r->smallest_angle_at = r->largest_angle_at = r->smallest_area_at = r->largest_area_at = -1;
-    if (o->min_angle > 0)
-        tri_check_begin(q->c, TRI_CHECK_ANGLES);
-    if (o->max_area > 0 || o->max_areas != NULL)
-        tri_check_begin(q->c, TRI_CHECK_AREAS);
-    for (int32_t t = 0; t < q->c->mesh->n_triangles; t++)
-        note_shape(q, t);
-    summarize(q);
 }
 
 enum tri_status tri_check_quality(struct checker *c)
 {
-    const struct tri_check_options *o = c->options;
-    struct quality q = {.c = c, .sine2 = squared_sine(o->min_angle)};
-    q.is_apex = tri_check_zeros(c->mesh->n_points, 1);
-    q.is_near = tri_check_zeros(c->mesh->n_points, 1);
-    q.apex_of = tri_check_zeros(2 * c->n_segments, sizeof *q.apex_of);
-    q.apex_cosine = signed_squared_cosine(o->small_input_angle > 0 ? fmin(o->small_input_angle, 180) : 60);
-    bool room = q.is_apex && q.is_near && q.apex_of;
-    if (room)
-        note_all(&q);
-    free(q.is_apex);
-    free(q.is_near);
-    free(q.apex_of);
-    return room ? TRI_OK : TRI_NO_MEMORY;
+    struct quality q = {.c = c, .sine2 = squared_sine(c->options->min_angle)};
+    struct block all;
+    q.n_blocks = c->mesh->n_triangles / BLOCK + (c->mesh->n_triangles % BLOCK > 0);
+    q.block = tri_check_array(q.n_blocks, sizeof *q.block);
+    if (q.block == NULL)
+        return TRI_NO_MEMORY;
+    look(&q);
+    put_together(&q, &all);
+    summarize(c, &all);
+    judge_areas(c, &all);
+    enum tri_status status = judge_angles(&q, all.n_small);
+    free(q.block);
+    return status;
 }

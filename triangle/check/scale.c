@@ -1,36 +1,46 @@
-/* Coordinates of any size: multiplication by a power of two is exact as long as nothing becomes subnormal, and changes
- * no judgement but those on areas, which quality.c scales back. */
+/* Coordinates of any size, in the range of the predicates: what is very large or very small as a whole is multiplied by
+ * a power of two, and what is below 2^-216 then counts as 0, in the mesh as in the input. The multiplication is exact
+ * otherwise, and changes no judgement but those on areas, which quality.c scales back. */
 #include <math.h>
 
 #include "triangle/check/internal.h"
 
-/* Exponent that brings the largest coordinate to about 1; 0: there is no need, or none is finite. */
+static bool are_exact(const double *values, int64_t n)
+{
+    for (int64_t i = 0; i < n; i++) {
+        if (!tri_is_exact_coordinate(values[i]))
+            return false;
+    }
+    return true;
+}
+
+/* 0 for coordinates of ordinary size, and where one is not finite; else the exponent that brings the largest to 1. */
 static int choose_exponent(const struct tri_check_mesh *m)
 {
     double largest = 0;
-    bool needed = false;
     for (size_t i = 0; i < 2 * (size_t)m->n_points; i++) {
         if (!isfinite(m->points[i]))
             return 0;
-        needed = needed || !tri_is_exact_coordinate(m->points[i]);
         largest = fmax(largest, fabs(m->points[i]));
     }
-    return needed ? -ilogb(largest) : 0;
+    return largest == 0 || (largest >= 0x1p-100 && largest <= 0x1p199) ? 0 : -ilogb(largest);
 }
 
 static double *scale(const double *values, int64_t n, int exponent)
 {
     double *scaled = tri_check_array(n, sizeof *scaled);
     for (int64_t i = 0; scaled != NULL && i < n; i++)
-        scaled[i] = ldexp(values[i], exponent);
+        scaled[i] = tri_round_coordinate(ldexp(values[i], exponent));
     return scaled;
 }
 
 enum tri_status tri_check_scale(struct checker *c)
 {
-    c->exponent = choose_exponent(c->mesh);
-    if (c->exponent == 0)
+    const struct tri_pslg *input = c->input;
+    if (are_exact(c->mesh->points, 2 * (int64_t)c->mesh->n_points) &&
+        (input == NULL || are_exact(input->points, 2 * (int64_t)input->n_points)))
         return TRI_OK;
+    c->exponent = choose_exponent(c->mesh);
     c->scaled[0] = scale(c->mesh->points, 2 * (int64_t)c->mesh->n_points, c->exponent);
     if (c->scaled[0] == NULL)
         return TRI_NO_MEMORY;

@@ -23,12 +23,6 @@ static enum tri_status take_boundary(struct checker *c)
     return TRI_OK;
 }
 
-static bool is_valid(const struct checker *c, int32_t s)
-{
-    int32_t a = c->segments[2 * (size_t)s], b = c->segments[2 * (size_t)s + 1], n = c->mesh->n_points;
-    return a >= 0 && a < n && b >= 0 && b < n && a != b;
-}
-
 static void constrain(struct checker *c, int32_t s)
 {
     int32_t a = c->segments[2 * (size_t)s], b = c->segments[2 * (size_t)s + 1];
@@ -58,13 +52,13 @@ static enum tri_status group_by_vertex(struct checker *c)
     if (c->fan_first == NULL || c->fan == NULL)
         return TRI_NO_MEMORY;
     for (int32_t i = 0; i < 2 * c->n_segments; i++) {
-        if (is_valid(c, i >> 1))
+        if (check_is_listed_well(c, i >> 1))
             c->fan_first[c->segments[i] + 1]++;
     }
     for (int32_t i = 0; i < n; i++)
         c->fan_first[i + 1] += c->fan_first[i];
     for (int32_t i = 0; i < 2 * c->n_segments; i++) { /* as in group_corners */
-        if (is_valid(c, i >> 1))
+        if (check_is_listed_well(c, i >> 1))
             c->fan[c->fan_first[c->segments[i]]++] = i;
     }
     for (int32_t i = n; i > 0; i--)
@@ -73,15 +67,15 @@ static enum tri_status group_by_vertex(struct checker *c)
     return TRI_OK;
 }
 
-static void check_boundary(struct checker *c)
+static bool is_unlisted(const struct checker *c, int32_t h)
 {
-    tri_check_begin(c, TRI_CHECK_BOUNDARY);
-    for (int32_t h = 0; h < c->n_half_edges; h++) {
-        if (c->link[h] >= 0 || check_is_constrained(c, h))
-            continue;
-        tri_check_fault(c, TRI_CHECK_BOUNDARY, "boundary edge %ld-%ld of triangle %ld is not a subsegment",
-                        check_number(c, check_org(c, h)), check_number(c, check_dest(c, h)), check_number(c, h / 3));
-    }
+    return c->link[h] < 0 && !check_is_constrained(c, h);
+}
+
+static void tell_unlisted(struct checker *c, int32_t h)
+{
+    tri_check_fault(c, TRI_CHECK_BOUNDARY, "boundary edge %ld-%ld of triangle %ld is not a subsegment",
+                    check_number(c, check_org(c, h)), check_number(c, check_dest(c, h)), check_number(c, h / 3));
 }
 
 enum tri_status tri_check_subsegments(struct checker *c)
@@ -99,7 +93,7 @@ enum tri_status tri_check_subsegments(struct checker *c)
         tri_check_begin(c, TRI_CHECK_SUBSEGMENTS);
     }
     for (int32_t s = 0; s < c->n_segments; s++) {
-        if (is_valid(c, s)) {
+        if (check_is_listed_well(c, s)) {
             constrain(c, s);
         } else {
             tri_check_fault(c, TRI_CHECK_SUBSEGMENTS,
@@ -108,6 +102,6 @@ enum tri_status tri_check_subsegments(struct checker *c)
         }
     }
     if (c->mesh->segments != NULL)
-        check_boundary(c);
+        tri_check_each(c, TRI_CHECK_BOUNDARY, c->n_half_edges, is_unlisted, tell_unlisted);
     return group_by_vertex(c);
 }

@@ -48,12 +48,19 @@ char *store_backwards(char *end, uint64_t n)
     return end - 1;
 }
 
+int count_digits(uint64_t n)
+{
+    int digits = 1;
+    for (; n >= 10000; n /= 10000)
+        digits += 4;
+    return digits + (n >= 10) + (n >= 100) + (n >= 1000);
+}
+
 char *print_unsigned(char *at, uint64_t n)
 {
-    char text[TRI_INTEGER_CHARS], *const end = text + sizeof text, *const begin = store_backwards(end, n);
-    const size_t length = static_cast<size_t>(end - begin);
-    std::memcpy(at, begin, length);
-    return at + length;
+    char *const end = at + count_digits(n);
+    store_backwards(end, n);
+    return end;
 }
 
 /* The exact routine that every doubtful case falls back on. */
@@ -221,7 +228,7 @@ char *print_exponent(char *at, int exponent)
 /* Lays out digits as %g does. Copies are of fixed length, hence TRI_REAL_ROOM. */
 char *print_decimal(char *at, const decimal &d)
 {
-    char digits[17];
+    char digits[24] = {};
     const uint64_t rest = d.digits % ten_16;
     digits[0] = static_cast<char>('0' + d.digits / ten_16);
     store_eight(digits + 1, static_cast<uint32_t>(rest / 100000000));
@@ -233,7 +240,10 @@ char *print_decimal(char *at, const decimal &d)
         if (n <= whole)
             return at + whole;
         at[whole] = '.';
-        std::memcpy(at + whole + 1, digits + whole, 17 - whole);
+        if (whole <= 8)
+            std::memcpy(at + whole + 1, digits + whole, 16);
+        else
+            std::memcpy(at + whole + 1, digits + whole, 8);
         return at + n + 1;
     }
     if (d.exponent >= -4 && d.exponent < 0) {
@@ -359,16 +369,15 @@ char *tri_print_real(char *at, double value)
 
 char *tri_print_integer(char *at, int64_t value, int width)
 {
-    char text[TRI_INTEGER_CHARS], *const end = text + sizeof text;
-    const uint64_t size = value < 0 ? 0 - static_cast<uint64_t>(value) : static_cast<uint64_t>(value);
-    char *begin = store_backwards(end, size);
-    if (value < 0)
-        *--begin = '-';
-    const int length = static_cast<int>(end - begin);
-    for (int i = length; i < width; i++)
+    const bool is_negative = value < 0;
+    const uint64_t size = is_negative ? 0 - static_cast<uint64_t>(value) : static_cast<uint64_t>(value);
+    const int digits = count_digits(size);
+    for (int i = digits + is_negative; i < width; i++)
         *at++ = ' ';
-    std::memcpy(at, begin, static_cast<size_t>(length));
-    return at + length;
+    if (is_negative)
+        *at++ = '-';
+    store_backwards(at + digits, size);
+    return at + digits;
 }
 
 const char *tri_scan_real(const char *at, const char *end, double *value)

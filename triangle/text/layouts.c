@@ -11,26 +11,31 @@ _Static_assert((int)TRI_ROW_SLACK >= (int)TRI_REAL_ROOM, "a row may end with a r
 /* Longest texts of an integer and of a real, with the blanks before them. */
 enum { INTEGER_BYTES = TRI_INTEGER_CHARS + 4, REAL_BYTES = TRI_REAL_CHARS + 4 };
 
-static char *put(char *at, const char *text, size_t length)
+enum { MOST_BLANKS = 4 };
+
+/* Stores MOST_BLANKS of them, of which n count: a copy of fixed length is no call. */
+static char *put_blanks(char *at, int n)
 {
-    memcpy(at, text, length);
-    return at + length;
+    memset(at, ' ', MOST_BLANKS);
+    return at + n;
 }
 
-static char *put_real(char *at, const char *blanks, size_t n_blanks, double value)
+static char *put_real(char *at, int blanks, double value) { return tri_print_real(put_blanks(at, blanks), value); }
+
+static char *put_integer(char *at, int blanks, int64_t value, int width)
 {
-    return tri_print_real(put(at, blanks, n_blanks), value);
+    return tri_print_integer(put_blanks(at, blanks), value, width);
 }
 
-static char *put_integer(char *at, const char *blanks, size_t n_blanks, int64_t value, int width)
+static char *put_marker(char *at, const struct tri_grid *grid, int blanks, int32_t marker, int width)
 {
-    return tri_print_integer(put(at, blanks, n_blanks), value, width);
+    return grid->has_markers ? put_integer(at, blanks, marker, width) : at;
 }
 
-static char *put_marker(char *at, const struct tri_grid *grid, const char *blanks, size_t n_blanks, int32_t marker,
-                        int width)
+static char *put_end(char *at)
 {
-    return grid->has_markers ? put_integer(at, blanks, n_blanks, marker, width) : at;
+    *at = '\n';
+    return at + 1;
 }
 
 /* -1 means nothing in every base. */
@@ -61,11 +66,11 @@ static char *node_row(void *user, size_t i, char *at)
     struct tri_grid_point point;
     grid->point(grid->user, (int64_t)i, &point);
     at = put_number(at, grid, i);
-    at = put_real(at, "    ", 4, point.at[0]);
-    at = put_real(at, "  ", 2, point.at[1]);
+    at = put_real(at, 4, point.at[0]);
+    at = put_real(at, 2, point.at[1]);
     for (int32_t k = 0; k < grid->n_attributes; k++)
-        at = put_real(at, "  ", 2, grid->attribute(grid->user, (int64_t)i, k));
-    return put(put_marker(at, grid, "    ", 4, point.marker, 0), "\n", 1);
+        at = put_real(at, 2, grid->attribute(grid->user, (int64_t)i, k));
+    return put_end(put_marker(at, grid, 4, point.marker, 0));
 }
 
 enum tri_status tri_write_node(struct tri_output *output, const struct tri_grid *grid,
@@ -84,12 +89,12 @@ static char *ele_row(void *user, size_t i, char *at)
     const struct tri_grid *grid = user;
     int64_t nodes[6];
     grid->triangle(grid->user, (int64_t)i, nodes);
-    at = put(put_number(at, grid, i), "  ", 2);
+    at = put_blanks(put_number(at, grid, i), 2);
     for (int k = 0; k < grid->n_nodes; k++)
-        at = put_integer(at, "  ", 2, nodes[k] + grid->base, 4);
+        at = put_integer(at, 2, nodes[k] + grid->base, 4);
     for (int32_t k = 0; k < grid->n_columns; k++)
-        at = put_real(at, "  ", 2, grid->column(grid->user, (int64_t)i, k));
-    return put(at, "\n", 1);
+        at = put_real(at, 2, grid->column(grid->user, (int64_t)i, k));
+    return put_end(at);
 }
 
 enum tri_status tri_write_ele(struct tri_output *output, const struct tri_grid *grid,
@@ -109,9 +114,9 @@ static char *segment_row(void *user, size_t i, char *at)
     struct tri_grid_edge segment;
     grid->segment(grid->user, (int64_t)i, &segment);
     at = put_number(at, grid, i);
-    at = put_integer(at, "    ", 4, segment.ends[0] + grid->base, 4);
-    at = put_integer(at, "  ", 2, segment.ends[1] + grid->base, 4);
-    return put(put_marker(at, grid, "    ", 4, segment.marker, 4), "\n", 1);
+    at = put_integer(at, 4, segment.ends[0] + grid->base, 4);
+    at = put_integer(at, 2, segment.ends[1] + grid->base, 4);
+    return put_end(put_marker(at, grid, 4, segment.marker, 4));
 }
 
 static enum tri_status write_segments(struct tri_output *output, const struct tri_grid *grid,
@@ -133,10 +138,10 @@ static char *site_row(void *user, size_t i, char *at)
 {
     const struct sites *sites = user;
     at = tri_print_integer(at, (int64_t)i + sites->base, 4);
-    at = put_real(at, "   ", 3, sites->reals[i * sites->n_reals]);
+    at = put_real(at, 3, sites->reals[i * sites->n_reals]);
     for (size_t k = 1; k < sites->n_reals; k++)
-        at = put_real(at, "  ", 2, sites->reals[i * sites->n_reals + k]);
-    return put(at, "\n", 1);
+        at = put_real(at, 2, sites->reals[i * sites->n_reals + k]);
+    return put_end(at);
 }
 
 static enum tri_status write_sites(struct tri_output *output, struct sites sites, int32_t n, struct tri_error *error)
@@ -163,8 +168,8 @@ enum tri_status tri_write_poly(struct tri_output *output, const struct tri_grid 
 
 static char *put_ends(char *at, const struct tri_grid *grid, size_t i, const int64_t ends[2])
 {
-    at = put_integer(put_number(at, grid, i), "   ", 3, ends[0] + grid->base, 0);
-    return put_integer(at, "  ", 2, shown(grid, ends[1]), 0);
+    at = put_integer(put_number(at, grid, i), 3, ends[0] + grid->base, 0);
+    return put_integer(at, 2, shown(grid, ends[1]), 0);
 }
 
 static char *edge_row(void *user, size_t i, char *at)
@@ -172,7 +177,7 @@ static char *edge_row(void *user, size_t i, char *at)
     const struct tri_grid *grid = user;
     struct tri_grid_edge edge;
     grid->edge(grid->user, (int64_t)i, &edge);
-    return put(put_marker(put_ends(at, grid, i, edge.ends), grid, "  ", 2, edge.marker, 0), "\n", 1);
+    return put_end(put_marker(put_ends(at, grid, i, edge.ends), grid, 2, edge.marker, 0));
 }
 
 enum tri_status tri_write_edge(struct tri_output *output, const struct tri_grid *grid,
@@ -190,10 +195,10 @@ static char *v_edge_row(void *user, size_t i, char *at)
     grid->edge(grid->user, (int64_t)i, &edge);
     at = put_ends(at, grid, i, edge.ends);
     if (edge.ends[1] < 0) {
-        at = put_real(at, "   ", 3, edge.direction[0]);
-        at = put_real(at, "  ", 2, edge.direction[1]);
+        at = put_real(at, 3, edge.direction[0]);
+        at = put_real(at, 2, edge.direction[1]);
     }
-    return put(at, "\n", 1);
+    return put_end(at);
 }
 
 enum tri_status tri_write_v_edge(struct tri_output *output, const struct tri_grid *grid,
@@ -209,9 +214,9 @@ static char *neigh_row(void *user, size_t i, char *at)
     const struct tri_grid *grid = user;
     int64_t neighbors[3];
     grid->neighbors(grid->user, (int64_t)i, neighbors);
-    at = put_integer(put_number(at, grid, i), "    ", 4, shown(grid, neighbors[0]), 0);
-    at = put_integer(at, "  ", 2, shown(grid, neighbors[1]), 0);
-    return put(put_integer(at, "  ", 2, shown(grid, neighbors[2]), 0), "\n", 1);
+    at = put_integer(put_number(at, grid, i), 4, shown(grid, neighbors[0]), 0);
+    at = put_integer(at, 2, shown(grid, neighbors[1]), 0);
+    return put_end(put_integer(at, 2, shown(grid, neighbors[2]), 0));
 }
 
 enum tri_status tri_write_neigh(struct tri_output *output, const struct tri_grid *grid,
@@ -229,9 +234,10 @@ static char *off_vertex_row(void *user, size_t i, char *at)
     const struct tri_grid *grid = user;
     struct tri_grid_point point;
     grid->point(grid->user, (int64_t)i, &point);
-    at = put_real(at, " ", 1, point.at[0]);
-    at = put_real(at, "  ", 2, point.at[1]);
-    return put(at, "  0\n", 4);
+    at = put_real(at, 1, point.at[0]);
+    at = put_real(at, 2, point.at[1]);
+    memcpy(at, "  0\n", 4);
+    return at + 4;
 }
 
 static char *off_face_row(void *user, size_t i, char *at)
@@ -239,18 +245,18 @@ static char *off_face_row(void *user, size_t i, char *at)
     const struct tri_grid *grid = user;
     int64_t nodes[6];
     grid->triangle(grid->user, (int64_t)i, nodes);
-    at = put_integer(at, " 3   ", 5, nodes[0], 4);
-    at = put_integer(at, "  ", 2, nodes[1], 4);
-    return put(put_integer(at, "  ", 2, nodes[2], 4), "\n", 1);
+    memcpy(at, " 3   ", 5);
+    at = tri_print_integer(at + 5, nodes[0], 4);
+    at = put_integer(at, 2, nodes[1], 4);
+    return put_end(put_integer(at, 2, nodes[2], 4));
 }
 
 static enum tri_status write_off_header(struct tri_output *output, const struct tri_grid *grid,
                                         struct tri_error *error)
 {
-    char line[4 + 3 * INTEGER_BYTES + 1], *at = put(line, "OFF\n", 4);
-    at = tri_print_integer(at, grid->n_points, 0);
-    at = put_integer(at, " ", 1, grid->n_triangles, 0);
-    at = put(put_integer(at, " ", 1, grid->n_edges, 0), "\n", 1);
+    char line[4 + 3 * INTEGER_BYTES + MOST_BLANKS + 1] = "OFF\n", *at = tri_print_integer(line + 4, grid->n_points, 0);
+    at = put_integer(at, 1, grid->n_triangles, 0);
+    at = put_end(put_integer(at, 1, grid->n_edges, 0));
     return tri_output_write(output, line, (size_t)(at - line), error);
 }
 

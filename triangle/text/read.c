@@ -170,10 +170,10 @@ static int32_t detect_base(struct tri_cursor cursor, int32_t default_base)
 }
 
 static enum tri_status check_vertices(const struct tri_cursor *cursor, const struct header *header,
-                                      struct tri_error *error)
+                                      const struct tri_read_options *options, struct tri_error *error)
 {
     const long line = (long)cursor->line;
-    if (header->count < 3)
+    if (header->count < 3 && !options->may_be_empty)
         return tri_fail(error, TRI_BAD_INPUT, name_of(cursor), line, "there are only %lld vertices; 3 are needed",
                         (long long)header->count);
     if (header->more[0] != 2)
@@ -187,7 +187,7 @@ static enum tri_status read_vertices(struct tri_cursor *cursor, const struct hea
                                      const struct tri_read_options *options, struct tri_pslg *out, int32_t *base,
                                      struct tri_error *error)
 {
-    enum tri_status status = check_vertices(cursor, header, error);
+    enum tri_status status = check_vertices(cursor, header, options, error);
     if (status != TRI_OK)
         return status;
     const size_t n = (size_t)header->count;

@@ -30,6 +30,7 @@ struct tri_read_options {
     bool want_regions;    /* the .poly file must have its section of regions; else that is not looked at */
     bool regions_if_any;  /* that section is read where it is there */
     bool refining;        /* a segment that names no vertex is an error; else a warning */
+    bool may_be_empty;    /* fewer than three points are no error: it is a mesh, of which nothing may be left */
     size_t chunk_bytes;   /* of text for each task; 0: the default. The result does not depend on it */
     const struct tri_executor *executor; /* NULL: one task after another */
     const struct tri_stop *stop;         /* asked whether to go on; NULL: nobody */

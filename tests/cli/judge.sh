@@ -1,0 +1,66 @@
+# trianglecheck: which files it reads, and what it promises.
+
+denies() { # denies PATTERN WORDS...: faults, one of which is this
+    pattern=$1
+    shift
+    "$bin/trianglecheck" --quiet "$@" >.out 2>.err
+    found=$?
+    check "trianglecheck $*: exit code $found instead of 1" test "$found" -eq 1
+    matches "$pattern"
+}
+
+# --- coordinates that count as 0
+fresh regress/denormal_coordinate.poly
+run 0 -pc denormal_coordinate
+judge denormal_coordinate.1 --poly denormal_coordinate.poly --keep-hull
+
+# --- neighbours of an earlier run are not judged, and that is said in one line
+fresh letter.poly
+run 0 -pqn letter
+judge letter.1 --poly letter.poly
+run 0 -p letter
+"$bin/trianglecheck" letter.1 --poly letter.poly >.out 2>.err
+check "exit code" test $? -eq 0
+matches "^-     neighbors"
+complains "letter\.1\.neigh is of another mesh than letter\.1\.ele"
+check "one line" test "$(wc -l <.err)" -eq 1
+
+# --- a mesh of which nothing is left
+fresh
+printf '4 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n1 0\n1 1 2\n0\n' >open.poly
+run 0 -pj open
+header open.1.node "0 2 0 1"
+judge open.1 --poly open.poly --jettisoned
+
+# --- the mesh may end along the hull if that is said
+fresh letter.poly
+run 0 -pc letter
+judge letter.1 --poly letter.poly --keep-hull
+denies "^FAIL  boundary along the input" letter.1 --poly letter.poly
+
+# --- markers of vertices
+run 0 -p letter
+judge letter.1 --poly letter.poly
+awk 'NR == 2 { $NF = 7 } { print }' letter.1.node >changed && mv changed letter.1.node
+denies "^FAIL  vertex markers: 1, first: vertex 1 has marker 7" letter.1 --poly letter.poly
+judge letter.1 --poly letter.poly --no-markers
+
+# --- one verdict for any number of threads
+fresh letter.poly
+run 0 -pq30a0.0008n letter
+awk 'NR > 1 && NR % 1000 == 0 && NF == 4 && !/#/ { t = $2; $2 = $3; $3 = t } { print }' letter.1.ele >changed
+for mesh in letter.1.ele changed; do
+    mv $mesh letter.1.ele 2>/dev/null
+    for threads in 1 2 5; do
+        "$bin/trianglecheck" --threads $threads letter.1 --poly letter.poly -q 30 >verdict.$threads 2>&1
+        check "verdict of $threads threads" cmp verdict.1 verdict.$threads
+    done
+    "$bin/trianglecheck" --json --threads 3 letter.1 -a 0.0007 >json.3 2>&1
+    "$bin/trianglecheck" --json --threads 1 letter.1 -a 0.0007 >json.1 2>&1
+    check "the same in JSON" cmp json.1 json.3
+done
+check "clockwise triangles are many" grep -q "^FAIL  orientation: [0-9][0-9]" verdict.1
+for word in 0 -1 two; do
+    "$bin/trianglecheck" --threads $word letter.1 >.out 2>.err
+    check "--threads $word: exit code" test $? -eq 2
+done

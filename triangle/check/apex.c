@@ -1,0 +1,159 @@
+/* Which small angles the input is to blame for.
+ *
+ * An apex is a vertex where two subsegments meet at less than 60 degrees (or what the options say) with the mesh
+ * between them. Near it no mesher can keep a bound: triangles at the apex, those that touch one at it, and those that
+ * span its legs further out (across two concentric shells; Miller, Pav & Walkington 2003) are explained by it. */
+#include "triangle/check/apex.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum {
+    MAX_LEGS = 24, /* legs of apexes that one corner is tried for */
+    NO_APEX = -1,
+    UNKNOWN = -2,
+    UNDER_WAY = -3
+};
+
+static bool is_wedge(const struct apexes *w, int32_t v, int32_t a, int32_t b)
+{
+    const struct checker *c = w->c;
+    struct tri_point o = check_point(c, v), p = check_point(c, a), q = check_point(c, b);
+    double ax = p.x - o.x, ay = p.y - o.y, bx = q.x - o.x, by = q.y - o.y, dot = ax * bx + ay * by;
+    if (dot * fabs(dot) <= (w->apex_cosine + TRI_CHECK_SLACK) * (ax * ax + ay * ay) * (bx * bx + by * by))
+        return false;
+    bool left = ax * by - ay * bx > 0;
+    return tri_check_find_edge(c, v, left ? a : b).there >= 0; /* a triangle between them? */
+}
+
+/* More than 24 subsegments enclose an angle of 15 degrees at most: no need to compare them all. */
+static bool is_apex(const struct apexes *q, int32_t v)
+{
+    const struct checker *c = q->c;
+    const int32_t *fan = c->fan + c->fan_first[v];
+    int32_t n = c->fan_first[v + 1] - c->fan_first[v];
+    if (n > 24)
+        return true;
+    for (int32_t i = 0; i < n; i++) {
+        for (int32_t j = i + 1; j < n; j++) {
+            if (is_wedge(q, v, c->segments[fan[i] ^ 1], c->segments[fan[j] ^ 1]))
+                return true;
+        }
+    }
+    return false;
+}
+
+static bool is_straight(const struct checker *c, int32_t from, int32_t by, int32_t to)
+{
+    struct tri_point p = check_point(c, from), q = check_point(c, by), r = check_point(c, to);
+    double ax = q.x - p.x, ay = q.y - p.y, bx = r.x - q.x, cy = r.y - q.y, dot = ax * bx + ay * cy;
+    double length = sqrt(ax * ax + ay * ay) + sqrt(bx * bx + cy * cy);
+    return dot > 0 && fabs(ax * cy - ay * bx) <= 1e-9 * dot + c->tolerance * length;
+}
+
+/* The subsegment that goes straight on from u to v and beyond; its fan entry at v, -1: none. */
+static int32_t straight_on(const struct checker *c, int32_t u, int32_t v)
+{
+    for (int32_t i = c->fan_first[v]; i < c->fan_first[v + 1]; i++) {
+        if (is_straight(c, u, v, c->segments[c->fan[i] ^ 1]))
+            return c->fan[i];
+    }
+    return -1;
+}
+
+/* Apex that the chain reaches which begins with fan entry i. What is found holds for all entries on the way, so that
+ * each is passed twice in all. A chain that comes back to itself reaches none. */
+static int32_t apex_along(struct apexes *q, int32_t i)
+{
+    const struct checker *c = q->c;
+    int32_t at = i;
+    while (at >= 0 && q->apex_of[at] == UNKNOWN) {
+        int32_t end = c->segments[at ^ 1];
+        q->apex_of[at] = q->is_apex[end] ? end : UNDER_WAY;
+        at = q->is_apex[end] ? at : straight_on(c, c->segments[at], end);
+    }
+    int32_t found = at >= 0 && q->apex_of[at] != UNDER_WAY ? q->apex_of[at] : NO_APEX;
+    for (at = i; at >= 0 && q->apex_of[at] == UNDER_WAY; at = straight_on(c, c->segments[at], c->segments[at ^ 1]))
+        q->apex_of[at] = found;
+    return found;
+}
+
+static int apexes_of(struct apexes *q, int32_t v, int32_t *apex)
+{
+    int n = 0;
+    for (int32_t i = q->c->fan_first[v]; i < q->c->fan_first[v + 1] && n < MAX_LEGS; i++) {
+        int32_t found = apex_along(q, q->c->fan[i]);
+        if (found >= 0)
+            apex[n++] = found;
+    }
+    return n;
+}
+
+static bool spans_legs(struct apexes *q, const int32_t *corners)
+{
+    int32_t apex[3][MAX_LEGS];
+    int n[3];
+    for (int k = 0; k < 3; k++) {
+        n[k] = apexes_of(q, corners[k], apex[k]);
+        for (int m = 0; m < k; m++) {
+            for (int i = 0; i < n[k]; i++) {
+                for (int j = 0; j < n[m]; j++) {
+                    if (apex[k][i] == apex[m][j])
+                        return true;
+                }
+            }
+        }
+    }
+    return false;
+}
+
+bool tri_check_is_explained(struct apexes *q, int32_t t)
+{
+    const int32_t *v = q->c->mesh->triangles + 3 * (size_t)t;
+    return q->is_near[v[0]] || q->is_near[v[1]] || q->is_near[v[2]] || spans_legs(q, v);
+}
+
+static double signed_squared_cosine(double degrees)
+{
+    double cosine = cos(degrees * TRI_CHECK_RADIANS);
+    return cosine * fabs(cosine);
+}
+
+static void find_apexes(struct apexes *q)
+{
+    const struct checker *c = q->c;
+    int64_t n_apexes = 0;
+#pragma omp parallel for schedule(dynamic, 4096) reduction(+ : n_apexes)
+    for (int32_t v = 0; v < c->mesh->n_points; v++) {
+        q->is_apex[v] = is_apex(q, v);
+        n_apexes += q->is_apex[v];
+    }
+    c->report->n_apexes = n_apexes;
+    for (int32_t t = 0; n_apexes > 0 && t < c->mesh->n_triangles; t++) {
+        const int32_t *v = c->mesh->triangles + 3 * (size_t)t;
+        if (q->is_apex[v[0]] || q->is_apex[v[1]] || q->is_apex[v[2]])
+            q->is_near[v[0]] = q->is_near[v[1]] = q->is_near[v[2]] = 1;
+    }
+    for (int32_t i = 0; i < 2 * c->n_segments; i++)
+        q->apex_of[i] = UNKNOWN;
+}
+
+enum tri_status tri_check_find_apexes(struct apexes *q, struct checker *c)
+{
+    double small = c->options->small_input_angle;
+    *q = (struct apexes){.c = c, .apex_cosine = signed_squared_cosine(small > 0 ? fmin(small, 180) : 60)};
+    q->is_apex = tri_check_zeros(c->mesh->n_points, 1);
+    q->is_near = tri_check_zeros(c->mesh->n_points, 1);
+    q->apex_of = tri_check_zeros(2 * (int64_t)c->n_segments, sizeof *q->apex_of);
+    if (q->is_apex == NULL || q->is_near == NULL || q->apex_of == NULL)
+        return TRI_NO_MEMORY;
+    find_apexes(q);
+    return TRI_OK;
+}
+
+void tri_check_free_apexes(struct apexes *q)
+{
+    free(q->is_apex);
+    free(q->is_near);
+    free(q->apex_of);
+}

@@ -1,0 +1,126 @@
+/* The border: every boundary edge lies along an input segment, or along the convex hull of the input where that may be
+ * one.
+ *
+ * The hull is found by scans along the points in order of x, then y (Andrew 1979). An edge lies along it if both its
+ * ends are within the tolerance of the line of one hull edge, that below or above them or a neighbour of that: points
+ * made on the hull are rounded. */
+#include <stdlib.h>
+
+#include "triangle/check/internal.h"
+
+enum { NEIGHBORS = 2 };
+
+struct border {
+    struct checker *c;
+    struct tri_point *hull[2]; /* the lower and the upper chain, in order */
+    int32_t n[2];
+};
+
+static int compare_points(const void *a, const void *b)
+{
+    const struct tri_point *p = a, *q = b;
+    if (p->x != q->x)
+        return p->x < q->x ? -1 : 1;
+    return (p->y > q->y) - (p->y < q->y);
+}
+
+/* Keeps of n sorted points those of the lower (+1) or upper (-1) chain. */
+static int32_t scan(struct tri_point *out, const struct tri_point *sorted, int32_t n, int sign)
+{
+    int32_t k = 0;
+    for (int32_t i = 0; i < n; i++) {
+        while (k > 1 && sign * tri_orient2d(out[k - 2], out[k - 1], sorted[i]) <= 0)
+            k--;
+        if (k == 0 || !check_same_place(out[k - 1], sorted[i]))
+            out[k++] = sorted[i];
+    }
+    return k;
+}
+
+static enum tri_status find_hull(struct border *b)
+{
+    const struct tri_pslg *input = b->c->input;
+    struct tri_point *sorted = tri_check_array(input->n_points, sizeof *sorted);
+    for (int i = 0; i < 2; i++)
+        b->hull[i] = tri_check_array(input->n_points, sizeof *b->hull[i]);
+    bool room = sorted != NULL && b->hull[0] != NULL && b->hull[1] != NULL;
+    int32_t n = 0;
+    for (int32_t i = 0; room && i < input->n_points; i++) {
+        struct tri_point p = {input->points[2 * (size_t)i], input->points[2 * (size_t)i + 1]};
+        if (tri_is_exact_point(p))
+            sorted[n++] = p;
+    }
+    if (room) {
+        qsort(sorted, (size_t)n, sizeof *sorted, compare_points);
+        for (int i = 0; i < 2; i++)
+            b->n[i] = scan(b->hull[i], sorted, n, i == 0 ? 1 : -1);
+    }
+    free(sorted);
+    return room ? TRI_OK : TRI_NO_MEMORY;
+}
+
+static bool is_near(struct tri_point a, struct tri_point b, struct tri_point p, double tolerance)
+{
+    double x = b.x - a.x, y = b.y - a.y;
+    return fabs(x * (p.y - a.y) - y * (p.x - a.x)) <= tolerance * sqrt(x * x + y * y);
+}
+
+/* Do both points lie along one edge of the chain? */
+static bool is_along_chain(const struct border *b, int chain, struct tri_point p, struct tri_point q)
+{
+    const struct tri_point *hull = b->hull[chain];
+    int32_t low = 0, high = b->n[chain] - 1, first = compare_points(&p, &q) < 0;
+    struct tri_point at = first ? p : q;
+    while (high - low > 1) {
+        int32_t middle = low + (high - low) / 2;
+        *(compare_points(&hull[middle], &at) <= 0 ? &low : &high) = middle;
+    }
+    for (int32_t i = low - NEIGHBORS; i <= low + NEIGHBORS; i++) {
+        if (i >= 0 && i + 1 < b->n[chain] && is_near(hull[i], hull[i + 1], p, b->c->tolerance) &&
+            is_near(hull[i], hull[i + 1], q, b->c->tolerance))
+            return true;
+    }
+    return false;
+}
+
+static bool is_along_hull(const struct border *b, int32_t s)
+{
+    const int32_t *ends = b->c->segments + 2 * (size_t)s;
+    struct tri_point p = check_point(b->c, ends[0]), q = check_point(b->c, ends[1]);
+    return is_along_chain(b, 0, p, q) || is_along_chain(b, 1, p, q);
+}
+
+static void check_border(struct border *b, bool hull)
+{
+    struct checker *c = b->c;
+    for (int32_t s = 0; s < c->n_segments; s++) {
+        if (!check_is_listed_well(c, s) || (c->is_along != NULL && c->is_along[s]))
+            continue;
+        int32_t from = c->segments[2 * (size_t)s], to = c->segments[2 * (size_t)s + 1];
+        struct check_edge e = tri_check_find_edge(c, from, to);
+        if ((e.there < 0) == (e.back < 0) || (hull && is_along_hull(b, s)))
+            continue;
+        int32_t triangle = (e.there < 0 ? e.back : e.there) / 3;
+        tri_check_fault(c, TRI_CHECK_BORDER, "the mesh ends at %ld-%ld of triangle %ld, along no input segment%s",
+                        check_number(c, from), check_number(c, to), check_number(c, triangle),
+                        hull ? " and not along the convex hull" : "");
+    }
+}
+
+enum tri_status tri_check_border(struct checker *c)
+{
+    struct border b = {.c = c};
+    const struct tri_check_options *o = c->options;
+    bool listed = c->mesh->segments != NULL, segments = c->input->n_segments > 0;
+    if (o->border == TRI_CHECK_BORDER_ANY || (segments && !listed)) /* which segments there are is not known */
+        return TRI_OK;
+    bool hull = !segments || o->convex || o->border == TRI_CHECK_BORDER_HULL;
+    enum tri_status status = hull ? find_hull(&b) : TRI_OK;
+    if (status == TRI_OK) {
+        tri_check_begin(c, TRI_CHECK_BORDER);
+        check_border(&b, hull);
+    }
+    free(b.hull[0]);
+    free(b.hull[1]);
+    return status;
+}
