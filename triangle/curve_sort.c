@@ -100,7 +100,7 @@ static int first_corner(const struct tri_point *xy, const int32_t v[3])
     }
     for (int e = 1; e < 3; e++) {
         bool tie = (length2[e] == length2[best]) & (v[low[e]] < v[low[best]]);
-        best = (length2[e] < length2[best]) | tie ? e : best;
+        best = ((length2[e] < length2[best]) | tie) ? e : best;
     }
     return low[best];
 }
