@@ -15,6 +15,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/delaunay.c
     triangle/crossing.c
     triangle/recover.c
+    triangle/flip.c
     triangle/overlap.c
     triangle/constrain.c
     triangle/sweep_order.c
@@ -95,7 +96,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/theory.c
     sched/threads.c
     sched/partition.c
-    sched/room.c
+    sched/room.c sched/sweep/tiles.c
     sched/pool.c
     sched/phase.c
     sched/schedule.c

@@ -489,8 +489,8 @@ static int32_t block_over(int32_t cell, int parity) { return cell % 2 == parity 
 int32_t par_block_at(const struct par_partition *p, int colour, struct tri_point q)
 {
     assert(colour >= 0 && colour < PAR_COLOURS);
-    int32_t column = block_over(cell_at(p->x, p->n_columns, q.x), 1 - (colour & 1));
-    int32_t row = block_over(cell_at(rows_of(p, column), p->n_rows, q.y), 1 - (colour >> 1));
+    int32_t column = block_over(cell_at(p->x, p->n_columns, q.x), 1 - (colour >> 1));
+    int32_t row = block_over(cell_at(rows_of(p, column), p->n_rows, q.y), 1 - (colour & 1));
     return column * p->n_rows + row;
 }
 

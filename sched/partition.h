@@ -9,7 +9,8 @@
  *      blocks 0 2 4 6  |---|-------|-------|---|
  *
  * Rows are cut in the same way, for each block column from the work inside it. A block has four cells, half or a
- * quarter of that at the rim. Its colour is the parity of its column and of its row; colour 0 has the odd ones.
+ * quarter of that at the rim. Its colour is the parity of its column and of its row; colour 0 has the odd ones,
+ * and both colours of odd columns come before those of even ones.
  *
  * INVARIANT: blocks of one colour are disjoint half-open boxes and tile the plane; a block of the next colour covers
  * the seams of the last one. So the phase of the first colour does most of the work and the other three close the
@@ -68,7 +69,7 @@ static inline int32_t par_cells(const struct par_partition *p) { return (p->n_co
 /* The box of block (column, row). */
 struct tri_fence par_fence(const struct par_partition *partition, int32_t column, int32_t row);
 
-/* The block of a colour (bit 0: its column is even, bit 1: its row is) that holds q, as column * n_rows + row.
+/* The block of a colour (bit 0: its row is even, bit 1: its column is) that holds q, as column * n_rows + row.
  * O(log blocks). */
 int32_t par_block_at(const struct par_partition *partition, int colour, struct tri_point q);
 

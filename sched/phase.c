@@ -37,6 +37,7 @@ struct phase {
     struct par_state *state;
     const struct par_partition *partition;
     int colour;
+    int32_t only;       /* column, or TRI_NONE */
     int32_t *block_of;  /* [pool.n] */
     double *work;       /* [pool.n] triangles that each will become, to the order */
     int32_t *seeds;     /* [pool.n] by block */
@@ -59,6 +60,14 @@ static bool is_active(void *user, const double p[2])
     return tri_fence_holds(user, (struct tri_point){p[0], p[1]});
 }
 
+/* The block that has its turn now and owns triangle t. */
+static int32_t owner_now(const struct phase *p, int32_t t)
+{
+    int32_t block = par_owner_of(p->partition, p->colour, p->state->mesh, t);
+    bool mine = p->only == TRI_NONE || block == TRI_NONE || block / p->partition->n_rows == p->only;
+    return mine ? block : TRI_NONE;
+}
+
 static void assign_blocks(struct phase *p)
 {
     const struct tri_mesh *mesh = p->state->mesh;
@@ -66,7 +75,7 @@ static void assign_blocks(struct phase *p)
 #pragma omp parallel for num_threads(p->state->threads) schedule(static)
     for (int32_t i = 0; i < pool->n; i++) {
         int32_t t = pool->item[i];
-        p->block_of[i] = tri_is_live(&mesh->tri[t]) ? par_owner_of(p->partition, p->colour, mesh, t) : GONE;
+        p->block_of[i] = tri_is_live(&mesh->tri[t]) ? owner_now(p, t) : GONE;
         p->work[i] = p->block_of[i] >= 0 ? par_work_of(mesh, p->state->quality, t) : 0;
     }
 }
@@ -75,7 +84,7 @@ static void assign_blocks(struct phase *p)
  * since a pause costs less than gaps do. Measured: the rest is left at the seams. */
 static int32_t expect(int colour, double work)
 {
-    static const double share[PAR_COLOURS] = {0.9, 0.42, 0.38, 0.35};
+    static const double share[PAR_COLOURS] = {0.9, 0.38, 0.42, 0.35};
     double expected = share[colour] * work + 128;
     return expected < 1e7 ? (int32_t)expected : 10000000;
 }
@@ -84,7 +93,7 @@ static int32_t expect(int colour, double work)
  * dropped. */
 static bool deal_seeds(struct phase *p)
 {
-    struct par_slots *pool = &p->state->pool;
+    struct par_slots *pool = &p->state->pool, *column = &p->state->column;
     int32_t n_blocks = par_blocks(p->partition), kept = 0, used = 0;
     int32_t *start = calloc((size_t)n_blocks + 1, sizeof *start);
     double *work = calloc((size_t)n_blocks + 1, sizeof *work);
@@ -113,11 +122,15 @@ static bool deal_seeds(struct phase *p)
         int32_t slot = pool->item[i];
         if (p->block_of[i] >= 0)
             p->seeds[start[p->block_of[i]]++] = slot;
-        else if (p->block_of[i] == TRI_NONE)
+        else if (p->block_of[i] == TRI_NONE) {
+            if (column->n > 0)
+                column->item[kept] = column->item[i];
             pool->item[kept++] = slot;
+        }
     }
     assert(kept <= pool->n && p->n_tasks <= used);
     pool->n = kept;
+    column->n = column->n > 0 ? kept : 0;
     free(start);
     free(work);
     return p->tasks;
@@ -334,30 +347,80 @@ void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *a
     sum->hit_cap |= add->hit_cap;
 }
 
-/* In canonical order: room and left triangles of each task go back, and its report is added up. A triangle goes back
- * once, however often it was left: one with three crowded walls would count threefold, and ninefold after the next
- * phase. */
+/* What a phase has left, with the columns of who left it. */
+struct leftovers {
+    struct par_slots item, column;
+};
+
+/* A triangle goes back once, however often it was left: one with three crowded walls would count threefold, and
+ * ninefold after the next phase. */
+static bool gather_left(const struct phase *p, struct leftovers *left)
+{
+    static const struct par_slots none;
+    struct par_slot_set seen;
+    bool memory = par_slot_set_of(&seen, &none, p->state->mesh->n_slots);
+    for (int32_t i = 0; i < p->n_tasks; i++) {
+        const struct task *task = &p->tasks[i];
+        memory = memory && !task->left_lost;
+        for (int32_t k = 0; memory && k < task->left.n; k++)
+            memory = par_slots_add_new(&left->item, &seen, task->left.item[k]);
+        while (memory && left->column.n < left->item.n)
+            memory = par_slots_add(&left->column, task->block / p->partition->n_rows);
+    }
+    free(seen.word);
+    return memory;
+}
+
+static int32_t column_of(const struct par_state *state, int32_t i)
+{
+    return state->column.n > 0 ? state->column.item[i] : -1;
+}
+
+/* The pool and what was left, which no phase has had since, by column; what was in the pool comes first. */
+static bool merge_left(struct par_state *state, const struct leftovers *left)
+{
+    struct leftovers merged = {{0}, {0}};
+    bool memory = true;
+    for (int32_t i = 0, k = 0; memory && (i < state->pool.n || k < left->item.n);) {
+        bool old = k == left->item.n || (i < state->pool.n && column_of(state, i) <= left->column.item[k]);
+        memory = par_slots_add(&merged.item, old ? state->pool.item[i] : left->item.item[k]) &&
+                 par_slots_add(&merged.column, old ? column_of(state, i) : left->column.item[k]);
+        i += old;
+        k += !old;
+    }
+    free(state->pool.item);
+    free(state->column.item);
+    state->pool = merged.item;
+    state->column = merged.column;
+    return memory;
+}
+
+static bool take_back(struct phase *p)
+{
+    struct leftovers left = {{0}, {0}};
+    bool memory = gather_left(p, &left) && merge_left(p->state, &left);
+    free(left.item.item);
+    free(left.column.item);
+    return memory;
+}
+
+/* In canonical order: room and left triangles of each task go back, and its report is added up. */
 static enum tri_status collect(struct phase *p, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    struct par_slot_set pooled;
-    bool memory = par_slot_set_of(&pooled, &p->state->pool, p->state->mesh->n_slots);
+    bool memory = take_back(p);
     for (int32_t i = 0; i < p->n_tasks; i++) {
         struct task *task = &p->tasks[i];
         if (!status && task->status && task->status != TRI_NO_ROOM) { /* that: paused when the phase failed */
             status = task->status;
             tri_fail(error, status, task->error.file, task->error.line, "%s", task->error.text);
         }
-        memory = memory && !task->left_lost;
-        for (int32_t k = 0; memory && k < task->left.n; k++)
-            memory = par_slots_add_new(&p->state->pool, &pooled, task->left.item[k]);
         par_add_up(&p->state->report->total, &task->report);
         memory = memory && report_block(p, task);
         par_room_return(&task->room, &p->state->spare);
         free(task->left.item);
         tri_refiner_free(task->refiner);
     }
-    free(pooled.word);
     return status || memory ? status : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for bad triangles");
 }
 
@@ -392,11 +455,11 @@ static enum tri_status run_phase(struct phase *p, struct tri_error *error)
     return status ? status : collected;
 }
 
-enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int colour,
+enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int colour, int32_t only,
                           struct tri_error *error)
 {
     size_t n = (size_t)state->pool.n + 1;
-    struct phase p = {.state = state, .partition = partition, .colour = colour};
+    struct phase p = {.state = state, .partition = partition, .colour = colour, .only = only};
     p.block_of = malloc(n * sizeof *p.block_of);
     p.work = malloc(n * sizeof *p.work);
     p.seeds = malloc(n * sizeof *p.seeds);

@@ -20,18 +20,30 @@ struct par_state {
     const struct par_options *options;
     int threads;
     struct par_slots pool;   /* triangles that may be bad, in canonical order; some may have gone since */
+    struct par_slots column; /* [pool.n] column of the block that left each, ascending; -1: none has had it; n == 0: so
+                                are all */
     struct par_room spare;   /* unused ranges of the arrays */
     double radius;           /* largest circumradius in the pool when it was last filled */
     struct par_report *report;
     int32_t n_schedules;     /* begun so far; the last is the one that works */
     int round;
     int32_t n_kept;          /* vertices there were before */
-    bool may_number;         /* nothing is refined after this schedule but what it leaves over */
+    bool may_number;         /* nothing is refined after this schedule */
+    struct par_partition cells; /* of the last schedule, for handing out what is in memory */
+    bool sweeping;           /* columns are handed out, and go, as they are finished */
     bool numbered;           /* and nothing was */
 };
 
-/* Refines the blocks of one colour; takes from the pool what they can take and puts back what they leave. */
-enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int colour,
+/* Refines the blocks of one colour; takes from the pool what they can take and puts back what they leave. only: the
+ * column whose blocks have their turn, or TRI_NONE: all of them.
+ *
+ * THEOREM (order of columns). A call with TRI_NONE is one for each column of this colour, in any order; and the phases
+ * of odd columns may run column by column, an even one between them once both its neighbours are through. The mesh and
+ * what is left are the same, up to ids. For blocks change only what lies in their fences, and fences of two columns
+ * meet only if the columns are neighbours or the same; and a block finds its share of the pool in the same order: by
+ * the column of who left it, by phase, by row, and as they were left. Only a column or its neighbours leave something
+ * for it. */
+enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int colour, int32_t only,
                           struct tri_error *error);
 
 #endif

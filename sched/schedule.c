@@ -145,6 +145,7 @@ static enum tri_status fill_pool(struct par_state *state, const struct tri_refin
                                  struct tri_error *error)
 {
     struct tri_executor executor = par_executor(&state->threads);
+    state->column.n = 0;
     return par_pool_fill(&state->pool, state->mesh, quality, known, &executor, &state->radius, error);
 }
 
@@ -235,6 +236,70 @@ static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, st
     return status;
 }
 
+static enum tri_status run_phases(struct par_state *state, const struct par_partition *partition,
+                                  struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (int colour = 0; !status && colour < PAR_COLOURS && state->pool.n > 0; colour++) {
+        tell(state, colour + 1);
+        status = par_phase(state, partition, colour, TRI_NONE, error);
+    }
+    return status;
+}
+
+static struct par_tiles tiles_of(const struct par_state *state, const struct par_partition *partition,
+                                 const struct tri_executor *executor)
+{
+    return (struct par_tiles){.mesh = state->mesh, .partition = partition, .executor = executor,
+                              .n_kept = state->n_kept, .n_vertices = state->n_kept,
+                              .take = state->options->take, .user = state->options->take_user};
+}
+
+/* Something that no block could do lies left of x, where every block has had its turn. */
+static bool is_left_behind(const struct par_state *state, double x)
+{
+    const struct tri_mesh *mesh = state->mesh;
+    for (int32_t i = 0; i < state->pool.n; i++) {
+        const struct tri_triangle *t = &mesh->tri[state->pool.item[i]];
+        if (tri_is_live(t) && mesh->xy[t->v[0]].x < x && mesh->xy[t->v[1]].x < x && mesh->xy[t->v[2]].x < x)
+            return true;
+    }
+    return false;
+}
+
+/* What is final goes: the tiles of a column, once the even column of blocks behind it is through. */
+static enum tri_status finish_column(struct par_state *state, struct par_tiles *tiles, int32_t column,
+                                     struct tri_error *error)
+{
+    double began = par_seconds();
+    enum tri_status status = TRI_OK;
+    if (is_left_behind(state, par_fence(tiles->partition, column, 0).x_max))
+        status = tri_fail(error, TRI_TOO_LARGE, NULL, 0, "a sweep leaves bad triangles over: keep the mesh in memory");
+    status = status ? status : par_tiles_column(tiles, column, true, &state->spare, error);
+    state->report->seconds_number += par_seconds() - began;
+    return status;
+}
+
+/* The same, from left to right: see phase.h, order of columns. */
+static enum tri_status sweep_columns(struct par_state *state, const struct par_partition *partition,
+                                     struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    struct tri_executor executor = par_executor(&state->threads);
+    struct par_tiles tiles = tiles_of(state, partition, &executor);
+    for (int32_t odd = 1; !status && odd <= partition->n_columns; odd += 2) {
+        for (int colour = 0; !status && colour < PAR_COLOURS; colour++) {
+            int32_t column = colour < 2 ? odd : odd - 1;
+            if (column < partition->n_columns)
+                status = par_phase(state, partition, colour, column, error);
+        }
+        if (!status && odd > 2)
+            status = finish_column(state, &tiles, odd - 2, error);
+    }
+    par_tiles_free(&tiles);
+    return status;
+}
+
 /* Rounds of four phases until nothing is left to do, each round on blocks four times as large. */
 static enum tri_status run_rounds(struct par_state *state, struct par_partition *partition, struct tri_error *error)
 {
@@ -242,12 +307,10 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
     assert(par_cells(partition) >= 4);
     state->n_schedules++;
     for (state->round = 0; !status && state->round < MAX_ROUNDS; state->round++) {
-        for (int colour = 0; !status && colour < PAR_COLOURS && state->pool.n > 0; colour++) {
-            tell(state, colour + 1);
-            status = par_phase(state, partition, colour, error);
-        }
+        state->column.n = 0; /* of other blocks than those to come */
+        status = state->sweeping ? sweep_columns(state, partition, error) : run_phases(state, partition, error);
         state->report->rounds++;
-        if (state->pool.n == 0 || par_cells(partition) < FEWEST_TO_COARSEN)
+        if (state->pool.n == 0 || par_cells(partition) < FEWEST_TO_COARSEN || state->sweeping)
             break;
         par_partition_coarsen(partition);
     }
@@ -269,19 +332,25 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         report->radius_measured = state->radius * state->mesh->unit;
         report->prerefined = state->mesh->n_slots;
     }
+    state->sweeping = top && state->may_number && state->options->sweep && state->options->take;
+    if (!status && top && state->options->take && !state->sweeping) {
+        par_partition_free(&state->cells);
+        status = par_partition_copy(&state->cells, partition, error);
+    }
     status = status ? status : run_rounds(state, partition, error);
-    bool left_over = state->pool.n > 0;
-    enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number && !left_over, error);
-    status = status ? status : closed;
     double last = par_seconds();
-    if (!status && left_over) /* slots have moved */
-        status = fill_pool(state, quality, false, error);
-    if (top && left_over)
+    if (top)
         report->left_over += state->pool.n;
-    if (!status && left_over)
+    if (state->sweeping)
+        return status;
+    if (!status && state->pool.n > 0) { /* in the order of the pool, which ids do not show in */
+        par_room_mark(&state->spare, state->mesh);
         status = refine_rest(state, quality, false, error);
-    report->total.gated = report->total.deferred = 0; /* all of them have had their turn */
+    }
     report->seconds_last += par_seconds() - last;
+    enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number, error);
+    status = status ? status : closed;
+    report->total.gated = report->total.deferred = 0; /* all of them have had their turn */
     return status;
 }
 
@@ -386,6 +455,23 @@ static bool must_be_sequential(const struct tri_refine_options *quality, const s
            quality->left || (quality->unsuitable && !options->size_test_in_parallel);
 }
 
+/* All tiles of a mesh that is in memory: those of the last schedule, or, without one, a few. */
+static enum tri_status hand_out(struct par_state *state, const struct tri_refine_options *quality,
+                                struct tri_error *error)
+{
+    struct par_partition *partition = &state->cells;
+    struct tri_executor executor = par_executor(&state->threads);
+    struct par_tiles tiles = tiles_of(state, partition, &executor);
+    struct par_room nothing = {0};
+    enum tri_status status = TRI_OK;
+    if (!partition->x)
+        status = par_partition_make(partition, state->mesh, quality, state->mesh->n_slots, HUGE_VAL, error);
+    for (int32_t odd = 1; !status && odd < partition->n_columns; odd += 2)
+        status = par_tiles_column(&tiles, odd, false, &nothing, error);
+    par_tiles_free(&tiles);
+    return status;
+}
+
 enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
                            const struct par_options *options, struct par_report *report, struct tri_error *error)
 {
@@ -410,9 +496,13 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
             status = refine_rest(&state, quality, true, error);
         report->seconds_last += par_seconds() - last;
     }
-    if (!status && report->levels > 0 && !options->by_block && !state.numbered)
+    if (!status && report->levels > 0 && !options->by_block && !state.numbered && !state.sweeping)
         status = number_mesh(&state, error);
+    if (!status && options->take && !state.sweeping)
+        status = hand_out(&state, quality, error);
     free(state.pool.item);
+    free(state.column.item);
+    par_partition_free(&state.cells);
     par_room_free(&state.spare);
     report->seconds_total = par_seconds() - began;
     return status;

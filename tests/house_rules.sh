@@ -31,7 +31,7 @@ awk '{
         }
     }
     print FILENAME ":" FNR ": " out
-}' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] >"$code"
+}' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] sched/*/*.[ch] >"$code"
 
 # refuse PATTERN REASON FILE...
 refuse() {
@@ -44,7 +44,7 @@ refuse() {
 }
 
 # 1. Every source file stands in a list, every list entry is a file.
-for file in triangle/*.c triangle/*/*.c triangle/*/*.cpp sched/*.c; do
+for file in triangle/*.c triangle/*/*.c triangle/*/*.cpp sched/*.c sched/*/*.c; do
     [ -f "$file" ] || continue
     grep -qE "(^|[ (])$file([ )]|\$)" cmake/sources.cmake || breach "$file stands in no list of cmake/sources.cmake"
 done
@@ -58,7 +58,7 @@ done
 # include the mesher, the mesher none of them, and they none of each other, but for api/, the door to all.
 refuse '#[[:space:]]*include[[:space:]]*"(sched|drivers|tests)/' 'includes an upper room' \
     triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp
-refuse '#[[:space:]]*include[[:space:]]*"(drivers|tests)/' 'includes an upper room' sched/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"(drivers|tests)/' 'includes an upper room' sched/*.[ch] sched/*/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|text|dropin|check)/' 'includes a folder of the mesher' \
     triangle/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|dropin|check)/' 'includes another folder' triangle/text/*.[ch]
@@ -77,15 +77,16 @@ done
 
 # 3. Libraries neither print nor end the process nor touch the locale.
 refuse '(^|[^_a-zA-Z0-9])(printf|puts|putchar|perror|exit|_exit|abort|setlocale|std(out|err))([^_a-zA-Z0-9]|$)' \
-    'prints, exits or touches the locale' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch]
+    'prints, exits or touches the locale' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp \
+    sched/*.[ch] sched/*/*.[ch]
 
 # 4. No line is longer than 120 characters.
-long=$(LC_ALL=C.UTF-8 grep -nE '^.{121,}$' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] drivers/*.[ch] \
+long=$(LC_ALL=C.UTF-8 grep -nE '^.{121,}$' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] sched/*/*.[ch] drivers/*.[ch] \
     tests/*.[ch] include/*/*.h | head -n 3)
 [ -z "$long" ] || breach "lines of more than 120 characters: $long"
 
 # 5. Each header compiles alone.
-for file in include/*/*.h triangle/*.h triangle/*/*.h sched/*.h; do
+for file in include/*/*.h triangle/*.h triangle/*/*.h sched/*.h sched/*/*.h; do
     [ -f "$file" ] || continue
     "$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Wno-unused -I . -I include -fsyntax-only -x c \
         -include "$file" /dev/null || breach "$file does not compile alone"

@@ -66,7 +66,7 @@ static bool holds(const struct tri_fence *f, struct tri_point q)
     return q.x >= f->x_min && q.x < f->x_max && q.y >= f->y_min && q.y < f->y_max;
 }
 
-static int colour_of(int32_t column, int32_t row) { return 1 - column % 2 + 2 * (1 - row % 2); }
+static int colour_of(int32_t column, int32_t row) { return 1 - row % 2 + 2 * (1 - column % 2); }
 
 static void assert_boundaries_ascend(const struct par_partition *p)
 {

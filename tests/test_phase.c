@@ -163,7 +163,7 @@ static int64_t run_phase(struct tri_mesh *mesh, const struct tri_refine_options 
     assert_non_null(old);
     memcpy(old, mesh->tri, (size_t)n_old * sizeof *old);
     state.pool = bad_slots(mesh, quality);
-    if (par_phase(&state, p, colour, &error) != TRI_OK)
+    if (par_phase(&state, p, colour, TRI_NONE, &error) != TRI_OK)
         fail_msg("%s", error.text);
     par_room_mark(&state.spare, mesh); /* slots that nobody has used yet hold anything */
     assert_changes_are_owned(mesh, old, n_old, p, colour);
@@ -176,6 +176,7 @@ static int64_t run_phase(struct tri_mesh *mesh, const struct tri_refine_options 
         assert_true(report.blocks[i].block >= 0 && report.blocks[i].block < par_blocks(p));
     par_report_free(&report);
     free(state.pool.item);
+    free(state.column.item);
     free(old);
     return inserted;
 }
@@ -230,7 +231,7 @@ static void test_four_phases_in_turn(void **state)
             .mesh = &mesh, .quality = &quality, .options = &options, .threads = 2, .report = &report};
         phases.pool = bad_slots(&mesh, &quality);
         for (int colour = 0; colour < PAR_COLOURS; colour++) {
-            assert_int_equal(par_phase(&phases, &partition, colour, NULL), TRI_OK);
+            assert_int_equal(par_phase(&phases, &partition, colour, TRI_NONE, NULL), TRI_OK);
             par_room_mark(&phases.spare, &mesh);
             assert_pool_holds_all_that_is_bad(&mesh, &quality, &phases.pool, &report.total);
         }
@@ -242,6 +243,7 @@ static void test_four_phases_in_turn(void **state)
         support_assert_cdt(&mesh, false);
         par_report_free(&report);
         free(phases.pool.item);
+        free(phases.column.item);
         par_partition_free(&partition);
         tri_mesh_free(&mesh);
     }
@@ -270,12 +272,13 @@ static void test_margin_keeps_cavities_inside(void **state)
             struct par_state phase = {.mesh = &mesh, .quality = &quality, .options = &options, .threads = 2,
                                       .report = &report, .radius = sqrt(largest2)};
             phase.pool = bad_slots(&mesh, &quality);
-            assert_int_equal(par_phase(&phase, &partition, colour, NULL), TRI_OK);
+            assert_int_equal(par_phase(&phase, &partition, colour, TRI_NONE, NULL), TRI_OK);
             assert_true(report.total.inserted_free > 1000);
             assert_true(margin ? report.total.deferred == 0 : report.total.deferred > 0);
             par_room_close(&phase.spare, &mesh, 2);
             par_report_free(&report);
             free(phase.pool.item);
+            free(phase.column.item);
             tri_mesh_free(&mesh);
         }
     par_partition_free(&partition);

@@ -211,7 +211,7 @@ static void test_any_number_of_threads_and_order_of_blocks_make_one_mesh(void **
 }
 
 /* By block, ids tell from which room a block took them. Places do not, where one schedule does everything: a second
- * one, and what is left over, begin in the order of the ids. And the same mesh has the same numbers, unless by
+ * one begins in the order of the ids. And the same mesh has the same numbers, unless by
  * block. */
 static void test_room_moves_ids_alone(void **state)
 {
@@ -231,7 +231,7 @@ static void test_room_moves_ids_alone(void **state)
             struct support_places others = support_places(&other);
             bool same = support_same_places(&places, &others);
             assert_true(tight.pauses > 0);
-            if (report.levels == 1 && report.left_over == 0 && trials[i].angle <= 30)
+            if (report.levels == 1 && trials[i].angle <= 30)
                 assert_true(same);
             if (same && !options.by_block)
                 support_assert_same_bytes(&mesh, &other);
@@ -251,6 +251,111 @@ static void test_room_moves_ids_alone(void **state)
         tri_mesh_free(&mesh);
         tri_pslg_free(&start.pslg);
     }
+}
+
+/* Everything that is handed out, one after the other. */
+struct stream {
+    char *byte;
+    size_t n, capacity;
+    int64_t n_vertices, n_triangles;
+};
+
+static void append(struct stream *s, const void *bytes, size_t n)
+{
+    if (s->n + n > s->capacity) {
+        s->capacity = 2 * (s->n + n);
+        s->byte = realloc(s->byte, s->capacity);
+        assert_non_null(s->byte);
+    }
+    memcpy(s->byte + s->n, bytes, n);
+    s->n += n;
+}
+
+static enum tri_status take_tile(void *user, const struct par_tile *tile, struct tri_error *error)
+{
+    struct stream *s = user;
+    (void)error;
+    assert_true(tile->first_vertex == s->n_vertices && tile->first_triangle == s->n_triangles);
+    s->n_vertices += tile->n_vertices;
+    s->n_triangles += tile->n_triangles;
+    append(s, &tile->column, sizeof tile->column);
+    append(s, &tile->row, sizeof tile->row);
+    append(s, tile->xy, (size_t)tile->n_vertices * sizeof *tile->xy);
+    append(s, tile->markers, (size_t)tile->n_vertices * sizeof *tile->markers);
+    append(s, tile->corners, (size_t)tile->n_triangles * sizeof *tile->corners);
+    append(s, tile->regions, (size_t)tile->n_triangles * sizeof *tile->regions);
+    return TRI_OK;
+}
+
+static enum tri_status refine_to(struct stream *stream, const struct start *start, const struct par_options *how,
+                                 struct par_report *report, struct tri_mesh *mesh)
+{
+    struct par_options options = *how;
+    *mesh = coarse_mesh(start);
+    *stream = (struct stream){.n_vertices = mesh->n_vertices};
+    options.take = take_tile;
+    options.take_user = stream;
+    return par_refine(mesh, &start->options.quality, &options, report, NULL);
+}
+
+/* Column by column, on more threads, with other room: byte for byte what comes out of memory. Where blocks leave
+ * something over, a sweep says so, and only there. */
+static void test_a_sweep_hands_out_the_same_tiles(void **state)
+{
+    (void)state;
+    int swept_well = 0;
+    for (int i = 0; i < N_TRIALS; i++) {
+        struct start start = start_of(&trials[i]);
+        struct par_options options = small_blocks(trials[i].block, 2);
+        struct par_report report, swept_report;
+        struct tri_mesh mesh, swept;
+        struct stream whole, parts;
+        assert_int_equal(refine_to(&whole, &start, &options, &report, &mesh), TRI_OK);
+        assert_true(whole.n_triangles == mesh.n_slots && whole.n_vertices == mesh.n_vertices);
+        options.sweep = true;
+        options.threads = 3;
+        if (start.options.quality.min_angle <= TRI_EASY_ANGLE) /* else a second schedule begins in the order of ids */
+            options.tight_room = 100;
+        enum tri_status status = refine_to(&parts, &start, &options, &swept_report, &swept);
+        print_message("  %-28s %lld triangles, rounds %d: %s\n", trials[i].file, (long long)whole.n_triangles,
+                      report.rounds, status ? "something is left over" : "the same");
+        if (status) {
+            assert_int_equal(status, TRI_TOO_LARGE);
+            assert_true(report.rounds > 1);
+        } else {
+            assert_int_equal(parts.n_triangles, whole.n_triangles);
+            assert_int_equal(parts.n, whole.n);
+            assert_memory_equal(parts.byte, whole.byte, whole.n);
+        }
+        swept_well += !status;
+        free(whole.byte);
+        free(parts.byte);
+        par_report_free(&report);
+        par_report_free(&swept_report);
+        tri_mesh_free(&mesh);
+        tri_mesh_free(&swept);
+        tri_pslg_free(&start.pslg);
+    }
+    assert_true(swept_well >= 4);
+}
+
+/* Tiles that have been handed out give their memory to those that follow. */
+static void test_a_sweep_holds_few_columns(void **state)
+{
+    (void)state;
+    struct start start = {support_square(1, 100, 5), support_quality(20, 1e-5)};
+    struct par_options options = small_blocks(500, 2);
+    struct par_report report;
+    struct tri_mesh mesh;
+    struct stream stream;
+    options.sweep = true;
+    assert_int_equal(refine_to(&stream, &start, &options, &report, &mesh), TRI_OK);
+    print_message("  %lld triangles through %d\n", (long long)stream.n_triangles, (int)mesh.n_slots);
+    assert_true(mesh.n_slots < stream.n_triangles / 2);
+    free(stream.byte);
+    par_report_free(&report);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&start.pslg);
 }
 
 static struct start square(int32_t points, double angle, double max_area)
@@ -751,6 +856,8 @@ int main(void)
 #endif
         cmocka_unit_test(test_bounds_and_size_are_those_of_the_sequential_loop),
         cmocka_unit_test(test_any_number_of_threads_and_order_of_blocks_make_one_mesh),
+        cmocka_unit_test(test_a_sweep_hands_out_the_same_tiles),
+        cmocka_unit_test(test_a_sweep_holds_few_columns),
         cmocka_unit_test(test_room_moves_ids_alone),
         cmocka_unit_test(test_the_way_of_numbering_moves_ids_alone),
         cmocka_unit_test(test_nothing_is_deferred_with_the_margin),
