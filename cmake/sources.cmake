@@ -27,6 +27,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/interpolate.c
     triangle/quality.c
     triangle/small_angle.c
+    triangle/groundwork.c
     triangle/feature_size.c
     triangle/split.c
     triangle/disk.c

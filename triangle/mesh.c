@@ -93,8 +93,8 @@ void tri_mesh_free(struct tri_mesh *mesh)
     free(raw_of(mesh->tri));
     free(mesh->sub);
     free(mesh->parents);
-    free(mesh->spoke_start);
-    free(mesh->spokes);
+    free(mesh->incidence.start);
+    free(mesh->incidence.parent);
     free(mesh->regions);
     free(mesh->columns);
     *mesh = (struct tri_mesh){0};

@@ -45,7 +45,7 @@ struct tri_refiner {
     struct tri_refine_report *report;
     struct tri_error *error;
     struct tri_criterion criterion;
-    int least_exponent; /* of mesh->shortest2 */
+    int least_exponent; /* of mesh->limits.shortest2 */
     struct tri_cavity cavity;
     struct tri_bad_queue queue;
     bool sized;       /* the triangle in hand asks for a point because of sizes, not of angles */
@@ -429,7 +429,7 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         }
         if (at_limit(r))
             return give_up(r, TRI_EXCUSE_LIMIT);
-        bool resolved = shape.l[shape.shortest] >= r->mesh->shortest2;
+        bool resolved = shape.l[shape.shortest] >= r->mesh->limits.shortest2;
         enum outcome outcome = resolved ? propose(r, entry.t, &shape, badness) : refuse(r, TRI_EXCUSE_PRECISION);
         if (outcome == REFUSED && tri_is_too_large(&r->criterion, t, &shape)) {
             r->sized = true;
@@ -635,13 +635,13 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
         *refiner = NULL;
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for refinement");
     }
-    assert(mesh->n_slots == 0 || mesh->n_hubs > 0); /* tri_refine_prepare has been called */
+    assert(mesh->n_slots == 0 || mesh->incidence.n_vertices > 0); /* tri_refine_prepare has been called */
     r->mesh = mesh;
     r->options = options;
     r->criterion = tri_criterion_for(mesh, options);
     r->report = report;
     begin_stages(r);
-    frexp(mesh->shortest2, &r->least_exponent);
+    frexp(mesh->limits.shortest2, &r->least_exponent);
     r->cavity.fence = options->fence;
     return TRI_OK;
 }

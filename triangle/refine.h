@@ -106,11 +106,6 @@ void tri_refiner_free(struct tri_refiner *refiner);
 int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t first,
                       int32_t last, int32_t *found);
 
-/* Makes the mesh ready for refinement: lists the parents at each vertex, and marks the input vertices at which two
- * subsegments meet at less than 60 degrees inside the mesh (TRI_VERTEX_ACUTE). To be called once, after carving.
- * O(triangles). */
-enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error);
-
 /* Counts the subsegments with a vertex of a triangle beside them in their diametral circle, which -D could not mend, by
  * place: at a small angle of the input, between segments near to each other, and so on. */
 void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_refine_options *options,
