@@ -71,7 +71,7 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
 static double estimate(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *quality)
 {
     (void)user;
-    return par_estimate(mesh, quality);
+    return tri_estimate(mesh, quality);
 }
 
 static enum tri_status write_further(void *user, const struct run *run, struct tri_output_set *set,
