@@ -15,6 +15,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/delaunay.c
     triangle/crossing.c
     triangle/recover.c
+    triangle/flip.c
     triangle/overlap.c
     triangle/constrain.c
     triangle/sweep_order.c

@@ -43,11 +43,7 @@ static const double ULP = 0x1p-7;
 
 enum { NARROW = 8, MOST_PARTS = 64 }; /* see the rule; most parts that rounding may ask for */
 
-static double distance(struct tri_point a, struct tri_point b)
-{
-    double x = b.x - a.x, y = b.y - a.y;
-    return sqrt(x * x + y * y);
-}
+static double distance(struct tri_point a, struct tri_point b) { return sqrt(tri_distance2(a, b)); }
 
 /* Where on the subsegment from a to b is the point level with v? */
 static double level_with(const struct tri_mesh *mesh, const struct tri_subsegment *s, int32_t v)

@@ -167,7 +167,7 @@ static double unit_for(const struct tri_pslg *pslg)
     int exponent;
     for (int32_t i = 0; i < 2 * pslg->n_points; i++)
         size = fabs(pslg->points[i]) > size ? fabs(pslg->points[i]) : size;
-    if (size == 0 || (size >= 0x1p-100 && size <= 0x1p199))
+    if (size == 0 || (size >= 0x1p-100 && size <= TRI_LARGEST_COORDINATE / 2))
         return 1;
     frexp(size, &exponent);
     return ldexp(1, exponent > -1000 ? exponent - 1 : -1000); /* the largest is in [1, 2) then */

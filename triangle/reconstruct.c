@@ -14,7 +14,7 @@
 
 #include "triangle/carve.h"
 #include "triangle/chain.h"
-#include "triangle/constrain.h"
+#include "triangle/flip.h"
 #include "triangle/predicates.h"
 #include "triangle/radix.h"
 #include "triangle/refine.h"

@@ -66,7 +66,7 @@ struct tri_refiner {
 enum { SEED_CHUNK = 1 << 16 };
 
 /* Beyond this lies no point that the predicates can carry: the triangle's area has been rounded to nothing. */
-static const double FARTHEST = 0x1p199;
+static const double FARTHEST = TRI_LARGEST_COORDINATE / 2;
 
 /* DONE: a point was inserted, or the triangle is gone; AGAIN: a subsegment was split instead, the triangle may still
  * stand; LEFT: it is somebody else's. */
@@ -405,6 +405,12 @@ static bool is_hopeless(const struct tri_refiner *r, int32_t slot, const struct 
     return r->report->hit_cap = true;
 }
 
+/* Somebody asks for the end: between two points the mesh is in order. */
+static bool must_stop(struct tri_refiner *r)
+{
+    return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(r->error);
+}
+
 /* Treats one bad triangle until it is gone or refused. */
 static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
 {
@@ -434,12 +440,16 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
             count_point(r);
         if (outcome != AGAIN)
             return outcome == REFUSED ? give_up(r, r->excuse) : outcome;
+        if (must_stop(r))
+            return FAILED;
     }
 }
 
 static bool split_crowded(struct tri_refiner *r)
 {
     while (r->n_crowded > 0) {
+        if (must_stop(r))
+            return false;
         int32_t s = r->crowded[r->n_crowded - 1];
         const struct tri_subsegment *sub = &r->mesh->sub[s];
         int32_t beside = tri_of(sub->side[sub->side[0] == TRI_NONE]);
@@ -467,12 +477,6 @@ static bool next_entry(struct tri_refiner *r)
 {
     return r->step == FIRST_PASS ? tri_bad_queue_pop_angle(&r->queue, r->limit, &r->hand)
                                  : tri_bad_queue_pop(&r->queue, r->mesh->tri, &r->hand);
-}
-
-/* Somebody asks for the end: between two triangles the mesh is in order. */
-static bool must_stop(struct tri_refiner *r)
-{
-    return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(r->error);
 }
 
 static bool work_off(struct tri_refiner *r)

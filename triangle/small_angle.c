@@ -28,18 +28,12 @@
 
 static bool is_acute(const struct tri_mesh *mesh, int32_t v) { return mesh->on[v] == TRI_VERTEX_ACUTE; }
 
-static double squared(struct tri_point a, struct tri_point b)
-{
-    double x = b.x - a.x, y = b.y - a.y;
-    return x * x + y * y;
-}
-
 double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegment *s)
 {
     bool at_start = is_acute(mesh, s->v[0]), at_end = is_acute(mesh, s->v[1]);
     if (!at_start && !at_end)
         return 0.5;
-    double length = sqrt(squared(mesh->xy[s->v[0]], mesh->xy[s->v[1]]));
+    double length = sqrt(tri_distance2(mesh->xy[s->v[0]], mesh->xy[s->v[1]]));
     int exponent; /* half the length is mantissa * 2^exponent, mantissa in [0.5, 1) */
     double mantissa = frexp(0.5 * length, &exponent);
     double shell = ldexp(mantissa < 0.70710678118654752 ? 0.5 : 1, exponent);
@@ -49,7 +43,7 @@ double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegme
 
 bool tri_can_split(const struct tri_mesh *mesh, struct tri_point a, struct tri_point b)
 {
-    return squared(a, b) > 4 * mesh->limits.shortest2;
+    return tri_distance2(a, b) > 4 * mesh->limits.shortest2;
 }
 
 /* The vertex where the parents on which u and v lie meet; TRI_NONE where they do not, or are the same. */
@@ -70,7 +64,7 @@ static bool on_one_shell(const struct tri_mesh *mesh, int32_t u, int32_t v, doub
     int32_t apex = apex_between(mesh, u, v);
     if (apex == TRI_NONE)
         return false;
-    double du = squared(mesh->xy[apex], mesh->xy[u]), dv = squared(mesh->xy[apex], mesh->xy[v]);
+    double du = tri_distance2(mesh->xy[apex], mesh->xy[u]), dv = tri_distance2(mesh->xy[apex], mesh->xy[v]);
     return du < 1.002 * dv && dv < 1.002 * du && uv2 < 0.99 * du;
 }
 
