@@ -14,6 +14,7 @@
 #include "drivers/run.h"
 #include "sched/schedule.h"
 #include "sched/threads.h"
+#include "triangle/estimate.h"
 #include "triangle/text/write.h"
 
 static const char PROGRAM[] = PTRIANGLE_NAME;

@@ -2,6 +2,7 @@
 #include "support.h"
 
 #include "sched/partition.h"
+#include "triangle/estimate.h"
 #include "triangle/quality.h"
 
 /* Inputs and bounds of many kinds, degenerate ones among them. */

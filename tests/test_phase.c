@@ -4,6 +4,7 @@
 
 #include "sched/phase.h"
 #include "sched/theory.h"
+#include "triangle/estimate.h"
 #include "triangle/quality.h"
 
 struct trial {
