@@ -45,7 +45,7 @@ enum { BESIDE = 3, HUB = 16 };
  * others. */
 static const double NEAR = 0.5, APART = 2;
 
-static const struct tri_course NOBODY = {TRI_NONE, TRI_NONE};
+static const struct tri_course NOBODY = {TRI_NONE, TRI_NONE, false};
 
 struct layer {
     struct tri_mesh *mesh;
@@ -592,7 +592,7 @@ static int32_t list_segments(struct layer *l, struct tri_piece *piece)
         if (!valid || a == b)
             l->report->skipped++;
         else if (l->corner[a] != TRI_NONE && l->corner[b] != TRI_NONE) /* else all points are on one line */
-            piece[n++] = (struct tri_piece){a, b, {k, markers && markers[k] ? k : TRI_NONE}};
+            piece[n++] = (struct tri_piece){a, b, {k, markers && markers[k] ? k : TRI_NONE, true}};
     }
     return n;
 }
@@ -652,7 +652,8 @@ static enum tri_status settle(struct layer *l)
         struct tri_subsegment *sub = &mesh->sub[s];
         sub->marker = marker_of(l, l->course[s]);
         sub->parent = mesh->n_parents++;
-        mesh->parents[sub->parent] = (struct tri_parent){{sub->v[0], sub->v[1]}, l->course[s].first, {NAN, NAN}};
+        mesh->parents[sub->parent] = (struct tri_parent){{sub->v[0], sub->v[1]}, l->course[s].first, l->course[s].odd,
+                                                         {NAN, NAN}};
     }
     return status;
 }

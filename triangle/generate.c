@@ -41,7 +41,8 @@ static enum tri_status constrain_and_carve(struct tri_mesh *mesh, const struct t
         return status; /* this stage's, not the next one's */
     announce(options, TRI_STAGE_HOLES);
     if (options->use_segments) {
-        struct tri_carve_options carve = {options->keep_hull, options->ignore_holes, options->spread_regions};
+        struct tri_carve_options carve = {options->keep_hull, options->ignore_holes, options->spread_regions,
+                                          options->even_odd};
         status = tri_carve(mesh, pslg, &carve, error);
     }
     return status;

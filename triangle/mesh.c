@@ -199,7 +199,7 @@ int32_t tri_mesh_add_sub(struct tri_mesh *mesh, int32_t from, int32_t to, int32_
 {
     int32_t s = mesh->n_subs++, parent = mesh->n_parents++;
     assert(s < mesh->sub_capacity && parent < mesh->parent_capacity);
-    mesh->parents[parent] = (struct tri_parent){{from, to}, segment, {NAN, NAN}};
+    mesh->parents[parent] = (struct tri_parent){{from, to}, segment, segment != TRI_NONE, {NAN, NAN}};
     mesh->sub[s] = (struct tri_subsegment){{from, to}, {TRI_NONE, TRI_NONE}, marker, parent};
     return s;
 }

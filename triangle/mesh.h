@@ -63,6 +63,7 @@ struct tri_subsegment {
 struct tri_parent {
     int32_t v[2];
     int32_t segment; /* input segment, or TRI_NONE */
+    bool odd;        /* after tri_constrain: an odd number of input segments run along it */
     struct tri_point guard; /* with the ends, a triangle outside that is the parent's own, see split.c; NaN: all is */
 };
 
