@@ -25,6 +25,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/reconstruct.c
     triangle/cavity.c
     triangle/interpolate.c
+    triangle/degrees.c
     triangle/quality.c
     triangle/small_angle.c
     triangle/groundwork.c
@@ -37,6 +38,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/refine.c
     triangle/numbering.c
     triangle/census.c
+    triangle/estimate.c
     triangle/stats.c
     triangle/generate.c
     triangle/api/figure.c

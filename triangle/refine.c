@@ -16,6 +16,7 @@
 #include <stdlib.h>
 
 #include "triangle/bad_queue.h"
+#include "triangle/cavity.h"
 #include "triangle/criterion.h"
 #include "triangle/disk.h"
 #include "triangle/feature_size.h"

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "triangle/degrees.h"
 #include "triangle/quality.h"
 
 const double tri_aspect_limits[TRI_ASPECT_BINS] = {1.1547, 1.5, 2,  2.5, 3,   4,   6,    10,
