@@ -15,6 +15,7 @@ FAST = [
     ("triangle", "-pq30a0.5e letter", ["letter.poly"]),
     ("ptriangle", "-pq letter --threads 2 --report report.json", ["letter.poly"]),
     ("ptriangle", "-pq30a0.3 section --threads 2 --dry-run", ["section.poly"]),
+    ("ptriangle", "-pA section --output x.vtu --output x.msh --output x.2dm --output fort.14", ["section.poly"]),
     ("trianglecheck", "square.1 --poly square.poly --quiet", ["square.poly", "mesh:square -pq"]),
 ]
 ALL = FAST + [

@@ -75,6 +75,14 @@ for file in triangle/check/*.[ch]; do
     [ -z "$strange" ] || breach "$file includes" $strange
 done
 
+# The schedule drives refinement by its hooks: how triangles are judged and points inserted is the mesher's own affair.
+# (api/ and dropin/ are the doors of the library, of which sched/ has its own.)
+hooks='mesh|owners|fence|refine|estimate|generate|numbering|executor|api/mesh|dropin/(triangle|io)'
+tools='clock|degrees|grow|hilbert|radix|point|status|stop'
+strange=$(grep -E '^sched/.*#[[:space:]]*include[[:space:]]*"triangle/' "$code" |
+    grep -vE '"triangle/('"$hooks|$tools"')\.h"' | head -n 3)
+[ -z "$strange" ] || breach "sched/ includes what is no hook: $strange"
+
 # 3. Libraries neither print nor end the process nor touch the locale.
 refuse '(^|[^_a-zA-Z0-9])(printf|puts|putchar|perror|exit|_exit|abort|setlocale|std(out|err))([^_a-zA-Z0-9]|$)' \
     'prints, exits or touches the locale' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp \
@@ -91,6 +99,14 @@ for file in include/*/*.h triangle/*.h triangle/*/*.h sched/*.h sched/*/*.h; do
     "$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Wno-unused -I . -I include -fsyntax-only -x c \
         -include "$file" /dev/null || breach "$file does not compile alone"
 done
+
+# 6. The top folder holds what is listed here; what a run has left there is not committed.
+known='\.(ci|clang-format|clang-tidy|gitattributes|gitignore)|[A-Z]+(\.md)?|CMake(Lists\.txt|Presets\.json)'
+known="$known|Makefile\.bench|pyproject\.toml|bench|cmake|data|debian|docs|drivers|include|python|sched|tests|tools|triangle"
+if [ -e .git ] && command -v git >/dev/null; then
+    strange=$(git ls-files | cut -d / -f 1 | sort -u | grep -vxE "$known")
+    [ -z "$strange" ] || breach "committed at the top:" $strange
+fi
 
 [ "$breaches" -eq 0 ] && echo "house rules: kept"
 [ "$breaches" -eq 0 ]

@@ -23,7 +23,7 @@
  * them: to a constant as many as Ruppert's algorithm inserts for a bound for which it is known to end. C does not
  * depend on the bound, and nothing depends on the order of insertion: it holds for any schedule. What sources at split
  * points add is finite, too: a space between two segments is as wide as s there, so the integral over it is about its
- * length over its width, that is its cost (tri_filling_cost): no more than mesh.dearest_channel for segments that do
+ * length over its width, that is its cost (tri_filling_cost): no more than limits.dearest_channel for segments that do
  * not touch, which is chosen such that all such spaces together cost no more than the mesh can afford; and no more
  * than SHARP for each octave of distance from the vertex where two segments meet.
  *
@@ -57,6 +57,7 @@ static void divide_vertices(struct estimate *e)
     for (size_t i = 1; i < shares; i++) {
         int32_t v = e->mesh->tri[tri_share(i, e->mesh->n_slots).first].v[0];
         e->own[i] = v > e->own[i - 1] ? v : e->own[i - 1];
+        assert(e->own[i] >= e->own[i - 1] && e->own[i] < e->mesh->n_vertices);
     }
     e->own[shares] = e->mesh->n_vertices;
 }
@@ -110,6 +111,7 @@ void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *exe
 
 double tri_feature_inside(const struct tri_mesh *mesh, int32_t a, int32_t b, struct tri_point p, bool sized)
 {
+    assert(a != b);
     double sa = mesh->feature[a], sb = mesh->feature[b], near = sqrt(tri_relative(&mesh->xy[a], p).l);
     double inherited = (sa < sb ? sa : sb) + SLOPE * near;
     return sized && near < inherited ? near : inherited;
@@ -131,7 +133,7 @@ static bool counts(const struct tri_mesh *mesh, int32_t p, int32_t q, struct tri
         for (int k = 0; k < 2; k++)
             if (a[i] == b[k])
                 return p != q && is_narrow_corner(mesh->xy[a[i]], mesh->xy[a[1 - i]], mesh->xy[b[1 - k]]);
-    return tri_filling_cost(mesh, p, q, at, w) <= mesh->dearest_channel;
+    return tri_filling_cost(mesh, p, q, at, w) <= mesh->limits.dearest_channel;
 }
 
 /* What vertex v, at `distance` from a point on parent p, says about the size there. */
@@ -170,6 +172,7 @@ double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavi
         if (rim->outer < 0)
             size = fmin(size, size_from_wall(mesh, sub->parent, cavity->p, ~rim->outer));
     }
+    assert(half > 0 && half < HUGE_VAL && size < HUGE_VAL);
     return sized && half < size ? half : size;
 }
 

@@ -1,6 +1,7 @@
 /* Pieces are grouped by the vertex at which they start, those of one vertex sorted by direction and length. */
 #include "triangle/overlap.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 #include "triangle/heap_sort.h"
@@ -15,8 +16,7 @@ struct star {
 static int32_t start_of(const struct star *s, int32_t i)
 {
     int32_t a = s->piece[i].from, b = s->piece[i].to;
-    struct tri_point p = s->mesh->xy[a], q = s->mesh->xy[b];
-    return p.x < q.x || (p.x == q.x && p.y < q.y) ? a : b;
+    return tri_compare_places(s->mesh->xy[a], s->mesh->xy[b]) < 0 ? a : b;
 }
 
 static int32_t end_of(const struct star *s, int32_t i)
@@ -36,22 +36,20 @@ static bool is_before(const void *context, int32_t a, int32_t b)
 {
     const struct star *s = context;
     double side = turn(s, a, b);
-    struct tri_point p = s->mesh->xy[end_of(s, a)], q = s->mesh->xy[end_of(s, b)];
     if (side != 0)
         return side > 0;
-    return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : a < b;
+    int order = tri_compare_places(s->mesh->xy[end_of(s, a)], s->mesh->xy[end_of(s, b)]);
+    return order != 0 ? order < 0 : a < b;
 }
-
-static int32_t earlier(int32_t a, int32_t b) { return a == TRI_NONE || (b != TRI_NONE && b < a) ? b : a; }
 
 /* Pieces of one direction, the shortest first. */
 static void share(struct star *s, const int32_t *item, int32_t n)
 {
+    assert(n >= 2);
     for (int32_t k = n - 1; k > 0; k--) {
         struct tri_piece *longer = &s->piece[item[k]], *shorter = &s->piece[item[k - 1]];
         int32_t to = end_of(s, item[k]);
-        shorter->course.first = earlier(shorter->course.first, longer->course.first);
-        shorter->course.marked = earlier(shorter->course.marked, longer->course.marked);
+        shorter->course = tri_course_both(shorter->course, longer->course);
         longer->from = end_of(s, item[k - 1]);
         longer->to = to;
     }
@@ -80,6 +78,7 @@ bool tri_share_overlaps(const struct tri_mesh *mesh, struct tri_piece *piece, in
             start[v + 2] += start[v + 1];
         for (int32_t i = 0; i < n; i++)
             item[start[start_of(&s, i) + 1]++] = i;
+        assert(start[mesh->n_vertices] == n);
         for (int32_t v = 0; v < mesh->n_vertices; v++)
             if (start[v + 1] - start[v] > 1)
                 share_star(&s, item + start[v], start[v + 1] - start[v]);

@@ -10,12 +10,21 @@
 #ifndef TRIANGLE_REFINE_H
 #define TRIANGLE_REFINE_H
 
-#include "triangle/cavity.h"
 #include "triangle/executor.h"
+#include "triangle/fence.h"
+#include "triangle/mesh.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Up to about this bound in degrees refinement ends in practice (proved: 28.6 with input angles of 60 and more). */
+#define TRI_USUAL_ANGLE 34.0
+
+/* Above the first, in degrees, sizes are brought about before angles, with the second as bound: see refine.c,
+ * stages. */
+#define TRI_EASY_ANGLE 31.0
+#define TRI_SIZES_ANGLE 25.0
 
 /* Non-zero: the triangle a, b, c (counter-clockwise) must be refined. Called for triangles that satisfy all other size
  * bounds, by par_refine also for others (sched/schedule.h). */
@@ -26,7 +35,7 @@ typedef bool tri_gate(void *user, const double p[2]);
 
 /* Told of each triangle that the gate or the fence left as it is; its slot may live another life before the call
  * ends. */
-typedef void tri_left(void *user, int32_t slot);
+typedef void tri_left(void *user, tri_triangle_id slot);
 
 /* Makes room for at least 2 triangles, 1 vertex and 1 subsegment more in a mesh that is a view of shared arrays: moves
  * its counts and capacities to an unused range. TRI_NO_ROOM: not now. */
@@ -49,13 +58,24 @@ struct tri_refine_options {
     tri_gate *gate;        /* NULL: every bad triangle */
     void *gate_user;
     const struct tri_fence *fence; /* NULL: the whole mesh */
-    const int32_t *seeds;  /* [n_seeds] slots to look at first; NULL: all slots. The loop looks at all it makes, too */
+    const tri_triangle_id *seeds; /* [n_seeds] looked at first; NULL: all. The loop looks at all it makes, too */
     int32_t n_seeds;
     tri_left *left;        /* NULL: nobody */
     void *left_user;
     tri_more_room *more_room; /* NULL: the mesh's arrays grow */
     void *more_room_user;
 };
+
+/* Is there any bound on sizes? */
+static inline bool tri_has_sizes(const struct tri_refine_options *options)
+{
+    return options->max_area > 0 || options->region_areas || options->unsuitable;
+}
+
+static inline double tri_area_scale(const struct tri_refine_options *options)
+{
+    return options->area_scale > 0 ? options->area_scale : 1;
+}
 
 enum tri_excuse { /* why a triangle is still bad */
     TRI_EXCUSE_INPUT_ANGLE, /* at, or across from, a small angle between input segments */
@@ -103,13 +123,8 @@ void tri_refiner_free(struct tri_refiner *refiner);
 
 /* found[last - first] receives the slots from first to last - 1 at which there is something for the loop to do (an
  * angle that is bad and not hopeless, a bad size; a crowded subsegment if conforming), in order; returns how many. */
-int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t first,
-                      int32_t last, int32_t *found);
-
-/* Makes the mesh ready for refinement: lists the parents at each vertex, and marks the input vertices at which two
- * subsegments meet at less than 60 degrees inside the mesh (TRI_VERTEX_ACUTE). To be called once, after carving.
- * O(triangles). */
-enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error);
+int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id first,
+                      tri_triangle_id last, tri_triangle_id *found);
 
 /* Counts the subsegments with a vertex of a triangle beside them in their diametral circle, which -D could not mend, by
  * place: at a small angle of the input, between segments near to each other, and so on. */
