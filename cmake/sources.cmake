@@ -100,7 +100,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/threads.c
     sched/partition.c
     sched/room.c sched/sweep/tiles.c
-    sched/pool.c
+    sched/worklist.c
     sched/phase.c
     sched/schedule.c
     sched/triangulate.c

@@ -31,5 +31,5 @@ enum tri_status blocks_write(const char *path, struct tri_output_set *set, const
     struct tri_output *output;
     enum tri_status status = interrupt_open(set, path, &output, error);
     return status ? status
-                  : tri_write_table(output, (size_t)mesh->n_slots, ROW_BYTES, format_row, &source, NULL, error);
+                  : tri_write_table(output, (size_t)mesh->n_triangles, ROW_BYTES, format_row, &source, NULL, error);
 }

@@ -19,14 +19,14 @@ static const double TEXT_BYTES = 6.5e8, USUAL_SECONDS = 1.25e-7;
 /* What area bounds alone ask for, and what there is already. */
 static double triangles_by_area(const struct run *run)
 {
-    return AREA_FACTOR * tri_area_demand(&run->mesh, &run->options.quality) + run->mesh.n_slots;
+    return AREA_FACTOR * tri_area_demand(&run->mesh, &run->options.quality) + run->mesh.n_triangles;
 }
 
 static double triangles_of(const struct run *run)
 {
     const struct tri_refine_options *quality = &run->options.quality;
     const struct run_hooks *hooks = run->hooks;
-    double now = run->mesh.n_slots;
+    double now = run->mesh.n_triangles;
     if (!run->options.refine)
         return now;
     double by_area = triangles_by_area(run);
@@ -80,7 +80,7 @@ static double seconds_a_triangle(void)
             return USUAL_SECONDS;
         double began = tri_seconds();
         tri_refine(&mesh, &options.quality, &report.quality, NULL);
-        seconds = (tri_seconds() - began) / (mesh.n_slots + 1);
+        seconds = (tri_seconds() - began) / (mesh.n_triangles + 1);
         tri_mesh_free(&mesh);
     }
     return seconds;
@@ -102,7 +102,7 @@ struct estimate estimate_make(const struct run *run, bool with_seconds)
     struct estimate e = {.triangles = triangles_of(run)};
     if (run->options.refine && quality->max_steiner < 0)
         e.least = tri_area_demand(&run->mesh, quality);
-    double grown = fmax(e.triangles - run->mesh.n_slots, 0);
+    double grown = fmax(e.triangles - run->mesh.n_triangles, 0);
     e.vertices = run->mesh.n_vertices + grown / 2;
     e.more = grown * bytes_a_triangle(run);
     e.memory = resources_memory_used() + e.more;

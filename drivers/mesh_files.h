@@ -23,7 +23,7 @@ struct mesh_files {
     const struct arguments *arguments;
     const struct console *console;
     const struct tri_executor *executor; /* NULL: one task after another */
-    const struct tri_mesh *mesh;         /* without free slots */
+    const struct tri_mesh *mesh;         /* without free numbers */
     const struct tri_pslg *pslg;         /* the input: its points are written bit by bit as they were read */
     bool points_in_poly;                 /* the points came from a .poly file */
     int32_t base;                        /* 0 or 1 */

@@ -59,9 +59,9 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     options.cell_triangles = cell_for_tests();
     options.progress = follow;
     options.progress_user = p;
-    progress_begin(&p->progress, mesh->n_slots, p->threads);
+    progress_begin(&p->progress, mesh->n_triangles, p->threads);
     enum tri_status status = par_refine(mesh, quality, &options, &p->schedule, error);
-    progress_end(&p->progress, mesh->n_slots, p->schedule.seconds_number);
+    progress_end(&p->progress, mesh->n_triangles, p->schedule.seconds_number);
     if (!status)
         progress_stage(&p->progress, "writing");
     *report = p->schedule.total;

@@ -46,11 +46,11 @@ static json_t *command_of(const struct arguments *arguments)
 static json_t *parts_of(const struct par_report *r)
 {
     json_t *phases = json_array();
-    for (int colour = 0; colour < 4; colour++)
-        json_array_append_new(phases, real(r->phase_seconds[colour]));
+    for (int phase = 0; phase < 4; phase++)
+        json_array_append_new(phases, real(r->phase_seconds[phase]));
     return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "total", real(r->seconds_total),
                      "prerefine", real(r->seconds_prerefine), "partition", real(r->seconds_partition), "find",
-                     real(r->seconds_find), "seeds", real(r->seconds_seeds), "room", real(r->seconds_room), "refine",
+                     real(r->seconds_find), "worklist", real(r->seconds_deal), "room", real(r->seconds_room), "refine",
                      real(r->seconds_refine), "merge", real(r->seconds_merge), "last", real(r->seconds_last), "number",
                      real(r->seconds_number), "phases", phases);
 }
@@ -62,7 +62,7 @@ static json_t *blocks_of(const struct par_report *r)
         const struct par_block_report *b = &r->blocks[i];
         json_t *block = json_pack("{s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:o}", "schedule", (int)b->schedule,
                                   "round", (int)b->round, "phase", (int)b->phase, "block", (int)b->block,
-                                  "seeds", whole(b->seeds), "inserted", whole(b->inserted),
+                                  "worklist", whole(b->worklist), "inserted", whole(b->inserted),
                                   "deferred", whole(b->deferred), "seconds", real(b->seconds));
         if (json_array_append_new(blocks, block)) {
             json_decref(blocks);
@@ -91,8 +91,8 @@ static json_t *predictions_of(const struct par_report *r)
 
 static json_t *refused_of(const struct tri_refine_report *r)
 {
-    return json_pack("{s:o, s:o, s:o, s:o, s:o}", "input_angle", whole(r->refused[TRI_EXCUSE_INPUT_ANGLE]), "channel",
-                     whole(r->refused[TRI_EXCUSE_CHANNEL]), "protected", whole(r->refused[TRI_EXCUSE_PROTECTED]),
+    return json_pack("{s:o, s:o, s:o, s:o, s:o}", "input_angle", whole(r->refused[TRI_EXCUSE_INPUT_ANGLE]), "gap",
+                     whole(r->refused[TRI_EXCUSE_NARROW_GAP]), "protected", whole(r->refused[TRI_EXCUSE_PROTECTED]),
                      "limit", whole(r->refused[TRI_EXCUSE_LIMIT]), "precision",
                      whole(r->refused[TRI_EXCUSE_PRECISION]));
 }

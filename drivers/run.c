@@ -319,7 +319,7 @@ static int64_t count_bad(const struct runner *r)
     enum { SOON_COUNTED = 1 << 22 };
     const struct run *run = &r->run;
     int64_t count[TRI_EXCUSES], sum = 0;
-    if (!run->options.refine || run->mesh.n_slots > SOON_COUNTED)
+    if (!run->options.refine || run->mesh.n_triangles > SOON_COUNTED)
         return -1;
     tri_count_bad(&run->mesh, &run->options.quality, &run->report.quality, run->hooks->executor, count);
     for (int k = 0; k < TRI_EXCUSES; k++)
@@ -333,7 +333,7 @@ static void tell_of_stop(struct runner *r, bool partial)
     struct tri_error line = {.status = TRI_STOPPED};
     char far[160] = "";
     int64_t bad = r->built ? count_bad(r) : -1;
-    int length = r->built ? snprintf(far, sizeof far, ": %ld triangles", (long)r->run.mesh.n_slots) : 0;
+    int length = r->built ? snprintf(far, sizeof far, ": %ld triangles", (long)r->run.mesh.n_triangles) : 0;
     if (bad >= 0)
         snprintf(far + length, sizeof far - (size_t)length, ", %" PRId64 " of them below the bounds", bad);
     tri_fail(&line, TRI_STOPPED, NULL, 0, "stopped by %s after %.1f s while %s%s; %s", interrupt_cause(),

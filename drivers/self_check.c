@@ -15,7 +15,7 @@ struct arrays {
 static bool copy_mesh(struct arrays *arrays, const struct tri_mesh *mesh)
 {
     arrays->points = malloc(((size_t)mesh->n_vertices + 1) * 2 * sizeof *arrays->points);
-    arrays->triangles = malloc(((size_t)mesh->n_slots + 1) * 3 * sizeof *arrays->triangles);
+    arrays->triangles = malloc(((size_t)mesh->n_triangles + 1) * 3 * sizeof *arrays->triangles);
     arrays->segments = malloc(((size_t)mesh->n_subs + 1) * 2 * sizeof *arrays->segments);
     if (!arrays->points || !arrays->triangles || !arrays->segments)
         return false;
@@ -23,7 +23,7 @@ static bool copy_mesh(struct arrays *arrays, const struct tri_mesh *mesh)
         arrays->points[2 * (size_t)v] = mesh->xy[v].x;
         arrays->points[2 * (size_t)v + 1] = mesh->xy[v].y;
     }
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         for (size_t k = 0; k < 3; k++)
             arrays->triangles[3 * (size_t)t + k] = mesh->tri[t].v[k];
     for (int32_t s = 0; s < mesh->n_subs; s++)
@@ -60,8 +60,9 @@ enum tri_status self_check(const struct console *console, const struct tri_switc
     options.delaunay = switches->conforming ? TRI_CHECK_CONFORMING : TRI_CHECK_CONSTRAINED;
     enum tri_status status = TRI_OK;
     if (!copy_mesh(&arrays, mesh))
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to check %d triangles", (int)mesh->n_slots);
-    struct tri_check_mesh trial = {.n_points = mesh->n_vertices, .points = arrays.points, .n_triangles = mesh->n_slots,
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to check %d triangles", (int)mesh->n_triangles);
+    struct tri_check_mesh trial = {.n_points = mesh->n_vertices, .points = arrays.points,
+                                   .n_triangles = mesh->n_triangles,
                                    .triangles = arrays.triangles, .n_segments = mesh->n_subs,
                                    .segments = arrays.segments};
     console_say(console, "Checking the mesh.\n");

@@ -30,7 +30,7 @@ static const char *reason_of(enum tri_excuse excuse, const struct tri_refine_opt
 {
     switch (excuse) {
     case TRI_EXCUSE_INPUT_ANGLE: return "at small angles of the input";
-    case TRI_EXCUSE_CHANNEL: return "between segments too near to each other";
+    case TRI_EXCUSE_NARROW_GAP: return "between segments too near to each other";
     case TRI_EXCUSE_PROTECTED:
         return options->protect > 1 ? "for segments that -YY protects" : "for the boundary that -Y protects";
     case TRI_EXCUSE_LIMIT: return report->hit_limit ? "for the limit of -S" : "where vertices ran away";
@@ -141,7 +141,7 @@ static void print_angles(const struct console *console, const struct tri_shapes 
 static int64_t bytes_of(const struct tri_mesh *mesh)
 {
     int64_t a_vertex = (int64_t)sizeof *mesh->xy + 8 + 8 * (int64_t)mesh->n_attributes;
-    return mesh->vertex_capacity * a_vertex + (int64_t)mesh->slot_capacity * (int64_t)sizeof *mesh->tri +
+    return mesh->vertex_capacity * a_vertex + (int64_t)mesh->triangle_capacity * (int64_t)sizeof *mesh->tri +
            (int64_t)mesh->sub_capacity * (int64_t)sizeof *mesh->sub +
            (int64_t)mesh->parent_capacity * (int64_t)sizeof *mesh->parents;
 }
@@ -162,7 +162,7 @@ void summary_shapes(const struct console *console, const struct tri_mesh *mesh, 
     print_angles(console, &shapes);
     console_detail(console, 1, "Memory allocation statistics:\n\n  Maximum number of vertices: %" PRId32 "\n",
                    mesh->n_vertices);
-    console_detail(console, 1, "  Maximum number of triangles: %" PRId32 "\n", mesh->n_slots);
+    console_detail(console, 1, "  Maximum number of triangles: %" PRId32 "\n", mesh->n_triangles);
     console_detail(console, 1, "  Maximum number of subsegments: %" PRId32 "\n", mesh->n_subs);
     console_detail(console, 1, "  Approximate heap memory use (bytes): %" PRId64 "\n\n", bytes_of(mesh));
     console_detail(console, 1, "Algorithmic statistics:\n\n  Vertices at crossings of segments: %" PRId32 "\n",

@@ -252,20 +252,20 @@ static int32_t cell_at(const double *bounds, int32_t n, double q)
 /* Of the two blocks over a cell, the one of this parity. */
 static int32_t block_over(int32_t cell, int parity) { return cell % 2 == parity ? cell : cell + 1; }
 
-int32_t par_block_at(const struct par_partition *p, int colour, struct tri_point q)
+int32_t par_block_at(const struct par_partition *p, int phase, struct tri_point q)
 {
-    assert(colour >= 0 && colour < PAR_COLOURS);
-    int32_t column = block_over(cell_at(p->x, p->n_columns, q.x), 1 - (colour >> 1));
-    int32_t row = block_over(cell_at(rows_of(p, column), p->n_rows, q.y), 1 - (colour & 1));
+    assert(phase >= 0 && phase < PAR_PHASES);
+    int32_t column = block_over(cell_at(p->x, p->n_columns, q.x), 1 - (phase >> 1));
+    int32_t row = block_over(cell_at(rows_of(p, column), p->n_rows, q.y), 1 - (phase & 1));
     return column * p->n_rows + row;
 }
 
-int32_t par_owner_of(const struct par_partition *p, int colour, const struct tri_mesh *mesh, int32_t t)
+int32_t par_owner_of(const struct par_partition *p, int phase, const struct tri_mesh *mesh, int32_t t)
 {
     const int32_t *v = mesh->tri[t].v;
-    int32_t block = par_block_at(p, colour, mesh->xy[v[0]]);
+    int32_t block = par_block_at(p, phase, mesh->xy[v[0]]);
     for (int k = 1; k < 3 && block != TRI_NONE; k++)
-        if (par_block_at(p, colour, mesh->xy[v[k]]) != block)
+        if (par_block_at(p, phase, mesh->xy[v[k]]) != block)
             block = TRI_NONE;
     return block;
 }

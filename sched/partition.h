@@ -9,12 +9,12 @@
  *      blocks 0 2 4 6  |---|-------|-------|---|
  *
  * Rows are cut in the same way, for each block column from the work inside it. A block has four cells, half or a
- * quarter of that at the rim. Its colour is the parity of its column and of its row; colour 0 has the odd ones,
- * and both colours of odd columns come before those of even ones.
+ * quarter of that at the rim. Its phase is the parity of its column and of its row; phase 0 has the odd ones,
+ * and both phases of odd columns come before those of even ones.
  *
- * INVARIANT: blocks of one colour are disjoint half-open boxes and tile the plane; a block of the next colour covers
- * the seams of the last one. So the phase of the first colour does most of the work and the other three close the
- * seams, and a triangle smaller than half a cell lies in some block of some colour.
+ * INVARIANT: blocks of one phase are disjoint half-open boxes and tile the plane; a block of the next phase covers
+ * the seams of the last one. So the first phase does most of the work and the other three close the
+ * seams, and a triangle smaller than half a cell lies in some block of some phase.
  *
  * The partition depends on the mesh and the bounds alone, never on the number of threads. */
 #ifndef SCHED_PARTITION_H
@@ -27,7 +27,7 @@
 extern "C" {
 #endif
 
-enum { PAR_COLOURS = 4 };
+enum { PAR_PHASES = 4 };
 
 struct par_partition {
     int32_t n_columns, n_rows; /* of blocks: odd, at least 3 */
@@ -58,12 +58,12 @@ static inline int32_t par_cells(const struct par_partition *p) { return (p->n_co
 /* The box of block (column, row). */
 struct tri_fence par_fence(const struct par_partition *partition, int32_t column, int32_t row);
 
-/* The block of a colour (bit 0: its row is even, bit 1: its column is) that holds q, as column * n_rows + row.
+/* The block of a phase (bit 0: its row is even, bit 1: its column is) that holds q, as column * n_rows + row.
  * O(log blocks). */
-int32_t par_block_at(const struct par_partition *partition, int colour, struct tri_point q);
+int32_t par_block_at(const struct par_partition *partition, int phase, struct tri_point q);
 
-/* The block of a colour that holds all corners of triangle t, or TRI_NONE. O(log blocks). */
-int32_t par_owner_of(const struct par_partition *partition, int colour, const struct tri_mesh *mesh, int32_t t);
+/* The block of a phase that holds all corners of triangle t, or TRI_NONE. O(log blocks). */
+int32_t par_owner_of(const struct par_partition *partition, int phase, const struct tri_mesh *mesh, int32_t t);
 
 /* The smaller side of the cell that holds q. O(log blocks). */
 double par_cell_size(const struct par_partition *partition, struct tri_point q);

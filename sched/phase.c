@@ -1,4 +1,4 @@
-/* Tasks of a phase: deal out seeds and room, run, collect. */
+/* Tasks of a phase: deal out worklists and room, run, collect. */
 #include "sched/phase.h"
 
 #include <assert.h>
@@ -14,8 +14,8 @@ enum { GONE = -2 }; /* in phase.block_of: the triangle is no more */
 /* A block at work. Every field is its own while the phase runs; others read it before and after. */
 struct task {
     int32_t block;
-    int32_t *seeds;         /* part of the phase's list */
-    int32_t n_seeds;
+    int32_t *worklist;         /* part of the phase's list */
+    int32_t n_worklist;
     int32_t expected;       /* triangles, to the order */
     struct tri_fence fence, active; /* the second in the caller's coordinates */
     bool has_margin;
@@ -24,7 +24,7 @@ struct task {
     struct tri_refine_options options;
     struct tri_refine_report report;
     struct tri_refiner *refiner;
-    struct par_slots left;  /* what gate and fence left */
+    struct par_worklist left;  /* what gate and fence left */
     bool left_lost;         /* no memory for `left` */
     bool pausing;
     int pauses;             /* so far */
@@ -36,11 +36,11 @@ struct task {
 struct phase {
     struct par_state *state;
     const struct par_partition *partition;
-    int colour;
+    int phase;
     int32_t only;       /* column, or TRI_NONE */
-    int32_t *block_of;  /* [pool.n] */
-    double *work;       /* [pool.n] triangles that each will become, to the order */
-    int32_t *seeds;     /* [pool.n] by block */
+    int32_t *block_of;  /* [worklist.n] */
+    double *work;       /* [worklist.n] triangles that each will become, to the order */
+    int32_t *worklist;     /* [worklist.n] by block */
     struct task *tasks;
     int32_t n_tasks;
     int32_t *order;     /* [n_tasks] in which tasks are started */
@@ -48,10 +48,10 @@ struct phase {
     size_t n_marks;
 };
 
-static void leave_triangle(void *user, int32_t slot)
+static void leave_triangle(void *user, int32_t triangle)
 {
     struct task *task = user;
-    if (!par_slots_add(&task->left, slot))
+    if (!par_worklist_add(&task->left, triangle))
         task->left_lost = true;
 }
 
@@ -64,7 +64,7 @@ static bool is_active(void *user, const double p[2])
 /* The block that has its turn now and owns triangle t. */
 static int32_t owner_now(const struct phase *p, int32_t t)
 {
-    int32_t block = par_owner_of(p->partition, p->colour, p->state->mesh, t);
+    int32_t block = par_owner_of(p->partition, p->phase, p->state->mesh, t);
     bool mine = p->only == TRI_NONE || block == TRI_NONE || block / p->partition->n_rows == p->only;
     return mine ? block : TRI_NONE;
 }
@@ -72,29 +72,29 @@ static int32_t owner_now(const struct phase *p, int32_t t)
 static void assign_blocks(struct phase *p)
 {
     const struct tri_mesh *mesh = p->state->mesh;
-    const struct par_slots *pool = &p->state->pool;
+    const struct par_worklist *worklist = &p->state->worklist;
 #pragma omp parallel for num_threads(p->state->threads) schedule(static)
-    for (int32_t i = 0; i < pool->n; i++) {
-        int32_t t = pool->item[i];
+    for (int32_t i = 0; i < worklist->n; i++) {
+        int32_t t = worklist->item[i];
         p->block_of[i] = tri_is_live(&mesh->tri[t]) ? owner_now(p, t) : GONE;
         p->work[i] = p->block_of[i] >= 0 ? tri_work_of(mesh, p->state->quality, t) : 0;
     }
 }
 
-/* Triangles that seeds with so much work will become in this phase, to the order: a little less than they do become,
- * since a pause costs less than gaps do. Measured: the rest is left at the seams. */
-static int32_t expect(int colour, double work)
+/* Triangles that a worklist with so much work will become in this phase, to the order: a little less than they do
+ * become, since a pause costs less than gaps do. Measured: the rest is left at the seams. */
+static int32_t expect(int phase, double work)
 {
-    static const double share[PAR_COLOURS] = {0.9, 0.38, 0.42, 0.35};
-    double expected = share[colour] * work + 128;
+    static const double share[PAR_PHASES] = {0.9, 0.38, 0.42, 0.35};
+    double expected = share[phase] * work + 128;
     return expected < 1e7 ? (int32_t)expected : 10000000;
 }
 
-/* Counting sort of the pool by block; what no block of this colour takes stays in the pool, what has gone is
+/* Counting sort of the worklist by block; what no block of this phase takes stays in the worklist, what has gone is
  * dropped. */
-static bool deal_seeds(struct phase *p)
+static bool deal_worklists(struct phase *p)
 {
-    struct par_slots *pool = &p->state->pool, *column = &p->state->column;
+    struct par_worklist *worklist = &p->state->worklist, *column = &p->state->column;
     int32_t n_blocks = par_blocks(p->partition), kept = 0, used = 0;
     int32_t *start = calloc((size_t)n_blocks + 1, sizeof *start);
     double *work = calloc((size_t)n_blocks + 1, sizeof *work);
@@ -103,7 +103,7 @@ static bool deal_seeds(struct phase *p)
         free(work);
         return false;
     }
-    for (int32_t i = 0; i < pool->n; i++)
+    for (int32_t i = 0; i < worklist->n; i++)
         if (p->block_of[i] >= 0) {
             start[p->block_of[i] + 1]++;
             work[p->block_of[i]] += p->work[i];
@@ -117,20 +117,20 @@ static bool deal_seeds(struct phase *p)
         for (int32_t b = 0; b < n_blocks; b++)
             if (start[b + 1] > start[b])
                 p->tasks[p->n_tasks++] = (struct task){
-                    .block = b, .seeds = p->seeds + start[b], .n_seeds = start[b + 1] - start[b],
-                    .expected = expect(p->colour, work[b]), .pausing = true};
-    for (int32_t i = 0; i < pool->n; i++) {
-        int32_t slot = pool->item[i];
+                    .block = b, .worklist = p->worklist + start[b], .n_worklist = start[b + 1] - start[b],
+                    .expected = expect(p->phase, work[b]), .pausing = true};
+    for (int32_t i = 0; i < worklist->n; i++) {
+        int32_t triangle = worklist->item[i];
         if (p->block_of[i] >= 0)
-            p->seeds[start[p->block_of[i]]++] = slot;
+            p->worklist[start[p->block_of[i]]++] = triangle;
         else if (p->block_of[i] == TRI_NONE) {
             if (column->n > 0)
                 column->item[kept] = column->item[i];
-            pool->item[kept++] = slot;
+            worklist->item[kept++] = triangle;
         }
     }
-    assert(kept <= pool->n && p->n_tasks <= used);
-    pool->n = kept;
+    assert(kept <= worklist->n && p->n_tasks <= used);
+    worklist->n = kept;
     column->n = column->n > 0 ? kept : 0;
     free(start);
     free(work);
@@ -193,8 +193,8 @@ static void set_up(struct phase *p, struct task *task)
     task->options.gate = state->options->margin ? is_active : NULL; /* else the fence says all */
     task->options.gate_user = &task->active;
     task->options.fence = &task->fence;
-    task->options.seeds = task->seeds;
-    task->options.n_seeds = task->n_seeds;
+    task->options.worklist = task->worklist;
+    task->options.n_worklist = task->n_worklist;
     task->options.left = leave_triangle;
     task->options.left_user = task;
     task->options.more_room = par_more_room;
@@ -237,7 +237,7 @@ static bool watch_owners(struct phase *p)
 #ifdef NDEBUG
     (void)p;
 #else
-    size_t n = (size_t)p->state->mesh->slot_capacity + 1;
+    size_t n = (size_t)p->state->mesh->triangle_capacity + 1;
     int32_t *mark = realloc(p->mark, n * sizeof *mark);
     if (!mark)
         return false;
@@ -284,7 +284,7 @@ static bool run_tasks(struct phase *p)
         waiting |= p->tasks[i].pausing;
     double seconds = tri_seconds() - began;
     p->state->report->seconds_refine += seconds;
-    p->state->report->phase_seconds[p->colour] += seconds;
+    p->state->report->phase_seconds[p->phase] += seconds;
     return waiting;
 }
 
@@ -330,7 +330,7 @@ static bool report_block(const struct phase *p, const struct task *task)
         report->blocks = fresh;
     }
     report->blocks[report->n_blocks++] = (struct par_block_report){
-        p->state->n_schedules - 1, p->state->round, p->colour, task->block, task->n_seeds,
+        p->state->n_schedules - 1, p->state->round, p->phase, task->block, task->n_worklist,
         task->report.inserted_free + task->report.inserted_on_segments, task->report.deferred, task->seconds};
     return true;
 }
@@ -349,23 +349,23 @@ void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *a
 
 /* What a phase has left, with the columns of who left it. */
 struct leftovers {
-    struct par_slots item, column;
+    struct par_worklist item, column;
 };
 
-/* A triangle goes back once, however often it was left: one with three crowded walls would count threefold, and
+/* A triangle goes back once, however often it was left: one with three encroached walls would count threefold, and
  * ninefold after the next phase. */
 static bool gather_left(const struct phase *p, struct leftovers *left)
 {
-    static const struct par_slots none;
-    struct par_slot_set seen;
-    bool memory = par_slot_set_of(&seen, &none, p->state->mesh->n_slots);
+    static const struct par_worklist none;
+    struct par_triangle_set seen;
+    bool memory = par_triangle_set_of(&seen, &none, p->state->mesh->n_triangles);
     for (int32_t i = 0; i < p->n_tasks; i++) {
         const struct task *task = &p->tasks[i];
         memory = memory && !task->left_lost;
         for (int32_t k = 0; memory && k < task->left.n; k++)
-            memory = par_slots_add_new(&left->item, &seen, task->left.item[k]);
+            memory = par_worklist_add_new(&left->item, &seen, task->left.item[k]);
         while (memory && left->column.n < left->item.n)
-            memory = par_slots_add(&left->column, task->block / p->partition->n_rows);
+            memory = par_worklist_add(&left->column, task->block / p->partition->n_rows);
     }
     free(seen.word);
     return memory;
@@ -376,21 +376,21 @@ static int32_t column_of(const struct par_state *state, int32_t i)
     return state->column.n > 0 ? state->column.item[i] : -1;
 }
 
-/* The pool and what was left, which no phase has had since, by column; what was in the pool comes first. */
+/* The worklist and what was left, which no phase has had since, by column; what was in the worklist comes first. */
 static bool merge_left(struct par_state *state, const struct leftovers *left)
 {
     struct leftovers merged = {{0}, {0}};
     bool memory = true;
-    for (int32_t i = 0, k = 0; memory && (i < state->pool.n || k < left->item.n);) {
-        bool old = k == left->item.n || (i < state->pool.n && column_of(state, i) <= left->column.item[k]);
-        memory = par_slots_add(&merged.item, old ? state->pool.item[i] : left->item.item[k]) &&
-                 par_slots_add(&merged.column, old ? column_of(state, i) : left->column.item[k]);
+    for (int32_t i = 0, k = 0; memory && (i < state->worklist.n || k < left->item.n);) {
+        bool old = k == left->item.n || (i < state->worklist.n && column_of(state, i) <= left->column.item[k]);
+        memory = par_worklist_add(&merged.item, old ? state->worklist.item[i] : left->item.item[k]) &&
+                 par_worklist_add(&merged.column, old ? column_of(state, i) : left->column.item[k]);
         i += old;
         k += !old;
     }
-    free(state->pool.item);
+    free(state->worklist.item);
     free(state->column.item);
-    state->pool = merged.item;
+    state->worklist = merged.item;
     state->column = merged.column;
     return memory;
 }
@@ -430,14 +430,14 @@ static enum tri_status run_phase(struct phase *p, struct tri_error *error)
     double began = tri_seconds();
     assign_blocks(p);
     double assigned = tri_seconds();
-    bool memory = deal_seeds(p);
+    bool memory = deal_worklists(p);
     for (int32_t i = 0; memory && i < p->n_tasks; i++)
         set_up(p, &p->tasks[i]);
     assert(!p->state->options->margin || blocks_are_independent(p));
     if (!memory || !order_tasks(p))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks of a phase");
     report->seconds_find += assigned - began;
-    report->seconds_seeds += tri_seconds() - assigned;
+    report->seconds_deal += tri_seconds() - assigned;
     enum tri_status status = TRI_OK;
     for (bool first = true, waiting = true; waiting && !status; first = false) {
         double dealing = tri_seconds();
@@ -455,24 +455,24 @@ static enum tri_status run_phase(struct phase *p, struct tri_error *error)
     return status ? status : collected;
 }
 
-enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int colour, int32_t only,
+enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int phase, int32_t only,
                           struct tri_error *error)
 {
-    size_t n = (size_t)state->pool.n + 1;
-    struct phase p = {.state = state, .partition = partition, .colour = colour, .only = only};
+    size_t n = (size_t)state->worklist.n + 1;
+    struct phase p = {.state = state, .partition = partition, .phase = phase, .only = only};
     p.block_of = malloc(n * sizeof *p.block_of);
     p.work = malloc(n * sizeof *p.work);
-    p.seeds = malloc(n * sizeof *p.seeds);
+    p.worklist = malloc(n * sizeof *p.worklist);
     enum tri_status status = TRI_OK;
     if (tri_stop_is_asked(state->mesh->stop))
         status = tri_fail_stopped(error);
-    else if (!p.block_of || !p.work || !p.seeds)
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the seeds of a phase");
+    else if (!p.block_of || !p.work || !p.worklist)
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the worklists of a phase");
     else
         status = run_phase(&p, error);
     free(p.block_of);
     free(p.work);
-    free(p.seeds);
+    free(p.worklist);
     free(p.tasks);
     free(p.order);
     return status;

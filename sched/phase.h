@@ -1,4 +1,4 @@
-/* One phase: all blocks of one colour, refined at once on views of the mesh.
+/* One phase: its blocks, refined at once on views of the mesh.
  *
  * THEOREM. The result of a phase is that of running its blocks one after the other, in any order (triangle/refine.h,
  * serialisation): their fences are disjoint. And what a block does, it does in an order of its own: so the mesh does
@@ -8,7 +8,7 @@
 
 #include "sched/schedule.h"
 #include "sched/partition.h"
-#include "sched/pool.h"
+#include "sched/worklist.h"
 #include "sched/room.h"
 
 void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add);
@@ -19,11 +19,11 @@ struct par_state {
     const struct tri_refine_options *quality;
     const struct par_options *options;
     int threads;
-    struct par_slots pool;   /* triangles that may be bad, in canonical order; some may have gone since */
-    struct par_slots column; /* [pool.n] column of the block that left each, ascending; -1: none has had it; n == 0: so
-                                are all */
+    struct par_worklist worklist;   /* triangles that may be bad, in canonical order; some may have gone since */
+    struct par_worklist column; /* [worklist.n] column of the block that left each, ascending; -1: none
+                                   has had it; n == 0: so are all */
     struct par_room spare;   /* unused ranges of the arrays */
-    double radius;           /* largest circumradius in the pool when it was last filled */
+    double radius;           /* largest circumradius in the worklist when it was last filled */
     struct par_report *report;
     int32_t n_schedules;     /* begun so far; the last is the one that works */
     int round;
@@ -34,16 +34,16 @@ struct par_state {
     bool numbered;           /* and nothing was */
 };
 
-/* Refines the blocks of one colour; takes from the pool what they can take and puts back what they leave. only: the
+/* Refines the blocks of one phase; takes from the worklist what they can take and puts back what they leave. only: the
  * column whose blocks have their turn, or TRI_NONE: all of them.
  *
- * THEOREM (order of columns). A call with TRI_NONE is one for each column of this colour, in any order; and the phases
+ * THEOREM (order of columns). A call with TRI_NONE is one for each column of this phase, in any order; and the phases
  * of odd columns may run column by column, an even one between them once both its neighbours are through. The mesh and
  * what is left are the same, up to ids. For blocks change only what lies in their fences, and fences of two columns
- * meet only if the columns are neighbours or the same; and a block finds its share of the pool in the same order: by
- * the column of who left it, by phase, by row, and as they were left. Only a column or its neighbours leave something
- * for it. */
-enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int colour, int32_t only,
+ * meet only if the columns are neighbours or the same; and a block finds its share of the worklist in the same order:
+ * by the column of who left it, by phase, by row, and as they were left. Only a column or its neighbours leave
+ * something for it. */
+enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int phase, int32_t only,
                           struct tri_error *error);
 
 #endif

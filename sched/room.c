@@ -10,7 +10,7 @@
 enum { LEAST_RANGE = 64 };
 
 /* What one insertion takes at most. */
-static const int32_t one_insertion[PAR_KINDS] = {[PAR_VERTICES] = 1, [PAR_SLOTS] = 2, [PAR_SUBS] = 1};
+static const int32_t one_insertion[PAR_KINDS] = {[PAR_VERTICES] = 1, [PAR_TRIANGLES] = 2, [PAR_SUBS] = 1};
 
 static enum tri_status no_memory(struct tri_error *error)
 {
@@ -31,7 +31,7 @@ static struct counts counts_of(struct tri_mesh *mesh, enum par_kind kind)
 {
     switch (kind) {
     case PAR_VERTICES: return (struct counts){&mesh->n_vertices, &mesh->vertex_capacity};
-    case PAR_SLOTS: return (struct counts){&mesh->n_slots, &mesh->slot_capacity};
+    case PAR_TRIANGLES: return (struct counts){&mesh->n_triangles, &mesh->triangle_capacity};
     default: return (struct counts){&mesh->n_subs, &mesh->sub_capacity};
     }
 }
@@ -125,7 +125,7 @@ static enum tri_status extend(struct par_room *room, struct par_room *spare, str
     if (!reserve_deal(to, from))
         return no_memory(error);
     enum tri_status status = kind == PAR_VERTICES ? tri_mesh_reserve_vertices(shared, need, error)
-                             : kind == PAR_SLOTS  ? tri_mesh_reserve_triangles(shared, need, error)
+                             : kind == PAR_TRIANGLES  ? tri_mesh_reserve_triangles(shared, need, error)
                                                   : tri_mesh_reserve_subs(shared, need, error);
     if (status)
         return status;
@@ -151,7 +151,7 @@ enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, s
 {
     const int32_t wanted[PAR_KINDS] = {
         [PAR_VERTICES] = triangles / 2 + triangles / 64 + 16,
-        [PAR_SLOTS] = triangles,
+        [PAR_TRIANGLES] = triangles,
         [PAR_SUBS] = triangles / 16 + 64,
     };
     enum tri_status status = TRI_OK;
@@ -187,7 +187,7 @@ static void mark_free(struct tri_mesh *mesh, enum par_kind kind, int32_t at)
     case PAR_VERTICES:
         mesh->on[at] = TRI_VERTEX_NONE;
         return;
-    case PAR_SLOTS:
+    case PAR_TRIANGLES:
         mesh->tri[at].v[0] = TRI_NONE;
         return;
     default:
@@ -243,9 +243,9 @@ static bool next_move(struct closing *c, int32_t *hole, int32_t *item)
     }
 }
 
-static void close_slots(struct par_ranges *gaps, struct tri_mesh *mesh)
+static void close_triangles(struct par_ranges *gaps, struct tri_mesh *mesh)
 {
-    struct closing c = closing_of(gaps, mesh->n_slots);
+    struct closing c = closing_of(gaps, mesh->n_triangles);
     int32_t hole, item;
     while (next_move(&c, &hole, &item)) {
         struct tri_triangle *t = &mesh->tri[hole];
@@ -253,7 +253,7 @@ static void close_slots(struct par_ranges *gaps, struct tri_mesh *mesh)
         for (int e = 0; e < 3; e++)
             tri_relink(mesh, t->n[e], t->v[tri_next[e]], tri_code(hole, e));
     }
-    mesh->n_slots = c.last + 1;
+    mesh->n_triangles = c.last + 1;
 }
 
 static void close_subs(struct par_ranges *gaps, struct tri_mesh *mesh)
@@ -302,7 +302,7 @@ static void close_vertices(struct par_ranges *gaps, struct tri_mesh *mesh, int t
     int32_t kept = c.last + 1;
     (void)threads; /* without OpenMP */
 #pragma omp parallel for num_threads(threads) schedule(static)
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         for (int k = 0; k < 3; k++)
             if (mesh->tri[t].v[k] >= kept)
                 mesh->tri[t].v[k] = *forwarding_at(mesh, mesh->tri[t].v[k], kept);
@@ -315,7 +315,7 @@ static void close_vertices(struct par_ranges *gaps, struct tri_mesh *mesh, int t
 
 void par_room_close(struct par_room *spare, struct tri_mesh *shared, int threads)
 {
-    close_slots(&spare->ranges[PAR_SLOTS], shared);
+    close_triangles(&spare->ranges[PAR_TRIANGLES], shared);
     close_subs(&spare->ranges[PAR_SUBS], shared);
     close_vertices(&spare->ranges[PAR_VERTICES], shared, threads);
     par_room_free(spare);

@@ -1,4 +1,4 @@
-/* Room for what blocks add: ranges of vertices, triangle slots and subsegments in the shared arrays.
+/* Room for what blocks add: ranges of vertices, triangles and subsegments in the shared arrays.
  *
  * A block works on a view of the mesh: the shared arrays, with counts and capacities of its own that point into a range
  * that nobody else uses. When a range is full the view moves to the block's next one; when there is none the block
@@ -12,7 +12,7 @@
 #include "triangle/mesh.h"
 #include "triangle/owners.h"
 
-enum par_kind { PAR_VERTICES, PAR_SLOTS, PAR_SUBS, PAR_KINDS };
+enum par_kind { PAR_VERTICES, PAR_TRIANGLES, PAR_SUBS, PAR_KINDS };
 
 struct par_range {
     int32_t next, end; /* unused: next .. end - 1 */
@@ -46,7 +46,7 @@ void par_room_enter(struct par_room *room, struct par_view *view, const struct t
 /* Remembers in the room how far the view's ranges have been used. */
 void par_room_leave(struct par_room *room, struct par_view *view);
 
-/* Sees to it that the room has at least `triangles` unused slots, and vertices and subsegments to match: from
+/* Sees to it that the room has at least `triangles` unused triangles, and vertices and subsegments to match: from
  * `spare` first, else from the end of the shared arrays, which grow. TRI_NO_MEMORY, TRI_TOO_LARGE: what it got so
  * far it keeps. */
 enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
@@ -58,9 +58,9 @@ void par_room_return(struct par_room *room, struct par_room *spare);
 /* Marks what `spare` lists as free in the shared arrays, as tri_number wants it; spare is as before. O(gaps). */
 void par_room_mark(const struct par_room *spare, struct tri_mesh *shared);
 
-/* Closes the gaps that `spare` lists in the shared arrays with the last items there; afterwards every vertex and slot
- * below the mesh's counts is used, as before the first phase. O(gaps), and one parallel pass over the triangles. Frees
- * spare. Cannot fail. */
+/* Closes the gaps that `spare` lists in the shared arrays with the last items there; afterwards every vertex and
+ * triangle below the mesh's counts is used, as before the first phase. O(gaps), and one parallel pass over the
+ * triangles. Frees spare. Cannot fail. */
 void par_room_close(struct par_room *spare, struct tri_mesh *shared, int threads);
 
 void par_room_free(struct par_room *room);

@@ -36,7 +36,7 @@ void par_report_free(struct par_report *report)
 
 int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, int32_t t, int *phase)
 {
-    for (*phase = 0; report->partition.x && *phase < PAR_COLOURS; ++*phase) {
+    for (*phase = 0; report->partition.x && *phase < PAR_PHASES; ++*phase) {
         int32_t block = par_owner_of(&report->partition, *phase, mesh, t);
         if (block != TRI_NONE)
             return block;
@@ -60,7 +60,7 @@ static void tell(const struct par_state *state, int phase)
 {
     if (state->options->progress)
         state->options->progress(state->options->progress_user, state->round, phase,
-                                 state->mesh->n_slots);
+                                 state->mesh->n_triangles);
 }
 
 /* Which bad triangles a graded pre-refinement takes: those with an edge longer than a share of the cell it lies in. In
@@ -140,17 +140,17 @@ static enum tri_status prerefine_uniform(struct par_state *state, const struct t
     return refine_level(state, &coarse, level + 1, error);
 }
 
-static enum tri_status fill_pool(struct par_state *state, const struct tri_refine_options *quality, bool known,
+static enum tri_status fill_worklist(struct par_state *state, const struct tri_refine_options *quality, bool known,
                                  struct tri_error *error)
 {
     struct tri_executor executor = par_executor(&state->threads);
     state->column.n = 0;
-    return par_pool_fill(&state->pool, state->mesh, quality, known, &executor, &state->radius, error);
+    return par_worklist_fill(&state->worklist, state->mesh, quality, known, &executor, &state->radius, error);
 }
 
 /* Pre-refinement where the input is already fine in places: the same refinement for bad triangles alone that have an
  * edge that is long against their cell, with no more than one point for 400 triangles of the mesh to come. No point
- * is inserted that the bounds do not ask for: so it makes no triangle that refinement would not. Fills the pool. */
+ * is inserted that the bounds do not ask for: so it makes no triangle that refinement would not. Fills the worklist. */
 static enum tri_status prerefine_graded(struct par_state *state, const struct tri_refine_options *quality,
                                         const struct par_partition *partition, struct tri_error *error)
 {
@@ -162,24 +162,24 @@ static enum tri_status prerefine_graded(struct par_state *state, const struct tr
     coarse.urgent = is_too_long;
     coarse.urgent_user = &test;
     coarse.max_steiner = (int64_t)(partition->estimate / 400);
-    struct par_slots long_ones;
+    struct par_worklist long_ones;
     struct tri_executor executor = par_executor(&state->threads);
     double began = tri_seconds();
-    enum tri_status status = fill_pool(state, quality, false, error);
+    enum tri_status status = fill_worklist(state, quality, false, error);
     if (status)
         return status;
-    if (!par_pool_filter(&state->pool, state->mesh, &coarse, &executor, &long_ones))
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)state->pool.n);
-    assert(long_ones.n <= state->pool.n);
-    coarse.seeds = long_ones.item;
-    coarse.n_seeds = long_ones.n;
+    if (!par_worklist_filter(&state->worklist, state->mesh, &coarse, &executor, &long_ones))
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)state->worklist.n);
+    assert(long_ones.n <= state->worklist.n);
+    coarse.worklist = long_ones.item;
+    coarse.n_worklist = long_ones.n;
     double found = tri_seconds(), refined = found;
     if (long_ones.n > 0) {
         status = tri_refine(state->mesh, &coarse, &report, error);
         state->report->total.inserted_free += report.inserted_free;
         state->report->total.inserted_on_segments += report.inserted_on_segments;
         refined = tri_seconds();
-        status = status ? status : fill_pool(state, quality, true, error);
+        status = status ? status : fill_worklist(state, quality, true, error);
     }
     free(long_ones.item);
     state->report->seconds_prerefine += refined - found;
@@ -187,16 +187,16 @@ static enum tri_status prerefine_graded(struct par_state *state, const struct tr
     return status;
 }
 
-/* One sequential call of the same loop, for what the pool holds (all: for the whole mesh). */
+/* One sequential call of the same loop, for what the worklist holds (all: for the whole mesh). */
 static enum tri_status refine_rest(struct par_state *state, const struct tri_refine_options *quality, bool all,
                                    struct tri_error *error)
 {
     struct tri_refine_options options = *quality;
     struct tri_refine_report report;
     if (!all) {
-        options.seeds = state->pool.item;
-        options.n_seeds = state->pool.n;
-        if (state->pool.n == 0)
+        options.worklist = state->worklist.item;
+        options.n_worklist = state->worklist.n;
+        if (state->worklist.n == 0)
             return TRI_OK;
     }
     enum tri_status status = tri_refine(state->mesh, &options, &report, error);
@@ -216,7 +216,7 @@ static enum tri_status number_mesh(struct par_state *state, struct tri_error *er
     return status;
 }
 
-/* What blocks have left unused is gone afterwards, by numbering if that is now due. Slots move. */
+/* What blocks have left unused is gone afterwards, by numbering if that is now due. Triangles move. */
 static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -241,9 +241,9 @@ static enum tri_status run_phases(struct par_state *state, const struct par_part
                                   struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    for (int colour = 0; !status && colour < PAR_COLOURS && state->pool.n > 0; colour++) {
-        tell(state, colour + 1);
-        status = par_phase(state, partition, colour, TRI_NONE, error);
+    for (int phase = 0; !status && phase < PAR_PHASES && state->worklist.n > 0; phase++) {
+        tell(state, phase + 1);
+        status = par_phase(state, partition, phase, TRI_NONE, error);
     }
     return status;
 }
@@ -260,8 +260,8 @@ static struct par_tiles tiles_of(const struct par_state *state, const struct par
 static bool is_left_behind(const struct par_state *state, double x)
 {
     const struct tri_mesh *mesh = state->mesh;
-    for (int32_t i = 0; i < state->pool.n; i++) {
-        const struct tri_triangle *t = &mesh->tri[state->pool.item[i]];
+    for (int32_t i = 0; i < state->worklist.n; i++) {
+        const struct tri_triangle *t = &mesh->tri[state->worklist.item[i]];
         if (tri_is_live(t) && mesh->xy[t->v[0]].x < x && mesh->xy[t->v[1]].x < x && mesh->xy[t->v[2]].x < x)
             return true;
     }
@@ -289,10 +289,10 @@ static enum tri_status sweep_columns(struct par_state *state, const struct par_p
     struct tri_executor executor = par_executor(&state->threads);
     struct par_tiles tiles = tiles_of(state, partition, &executor);
     for (int32_t odd = 1; !status && odd <= partition->n_columns; odd += 2) {
-        for (int colour = 0; !status && colour < PAR_COLOURS; colour++) {
-            int32_t column = colour < 2 ? odd : odd - 1;
+        for (int phase = 0; !status && phase < PAR_PHASES; phase++) {
+            int32_t column = phase < 2 ? odd : odd - 1;
             if (column < partition->n_columns)
-                status = par_phase(state, partition, colour, column, error);
+                status = par_phase(state, partition, phase, column, error);
         }
         if (!status && odd > 2)
             status = finish_column(state, &tiles, odd - 2, error);
@@ -311,7 +311,7 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
         state->column.n = 0; /* of other blocks than those to come */
         status = state->sweeping ? sweep_columns(state, partition, error) : run_phases(state, partition, error);
         state->report->rounds++;
-        if (state->pool.n == 0 || par_cells(partition) < FEWEST_TO_COARSEN || state->sweeping)
+        if (state->worklist.n == 0 || par_cells(partition) < FEWEST_TO_COARSEN || state->sweeping)
             break;
         par_partition_coarsen(partition);
     }
@@ -331,7 +331,7 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         report->rows = partition->n_rows;
         status = par_partition_copy(&report->partition, partition, error);
         report->radius_measured = state->radius * state->mesh->unit;
-        report->prerefined = state->mesh->n_slots;
+        report->prerefined = state->mesh->n_triangles;
     }
     state->sweeping = top && state->may_number && state->options->sweep && state->options->take;
     if (!status && top && state->options->take && !state->sweeping) {
@@ -341,10 +341,10 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     status = status ? status : run_rounds(state, partition, error);
     double last = tri_seconds();
     if (top)
-        report->left_over += state->pool.n;
+        report->left_over += state->worklist.n;
     if (state->sweeping)
         return status;
-    if (!status && state->pool.n > 0) { /* in the order of the pool, which ids do not show in */
+    if (!status && state->worklist.n > 0) { /* in the order of the worklist, which ids do not show in */
         par_room_mark(&state->spare, state->mesh);
         status = refine_rest(state, quality, false, error);
     }
@@ -378,7 +378,7 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
     if (areas_decide(state, quality, estimate, cell)) {
         status = prerefine_uniform(state, quality, cell, level, error);
         began = tri_seconds();
-        status = status ? status : fill_pool(state, quality, false, error);
+        status = status ? status : fill_worklist(state, quality, false, error);
         state->report->seconds_find += tri_seconds() - began;
     } else {
         status = prerefine_graded(state, quality, &partition, error);
@@ -452,7 +452,7 @@ static enum tri_status refine_sizes_first(struct par_state *state, const struct 
 /* What a schedule cannot do, one call does. */
 static bool must_be_sequential(const struct tri_refine_options *quality, const struct par_options *options)
 {
-    return quality->max_steiner >= 0 || quality->gate || quality->fence || quality->seeds || quality->more_room ||
+    return quality->max_steiner >= 0 || quality->gate || quality->fence || quality->worklist || quality->more_room ||
            quality->left || (quality->unsuitable && !options->size_test_in_parallel);
 }
 
@@ -466,7 +466,7 @@ static enum tri_status hand_out(struct par_state *state, const struct tri_refine
     struct par_room nothing = {0};
     enum tri_status status = TRI_OK;
     if (!partition->x)
-        status = par_partition_make(partition, state->mesh, quality, state->mesh->n_slots, HUGE_VAL, error);
+        status = par_partition_make(partition, state->mesh, quality, state->mesh->n_triangles, HUGE_VAL, error);
     for (int32_t odd = 1; !status && odd < partition->n_columns; odd += 2)
         status = par_tiles_column(&tiles, odd, false, &nothing, error);
     par_tiles_free(&tiles);
@@ -501,7 +501,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
         status = number_mesh(&state, error);
     if (!status && options->take && !state.sweeping)
         status = hand_out(&state, quality, error);
-    free(state.pool.item);
+    free(state.worklist.item);
     free(state.column.item);
     par_partition_free(&state.cells);
     par_room_free(&state.spare);

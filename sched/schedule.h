@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-enum { PAR_NUMBERING = PAR_COLOURS + 1 }; /* told as a phase, see progress */
+enum { PAR_NUMBERING = PAR_PHASES + 1 }; /* told as a phase, see progress */
 
 struct par_options {
     int threads;             /* 0: what OpenMP would use (OMP_NUM_THREADS, else all cores) */
@@ -48,7 +48,7 @@ struct par_options {
 struct par_block_report {
     int32_t schedule; /* which of the meshes that the phases refined, in the order in which that was begun: from 0 */
     int32_t round, phase, block;
-    int64_t seeds, inserted, deferred;
+    int64_t worklist, inserted, deferred;
     double seconds;
 };
 
@@ -69,17 +69,17 @@ struct par_report {
     int64_t pauses;               /* times a block waited for room */
     double seconds_prerefine, seconds_partition, seconds_room, seconds_merge, seconds_last, seconds_total;
     double seconds_find;          /* bad triangles, and the block of each; in equal shares */
-    double seconds_seeds;         /* dealing them to blocks */
+    double seconds_deal;         /* dealing them to blocks */
     double seconds_number;        /* tri_number, after all others; nearly all in equal shares */
     double seconds_refine;        /* wall time of the phases' parallel parts */
-    double phase_seconds[4];      /* refine, by colour, over all rounds */
+    double phase_seconds[4];      /* refine, by phase, over all rounds */
     struct par_block_report *blocks; /* [n_blocks] in canonical order; owned by the report */
     int32_t n_blocks;
 };
 
 struct par_options par_defaults(void);
 
-/* Refines as tri_refine does, with several threads. Where the options do not allow a schedule (max_steiner; seeds,
+/* Refines as tri_refine does, with several threads. Where the options do not allow a schedule (max_steiner; worklist,
  * gate, fence, left or more_room of the caller's; a size test that must not run in parallel) or the mesh is small it
  * is one sequential call. A size test is also asked about triangles that will never be, smaller and larger ones, to
  * find out how much work there is where. In a child that was forked after a call there is one thread. What an angle

@@ -220,15 +220,15 @@ void support_free_names(char **names)
 struct support_copy support_copy(const struct tri_mesh *mesh)
 {
     struct support_copy c = {.points = room_for(mesh->n_vertices, 2 * sizeof(double)),
-                             .triangles = room_for(mesh->n_slots, 3 * sizeof(int32_t)),
-                             .neighbors = room_for(mesh->n_slots, 3 * sizeof(int32_t)),
+                             .triangles = room_for(mesh->n_triangles, 3 * sizeof(int32_t)),
+                             .neighbors = room_for(mesh->n_triangles, 3 * sizeof(int32_t)),
                              .segments = room_for(mesh->n_subs, 2 * sizeof(int32_t)),
                              .markers = room_for(mesh->n_subs, sizeof(int32_t)),
-                             .max_areas = room_for(mesh->n_slots, sizeof(double))};
+                             .max_areas = room_for(mesh->n_triangles, sizeof(double))};
     for (int32_t v = 0; v < mesh->n_vertices; v++)
         tri_mesh_place(mesh, v, &c.points[2 * v]);
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
-        assert_true(tri_is_live(&mesh->tri[t])); /* the judge's numbers are slots */
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+        assert_true(tri_is_live(&mesh->tri[t])); /* the judge's numbers are triangles */
         for (int e = 0; e < 3; e++) {
             int32_t link = mesh->tri[t].n[e];
             if (link < 0) {
@@ -245,7 +245,7 @@ struct support_copy support_copy(const struct tri_mesh *mesh)
         c.segments[2 * s + 1] = mesh->sub[s].v[1];
         c.markers[s] = mesh->sub[s].marker;
     }
-    c.mesh = (struct tri_check_mesh){mesh->n_vertices, c.points, mesh->n_slots, c.triangles, c.neighbors,
+    c.mesh = (struct tri_check_mesh){mesh->n_vertices, c.points, mesh->n_triangles, c.triangles, c.neighbors,
                                      mesh->n_subs, c.segments, c.markers, NULL};
     return c;
 }
@@ -364,8 +364,8 @@ void support_sort(struct support_set *set)
 
 struct support_set support_triangles(const struct tri_mesh *mesh)
 {
-    struct support_set set = {0, room_for(mesh->n_slots, sizeof *set.v)};
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    struct support_set set = {0, room_for(mesh->n_triangles, sizeof *set.v)};
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         if (tri_is_live(&mesh->tri[t]))
             memcpy(set.v[set.n++], mesh->tri[t].v, sizeof *set.v);
     support_sort(&set);
@@ -394,8 +394,8 @@ static int compare_places(const void *left, const void *right)
 
 struct support_places support_places(const struct tri_mesh *mesh)
 {
-    struct support_places set = {0, room_for(mesh->n_slots, sizeof *set.at)};
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
+    struct support_places set = {0, room_for(mesh->n_triangles, sizeof *set.at)};
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
         if (!tri_is_live(&mesh->tri[t]))
             continue;
         double at[3][2];
@@ -483,7 +483,7 @@ static void assert_sees_none(const struct tri_mesh *mesh, int32_t t)
 
 void support_assert_cdt(const struct tri_mesh *mesh, bool naive)
 {
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
         const struct tri_triangle *at = &mesh->tri[t];
         if (!tri_is_live(at))
             continue;
@@ -504,7 +504,7 @@ void support_assert_cdt(const struct tri_mesh *mesh, bool naive)
 void support_assert_same_bytes(const struct tri_mesh *a, const struct tri_mesh *b)
 {
     assert_int_equal(a->n_vertices, b->n_vertices);
-    assert_int_equal(a->n_slots, b->n_slots);
+    assert_int_equal(a->n_triangles, b->n_triangles);
     assert_int_equal(a->n_subs, b->n_subs);
     assert_int_equal(a->n_attributes, b->n_attributes);
     size_t n = (size_t)a->n_vertices;
@@ -514,7 +514,7 @@ void support_assert_same_bytes(const struct tri_mesh *a, const struct tri_mesh *
     if (a->n_attributes > 0)
         assert_memory_equal(a->attributes, b->attributes, n * (size_t)a->n_attributes * sizeof *a->attributes);
     assert_memory_equal(a->sub, b->sub, (size_t)a->n_subs * sizeof *a->sub);
-    for (int32_t t = 0; t < a->n_slots; t++) {
+    for (int32_t t = 0; t < a->n_triangles; t++) {
         assert_memory_equal(a->tri[t].v, b->tri[t].v, sizeof a->tri[t].v);
         assert_memory_equal(a->tri[t].n, b->tri[t].n, sizeof a->tri[t].n);
         assert_int_equal(a->tri[t].region, b->tri[t].region);

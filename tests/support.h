@@ -128,7 +128,7 @@ bool support_same_places(const struct support_places *a, const struct support_pl
 bool support_has_place(const struct support_places *set, const double place[6]);
 void support_places_free(struct support_places *set);
 
-/* The arrays of two meshes, numbers and all; lives of slots aside. */
+/* The arrays of two meshes, numbers and all; lives of triangles aside. */
 void support_assert_same_bytes(const struct tri_mesh *a, const struct tri_mesh *b);
 
 /* An executor that runs tasks from the last to the first. */

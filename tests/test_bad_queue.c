@@ -2,15 +2,15 @@
 #include "support.h"
 #include "triangle/bad_queue.h"
 
-/* Slot t is in state 3 t, unless a test changes that. */
+/* Triangle t is in state 3 t, unless a test changes that. */
 enum { SLOTS = 100000 };
-static struct tri_triangle slots[SLOTS];
+static struct tri_triangle triangles[SLOTS];
 
 static int set_up(void **state)
 {
     (void)state;
     for (int32_t t = 0; t < SLOTS; t++)
-        slots[t].state = (uint32_t)t * 3;
+        triangles[t].state = (uint32_t)t * 3;
     return 0;
 }
 
@@ -27,7 +27,7 @@ static void push_size(struct tri_bad_queue *queue, int32_t t)
 static int32_t pop(struct tri_bad_queue *queue)
 {
     struct tri_entry entry;
-    if (!tri_bad_queue_pop(queue, slots, &entry))
+    if (!tri_bad_queue_pop(queue, triangles, &entry))
         return TRI_NONE;
     assert_int_equal(entry.state, (uint32_t)entry.t * 3);
     return entry.t;
@@ -140,8 +140,8 @@ static void test_only_what_is_up_to_date(void **state)
     assert_true(tri_bad_queue_init(&queue));
     for (int32_t t = 0; t < N; t++) {
         bool bad = support_below(&random, 3) > 0;
-        slots[t].state += support_below(&random, 2) == 0;
-        kept[t] = bad && slots[t].state == (uint32_t)t * 3;
+        triangles[t].state += support_below(&random, 2) == 0;
+        kept[t] = bad && triangles[t].state == (uint32_t)t * 3;
         assert_true(tri_bad_queue_push_size(&queue, (struct tri_entry){t, (uint32_t)t * 3}, bad));
     }
     for (int32_t t = 0; t < N; t++)
@@ -152,7 +152,7 @@ static void test_only_what_is_up_to_date(void **state)
 }
 
 /* Entries of the pool are used again: steady traffic does not grow it. */
-static void test_pool_is_reused(void **state)
+static void test_worklist_is_reused(void **state)
 {
     (void)state;
     struct tri_bad_queue queue;
@@ -173,7 +173,7 @@ int main(void)
         cmocka_unit_test_setup(test_sizes_beyond_the_window, set_up),
         cmocka_unit_test_setup(test_older_half_is_spilt, set_up),
         cmocka_unit_test_setup(test_only_what_is_up_to_date, set_up),
-        cmocka_unit_test_setup(test_pool_is_reused, set_up),
+        cmocka_unit_test_setup(test_worklist_is_reused, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,12 +6,12 @@
  * changes. */
 static int32_t *paint_components(const struct tri_mesh *mesh)
 {
-    int32_t *paint = calloc((size_t)mesh->n_slots + 1, sizeof *paint);
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    int32_t *paint = calloc((size_t)mesh->n_triangles + 1, sizeof *paint);
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         paint[t] = t;
     for (bool changed = true; changed;) {
         changed = false;
-        for (int32_t t = 0; t < mesh->n_slots; t++)
+        for (int32_t t = 0; t < mesh->n_triangles; t++)
             for (int e = 0; e < 3; e++) {
                 int32_t link = mesh->tri[t].n[e];
                 if (link >= 0 && paint[tri_of(link)] < paint[t]) {
@@ -32,7 +32,7 @@ static bool holds(const struct tri_mesh *mesh, int32_t t, double x, double y)
 
 static void mark_component(const struct tri_mesh *mesh, const int32_t *paint, int32_t of, int32_t value, int32_t *out)
 {
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         if (paint[t] == paint[of])
             out[t] = value;
 }
@@ -41,13 +41,13 @@ static void mark_component(const struct tri_mesh *mesh, const int32_t *paint, in
 static int32_t *naive_regions(const struct tri_mesh *mesh, const struct tri_pslg *pslg,
                               const struct tri_carve_options *options)
 {
-    int32_t *paint = paint_components(mesh), *region = calloc((size_t)mesh->n_slots + 1, sizeof *region);
+    int32_t *paint = paint_components(mesh), *region = calloc((size_t)mesh->n_triangles + 1, sizeof *region);
     for (int32_t k = 0; options->spread_regions && k < pslg->n_regions; k++)
-        for (int32_t t = 0; t < mesh->n_slots; t++)
+        for (int32_t t = 0; t < mesh->n_triangles; t++)
             if (holds(mesh, t, pslg->regions[4 * k], pslg->regions[4 * k + 1]))
                 mark_component(mesh, paint, t, k + 1, region);
     for (int32_t k = 0; !options->ignore_holes && k < pslg->n_holes; k++)
-        for (int32_t t = 0; t < mesh->n_slots; t++)
+        for (int32_t t = 0; t < mesh->n_triangles; t++)
             if (holds(mesh, t, pslg->holes[2 * k], pslg->holes[2 * k + 1]))
                 mark_component(mesh, paint, t, TRI_NONE, region);
     for (int32_t s = 0; !options->keep_hull && s < mesh->n_subs; s++)
@@ -61,8 +61,8 @@ static int32_t *naive_regions(const struct tri_mesh *mesh, const struct tri_pslg
 /* The triangles that stay, of the naive twin, with their regions in a parallel array by position in the sorted set. */
 static struct support_set survivors(const struct tri_mesh *mesh, const int32_t *region, int32_t wanted)
 {
-    struct support_set set = {0, calloc((size_t)mesh->n_slots + 1, sizeof *set.v)};
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    struct support_set set = {0, calloc((size_t)mesh->n_triangles + 1, sizeof *set.v)};
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         if (region[t] != TRI_NONE && (wanted == TRI_NONE || region[t] == wanted))
             memcpy(set.v[set.n++], mesh->tri[t].v, sizeof *set.v);
     support_sort(&set);
@@ -72,8 +72,8 @@ static struct support_set survivors(const struct tri_mesh *mesh, const int32_t *
 static void assert_same_triangles(const struct tri_mesh *before, const int32_t *wanted, const struct tri_mesh *after,
                                   int32_t region)
 {
-    int32_t *found = calloc((size_t)after->n_slots + 1, sizeof *found);
-    for (int32_t t = 0; t < after->n_slots; t++)
+    int32_t *found = calloc((size_t)after->n_triangles + 1, sizeof *found);
+    for (int32_t t = 0; t < after->n_triangles; t++)
         found[t] = after->tri[t].region;
     struct support_set a = survivors(before, wanted, region), b = survivors(after, found, region);
     assert_int_equal(a.n, b.n);
@@ -86,7 +86,7 @@ static void assert_same_triangles(const struct tri_mesh *before, const int32_t *
 static void assert_compact(const struct tri_mesh *mesh, int32_t n_segments)
 {
     int32_t last = -1;
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         assert_true(tri_is_live(&mesh->tri[t]));
     assert_int_equal(mesh->n_parents, mesh->n_subs);
     for (int32_t s = 0; s < mesh->n_subs; s++) {
@@ -186,9 +186,9 @@ static void test_nested_rings(void **state)
     compare_with_twin(&pslg, &options);
     struct tri_mesh mesh = support_constrained(&pslg, &report);
     assert_int_equal(tri_carve(&mesh, &pslg, &options, NULL), TRI_OK);
-    assert_int_equal(mesh.n_slots, 2 + 8);
+    assert_int_equal(mesh.n_triangles, 2 + 8);
     int count[4] = {0};
-    for (int32_t t = 0; t < mesh.n_slots; t++)
+    for (int32_t t = 0; t < mesh.n_triangles; t++)
         count[mesh.tri[t].region]++;
     assert_true(count[0] == 0 && count[1] == 0 && count[2] == 8 && count[3] == 2);
     tri_mesh_free(&mesh);
@@ -211,7 +211,7 @@ static void test_hole_points_in_odd_places(void **state)
         memcpy(pslg.holes, at[i], sizeof at[i]);
         options.use_segments = true;
         struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-        assert_true(mesh.n_slots == 0 || mesh.n_slots == 2);
+        assert_true(mesh.n_triangles == 0 || mesh.n_triangles == 2);
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);
     }
@@ -235,9 +235,9 @@ static void test_far_places_are_outside(void **state)
             pslg.n_holes = pslg.n_regions = 2;
             struct tri_constrain_report report;
             struct tri_mesh mesh = support_constrained(&pslg, &report);
-            int32_t n = mesh.n_slots;
+            int32_t n = mesh.n_triangles;
             assert_int_equal(tri_carve(&mesh, &pslg, &options, NULL), TRI_OK);
-            assert_int_equal(mesh.n_slots, n);
+            assert_int_equal(mesh.n_triangles, n);
             for (int32_t t = 0; t < n; t++)
                 assert_int_equal(mesh.tri[t].region, 0);
             tri_mark_boundary(&mesh);
@@ -305,7 +305,7 @@ static double odd_area(const struct tri_mesh *mesh, const struct tri_pslg *pslg,
 {
     double sum = 0, at[2];
     *stays = true;
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
         double area = area_of(mesh, t, at);
         bool odd = crossings(pslg, at[0], at[1]) % 2;
         sum += odd ? area : 0;
@@ -361,12 +361,12 @@ static void test_rings_keep_the_even_odd_rule(void **state)
 /* The least number of odd subsegments on a way from outside, by sweeps until nothing changes. */
 static int32_t *naive_depths(const struct tri_mesh *mesh, bool keep_hull)
 {
-    int32_t *depth = calloc((size_t)mesh->n_slots + 1, sizeof *depth);
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    int32_t *depth = calloc((size_t)mesh->n_triangles + 1, sizeof *depth);
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         depth[t] = INT32_MAX / 2;
     for (bool changed = true; changed;) {
         changed = false;
-        for (int32_t t = 0; t < mesh->n_slots; t++)
+        for (int32_t t = 0; t < mesh->n_triangles; t++)
             for (int e = 0; e < 3; e++) {
                 int32_t link = mesh->tri[t].n[e], other = tri_across(mesh, tri_code(t, e));
                 const struct tri_parent *parent = link < 0 ? &mesh->parents[mesh->sub[~link].parent] : NULL;
@@ -396,7 +396,7 @@ static void test_depths_equal_naive_twin(void **state)
             support_add_segment(&pslg, support_below(&random, pslg.n_points), support_below(&random, pslg.n_points));
         struct tri_mesh before = support_constrained(&pslg, &report), mesh = carved(&pslg, &options);
         int32_t *depth = naive_depths(&before, options.keep_hull);
-        for (int32_t t = 0; t < before.n_slots; t++)
+        for (int32_t t = 0; t < before.n_triangles; t++)
             depth[t] = depth[t] % 2 ? 0 : TRI_NONE;
         assert_same_triangles(&before, depth, &mesh, TRI_NONE);
         free(depth);
@@ -421,7 +421,7 @@ static double area_left(const struct tri_pslg *pslg, bool keep_hull)
     const struct tri_carve_options options = {.even_odd = true, .keep_hull = keep_hull};
     struct tri_mesh mesh = carved(pslg, &options);
     double sum = 0, at[2];
-    for (int32_t t = 0; t < mesh.n_slots; t++)
+    for (int32_t t = 0; t < mesh.n_triangles; t++)
         sum += area_of(&mesh, t, at);
     tri_mesh_free(&mesh);
     return sum;

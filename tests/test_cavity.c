@@ -39,11 +39,11 @@ static bool is_vertex(const struct tri_mesh *mesh, struct tri_point p)
 static int32_t naive_cavity(const struct tri_mesh *mesh, struct tri_point p, int32_t start, bool *in)
 {
     int32_t n = 1;
-    memset(in, 0, (size_t)mesh->n_slots);
+    memset(in, 0, (size_t)mesh->n_triangles);
     in[start] = true;
     for (bool changed = true; changed;) {
         changed = false;
-        for (int32_t t = 0; t < mesh->n_slots; t++)
+        for (int32_t t = 0; t < mesh->n_triangles; t++)
             for (int e = 0; e < 3; e++) {
                 int32_t link = mesh->tri[t].n[e];
                 if (!in[t] && link >= 0 && in[tri_of(link)] && in_disk(mesh, t, p)) {
@@ -66,26 +66,26 @@ static void assert_same_set(const struct tri_cavity *cavity, const bool *in, int
 }
 
 /* Closed, counter-clockwise as seen from p (save subsegments that have p beyond them), walls where subsegments are. */
-static bool check_rims(const struct tri_cavity *cavity, const struct tri_mesh *mesh)
+static bool check_edges_seen(const struct tri_cavity *cavity, const struct tri_mesh *mesh)
 {
     int32_t walls = 0;
     bool beyond = false;
-    assert_int_equal(cavity->n_rim, cavity->n_tri + 2);
-    assert_int_equal(cavity->rim[cavity->n_rim].a, cavity->rim[0].a);
-    for (int32_t i = 0; i < cavity->n_rim; i++) {
-        const struct tri_rim *rim = &cavity->rim[i];
-        int32_t a = rim->a, b = rim[1].a;
-        assert_true(rim->area2 == tri_cross(rim[0].ra, rim[1].ra));
+    assert_int_equal(cavity->n_edges, cavity->n_tri + 2);
+    assert_int_equal(cavity->edge[cavity->n_edges].a, cavity->edge[0].a);
+    for (int32_t i = 0; i < cavity->n_edges; i++) {
+        const struct tri_cavity_edge *edge = &cavity->edge[i];
+        int32_t a = edge->a, b = edge[1].a;
+        assert_true(edge->area2 == tri_cross(edge[0].ra, edge[1].ra));
         bool seen = tri_orient2d(cavity->p, mesh->xy[a], mesh->xy[b]) > 0;
-        if (rim->outer < 0) {
-            const struct tri_subsegment *s = &mesh->sub[~rim->outer];
+        if (edge->outer < 0) {
+            const struct tri_subsegment *s = &mesh->sub[~edge->outer];
             assert_true((s->v[0] == a && s->v[1] == b) || (s->v[0] == b && s->v[1] == a));
             assert_int_equal(cavity->wall[walls++], i);
             beyond |= !seen;
         } else {
-            const struct tri_triangle *t = &mesh->tri[tri_of(rim->outer)];
-            assert_int_equal(t->v[tri_next[tri_edge(rim->outer)]], b);
-            assert_int_equal(t->v[tri_prev[tri_edge(rim->outer)]], a);
+            const struct tri_triangle *t = &mesh->tri[tri_of(edge->outer)];
+            assert_int_equal(t->v[tri_next[tri_edge(edge->outer)]], b);
+            assert_int_equal(t->v[tri_prev[tri_edge(edge->outer)]], a);
         }
     }
     assert_int_equal(walls, cavity->n_wall);
@@ -95,7 +95,7 @@ static bool check_rims(const struct tri_cavity *cavity, const struct tri_mesh *m
 static void insert(struct tri_cavity *cavity, struct tri_mesh *mesh)
 {
     struct tri_error error = {0};
-    int32_t n = mesh->n_slots;
+    int32_t n = mesh->n_triangles;
     assert_int_equal(tri_mesh_reserve_vertices(mesh, 1, &error), TRI_OK);
     assert_int_equal(tri_mesh_reserve_triangles(mesh, 2, &error), TRI_OK);
     int32_t v = mesh->n_vertices++;
@@ -105,11 +105,11 @@ static void insert(struct tri_cavity *cavity, struct tri_mesh *mesh)
     tri_cavity_fill(cavity, mesh, v);
     if (tri_mesh_validate(mesh, &error) != TRI_OK)
         fail_msg("%s", error.text);
-    assert_int_equal(mesh->n_slots, n + 2);
-    for (int32_t i = 0; i < cavity->n_rim; i++) {
-        const struct tri_triangle *t = &mesh->tri[cavity->rim[i].slot];
-        assert_true(t->v[0] == v && t->v[1] == cavity->rim[i].a);
-        assert_true(t->region == cavity->rim[i].region);
+    assert_int_equal(mesh->n_triangles, n + 2);
+    for (int32_t i = 0; i < cavity->n_edges; i++) {
+        const struct tri_triangle *t = &mesh->tri[cavity->edge[i].triangle];
+        assert_true(t->v[0] == v && t->v[1] == cavity->edge[i].a);
+        assert_true(t->region == cavity->edge[i].region);
     }
 }
 
@@ -121,9 +121,9 @@ static void test_search_equals_flood_and_fill_is_delaunay(void **state)
     for (uint64_t seed = 0; seed < 60; seed++) {
         struct tri_mesh mesh = tangle(seed);
         struct support_random random = {seed};
-        bool *in = calloc((size_t)mesh.n_slots + 300, sizeof *in);
+        bool *in = calloc((size_t)mesh.n_triangles + 300, sizeof *in);
         for (int i = 0; i < 100; i++) {
-            int32_t t = support_below(&random, mesh.n_slots);
+            int32_t t = support_below(&random, mesh.n_triangles);
             const int32_t *v = mesh.tri[t].v;
             double f = support_unit(&random), g = 2 * support_unit(&random) - 0.5;
             struct tri_point p =
@@ -134,7 +134,7 @@ static void test_search_equals_flood_and_fill_is_delaunay(void **state)
             if (found != TRI_SEARCH_FOUND)
                 continue;
             assert_same_set(&cavity, in, naive_cavity(&mesh, p, t, in));
-            if (!check_rims(&cavity, &mesh) || mesh.n_vertices > 140)
+            if (!check_edges_seen(&cavity, &mesh) || mesh.n_vertices > 140)
                 continue;
             insert(&cavity, &mesh);
             inserted++;
@@ -181,7 +181,7 @@ static void test_encroached_subsegments_are_walls(void **state)
         struct tri_mesh mesh = tangle(seed);
         struct support_random random = {seed};
         for (int i = 0; i < 60; i++) {
-            int32_t t = support_below(&random, mesh.n_slots);
+            int32_t t = support_below(&random, mesh.n_triangles);
             const int32_t *v = mesh.tri[t].v;
             double f = support_unit(&random), g = support_unit(&random);
             struct tri_point p =
@@ -193,7 +193,7 @@ static void test_encroached_subsegments_are_walls(void **state)
                     continue;
                 bool is_wall = false;
                 for (int32_t w = 0; w < cavity.n_wall; w++)
-                    is_wall |= ~cavity.rim[cavity.wall[w]].outer == s;
+                    is_wall |= ~cavity.edge[cavity.wall[w]].outer == s;
                 assert_true(is_wall);
                 encroached++;
             }
@@ -221,7 +221,7 @@ static void test_split_keeps_everything(void **state)
             if (tri_cavity_search_split(&cavity, &mesh, p, s, &n_left) != TRI_SEARCH_FOUND)
                 continue;
             assert_int_equal(n_left > 0, old.side[0] != TRI_NONE);
-            assert_int_equal(n_left < cavity.n_rim, old.side[1] != TRI_NONE);
+            assert_int_equal(n_left < cavity.n_edges, old.side[1] != TRI_NONE);
             assert_int_equal(tri_mesh_reserve_vertices(&mesh, 1, &error), TRI_OK);
             assert_int_equal(tri_mesh_reserve_triangles(&mesh, 2, &error), TRI_OK);
             assert_int_equal(tri_mesh_reserve_subs(&mesh, 1, &error), TRI_OK);
@@ -237,7 +237,7 @@ static void test_split_keeps_everything(void **state)
             assert_true(mesh.sub[second].marker == old.marker && mesh.sub[second].parent == old.parent);
             splits++;
         }
-        for (int32_t t = 0; t < mesh.n_slots; t++) {
+        for (int32_t t = 0; t < mesh.n_triangles; t++) {
             const int32_t *v = mesh.tri[t].v;
             assert_true(tri_orient2d(mesh.xy[v[0]], mesh.xy[v[1]], mesh.xy[v[2]]) > 0);
         }
@@ -293,18 +293,18 @@ static void test_fence_stops_exactly_what_it_does_not_own(void **state)
     struct tri_pslg pslg = support_square(8, 300, 3);
     struct tri_options options = tri_defaults();
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    bool *in = calloc((size_t)mesh.n_slots, sizeof *in);
+    bool *in = calloc((size_t)mesh.n_triangles, sizeof *in);
     struct support_random random = {9};
     for (int i = 0; i < 2000; i++) {
         double x = 8 * support_unit(&random), y = 8 * support_unit(&random);
         struct tri_fence fence = {x - 2, y - 2, x + 2, y + 2};
-        int32_t t = support_below(&random, mesh.n_slots);
+        int32_t t = support_below(&random, mesh.n_triangles);
         const int32_t *v = mesh.tri[t].v;
         struct tri_point p =
             tri_point_between(tri_point_between(mesh.xy[v[0]], mesh.xy[v[1]], 0.4), mesh.xy[v[2]], 0.4);
         bool all = true;
         naive_cavity(&mesh, p, t, in);
-        for (int32_t u = 0; u < mesh.n_slots; u++)
+        for (int32_t u = 0; u < mesh.n_triangles; u++)
             all &= !in[u] || owned(&mesh, &fence, u);
         cavity.fence = &fence;
         assert_int_equal(tri_cavity_search(&cavity, &mesh, p, t), all ? TRI_SEARCH_FOUND : TRI_SEARCH_FENCED);
@@ -322,7 +322,7 @@ static void test_a_vertex_is_refused(void **state)
     (void)state;
     struct tri_cavity cavity = {0};
     struct tri_mesh mesh = tangle(0);
-    for (int32_t t = 0; t < mesh.n_slots; t++)
+    for (int32_t t = 0; t < mesh.n_triangles; t++)
         for (int k = 0; k < 3; k++)
             assert_int_equal(tri_cavity_search(&cavity, &mesh, mesh.xy[mesh.tri[t].v[k]], t), TRI_SEARCH_OUTSIDE);
     for (int32_t s = 0; s < mesh.n_subs; s++) {

@@ -11,7 +11,8 @@ static struct tri_mesh refined_letter(const struct tri_options *options, struct 
     return mesh;
 }
 
-/* Work is found slot by slot: any cut into ranges finds the same, and what is found is what the criterion says. */
+/* Work is found triangle by triangle: any cut into ranges finds the same, and what is found is what the criterion
+ * says. */
 static void test_find_work(void **state)
 {
     (void)state;
@@ -20,14 +21,14 @@ static void test_find_work(void **state)
     none.use_segments = true;
     struct tri_mesh mesh = refined_letter(&none, &report);
     int32_t whole[1000], pieces[1000], n = 0, naive = 0;
-    assert_true(mesh.n_slots <= 1000);
-    int32_t found = tri_find_work(&mesh, &asked.quality, 0, mesh.n_slots, whole);
-    for (int32_t t = 0; t < mesh.n_slots; t++)
+    assert_true(mesh.n_triangles <= 1000);
+    int32_t found = tri_find_work(&mesh, &asked.quality, 0, mesh.n_triangles, whole);
+    for (int32_t t = 0; t < mesh.n_triangles; t++)
         n += tri_find_work(&mesh, &asked.quality, t, t + 1, pieces + n);
     assert_int_equal(found, n);
     assert_memory_equal(whole, pieces, (size_t)n * sizeof *whole);
     struct tri_criterion c = tri_criterion_for(&mesh, &asked.quality);
-    for (int32_t t = 0; t < mesh.n_slots; t++) {
+    for (int32_t t = 0; t < mesh.n_triangles; t++) {
         struct tri_shape shape = tri_shape_of(mesh.xy, mesh.tri[t].v);
         naive += tri_judge(&c, &mesh.tri[t], &shape) != TRI_GOOD;
     }
@@ -48,9 +49,9 @@ static void test_count_bad(void **state)
     for (int k = 0; k < TRI_EXCUSES; k++)
         assert_int_equal(count[k], 0);
     options.quality.max_area = 0.005;
-    int32_t *found = malloc((size_t)mesh.n_slots * sizeof *found);
+    int32_t *found = malloc((size_t)mesh.n_triangles * sizeof *found);
     assert_non_null(found);
-    int32_t n = tri_find_work(&mesh, &options.quality, 0, mesh.n_slots, found);
+    int32_t n = tri_find_work(&mesh, &options.quality, 0, mesh.n_triangles, found);
     tri_count_bad(&mesh, &options.quality, &report.quality, NULL, count);
     tri_count_bad(&mesh, &options.quality, &report.quality, &support_backwards, backwards);
     for (int k = 0; k < TRI_EXCUSES; k++)

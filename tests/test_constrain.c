@@ -93,7 +93,7 @@ static void test_crossing_makes_a_vertex(void **state)
     struct tri_mesh mesh = support_constrained(&pslg, &report);
     assert_int_equal(report.crossings, 1);
     assert_int_equal(mesh.n_vertices, 5);
-    assert_int_equal(mesh.n_slots, 4);
+    assert_int_equal(mesh.n_triangles, 4);
     assert_true(mesh.xy[4].x == 2 && mesh.xy[4].y == 2);
     assert_true(mesh.attributes[4] == 2);          /* along segment 0 - 2, which came first */
     assert_int_equal(mesh.vertex_markers[4], 7);
@@ -194,7 +194,7 @@ static void test_segments_are_moved_to_the_lowest_copy(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* A fan of spokes from one vertex, in order and far apart in angle by an ulp or so. */
+/* A fan of incident from one vertex, in order and far apart in angle by an ulp or so. */
 static void test_many_spokes_and_long_channels(void **state)
 {
     (void)state;
@@ -204,7 +204,7 @@ static void test_many_spokes_and_long_channels(void **state)
     for (int i = 0; i < 200; i++)
         support_add_point(&pslg, 1000, i);
     for (int i = 0; i < 200; i++)
-        support_add_point(&pslg, 1 + 4.9 * i, i % 2 ? 1.5 : -1.5); /* a channel of teeth around y = 0 */
+        support_add_point(&pslg, 1 + 4.9 * i, i % 2 ? 1.5 : -1.5); /* a gap of teeth around y = 0 */
     for (int i = 0; i < 200; i++)
         support_add_segment(&pslg, 0, 1 + i);
     struct tri_mesh mesh = support_constrained(&pslg, &report);
@@ -232,7 +232,7 @@ static void test_crossings_below_resolution(void **state)
             support_add_segment(&pslg, a, b);
         }
         struct tri_mesh mesh = support_constrained(&pslg, &report);
-        for (int32_t t = 0; t < mesh.n_slots; t++) {
+        for (int32_t t = 0; t < mesh.n_triangles; t++) {
             const int32_t *v = mesh.tri[t].v;
             assert_true(tri_orient2d(mesh.xy[v[0]], mesh.xy[v[1]], mesh.xy[v[2]]) > 0);
         }
@@ -395,7 +395,7 @@ static void test_no_triangles_no_segments(void **state)
         support_add_point(&pslg, i, 2 * i);
     support_add_segment(&pslg, 0, 9);
     struct tri_mesh mesh = support_constrained(&pslg, &report);
-    assert_int_equal(mesh.n_slots, 0);
+    assert_int_equal(mesh.n_triangles, 0);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
 }

@@ -1,4 +1,4 @@
-/* Which triangles are bad and which subsegments crowded, on triangles whose answer is known. */
+/* Which triangles are bad and which subsegments encroached, on triangles whose answer is known. */
 #include "triangle/criterion.h"
 #include "triangle/disk.h"
 
@@ -17,7 +17,7 @@ static void set_up(struct setting *s, struct tri_point a, struct tri_point b, st
 {
     *s = (struct setting){.xy = {a, b, c}, .triangle = {.v = {0, 1, 2}, .region = 1}, .regions = {{0, 0}, {7, 0.25}},
                           .options = tri_refine_defaults()};
-    s->mesh = (struct tri_mesh){.xy = s->xy, .n_vertices = 3, .tri = &s->triangle, .n_slots = 1,
+    s->mesh = (struct tri_mesh){.xy = s->xy, .n_vertices = 3, .tri = &s->triangle, .n_triangles = 1,
                                 .regions = s->regions, .n_regions = 2, .unit = 1};
 }
 

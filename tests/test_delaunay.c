@@ -123,7 +123,7 @@ static void test_duplicates_have_the_lowest_twin(void **state)
             u++;
         assert_int_equal(mesh.twin[v], u);
     }
-    for (int32_t t = 0; t < mesh.n_slots; t++)
+    for (int32_t t = 0; t < mesh.n_triangles; t++)
         for (int k = 0; k < 3; k++)
             assert_int_equal(mesh.twin[mesh.tri[t].v[k]], mesh.tri[t].v[k]);
     tri_mesh_free(&mesh);
@@ -151,7 +151,7 @@ static void test_signed_zeros_are_one_point(void **state)
     support_add_point(&pslg, 0, 1);
     support_add_point(&pslg, 0, -0.0);
     struct tri_mesh mesh = triangulate(&pslg);
-    assert_int_equal(mesh.n_slots, 1);
+    assert_int_equal(mesh.n_triangles, 1);
     assert_int_equal(mesh.twin[2], 0);
     assert_int_equal(mesh.twin[4], 0);
     tri_mesh_free(&mesh);
@@ -166,7 +166,7 @@ static void test_collinear_points_give_nothing(void **state)
         for (int32_t i = 0; i < n; i++)
             support_add_point(&pslg, 3 * (i * 7 % n), 5 * (i * 7 % n));
         struct tri_mesh mesh = triangulate(&pslg);
-        assert_int_equal(mesh.n_slots, 0);
+        assert_int_equal(mesh.n_triangles, 0);
         assert_int_equal(mesh.n_subs, 0);
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);
@@ -245,7 +245,7 @@ static void test_all_point_files(void **state)
         if (!strstr(*name, ".node") || !support_read(*name, &pslg))
             continue;
         struct tri_mesh mesh = triangulate(&pslg);
-        struct tri_check_options options = {.max_bad = -1, .convex = mesh.n_slots > 0 && !mesh.twin};
+        struct tri_check_options options = {.max_bad = -1, .convex = mesh.n_triangles > 0 && !mesh.twin};
         support_assert_cdt(&mesh, false);
         tri_mark_boundary(&mesh);
         support_judge(&mesh, &pslg, &options, false, NULL);

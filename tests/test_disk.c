@@ -55,7 +55,7 @@ static void test_needles_part(void **state)
             struct tri_pslg pslg = needles(7, seed);
             struct tri_mesh mesh = conforming(&pslg, angle, &report);
             judge_conforming(&mesh, &pslg, &report);
-            assert_true(angle > 0 || mesh.n_slots < 1000);
+            assert_true(angle > 0 || mesh.n_triangles < 1000);
             tri_mesh_free(&mesh);
             tri_pslg_free(&pslg);
         }
@@ -83,14 +83,14 @@ static void test_bundles_part(void **state)
         }
         struct tri_mesh mesh = conforming(&all, 0, &report);
         judge_conforming(&mesh, &all, &report);
-        assert_true(mesh.n_slots < 2000);
+        assert_true(mesh.n_triangles < 2000);
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);
         tri_pslg_free(&all);
     }
 }
 
-/* The loop leaves no subsegment crowded, on anything, and every split leaves a quarter at least on either side. */
+/* The loop leaves no subsegment encroached, on anything, and every split leaves a quarter at least on either side. */
 static void test_nothing_stays_that_can_be_split(void **state)
 {
     (void)state;
@@ -101,14 +101,14 @@ static void test_nothing_stays_that_can_be_split(void **state)
         struct tri_mesh mesh = support_generate(&pslg, &options, &report);
         for (int32_t s = 0; s < mesh.n_subs; s++) {
             double fraction = -1;
-            if (tri_is_crowded(&mesh, &mesh.sub[s], &fraction))
+            if (tri_is_encroached(&mesh, &mesh.sub[s], &fraction))
                 assert_true(fraction >= 0.25 && fraction <= 0.75);
         }
         options.quality.conforming = true;
         assert_int_equal(tri_refine(&mesh, &options.quality, &report.quality, NULL), TRI_OK);
         for (int32_t s = 0; s < mesh.n_subs; s++) {
             double fraction;
-            assert_false(tri_is_crowded(&mesh, &mesh.sub[s], &fraction));
+            assert_false(tri_is_encroached(&mesh, &mesh.sub[s], &fraction));
         }
         judge_conforming(&mesh, &pslg, &report);
         tri_mesh_free(&mesh);
@@ -148,7 +148,7 @@ static void test_the_circle_is_not_inside(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct tri_point xy[] = {{-1, 0}, {1, 0}, {0, cases[i].y}};
         struct tri_triangle t = {.v = {0, 1, 2}};
-        struct tri_mesh mesh = {.xy = xy, .tri = &t, .n_vertices = 3, .n_slots = 1};
+        struct tri_mesh mesh = {.xy = xy, .tri = &t, .n_vertices = 3, .n_triangles = 1};
         struct tri_subsegment sub = {.v = {0, 1}, .side = {tri_code(0, 2), TRI_NONE}};
         assert_int_equal(tri_is_in_diametral_disk(&mesh, &sub, tri_code(0, 2)), cases[i].inside);
     }

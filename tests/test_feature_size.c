@@ -44,7 +44,7 @@ static void check_sizes(const struct tri_mesh *mesh)
                 least = fmin(least, mesh->feature[w] + 0.5 * distance(mesh->xy[v], mesh->xy[w]));
         assert_true(mesh->feature[v] >= 0.999 * least);
     }
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         for (int k = 0; k < 3; k++) {
             int32_t a = mesh->tri[t].v[k], b = mesh->tri[t].v[tri_next[k]];
             double size = fmin(mesh->feature[a], mesh->feature[b]);
@@ -74,7 +74,7 @@ static int32_t triangles_at(const struct tri_pslg *pslg, double angle, bool conf
     struct tri_mesh mesh = support_generate(pslg, &options, NULL);
     struct tri_check_options check = {.max_bad = INT64_MAX, .min_angle = angle, .ignore_lost = true};
     support_judge(&mesh, pslg, &check, false, NULL);
-    int32_t n = mesh.n_slots;
+    int32_t n = mesh.n_triangles;
     tri_mesh_free(&mesh);
     return n;
 }

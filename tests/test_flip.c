@@ -30,7 +30,7 @@ static void assert_naively_delaunay(const struct tri_mesh *mesh)
     struct tri_error error = {0};
     if (tri_mesh_validate(mesh, &error) != TRI_OK)
         fail_msg("%s", error.text);
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         for (int32_t v = 0; v < mesh->n_vertices; v++) {
             const int32_t *c = mesh->tri[t].v;
             if (v != c[0] && v != c[1] && v != c[2])
@@ -45,7 +45,7 @@ static void test_fans_become_delaunay(void **state)
     for (int32_t n = 3; n < 40; n++) {
         struct tri_mesh mesh = fan(n, 0.01 * n);
         assert_int_equal(tri_flip_to_delaunay(&mesh, NULL, &error), TRI_OK);
-        assert_int_equal(mesh.n_slots, n - 2);
+        assert_int_equal(mesh.n_triangles, n - 2);
         assert_naively_delaunay(&mesh);
         tri_mesh_free(&mesh);
     }
@@ -57,10 +57,10 @@ static void test_corners_are_kept(void **state)
     (void)state;
     struct tri_mesh mesh = fan(30, 0.3);
     struct tri_flips flips = {.mesh = &mesh, .corner = calloc(30, sizeof *flips.corner)};
-    for (int32_t t = 0; t < mesh.n_slots; t++)
+    for (int32_t t = 0; t < mesh.n_triangles; t++)
         for (int k = 0; k < 3; k++)
             flips.corner[mesh.tri[t].v[k]] = t;
-    for (int32_t t = 0; t < mesh.n_slots; t++)
+    for (int32_t t = 0; t < mesh.n_triangles; t++)
         assert_true(tri_flip_touch(&flips, t) && tri_flip_legalise(&flips));
     for (int32_t v = 0; v < 30; v++) {
         const int32_t *c = mesh.tri[flips.corner[v]].v;

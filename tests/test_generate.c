@@ -11,7 +11,7 @@ static void assert_legal_failure(enum tri_status status, struct tri_mesh *mesh, 
     assert_int_equal(status, TRI_NO_MEMORY);
     assert_int_equal(error->status, TRI_NO_MEMORY);
     assert_true(error->text[0] != 0);
-    if (mesh->n_slots > 0) { /* ran out in the quality stage: a valid mesh, as far as it got */
+    if (mesh->n_triangles > 0) { /* ran out in the quality stage: a valid mesh, as far as it got */
         struct tri_error fault = {0};
         if (tri_mesh_validate(mesh, &fault) != TRI_OK)
             fail_msg("%s", fault.text);
@@ -120,7 +120,7 @@ static void test_bad_input_is_refused(void **state)
         pslg.points[i % 8] = odd[i / 8];
         assert_int_equal(tri_generate(&mesh, &pslg, &options, &report, &error), TRI_BAD_INPUT);
         assert_true(error.text[0] && error.status == TRI_BAD_INPUT);
-        assert_true(mesh.n_slots == 0 && !mesh.tri && !mesh.xy);
+        assert_true(mesh.n_triangles == 0 && !mesh.tri && !mesh.xy);
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);
     }
@@ -314,7 +314,7 @@ static void test_empty_meshes(void **state)
         struct tri_options options = support_quality(20, 0.1);
         assert_true(support_read(names[i], &pslg));
         struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-        assert_int_equal(mesh.n_slots, 0);
+        assert_int_equal(mesh.n_triangles, 0);
         assert_true(mesh.n_vertices >= pslg.n_points);
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);

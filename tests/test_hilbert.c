@@ -104,7 +104,7 @@ static void test_equal_points_are_neighbours_in_increasing_index(void **state)
 }
 
 /* Different points in one cell (the box is 2^60 times larger): equal ones must still be neighbours. */
-static void test_crowded_cells_are_sorted(void **state)
+static void test_dense_cells_are_sorted(void **state)
 {
     (void)state;
     struct tri_point xy[64];
@@ -188,7 +188,7 @@ int main(void)
         cmocka_unit_test(test_curve_is_hierarchical),
         cmocka_unit_test(test_order_of_a_grid_is_a_path),
         cmocka_unit_test(test_equal_points_are_neighbours_in_increasing_index),
-        cmocka_unit_test(test_crowded_cells_are_sorted),
+        cmocka_unit_test(test_dense_cells_are_sorted),
         cmocka_unit_test(test_any_order_comes_out_the_same),
         cmocka_unit_test(test_degenerate_boxes),
     };

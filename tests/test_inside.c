@@ -22,7 +22,7 @@ static void test_areas_are_kept_beside_slivers(void **state)
             struct tri_options options = support_quality(angles[k % 3], i ? 1e-4 : 2e-4);
             options.quality.protect = k / 3;
             struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-            struct tri_check_options check = {.max_area = options.quality.max_area, .max_bad = mesh.n_slots};
+            struct tri_check_options check = {.max_area = options.quality.max_area, .max_bad = mesh.n_triangles};
             support_judge(&mesh, &pslg, &check, false, NULL);
             tri_mesh_free(&mesh);
             tri_pslg_free(&pslg);
@@ -49,14 +49,14 @@ static void test_a_size_test_is_kept_at_small_angles(void **state)
         options.quality.unsuitable_user = &asked;
         struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
         assert_true(asked > 0);
-        for (int32_t t = 0; t < mesh.n_slots; t++) {
+        for (int32_t t = 0; t < mesh.n_triangles; t++) {
             double at[3][2];
             for (int k = 0; k < 3; k++)
                 tri_mesh_place(&mesh, mesh.tri[t].v[k], at[k]);
             double area = 0.5 * mesh.unit * mesh.unit * tri_shape_of(mesh.xy, mesh.tri[t].v).area2;
             assert_false(is_too_wide(&asked, at[0], at[1], at[2], area));
         }
-        struct tri_check_options check = {.max_bad = mesh.n_slots};
+        struct tri_check_options check = {.max_bad = mesh.n_triangles};
         support_judge(&mesh, &pslg, &check, false, NULL);
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);
@@ -74,7 +74,7 @@ static void test_centroids_are_inside(void **state)
                                  {2 + support_unit(&random), flat * support_unit(&random)},
                                  {support_unit(&random), flat * (1 + support_unit(&random))}};
         struct tri_triangle t = {.v = {0, 1, 2}};
-        struct tri_mesh mesh = {.xy = xy, .tri = &t, .n_vertices = 3, .n_slots = 1, .limits.shortest2 = 0x1p-88};
+        struct tri_mesh mesh = {.xy = xy, .tri = &t, .n_vertices = 3, .n_triangles = 1, .limits.shortest2 = 0x1p-88};
         struct tri_shape shape = tri_shape_of(xy, t.v);
         struct tri_point p;
         if (shape.area2 <= 0)
@@ -97,7 +97,7 @@ static void test_long_walls(void **state)
     struct tri_point xy[] = {{0, 0}, {4, 0}, {0.5, 1}};
     struct tri_subsegment sub[] = {{.v = {0, 1}, .side = {2, TRI_NONE}}, {.v = {2, 0}, .side = {1, 5}}};
     struct tri_triangle t = {.v = {0, 1, 2}, .n = {4, 8, 12}};
-    struct tri_mesh mesh = {.xy = xy, .tri = &t, .sub = sub, .n_vertices = 3, .n_slots = 1, .n_subs = 2};
+    struct tri_mesh mesh = {.xy = xy, .tri = &t, .sub = sub, .n_vertices = 3, .n_triangles = 1, .n_subs = 2};
     struct tri_refine_options options = tri_refine_defaults();
     struct tri_shape shape = tri_shape_of(xy, t.v);
     assert_int_equal(tri_long_wall(&mesh, &options, 0, &shape), TRI_NONE);

@@ -12,10 +12,10 @@ static int32_t face_of(int32_t *root, int32_t t)
 /* face[t]: one triangle that stands for all that are reached from t without crossing a subsegment. */
 static int32_t *faces_of(const struct tri_mesh *mesh)
 {
-    int32_t *root = malloc(((size_t)mesh->n_slots + 1) * sizeof *root);
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    int32_t *root = malloc(((size_t)mesh->n_triangles + 1) * sizeof *root);
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         root[t] = t;
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         for (int e = 0; e < 3; e++)
             if (mesh->tri[t].n[e] >= 0)
                 root[face_of(root, t)] = face_of(root, tri_of(mesh->tri[t].n[e]));
@@ -37,7 +37,7 @@ static void assert_faces(const struct tri_mesh *mesh, const struct tri_point *po
     assert_int_equal(tri_locate_faces(mesh, points, n, faces, &error), TRI_OK);
     for (int32_t i = 0; i < n; i++) {
         bool inside = false, found = false;
-        for (int32_t t = 0; t < mesh->n_slots; t++)
+        for (int32_t t = 0; t < mesh->n_triangles; t++)
             if (tri_is_in_range(points[i]) && holds(mesh, t, points[i])) {
                 inside = true;
                 found = found || (faces[i] != TRI_NONE && face_of(root, t) == face_of(root, faces[i]));

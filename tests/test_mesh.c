@@ -8,7 +8,7 @@ static struct tri_mesh two_triangles(void)
     options.use_segments = true;
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
     tri_pslg_free(&pslg);
-    assert_int_equal(mesh.n_slots, 2);
+    assert_int_equal(mesh.n_triangles, 2);
     return mesh;
 }
 
@@ -28,7 +28,7 @@ static void test_growth_keeps_content_and_alignment(void **state)
         mesh.on[i] = mesh.vertex_markers[i] = i;
         mesh.n_vertices++;
         mesh.tri[i] = (struct tri_triangle){{i, i + 1, i + 2}, {0, 0, 0}, 0, 0};
-        mesh.n_slots++;
+        mesh.n_triangles++;
         assert_int_equal(tri_mesh_add_sub(&mesh, i, i + 1, i + 2, i + 3), i);
     }
     for (int32_t i = 0; i < 5000; i++) {
@@ -53,9 +53,9 @@ static void test_too_large_is_refused(void **state)
     assert_int_equal(tri_mesh_reserve_vertices(&mesh, TRI_MAX_VERTICES, &error), TRI_TOO_LARGE);
     assert_int_equal(error.status, TRI_TOO_LARGE);
     mesh.n_vertices = 0;
-    mesh.n_slots = 10;
+    mesh.n_triangles = 10;
     assert_int_equal(tri_mesh_reserve_triangles(&mesh, TRI_MAX_TRIANGLES, NULL), TRI_TOO_LARGE);
-    mesh.n_slots = 0;
+    mesh.n_triangles = 0;
     tri_mesh_free(&mesh);
 }
 
@@ -106,11 +106,11 @@ static void test_compaction_keeps_a_valid_mesh(void **state)
     options.use_segments = true;
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
     struct support_set before = support_triangles(&mesh);
-    int32_t n = mesh.n_slots;
+    int32_t n = mesh.n_triangles;
     struct support_random random = {4};
-    /* Spread the triangles over twice the slots, links along, then close the gaps again. */
+    /* Spread the triangles over twice the triangles, links along, then close the gaps again. */
     assert_int_equal(tri_mesh_reserve_triangles(&mesh, n, NULL), TRI_OK);
-    mesh.n_slots = 2 * n;
+    mesh.n_triangles = 2 * n;
     for (int32_t t = n; t < 2 * n; t++)
         mesh.tri[t].v[0] = TRI_NONE;
     for (int32_t t = 0; t < n; t++) {
@@ -124,7 +124,7 @@ static void test_compaction_keeps_a_valid_mesh(void **state)
     }
     assert_int_equal(tri_mesh_validate(&mesh, NULL), TRI_OK);
     tri_mesh_compact(&mesh);
-    assert_int_equal(mesh.n_slots, n);
+    assert_int_equal(mesh.n_triangles, n);
     assert_int_equal(tri_mesh_validate(&mesh, NULL), TRI_OK);
     struct support_set after = support_triangles(&mesh);
     assert_true(support_same(&before, &after));
@@ -140,9 +140,9 @@ static void test_compaction_of_nothing(void **state)
     struct tri_mesh mesh = two_triangles();
     mesh.tri[0].v[0] = mesh.tri[1].v[0] = TRI_NONE;
     tri_mesh_compact(&mesh);
-    assert_int_equal(mesh.n_slots, 0);
+    assert_int_equal(mesh.n_triangles, 0);
     tri_mesh_compact(&mesh);
-    assert_int_equal(mesh.n_slots, 0);
+    assert_int_equal(mesh.n_triangles, 0);
     tri_mesh_free(&mesh);
 }
 
@@ -172,7 +172,7 @@ static void test_each_broken_link_is_seen(void **state)
             }
     for (int32_t t = 0; t < 2; t++)
         for (int k = 0; k < 3; k++)
-            for (int32_t wrong = k ? -1 : 0; wrong < 6; wrong++) { /* corner 0 < 0: a free slot */
+            for (int32_t wrong = k ? -1 : 0; wrong < 6; wrong++) { /* corner 0 < 0: a free triangle */
                 int32_t right = mesh.tri[t].v[k];
                 if (wrong == right)
                     continue;
@@ -209,7 +209,7 @@ static void test_each_broken_subsegment_is_seen(void **state)
     tri_mesh_free(&mesh);
 }
 
-/* A slot freed while neighbours still point to it. */
+/* A triangle freed while neighbours still point to it. */
 static void test_link_to_a_free_slot_is_seen(void **state)
 {
     (void)state;
@@ -226,8 +226,8 @@ static void test_copy_of_a_triangle_is_seen(void **state)
     (void)state;
     struct tri_mesh mesh = two_triangles();
     assert_int_equal(tri_mesh_reserve_triangles(&mesh, 1, NULL), TRI_OK);
-    mesh.tri[mesh.n_slots] = mesh.tri[1];
-    mesh.n_slots++;
+    mesh.tri[mesh.n_triangles] = mesh.tri[1];
+    mesh.n_triangles++;
     assert_broken(&mesh);
     for (int e = 0; e < 3; e++) /* nor if only the link to the other triangle is left */
         if (mesh.tri[2].n[e] < 0) {

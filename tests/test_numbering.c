@@ -10,7 +10,7 @@ static struct tri_mesh refined(uint64_t seed, double max_area)
     struct tri_options options = support_quality(25, max_area);
     support_add_attributes(&pslg);
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    for (int32_t t = 0; t < mesh.n_slots; t++) /* regions by place, so that they can be recognised */
+    for (int32_t t = 0; t < mesh.n_triangles; t++) /* regions by place, so that they can be recognised */
         mesh.tri[t].region =
             mesh.xy[mesh.tri[t].v[0]].x + mesh.xy[mesh.tri[t].v[1]].x + mesh.xy[mesh.tri[t].v[2]].x > 1;
     tri_pslg_free(&pslg);
@@ -37,18 +37,19 @@ static int32_t *scatter(int32_t n, int32_t first, int32_t *places, struct suppor
 static struct tri_mesh scrambled(const struct tri_mesh *from, struct support_random *random)
 {
     struct tri_mesh to;
-    int32_t hubs = from->incidence.n_vertices, vertices, slots, subs;
+    int32_t hubs = from->incidence.n_vertices, vertices, triangles, subs;
     int32_t *vertex = scatter(from->n_vertices - hubs, hubs, &vertices, random);
-    int32_t *slot = scatter(from->n_slots, 0, &slots, random), *sub = scatter(from->n_subs, 0, &subs, random);
-    int32_t *turn = malloc((size_t)from->n_slots * sizeof *turn);
+    int32_t *triangle = scatter(from->n_triangles, 0, &triangles, random);
+    int32_t *sub = scatter(from->n_subs, 0, &subs, random);
+    int32_t *turn = malloc((size_t)from->n_triangles * sizeof *turn);
     assert_non_null(turn);
     assert_int_equal(tri_mesh_init(&to, NULL), TRI_OK);
     to.n_attributes = from->n_attributes;
     assert_int_equal(tri_mesh_reserve_vertices(&to, hubs + vertices, NULL), TRI_OK);
-    assert_int_equal(tri_mesh_reserve_triangles(&to, slots, NULL), TRI_OK);
+    assert_int_equal(tri_mesh_reserve_triangles(&to, triangles, NULL), TRI_OK);
     assert_int_equal(tri_mesh_reserve_subs(&to, subs > from->n_parents ? subs : from->n_parents, NULL), TRI_OK);
     to.n_vertices = hubs + vertices;
-    to.n_slots = slots;
+    to.n_triangles = triangles;
     to.n_subs = subs;
     to.incidence.n_vertices = hubs;
     to.n_input = from->n_input;
@@ -60,21 +61,21 @@ static struct tri_mesh scrambled(const struct tri_mesh *from, struct support_ran
     }
     for (int32_t s = 0; s < subs; s++)
         to.sub[s] = (struct tri_subsegment){{TRI_NONE, TRI_NONE}, {TRI_NONE, TRI_NONE}, 0, TRI_NONE};
-    for (int32_t t = 0; t < slots; t++)
+    for (int32_t t = 0; t < triangles; t++)
         to.tri[t] = (struct tri_triangle){{TRI_NONE, 7, 7}, {7, 7, 7}, 7, 7};
-    for (int32_t t = 0; t < from->n_slots; t++)
+    for (int32_t t = 0; t < from->n_triangles; t++)
         turn[t] = support_below(random, 3);
 #define VERTEX(v) ((v) < hubs ? (v) : vertex[(v) - hubs])
-#define CODE(c) tri_code(slot[tri_of(c)], (tri_edge(c) + turn[tri_of(c)]) % 3)
+#define CODE(c) tri_code(triangle[tri_of(c)], (tri_edge(c) + turn[tri_of(c)]) % 3)
     for (int32_t v = 0; v < from->n_vertices; v++) {
         to.xy[VERTEX(v)] = from->xy[v];
         to.on[VERTEX(v)] = from->on[v];
         to.vertex_markers[VERTEX(v)] = from->vertex_markers[v];
         memcpy(to.attributes + 2 * VERTEX(v), from->attributes + 2 * v, 2 * sizeof *to.attributes);
     }
-    for (int32_t t = 0; t < from->n_slots; t++) {
+    for (int32_t t = 0; t < from->n_triangles; t++) {
         const struct tri_triangle *old = &from->tri[t];
-        struct tri_triangle *fresh = &to.tri[slot[t]];
+        struct tri_triangle *fresh = &to.tri[triangle[t]];
         for (int k = 0; k < 3; k++) {
             fresh->v[(k + turn[t]) % 3] = VERTEX(old->v[k]);
             fresh->n[(k + turn[t]) % 3] = old->n[k] >= 0 ? CODE(old->n[k]) : ~sub[~old->n[k]];
@@ -94,7 +95,7 @@ static struct tri_mesh scrambled(const struct tri_mesh *from, struct support_ran
 #undef CODE
     assert_int_equal(tri_mesh_validate(&to, NULL), TRI_OK);
     free(vertex);
-    free(slot);
+    free(triangle);
     free(sub);
     free(turn);
     return to;
@@ -103,7 +104,7 @@ static struct tri_mesh scrambled(const struct tri_mesh *from, struct support_ran
 /* What the header promises of the order. */
 static void assert_in_order(const struct tri_mesh *mesh)
 {
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
         const int32_t *v = mesh->tri[t].v, *before = mesh->tri[t - (t > 0)].v;
         assert_true(v[0] > v[1] && v[0] > v[2]);
         assert_true(t == 0 || v[0] > before[0] || (v[0] == before[0] && v[1] > before[1]));
@@ -124,7 +125,7 @@ static void assert_is_whole(const struct tri_mesh *mesh)
     struct tri_error error = {0};
     if (tri_mesh_validate(mesh, &error) != TRI_OK)
         fail_msg("%s", error.text);
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
         const int32_t *v = mesh->tri[t].v;
         assert_int_equal(mesh->tri[t].region, mesh->xy[v[0]].x + mesh->xy[v[1]].x + mesh->xy[v[2]].x > 1);
     }
@@ -197,7 +198,7 @@ static void test_large_fan(void **state)
     support_add_point(&pslg, 0, 0);
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
     assert_int_equal(tri_number(&mesh, mesh.incidence.n_vertices, NULL, NULL), TRI_OK);
-    assert_int_equal(mesh.tri[mesh.n_slots / 2].v[0], N);
+    assert_int_equal(mesh.tri[mesh.n_triangles / 2].v[0], N);
     assert_in_order(&mesh);
     assert_int_equal(tri_mesh_validate(&mesh, NULL), TRI_OK);
     tri_mesh_free(&mesh);

@@ -67,7 +67,7 @@ static bool holds(const struct tri_fence *f, struct tri_point q)
     return q.x >= f->x_min && q.x < f->x_max && q.y >= f->y_min && q.y < f->y_max;
 }
 
-static int colour_of(int32_t column, int32_t row) { return 1 - row % 2 + 2 * (1 - column % 2); }
+static int phase_of(int32_t column, int32_t row) { return 1 - row % 2 + 2 * (1 - column % 2); }
 
 static void assert_boundaries_ascend(const struct par_partition *p)
 {
@@ -87,15 +87,15 @@ static bool meet(const struct tri_fence *a, const struct tri_fence *b)
     return fmax(a->x_min, b->x_min) < fmin(a->x_max, b->x_max) && fmax(a->y_min, b->y_min) < fmin(a->y_max, b->y_max);
 }
 
-/* Half-open boxes of one colour have no point in common. */
-static void assert_colours_are_disjoint(const struct par_partition *p)
+/* Half-open boxes of one phase have no point in common. */
+static void assert_phases_are_disjoint(const struct par_partition *p)
 {
     for (int32_t i = 0; i < par_blocks(p); i++) {
         struct tri_fence a = par_fence(p, i / p->n_rows, i % p->n_rows);
         assert_true(a.x_min <= a.x_max && a.y_min <= a.y_max);
         for (int32_t k = 0; k < i; k++) {
             struct tri_fence b = par_fence(p, k / p->n_rows, k % p->n_rows);
-            if (colour_of(i / p->n_rows, i % p->n_rows) == colour_of(k / p->n_rows, k % p->n_rows))
+            if (phase_of(i / p->n_rows, i % p->n_rows) == phase_of(k / p->n_rows, k % p->n_rows))
                 assert_false(meet(&a, &b));
         }
     }
@@ -128,25 +128,25 @@ static double least_width_at(const double *bounds, int32_t n, double q)
     return least;
 }
 
-/* Every colour has one block that holds q, and par_block_at finds it; and some block holds q together with what is
- * around it, for half of the cells there: so no seam is left open by all four colours. */
+/* Every phase has one block that holds q, and par_block_at finds it; and some block holds q together with what is
+ * around it, for half of the cells there: so no seam is left open by all four phases. */
 static void assert_point_is_served(const struct par_partition *p, struct tri_point q)
 {
-    int32_t found[PAR_COLOURS] = {TRI_NONE, TRI_NONE, TRI_NONE, TRI_NONE};
+    int32_t found[PAR_PHASES] = {TRI_NONE, TRI_NONE, TRI_NONE, TRI_NONE};
     bool deep = false;
     for (int32_t c = 0; c < p->n_columns; c++)
         for (int32_t r = 0; r < p->n_rows; r++) {
             struct tri_fence f = par_fence(p, c, r);
             if (!holds(&f, q))
                 continue;
-            assert_int_equal(found[colour_of(c, r)], TRI_NONE);
-            found[colour_of(c, r)] = c * p->n_rows + r;
+            assert_int_equal(found[phase_of(c, r)], TRI_NONE);
+            found[phase_of(c, r)] = c * p->n_rows + r;
             deep |= depth(f.x_min, q.x, f.x_max) >= 0.4999 * least_width_at(p->x, p->n_columns, q.x) &&
                     depth(f.y_min, q.y, f.y_max) >= 0.4999 * least_width_at(rows_of(p, c), p->n_rows, q.y);
         }
-    for (int colour = 0; colour < PAR_COLOURS; colour++) {
-        assert_int_not_equal(found[colour], TRI_NONE);
-        assert_int_equal(par_block_at(p, colour, q), found[colour]);
+    for (int phase = 0; phase < PAR_PHASES; phase++) {
+        assert_int_not_equal(found[phase], TRI_NONE);
+        assert_int_equal(par_block_at(p, phase, q), found[phase]);
     }
     assert_true(deep);
 }
@@ -170,7 +170,7 @@ static void assert_plane_is_served(const struct par_partition *p, const struct t
     }
 }
 
-static void test_fences_serve_every_point_and_colours_are_disjoint(void **state)
+static void test_fences_serve_every_point_and_phases_are_disjoint(void **state)
 {
     (void)state;
     for (int i = 0; i < N_TRIALS; i++) {
@@ -179,7 +179,7 @@ static void test_fences_serve_every_point_and_colours_are_disjoint(void **state)
         struct par_partition p = cut(&mesh, &options.quality, trials[i].block);
         for (;;) {
             assert_boundaries_ascend(&p);
-            assert_colours_are_disjoint(&p);
+            assert_phases_are_disjoint(&p);
             assert_plane_is_served(&p, &mesh);
             if (par_cells(&p) == 4)
                 break;
@@ -234,7 +234,7 @@ static void test_cell_size(void **state)
     }
 }
 
-/* Triangles of the refined mesh in the fullest block of the first colour, against the mean; *ratio: of all against the
+/* Triangles of the refined mesh in the fullest block of the first phase, against the mean; *ratio: of all against the
  * estimate. */
 static double imbalance(const struct trial *trial, double *ratio)
 {
@@ -246,7 +246,7 @@ static double imbalance(const struct trial *trial, double *ratio)
     int32_t n = par_cells(&p) / 4, *count = calloc((size_t)par_blocks(&p), sizeof *count), most = 0;
     assert_non_null(count);
     assert_int_equal(tri_refine(&mesh, &options.quality, &report.quality, &error), TRI_OK);
-    for (int32_t t = 0; t < mesh.n_slots; t++) {
+    for (int32_t t = 0; t < mesh.n_triangles; t++) {
         const int32_t *v = mesh.tri[t].v;
         struct tri_point q = {(mesh.xy[v[0]].x + mesh.xy[v[1]].x + mesh.xy[v[2]].x) / 3,
                               (mesh.xy[v[0]].y + mesh.xy[v[1]].y + mesh.xy[v[2]].y) / 3};
@@ -254,10 +254,10 @@ static double imbalance(const struct trial *trial, double *ratio)
     }
     for (int32_t i = 0; i < par_blocks(&p); i++)
         most = count[i] > most ? count[i] : most;
-    *ratio = mesh.n_slots / p.estimate;
-    double over_mean = most * (double)n / mesh.n_slots;
+    *ratio = mesh.n_triangles / p.estimate;
+    double over_mean = most * (double)n / mesh.n_triangles;
     print_message("  %-20s %d blocks, %d triangles for %.0f estimated, fullest block %.2f of the mean\n",
-                  trial->file ? trial->file : "points", (int)n, (int)mesh.n_slots, p.estimate, over_mean);
+                  trial->file ? trial->file : "points", (int)n, (int)mesh.n_triangles, p.estimate, over_mean);
     assert_true(n >= 6);
     free(count);
     par_partition_free(&p);
@@ -348,14 +348,14 @@ static void test_size_tests_are_probed(void **state)
     assert_int_equal(tri_refine(&mesh, &options.quality, &report, NULL), TRI_OK);
     int32_t *count = calloc((size_t)par_blocks(&p), sizeof *count), most = 0, n = par_cells(&p) / 4;
     assert_non_null(count);
-    for (int32_t t = 0; t < mesh.n_slots; t++)
+    for (int32_t t = 0; t < mesh.n_triangles; t++)
         count[par_block_at(&p, 0, mesh.xy[mesh.tri[t].v[0]])]++;
     for (int32_t i = 0; i < par_blocks(&p); i++)
         most = count[i] > most ? count[i] : most;
-    print_message("  %d triangles for %.0f estimated, fullest of %d blocks %.2f of the mean\n", (int)mesh.n_slots,
-                  estimate, (int)n, most * (double)n / mesh.n_slots);
-    assert_true(mesh.n_slots > 0.4 * estimate && mesh.n_slots < 2.2 * estimate);
-    assert_true(n >= 9 && most * (double)n < 2.2 * mesh.n_slots);
+    print_message("  %d triangles for %.0f estimated, fullest of %d blocks %.2f of the mean\n", (int)mesh.n_triangles,
+                  estimate, (int)n, most * (double)n / mesh.n_triangles);
+    assert_true(mesh.n_triangles > 0.4 * estimate && mesh.n_triangles < 2.2 * estimate);
+    assert_true(n >= 9 && most * (double)n < 2.2 * mesh.n_triangles);
     free(count);
     par_partition_free(&p);
     tri_mesh_free(&mesh);
@@ -391,7 +391,7 @@ static void test_extremes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_fences_serve_every_point_and_colours_are_disjoint),
+        cmocka_unit_test(test_fences_serve_every_point_and_phases_are_disjoint),
         cmocka_unit_test(test_coarsening_halves),
         cmocka_unit_test(test_cell_size),
         cmocka_unit_test(test_blocks_have_equal_shares_of_the_work),

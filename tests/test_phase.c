@@ -1,4 +1,4 @@
-/* One phase against its definition: the blocks of a colour, one after the other, by the sequential loop on the whole
+/* One phase against its definition: the blocks of a phase, one after the other, by the sequential loop on the whole
  * mesh. */
 #include "support.h"
 
@@ -45,12 +45,13 @@ static struct par_partition cut(const struct tri_mesh *mesh, const struct tri_re
     return partition;
 }
 
-static struct par_slots bad_slots(const struct tri_mesh *mesh, const struct tri_refine_options *quality)
+static struct par_worklist bad_triangles(const struct tri_mesh *mesh, const struct tri_refine_options *quality)
 {
-    struct par_slots slots = {malloc(((size_t)mesh->n_slots + 1) * sizeof(int32_t)), 0, mesh->n_slots + 1};
-    assert_non_null(slots.item);
-    slots.n = tri_find_work(mesh, quality, 0, mesh->n_slots, slots.item);
-    return slots;
+    struct par_worklist triangles = {malloc(((size_t)mesh->n_triangles + 1) * sizeof(int32_t)), 0,
+                                     mesh->n_triangles + 1};
+    assert_non_null(triangles.item);
+    triangles.n = tri_find_work(mesh, quality, 0, mesh->n_triangles, triangles.item);
+    return triangles;
 }
 
 static bool is_in(void *user, const double p[2])
@@ -61,15 +62,15 @@ static bool is_in(void *user, const double p[2])
 
 /* The reference: block after block, forwards or backwards, on the mesh itself. Returns the points inserted. */
 static int64_t run_one_by_one(struct tri_mesh *mesh, const struct tri_refine_options *quality,
-                              const struct par_partition *p, int colour, bool backwards)
+                              const struct par_partition *p, int phase, bool backwards)
 {
-    struct par_slots pool = bad_slots(mesh, quality);
-    int32_t n = par_blocks(p), *block_of = malloc(((size_t)pool.n + 1) * sizeof *block_of);
-    int32_t *seeds = malloc(((size_t)pool.n + 1) * sizeof *seeds);
+    struct par_worklist worklist = bad_triangles(mesh, quality);
+    int32_t n = par_blocks(p), *block_of = malloc(((size_t)worklist.n + 1) * sizeof *block_of);
+    int32_t *mine = malloc(((size_t)worklist.n + 1) * sizeof *mine);
     int64_t inserted = 0;
-    assert_true(block_of && seeds && pool.n > 0);
-    for (int32_t i = 0; i < pool.n; i++)
-        block_of[i] = par_block_at(p, colour, mesh->xy[mesh->tri[pool.item[i]].v[0]]);
+    assert_true(block_of && mine && worklist.n > 0);
+    for (int32_t i = 0; i < worklist.n; i++)
+        block_of[i] = par_block_at(p, phase, mesh->xy[mesh->tri[worklist.item[i]].v[0]]);
     for (int32_t k = 0; k < n; k++) {
         int32_t block = backwards ? n - 1 - k : k;
         struct tri_fence fence = par_fence(p, block / p->n_rows, block % p->n_rows);
@@ -78,48 +79,48 @@ static int64_t run_one_by_one(struct tri_mesh *mesh, const struct tri_refine_opt
         options.gate = is_in;
         options.gate_user = &fence;
         options.fence = &fence;
-        options.seeds = seeds;
-        for (int32_t i = 0; i < pool.n; i++)
+        options.worklist = mine;
+        for (int32_t i = 0; i < worklist.n; i++)
             if (block_of[i] == block)
-                seeds[options.n_seeds++] = pool.item[i];
-        if (options.n_seeds > 0)
+                mine[options.n_worklist++] = worklist.item[i];
+        if (options.n_worklist > 0)
             assert_int_equal(tri_refine(mesh, &options, &report, NULL), TRI_OK);
-        if (options.n_seeds > 0)
+        if (options.n_worklist > 0)
             inserted += report.inserted_free + report.inserted_on_segments;
     }
     free(block_of);
-    free(seeds);
-    free(pool.item);
+    free(mine);
+    free(worklist.item);
     return inserted;
 }
 
-/* The block of the colour whose fence holds all three corners, or TRI_NONE. */
-static int32_t block_of_triangle(const struct par_partition *p, int colour, const struct tri_mesh *mesh,
+/* The block of the phase whose fence holds all three corners, or TRI_NONE. */
+static int32_t block_of_triangle(const struct par_partition *p, int phase, const struct tri_mesh *mesh,
                                  const int32_t v[3])
 {
-    int32_t block = par_block_at(p, colour, mesh->xy[v[0]]);
+    int32_t block = par_block_at(p, phase, mesh->xy[v[0]]);
     for (int k = 1; k < 3; k++)
-        if (par_block_at(p, colour, mesh->xy[v[k]]) != block)
+        if (par_block_at(p, phase, mesh->xy[v[k]]) != block)
             return TRI_NONE;
     return block;
 }
 
 /* What changed belonged to one block before and belongs to the same one now. */
 static void assert_changes_are_owned(const struct tri_mesh *mesh, const struct tri_triangle *old, int32_t n_old,
-                                     const struct par_partition *p, int colour)
+                                     const struct par_partition *p, int phase)
 {
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
         const struct tri_triangle *now = &mesh->tri[t];
         if (!tri_is_live(now) || (t < n_old && memcmp(old[t].v, now->v, sizeof now->v) == 0))
             continue;
-        int32_t block = block_of_triangle(p, colour, mesh, now->v);
+        int32_t block = block_of_triangle(p, phase, mesh, now->v);
         assert_int_not_equal(block, TRI_NONE);
         if (t < n_old)
-            assert_int_equal(block_of_triangle(p, colour, mesh, old[t].v), block);
+            assert_int_equal(block_of_triangle(p, phase, mesh, old[t].v), block);
     }
 }
 
-/* Is the triangle on the other side of a subsegment of this one listed? Of two beside a crowded subsegment one is
+/* Is the triangle on the other side of a subsegment of this one listed? Of two beside an encroached subsegment one is
  * enough. */
 static bool is_listed_across(const struct tri_mesh *mesh, const bool *listed, int32_t t)
 {
@@ -132,16 +133,17 @@ static bool is_listed_across(const struct tri_mesh *mesh, const bool *listed, in
     return false;
 }
 
-/* Whatever is bad now is in the pool, for the phases to come; but for what was given up for good. */
-static void assert_pool_holds_all_that_is_bad(const struct tri_mesh *mesh, const struct tri_refine_options *quality,
-                                              const struct par_slots *pool, const struct tri_refine_report *report)
+/* Whatever is bad now is in the worklist, for the phases to come; but for what was given up for good. */
+static void assert_worklist_holds_all_that_is_bad(const struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                              const struct par_worklist *worklist,
+                                                  const struct tri_refine_report *report)
 {
-    struct par_slots bad = bad_slots(mesh, quality);
-    bool *listed = calloc((size_t)mesh->n_slots + 1, sizeof *listed);
+    struct par_worklist bad = bad_triangles(mesh, quality);
+    bool *listed = calloc((size_t)mesh->n_triangles + 1, sizeof *listed);
     int64_t missing = 0;
     assert_non_null(listed);
-    for (int32_t i = 0; i < pool->n; i++)
-        listed[pool->item[i]] = true;
+    for (int32_t i = 0; i < worklist->n; i++)
+        listed[worklist->item[i]] = true;
     for (int32_t i = 0; i < bad.n; i++)
         missing += !listed[bad.item[i]] && !(quality->conforming && is_listed_across(mesh, listed, bad.item[i]));
     for (int k = 0; k < TRI_EXCUSES; k++)
@@ -153,22 +155,22 @@ static void assert_pool_holds_all_that_is_bad(const struct tri_mesh *mesh, const
 
 /* The phase itself, and what can be told from before and after. */
 static int64_t run_phase(struct tri_mesh *mesh, const struct tri_refine_options *quality, const struct par_partition *p,
-                         int colour, const struct par_options *options, int64_t *pauses)
+                         int phase, const struct par_options *options, int64_t *pauses)
 {
     struct tri_error error = {0};
     struct par_report report = {0};
     struct par_state state = {.mesh = mesh, .quality = quality, .options = options, .threads = options->threads,
                               .report = &report};
-    int32_t n_old = mesh->n_slots;
+    int32_t n_old = mesh->n_triangles;
     struct tri_triangle *old = malloc((size_t)n_old * sizeof *old);
     assert_non_null(old);
     memcpy(old, mesh->tri, (size_t)n_old * sizeof *old);
-    state.pool = bad_slots(mesh, quality);
-    if (par_phase(&state, p, colour, TRI_NONE, &error) != TRI_OK)
+    state.worklist = bad_triangles(mesh, quality);
+    if (par_phase(&state, p, phase, TRI_NONE, &error) != TRI_OK)
         fail_msg("%s", error.text);
-    par_room_mark(&state.spare, mesh); /* slots that nobody has used yet hold anything */
-    assert_changes_are_owned(mesh, old, n_old, p, colour);
-    assert_pool_holds_all_that_is_bad(mesh, quality, &state.pool, &report.total);
+    par_room_mark(&state.spare, mesh); /* triangles that nobody has used yet hold anything */
+    assert_changes_are_owned(mesh, old, n_old, p, phase);
+    assert_worklist_holds_all_that_is_bad(mesh, quality, &state.worklist, &report.total);
     *pauses += report.pauses;
     par_room_close(&state.spare, mesh, options->threads);
     assert_int_equal(tri_mesh_validate(mesh, &error), TRI_OK);
@@ -176,7 +178,7 @@ static int64_t run_phase(struct tri_mesh *mesh, const struct tri_refine_options 
     for (int32_t i = 0; i < report.n_blocks; i++)
         assert_true(report.blocks[i].block >= 0 && report.blocks[i].block < par_blocks(p));
     par_report_free(&report);
-    free(state.pool.item);
+    free(state.worklist.item);
     free(state.column.item);
     free(old);
     return inserted;
@@ -192,18 +194,18 @@ static void test_a_phase_is_its_blocks_one_by_one(void **state)
                                                  {.threads = 4, .tight_room = 1, .shuffle = 9}};
     int64_t pauses = 0;
     for (int i = 0; i < N_TRIALS; i++)
-        for (int colour = 0; colour < PAR_COLOURS; colour++) {
+        for (int phase = 0; phase < PAR_PHASES; phase++) {
             struct tri_refine_options quality;
             struct tri_mesh first = start_of(&trials[i], &quality), second = start_of(&trials[i], &quality);
             struct par_partition partition = cut(&first, &quality, trials[i].block);
-            int64_t inserted = run_one_by_one(&first, &quality, &partition, colour, false);
+            int64_t inserted = run_one_by_one(&first, &quality, &partition, phase, false);
             assert_true(inserted > 100);
-            assert_int_equal(run_one_by_one(&second, &quality, &partition, colour, true), inserted);
+            assert_int_equal(run_one_by_one(&second, &quality, &partition, phase, true), inserted);
             struct support_places forwards = support_places(&first), backwards = support_places(&second);
             assert_true(support_same_places(&forwards, &backwards));
             for (int k = 0; k < 4; k++) {
                 struct tri_mesh mesh = start_of(&trials[i], &quality);
-                assert_int_equal(run_phase(&mesh, &quality, &partition, colour, &options[k], &pauses), inserted);
+                assert_int_equal(run_phase(&mesh, &quality, &partition, phase, &options[k], &pauses), inserted);
                 struct support_places places = support_places(&mesh);
                 assert_true(support_same_places(&forwards, &places));
                 support_places_free(&places);
@@ -218,7 +220,8 @@ static void test_a_phase_is_its_blocks_one_by_one(void **state)
     assert_true(pauses > 1000);
 }
 
-/* Four phases leave little, and all that they leave is in the pool; triangles that have gone are dropped from it. */
+/* Four phases leave little, and all that they leave is in the worklist; triangles that have gone are dropped from
+ * it. */
 static void test_four_phases_in_turn(void **state)
 {
     (void)state;
@@ -230,20 +233,20 @@ static void test_four_phases_in_turn(void **state)
         struct par_partition partition = cut(&mesh, &quality, trials[i].block);
         struct par_state phases = {
             .mesh = &mesh, .quality = &quality, .options = &options, .threads = 2, .report = &report};
-        phases.pool = bad_slots(&mesh, &quality);
-        for (int colour = 0; colour < PAR_COLOURS; colour++) {
-            assert_int_equal(par_phase(&phases, &partition, colour, TRI_NONE, NULL), TRI_OK);
+        phases.worklist = bad_triangles(&mesh, &quality);
+        for (int phase = 0; phase < PAR_PHASES; phase++) {
+            assert_int_equal(par_phase(&phases, &partition, phase, TRI_NONE, NULL), TRI_OK);
             par_room_mark(&phases.spare, &mesh);
-            assert_pool_holds_all_that_is_bad(&mesh, &quality, &phases.pool, &report.total);
+            assert_worklist_holds_all_that_is_bad(&mesh, &quality, &phases.worklist, &report.total);
         }
         print_message("  %-16s %d left of %lld inserted\n", trials[i].file ? trials[i].file : "square",
-                      (int)phases.pool.n, (long long)report.total.inserted_free);
-        assert_true(phases.pool.n < report.total.inserted_free / 4);
+                      (int)phases.worklist.n, (long long)report.total.inserted_free);
+        assert_true(phases.worklist.n < report.total.inserted_free / 4);
         par_room_close(&phases.spare, &mesh, 2);
         assert_int_equal(tri_mesh_validate(&mesh, NULL), TRI_OK);
         support_assert_cdt(&mesh, false);
         par_report_free(&report);
-        free(phases.pool.item);
+        free(phases.worklist.item);
         free(phases.column.item);
         par_partition_free(&partition);
         tri_mesh_free(&mesh);
@@ -261,25 +264,25 @@ static void test_margin_keeps_cavities_inside(void **state)
     quality.max_area = 1e-5;
     struct par_partition partition = cut(&coarse, &quality, 8000);
     double largest2 = 0;
-    for (int32_t t = 0; t < coarse.n_slots; t++) {
+    for (int32_t t = 0; t < coarse.n_triangles; t++) {
         const int32_t *v = coarse.tri[t].v;
         largest2 = fmax(largest2, par_radius2(coarse.xy[v[0]], coarse.xy[v[1]], coarse.xy[v[2]]));
     }
-    for (int colour = 0; colour < PAR_COLOURS; colour++)
+    for (int phase = 0; phase < PAR_PHASES; phase++)
         for (int margin = 0; margin < 2; margin++) {
             struct par_options options = {.threads = 2, .margin = margin};
             struct par_report report = {0};
             struct tri_mesh mesh = support_generate(&pslg, &fine, NULL);
-            struct par_state phase = {.mesh = &mesh, .quality = &quality, .options = &options, .threads = 2,
+            struct par_state lone = {.mesh = &mesh, .quality = &quality, .options = &options, .threads = 2,
                                       .report = &report, .radius = sqrt(largest2)};
-            phase.pool = bad_slots(&mesh, &quality);
-            assert_int_equal(par_phase(&phase, &partition, colour, TRI_NONE, NULL), TRI_OK);
+            lone.worklist = bad_triangles(&mesh, &quality);
+            assert_int_equal(par_phase(&lone, &partition, phase, TRI_NONE, NULL), TRI_OK);
             assert_true(report.total.inserted_free > 1000);
             assert_true(margin ? report.total.deferred == 0 : report.total.deferred > 0);
-            par_room_close(&phase.spare, &mesh, 2);
+            par_room_close(&lone.spare, &mesh, 2);
             par_report_free(&report);
-            free(phase.pool.item);
-            free(phase.column.item);
+            free(lone.worklist.item);
+            free(lone.column.item);
             tri_mesh_free(&mesh);
         }
     par_partition_free(&partition);

@@ -25,8 +25,8 @@ static void free_input(struct input *input)
 static struct input input_of(const struct tri_mesh *mesh)
 {
     struct input in = {.pslg = support_pslg(mesh->n_vertices, mesh->n_subs + 8, 0, 0)};
-    in.elements = (struct tri_elements){.n = mesh->n_slots, .n_nodes = 3};
-    in.elements.corners = malloc(((size_t)mesh->n_slots + 1) * 3 * sizeof *in.elements.corners);
+    in.elements = (struct tri_elements){.n = mesh->n_triangles, .n_nodes = 3};
+    in.elements.corners = malloc(((size_t)mesh->n_triangles + 1) * 3 * sizeof *in.elements.corners);
     in.pslg.markers = malloc(((size_t)mesh->n_vertices + 1) * sizeof *in.pslg.markers);
     in.pslg.segment_markers = calloc((size_t)mesh->n_subs + 8, sizeof *in.pslg.segment_markers);
     for (int32_t v = 0; v < mesh->n_vertices; v++) {
@@ -39,7 +39,7 @@ static struct input input_of(const struct tri_mesh *mesh)
         support_add_segment(&in.pslg, mesh->sub[s].v[0], mesh->sub[s].v[1]);
         in.pslg.segment_markers[s] = mesh->sub[s].marker;
     }
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         memcpy(&in.elements.corners[3 * t], mesh->tri[t].v, sizeof mesh->tri[t].v);
     return in;
 }
@@ -85,7 +85,7 @@ static void add_steiner(struct tri_mesh *mesh, double min_angle, double max_area
 /* Delaunay at every edge without subsegment; ties may be as they like. */
 static void assert_delaunay(const struct tri_mesh *mesh)
 {
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         for (int e = 0; tri_is_live(&mesh->tri[t]) && e < 3; e++) {
             const struct tri_triangle *at = &mesh->tri[t];
             if (at->n[e] < 0)
@@ -118,13 +118,13 @@ static void assert_parents(const struct tri_mesh *mesh, const struct tri_mesh *b
 
 static void assert_same_mesh(const struct tri_mesh *mesh, const struct tri_mesh *back)
 {
-    assert_int_equal(back->n_slots, mesh->n_slots);
+    assert_int_equal(back->n_triangles, mesh->n_triangles);
     assert_int_equal(back->n_subs, mesh->n_subs);
     assert_int_equal(back->n_vertices, mesh->n_vertices);
     assert_int_equal(back->n_input, mesh->n_vertices);
     assert_memory_equal(back->xy, mesh->xy, (size_t)mesh->n_vertices * sizeof *mesh->xy);
     assert_memory_equal(back->vertex_markers, mesh->vertex_markers, (size_t)mesh->n_vertices * sizeof(int32_t));
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
         assert_memory_equal(back->tri[t].v, mesh->tri[t].v, sizeof mesh->tri[t].v);
         assert_memory_equal(back->tri[t].n, mesh->tri[t].n, sizeof mesh->tri[t].n);
         assert_int_equal(back->tri[t].region, 0);
@@ -154,7 +154,7 @@ static void round_trip(const struct tri_pslg *pslg, double angle, double area)
             struct tri_check_options check = {.max_area = area / 4, .max_bad = INT64_MAX, .ignore_lost = true};
             add_steiner(&back, angle, area / 4);
             support_judge(&back, &in.pslg, &check, false, NULL);
-            assert_true(back.n_slots > mesh.n_slots);
+            assert_true(back.n_triangles > mesh.n_triangles);
         }
         tri_mesh_free(&back);
     }
@@ -362,7 +362,7 @@ static void faults_name_the_triangle(void **state)
         memcpy(&in.elements.corners[12], examples[i].corners, sizeof examples[i].corners);
         assert_int_equal(tri_reconstruct(&mesh, &in.pslg, &in.elements, &options, &error), TRI_BAD_INPUT);
         assert_string_equal(error.text, examples[i].text);
-        assert_int_equal(mesh.n_slots, 0);
+        assert_int_equal(mesh.n_triangles, 0);
         assert_null(mesh.xy);
         tri_mesh_free(&mesh);
         free_input(&in);
@@ -377,7 +377,7 @@ static void no_triangles(void **state)
     struct tri_error error = {0};
     in.elements.n = 0;
     mesh = rebuild(&in, &(struct tri_reconstruct_options){.use_segments = true, .refine = true});
-    assert_int_equal(mesh.n_slots, 0);
+    assert_int_equal(mesh.n_triangles, 0);
     assert_int_equal(mesh.n_subs, 0);
     add_steiner(&mesh, 20, 1);
     assert_int_equal(mesh.n_vertices, 6);
@@ -442,7 +442,7 @@ static void assert_counter_clockwise(const struct tri_mesh *mesh)
     struct tri_error error = {0};
     if (tri_mesh_validate(mesh, &error) != TRI_OK)
         fail_msg("%s", error.text);
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
         const int32_t *v = mesh->tri[t].v;
         assert_true(mesh->tri[t].region >= 0 && mesh->tri[t].region < mesh->n_regions);
         assert_true(!tri_is_live(&mesh->tri[t]) || tri_orient2d(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]) > 0);
@@ -493,7 +493,7 @@ static void garbage(void **state)
     assert_true(good > runs / 2 && good < runs);
 }
 
-/* A sheet that winds twice around the origin: eight sectors over sixteen points, two at each place of the rim. */
+/* A sheet that winds twice around the origin: eight sectors over sixteen points, two at each place of the edge. */
 static void winds_twice(void **state)
 {
     (void)state;
@@ -511,7 +511,7 @@ static void winds_twice(void **state)
     assert_counter_clockwise(&mesh);
     assert_delaunay(&mesh);
     double area = 0;
-    for (int32_t t = 0; t < mesh.n_slots; t++) {
+    for (int32_t t = 0; t < mesh.n_triangles; t++) {
         struct tri_point a = mesh.xy[mesh.tri[t].v[0]], b = mesh.xy[mesh.tri[t].v[1]], c = mesh.xy[mesh.tri[t].v[2]];
         area += 0.5 * ((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y));
     }
@@ -527,7 +527,7 @@ static void flips_before_refinement(void **state)
     (void)state;
     struct input in = fan(200, 0.75);
     struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){.refine = false});
-    for (int32_t t = 0; t < mesh.n_slots; t++)
+    for (int32_t t = 0; t < mesh.n_triangles; t++)
         assert_memory_equal(mesh.tri[t].v, &in.elements.corners[3 * t], sizeof mesh.tri[t].v);
     tri_mesh_free(&mesh);
     mesh = rebuild(&in, &(struct tri_reconstruct_options){.refine = true});
@@ -564,7 +564,7 @@ static void ties_stay(void **state)
         in.elements.n += 2;
     }
     struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){.refine = true});
-    for (int32_t t = 0; t < mesh.n_slots; t++)
+    for (int32_t t = 0; t < mesh.n_triangles; t++)
         assert_memory_equal(mesh.tri[t].v, &in.elements.corners[3 * t], sizeof mesh.tri[t].v);
     add_steiner(&mesh, 30, 0.1);
     assert_counter_clockwise(&mesh);
@@ -585,7 +585,7 @@ static void vertex_of_high_degree(void **state)
     for (int32_t k = 0; k < N; k++)
         memcpy(&in.pslg.segments[2 * k], (int32_t[]){0, k + 1}, 2 * sizeof(int32_t));
     struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){.use_segments = true, .refine = true});
-    assert_int_equal(mesh.n_slots, N - 1);
+    assert_int_equal(mesh.n_triangles, N - 1);
     assert_int_equal(mesh.n_subs, N + N - 1);
     tri_mesh_free(&mesh);
     free_input(&in);
@@ -629,7 +629,7 @@ static int32_t original_of(const struct tri_mesh *old, const struct tri_mesh *me
     const int32_t *v = mesh->tri[t].v;
     struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
     struct tri_point q = {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3};
-    for (int32_t o = 0; o < old->n_slots; o++) {
+    for (int32_t o = 0; o < old->n_triangles; o++) {
         const int32_t *w = old->tri[o].v;
         if (tri_orient2d(old->xy[w[0]], old->xy[w[1]], q) >= 0 && tri_orient2d(old->xy[w[1]], old->xy[w[2]], q) >= 0 &&
             tri_orient2d(old->xy[w[2]], old->xy[w[0]], q) >= 0)
@@ -651,17 +651,17 @@ static void values_do_not_cross_segments(void **state)
     struct tri_mesh old = support_generate(&pslg, &options, &report);
     struct input in = input_of(&old);
     in.elements.n_attributes = 1;
-    in.elements.attributes = malloc((size_t)old.n_slots * sizeof(double));
-    in.elements.areas = malloc((size_t)old.n_slots * sizeof(double));
-    for (int32_t t = 0; t < old.n_slots; t++) {
+    in.elements.attributes = malloc((size_t)old.n_triangles * sizeof(double));
+    in.elements.areas = malloc((size_t)old.n_triangles * sizeof(double));
+    for (int32_t t = 0; t < old.n_triangles; t++) {
         in.elements.attributes[t] = old.regions[old.tri[t].region].attribute;
         in.elements.areas[t] = in.elements.attributes[t] > 4 ? 0.5 : -1;
     }
     struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){.use_segments = true, .refine = true});
     assert_true(mesh.n_regions <= old.n_regions);
     add_steiner(&mesh, 25, 0);
-    assert_true(mesh.n_slots > old.n_slots);
-    for (int32_t t = 0; t < mesh.n_slots; t++)
+    assert_true(mesh.n_triangles > old.n_triangles);
+    for (int32_t t = 0; t < mesh.n_triangles; t++)
         assert_true(tri_region_attributes(&mesh, mesh.tri[t].region)[0] ==
                     in.elements.attributes[original_of(&old, &mesh, t)]);
     struct tri_check_options check = {.min_angle = 25, .max_bad = -1, .ignore_lost = true, .ignore_holes = true};
@@ -688,7 +688,7 @@ static void values_are_copied(void **state)
     struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){.refine = true});
     add_steiner(&mesh, 20, 0);
     double share[4] = {0};
-    for (int32_t t = 0; t < mesh.n_slots; t++) {
+    for (int32_t t = 0; t < mesh.n_triangles; t++) {
         const double *values = tri_region_attributes(&mesh, mesh.tri[t].region);
         int k = (int)values[0];
         assert_true(values[0] == k && values[1] == 10 * k);

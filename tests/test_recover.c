@@ -15,7 +15,7 @@ static struct crossing find_crossing(const struct tri_mesh *mesh, int32_t a, int
 {
     struct crossing found = {TRI_NONE, 0};
     struct tri_point pa = mesh->xy[a], pb = mesh->xy[b];
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         for (int e = 0; e < 3; e++) {
             const struct tri_triangle *at = &mesh->tri[t];
             int32_t from = at->v[tri_next[e]], to = at->v[tri_prev[e]], link = at->n[e];

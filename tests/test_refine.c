@@ -8,7 +8,7 @@ enum { PROTECT_ALL = 2 };
 static double total_area(const struct tri_mesh *mesh)
 {
     double area2 = 0;
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
         const int32_t *v = mesh->tri[t].v;
         area2 += tri_orient2d(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]);
     }
@@ -85,7 +85,7 @@ static void test_area_bounds_are_met(void **state)
             struct tri_report report;
             struct tri_options options = support_quality(k % 2 ? 30 : 0, area / (k < 2 ? 37 : 3000));
             struct tri_mesh mesh = refine_and_judge(&pslg, &options, 0, &report);
-            assert_true(mesh.n_slots >= (k < 2 ? 37 : 3000));
+            assert_true(mesh.n_triangles >= (k < 2 ? 37 : 3000));
             assert_int_equal(count_bad(&mesh, &options, &report), 0);
             assert_true(fabs(total_area(&mesh) - area) <= 1e-9 * area);
             tri_mesh_free(&mesh);
@@ -140,7 +140,7 @@ static void test_coasts_are_refined(void **state)
         struct tri_options options = support_quality(i ? 25 : 33, 0);
         options.spread_regions = options.quality.region_areas = true;
         struct tri_mesh mesh = refine_and_judge(&pslg, &options, -1, &report);
-        assert_true(mesh.n_slots < 20 * pslg.n_points);
+        assert_true(mesh.n_triangles < 20 * pslg.n_points);
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);
     }
@@ -157,7 +157,7 @@ static void test_region_areas(void **state)
         options.spread_regions = options.quality.region_areas = true;
         struct tri_mesh mesh = refine_and_judge(&pslg, &options, 0, &report);
         bool seen[32] = {false};
-        for (int32_t t = 0; t < mesh.n_slots; t++)
+        for (int32_t t = 0; t < mesh.n_triangles; t++)
             seen[mesh.tri[t].region] = true;
         for (int k = 1; k <= pslg.n_regions; k++)
             assert_true(seen[k]);
@@ -193,7 +193,7 @@ static void test_user_size_test(void **state)
         options.quality.unsuitable = wants_smaller;
         options.quality.unsuitable_user = &wish;
         struct tri_mesh mesh = refine_and_judge(&pslg, &options, 0, &report);
-        for (int32_t t = 0; t < mesh.n_slots; t++) {
+        for (int32_t t = 0; t < mesh.n_triangles; t++) {
             double at[3][2];
             for (int k = 0; k < 3; k++)
                 tri_mesh_place(&mesh, mesh.tri[t].v[k], at[k]);
@@ -201,7 +201,7 @@ static void test_user_size_test(void **state)
                 0.5 * ((at[1][0] - at[0][0]) * (at[2][1] - at[0][1]) - (at[1][1] - at[0][1]) * (at[2][0] - at[0][0]));
             assert_false(wants_smaller(&wish, at[0], at[1], at[2], area));
         }
-        assert_in_range(mesh.n_slots, 2000, 20000);
+        assert_in_range(mesh.n_triangles, 2000, 20000);
         tri_mesh_free(&mesh);
     }
     assert_true(wish.asked > 0);
@@ -224,7 +224,7 @@ static void test_protected_subsegments_stay(void **state)
             options.quality.max_area = area;
             options.quality.protect = protect;
             struct tri_mesh mesh = support_generate(&pslg, &options, &report);
-            struct tri_check_options check = {.max_bad = mesh.n_slots, .min_angle = 25, .ignore_lost = true};
+            struct tri_check_options check = {.max_bad = mesh.n_triangles, .min_angle = 25, .ignore_lost = true};
             check.max_area = area;
             support_judge(&mesh, &pslg, &check, false, NULL);
             for (int32_t s = 0; s < mesh.n_subs; s++) {
@@ -256,7 +256,7 @@ static void test_limit_on_points_is_exact(void **state)
                 tri_mesh_free(&mesh);
                 options.quality.max_steiner = limits[k];
                 mesh = support_generate(&pslg, &options, &report);
-                struct tri_check_options check = {.max_bad = mesh.n_slots, .min_angle = 30, .ignore_lost = true};
+                struct tri_check_options check = {.max_bad = mesh.n_triangles, .min_angle = 30, .ignore_lost = true};
                 support_judge(&mesh, &pslg, &check, false, NULL);
                 assert_int_equal(mesh.n_vertices - pslg.n_points, want);
                 assert_int_equal(report.quality.inserted_free + report.quality.inserted_on_segments, want);
@@ -432,7 +432,7 @@ static void test_fence_protects_the_outside(void **state)
             assert_true(is_owned(&fences[f], before.at[i]) || support_has_place(&after, before.at[i]));
         for (int32_t i = 0; i < after.n; i++)
             assert_true(is_owned(&fences[f], after.at[i]) || support_has_place(&before, after.at[i]));
-        struct tri_check_options check = {.max_bad = mesh.n_slots, .min_angle = 30};
+        struct tri_check_options check = {.max_bad = mesh.n_triangles, .min_angle = 30};
         support_judge(&mesh, &pslg, &check, false, NULL);
         support_places_free(&before);
         support_places_free(&after);
@@ -496,7 +496,7 @@ static void test_more_room_is_asked_and_may_fail(void **state)
         assert_int_equal(status, left < 0 ? TRI_NO_MEMORY : TRI_OK);
         assert_true(status == TRI_OK || strcmp(error.text, "the view is full") == 0);
         assert_true(grants < 100 || status == TRI_OK);
-        struct tri_check_options check = {.max_bad = mesh.n_slots, .min_angle = 30};
+        struct tri_check_options check = {.max_bad = mesh.n_triangles, .min_angle = 30};
         support_judge(&mesh, &pslg, &check, false, NULL); /* valid, as far as it got */
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);
@@ -547,9 +547,9 @@ static void test_pauses_change_nothing(void **state)
     }
 }
 
-static void count_left(void *user, int32_t slot)
+static void count_left(void *user, int32_t triangle)
 {
-    assert_true(slot >= 0);
+    assert_true(triangle >= 0);
     ++*(int64_t *)user;
 }
 
@@ -583,12 +583,13 @@ static void test_work_is_found(void **state)
     struct tri_mesh mesh = coarse_square(&pslg);
     struct tri_report report = {0};
     struct tri_options options = support_quality(30, 0.2);
-    int32_t *found = calloc((size_t)mesh.n_slots, sizeof *found), *piece = calloc((size_t)mesh.n_slots, sizeof *piece);
-    int32_t n = tri_find_work(&mesh, &options.quality, 0, mesh.n_slots, found), sum = 0;
+    int32_t *found = calloc((size_t)mesh.n_triangles, sizeof *found);
+    int32_t *piece = calloc((size_t)mesh.n_triangles, sizeof *piece);
+    int32_t n = tri_find_work(&mesh, &options.quality, 0, mesh.n_triangles, found), sum = 0;
     assert_true(n > 10);
     assert_int_equal(n, count_bad(&mesh, &options, &report));
-    for (int32_t first = 0, last; first < mesh.n_slots; first = last) {
-        last = first + 7 < mesh.n_slots ? first + 7 : mesh.n_slots;
+    for (int32_t first = 0, last; first < mesh.n_triangles; first = last) {
+        last = first + 7 < mesh.n_triangles ? first + 7 : mesh.n_triangles;
         int32_t got = tri_find_work(&mesh, &options.quality, first, last, piece);
         assert_memory_equal(piece, found + sum, (size_t)got * sizeof *piece);
         sum += got;
@@ -596,15 +597,15 @@ static void test_work_is_found(void **state)
     assert_int_equal(sum, n);
     free(found);
     assert_int_equal(tri_refine(&mesh, &options.quality, &report.quality, NULL), TRI_OK);
-    found = calloc((size_t)mesh.n_slots, sizeof *found);
-    assert_int_equal(tri_find_work(&mesh, &options.quality, 0, mesh.n_slots, found), 0);
+    found = calloc((size_t)mesh.n_triangles, sizeof *found);
+    assert_int_equal(tri_find_work(&mesh, &options.quality, 0, mesh.n_triangles, found), 0);
     free(found);
     free(piece);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
 }
 
-/* Only the neighbourhood of the seeds is touched; all bad slots as seeds leave nothing bad. */
+/* Only the neighbourhood of the worklist is touched; all bad triangles in it leave nothing bad. */
 static void test_seeds(void **state)
 {
     (void)state;
@@ -612,18 +613,18 @@ static void test_seeds(void **state)
     struct tri_mesh mesh = coarse_square(&pslg);
     struct tri_refine_report report;
     struct tri_refine_options options = support_quality(30, 0.02).quality;
-    int32_t *seeds = calloc((size_t)mesh.n_slots, sizeof *seeds), n = 0;
-    options.seeds = seeds;
-    options.n_seeds = 0;
+    int32_t *listed = calloc((size_t)mesh.n_triangles, sizeof *listed), n = 0;
+    options.worklist = listed;
+    options.n_worklist = 0;
     assert_int_equal(tri_refine(&mesh, &options, &report, NULL), TRI_OK);
     assert_int_equal(report.inserted_free + report.inserted_on_segments, 0);
-    for (int32_t t = mesh.n_slots - 1; t >= 0; t--)
-        seeds[n++] = t;
-    options.n_seeds = n;
+    for (int32_t t = mesh.n_triangles - 1; t >= 0; t--)
+        listed[n++] = t;
+    options.n_worklist = n;
     assert_int_equal(tri_refine(&mesh, &options, &report, NULL), TRI_OK);
     struct tri_check_options check = {.max_bad = 0, .min_angle = 30, .max_area = 0.02};
     support_judge(&mesh, &pslg, &check, false, NULL);
-    free(seeds);
+    free(listed);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
 }
@@ -631,7 +632,7 @@ static void test_seeds(void **state)
 static double largest_circumradius(const struct tri_mesh *mesh)
 {
     double largest2 = 0;
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
         double l[3], product = 1;
         for (int k = 0; k < 3; k++) {
             struct tri_point a = mesh->xy[mesh->tri[t].v[tri_next[k]]], b = mesh->xy[mesh->tri[t].v[tri_prev[k]]];
@@ -646,7 +647,7 @@ static double largest_circumradius(const struct tri_mesh *mesh)
     return sqrt(largest2);
 }
 
-static bool is_crowded(const struct tri_mesh *mesh)
+static bool is_encroached(const struct tri_mesh *mesh)
 {
     for (int32_t s = 0; s < mesh->n_subs; s++)
         for (int side = 0; side < 2; side++) {
@@ -677,7 +678,7 @@ static void test_largest_circumradius_never_grows(void **state)
         for (struct tri_refine_report report = {.inserted_free = 1};
              report.inserted_free + report.inserted_on_segments > 0 && steps < 1500; steps++) {
             assert_int_equal(tri_refine(&mesh, &options.quality, &report, NULL), TRI_OK);
-            if (is_crowded(&mesh))
+            if (is_encroached(&mesh))
                 continue; /* in the middle of a chain of splits */
             double now = largest_circumradius(&mesh);
             assert_true(now <= last * (1 + 1e-9));
@@ -710,12 +711,13 @@ static void test_refinement_ends_on_everything(void **state)
                 struct tri_mesh mesh = support_generate(&pslg, &options, &report);
                 double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
                 print_message("  %s %g: %d triangles, %d input vertices, %lld bad, %.2f s\n", *name, angles[k],
-                              (int)mesh.n_slots, (int)pslg.n_points, (long long)count_bad(&mesh, &options, &report),
+                              (int)mesh.n_triangles, (int)pslg.n_points, (long long)count_bad(&mesh, &options, &report),
                               seconds);
                 int64_t corners = pslg.n_points + report.constrain.crossings;
-                assert_true(mesh.n_slots <= 500 * corners + 100000);
+                assert_true(mesh.n_triangles <= 500 * corners + 100000);
                 assert_true(seconds < 20);
-                struct tri_check_options check = {.max_bad = mesh.n_slots, .min_angle = angles[k], .ignore_lost = true};
+                struct tri_check_options check = {
+                    .max_bad = mesh.n_triangles, .min_angle = angles[k], .ignore_lost = true};
                 support_judge(&mesh, &pslg, &check, false, NULL);
                 tri_mesh_free(&mesh);
             }
@@ -737,7 +739,7 @@ static void test_hopeless_bounds_end(void **state)
         struct tri_mesh mesh = support_generate(&pslg, &options, &report);
         struct tri_check_options check = {.max_bad = 0, .min_angle = 10, .ignore_lost = true};
         support_judge(&mesh, &pslg, &check, false, NULL);
-        assert_in_range(mesh.n_slots, 57, 100000);
+        assert_in_range(mesh.n_triangles, 57, 100000);
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);
     }

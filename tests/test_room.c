@@ -15,7 +15,7 @@ struct table {
 
 static int32_t count_of(const struct tri_mesh *mesh, int kind)
 {
-    return kind == PAR_VERTICES ? mesh->n_vertices : kind == PAR_SLOTS ? mesh->n_slots : mesh->n_subs;
+    return kind == PAR_VERTICES ? mesh->n_vertices : kind == PAR_TRIANGLES ? mesh->n_triangles : mesh->n_subs;
 }
 
 static void table_grow(struct table *table, const struct tri_mesh *shared)
@@ -79,7 +79,7 @@ static bool use_room(struct table *table, struct par_room *room, const struct tr
     par_room_enter(room, &view, shared);
     for (int32_t i = 0; i < n && enough; i++) {
         struct tri_mesh *mesh = &view.mesh;
-        bool need = mesh->vertex_capacity - mesh->n_vertices < 1 || mesh->slot_capacity - mesh->n_slots < 2 ||
+        bool need = mesh->vertex_capacity - mesh->n_vertices < 1 || mesh->triangle_capacity - mesh->n_triangles < 2 ||
                     mesh->sub_capacity - mesh->n_subs < 1;
         enum tri_status status = need ? par_more_room(room, &view.mesh, NULL) : TRI_OK;
         assert_true(status == TRI_OK || status == TRI_NO_ROOM);
@@ -87,7 +87,8 @@ static bool use_room(struct table *table, struct par_room *room, const struct tr
         if (!enough)
             break;
         int32_t taken[4][2] = {
-            {PAR_VERTICES, view.mesh.n_vertices++}, {PAR_SLOTS, view.mesh.n_slots++}, {PAR_SLOTS, view.mesh.n_slots++}};
+            {PAR_VERTICES, view.mesh.n_vertices++}, {PAR_TRIANGLES, view.mesh.n_triangles++},
+            {PAR_TRIANGLES, view.mesh.n_triangles++}};
         int n_taken = 3;
         if (support_below(random, 4) == 0) {
             taken[3][0] = PAR_SUBS;
@@ -107,7 +108,7 @@ static bool use_room(struct table *table, struct par_room *room, const struct tr
 static void give_back(struct table *table, struct par_room *room, struct par_room *spare)
 {
     par_room_return(room, spare);
-    assert_true(!room->ranges[PAR_SLOTS].item && !room->ranges[PAR_VERTICES].item && !room->ranges[PAR_SUBS].item);
+    assert_true(!room->ranges[PAR_TRIANGLES].item && !room->ranges[PAR_VERTICES].item && !room->ranges[PAR_SUBS].item);
     for (int kind = 0; kind < PAR_KINDS; kind++)
         for (int32_t i = 0; i < spare->ranges[kind].n; i++)
             for (int32_t at = spare->ranges[kind].item[i].next; at < spare->ranges[kind].item[i].end; at++)
@@ -128,12 +129,12 @@ static void test_random_dealings(void **state)
             int32_t who = support_below(&random, ROOMS), action = support_below(&random, 8);
             if (action == 0) {
                 give_back(&table, &room[who], &spare);
-                assert_int_equal(table_count(&table, PAR_SLOTS, who), 0);
-                assert_int_equal(table_count(&table, PAR_SLOTS, SPARE), room_left(&spare, PAR_SLOTS));
+                assert_int_equal(table_count(&table, PAR_TRIANGLES, who), 0);
+                assert_int_equal(table_count(&table, PAR_TRIANGLES, SPARE), room_left(&spare, PAR_TRIANGLES));
             } else if (action < 3) {
                 int32_t more = support_below(&random, seed % 2 ? 12 : 400) + 1;
                 assert_int_equal(par_room_extend(&room[who], &spare, &shared, more, NULL), TRI_OK);
-                assert_true(room_left(&room[who], PAR_SLOTS) >= more);
+                assert_true(room_left(&room[who], PAR_TRIANGLES) >= more);
                 assert_true(room_left(&room[who], PAR_VERTICES) >= more / 2);
                 table_grow(&table, &shared);
                 table_claim(&table, &room[who], who);
@@ -174,22 +175,22 @@ static int64_t refine_in_room(struct tri_mesh *shared, struct par_room *room, in
     struct par_view view = {0};
     struct tri_refine_options options = tri_refine_defaults();
     struct tri_refine_report report;
-    int32_t n = shared->n_slots, *seeds = malloc((size_t)n * sizeof *seeds);
-    assert_non_null(seeds);
+    int32_t n = shared->n_triangles, *worklist = malloc((size_t)n * sizeof *worklist);
+    assert_non_null(worklist);
     options.min_angle = 30;
     options.max_area = max_area;
     options.max_steiner = limit;
     options.more_room = par_more_room;
     options.more_room_user = room;
-    options.seeds = seeds;
+    options.worklist = worklist;
     for (int32_t i = 0; i < n; i++)
         if (tri_is_live(&shared->tri[i]))
-            seeds[options.n_seeds++] = i;
+            worklist[options.n_worklist++] = i;
     par_room_enter(room, &view, shared);
     enum tri_status status = tri_refine(&view.mesh, &options, &report, NULL);
     assert_true(status == TRI_OK || status == TRI_NO_ROOM);
     par_room_leave(room, &view);
-    free(seeds);
+    free(worklist);
     return report.inserted_free + report.inserted_on_segments;
 }
 
@@ -200,7 +201,7 @@ static void assert_closed(const struct tri_mesh *mesh, const struct support_plac
     struct tri_error error = {0};
     struct support_places after = support_places(mesh);
     assert_int_equal(mesh->n_vertices, vertices);
-    assert_int_equal(mesh->n_slots, before->n);
+    assert_int_equal(mesh->n_triangles, before->n);
     assert_true(support_same_places(before, &after));
     support_places_free(&after);
     if (tri_mesh_validate(mesh, &error) != TRI_OK)
@@ -212,8 +213,8 @@ static void assert_closed(const struct tri_mesh *mesh, const struct support_plac
             continue;
         const struct tri_parent *parent = &mesh->parents[mesh->on[v]];
         assert_true(fabs(tri_orient2d(mesh->xy[parent->v[0]], mesh->xy[parent->v[1]], mesh->xy[v])) < 1e-12);
-        bool rim = mesh->xy[v].x == 0 || mesh->xy[v].x == 1 || mesh->xy[v].y == 0 || mesh->xy[v].y == 1;
-        assert_int_equal(mesh->vertex_markers[v], rim);
+        bool edge = mesh->xy[v].x == 0 || mesh->xy[v].x == 1 || mesh->xy[v].y == 0 || mesh->xy[v].y == 1;
+        assert_int_equal(mesh->vertex_markers[v], edge);
     }
     for (int32_t s = 0; s < mesh->n_subs; s++)
         for (int side = 0; side < 2; side++)
@@ -274,7 +275,7 @@ static void test_closing_extremes(void **state)
         assert_int_equal(par_room_extend(&room, &spare, &mesh, 1000, NULL), TRI_OK);
         par_room_return(&room, &spare);
     }
-    assert_true(mesh.n_slots >= 1000 && mesh.n_slots < 3000); /* what is given back is dealt again */
+    assert_true(mesh.n_triangles >= 1000 && mesh.n_triangles < 3000); /* what is given back is dealt again */
     par_room_close(&spare, &mesh, 2);
     assert_closed(&mesh, &places, vertices);
     assert_int_equal(mesh.n_subs, subs);

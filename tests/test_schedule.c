@@ -65,7 +65,7 @@ struct start {
 static double total_area(const struct tri_mesh *mesh)
 {
     double sum = 0;
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         sum += 0.5 * tri_shape_of(mesh->xy, mesh->tri[t].v).area2;
     return sum * mesh->unit * mesh->unit;
 }
@@ -141,14 +141,15 @@ static void compare_with_sequential(const struct trial *trial, const struct star
     print_message(
         "  %-28s %7d triangles, sequential %7d (%+.1f %%), bad %d / %d, blocks %d x %d, levels %d, rounds %d, "
         "deferred %lld, left over %lld\n",
-        trial->file, (int)mesh->n_slots, (int)plain.n_slots, 100.0 * mesh->n_slots / plain.n_slots - 100, (int)bad,
+        trial->file, (int)mesh->n_triangles, (int)plain.n_triangles,
+        100.0 * mesh->n_triangles / plain.n_triangles - 100, (int)bad,
         (int)plain_bad, (int)report->columns, (int)report->rows, report->levels, report->rounds,
         (long long)report->deferred, (long long)report->left_over);
     judge(start, mesh, bad);
     bool beyond = start->options.quality.min_angle > TRI_USUAL_ANGLE; /* then what is bad depends on the order */
     assert_true(bad <= plain_bad + (beyond ? plain_bad : plain_bad / 5) + 10 * (plain_bad > 0));
     assert_true(report->columns * report->rows >= 9);
-    assert_true(mesh->n_slots < (beyond ? 1.5 : 1.2) * plain.n_slots);
+    assert_true(mesh->n_triangles < (beyond ? 1.5 : 1.2) * plain.n_triangles);
     assert_int_equal(mesh->n_vertices, start->pslg.n_points + sequential.constrain.crossings +
                                            report->total.inserted_free + report->total.inserted_on_segments);
     tri_mesh_free(&plain);
@@ -177,7 +178,7 @@ static void assert_same_report(const struct par_report *a, const struct par_repo
     assert_int_equal(a->pauses, b->pauses);
     for (int32_t i = 0; i < a->n_blocks; i++) {
         assert_int_equal(a->blocks[i].block, b->blocks[i].block);
-        assert_int_equal(a->blocks[i].seeds, b->blocks[i].seeds);
+        assert_int_equal(a->blocks[i].worklist, b->blocks[i].worklist);
         assert_int_equal(a->blocks[i].inserted, b->blocks[i].inserted);
     }
 }
@@ -311,7 +312,7 @@ static void test_a_sweep_hands_out_the_same_tiles(void **state)
         struct tri_mesh mesh, swept;
         struct stream whole, parts;
         assert_int_equal(refine_to(&whole, &start, &options, &report, &mesh), TRI_OK);
-        assert_true(whole.n_triangles == mesh.n_slots && whole.n_vertices == mesh.n_vertices);
+        assert_true(whole.n_triangles == mesh.n_triangles && whole.n_vertices == mesh.n_vertices);
         options.sweep = true;
         options.threads = 3;
         if (start.options.quality.min_angle <= TRI_EASY_ANGLE) /* else a second schedule begins in the order of ids */
@@ -350,8 +351,8 @@ static void test_a_sweep_holds_few_columns(void **state)
     struct stream stream;
     options.sweep = true;
     assert_int_equal(refine_to(&stream, &start, &options, &report, &mesh), TRI_OK);
-    print_message("  %lld triangles through %d\n", (long long)stream.n_triangles, (int)mesh.n_slots);
-    assert_true(mesh.n_slots < stream.n_triangles / 2);
+    print_message("  %lld triangles through %d\n", (long long)stream.n_triangles, (int)mesh.n_triangles);
+    assert_true(mesh.n_triangles < stream.n_triangles / 2);
     free(stream.byte);
     par_report_free(&report);
     tri_mesh_free(&mesh);
@@ -425,8 +426,8 @@ static void test_schedules_are_told_apart(void **state)
     tri_pslg_free(&start.pslg);
 }
 
-/* Triangles with several crowded walls beyond the fences of small blocks are left once each: told of as often as walls
- * are seen, the pool grew threefold in every phase. */
+/* Triangles with several encroached walls beyond the fences of small blocks are left once each: told of as often as
+ * walls are seen, the worklist grew threefold in every phase. */
 static void test_what_is_left_does_not_multiply(void **state)
 {
     (void)state;
@@ -444,7 +445,7 @@ static void test_what_is_left_does_not_multiply(void **state)
     start.options.quality.conforming = true;
     struct tri_mesh mesh = refine(&start, &options, &report);
     judge(&start, &mesh, sum_bad(&mesh, &start.options.quality, &report.total));
-    assert_true(report.rounds > 0 && report.deferred < 20 * (int64_t)mesh.n_slots);
+    assert_true(report.rounds > 0 && report.deferred < 20 * (int64_t)mesh.n_triangles);
     par_report_free(&report);
     tri_mesh_free(&mesh);
     tri_pslg_free(&start.pslg);
@@ -464,7 +465,7 @@ static void test_nothing_is_deferred_with_the_margin(void **state)
         options.margin = margin;
         assert_int_equal(par_refine(&mesh, &finer, &options, &report, &error), TRI_OK);
         print_message("  margin %d: %d triangles, deferred %lld, left over %lld, r %g, blocks %d x %d\n", margin,
-                      (int)mesh.n_slots, (long long)report.deferred, (long long)report.left_over,
+                      (int)mesh.n_triangles, (long long)report.deferred, (long long)report.left_over,
                       report.radius_measured, (int)report.columns, (int)report.rows);
         assert_true(report.columns * report.rows >= 16);
         assert_true(margin ? report.deferred == 0 : report.deferred > 0);
@@ -486,11 +487,11 @@ static void test_default_blocks_cost_no_triangles(void **state)
         options.threads = 2;
         struct tri_mesh mesh = refine(&start, &options, &report);
         struct tri_mesh plain = support_generate(&start.pslg, &start.options, NULL);
-        print_message("  %d triangles, sequential %d (%+.2f %%), blocks %d x %d\n", (int)mesh.n_slots,
-                      (int)plain.n_slots, 100.0 * mesh.n_slots / plain.n_slots - 100, (int)report.columns,
+        print_message("  %d triangles, sequential %d (%+.2f %%), blocks %d x %d\n", (int)mesh.n_triangles,
+                      (int)plain.n_triangles, 100.0 * mesh.n_triangles / plain.n_triangles - 100, (int)report.columns,
                       (int)report.rows);
         assert_true(report.columns * report.rows >= 9);
-        assert_true(mesh.n_slots < 1.02 * plain.n_slots);
+        assert_true(mesh.n_triangles < 1.02 * plain.n_triangles);
         assert_int_equal(sum_bad(&mesh, &start.options.quality, &report.total), 0);
         par_report_free(&report);
         tri_mesh_free(&plain);
@@ -527,7 +528,7 @@ static void test_a_size_test_runs_in_parallel_only_where_allowed(void **state)
         mesh = refine(&start, &options, &report);
         assert_true(report.n_blocks > 9);
         assert_int_equal(sum_bad(&mesh, &start.options.quality, &report.total), 0);
-        assert_true(mesh.n_slots < 1.1 * plain.n_slots);
+        assert_true(mesh.n_triangles < 1.1 * plain.n_triangles);
         judge(&start, &mesh, 0);
         if (threads == 1) {
             first = mesh;
@@ -582,12 +583,12 @@ static void test_protected_segments_stay_whole(void **state)
         struct par_options options = small_blocks(trial.block, 2);
         struct par_report report;
         struct tri_mesh before = coarse_mesh(&start), mesh = refine(&start, &options, &report);
-        int32_t old_rim = 0, rim = 0;
+        int32_t old_edge = 0, edge = 0;
         for (int32_t s = 0; s < before.n_subs; s++)
-            old_rim += before.sub[s].side[0] == TRI_NONE || before.sub[s].side[1] == TRI_NONE;
+            old_edge += before.sub[s].side[0] == TRI_NONE || before.sub[s].side[1] == TRI_NONE;
         for (int32_t s = 0; s < mesh.n_subs; s++)
-            rim += mesh.sub[s].side[0] == TRI_NONE || mesh.sub[s].side[1] == TRI_NONE;
-        assert_int_equal(rim, old_rim);
+            edge += mesh.sub[s].side[0] == TRI_NONE || mesh.sub[s].side[1] == TRI_NONE;
+        assert_int_equal(edge, old_edge);
         assert_true(protect == 2 ? mesh.n_subs == before.n_subs : mesh.n_subs > before.n_subs);
         assert_true(report.n_blocks > 9);
         par_report_free(&report);
@@ -649,7 +650,7 @@ static void test_small_and_empty_meshes(void **state)
         support_assert_same_bytes(&mesh, &again);
         assert_int_equal(par_refine(&mesh, &start.options.quality, &options, &report, NULL), TRI_OK);
         assert_int_equal(report.total.inserted_free + report.total.inserted_on_segments, 0);
-        assert_int_equal(mesh.n_slots, again.n_slots);
+        assert_int_equal(mesh.n_triangles, again.n_triangles);
         par_report_free(&report);
         tri_mesh_free(&again);
         tri_mesh_free(&mesh);
@@ -667,9 +668,9 @@ static void test_calls_can_follow_each_other(void **state)
     struct tri_error error = {0};
     struct tri_mesh mesh = refine(&start, &options, &report);
     par_report_free(&report);
-    int32_t n = mesh.n_slots;
+    int32_t n = mesh.n_triangles;
     assert_int_equal(par_refine(&mesh, &start.options.quality, &options, &report, &error), TRI_OK);
-    assert_int_equal(mesh.n_slots, n);
+    assert_int_equal(mesh.n_triangles, n);
     par_report_free(&report);
     start.options.quality.max_area = 1e-4;
     size_t bytes = (size_t)mesh.n_vertices * sizeof *mesh.xy;
@@ -677,7 +678,7 @@ static void test_calls_can_follow_each_other(void **state)
     assert_non_null(xy);
     memcpy(xy, mesh.xy, bytes);
     assert_int_equal(par_refine(&mesh, &start.options.quality, &options, &report, &error), TRI_OK);
-    assert_true(mesh.n_slots > 5 * n && report.n_blocks > 9 && report.seconds_number > 0);
+    assert_true(mesh.n_triangles > 5 * n && report.n_blocks > 9 && report.seconds_number > 0);
     assert_memory_equal(mesh.xy, xy, bytes); /* who was there keeps its number */
     free(xy);
     judge(&start, &mesh, 0);

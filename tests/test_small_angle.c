@@ -10,8 +10,8 @@
 #include "triangle/small_angle.h"
 
 /* A rectangle of length 1 and this height, refined to 20 degrees; the number of triangles, and how many stay bad as
- * channels. */
-static int32_t refine_rectangle(double height, int64_t *in_channel)
+ * narrow gaps. */
+static int32_t refine_rectangle(double height, int64_t *in_narrow_gap)
 {
     struct tri_pslg pslg = support_pslg(4, 4, 0, 0);
     support_add_point(&pslg, 0, 0);
@@ -25,10 +25,10 @@ static int32_t refine_rectangle(double height, int64_t *in_channel)
     struct tri_mesh mesh = support_generate(&pslg, &options, &report);
     int64_t count[TRI_EXCUSES];
     tri_count_bad(&mesh, &options.quality, &report.quality, NULL, count);
-    *in_channel = count[TRI_EXCUSE_CHANNEL];
+    *in_narrow_gap = count[TRI_EXCUSE_NARROW_GAP];
     for (int k = 0; k < TRI_EXCUSES; k++)
-        assert_true(k == TRI_EXCUSE_CHANNEL || count[k] == 0);
-    int32_t triangles = mesh.n_slots;
+        assert_true(k == TRI_EXCUSE_NARROW_GAP || count[k] == 0);
+    int32_t triangles = mesh.n_triangles;
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
     return triangles;
@@ -37,13 +37,13 @@ static int32_t refine_rectangle(double height, int64_t *in_channel)
 static void test_thin_rectangles_are_filled_while_that_is_cheap(void **state)
 {
     (void)state;
-    int64_t in_channel;
-    assert_in_range(refine_rectangle(1e-3, &in_channel), 500, 3000);
-    assert_int_equal(in_channel, 0);
-    assert_in_range(refine_rectangle(1e-5, &in_channel), 50000, 300000);
-    assert_int_equal(in_channel, 0);
-    assert_in_range(refine_rectangle(1e-8, &in_channel), 2, 100);
-    assert_true(in_channel > 0);
+    int64_t in_narrow_gap;
+    assert_in_range(refine_rectangle(1e-3, &in_narrow_gap), 500, 3000);
+    assert_int_equal(in_narrow_gap, 0);
+    assert_in_range(refine_rectangle(1e-5, &in_narrow_gap), 50000, 300000);
+    assert_int_equal(in_narrow_gap, 0);
+    assert_in_range(refine_rectangle(1e-8, &in_narrow_gap), 2, 100);
+    assert_true(in_narrow_gap > 0);
 }
 
 /* Subsegments at an acute vertex are split at powers of two from it, others in the middle. */
@@ -92,7 +92,7 @@ static void test_flat_neighbour_keeps_the_mesh_delaunay(void **state)
     struct tri_report report;
     options.keep_hull = true;
     struct tri_mesh mesh = support_generate(&pslg, &options, &report);
-    struct tri_check_options asked = {.max_bad = mesh.n_slots, .border = TRI_CHECK_BORDER_HULL};
+    struct tri_check_options asked = {.max_bad = mesh.n_triangles, .border = TRI_CHECK_BORDER_HULL};
     support_judge(&mesh, &pslg, &asked, false, NULL);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);

@@ -99,8 +99,8 @@ static void test_restoring_after_refinement(void **state)
         assert_true(was_sorted);
         assert_null(called.origin);
         assert_callers_points(&called, &pslg);
-        assert_int_equal(once.n_slots, called.n_slots);
-        for (int32_t t = 0; t < once.n_slots; t++)
+        assert_int_equal(once.n_triangles, called.n_triangles);
+        for (int32_t t = 0; t < once.n_triangles; t++)
             assert_memory_equal(once.tri[t].v, called.tri[t].v, sizeof once.tri[t].v);
         if (kind == SUPPORT_RANDOM) /* the lattice has crossings too near to each other for bounds */
             refine_again(&called, &pslg);

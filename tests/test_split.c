@@ -205,7 +205,7 @@ static void expect_good(const struct tri_mesh *mesh, const struct tri_pslg *pslg
     struct tri_check_options asked = {.max_bad = INT64_MAX};
     struct tri_check_report report;
     char text[SUPPORT_TEXT];
-    if (mesh->n_slots > 0 && !support_passes(mesh, pslg, &asked, false, &report, text))
+    if (mesh->n_triangles > 0 && !support_passes(mesh, pslg, &asked, false, &report, text))
         fail_msg("kind %d, seed %d: %s", kind, seed, text);
 }
 
@@ -301,7 +301,7 @@ static void expect_guarded(const struct tri_mesh *mesh, const struct tri_point (
     for (int32_t i = 0; i < n; i++) {
         for (int32_t j = 0; j < i; j++)
             assert_true(disjoint(own[i], own[j]));
-        for (int32_t t = 0; t < mesh->n_slots; t++) {
+        for (int32_t t = 0; t < mesh->n_triangles; t++) {
             const int32_t *v = mesh->tri[t].v;
             struct tri_point u[3] = {mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]};
             assert_true(disjoint(own[i], u));

@@ -95,7 +95,7 @@ static void test_generation_stops_anywhere(void **state)
             assert_int_equal(status, TRI_STOPPED);
             assert_int_equal(error.status, TRI_STOPPED);
         }
-        if (status == TRI_STOPPED && mesh.n_slots > 0) {
+        if (status == TRI_STOPPED && mesh.n_triangles > 0) {
             refining_stopped = true;
             assert_legal(&mesh, &pslg);
             mesh.stop = NULL;
@@ -158,7 +158,7 @@ static void test_reconstruction_stops(void **state)
         const struct tri_stop stop = {is_asked, &trigger};
         struct tri_reconstruct_options how = {.refine = true, .stop = &stop};
         assert_int_equal(tri_reconstruct(&again, &pslg, &elements, &how, NULL), TRI_STOPPED);
-        assert_int_equal(again.n_slots, 0);
+        assert_int_equal(again.n_triangles, 0);
     }
     support_copy_free(&copy);
     tri_mesh_free(&mesh);

@@ -114,14 +114,14 @@ static struct tri_mesh copy_of(const struct tri_mesh *mesh)
     struct tri_error error;
     assert_int_equal(tri_mesh_init(&copy, &error), TRI_OK);
     assert_int_equal(tri_mesh_reserve_vertices(&copy, mesh->n_vertices + 8, &error), TRI_OK);
-    assert_int_equal(tri_mesh_reserve_triangles(&copy, mesh->n_slots + 16, &error), TRI_OK);
+    assert_int_equal(tri_mesh_reserve_triangles(&copy, mesh->n_triangles + 16, &error), TRI_OK);
     assert_int_equal(tri_mesh_reserve_subs(&copy, mesh->n_subs, &error), TRI_OK);
     memcpy(copy.xy, mesh->xy, (size_t)mesh->n_vertices * sizeof *mesh->xy);
     memcpy(copy.on, mesh->on, (size_t)mesh->n_vertices * sizeof *mesh->on);
-    memcpy(copy.tri, mesh->tri, (size_t)mesh->n_slots * sizeof *mesh->tri);
+    memcpy(copy.tri, mesh->tri, (size_t)mesh->n_triangles * sizeof *mesh->tri);
     memcpy(copy.sub, mesh->sub, (size_t)mesh->n_subs * sizeof *mesh->sub);
     copy.n_vertices = mesh->n_vertices;
-    copy.n_slots = mesh->n_slots;
+    copy.n_triangles = mesh->n_triangles;
     copy.n_subs = mesh->n_subs;
     copy.unit = mesh->unit;
     return copy;
@@ -142,7 +142,7 @@ static double radius2_at(const struct tri_mesh *mesh, int32_t t)
 static double largest_radius(const struct tri_mesh *mesh)
 {
     double largest2 = 0;
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         largest2 = fmax(largest2, radius2_at(mesh, t));
     return sqrt(largest2);
 }
@@ -172,7 +172,7 @@ static bool are_apart(const struct tri_mesh *mesh, const struct tri_cavity *a, c
 static bool find_cavity(struct tri_cavity *cavity, const struct tri_mesh *mesh, struct support_random *random,
                         int32_t *t)
 {
-    *t = support_below(random, mesh->n_slots);
+    *t = support_below(random, mesh->n_triangles);
     return tri_cavity_search(cavity, mesh, centre_of(mesh, *t), *t) == TRI_SEARCH_FOUND && cavity->n_wall == 0;
 }
 
@@ -276,7 +276,7 @@ static void test_cavities_lie_in_the_buffer_zone(void **state)
     tri_cavity_free(&p);
 }
 
-/* Lemmas 3 and 4: each new triangle has a smaller circumradius than one of the two old ones at its rim; hence the
+/* Lemmas 3 and 4: each new triangle has a smaller circumradius than one of the two old ones at its edge; hence the
  * largest circumradius never grows. */
 static void test_radius_never_grows(void **state)
 {
@@ -294,13 +294,13 @@ static void test_radius_never_grows(void **state)
             double before2 = 0; /* of the cavity and what surrounds it */
             for (int32_t k = 0; k < p.n_tri; k++)
                 before2 = fmax(before2, radius2_at(&mesh, p.tri[k]));
-            for (int32_t k = 0; k < p.n_rim; k++)
-                before2 = fmax(before2, radius2_at(&mesh, tri_of(p.rim[k].outer)));
+            for (int32_t k = 0; k < p.n_edges; k++)
+                before2 = fmax(before2, radius2_at(&mesh, tri_of(p.edge[k].outer)));
             assert_int_equal(tri_mesh_reserve_vertices(&mesh, 1, &error), TRI_OK);
             assert_int_equal(tri_mesh_reserve_triangles(&mesh, 2, &error), TRI_OK);
             fill(&mesh, &p);
-            for (int32_t k = 0; k < p.n_rim; k++)
-                assert_true(radius2_at(&mesh, p.rim[k].slot) <= before2 * (1 + 1e-9));
+            for (int32_t k = 0; k < p.n_edges; k++)
+                assert_true(radius2_at(&mesh, p.edge[k].triangle) <= before2 * (1 + 1e-9));
         }
         assert_true(largest_radius(&mesh) <= bound * (1 + 1e-9));
         tri_mesh_free(&mesh);

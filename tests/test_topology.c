@@ -42,7 +42,7 @@ static struct tri_mesh square(void)
 /* The triangle other than t that has both vertices; TRI_NONE. */
 static int32_t naive_neighbor(const struct tri_mesh *mesh, int32_t t, int32_t a, int32_t b)
 {
-    for (int32_t u = 0; u < mesh->n_slots; u++) {
+    for (int32_t u = 0; u < mesh->n_triangles; u++) {
         int shared = 0;
         for (int k = 0; k < 3; k++)
             shared += mesh->tri[u].v[k] == a || mesh->tri[u].v[k] == b;
@@ -57,8 +57,8 @@ static void test_neighbors(void **state)
     (void)state;
     struct tri_mesh mesh = tangled(1);
     int32_t inner = 0;
-    assert_true(mesh.n_slots > 100);
-    for (int32_t t = 0; t < mesh.n_slots; t++) {
+    assert_true(mesh.n_triangles > 100);
+    for (int32_t t = 0; t < mesh.n_triangles; t++) {
         int32_t found[3];
         const int32_t *v = mesh.tri[t].v;
         tri_neighbors(&mesh, t, found);
@@ -80,7 +80,7 @@ static void test_edge_order(void **state)
         struct tri_edge_list list;
         assert_int_equal(tri_edge_list_make(&list, &mesh, true, NULL), TRI_OK);
         int32_t n = 0;
-        for (int32_t t = 0; t < mesh.n_slots; t++)
+        for (int32_t t = 0; t < mesh.n_triangles; t++)
             for (int k = 0; k < 3; k++) {
                 int32_t from = mesh.tri[t].v[k], to = mesh.tri[t].v[tri_next[k]], ends[2];
                 int32_t other = naive_neighbor(&mesh, t, from, to), number = list.number[3 * t + tri_prev[k]];
@@ -123,7 +123,7 @@ static void test_voronoi_vertices(void **state)
 {
     (void)state;
     struct tri_mesh mesh = tangled(5);
-    for (int32_t t = 0; t < mesh.n_slots; t++) {
+    for (int32_t t = 0; t < mesh.n_triangles; t++) {
         struct tri_blend center = tri_voronoi_vertex(&mesh, t);
         double squared[3];
         for (int k = 0; k < 3; k++) {
@@ -175,7 +175,7 @@ static void test_blends(void **state)
         struct tri_blend middle = tri_edge_middle(&mesh, list.codes[i]);
         assert_true(tri_blend_attribute(&mesh, &middle, 0) == 10 * middle.at[0] + 20 * middle.at[1]);
     }
-    for (int32_t t = 0; t < mesh.n_slots; t++) {
+    for (int32_t t = 0; t < mesh.n_triangles; t++) {
         struct tri_blend center = tri_voronoi_vertex(&mesh, t);
         assert_true(fabs(tri_blend_attribute(&mesh, &center, 0) - 15) < 1e-14);
         int32_t nodes[3];
@@ -190,7 +190,7 @@ static void test_blends(void **state)
     }
     mesh.xy[0] = (struct tri_point){0.25, 0.5}; /* an obtuse triangle, whose circumcentre lies outside */
     mesh.attributes[0] = 12.5;
-    for (int32_t t = 0; t < mesh.n_slots; t++) {
+    for (int32_t t = 0; t < mesh.n_triangles; t++) {
         struct tri_blend center = tri_voronoi_vertex(&mesh, t);
         double expected = 10 * center.at[0] + 20 * center.at[1];
         assert_true(fabs(tri_blend_attribute(&mesh, &center, 0) - expected) < 1e-12);

@@ -7,7 +7,7 @@
  * is full its older half goes to a stack and is taken back when the window has run empty. So the work stays where the
  * cache is, for any size of mesh.
  *
- * An entry names a slot and the state the slot had; whoever takes an entry compares. Two of three entries for sizes
+ * An entry names a triangle and the state it had; whoever takes an entry compares. Two of three entries for sizes
  * are out of date when their turn comes, for the points before them were inserted nearby. So these leave the window in
  * batches, of which those are kept that are up to date: a loop without a branch that depends on it, which could not be
  * predicted. */
@@ -72,7 +72,7 @@ int tri_bad_queue_median(const struct tri_bad_queue *queue);
 /* Takes the next entry from the buckets below `limit`. False where none waits there. */
 bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, struct tri_entry *entry);
 
-/* Takes the next entry: bad angles first. False where nothing waits. tri: what the entries' slots belong to. */
+/* Takes the next entry: bad angles first. False where nothing waits. tri: what the entries speak of. */
 bool tri_bad_queue_pop(struct tri_bad_queue *queue, const struct tri_triangle *tri, struct tri_entry *entry);
 
 #endif

@@ -12,8 +12,8 @@
 
 struct flood {
     struct tri_mesh *mesh;
-    int32_t *stack;    /* [n_slots]: each triangle is pushed at most once a flood */
-    uint8_t *dead;     /* [n_slots] */
+    int32_t *stack;    /* [n_triangles]: each triangle is pushed at most once a flood */
+    uint8_t *dead;     /* [n_triangles] */
 };
 
 static bool is_wall(const struct tri_mesh *mesh, int32_t link, bool keep_hull)
@@ -43,7 +43,7 @@ static void kill_from(struct flood *f, int32_t start)
 static void kill_concavities(struct flood *f)
 {
     const struct tri_mesh *mesh = f->mesh;
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         for (int e = 0; e < 3; e++)
             if (mesh->tri[t].n[e] < 0 && !is_wall(mesh, mesh->tri[t].n[e], false))
                 kill_from(f, t);
@@ -56,8 +56,8 @@ enum { UNSEEN, WAITING, SEEN };
 /* Triangles by depth: those of the depth that is being flooded on the stack, those behind its walls in `next`. */
 struct dive {
     const struct tri_mesh *mesh;
-    uint8_t *state;         /* [n_slots] */
-    int32_t *stack, *next;  /* [n_slots] */
+    uint8_t *state;         /* [n_triangles] */
+    int32_t *stack, *next;  /* [n_triangles] */
     int32_t n, n_next;
 };
 
@@ -93,7 +93,7 @@ static void enter(struct dive *d, bool keep_hull)
 {
     const struct tri_mesh *mesh = d->mesh;
     for (int pass = 0; pass < 2; pass++)
-        for (int32_t t = 0; t < mesh->n_slots; t++)
+        for (int32_t t = 0; t < mesh->n_triangles; t++)
             for (int e = 0; e < 3; e++) {
                 int32_t link = mesh->tri[t].n[e];
                 if (link >= 0 || tri_across(mesh, tri_code(t, e)) != TRI_NONE)
@@ -128,14 +128,14 @@ static void kill_depths(struct flood *f, struct dive *d, bool keep_hull)
 
 static enum tri_status kill_even(struct flood *f, bool keep_hull, struct tri_error *error)
 {
-    size_t n = (size_t)f->mesh->n_slots + 1;
+    size_t n = (size_t)f->mesh->n_triangles + 1;
     struct dive d = {f->mesh, calloc(n, 1), f->stack, malloc(n * sizeof *d.next), 0, 0};
     enum tri_status status = TRI_OK;
     if (d.state && d.next)
         kill_depths(f, &d, keep_hull);
     else
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the depth of %d triangles",
-                          (int)f->mesh->n_slots);
+                          (int)f->mesh->n_triangles);
     free(d.state);
     free(d.next);
     return status;
@@ -240,10 +240,10 @@ static void guard_boundary(const struct flood *f, int32_t t)
 static void remove_dead(struct flood *f)
 {
     struct tri_mesh *mesh = f->mesh;
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         if (f->dead[t])
             guard_boundary(f, t);
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
         struct tri_triangle *at = &mesh->tri[t];
         if (!f->dead[t])
             continue;
@@ -303,13 +303,13 @@ done:
 enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_carve_options *options,
                           struct tri_error *error)
 {
-    size_t n = (size_t)mesh->n_slots + 1;
+    size_t n = (size_t)mesh->n_triangles + 1;
     struct flood f = {mesh, malloc(n * sizeof *f.stack), calloc(n, 1)};
     enum tri_status status = TRI_OK;
     if (!f.stack || !f.dead)
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)mesh->n_slots);
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)mesh->n_triangles);
     mark_vertices(mesh);
-    if (!status && mesh->n_slots > 0) {
+    if (!status && mesh->n_triangles > 0) {
         if (options->even_odd)
             status = kill_even(&f, options->keep_hull, error);
         else if (!options->keep_hull)

@@ -17,7 +17,7 @@ struct tri_carve_options {
 
 /* Removes what is reachable from outside the hull, or from a hole point, without crossing a segment; then gives every
  * triangle the last region whose point reaches it (mesh->regions[k + 1] is region k of the PSLG). Points outside the
- * mesh are ignored. Segment markers pass to vertices that have none. Slots and subsegments are compact afterwards,
+ * mesh are ignored. Segment markers pass to vertices that have none. Triangles and subsegments are compact afterwards,
  * subsegments in the order of their input segments, hull edges last, each with a parent of its own. O(triangles), and
  * what it takes to locate the points (locate.h).
  *

@@ -15,7 +15,7 @@ static const double DOUBT = 1.2e-15;
 void tri_cavity_free(struct tri_cavity *cavity)
 {
     free(cavity->tri);
-    free(cavity->rim);
+    free(cavity->edge);
     free(cavity->wall);
     free(cavity->pending);
     *cavity = (struct tri_cavity){0};
@@ -28,13 +28,13 @@ static bool grow(struct tri_cavity *c)
     size_t n = (size_t)capacity;
     int32_t *tri = realloc(c->tri, (n + 4) * sizeof *tri);
     c->tri = tri ? tri : c->tri;
-    struct tri_rim *rim = realloc(c->rim, (n + 4) * sizeof *rim);
-    c->rim = rim ? rim : c->rim;
+    struct tri_cavity_edge *edge = realloc(c->edge, (n + 4) * sizeof *edge);
+    c->edge = edge ? edge : c->edge;
     int32_t *wall = realloc(c->wall, (n + 4) * sizeof *wall);
     c->wall = wall ? wall : c->wall;
     struct tri_pending *pending = realloc(c->pending, (n + 4) * sizeof *pending);
     c->pending = pending ? pending : c->pending;
-    if (!tri || !rim || !wall || !pending)
+    if (!tri || !edge || !wall || !pending)
         return false;
     c->capacity = capacity;
     return true;
@@ -57,15 +57,15 @@ static inline bool in_circle(const struct tri_mesh *mesh, struct tri_point p, co
     return tri_in_circle_near(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]], p);
 }
 
-/* Goes around the cavity, depth first and left first, so that rims come out in order: each edge that waits starts where
- * the last rim before it has ended; the first at a. Each comes with the cross product of its ends; so of the three
- * products that a test needs one is known, and the other two are those of the edges behind. */
+/* Goes around the cavity, depth first and left first, so that edges come out in order: each edge that waits starts
+ * where the last edge before it has ended; the first at a. Each comes with the cross product of its ends; so of the
+ * three products that a test needs one is known, and the other two are those of the edges behind. */
 static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t n_pending, int32_t a,
                                struct tri_relative ra)
 {
     const struct tri_triangle *tri = mesh->tri;
     const struct tri_point *xy = mesh->xy, p = c->p;
-    int32_t n_tri = c->n_tri, n_rim = c->n_rim;
+    int32_t n_tri = c->n_tri, n_edges = c->n_edges;
     while (n_pending > 0) {
         struct tri_pending edge = c->pending[--n_pending];
         while (edge.link >= 0) {
@@ -87,24 +87,24 @@ static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh
             edge = (struct tri_pending){t->n[tri_next[e]], apex, t->region, rapex, left};
         }
         if (edge.link < 0)
-            c->wall[c->n_wall++] = n_rim;
-        assert(n_rim < n_tri + 2 && n_pending <= n_tri + 1);
-        c->rim[n_rim++] = (struct tri_rim){edge.link, a, edge.region, TRI_NONE, ra, edge.area2};
+            c->wall[c->n_wall++] = n_edges;
+        assert(n_edges < n_tri + 2 && n_pending <= n_tri + 1);
+        c->edge[n_edges++] = (struct tri_cavity_edge){edge.link, a, edge.region, TRI_NONE, ra, edge.area2};
         a = edge.end;
         ra = edge.rend;
     }
-    /* So that whoever goes along the rims need not ask which is the last. The chain on the left of a split ends where
+    /* So that whoever goes along the edges need not ask which is the last. The chain on the left of a split ends where
      * that on the right begins. */
-    c->rim[n_rim] = (struct tri_rim){TRI_NONE, a, TRI_NONE, TRI_NONE, ra, 0};
+    c->edge[n_edges] = (struct tri_cavity_edge){TRI_NONE, a, TRI_NONE, TRI_NONE, ra, 0};
     c->n_tri = n_tri;
-    c->n_rim = n_rim;
+    c->n_edges = n_edges;
     return TRI_SEARCH_FOUND;
 }
 
 static bool begin(struct tri_cavity *c, struct tri_point p)
 {
     c->p = p;
-    c->n_tri = c->n_rim = c->n_wall = 0;
+    c->n_tri = c->n_edges = c->n_wall = 0;
     c->mixed = 0;
     return c->capacity > 0 || grow(c);
 }
@@ -153,11 +153,11 @@ enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *m
     return explore_from(c, mesh, t, 0, 3);
 }
 
-/* Rounding may place a split point off its subsegment: every rim must still be seen counter-clockwise. */
-static bool sees_rims(const struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end)
+/* Rounding may place a split point off its subsegment: every edge must still be seen counter-clockwise. */
+static bool sees_edges(const struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end)
 {
-    for (const struct tri_rim *rim = &c->rim[first]; rim < &c->rim[end]; rim++)
-        if (rim->ra.l == 0 || tri_orient2d(c->p, mesh->xy[rim[0].a], mesh->xy[rim[1].a]) <= 0)
+    for (const struct tri_cavity_edge *edge = &c->edge[first]; edge < &c->edge[end]; edge++)
+        if (edge->ra.l == 0 || tri_orient2d(c->p, mesh->xy[edge[0].a], mesh->xy[edge[1].a]) <= 0)
             return false;
     return true;
 }
@@ -168,7 +168,7 @@ static int compare_links(const void *a, const void *b)
     return (p->link > q->link) - (p->link < q->link);
 }
 
-/* Is a triangle of the cavity there twice, or beyond a rim? By sorting; no search is pending any more. */
+/* Is a triangle of the cavity there twice, or beyond its boundary? By sorting; no search is pending any more. */
 static bool repeats_itself(const struct tri_cavity *c)
 {
     size_t n = (size_t)c->n_tri;
@@ -178,10 +178,10 @@ static bool repeats_itself(const struct tri_cavity *c)
     for (int32_t i = 1; i < c->n_tri; i++)
         if (c->pending[i].link == c->pending[i - 1].link)
             return true;
-    for (int32_t k = 0; k < c->n_rim; k++) {
-        if (c->rim[k].outer < 0)
+    for (int32_t k = 0; k < c->n_edges; k++) {
+        if (c->edge[k].outer < 0)
             continue;
-        struct tri_pending beyond = {.link = tri_of(c->rim[k].outer)};
+        struct tri_pending beyond = {.link = tri_of(c->edge[k].outer)};
         if (bsearch(&beyond, c->pending, n, sizeof *c->pending, compare_links))
             return true;
     }
@@ -193,7 +193,7 @@ static bool overlaps_itself(const struct tri_cavity *c, int32_t s)
 {
     enum { FEW = 64 };
     for (int32_t i = 0; i < c->n_wall; i++)
-        if (c->rim[c->wall[i]].outer == ~s)
+        if (c->edge[c->wall[i]].outer == ~s)
             return true;
     if (c->n_tri > FEW)
         return repeats_itself(c);
@@ -201,8 +201,8 @@ static bool overlaps_itself(const struct tri_cavity *c, int32_t s)
         for (int32_t k = 0; k < i; k++)
             if (c->tri[i] == c->tri[k])
                 return true;
-        for (int32_t k = 0; k < c->n_rim; k++)
-            if (c->rim[k].outer >= 0 && c->rim[k].outer >> 2 == c->tri[i])
+        for (int32_t k = 0; k < c->n_edges; k++)
+            if (c->edge[k].outer >= 0 && c->edge[k].outer >> 2 == c->tri[i])
                 return true;
     }
     return false;
@@ -216,33 +216,33 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
     if (!begin(c, p))
         return TRI_SEARCH_NO_MEMORY;
     for (int side = 0; side < 2; side++) {
-        int32_t first = c->n_rim;
+        int32_t first = c->n_edges;
         if (sub->side[side] == TRI_NONE)
             continue;
         int32_t code = sub->side[side];
         enum tri_search found = explore_from(c, mesh, tri_of(code), tri_next[tri_edge(code)], 2);
         if (found != TRI_SEARCH_FOUND)
             return found;
-        if (!sees_rims(c, mesh, first, c->n_rim))
+        if (!sees_edges(c, mesh, first, c->n_edges))
             return TRI_SEARCH_OUTSIDE;
         if (side == 0) {
-            *n_left = c->n_rim;
+            *n_left = c->n_edges;
             c->n_left_tri = c->n_tri;
         }
     }
     return overlaps_itself(c, s) ? TRI_SEARCH_OUTSIDE : TRI_SEARCH_FOUND;
 }
 
-/* Slots for the fan: those of the cavity's triangles, then fresh ones. A fan has at least as many triangles as its
- * cavity (Euler), so no slot is ever left over. The first comes again behind the last, as its neighbour. */
+/* Numbers for the fan: those of the cavity's triangles, then fresh ones. A fan has at least as many triangles as its
+ * cavity (Euler), so no number is ever left over. The first comes again behind the last, as its neighbour. */
 static void take_slots(struct tri_cavity *c, struct tri_mesh *mesh)
 {
-    for (int32_t i = c->n_tri; i < c->n_rim; i++) {
-        assert(mesh->n_slots < mesh->slot_capacity);
-        mesh->tri[mesh->n_slots].state = 0;
-        c->tri[i] = mesh->n_slots++;
+    for (int32_t i = c->n_tri; i < c->n_edges; i++) {
+        assert(mesh->n_triangles < mesh->triangle_capacity);
+        mesh->tri[mesh->n_triangles].state = 0;
+        c->tri[i] = mesh->n_triangles++;
     }
-    c->tri[c->n_rim] = c->tri[0];
+    c->tri[c->n_edges] = c->tri[0];
 }
 
 #ifndef NDEBUG
@@ -265,79 +265,79 @@ static bool is_inside(const struct tri_mesh *mesh, int32_t t, struct tri_point q
 }
 
 /* Where regions meet without a subsegment between, a new triangle belongs to the region in which its centroid lies: so
- * regions stay where they are. Where rounding hides that, to the one behind its rim. Looks among the cavity's triangles
- * first_tri .. end_tri - 1, which lie on the same side of a split subsegment. */
+ * regions stay where they are. Where rounding hides that, to the one behind its edge. Looks among the cavity's
+ * triangles first_tri .. end_tri - 1, which lie on the same side of a split subsegment. */
 static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end,
                           int32_t first_tri, int32_t end_tri)
 {
     for (int32_t i = first; i < end; i++) {
-        struct tri_point a = mesh->xy[c->rim[i].a], b = mesh->xy[c->rim[i + 1].a];
+        struct tri_point a = mesh->xy[c->edge[i].a], b = mesh->xy[c->edge[i + 1].a];
         struct tri_point centroid = {(a.x + b.x + c->p.x) / 3, (a.y + b.y + c->p.y) / 3};
         for (int32_t k = first_tri; k < end_tri; k++)
             if (is_inside(mesh, c->tri[k], centroid)) {
-                c->rim[i].region = mesh->tri[c->tri[k]].region;
+                c->edge[i].region = mesh->tri[c->tri[k]].region;
                 break;
             }
     }
 }
 
-/* Makes the triangles of rims first .. end - 1. Each is linked with the next and the one before in the round of all
- * rims, so that nothing has to be asked; where a chain does not close, the caller puts that right. */
+/* Makes the triangles of edges first .. end - 1. Each is linked with the next and the one before in the round of all
+ * edges, so that nothing has to be asked; where a chain does not close, the caller puts that right. */
 static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v, int32_t first, int32_t end)
 {
-    int32_t before = c->tri[first > 0 ? first - 1 : c->n_rim - 1];
+    int32_t before = c->tri[first > 0 ? first - 1 : c->n_edges - 1];
     for (int32_t i = first; i < end; i++) {
-        struct tri_rim *rim = &c->rim[i];
-        int32_t slot = c->tri[i];
-        struct tri_triangle *t = &mesh->tri[slot];
-        rim->slot = slot;
+        struct tri_cavity_edge *edge = &c->edge[i];
+        int32_t triangle = c->tri[i];
+        struct tri_triangle *t = &mesh->tri[triangle];
+        edge->triangle = triangle;
         t->v[0] = v;
-        t->v[1] = rim[0].a;
-        t->v[2] = rim[1].a;
-        t->n[0] = rim->outer;
+        t->v[1] = edge[0].a;
+        t->v[2] = edge[1].a;
+        t->n[0] = edge->outer;
         t->n[1] = tri_code(c->tri[i + 1], 2);
         t->n[2] = tri_code(before, 1);
-        t->region = rim->region;
+        t->region = edge->region;
         t->state++;
-        tri_relink(mesh, rim->outer, rim->a, tri_code(slot, 0));
-        before = slot;
+        tri_relink(mesh, edge->outer, edge->a, tri_code(triangle, 0));
+        before = triangle;
     }
 }
 
 void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v)
 {
-    assert(c->n_tri >= 1 && c->n_rim == c->n_tri + 2);
+    assert(c->n_tri >= 1 && c->n_edges == c->n_tri + 2);
     assert(claim(c, mesh));
     if (c->mixed)
-        place_regions(c, mesh, 0, c->n_rim, 0, c->n_tri);
+        place_regions(c, mesh, 0, c->n_edges, 0, c->n_tri);
     take_slots(c, mesh);
-    fill_chain(c, mesh, v, 0, c->n_rim);
+    fill_chain(c, mesh, v, 0, c->n_edges);
 }
 
 int32_t tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v, int32_t s, int32_t n_left)
 {
     const struct tri_subsegment old = mesh->sub[s];
     int32_t second = mesh->n_subs++, ends[2] = {0, n_left};
-    assert(mesh->n_subs <= mesh->sub_capacity && c->n_rim >= c->n_tri && n_left >= 0 && n_left <= c->n_rim);
+    assert(mesh->n_subs <= mesh->sub_capacity && c->n_edges >= c->n_tri && n_left >= 0 && n_left <= c->n_edges);
     assert(claim(c, mesh));
     if (c->mixed) {
         place_regions(c, mesh, 0, n_left, 0, c->n_left_tri);
-        place_regions(c, mesh, n_left, c->n_rim, c->n_left_tri, c->n_tri);
+        place_regions(c, mesh, n_left, c->n_edges, c->n_left_tri, c->n_tri);
     }
     take_slots(c, mesh);
     mesh->sub[s] = (struct tri_subsegment){{old.v[0], v}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
     mesh->sub[second] = (struct tri_subsegment){{v, old.v[1]}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
     for (int side = 0; side < 2; side++) {
-        int32_t first = ends[side], end = side == 0 ? n_left : c->n_rim;
+        int32_t first = ends[side], end = side == 0 ? n_left : c->n_edges;
         if (first == end)
             continue;
         fill_chain(c, mesh, v, first, end);
         /* Seen from the left the chain runs from v[1] to v[0], from the right the other way. */
         int32_t at_start = side == 0 ? second : s, at_end = side == 0 ? s : second;
-        mesh->tri[c->rim[first].slot].n[2] = ~at_start;
-        mesh->sub[at_start].side[side] = tri_code(c->rim[first].slot, 2);
-        mesh->tri[c->rim[end - 1].slot].n[1] = ~at_end;
-        mesh->sub[at_end].side[side] = tri_code(c->rim[end - 1].slot, 1);
+        mesh->tri[c->edge[first].triangle].n[2] = ~at_start;
+        mesh->sub[at_start].side[side] = tri_code(c->edge[first].triangle, 2);
+        mesh->tri[c->edge[end - 1].triangle].n[1] = ~at_end;
+        mesh->sub[at_end].side[side] = tri_code(c->edge[end - 1].triangle, 1);
     }
     return second;
 }

@@ -1,13 +1,13 @@
 /* Cavity insertion: what a new point would replace, found completely before anything is changed.
  *
  * The cavity of a point p is the set of triangles whose circumdisk holds p, connected without crossing a subsegment.
- * Its border, seen from p, is a closed chain of rims in counter-clockwise order.
+ * Its boundary, seen from p, is a closed chain of edges in counter-clockwise order.
  *
  * THEOREM (star shape, no point location). Start at a triangle t with p in its circumdisk. Whenever the search crosses
  * an edge ab with p on the near side into a triangle abc whose circumdisk holds p, p lies in the cap of that disk
- * beyond ab, hence strictly left of a -> c and c -> b. So every rim is seen counter-clockwise from p, except rims
+ * beyond ab, hence strictly left of a -> c and c -> b. So every edge is seen counter-clockwise from p, except edges
  * reached from t itself across an edge that has p beyond it: in a Delaunay triangulation such an edge is crossed (the
- * cap of the disk of t beyond it lies in its neighbour's disk), unless it is a subsegment. A subsegment on the rim is a
+ * cap of the disk of t beyond it lies in its neighbour's disk), unless it is a subsegment. A subsegment among them is a
  * wall; the caller tests its side.
  *
  * THEOREM (encroachment is local; design: Segments). Every subsegment that p encroaches and sees is a wall of its own
@@ -30,16 +30,16 @@ struct tri_relative {
     double x, y, l; /* from the new point; squared distance to it */
 };
 
-struct tri_rim {
-    tri_link outer;       /* across the rim */
-    tri_vertex_id a;      /* the rim starts at this vertex and ends where the next rim starts */
+struct tri_cavity_edge {
+    tri_link outer;       /* across the edge */
+    tri_vertex_id a;      /* the edge starts at this vertex and ends where the next edge starts */
     tri_region_id region; /* of the cavity triangle inside */
-    tri_triangle_id slot; /* of the new triangle on this rim, once filled */
+    tri_triangle_id triangle; /* the new one on this edge, once filled */
     struct tri_relative ra;
-    double area2; /* twice the area of the triangle on this rim: the cross product of its ends */
+    double area2; /* twice the area of the triangle on this edge: the cross product of its ends */
 };
 
-struct tri_pending { /* an edge behind which the search has not looked yet; it starts where the last rim ended */
+struct tri_pending { /* an edge behind which the search has not looked yet; it starts where the last edge ended */
     tri_link link;
     tri_vertex_id end;
     tri_region_id region;
@@ -50,13 +50,13 @@ struct tri_pending { /* an edge behind which the search has not looked yet; it s
 struct tri_cavity {
     struct tri_point p;
     const struct tri_fence *fence; /* NULL: everything is owned */
-    int32_t n_tri, n_rim, n_wall, capacity;
+    int32_t n_tri, n_edges, n_wall, capacity;
     int32_t n_left_tri;   /* of a split: triangles left of the subsegment, which come first */
     tri_region_id region; /* of the triangle at which the search began */
     uint32_t mixed;       /* not 0: there are triangles of other regions, which no subsegment separates */
-    tri_triangle_id *tri; /* slots of the cavity's triangles; once filled, those of the fan */
-    struct tri_rim *rim;  /* at most n_tri + 2 of them, and one more that only says where the last one ends */
-    int32_t *wall;        /* indices of the rims whose outer link is a subsegment */
+    tri_triangle_id *tri; /* the cavity's triangles; once filled, those of the fan */
+    struct tri_cavity_edge *edge;  /* at most n_tri + 2 of them, and one more that only says where the last one ends */
+    int32_t *wall;        /* indices of the edges whose outer link is a subsegment */
     struct tri_pending *pending;
 };
 
@@ -73,15 +73,15 @@ void tri_cavity_free(struct tri_cavity *cavity);
 enum tri_search tri_cavity_search(struct tri_cavity *cavity, const struct tri_mesh *mesh, struct tri_point p,
                                   tri_triangle_id t);
 
-/* The same for a point on (within rounding of) subsegment s, which is to be split there: the chain is the rims left of
+/* The same for a point on (within rounding of) subsegment s, which is to be split there: the chain is the edges left of
  * it from its end to its start, then, where there is a triangle on the right, those right of it from start to end.
- * *n_left receives the number of rims on the left. TRI_SEARCH_OUTSIDE also where p does not see every rim,
+ * *n_left receives the number of edges on the left. TRI_SEARCH_OUTSIDE also where p does not see every edge,
  * or where it is not in the disk of a triangle beside s (flatter than rounding). */
 enum tri_search tri_cavity_search_split(struct tri_cavity *cavity, const struct tri_mesh *mesh, struct tri_point p,
                                         tri_sub_id s, int32_t *n_left);
 
-/* Replaces the cavity by the fan of vertex v (already stored, at cavity->p). Rims learn their slots; corner 0 of each
- * new triangle is v, corner 1 the start of its rim. Room for two more triangles must exist. */
+/* Replaces the cavity by the fan of vertex v (already stored, at cavity->p). Edges learn the new triangles; corner 0 of
+ * each new triangle is v, corner 1 the start of its edge. Room for two more triangles must exist. */
 void tri_cavity_fill(struct tri_cavity *cavity, struct tri_mesh *mesh, tri_vertex_id v);
 
 /* The same after tri_cavity_search_split: subsegment s becomes (v[0], v), a new one (v, v[1]) is appended. Room for one

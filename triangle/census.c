@@ -14,7 +14,7 @@ double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_opti
     double triangles = 0;
     if (!(options->max_area > 0 || options->region_areas))
         return 0;
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         if (tri_is_live(&mesh->tri[t]))
             triangles += tri_shape_of(mesh->xy, mesh->tri[t].v).area2 / tri_area2_bound(&c, mesh->tri[t].region);
     return triangles / MOST_OVER_BOUND;
@@ -31,20 +31,20 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_r
                     1e-6 * triangles, TRI_MAX_TRIANGLES / 1000000);
 }
 
-static bool needs_work(const struct tri_criterion *c, int32_t slot)
+static bool needs_work(const struct tri_criterion *c, int32_t triangle)
 {
-    const struct tri_triangle *t = &c->mesh->tri[slot];
+    const struct tri_triangle *t = &c->mesh->tri[triangle];
     if (!tri_is_live(t))
         return false;
     struct tri_shape shape = tri_shape_of(c->mesh->xy, t->v);
     enum tri_badness badness = tri_judge(c, t, &shape);
-    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, slot, &shape) && !tri_is_too_large(c, t, &shape))
+    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, triangle, &shape) && !tri_is_too_large(c, t, &shape))
         badness = TRI_GOOD; /* as good as it will be */
     if (badness != TRI_GOOD)
         return true;
     double fraction;
     for (int e = 0; c->options->conforming && e < 3; e++)
-        if (t->n[e] < 0 && tri_is_crowded(c->mesh, &c->mesh->sub[~t->n[e]], &fraction))
+        if (t->n[e] < 0 && tri_is_encroached(c->mesh, &c->mesh->sub[~t->n[e]], &fraction))
             return true;
     return false;
 }
@@ -54,10 +54,10 @@ int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_optio
 {
     const struct tri_criterion c = tri_criterion_for(mesh, options);
     int32_t n = 0;
-    assert(first >= 0 && last <= mesh->n_slots);
-    for (int32_t slot = first; slot < last; slot++)
-        if (needs_work(&c, slot))
-            found[n++] = slot;
+    assert(first >= 0 && last <= mesh->n_triangles);
+    for (int32_t triangle = first; triangle < last; triangle++)
+        if (needs_work(&c, triangle))
+            found[n++] = triangle;
     return n;
 }
 
@@ -75,16 +75,16 @@ static bool is_beside_protected(const struct tri_criterion *c, const struct tri_
     return false;
 }
 
-static enum tri_excuse excuse_for(const struct tri_criterion *c, int32_t slot, const struct tri_shape *shape,
+static enum tri_excuse excuse_for(const struct tri_criterion *c, int32_t triangle, const struct tri_shape *shape,
                                   enum tri_badness badness, const struct tri_refine_report *report)
 {
-    const struct tri_triangle *t = &c->mesh->tri[slot];
+    const struct tri_triangle *t = &c->mesh->tri[triangle];
     if (tri_is_too_large(c, t, shape))
         badness = TRI_BAD_SIZE;
-    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, slot, shape))
+    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, triangle, shape))
         return shape->l[shape->shortest] < c->mesh->limits.shortest2 ? TRI_EXCUSE_PRECISION
-               : tri_is_channel(c->mesh, slot, shape)      ? TRI_EXCUSE_CHANNEL
-               : tri_crosses_angle(c->mesh, slot, shape)   ? TRI_EXCUSE_INPUT_ANGLE
+               : tri_is_narrow_gap(c->mesh, triangle, shape)      ? TRI_EXCUSE_NARROW_GAP
+               : tri_crosses_angle(c->mesh, triangle, shape)   ? TRI_EXCUSE_INPUT_ANGLE
                                                            : TRI_EXCUSE_LIMIT;
     if (report->hit_limit)
         return TRI_EXCUSE_LIMIT;
@@ -109,7 +109,7 @@ static enum tri_excuse excuse_for_circle(const struct tri_mesh *mesh, const stru
         return TRI_EXCUSE_LIMIT;
     if (tri_common_end(mesh, s->parent, apex) != TRI_NONE)
         return TRI_EXCUSE_INPUT_ANGLE;
-    return tri_is_on_parent(mesh, apex) ? TRI_EXCUSE_CHANNEL : TRI_EXCUSE_PRECISION;
+    return tri_is_on_parent(mesh, apex) ? TRI_EXCUSE_NARROW_GAP : TRI_EXCUSE_PRECISION;
 }
 
 void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_refine_options *options,
@@ -138,7 +138,7 @@ static void count_share(void *context, size_t share)
 {
     struct counting *c = context;
     const struct tri_mesh *mesh = c->criterion.mesh;
-    struct tri_range range = tri_share(share, mesh->n_slots);
+    struct tri_range range = tri_share(share, mesh->n_triangles);
     for (int32_t t = range.first; t < range.last; t++) {
         if (!tri_is_live(&mesh->tri[t]))
             continue;
@@ -154,7 +154,7 @@ void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options 
                    int64_t count[TRI_EXCUSES])
 {
     struct counting c = {tri_criterion_for(mesh, options), report, {{0}}};
-    size_t shares = tri_shares(mesh->n_slots);
+    size_t shares = tri_shares(mesh->n_triangles);
     tri_execute(options->unsuitable ? NULL : executor, shares, count_share, &c);
     for (int k = 0; k < TRI_EXCUSES; k++) {
         count[k] = 0;

@@ -144,7 +144,7 @@ static int32_t rotate(const struct layer *l, struct rotation *r)
 
 /* The triangle through which the segment leaves its end *a towards *b. Where *a is a hub, with many triangles, the
  * search goes on around both ends in turns, and the two are exchanged if it succeeds at *b: so the cost is that of the
- * end with fewer triangles. Remembered as the corner, so that the spokes of a fan in order cost O(1) each. */
+ * end with fewer triangles. Remembered as the corner, so that the edges of a fan in order cost O(1) each. */
 static int32_t find_exit(struct layer *l, int32_t *a, int32_t *b)
 {
     int32_t from = *a, to = *b, found = TRI_NONE;
@@ -221,7 +221,7 @@ static enum tri_status check_distance(struct layer *l, struct tri_course course,
     return TRI_OK;
 }
 
-/* Makes ab, whose channel begins in triangle t, a subsegment. */
+/* Makes ab, whose gap begins in triangle t, a subsegment. */
 static enum tri_status lay_edge(struct layer *l, int32_t t, int32_t a, int32_t b, struct tri_course course)
 {
     struct tri_mesh *mesh = l->mesh;
@@ -250,10 +250,10 @@ static bool keep_corners(struct layer *l, int32_t v)
     if (!room)
         return false;
     l->flips.corner = l->corner;
-    for (int32_t i = 0; i < l->cavity.n_rim; i++) {
-        const struct tri_triangle *t = &l->mesh->tri[l->cavity.rim[i].slot];
+    for (int32_t i = 0; i < l->cavity.n_edges; i++) {
+        const struct tri_triangle *t = &l->mesh->tri[l->cavity.edge[i].triangle];
         for (int k = 0; k < 3; k++)
-            l->corner[t->v[k]] = l->cavity.rim[i].slot;
+            l->corner[t->v[k]] = l->cavity.edge[i].triangle;
     }
     return l->corner[v] != TRI_NONE;
 }
@@ -280,7 +280,7 @@ static bool take_up(struct layer *l, int32_t s)
  * walk may go in circles; the edge it tries first turns with the number of steps. */
 static int32_t locate(const struct tri_mesh *mesh, int32_t t, struct tri_point q)
 {
-    for (int64_t steps = 0; steps < 3 * (int64_t)mesh->n_slots; steps++) {
+    for (int64_t steps = 0; steps < 3 * (int64_t)mesh->n_triangles; steps++) {
         const struct tri_triangle *at = &mesh->tri[t];
         int k = 0, e = 0;
         for (; k < 3; k++) {
@@ -389,8 +389,8 @@ static int32_t choose_vertex(const struct layer *l, int32_t first, int32_t t, st
     }
     for (int k = 0; t != TRI_NONE && k < 3; k++)
         try_vertex(l, first, l->mesh->tri[t].v[k], p, within, &best);
-    for (int32_t i = 0; t != TRI_NONE && i < l->cavity.n_rim; i++)
-        try_vertex(l, first, l->cavity.rim[i].a, p, within, &best);
+    for (int32_t i = 0; t != TRI_NONE && i < l->cavity.n_edges; i++)
+        try_vertex(l, first, l->cavity.edge[i].a, p, within, &best);
     return best.vertex;
 }
 
@@ -446,7 +446,7 @@ static enum tri_status cross(struct layer *l, const struct tri_piece *piece, int
         if (!take_apart(l, on))
             return no_memory(l);
     }
-    l->cavity.n_rim = 0;
+    l->cavity.n_edges = 0;
     enum tri_search found = t == TRI_NONE ? TRI_SEARCH_OUTSIDE : tri_cavity_search(&l->cavity, l->mesh, p, t);
     if (found == TRI_SEARCH_NO_MEMORY)
         return no_memory(l);
@@ -617,7 +617,7 @@ static enum tri_status find_corners(struct layer *l)
         return no_memory(l);
     for (int32_t v = 0; v < mesh->n_vertices; v++)
         l->corner[v] = TRI_NONE;
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         for (int k = 0; k < 3; k++)
             l->corner[mesh->tri[t].v[k]] = t;
     return TRI_OK;

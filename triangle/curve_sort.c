@@ -17,11 +17,11 @@ _Static_assert(INT64_C(1) << ID_BITS == TRI_MAX_TRIANGLES, "ids fill their bits"
 
 struct sorting {
     struct tri_mesh *mesh;
-    struct tri_triangle *tri; /* [n_slots] */
-    int32_t n_slots, n_live;
-    uint64_t *item, *scratch; /* [n_slots] each */
+    struct tri_triangle *tri; /* [n_triangles] */
+    int32_t n_triangles, n_live;
+    uint64_t *item, *scratch; /* [n_triangles] each */
     int32_t group[TRI_MOST_SHARES + 1]; /* items where shares begin, so that none cuts a group in two */
-    int32_t *to;              /* [n_slots] where a triangle goes: the code of what will be its first corner */
+    int32_t *to;              /* [n_triangles] where a triangle goes: the code of what will be its first corner */
     int vertex_bits;          /* of the largest number of a vertex, and one more */
 };
 
@@ -108,7 +108,7 @@ static int first_corner(const struct tri_point *xy, const int32_t v[3])
 static void list_share(void *context, size_t share)
 {
     const struct sorting *s = context;
-    struct tri_range range = tri_share(share, s->n_slots);
+    struct tri_range range = tri_share(share, s->n_triangles);
     for (int32_t t = range.first; t < range.last; t++) {
         const int32_t *v = s->tri[t].v;
         if (v[0] == TRI_NONE) {
@@ -172,10 +172,10 @@ static int bits_of(int32_t number)
 
 static void find_order(struct sorting *s, const struct tri_executor *executor)
 {
-    tri_execute(executor, tri_shares(s->n_slots), list_share, s);
-    tri_radix_sort(s->item, s->scratch, s->n_slots, KEY_SHIFT, KEY_SHIFT + s->vertex_bits, executor);
+    tri_execute(executor, tri_shares(s->n_triangles), list_share, s);
+    tri_radix_sort(s->item, s->scratch, s->n_triangles, KEY_SHIFT, KEY_SHIFT + s->vertex_bits, executor);
     assert(key_of(s->item[s->n_live - 1]) < s->mesh->n_vertices);
-    assert(s->n_live == s->n_slots || key_of(s->item[s->n_live]) == s->mesh->n_vertices);
+    assert(s->n_live == s->n_triangles || key_of(s->item[s->n_live]) == s->mesh->n_vertices);
     find_groups(s);
     tri_execute(executor, tri_shares(s->n_live), place_share, s);
 }
@@ -192,7 +192,7 @@ static int32_t new_code(const struct sorting *s, int32_t code)
 static void move_share(void *context, size_t share)
 {
     const struct sorting *s = context;
-    struct tri_range range = tri_share(share, s->n_slots);
+    struct tri_range range = tri_share(share, s->n_triangles);
     for (int32_t t = range.first; t < range.last; t++) {
         const struct tri_triangle *from = &s->tri[t];
         if (!tri_is_live(from))
@@ -210,24 +210,24 @@ static void move_share(void *context, size_t share)
 static void move_all(const struct sorting *s, const struct tri_executor *executor)
 {
     struct tri_mesh *mesh = s->mesh;
-    tri_execute(executor, tri_shares(s->n_slots), move_share, (void *)s);
+    tri_execute(executor, tri_shares(s->n_triangles), move_share, (void *)s);
     for (int32_t i = 0; i < mesh->n_subs; i++)
         mesh->sub[i].side[0] = new_code(s, mesh->sub[i].side[0]);
-    mesh->n_slots = s->n_live;
+    mesh->n_triangles = s->n_live;
 }
 
 /* Items wait where triangles will be. */
 static enum tri_status sort(struct sorting *s, const struct tri_executor *executor, struct tri_error *error)
 {
     _Static_assert(sizeof *s->tri == 4 * sizeof *s->item, "room for two lists of items in half as many triangles");
-    int32_t room = s->n_slots / 2 + 1;
+    int32_t room = s->n_triangles / 2 + 1;
     enum tri_status status = tri_mesh_reserve_triangles(s->mesh, s->n_live > room ? s->n_live : room, error);
-    s->to = malloc((size_t)s->n_slots * sizeof *s->to);
+    s->to = malloc((size_t)s->n_triangles * sizeof *s->to);
     if (!status && !s->to)
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sorting %d triangles", (int)s->n_slots);
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for sorting %d triangles", (int)s->n_triangles);
     if (!status) {
         s->item = (uint64_t *)(void *)s->mesh->tri;
-        s->scratch = s->item + s->n_slots;
+        s->scratch = s->item + s->n_triangles;
         find_order(s, executor);
         move_all(s, executor);
     }
@@ -235,10 +235,10 @@ static enum tri_status sort(struct sorting *s, const struct tri_executor *execut
     return status;
 }
 
-enum tri_status tri_curve_sort(struct tri_mesh *mesh, struct tri_triangle *tri, int32_t n_slots,
+enum tri_status tri_curve_sort(struct tri_mesh *mesh, struct tri_triangle *tri, int32_t n_triangles,
                                int32_t n_live, const struct tri_executor *executor, struct tri_error *error)
 {
-    struct sorting s = {.mesh = mesh, .tri = tri, .n_slots = n_slots, .n_live = n_live,
+    struct sorting s = {.mesh = mesh, .tri = tri, .n_triangles = n_triangles, .n_live = n_live,
                         .vertex_bits = bits_of(mesh->n_vertices)};
     enum tri_status status = take_hull(mesh, tri, error);
     s.n_live -= mesh->n_subs; /* ghosts */

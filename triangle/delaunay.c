@@ -124,7 +124,7 @@ static bool is_to_insert(const struct builder *b, int32_t v)
     return !is_twin(b->mesh, v) && v != b->first[0] && v != b->first[1] && v != b->first[2];
 }
 
-/* The points of a leaf by rounds, along the curve in each; slots that no point will take are marked as free. */
+/* The points of a leaf by rounds, along the curve in each; triangles that no point will take are marked as free. */
 static void arrange_leaf(void *context, size_t index)
 {
     const struct builder *b = context;
@@ -182,8 +182,8 @@ static enum tri_status insert_leaf(const struct builder *b, struct leaf *leaf, s
     for (int32_t i = 0; i < leaf->n_waiting; i++) {
         if (tri_stop_is_due(b->mesh->stop, step))
             return TRI_STOPPED;
-        int32_t slot = 2 * (leaf->round[b->round] + leaf->n_inserted);
-        enum tri_insertion done = tri_insert(inserter, waiting[i], slot);
+        int32_t triangle = 2 * (leaf->round[b->round] + leaf->n_inserted);
+        enum tri_insertion done = tri_insert(inserter, waiting[i], triangle);
         if (done == TRI_NO_ROOM_FOR_CAVITY)
             return TRI_NO_MEMORY;
         if (done == TRI_NOT_OWNED)
@@ -296,18 +296,18 @@ enum tri_status tri_delaunay_in_leaves(struct tri_mesh *mesh, int32_t leaf_size,
                                        struct tri_error *error)
 {
     struct builder b = {.mesh = mesh, .executor = executor};
-    assert(mesh->origin && mesh->n_slots == 0 && mesh->n_subs == 0 && leaf_size > 0);
-    int32_t n_twins = 0, n_slots = 2 * mesh->n_vertices + 4;
+    assert(mesh->origin && mesh->n_triangles == 0 && mesh->n_subs == 0 && leaf_size > 0);
+    int32_t n_twins = 0, n_triangles = 2 * mesh->n_vertices + 4;
     enum tri_status status = list_twins(mesh, &n_twins, executor, error);
     if (status || !find_first(&b))
         return status;
-    void *raw = malloc(((size_t)n_slots + 2) * sizeof *b.tri);
+    void *raw = malloc(((size_t)n_triangles + 2) * sizeof *b.tri);
     if (!raw)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d points", (int)mesh->n_vertices);
     b.tri = (struct tri_triangle *)((char *)raw + (-(uintptr_t)raw & 63)); /* a cache line holds two */
     status = build(&b, leaf_size, error);
-    int32_t n_live = n_slots - 2 * n_twins - 6; /* the first three bring four together */
-    status = status ? status : tri_curve_sort(mesh, b.tri, n_slots, n_live, executor, error);
+    int32_t n_live = n_triangles - 2 * n_twins - 6; /* the first three bring four together */
+    status = status ? status : tri_curve_sort(mesh, b.tri, n_triangles, n_live, executor, error);
     free(raw);
     return status;
 }

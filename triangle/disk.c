@@ -1,21 +1,22 @@
 /* Diametral circles.
  *
  * A vertex crowds a subsegment that it sees at more than 90 degrees. (If any vertex that sees it does, so does the apex
- * of a triangle beside it.) A crowded subsegment is split; no new point in the plane ever enters a circle (refine.c),
- * and the circles of the parts lie in that of the whole. So the mesh is conforming once no subsegment is crowded.
+ * of a triangle beside it.) An encroached subsegment is split; no new point in the plane ever enters a circle
+ * (refine.c), and the circles of the parts lie in that of the whole. So the mesh is conforming once no subsegment is
+ * encroached.
  *
- * RULE. The point of e level with a vertex v is that at the distance of v from o, where e and v lie on two parents
- * with the common end o; else the foot of the perpendicular from v. A subsegment to which v is near (an eighth of its
+ * RULE. The point of e level with a vertex v is that at the distance of v from o, where e and v lie on two parents with
+ * the common end o; else the foot of the perpendicular from v. A subsegment to which v is near (an eighth of its
  * length) is split level with v if that is in its middle half, else, and if v is farther away, where any subsegment is
  * split (tri_split_fraction).
  *
  * THEOREM (levels part two parents for good). Let u, on e, be level with v, on f, and f be all on one side of the line
- * of e. Then v crowds neither part of e, and u no part of f. Proof. With a common end, circles with a diameter on a
- * ray from o lie in the ring between the ends of the diameter, and meet its border on the ray alone; u and v lie on
- * one such border. Else v sees u and any point of e, and u sees v and any point of f, at no more than 90 degrees,
- * since uv is perpendicular to e. So two parents side by side, however near, take about as many points as they have
- * vertices, not length / width of them, and a vertex in a bundle of parents is handed on across it once. All rays from
- * one vertex share their levels: nothing spirals around it (concentric shells: Ruppert 1995).
+ * of e. Then v crowds neither part of e, and u no part of f. Proof. With a common end, circles with a diameter on a ray
+ * from o lie in the ring between the ends of the diameter, and meet its border on the ray alone; u and v lie on one
+ * such border. Else v sees u and any point of e, and u sees v and any point of f, at no more than 90 degrees, since uv
+ * is perpendicular to e. So two parents side by side, however near, take about as many points as they have vertices,
+ * not length / width of them, and a vertex in a bundle of parents is handed on across it once. All rays from one vertex
+ * share their levels: nothing spirals around it (concentric shells: Ruppert 1995).
  *
  * THEOREM (end). Each part is at least a quarter of the whole, and none shorter than twice the root of limits.shortest2
  * is split: so there are finitely many splits, whatever the rest of refinement does.
@@ -24,9 +25,9 @@
  * this leaves v in a circle (h^2 < ulp * length), only shorter parts help: length * ulp / h^2 of them. That is done
  * where MOST_PARTS are enough.
  *
- * What stays: where v is nearer to e than the shortest edge, so that it lies on e as far as coordinates tell, or
- * level with an end of e up to rounding, and h too small to mend that. And where rounding leaves no room for the split
- * point (cavity.h). Nothing else. */
+ * What stays: where v is nearer to e than the shortest edge, so that it lies on e as far as coordinates tell, or level
+ * with an end of e up to rounding, and h too small to mend that. And where rounding leaves no room for the split point
+ * (cavity.h). Nothing else. */
 #include "triangle/disk.h"
 
 #include <assert.h>
@@ -79,7 +80,7 @@ static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegmen
     return off >= shortest || off * l * sqrt(l) <= MOST_PARTS * cross * cross;
 }
 
-bool tri_is_crowded(const struct tri_mesh *mesh, const struct tri_subsegment *s, double *fraction)
+bool tri_is_encroached(const struct tri_mesh *mesh, const struct tri_subsegment *s, double *fraction)
 {
     for (int side = 0; side < 2; side++) {
         int32_t code = s->side[side];

@@ -120,11 +120,11 @@ static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_op
     struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
     double longest2 = fmax(shape.l[0], fmax(shape.l[1], shape.l[2]));
     double octaves = 0.5 * rough_log2(longest2 / shape.l[shape.shortest]);
-    double channel = tri_channel_cost(mesh, t, &shape), angle = fmin(options->min_angle, TRI_USUAL_ANGLE);
+    double gap = tri_gap_cost(mesh, t, &shape), angle = fmin(options->min_angle, TRI_USUAL_ANGLE);
     if (tri_is_hopeless(mesh, t, &shape))
         return 1;
-    channel = fmin(channel, sqrt(longest2 / shape.l[shape.shortest]));
-    double work = angle > 0 ? 17 / (40 - angle) * (octaves + 2 * channel) : 0;
+    gap = fmin(gap, sqrt(longest2 / shape.l[shape.shortest]));
+    double work = angle > 0 ? 17 / (40 - angle) * (octaves + 2 * gap) : 0;
     return work < 1 ? 1 : work < TRI_MAX_TRIANGLES ? work : TRI_MAX_TRIANGLES;
 }
 
@@ -138,14 +138,14 @@ double tri_work_of(const struct tri_mesh *mesh, const struct tri_refine_options 
 }
 
 /* Of a large mesh the angle's work is taken from every n-th triangle; triangles lie along a curve, so that is fair. */
-static int32_t survey_step(const struct tri_mesh *mesh) { return mesh->n_slots / SURVEY + 1; }
+static int32_t survey_step(const struct tri_mesh *mesh) { return mesh->n_triangles / SURVEY + 1; }
 
 static struct estimator estimator_for(const struct tri_mesh *mesh, const struct tri_refine_options *options)
 {
     enum { PIECES = 1 << 14 }; /* of the whole mesh */
     struct estimator e = {mesh, options, HUGE_VAL, tri_criterion_of_areas(mesh, options)};
     double all = 0;
-    for (int32_t t = 0; options->unsuitable && t < mesh->n_slots; t++)
+    for (int32_t t = 0; options->unsuitable && t < mesh->n_triangles; t++)
         if (tri_is_live(&mesh->tri[t])) {
             struct corners corners = corners_of(mesh, t);
             all += area_of(&corners);
@@ -158,8 +158,8 @@ static struct estimator estimator_for(const struct tri_mesh *mesh, const struct 
 double tri_sure_work(const struct tri_mesh *mesh, const struct tri_refine_options *options)
 {
     const struct estimator e = estimator_for(mesh, options);
-    double sum = mesh->n_slots;
-    for (int32_t t = 0; tri_has_sizes(options) && t < mesh->n_slots; t++)
+    double sum = mesh->n_triangles;
+    for (int32_t t = 0; tri_has_sizes(options) && t < mesh->n_triangles; t++)
         if (tri_is_live(&mesh->tri[t]))
             sum += area_work(&e, t);
     return sum;
@@ -169,8 +169,8 @@ double tri_sure_work(const struct tri_mesh *mesh, const struct tri_refine_option
 static double whole_work(const struct tri_mesh *mesh, const struct tri_refine_options *options)
 {
     int32_t step = survey_step(mesh);
-    double sum = tri_sure_work(mesh, options) - mesh->n_slots;
-    for (int32_t t = 0; t < mesh->n_slots; t += step)
+    double sum = tri_sure_work(mesh, options) - mesh->n_triangles;
+    for (int32_t t = 0; t < mesh->n_triangles; t += step)
         if (tri_is_live(&mesh->tri[t]))
             sum += step * angle_work(mesh, options, t);
     return sum;
@@ -212,7 +212,7 @@ static bool sample_angles(const struct receiver *to, const struct tri_mesh *mesh
 {
     int32_t step = survey_step(mesh);
     double waiting = 0;
-    for (int32_t t = 0; t < mesh->n_slots; t += step) {
+    for (int32_t t = 0; t < mesh->n_triangles; t += step) {
         const int32_t *v = mesh->tri[t].v;
         if (!tri_is_live(&mesh->tri[t]))
             continue;
@@ -232,7 +232,7 @@ static bool sample_areas(const struct receiver *to, const struct tri_mesh *mesh,
 {
     const struct estimator e = estimator_for(mesh, options);
     double waiting = 0;
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
         double work = tri_is_live(&mesh->tri[t]) ? area_work(&e, t) : 0;
         waiting += work < grain ? work : 0;
         if (work < grain && waiting < grain)

@@ -7,7 +7,7 @@
  *   - for a point inserted for a triangle with shortest edge ab: min(s(a), s(b)) + SLOPE * |ap|, inherited as insertion
  *     radii are in the proofs of Shewchuk (2002);
  *   - for a split point: the same from all vertices around it, but no more than its distance from other features: from
- *     those that do not touch its segment, unless the space between is a channel too dear to fill (small_angle.h), and
+ *     those that do not touch its segment, unless the space between is a gap too dear to fill (small_angle.h), and
  *     from segments that meet it at less than 60 degrees, and no less than about 1 / SHARP: in such a corner triangles
  *     are as small as it is narrow, though Ruppert's size would be the distance from the vertex where they meet;
  *   - for a point inserted because of sizes: no more than its distance from its neighbours. A size that is asked for is
@@ -23,7 +23,7 @@
  * them: to a constant as many as Ruppert's algorithm inserts for a bound for which it is known to end. C does not
  * depend on the bound, and nothing depends on the order of insertion: it holds for any schedule. What sources at split
  * points add is finite, too: a space between two segments is as wide as s there, so the integral over it is about its
- * length over its width, that is its cost (tri_filling_cost): no more than limits.dearest_channel for segments that do
+ * length over its width, that is its cost (tri_filling_cost): no more than limits.dearest_gap for segments that do
  * not touch, which is chosen such that all such spaces together cost no more than the mesh can afford; and no more
  * than SHARP for each octave of distance from the vertex where two segments meet.
  *
@@ -52,10 +52,10 @@ struct estimate {
 
 static void divide_vertices(struct estimate *e)
 {
-    size_t shares = tri_shares(e->mesh->n_slots);
+    size_t shares = tri_shares(e->mesh->n_triangles);
     e->own[0] = 0;
     for (size_t i = 1; i < shares; i++) {
-        int32_t v = e->mesh->tri[tri_share(i, e->mesh->n_slots).first].v[0];
+        int32_t v = e->mesh->tri[tri_share(i, e->mesh->n_triangles).first].v[0];
         e->own[i] = v > e->own[i - 1] ? v : e->own[i - 1];
         assert(e->own[i] >= e->own[i - 1] && e->own[i] < e->mesh->n_vertices);
     }
@@ -75,7 +75,7 @@ static void estimate_corner(struct tri_mesh *mesh, const struct tri_triangle *t,
 static void estimate_share(const struct estimate *e, size_t share, bool own)
 {
     struct tri_mesh *mesh = e->mesh;
-    struct tri_range range = tri_share(share, mesh->n_slots);
+    struct tri_range range = tri_share(share, mesh->n_triangles);
     for (int32_t i = range.first; i < range.last; i++) {
         const struct tri_triangle *t = &mesh->tri[i];
         if (!tri_is_live(t))
@@ -104,8 +104,8 @@ void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *exe
 {
     struct estimate e = {.mesh = mesh};
     divide_vertices(&e);
-    tri_execute(executor, tri_shares(mesh->n_slots), estimate_own, &e);
-    for (size_t share = 0; share < tri_shares(mesh->n_slots); share++)
+    tri_execute(executor, tri_shares(mesh->n_triangles), estimate_own, &e);
+    for (size_t share = 0; share < tri_shares(mesh->n_triangles); share++)
         estimate_share(&e, share, false);
 }
 
@@ -133,7 +133,7 @@ static bool counts(const struct tri_mesh *mesh, int32_t p, int32_t q, struct tri
         for (int k = 0; k < 2; k++)
             if (a[i] == b[k])
                 return p != q && is_narrow_corner(mesh->xy[a[i]], mesh->xy[a[1 - i]], mesh->xy[b[1 - k]]);
-    return tri_filling_cost(mesh, p, q, at, w) <= mesh->limits.dearest_channel;
+    return tri_filling_cost(mesh, p, q, at, w) <= mesh->limits.dearest_gap;
 }
 
 /* What vertex v, at `distance` from a point on parent p, says about the size there. */
@@ -146,7 +146,7 @@ static double size_from(const struct tri_mesh *mesh, int32_t p, struct tri_point
     return is_feature && distance < inherited ? distance : inherited;
 }
 
-/* The distance of the new point from a subsegment on its rim, where it lies beside it and that counts. */
+/* The distance of the new point from a subsegment on its edge, where it lies beside it and that counts. */
 static double size_from_wall(const struct tri_mesh *mesh, int32_t p, struct tri_point at, int32_t wall)
 {
     const struct tri_subsegment *sub = &mesh->sub[wall];
@@ -166,11 +166,11 @@ double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavi
         half = fmin(half, distance);
         size = fmin(size, size_from(mesh, sub->parent, cavity->p, sub->v[k], distance));
     }
-    for (int32_t i = 0; i < cavity->n_rim; i++) {
-        const struct tri_rim *rim = &cavity->rim[i];
-        size = fmin(size, size_from(mesh, sub->parent, cavity->p, rim->a, sqrt(rim->ra.l)));
-        if (rim->outer < 0)
-            size = fmin(size, size_from_wall(mesh, sub->parent, cavity->p, ~rim->outer));
+    for (int32_t i = 0; i < cavity->n_edges; i++) {
+        const struct tri_cavity_edge *edge = &cavity->edge[i];
+        size = fmin(size, size_from(mesh, sub->parent, cavity->p, edge->a, sqrt(edge->ra.l)));
+        if (edge->outer < 0)
+            size = fmin(size, size_from_wall(mesh, sub->parent, cavity->p, ~edge->outer));
     }
     assert(half > 0 && half < HUGE_VAL && size < HUGE_VAL);
     return sized && half < size ? half : size;

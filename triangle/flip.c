@@ -93,7 +93,7 @@ bool tri_flip_legalise(struct tri_flips *f)
  * triangles which has the lower number. */
 struct suspicion {
     struct tri_flips *flips;
-    int32_t *suspect; /* [n_slots] each share's behind one another, with gaps */
+    int32_t *suspect; /* [n_triangles] each share's behind one another, with gaps */
     int32_t n[TRI_MOST_SHARES];
 };
 
@@ -101,7 +101,7 @@ static void suspect_share(void *context, size_t share)
 {
     struct suspicion *s = context;
     const struct tri_mesh *mesh = s->flips->mesh;
-    struct tri_range range = tri_share(share, mesh->n_slots);
+    struct tri_range range = tri_share(share, mesh->n_triangles);
     uint32_t step = 0;
     for (int32_t t = range.first; t < range.last && !tri_stop_is_due(mesh->stop, &step); t++)
         for (int e = 0; e < 3; e++)
@@ -128,8 +128,8 @@ static enum tri_status flip_suspects(const struct suspicion *s, struct tri_error
     struct tri_flips *f = s->flips;
     enum tri_status status = tri_stop_is_asked(f->mesh->stop) ? tri_fail_stopped(error) : TRI_OK;
     uint32_t step = 0;
-    for (size_t share = 0; share < tri_shares(f->mesh->n_slots); share++) {
-        const int32_t *suspect = s->suspect + tri_share(share, f->mesh->n_slots).first;
+    for (size_t share = 0; share < tri_shares(f->mesh->n_triangles); share++) {
+        const int32_t *suspect = s->suspect + tri_share(share, f->mesh->n_triangles).first;
         for (int32_t i = 0; !status && i < s->n[share]; i++)
             if (tri_stop_is_due(f->mesh->stop, &step))
                 status = tri_fail_stopped(error);
@@ -143,10 +143,10 @@ enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, const struct tri_exe
                                      struct tri_error *error)
 {
     struct tri_flips f = {.mesh = mesh, .ties_stay = true};
-    struct suspicion s = {&f, malloc(((size_t)mesh->n_slots + 1) * sizeof *s.suspect), {0}};
+    struct suspicion s = {&f, malloc(((size_t)mesh->n_triangles + 1) * sizeof *s.suspect), {0}};
     if (!s.suspect)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
-    tri_execute(executor, tri_shares(mesh->n_slots), suspect_share, &s);
+    tri_execute(executor, tri_shares(mesh->n_triangles), suspect_share, &s);
     enum tri_status status = flip_suspects(&s, error);
     tri_flips_free(&f);
     free(s.suspect);

@@ -143,7 +143,7 @@ static int64_t count_edges(const struct tri_mesh *mesh)
     int64_t boundary = 0;
     for (int32_t s = 0; s < mesh->n_subs; s++)
         boundary += mesh->sub[s].side[0] == TRI_NONE || mesh->sub[s].side[1] == TRI_NONE;
-    return (3 * (int64_t)mesh->n_slots + boundary) / 2;
+    return (3 * (int64_t)mesh->n_triangles + boundary) / 2;
 }
 
 /* Segments of the input that are no edges of the mesh, but whose ends are points. */
@@ -184,7 +184,7 @@ static struct tri_grid describe(const struct source *s, const struct tri_grid_op
 {
     const struct tri_mesh *mesh = options->mesh;
     struct tri_grid grid = {.user = s, .base = options->base, .has_markers = options->markers,
-                            .n_triangles = mesh->n_slots, .n_segments = (int64_t)mesh->n_subs + s->n_loose,
+                            .n_triangles = mesh->n_triangles, .n_segments = (int64_t)mesh->n_subs + s->n_loose,
                             .n_edges = count_edges(mesh), .n_attributes = mesh->n_attributes, .n_nodes = s->n_nodes,
                             .figure = options->pslg, .point = point, .attribute = attribute, .triangle = triangle,
                             .column = column, .neighbors = neighbors, .segment = segment, .edge = edge};

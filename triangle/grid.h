@@ -45,7 +45,7 @@ struct tri_grid {
 
 /* What of a mesh is handed out. All borrowed, as long as the grid lives. */
 struct tri_grid_options {
-    const struct tri_mesh *mesh;         /* without free slots */
+    const struct tri_mesh *mesh;         /* without free numbers */
     const struct tri_pslg *pslg;         /* the input: its points are handed out bit by bit as they came */
     const struct tri_elements *elements; /* the triangles that the mesh was rebuilt from; NULL: none */
     const bool *is_edge; /* [pslg->n_segments] those that are not become segments behind the mesh's; NULL: none */

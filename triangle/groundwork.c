@@ -1,4 +1,5 @@
-/* Made in this order: limits of size, feature sizes, acute vertices, incidence, and by these the limit of channels. */
+/* Made in this order: limits of size, feature sizes, acute vertices, incidence, and by these the limit of narrow
+ * gaps. */
 #include "triangle/groundwork.h"
 
 #include <assert.h>

@@ -12,7 +12,7 @@ uint64_t tri_hilbert(uint32_t x, uint32_t y);
 /* Sorts the ids order[n] of points by position on the curve over the bounding box of those points; points of one cell
  * by their positions on a curve over their own box, or, if they are a few, by coordinates; equal points by id, so that
  * duplicates are neighbours. But for the ids of equal points the result depends on the points alone, not on the order
- * they come in. scratch[2 * n]. O(n), and as much again for what is crowded in a box that much smaller. Cannot fail. */
+ * they come in. scratch[2 * n]. O(n), and as much again for what is dense in a box that much smaller. Cannot fail. */
 void tri_hilbert_order(const struct tri_point *xy, int32_t *order, int32_t n, uint64_t *scratch,
                        const struct tri_executor *executor);
 

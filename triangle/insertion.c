@@ -7,7 +7,7 @@
 #include "triangle/predicates.h"
 
 /* An edge of the cavity: the code of its triangle outside, and the corner at which it starts. */
-struct tri_rim {
+struct tri_cavity_edge {
     int32_t outer, a;
 };
 
@@ -19,7 +19,7 @@ struct tri_detour {
 void tri_inserter_free(struct tri_inserter *b)
 {
     free(b->cavity);
-    free(b->rim);
+    free(b->edge);
     free(b->detour);
 }
 
@@ -29,11 +29,11 @@ static bool grow(struct tri_inserter *b)
     size_t n = (size_t)capacity + 4;
     int32_t *cavity = realloc(b->cavity, n * sizeof *cavity);
     b->cavity = cavity ? cavity : b->cavity;
-    struct tri_rim *rim = realloc(b->rim, n * sizeof *rim);
-    b->rim = rim ? rim : b->rim;
+    struct tri_cavity_edge *edge = realloc(b->edge, n * sizeof *edge);
+    b->edge = edge ? edge : b->edge;
     struct tri_detour *detour = realloc(b->detour, n * sizeof *detour);
     b->detour = detour ? detour : b->detour;
-    if (!cavity || !rim || !detour)
+    if (!cavity || !edge || !detour)
         return false;
     b->capacity = capacity;
     return true;
@@ -51,16 +51,17 @@ bool tri_inserter_owns(const struct tri_inserter *b, const struct tri_triangle *
 
 /* Ghost e + 1 sees edge e the other way round; its edge from the hull edge's far end to infinity is shared with the
  * ghost of the edge that starts there. */
-void tri_insert_first(const struct tri_point *xy, struct tri_triangle *tri, int32_t slot, const int32_t v[3])
+void tri_insert_first(const struct tri_point *xy, struct tri_triangle *tri, int32_t triangle, const int32_t v[3])
 {
     bool left = tri_orient2d(xy[v[0]], xy[v[1]], xy[v[2]]) > 0;
     const int32_t c[] = {v[left ? 0 : 1], v[left ? 1 : 0], v[2]};
-    tri[slot] = (struct tri_triangle){
-        {c[0], c[1], c[2]}, {tri_code(slot + 1, 0), tri_code(slot + 2, 0), tri_code(slot + 3, 0)}, 0, 0};
+    tri[triangle] = (struct tri_triangle){
+        {c[0], c[1], c[2]}, {tri_code(triangle + 1, 0), tri_code(triangle + 2, 0), tri_code(triangle + 3, 0)}, 0, 0};
     for (int e = 0; e < 3; e++) {
         int f = tri_next[e], g = tri_prev[e];
-        tri[slot + e + 1] = (struct tri_triangle){
-            {TRI_GHOST, c[g], c[f]}, {tri_code(slot, e), tri_code(slot + g + 1, 2), tri_code(slot + f + 1, 1)}, 0, 0};
+        tri[triangle + e + 1] = (struct tri_triangle){
+            {TRI_GHOST, c[g], c[f]},
+            {tri_code(triangle, e), tri_code(triangle + g + 1, 2), tri_code(triangle + f + 1, 1)}, 0, 0};
     }
 }
 
@@ -136,8 +137,8 @@ static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, in
             end = t->v[e];
             continue;
         }
-        assert(b->n_rim < b->n_cavity + 2 && n_detours <= b->n_cavity);
-        b->rim[b->n_rim++] = (struct tri_rim){link, a};
+        assert(b->n_edges < b->n_cavity + 2 && n_detours <= b->n_cavity);
+        b->edge[b->n_edges++] = (struct tri_cavity_edge){link, a};
         if (n_detours == 0)
             return TRI_INSERTED;
         a = end;
@@ -150,34 +151,34 @@ static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, in
 static void fill(struct tri_inserter *b, int32_t v, int32_t fresh)
 {
     int32_t before = TRI_NONE, first = TRI_NONE;
-    assert(b->n_rim == b->n_cavity + 2); /* a disk without a vertex inside */
-    for (int32_t i = 0; i < b->n_rim; i++) {
-        int32_t slot = i < b->n_cavity ? b->cavity[i] : fresh++;
-        int32_t outer = b->rim[i].outer, end = b->rim[i + 1 < b->n_rim ? i + 1 : 0].a;
-        struct tri_triangle *t = &b->tri[slot];
+    assert(b->n_edges == b->n_cavity + 2); /* a disk without a vertex inside */
+    for (int32_t i = 0; i < b->n_edges; i++) {
+        int32_t triangle = i < b->n_cavity ? b->cavity[i] : fresh++;
+        int32_t outer = b->edge[i].outer, end = b->edge[i + 1 < b->n_edges ? i + 1 : 0].a;
+        struct tri_triangle *t = &b->tri[triangle];
         int32_t link = before == TRI_NONE ? TRI_NONE : tri_code(before, 1);
-        *t = (struct tri_triangle){{v, b->rim[i].a, end}, {outer, TRI_NONE, link}, 0, 0};
+        *t = (struct tri_triangle){{v, b->edge[i].a, end}, {outer, TRI_NONE, link}, 0, 0};
         assert(tri_inserter_owns(b, t));
-        b->tri[tri_of(outer)].n[tri_edge(outer)] = tri_code(slot, 0);
+        b->tri[tri_of(outer)].n[tri_edge(outer)] = tri_code(triangle, 0);
         if (before != TRI_NONE)
-            b->tri[before].n[1] = tri_code(slot, 2);
+            b->tri[before].n[1] = tri_code(triangle, 2);
         else
-            first = slot;
-        before = slot;
+            first = triangle;
+        before = triangle;
     }
     b->tri[first].n[2] = tri_code(before, 1);
     b->tri[before].n[1] = tri_code(first, 2);
     b->last = first;
 }
 
-enum tri_insertion tri_insert(struct tri_inserter *b, int32_t v, int32_t slot)
+enum tri_insertion tri_insert(struct tri_inserter *b, int32_t v, int32_t triangle)
 {
     struct tri_point q = b->xy[v];
     int32_t t = locate(b, q);
     if (t == TRI_NONE)
         return TRI_NOT_OWNED;
     const struct tri_triangle start = b->tri[t];
-    b->n_cavity = b->n_rim = 0;
+    b->n_cavity = b->n_edges = 0;
     if (b->capacity == 0 && !grow(b))
         return TRI_NO_ROOM_FOR_CAVITY;
     b->cavity[b->n_cavity++] = t;
@@ -186,6 +187,6 @@ enum tri_insertion tri_insert(struct tri_inserter *b, int32_t v, int32_t slot)
         if (found != TRI_INSERTED)
             return found;
     }
-    fill(b, v, slot);
+    fill(b, v, triangle);
     return TRI_INSERTED;
 }

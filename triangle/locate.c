@@ -205,10 +205,10 @@ enum tri_status tri_locate_faces(const struct tri_mesh *mesh, const struct tri_p
     uint64_t *scratch = malloc((2 * (size_t)n + 1) * sizeof *scratch);
     bool room = order && scratch, all = true;
     if (room) {
-        struct walk w = {mesh, 0, mesh->n_slots};
+        struct walk w = {mesh, 0, mesh->n_triangles};
         for (int32_t i = 0; i < n; i++)
             faces[i] = TRI_NONE; /* what is out of range is outside */
-        int32_t n_order = mesh->n_slots > 0 ? arrange(points, n, order, scratch) : 0;
+        int32_t n_order = mesh->n_triangles > 0 ? arrange(points, n, order, scratch) : 0;
         for (int32_t i = 0; i < n_order; i++) {
             faces[order[i]] = walk_to(&w, points[order[i]]);
             all = all && faces[order[i]] != NOT_FOUND;

@@ -122,18 +122,18 @@ enum tri_status tri_mesh_reserve_vertices(struct tri_mesh *mesh, int32_t more, s
 enum tri_status tri_mesh_reserve_triangles(struct tri_mesh *mesh, int32_t more, struct tri_error *error)
 {
     assert(more >= 0);
-    int64_t need = (int64_t)mesh->n_slots + more;
-    if (need <= mesh->slot_capacity)
+    int64_t need = (int64_t)mesh->n_triangles + more;
+    if (need <= mesh->triangle_capacity)
         return TRI_OK;
-    int32_t capacity = next_capacity(mesh->slot_capacity, need, TRI_MAX_TRIANGLES);
+    int32_t capacity = next_capacity(mesh->triangle_capacity, need, TRI_MAX_TRIANGLES);
     if (!capacity)
         return too_large(error, "triangles");
-    struct tri_triangle *fresh = grow_aligned(mesh->tri, (size_t)mesh->n_slots * sizeof *fresh,
+    struct tri_triangle *fresh = grow_aligned(mesh->tri, (size_t)mesh->n_triangles * sizeof *fresh,
                                               (size_t)capacity * sizeof *fresh);
     if (!fresh)
         return no_memory(error, "triangles", capacity);
     mesh->tri = fresh;
-    mesh->slot_capacity = capacity;
+    mesh->triangle_capacity = capacity;
     return TRI_OK;
 }
 
@@ -264,7 +264,7 @@ static void move_triangle(struct tri_mesh *mesh, int32_t from, int32_t to)
 
 void tri_mesh_compact(struct tri_mesh *mesh)
 {
-    int32_t hole = 0, last = mesh->n_slots - 1;
+    int32_t hole = 0, last = mesh->n_triangles - 1;
     for (;;) {
         while (hole <= last && tri_is_live(&mesh->tri[hole]))
             hole++;
@@ -274,14 +274,14 @@ void tri_mesh_compact(struct tri_mesh *mesh)
             break;
         move_triangle(mesh, last--, hole++);
     }
-    mesh->n_slots = hole;
+    mesh->n_triangles = hole;
 }
 
 static bool edge_is_mutual(const struct tri_mesh *mesh, int32_t t, int e)
 {
     int32_t link = mesh->tri[t].n[e], from = mesh->tri[t].v[tri_next[e]], to = mesh->tri[t].v[tri_prev[e]];
     if (link >= 0) {
-        if (tri_of(link) >= mesh->n_slots || tri_edge(link) > 2)
+        if (tri_of(link) >= mesh->n_triangles || tri_edge(link) > 2)
             return false;
         const struct tri_triangle *other = &mesh->tri[tri_of(link)];
         int f = tri_edge(link);
@@ -299,7 +299,7 @@ static bool side_is_mutual(const struct tri_mesh *mesh, int32_t s, int k)
     int32_t code = mesh->sub[s].side[k];
     if (code == TRI_NONE)
         return true;
-    if (code < 0 || tri_edge(code) > 2 || tri_of(code) >= mesh->n_slots)
+    if (code < 0 || tri_edge(code) > 2 || tri_of(code) >= mesh->n_triangles)
         return false;
     const struct tri_triangle *t = &mesh->tri[tri_of(code)];
     int e = tri_edge(code);
@@ -309,7 +309,7 @@ static bool side_is_mutual(const struct tri_mesh *mesh, int32_t s, int k)
 
 enum tri_status tri_mesh_validate(const struct tri_mesh *mesh, struct tri_error *error)
 {
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
         if (!tri_is_live(&mesh->tri[t]))
             continue;
         for (int e = 0; e < 3; e++) {
@@ -330,7 +330,7 @@ bool tri_mesh_is_sound(const struct tri_mesh *mesh)
 {
     enum { SMALL = 4096 };
     return 0 <= mesh->n_vertices && mesh->n_vertices <= mesh->vertex_capacity && mesh->n_input <= mesh->n_vertices &&
-           0 <= mesh->n_slots && mesh->n_slots <= mesh->slot_capacity && 0 <= mesh->n_subs &&
+           0 <= mesh->n_triangles && mesh->n_triangles <= mesh->triangle_capacity && 0 <= mesh->n_subs &&
            mesh->n_subs <= mesh->sub_capacity && 0 <= mesh->n_parents && mesh->n_parents <= mesh->parent_capacity &&
-           (mesh->n_slots > SMALL || tri_mesh_validate(mesh, NULL) == TRI_OK);
+           (mesh->n_triangles > SMALL || tri_mesh_validate(mesh, NULL) == TRI_OK);
 }

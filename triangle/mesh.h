@@ -47,10 +47,10 @@ enum tri_vertex_kind { /* values of tri_mesh.on below 0 */
 };
 
 struct tri_triangle {
-    tri_vertex_id v[3];   /* corners, counter-clockwise; v[0] == TRI_NONE: the slot is free */
+    tri_vertex_id v[3];   /* corners, counter-clockwise; v[0] == TRI_NONE: the number is free */
     tri_link n[3];        /* links, see above */
     tri_region_id region;
-    uint32_t state;       /* counts the lives of the slot: a queue entry can tell whether it still speaks of this one */
+    uint32_t state;       /* counts the lives of this number: by it a queue entry tells whether it is still this one */
 };
 
 struct tri_subsegment {
@@ -87,8 +87,8 @@ struct tri_mesh {
     int32_t *origin;          /* [n_input] .. unless this is set: the caller's index of each (triangle/spatial.h) */
     int32_t *twin;            /* [n_input] first (by the caller) of the points here; NULL: no duplicates */
 
-    struct tri_triangle *tri; /* [n_slots], aligned to a cache line; some slots may be free (v[0] == TRI_NONE) */
-    int32_t n_slots, slot_capacity;
+    struct tri_triangle *tri; /* [n_triangles], aligned to a cache line; some may be free (v[0] == TRI_NONE) */
+    int32_t n_triangles, triangle_capacity;
 
     struct tri_subsegment *sub; /* [n_subs] */
     int32_t n_subs, sub_capacity;
@@ -201,7 +201,7 @@ static inline size_t tri_vertex_size(const struct tri_mesh *mesh)
 void tri_mesh_gather_vertices(struct tri_mesh *mesh, tri_vertex_id first, const tri_vertex_id *from, int32_t n,
                               void *scratch, const struct tri_executor *executor);
 
-/* Fills the holes that free slots leave with triangles from the end. O(slots). */
+/* Fills the gaps that free numbers leave with triangles from the end. O(triangles). */
 void tri_mesh_compact(struct tri_mesh *mesh);
 
 /* Checks the invariants of the links; what it finds first is told in *error. O(triangles). For asserts and tests. */

@@ -31,7 +31,7 @@ static int32_t key_of(uint64_t item) { return (int32_t)(item >> KEY_SHIFT); }
 static int first_of(uint64_t item) { return (int)(item >> ID_BITS & 3); }
 static int32_t id_of(uint64_t item) { return (int32_t)(item & ((UINT64_C(1) << ID_BITS) - 1)); }
 
-/* What a triangle has beside its corners, on the way to its new slot. */
+/* What a triangle has beside its corners, on the way to its new place. */
 struct parked {
     int32_t n[3];
     int32_t region;
@@ -47,8 +47,8 @@ struct numbering {
     int vertex_bits;   /* of the largest number of a vertex, and one more */
     int32_t *sub_rank; /* [n_subs] */
     struct tri_subsegment *sub; /* [n_subs] */
-    int32_t *place;    /* [n_slots] first the second corner of a triangle, then where it goes */
-    size_t n_items;    /* the larger of n_slots and n_subs */
+    int32_t *place;    /* [n_triangles] first the second corner of a triangle, then where it goes */
+    size_t n_items;    /* the larger of n_triangles and n_subs */
     void *park;        /* [2 * n_items] items, or [n_items] struct parked */
     int32_t n_tri, n_subs;            /* live ones */
     int32_t fan[TRI_MOST_SHARES + 1]; /* items where the shares begin, so that none cuts a fan in two */
@@ -146,7 +146,7 @@ static int32_t new_code(const struct numbering *n, int32_t code)
 static void rename_corners(void *context, size_t share)
 {
     const struct numbering *n = context;
-    struct tri_range range = tri_share(share, n->mesh->n_slots);
+    struct tri_range range = tri_share(share, n->mesh->n_triangles);
     for (int32_t t = range.first; t < range.last; t++) {
         int32_t *v = n->mesh->tri[t].v;
         if (v[0] == TRI_NONE) {
@@ -201,8 +201,8 @@ static void place_triangles(void *context, size_t share)
 
 static void rank_triangles(struct numbering *n)
 {
-    tri_execute(n->executor, tri_shares(n->mesh->n_slots), rename_corners, n);
-    n->n_tri = sort_live(n, n->mesh->n_slots, n->mesh->n_vertices);
+    tri_execute(n->executor, tri_shares(n->mesh->n_triangles), rename_corners, n);
+    n->n_tri = sort_live(n, n->mesh->n_triangles, n->mesh->n_vertices);
     find_fans(n);
     tri_execute(n->executor, tri_shares(n->n_tri), place_triangles, n);
 }
@@ -213,7 +213,7 @@ static void park_share(void *context, size_t share)
 {
     const struct numbering *n = context;
     struct parked *park = n->park;
-    struct tri_range range = tri_share(share, n->mesh->n_slots);
+    struct tri_range range = tri_share(share, n->mesh->n_triangles);
     for (int32_t t = range.first; t < range.last; t++) {
         const struct tri_triangle *from = &n->mesh->tri[t];
         if (!tri_is_live(from))
@@ -225,14 +225,14 @@ static void park_share(void *context, size_t share)
     }
 }
 
-/* Where a slot keeps the corners of the triangle that it will hold, until its own triangle's corners have been read:
- * the links there have been parked already. */
-static int32_t *waiting_corners(struct tri_triangle *slot) { return slot->n; }
+/* Where a triangle keeps the corners of the triangle that it will hold, until its own triangle's corners have been
+ * read: the links there have been parked already. */
+static int32_t *waiting_corners(struct tri_triangle *triangle) { return triangle->n; }
 
 static void move_corners(void *context, size_t share)
 {
     const struct numbering *n = context;
-    struct tri_range range = tri_share(share, n->mesh->n_slots);
+    struct tri_range range = tri_share(share, n->mesh->n_triangles);
     for (int32_t t = range.first; t < range.last; t++) {
         const int32_t *from = n->mesh->tri[t].v;
         if (from[0] == TRI_NONE)
@@ -275,17 +275,17 @@ static enum tri_status allocate(struct numbering *n, struct tri_error *error)
 {
     const struct tri_mesh *mesh = n->mesh;
     size_t vertices = (size_t)(mesh->n_vertices - n->n_kept), subs = (size_t)mesh->n_subs;
-    n->n_items = (size_t)(mesh->n_slots > mesh->n_subs ? mesh->n_slots : mesh->n_subs);
+    n->n_items = (size_t)(mesh->n_triangles > mesh->n_subs ? mesh->n_triangles : mesh->n_subs);
     size_t for_vertices = vertices * tri_vertex_size(mesh), for_items = n->n_items * sizeof(struct parked);
     n->order = malloc((vertices + 1) * sizeof *n->order);
     n->rank = malloc((vertices + 1) * sizeof *n->rank);
     n->sub_rank = malloc((subs + 1) * sizeof *n->sub_rank);
     n->sub = malloc((subs + 1) * sizeof *n->sub);
-    n->place = malloc(((size_t)mesh->n_slots + 1) * sizeof *n->place);
+    n->place = malloc(((size_t)mesh->n_triangles + 1) * sizeof *n->place);
     n->park = malloc((for_vertices > for_items ? for_vertices : for_items) + 1);
     if (n->order && n->rank && n->sub_rank && n->sub && n->place && n->park)
         return TRI_OK;
-    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for numbering %d triangles", (int)mesh->n_slots);
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for numbering %d triangles", (int)mesh->n_triangles);
 }
 
 /* Cannot fail. */
@@ -299,11 +299,11 @@ static void renumber(struct numbering *n)
     rename_subs(n);
     rank_subs(n);
     rank_triangles(n);
-    tri_execute(n->executor, tri_shares(mesh->n_slots), park_share, n);
-    tri_execute(n->executor, tri_shares(mesh->n_slots), move_corners, n);
+    tri_execute(n->executor, tri_shares(mesh->n_triangles), park_share, n);
+    tri_execute(n->executor, tri_shares(mesh->n_triangles), move_corners, n);
     tri_execute(n->executor, tri_shares(n->n_tri), settle_share, n);
     move_subs(n);
-    mesh->n_slots = n->n_tri;
+    mesh->n_triangles = n->n_tri;
     mesh->n_subs = n->n_subs;
     mesh->n_vertices = n->n_kept + n->n_new;
 }

@@ -15,13 +15,13 @@
 extern "C" {
 #endif
 
-/* Numbers a mesh. Free slots, subsegments with v[0] == TRI_NONE and vertices that are TRI_VERTEX_NONE, which nothing
- * refers to, are gone afterwards. The first n_kept vertices keep their numbers: those that parents end at (the first
- * tri_mesh.incidence.n_vertices), or more; none of them is free.
+/* Numbers a mesh. Free triangle numbers, subsegments with v[0] == TRI_NONE and vertices that are TRI_VERTEX_NONE, which
+ * nothing refers to, are gone afterwards. The first n_kept vertices keep their numbers: those that parents end at (the
+ * first tri_mesh.incidence.n_vertices), or more; none of them is free.
  *
  * Meshes whose first n_kept vertices and whose parents agree, and which have the same vertices, triangles and
  * subsegments beyond these under any numbers, become the same, byte for byte. O(n); beside the mesh about 20 bytes a
- * slot and 8 a new vertex while it runs. TRI_NO_MEMORY: nothing has changed. */
+ * triangle and 8 a new vertex while it runs. TRI_NO_MEMORY: nothing has changed. */
 enum tri_status tri_number(struct tri_mesh *mesh, int32_t n_kept, const struct tri_executor *executor,
                            struct tri_error *error);
 

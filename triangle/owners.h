@@ -11,17 +11,17 @@
 
 /* One for each view of a mesh; they share the marks. */
 struct tri_owners {
-    int32_t *mark; /* [slots] who changed a triangle since the marks were cleared; 0: nobody */
+    int32_t *mark; /* [triangles] who changed a triangle since the marks were cleared; 0: nobody */
     int32_t self;  /* > 0: who works on this view */
 };
 
 /* False: somebody else has changed the triangle. */
-static inline bool tri_owners_claim(const struct tri_owners *owners, tri_triangle_id slot)
+static inline bool tri_owners_claim(const struct tri_owners *owners, tri_triangle_id triangle)
 {
-    if (!owners || owners->mark[slot] == owners->self)
+    if (!owners || owners->mark[triangle] == owners->self)
         return true;
-    bool was_free = owners->mark[slot] == 0;
-    owners->mark[slot] = owners->self;
+    bool was_free = owners->mark[triangle] == 0;
+    owners->mark[triangle] = owners->self;
     return was_free;
 }
 

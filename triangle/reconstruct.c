@@ -130,7 +130,7 @@ static enum tri_status take_triangles(struct matcher *m)
         m->width_bits++;
     tri_execute(m->options->executor, n_shares(m), take_share, m);
     status = first_fault(m);
-    m->mesh->n_slots = status ? 0 : n;
+    m->mesh->n_triangles = status ? 0 : n;
     return status;
 }
 
@@ -148,13 +148,13 @@ static void divide_ranges(struct matcher *m)
         }
         m->end[range] = sum;
     }
-    assert(sum == 3 * m->mesh->n_slots);
+    assert(sum == 3 * m->mesh->n_triangles);
 }
 
 static void deal_share(void *context, size_t share)
 {
     struct matcher *m = context;
-    struct tri_range range = tri_share(share, m->mesh->n_slots);
+    struct tri_range range = tri_share(share, m->mesh->n_triangles);
     for (int32_t t = range.first; t < range.last; t++)
         for (int e = 0; e < 3; e++) {
             int32_t low = low_of(&m->mesh->tri[t], e), to = low / m->width;
@@ -288,7 +288,8 @@ static enum tri_status match(struct matcher *m)
 
 static enum tri_status allocate_and_match(struct matcher *m)
 {
-    size_t n = (size_t)m->mesh->n_vertices, n_segments = (size_t)m->n_segments, n_half = 3 * (size_t)m->mesh->n_slots;
+    size_t n = (size_t)m->mesh->n_vertices, n_segments = (size_t)m->n_segments;
+    size_t n_half = 3 * (size_t)m->mesh->n_triangles;
     m->half = malloc((n_half + 1) * sizeof *m->half);
     m->edge_of = malloc((n_segments + 1) * sizeof *m->edge_of);
     m->next = malloc((n_segments + 1) * sizeof *m->next);
@@ -355,7 +356,7 @@ static void add_boundary(const struct matcher *m)
 static void count_loose(void *context, size_t share)
 {
     struct matcher *m = context;
-    struct tri_range range = tri_share(share, m->mesh->n_slots);
+    struct tri_range range = tri_share(share, m->mesh->n_triangles);
     int32_t n = 0;
     for (int32_t t = range.first; t < range.last; t++)
         for (int e = 0; e < 3; e++)
@@ -366,7 +367,7 @@ static void count_loose(void *context, size_t share)
 static void list_loose(void *context, size_t share)
 {
     struct matcher *m = context;
-    struct tri_range range = tri_share(share, m->mesh->n_slots);
+    struct tri_range range = tri_share(share, m->mesh->n_triangles);
     int32_t *next = m->loose + m->loose_at[share], *end = m->loose + m->loose_at[share + 1];
     for (int32_t t = range.first; next < end && t < range.last; t++)
         for (int e = 0; e < 3; e++)
@@ -471,7 +472,7 @@ static void assign_regions(struct values *values)
     const struct tri_elements *elements = values->elements;
     struct tri_mesh *mesh = values->mesh;
     int32_t last = 0; /* most triangles have the values of the one before */
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
         const double *attributes = attributes_of(elements, t);
         double bound = bound_of(elements, t);
         if (!is_region(mesh, last, attributes, bound))
@@ -483,7 +484,7 @@ static void assign_regions(struct values *values)
 /* Arrays for as many regions as triangles, of which only what is used is ever touched. */
 static enum tri_status make_regions(struct tri_mesh *mesh, const struct tri_elements *elements, struct tri_error *error)
 {
-    size_t n = (size_t)mesh->n_slots + 1, size = 2;
+    size_t n = (size_t)mesh->n_triangles + 1, size = 2;
     while (size < 2 * n)
         size *= 2;
     mesh->n_columns = elements->attributes ? elements->n_attributes : 0;
@@ -494,7 +495,7 @@ static enum tri_status make_regions(struct tri_mesh *mesh, const struct tri_elem
     struct values values = {mesh, elements, malloc(size * sizeof *values.place), size - 1};
     enum tri_status status = TRI_OK;
     if (!regions || (mesh->n_columns > 0 && !mesh->columns) || !values.place) {
-        status = no_memory(error, mesh->n_slots);
+        status = no_memory(error, mesh->n_triangles);
     } else {
         memset(values.place, 0xff, size * sizeof *values.place); /* TRI_NONE */
         assign_regions(&values);

@@ -158,8 +158,8 @@ static void list_places(struct tri_recovery *r, const struct tri_mesh *mesh)
     assert(left == r->n_left - 1 && right == r->n_left);
 }
 
-/* Frees the slots, and finds walls that are the two sides of one edge. */
-static void clear_slots(struct tri_recovery *r, struct tri_mesh *mesh)
+/* Frees the triangles, and finds walls that are the two sides of one edge. */
+static void clear_triangles(struct tri_recovery *r, struct tri_mesh *mesh)
 {
     r->n_free = 0;
     for (int32_t i = r->n_crossed - 1; i >= 0; i--) {
@@ -276,14 +276,14 @@ static int choose(struct gap *g)
 static void add_triangle(struct gap *g, int side)
 {
     struct tri_recovery_node next = g->side[side][--g->n[side]];
-    int32_t slot = g->r->pool[--g->r->n_free];
-    int32_t *v = g->mesh->tri[slot].v;
+    int32_t triangle = g->r->pool[--g->r->n_free];
+    int32_t *v = g->mesh->tri[triangle].v;
     v[0] = g->end[0];
     v[1] = g->end[1];
     v[2] = next.place;
-    join(g, tri_code(slot, 2), g->base);
-    join(g, tri_code(slot, 1 - side), next.link);
-    g->base = tri_code(slot, side);
+    join(g, tri_code(triangle, 2), g->base);
+    join(g, tri_code(triangle, 1 - side), next.link);
+    g->base = tri_code(triangle, side);
     g->end[side] = next.place;
 }
 
@@ -348,7 +348,7 @@ enum tri_status tri_recover_edge(struct tri_recovery *r, struct tri_mesh *mesh, 
                         (int)r->n_crossed);
     struct gap g = {.r = r, .mesh = mesh, .side = {r->gap[0], r->gap[1]}};
     list_places(r, mesh);
-    clear_slots(r, mesh);
+    clear_triangles(r, mesh);
     solve(&g, 0, r->n_left - 1);
     solve(&g, r->n_left, n_places(r) - 1);
     assert(r->n_free == 0);

@@ -53,17 +53,17 @@ struct tri_refiner {
     int64_t beyond;   /* how many points more may be inserted for angles above TRI_USUAL_ANGLE */
     enum step step;
     int limit;        /* buckets from here on wait for the second pass */
-    int32_t next_seed, n_seeds;
+    int32_t next_listed, n_worklist;
     enum stage stage;
     enum tri_excuse excuse; /* of the last refusal */
     bool in_hand;     /* `hand` was being treated when there was no room */
     struct tri_entry hand;
-    int32_t *crowded; /* stack of subsegments to test for encroachment (conforming only) */
-    int32_t n_crowded, crowded_capacity;
+    int32_t *encroached; /* stack of subsegments to test for encroachment (conforming only) */
+    int32_t n_encroached, encroached_capacity;
     uint32_t step_of_stop; /* see tri_stop_is_due */
 };
 
-enum { SEED_CHUNK = 1 << 16 };
+enum { WORKLIST_CHUNK = 1 << 16 };
 
 /* Beyond this lies no point that the predicates can carry: the triangle's area has been rounded to nothing. */
 static const double FARTHEST = TRI_LARGEST_COORDINATE / 2;
@@ -86,37 +86,37 @@ static int bucket_of(const struct tri_refiner *r, double shortest)
     return bucket < 0 ? 0 : bucket >= TRI_BUCKETS ? TRI_BUCKETS - 1 : bucket;
 }
 
-static bool push(struct tri_refiner *r, int32_t slot, enum tri_badness badness, double shortest)
+static bool push(struct tri_refiner *r, int32_t triangle, enum tri_badness badness, double shortest)
 {
-    struct tri_entry entry = {slot, r->mesh->tri[slot].state};
+    struct tri_entry entry = {triangle, r->mesh->tri[triangle].state};
     return badness == TRI_BAD_ANGLE ? tri_bad_queue_push_angle(&r->queue, entry, bucket_of(r, shortest))
                                     : tri_bad_queue_push_size(&r->queue, entry, badness == TRI_BAD_SIZE);
 }
 
-/* Judges the triangle of a rim and the new vertex, from the coordinates the cavity search left. */
-static bool judge_rim(struct tri_refiner *r, const struct tri_rim *rim, double bound2)
+/* Judges the triangle of an edge and the new vertex, from the coordinates the cavity search left. */
+static bool judge_edge(struct tri_refiner *r, const struct tri_cavity_edge *edge, double bound2)
 {
-    struct tri_relative ra = rim[0].ra, rb = rim[1].ra;
-    assert(rim->slot >= 0);
-    double area2 = rim->area2, x = ra.x - rb.x, y = ra.y - rb.y, l = x * x + y * y;
+    struct tri_relative ra = edge[0].ra, rb = edge[1].ra;
+    assert(edge->triangle >= 0);
+    double area2 = edge->area2, x = ra.x - rb.x, y = ra.y - rb.y, l = x * x + y * y;
     if (area2 * area2 < r->criterion.bounds.sin2 * tri_longer_product(ra.l, rb.l, l))
-        return push(r, rim->slot, TRI_BAD_ANGLE, tri_lesser(ra.l, tri_lesser(rb.l, l)));
+        return push(r, edge->triangle, TRI_BAD_ANGLE, tri_lesser(ra.l, tri_lesser(rb.l, l)));
     bool is_bad = area2 > bound2;
     if (r->options->unsuitable)
-        is_bad = is_bad || tri_is_unsuitable(&r->criterion, r->mesh->tri[rim->slot].v);
-    struct tri_entry entry = {rim->slot, r->mesh->tri[rim->slot].state};
+        is_bad = is_bad || tri_is_unsuitable(&r->criterion, r->mesh->tri[edge->triangle].v);
+    struct tri_entry entry = {edge->triangle, r->mesh->tri[edge->triangle].state};
     return tri_bad_queue_push_size(&r->queue, entry, is_bad);
 }
 
 /* The same where only what is urgent counts. */
 static bool judge_urgent(struct tri_refiner *r)
 {
-    for (int32_t i = 0; i < r->cavity.n_rim; i++) {
-        int32_t slot = r->cavity.rim[i].slot;
-        const struct tri_triangle *t = &r->mesh->tri[slot];
+    for (int32_t i = 0; i < r->cavity.n_edges; i++) {
+        int32_t triangle = r->cavity.edge[i].triangle;
+        const struct tri_triangle *t = &r->mesh->tri[triangle];
         struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
         enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
-        if (badness != TRI_GOOD && !push(r, slot, badness, shape.l[shape.shortest]))
+        if (badness != TRI_GOOD && !push(r, triangle, badness, shape.l[shape.shortest]))
             return false;
     }
     return true;
@@ -127,27 +127,27 @@ static bool judge_fan(struct tri_refiner *r)
 {
     if (r->options->urgent)
         return judge_urgent(r);
-    for (int32_t i = 0; i < r->cavity.n_rim; i++) {
-        const struct tri_rim *rim = &r->cavity.rim[i];
-        if (!judge_rim(r, rim, tri_area2_bound(&r->criterion, rim->region)))
+    for (int32_t i = 0; i < r->cavity.n_edges; i++) {
+        const struct tri_cavity_edge *edge = &r->cavity.edge[i];
+        if (!judge_edge(r, edge, tri_area2_bound(&r->criterion, edge->region)))
             return false;
     }
     return true;
 }
 
-static bool crowd(struct tri_refiner *r, int32_t s)
+static bool queue_encroached(struct tri_refiner *r, int32_t s)
 {
-    if (!tri_grow(&r->crowded, &r->crowded_capacity, r->n_crowded + 1, sizeof *r->crowded))
+    if (!tri_grow(&r->encroached, &r->encroached_capacity, r->n_encroached + 1, sizeof *r->encroached))
         return false;
-    r->crowded[r->n_crowded++] = s;
+    r->encroached[r->n_encroached++] = s;
     return true;
 }
 
 /* For conforming meshes: the new vertex may lie in the diametral circle of a wall. */
-static bool crowd_walls(struct tri_refiner *r)
+static bool queue_walls(struct tri_refiner *r)
 {
     for (int32_t i = 0; r->options->conforming && i < r->cavity.n_wall; i++)
-        if (!crowd(r, ~r->cavity.rim[r->cavity.wall[i]].outer))
+        if (!queue_encroached(r, ~r->cavity.edge[r->cavity.wall[i]].outer))
             return false;
     return true;
 }
@@ -155,8 +155,8 @@ static bool crowd_walls(struct tri_refiner *r)
 static enum tri_status make_room(struct tri_refiner *r)
 {
     struct tri_mesh *m = r->mesh;
-    int32_t vertices = m->vertex_capacity - m->n_vertices, slots = m->slot_capacity - m->n_slots;
-    if (vertices >= 1 && slots >= 2 && m->sub_capacity > m->n_subs)
+    int32_t vertices = m->vertex_capacity - m->n_vertices, triangles = m->triangle_capacity - m->n_triangles;
+    if (vertices >= 1 && triangles >= 2 && m->sub_capacity > m->n_subs)
         return TRI_OK;
     if (r->options->more_room)
         return r->error->status = r->options->more_room(r->options->more_room_user, m, r->error);
@@ -188,28 +188,29 @@ static const int32_t *corners_around(const struct tri_refiner *r, struct tri_poi
     return r->mesh->tri[r->cavity.tri[0]].v;
 }
 
-/* Inserts p, whose cavity has been found, for the sake of the triangle in a slot. */
-static enum outcome insert_free(struct tri_refiner *r, struct tri_point p, int32_t slot, const struct tri_shape *shape)
+/* Inserts p, whose cavity has been found, for the sake of a triangle. */
+static enum outcome insert_free(struct tri_refiner *r, struct tri_point p, int32_t triangle,
+                                const struct tri_shape *shape)
 {
     if (make_room(r))
         return FAILED;
     int32_t v = add_vertex(r, p, TRI_VERTEX_FREE, 0);
-    const int32_t *corner = r->mesh->tri[slot].v;
+    const int32_t *corner = r->mesh->tri[triangle].v;
     r->mesh->feature[v] = tri_feature_inside(r->mesh, corner[tri_next[shape->shortest]],
                                              corner[tri_prev[shape->shortest]], p, r->sized);
     if (r->mesh->n_attributes)
         tri_interpolate_triangle(r->mesh, corners_around(r, p), v);
     tri_cavity_fill(&r->cavity, r->mesh, v);
     r->report->inserted_free++;
-    return judge_fan(r) && crowd_walls(r) ? DONE : FAILED;
+    return judge_fan(r) && queue_walls(r) ? DONE : FAILED;
 }
 
 /* The gate or the fence stands before this triangle: somebody else's. */
-static enum outcome leave(struct tri_refiner *r, int32_t slot, int64_t *counter)
+static enum outcome leave(struct tri_refiner *r, int32_t triangle, int64_t *counter)
 {
     ++*counter;
     if (r->options->left)
-        r->options->left(r->options->left_user, slot);
+        r->options->left(r->options->left_user, triangle);
     return LEFT;
 }
 
@@ -225,8 +226,8 @@ static enum outcome give_up(struct tri_refiner *r, enum tri_excuse excuse)
     return REFUSED;
 }
 
-/* Splits subsegment s, at this fraction of it, for the sake of the triangle in a slot. */
-static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, int32_t slot)
+/* Splits subsegment s, at this fraction of it, for the sake of a triangle. */
+static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, int32_t triangle)
 {
     struct tri_mesh *m = r->mesh;
     const struct tri_subsegment old = m->sub[s];
@@ -238,7 +239,7 @@ static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, 
         return refuse(r, TRI_EXCUSE_PRECISION);
     enum tri_search found = tri_cavity_search_split(&r->cavity, m, p, s, &n_left);
     if (found == TRI_SEARCH_FENCED)
-        return leave(r, slot, &r->report->deferred);
+        return leave(r, triangle, &r->report->deferred);
     if (found == TRI_SEARCH_OUTSIDE)
         return refuse(r, TRI_EXCUSE_PRECISION);
     if (found == TRI_SEARCH_NO_MEMORY || make_room(r))
@@ -249,36 +250,36 @@ static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, 
     tri_interpolate_edge(m, old.v[0], old.v[1], fraction, v);
     int32_t second = tri_cavity_fill_split(&r->cavity, m, v, s, n_left);
     r->report->inserted_on_segments++;
-    bool room = judge_fan(r) && crowd_walls(r);
+    bool room = judge_fan(r) && queue_walls(r);
     if (room && r->options->conforming)
-        room = crowd(r, s) && crowd(r, second);
+        room = queue_encroached(r, s) && queue_encroached(r, second);
     return room ? DONE : FAILED;
 }
 
-static enum outcome split(struct tri_refiner *r, int32_t s, int32_t slot)
+static enum outcome split(struct tri_refiner *r, int32_t s, int32_t triangle)
 {
-    return split_at(r, s, tri_split_fraction(r->mesh, &r->mesh->sub[s]), slot);
+    return split_at(r, s, tri_split_fraction(r->mesh, &r->mesh->sub[s]), triangle);
 }
 
 /* Where only sizes count, a subsegment that must not be split is no reason not to insert a point beside it. */
-static bool tolerates(const struct tri_refiner *r, const struct tri_rim *rim)
+static bool tolerates(const struct tri_refiner *r, const struct tri_cavity_edge *edge)
 {
-    return !(r->options->min_angle > 0) && tri_is_protected(r->options, &r->mesh->sub[~rim->outer]);
+    return !(r->options->min_angle > 0) && tri_is_protected(r->options, &r->mesh->sub[~edge->outer]);
 }
 
 /* Does the new point lie on the wrong side of a wall, or see it under too wide an angle? Sets *beyond. */
 static bool encroaches(const struct tri_refiner *r, int32_t i, bool *beyond)
 {
     const struct tri_cavity *c = &r->cavity;
-    const struct tri_rim *rim = &c->rim[i], *next = rim + 1;
-    double cross = rim->area2, dot = rim->ra.x * next->ra.x + rim->ra.y * next->ra.y;
+    const struct tri_cavity_edge *edge = &c->edge[i], *next = edge + 1;
+    double cross = edge->area2, dot = edge->ra.x * next->ra.x + edge->ra.y * next->ra.y;
     *beyond = false;
     if (dot >= 0 && cross > 0)
         return false;
-    bool in_lens = dot < 0 && dot * dot > r->criterion.bounds.lens_cos2 * rim->ra.l * next->ra.l;
-    if (in_lens && !tolerates(r, rim))
+    bool in_lens = dot < 0 && dot * dot > r->criterion.bounds.lens_cos2 * edge->ra.l * next->ra.l;
+    if (in_lens && !tolerates(r, edge))
         return true;
-    *beyond = tri_orient2d(c->p, r->mesh->xy[rim->a], r->mesh->xy[next->a]) <= 0;
+    *beyond = tri_orient2d(c->p, r->mesh->xy[edge->a], r->mesh->xy[next->a]) <= 0;
     return *beyond;
 }
 
@@ -291,9 +292,9 @@ static int32_t find_encroached(const struct tri_refiner *r)
         if (!encroaches(r, r->cavity.wall[i], &beyond))
             continue;
         if (beyond)
-            return ~r->cavity.rim[r->cavity.wall[i]].outer;
+            return ~r->cavity.edge[r->cavity.wall[i]].outer;
         if (found == TRI_NONE)
-            found = ~r->cavity.rim[r->cavity.wall[i]].outer;
+            found = ~r->cavity.edge[r->cavity.wall[i]].outer;
     }
     return found;
 }
@@ -315,56 +316,56 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
     return reach;
 }
 
-/* The cavity of a new point for the triangle in a slot: DONE where it is found and is ours. */
-static enum outcome find_cavity(struct tri_refiner *r, int32_t slot, struct tri_point p)
+/* The cavity of a new point for a triangle: DONE where it is found and is ours. */
+static enum outcome find_cavity(struct tri_refiner *r, int32_t triangle, struct tri_point p)
 {
     if (!(fabs(p.x) < FARTHEST && fabs(p.y) < FARTHEST))
         return refuse(r, TRI_EXCUSE_PRECISION);
     if (r->options->gate) {
         double at[2] = {p.x * r->mesh->unit, p.y * r->mesh->unit};
         if (!r->options->gate(r->options->gate_user, at))
-            return leave(r, slot, &r->report->gated);
+            return leave(r, triangle, &r->report->gated);
     }
     if (r->options->fence && !tri_fence_holds(r->options->fence, p)) /* then its cavity reaches beyond, too */
-        return leave(r, slot, &r->report->deferred);
-    switch (tri_cavity_search(&r->cavity, r->mesh, p, slot)) {
+        return leave(r, triangle, &r->report->deferred);
+    switch (tri_cavity_search(&r->cavity, r->mesh, p, triangle)) {
     case TRI_SEARCH_FOUND: return DONE;
-    case TRI_SEARCH_FENCED: return leave(r, slot, &r->report->deferred);
+    case TRI_SEARCH_FENCED: return leave(r, triangle, &r->report->deferred);
     case TRI_SEARCH_OUTSIDE: return refuse(r, TRI_EXCUSE_PRECISION);
     default: return FAILED;
     }
 }
 
 /* The usual point, or the split of a subsegment that it encroaches. */
-static enum outcome propose(struct tri_refiner *r, int32_t slot, const struct tri_shape *shape,
+static enum outcome propose(struct tri_refiner *r, int32_t triangle, const struct tri_shape *shape,
                             enum tri_badness badness)
 {
-    const struct tri_triangle t = r->mesh->tri[slot];
+    const struct tri_triangle t = r->mesh->tri[triangle];
     struct tri_point p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
-    enum outcome outcome = find_cavity(r, slot, p);
+    enum outcome outcome = find_cavity(r, triangle, p);
     if (outcome != DONE)
         return outcome;
     int32_t s = find_encroached(r);
     if (s == TRI_NONE)
-        return insert_free(r, p, slot, shape);
+        return insert_free(r, p, triangle, shape);
     if (tri_is_flat(r->mesh, shape))
         return refuse(r, TRI_EXCUSE_PRECISION);
-    outcome = split(r, s, slot);
+    outcome = split(r, s, triangle);
     return outcome == DONE ? AGAIN : outcome;
 }
 
 /* For sizes, where the usual point is refused: see inside.c. */
-static enum outcome propose_inside(struct tri_refiner *r, int32_t slot, const struct tri_shape *shape)
+static enum outcome propose_inside(struct tri_refiner *r, int32_t triangle, const struct tri_shape *shape)
 {
-    int32_t s = tri_long_wall(r->mesh, r->options, slot, shape);
-    enum outcome outcome = s == TRI_NONE ? REFUSED : split(r, s, slot);
+    int32_t s = tri_long_wall(r->mesh, r->options, triangle, shape);
+    enum outcome outcome = s == TRI_NONE ? REFUSED : split(r, s, triangle);
     if (outcome != REFUSED)
         return outcome == DONE ? AGAIN : outcome;
     struct tri_point p;
-    if (!tri_centroid(r->mesh, slot, shape, &p))
+    if (!tri_centroid(r->mesh, triangle, shape, &p))
         return refuse(r, TRI_EXCUSE_PRECISION);
-    outcome = find_cavity(r, slot, p);
-    return outcome == DONE ? insert_free(r, p, slot, shape) : outcome;
+    outcome = find_cavity(r, triangle, p);
+    return outcome == DONE ? insert_free(r, p, triangle, shape) : outcome;
 }
 
 /* Lowers the angle bound that the loop works for; what is already bad by the old one stays. */
@@ -394,11 +395,11 @@ static bool at_limit(struct tri_refiner *r)
 
 /* Beyond the usual angle edges must be eight times as long, so that afterwards there is room for better angles around
  * them. */
-static bool is_hopeless(const struct tri_refiner *r, int32_t slot, const struct tri_shape *shape)
+static bool is_hopeless(const struct tri_refiner *r, int32_t triangle, const struct tri_shape *shape)
 {
-    const int32_t *v = r->mesh->tri[slot].v;
+    const int32_t *v = r->mesh->tri[triangle].v;
     int k = shape->shortest;
-    if (tri_is_hopeless(r->mesh, slot, shape))
+    if (tri_is_hopeless(r->mesh, triangle, shape))
         return true;
     if (r->stage != BEYOND_STAGE || !tri_has_run_away(r->mesh, v[tri_next[k]], v[tri_prev[k]], shape->l[k] / 64))
         return false;
@@ -445,23 +446,23 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
     }
 }
 
-static bool split_crowded(struct tri_refiner *r)
+static bool split_encroached(struct tri_refiner *r)
 {
-    while (r->n_crowded > 0) {
+    while (r->n_encroached > 0) {
         if (must_stop(r))
             return false;
-        int32_t s = r->crowded[r->n_crowded - 1];
+        int32_t s = r->encroached[r->n_encroached - 1];
         const struct tri_subsegment *sub = &r->mesh->sub[s];
         int32_t beside = tri_of(sub->side[sub->side[0] == TRI_NONE]);
         assert(s >= 0 && tri_is_live(&r->mesh->tri[beside]));
-        r->n_crowded--;
+        r->n_encroached--;
         double fraction;
-        if (!tri_is_crowded(r->mesh, sub, &fraction) || at_limit(r))
+        if (!tri_is_encroached(r->mesh, sub, &fraction) || at_limit(r))
             continue;
         r->sized = false;
         enum outcome outcome = split_at(r, s, fraction, beside);
         if (outcome == FAILED) {
-            r->crowded[r->n_crowded++] = s; /* there is room: it was there a moment ago */
+            r->encroached[r->n_encroached++] = s; /* there is room: it was there a moment ago */
             return false;
         }
         if (outcome == DONE)
@@ -472,7 +473,7 @@ static bool split_crowded(struct tri_refiner *r)
     return true;
 }
 
-/* In the first pass only triangles with short edges are taken, see refine_seeds. */
+/* In the first pass only triangles with short edges are taken, see refine_worklist. */
 static bool next_entry(struct tri_refiner *r)
 {
     return r->step == FIRST_PASS ? tri_bad_queue_pop_angle(&r->queue, r->limit, &r->hand)
@@ -484,7 +485,7 @@ static bool work_off(struct tri_refiner *r)
     for (;;) {
         if (must_stop(r))
             return false;
-        if (!split_crowded(r))
+        if (!split_encroached(r))
             return false;
         if (!r->in_hand && !next_entry(r))
             return true;
@@ -495,72 +496,75 @@ static bool work_off(struct tri_refiner *r)
     }
 }
 
-static bool queue_bad(struct tri_refiner *r, int32_t slot, bool sizes)
+static bool queue_bad(struct tri_refiner *r, int32_t triangle, bool sizes)
 {
-    const struct tri_triangle *t = &r->mesh->tri[slot];
+    const struct tri_triangle *t = &r->mesh->tri[triangle];
     if (!tri_is_live(t))
         return true;
     struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
     enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
     if (badness == TRI_GOOD || (badness == TRI_BAD_SIZE) != sizes)
         return true;
-    return push(r, slot, badness, shape.l[shape.shortest]);
+    return push(r, triangle, badness, shape.l[shape.shortest]);
 }
 
-static int32_t seed(const struct tri_refiner *r, int32_t i) { return r->options->seeds ? r->options->seeds[i] : i; }
-
-static int32_t seed_count(const struct tri_refiner *r)
+static int32_t listed(const struct tri_refiner *r, int32_t i)
 {
-    return r->options->seeds ? r->options->n_seeds : r->mesh->n_slots;
+    return r->options->worklist ? r->options->worklist[i] : i;
+}
+
+static int32_t listed_count(const struct tri_refiner *r)
+{
+    return r->options->worklist ? r->options->n_worklist : r->mesh->n_triangles;
 }
 
 /* The subsegments beside a triangle. */
-static bool crowd_beside(struct tri_refiner *r, int32_t slot)
+static bool queue_beside(struct tri_refiner *r, int32_t triangle)
 {
-    const struct tri_triangle *t = &r->mesh->tri[slot];
+    const struct tri_triangle *t = &r->mesh->tri[triangle];
     for (int e = 0; tri_is_live(t) && e < 3; e++)
-        if (t->n[e] < 0 && !crowd(r, ~t->n[e]))
+        if (t->n[e] < 0 && !queue_encroached(r, ~t->n[e]))
             return false;
     return true;
 }
 
-/* Queues the bad angles of the next chunk of seeds; the median of what waits then becomes the limit. */
+/* Queues the bad angles of the next chunk of the worklist; the median of what waits then becomes the limit. */
 static bool queue_chunk(struct tri_refiner *r)
 {
-    for (int32_t i = 0; i < SEED_CHUNK && r->next_seed < r->n_seeds; i++, r->next_seed++) {
-        int32_t slot = seed(r, r->next_seed);
-        if ((r->options->conforming && !crowd_beside(r, slot)) || !queue_bad(r, slot, false))
+    for (int32_t i = 0; i < WORKLIST_CHUNK && r->next_listed < r->n_worklist; i++, r->next_listed++) {
+        int32_t triangle = listed(r, r->next_listed);
+        if ((r->options->conforming && !queue_beside(r, triangle)) || !queue_bad(r, triangle, false))
             return false;
     }
     r->limit = tri_bad_queue_median(&r->queue);
     return true;
 }
 
-/* Passes over the seeds. First, chunk by chunk, the bad angles beside the shorter half of the edges: the order by
- * shortest edge (bad_queue.h) then nearly holds for the whole mesh, but the work stays in the cache, if seeds that are
- * neighbours in the list are neighbours in the plane. Then what is left of the bad angles, in the same order, and,
+/* Passes over the worklist. First, chunk by chunk, the bad angles beside the shorter half of the edges: the order by
+ * shortest edge (bad_queue.h) then nearly holds for the whole mesh, but the work stays in the cache, if triangles that
+ * are neighbours in the list are neighbours in the plane. Then what is left of the bad angles, in the same order, and,
  * place by place, what is only too large. Resumable: false means that something failed or that there was no room. */
-static bool refine_seeds(struct tri_refiner *r)
+static bool refine_worklist(struct tri_refiner *r)
 {
     if (r->step == NOT_BEGUN) {
-        r->n_seeds = seed_count(r);
-        r->next_seed = 0;
+        r->n_worklist = listed_count(r);
+        r->next_listed = 0;
         r->step = FIRST_PASS;
     }
     while (r->step == FIRST_PASS) {
         if (!work_off(r))
             return false;
-        if (r->next_seed == r->n_seeds) {
+        if (r->next_listed == r->n_worklist) {
             r->step = SECOND_PASS;
-            r->next_seed = 0;
+            r->next_listed = 0;
         } else if (!queue_chunk(r)) {
             return false;
         }
     }
     if (!work_off(r))
         return false;
-    while (r->next_seed < r->n_seeds)
-        if (!queue_bad(r, seed(r, r->next_seed++), true) || !work_off(r))
+    while (r->next_listed < r->n_worklist)
+        if (!queue_bad(r, listed(r, r->next_listed++), true) || !work_off(r))
             return false;
     return true;
 }
@@ -570,20 +574,20 @@ static bool refine_seeds(struct tri_refiner *r)
  * (docs/performance.md: up to a sixth fewer triangles). Above TRI_USUAL_ANGLE refinement feeds on itself, until edges
  * are as short as feature_size.c allows. So the whole mesh is refined for the usual angle; then for more, as long as
  * that adds less than half as many points again; where it did not end so, what is left is mended for BACK_ANGLE (for
- * the usual angle it would take several times as many points). Within a fence there is only the usual stage. With seeds
- * there is no easy one: what it makes bad for the next is not among them. */
+ * the usual angle it would take several times as many points). Within a fence there is only the usual stage. With a
+ * worklist there is no easy one: what it makes bad for the next is not among them. */
 static void begin_stages(struct tri_refiner *r)
 {
     double usual = fmin(r->options->min_angle, TRI_USUAL_ANGLE);
     bool easy = usual > TRI_EASY_ANGLE && tri_has_sizes(r->options) && !r->options->fence &&
-                !r->options->seeds;
+                !r->options->worklist;
     r->stage = easy ? EASY_STAGE : USUAL_STAGE;
     r->criterion.bounds = tri_bounds_for(easy ? TRI_SIZES_ANGLE : usual, r->options->conforming);
 }
 
 static void go_beyond(struct tri_refiner *r)
 {
-    r->beyond = 200 + r->mesh->n_slots / 4;
+    r->beyond = 200 + r->mesh->n_triangles / 4;
     lower_bound(r, r->options->min_angle);
     r->stage = BEYOND_STAGE;
 }
@@ -613,11 +617,11 @@ static void next_stage(struct tri_refiner *r)
     }
 }
 
-/* Resumable, as refine_seeds. */
+/* Resumable, as refine_worklist. */
 static bool refine_in_stages(struct tri_refiner *r)
 {
     while (r->stage != LAST_STAGE) {
-        if (!refine_seeds(r))
+        if (!refine_worklist(r))
             return false;
         next_stage(r);
     }
@@ -636,7 +640,7 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
         *refiner = NULL;
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for refinement");
     }
-    assert(mesh->n_slots == 0 || mesh->incidence.n_vertices > 0); /* tri_refine_prepare has been called */
+    assert(mesh->n_triangles == 0 || mesh->incidence.n_vertices > 0); /* tri_refine_prepare has been called */
     r->mesh = mesh;
     r->options = options;
     r->criterion = tri_criterion_for(mesh, options);
@@ -665,7 +669,7 @@ void tri_refiner_free(struct tri_refiner *r)
         return;
     tri_cavity_free(&r->cavity);
     tri_bad_queue_free(&r->queue);
-    free(r->crowded);
+    free(r->encroached);
     free(r);
 }
 

@@ -33,9 +33,9 @@ typedef int tri_unsuitable(void *user, const double a[2], const double b[2], con
 /* May the bad triangle whose new point would be p (its circumcentre or off-centre) be refined now? */
 typedef bool tri_gate(void *user, const double p[2]);
 
-/* Told of each triangle that the gate or the fence left as it is; its slot may live another life before the call
+/* Told of each triangle that the gate or the fence left as it is; its number may live another life before the call
  * ends. */
-typedef void tri_left(void *user, tri_triangle_id slot);
+typedef void tri_left(void *user, tri_triangle_id triangle);
 
 /* Makes room for at least 2 triangles, 1 vertex and 1 subsegment more in a mesh that is a view of shared arrays: moves
  * its counts and capacities to an unused range. TRI_NO_ROOM: not now. */
@@ -58,8 +58,8 @@ struct tri_refine_options {
     tri_gate *gate;        /* NULL: every bad triangle */
     void *gate_user;
     const struct tri_fence *fence; /* NULL: the whole mesh */
-    const tri_triangle_id *seeds; /* [n_seeds] looked at first; NULL: all. The loop looks at all it makes, too */
-    int32_t n_seeds;
+    const tri_triangle_id *worklist; /* [n_worklist] looked at first; NULL: all. The loop looks at all it makes, too */
+    int32_t n_worklist;
     tri_left *left;        /* NULL: nobody */
     void *left_user;
     tri_more_room *more_room; /* NULL: the mesh's arrays grow */
@@ -79,7 +79,7 @@ static inline double tri_area_scale(const struct tri_refine_options *options)
 
 enum tri_excuse { /* why a triangle is still bad */
     TRI_EXCUSE_INPUT_ANGLE, /* at, or across from, a small angle between input segments */
-    TRI_EXCUSE_CHANNEL,     /* between two segments so near to each other that filling the space would cost too much */
+    TRI_EXCUSE_NARROW_GAP,  /* between two segments so near to each other that filling the space would cost too much */
     TRI_EXCUSE_PROTECTED,   /* -Y or -YY */
     TRI_EXCUSE_LIMIT,       /* -S, or points for angles that would run away (feature_size.h) */
     TRI_EXCUSE_PRECISION,   /* features nearer to each other than coordinates can resolve */
@@ -121,8 +121,9 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
 enum tri_status tri_refiner_run(struct tri_refiner *refiner, struct tri_error *error);
 void tri_refiner_free(struct tri_refiner *refiner);
 
-/* found[last - first] receives the slots from first to last - 1 at which there is something for the loop to do (an
- * angle that is bad and not hopeless, a bad size; a crowded subsegment if conforming), in order; returns how many. */
+/* found[last - first] receives the triangles from first to last - 1 at which there is something for the loop to do (an
+ * angle that is bad and not hopeless, a bad size; an encroached subsegment if conforming), in order; returns how
+ * many. */
 int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id first,
                       tri_triangle_id last, tri_triangle_id *found);
 

@@ -9,7 +9,7 @@
  *      smaller is made because of it.
  *   2. Two segments side by side, nearer to each other than rounding, or than anyone could want to fill: spikes of no
  *      width, slits, borders that were digitised twice. The theory holds, but asks for length / width triangles. Such a
- *      channel is filled only if the mesh can afford it (tri_choose_channels); a triangle whose shortest edge bridges
+ *      gap is filled only if the mesh can afford it (tri_choose_channels); a triangle whose shortest edge bridges
  *      one that is too dear stays.
  *   3. Rounding: points nearer than about 100 units in the last place, flat triangles, split points beside their
  *      segment. An edge or height below mesh.limits.shortest2 stays; a point that does not see its whole cavity is not
@@ -84,20 +84,20 @@ static const int32_t *parents_of(const struct tri_mesh *mesh, int32_t v, int32_t
 
 /* Of the n parents at a hub, in order of direction, the two before the direction to q, and the two that come next: one
  * on which q lies, up to rounding, is among them, and those on either side of it. */
-static int list_neighbours(const struct tri_mesh *mesh, int32_t hub, const int32_t *spokes, int32_t n,
+static int list_neighbours(const struct tri_mesh *mesh, int32_t hub, const int32_t *incident, int32_t n,
                            struct tri_point q, int32_t *beside)
 {
     assert(n > TRI_MANY_PARENTS);
     int32_t low = 0, high = n;
     while (low < high) {
         int32_t middle = low + (high - low) / 2;
-        if (tri_turns_before(mesh->xy[hub], tri_far_end(mesh, spokes[middle], hub), q))
+        if (tri_turns_before(mesh->xy[hub], tri_far_end(mesh, incident[middle], hub), q))
             low = middle + 1;
         else
             high = middle;
     }
     for (int k = 0; k < 4; k++)
-        beside[k] = spokes[(low + n + k - 2) % n];
+        beside[k] = incident[(low + n + k - 2) % n];
     return 4;
 }
 
@@ -105,12 +105,12 @@ static int list_neighbours(const struct tri_mesh *mesh, int32_t hub, const int32
 static const int32_t *parents_beside(const struct tri_mesh *mesh, int32_t u, int32_t v, int32_t w, int32_t beside[8],
                                      int32_t *n)
 {
-    const int32_t *spokes = parents_of(mesh, u, n);
+    const int32_t *incident = parents_of(mesh, u, n);
     if (*n <= TRI_MANY_PARENTS)
-        return spokes;
+        return incident;
     int32_t all = *n;
-    *n = list_neighbours(mesh, u, spokes, all, mesh->xy[v], beside);
-    *n += list_neighbours(mesh, u, spokes, all, mesh->xy[w], beside + *n);
+    *n = list_neighbours(mesh, u, incident, all, mesh->xy[v], beside);
+    *n += list_neighbours(mesh, u, incident, all, mesh->xy[w], beside + *n);
     return beside;
 }
 
@@ -181,7 +181,7 @@ static bool is_beside(const struct tri_mesh *mesh, const struct tri_parent *p, i
 
 /* The cost of filling the dearest space between two parents that the edge uv bridges and the triangle with apex w lies
  * in; 0 where uv does not bridge any. */
-static double channel_cost(const struct tri_mesh *mesh, int32_t u, int32_t v, int32_t w)
+static double gap_cost(const struct tri_mesh *mesh, int32_t u, int32_t v, int32_t w)
 {
     int32_t nu, nv, beside[2][8];
     const int32_t *pu = parents_beside(mesh, u, v, w, beside[0], &nu);
@@ -200,48 +200,48 @@ static double channel_cost(const struct tri_mesh *mesh, int32_t u, int32_t v, in
     return dearest;
 }
 
-double tri_channel_cost(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape)
+double tri_gap_cost(const struct tri_mesh *mesh, int32_t triangle, const struct tri_shape *shape)
 {
-    const int32_t *v = mesh->tri[slot].v;
+    const int32_t *v = mesh->tri[triangle].v;
     int k = shape->shortest;
-    return channel_cost(mesh, v[tri_next[k]], v[tri_prev[k]], v[k]);
+    return gap_cost(mesh, v[tri_next[k]], v[tri_prev[k]], v[k]);
 }
 
-bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape)
+bool tri_is_narrow_gap(const struct tri_mesh *mesh, int32_t triangle, const struct tri_shape *shape)
 {
-    return tri_channel_cost(mesh, slot, shape) > mesh->limits.dearest_channel;
+    return tri_gap_cost(mesh, triangle, shape) > mesh->limits.dearest_gap;
 }
 
-bool tri_crosses_angle(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape)
+bool tri_crosses_angle(const struct tri_mesh *mesh, int32_t triangle, const struct tri_shape *shape)
 {
-    const int32_t *v = mesh->tri[slot].v;
+    const int32_t *v = mesh->tri[triangle].v;
     return apex_between(mesh, v[tri_next[shape->shortest]], v[tri_prev[shape->shortest]]) != TRI_NONE;
 }
 
-bool tri_is_hopeless(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape)
+bool tri_is_hopeless(const struct tri_mesh *mesh, int32_t triangle, const struct tri_shape *shape)
 {
-    const struct tri_triangle *t = &mesh->tri[slot];
+    const struct tri_triangle *t = &mesh->tri[triangle];
     int k = shape->shortest;
     int32_t u = t->v[tri_next[k]], v = t->v[tri_prev[k]];
     return shape->l[k] < mesh->limits.shortest2 || tri_has_run_away(mesh, u, v, shape->l[k]) ||
-           on_one_shell(mesh, u, v, shape->l[k]) || tri_is_channel(mesh, slot, shape);
+           on_one_shell(mesh, u, v, shape->l[k]) || tri_is_narrow_gap(mesh, triangle, shape);
 }
 
 /* The cost of filling the dearest space between a parent at u and one at v that face each other across the edge ab: u
  * and v are the apexes on its two sides. */
 static double cost_across(const struct tri_mesh *mesh, int32_t u, int32_t v, int32_t a, int32_t b)
 {
-    return fmax(channel_cost(mesh, u, v, a), channel_cost(mesh, u, v, b));
+    return fmax(gap_cost(mesh, u, v, a), gap_cost(mesh, u, v, b));
 }
 
 /* About so many points it takes to fill the space that a triangle of the input lies in. Where other vertices lie
  * between its two walls, as on the wall that closes its end, no edge bridges it: so the apexes across each edge count,
  * too. */
-static double demand_of(const struct tri_mesh *mesh, int32_t slot)
+static double demand_of(const struct tri_mesh *mesh, int32_t triangle)
 {
-    const struct tri_triangle *t = &mesh->tri[slot];
+    const struct tri_triangle *t = &mesh->tri[triangle];
     struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
-    double demand = tri_channel_cost(mesh, slot, &shape);
+    double demand = tri_gap_cost(mesh, triangle, &shape);
     for (int e = 0; e < 3; e++) {
         if (t->n[e] < 0 || !tri_is_on_parent(mesh, t->v[e]))
             continue;
@@ -267,7 +267,7 @@ static void demand_share(void *context, size_t index)
 {
     struct demands *d = context;
     struct demand *sum = &d->share[index];
-    struct tri_range range = tri_share(index, d->mesh->n_slots);
+    struct tri_range range = tri_share(index, d->mesh->n_triangles);
     *sum = (struct demand){{0}, {0}, 0};
     for (int32_t t = range.first; t < range.last; t++) {
         double cost = demand_of(d->mesh, t);
@@ -285,8 +285,8 @@ static void demand_share(void *context, size_t index)
 static struct demand whole_demand(const struct tri_mesh *mesh, const struct tri_executor *executor)
 {
     struct demands d = {.mesh = mesh};
-    tri_execute(executor, tri_shares(mesh->n_slots), demand_share, &d);
-    for (size_t i = 1; i < tri_shares(mesh->n_slots); i++) {
+    tri_execute(executor, tri_shares(mesh->n_triangles), demand_share, &d);
+    for (size_t i = 1; i < tri_shares(mesh->n_triangles); i++) {
         for (int octave = 0; octave < OCTAVES; octave++) {
             d.share[0].cost[octave] += d.share[i].cost[octave];
             d.share[0].count[octave] += d.share[i].count[octave];
@@ -310,14 +310,14 @@ void tri_choose_channels(struct tri_mesh *mesh, const struct tri_executor *execu
         dearer += demand.count[octave];
     int limit = demand.all <= ALL ? OCTAVES : CHEAP;
     double affordable = ALLOWANCE + PER_VERTEX * fmin(mesh->n_input, 2.0 * mesh->n_parents);
-    mesh->limits.channel_points = demand.all <= ALL ? demand.all : affordable;
+    mesh->limits.gap_points = demand.all <= ALL ? demand.all : affordable;
     for (int octave = CHEAP + 1; octave < OCTAVES && demand.all > ALL; octave++) {
         cheaper += demand.cost[octave];
         dearer -= demand.count[octave];
-        if (cheaper + ldexp(dearer, octave) > mesh->limits.channel_points)
+        if (cheaper + ldexp(dearer, octave) > mesh->limits.gap_points)
             break;
         limit = octave;
     }
     assert(limit >= CHEAP && limit <= OCTAVES);
-    mesh->limits.dearest_channel = ldexp(1, limit);
+    mesh->limits.dearest_gap = ldexp(1, limit);
 }

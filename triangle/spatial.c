@@ -37,7 +37,7 @@ enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **rank, const str
 {
     int32_t n = mesh->n_input, *origin = array(n, sizeof *origin);
     void *scratch = scratch_for(mesh);
-    assert(mesh->n_vertices == n && mesh->n_slots == 0 && !mesh->origin && !mesh->twin);
+    assert(mesh->n_vertices == n && mesh->n_triangles == 0 && !mesh->origin && !mesh->twin);
     if (origin && scratch) {
         for (int32_t v = 0; v < n; v++)
             origin[v] = v;
@@ -65,7 +65,7 @@ static void restore_name(const struct tri_mesh *mesh, int32_t *v)
 static void restore_corners(void *context, size_t share)
 {
     const struct tri_mesh *mesh = context;
-    struct tri_range range = tri_share(share, mesh->n_slots);
+    struct tri_range range = tri_share(share, mesh->n_triangles);
     for (int32_t t = range.first; t < range.last; t++)
         for (int k = 0; k < 3; k++)
             restore_name(mesh, &mesh->tri[t].v[k]);
@@ -109,7 +109,7 @@ enum tri_status tri_restore_points(struct tri_mesh *mesh, const struct tri_execu
     free(scratch);
     if (twin)
         restore_twins(mesh, twin);
-    tri_execute(executor, tri_shares(mesh->n_slots), restore_corners, mesh);
+    tri_execute(executor, tri_shares(mesh->n_triangles), restore_corners, mesh);
     restore_ends(mesh);
     free(mesh->origin);
     mesh->origin = NULL;

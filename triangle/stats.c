@@ -18,13 +18,13 @@ static const double DEGREES = 57.295779513082320877;
 
 enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh *mesh, struct tri_error *error)
 {
-    *counts = (struct tri_counts){.triangles = mesh->n_slots, .subsegments = mesh->n_subs};
+    *counts = (struct tri_counts){.triangles = mesh->n_triangles, .subsegments = mesh->n_subs};
     /* Vertices that refinement has made are all in use; others may lie outside, or be duplicates. */
     int32_t n_doubtful = mesh->incidence.n_vertices > 0 ? mesh->incidence.n_vertices : mesh->n_vertices;
     uint8_t *used = calloc((size_t)n_doubtful + 1, 1);
     if (!used)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to count %d vertices", (int)n_doubtful);
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         for (int k = 0; k < 3; k++)
             if (mesh->tri[t].v[k] < n_doubtful)
                 used[mesh->tri[t].v[k]] = 1;
@@ -124,7 +124,7 @@ static void measure_share(void *context, size_t share)
 {
     struct survey *s = context;
     struct tally *tally = &s->tally[share];
-    struct tri_range range = tri_share(share, s->mesh->n_slots);
+    struct tri_range range = tri_share(share, s->mesh->n_triangles);
     *tally = (struct tally){.extremes = {{HUGE_VAL, 0}, {HUGE_VAL, 0}, 0, HUGE_VAL, 0, 1, 1}};
     for (int32_t t = range.first; t < range.last; t++) {
         assert(tri_is_live(&s->mesh->tri[t]));
@@ -156,11 +156,11 @@ void tri_measure_shapes(struct tri_shapes *shapes, const struct tri_mesh *mesh, 
 {
     struct survey s = {.mesh = mesh};
     *shapes = (struct tri_shapes){0};
-    if (mesh->n_slots == 0)
+    if (mesh->n_triangles == 0)
         return;
     for (int k = 0; k < TRI_ANGLE_BINS; k++)
         s.limits[k] = k == 9 ? 0 : tri_cos_degrees(10 * k); /* right angles are common, and exact */
-    size_t shares = tri_shares(mesh->n_slots);
+    size_t shares = tri_shares(mesh->n_triangles);
     tri_execute(executor, shares, measure_share, &s);
     for (size_t i = 1; i < shares; i++)
         add_tally(&s.tally[0], &s.tally[i]);

@@ -13,7 +13,7 @@ struct tri_counts {
     int64_t subsegments;
 };
 
-/* O(triangles); one byte a vertex while it runs. The mesh has no free slots. TRI_NO_MEMORY. */
+/* O(triangles); one byte a vertex while it runs. No number is free in the mesh. TRI_NO_MEMORY. */
 enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh *mesh, struct tri_error *error);
 
 enum { TRI_ASPECT_BINS = 16, TRI_ANGLE_BINS = 18 };
@@ -33,7 +33,7 @@ struct tri_shapes {
     int64_t angles[TRI_ANGLE_BINS];   /* angles by tens of degrees, three a triangle */
 };
 
-/* O(triangles). The mesh has no free slots. */
+/* O(triangles). No number is free in the mesh. */
 void tri_measure_shapes(struct tri_shapes *shapes, const struct tri_mesh *mesh, const struct tri_executor *executor);
 
 #endif

@@ -23,7 +23,7 @@ static bool is_first(int32_t code, int32_t other) { return other == TRI_NONE || 
 static int32_t count_edges(const struct tri_mesh *mesh)
 {
     int32_t n = 0;
-    for (int32_t t = 0; t < mesh->n_slots; t++) {
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
         assert(tri_is_live(&mesh->tri[t]));
         for (int e = 0; e < 3; e++)
             n += is_first(tri_code(t, e), tri_across(mesh, tri_code(t, e)));
@@ -34,7 +34,7 @@ static int32_t count_edges(const struct tri_mesh *mesh)
 static void list_edges(struct tri_edge_list *list, const struct tri_mesh *mesh)
 {
     int32_t n = 0;
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         for (int k = 0; k < 3; k++) {
             int32_t code = tri_code(t, edge_order[k]), other = tri_across(mesh, code);
             if (!is_first(code, other))
@@ -55,11 +55,11 @@ enum tri_status tri_edge_list_make(struct tri_edge_list *list, const struct tri_
     *list = (struct tri_edge_list){.n = count_edges(mesh)};
     list->codes = malloc(((size_t)list->n + 1) * sizeof *list->codes);
     if (with_numbers)
-        list->number = malloc(3 * ((size_t)mesh->n_slots + 1) * sizeof *list->number);
+        list->number = malloc(3 * ((size_t)mesh->n_triangles + 1) * sizeof *list->number);
     if (!list->codes || (with_numbers && !list->number)) {
         tri_edge_list_free(list);
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the edges of %d triangles",
-                        (int)mesh->n_slots);
+                        (int)mesh->n_triangles);
     }
     list_edges(list, mesh);
     return TRI_OK;
@@ -132,7 +132,7 @@ enum tri_status tri_used_make(struct tri_used *used, const struct tri_mesh *mesh
     }
     for (int32_t v = 0; v < mesh->n_vertices; v++)
         used->number[v] = TRI_NONE;
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         for (int k = 0; k < 3; k++)
             used->number[mesh->tri[t].v[k]] = 0;
     for (int32_t v = 0; v < mesh->n_vertices; v++)

@@ -1,7 +1,7 @@
 /* What a mesh means to its users beside corners: edges, neighbours, Voronoi diagram, midpoints, vertices in use.
  *
  * All of it is worked out from struct tri_mesh item by item, so that nobody needs a copy of the whole: arrays are
- * made only where an order has to be counted out. The mesh has no free slots (tri_mesh_compact).
+ * made only where an order has to be counted out. No number is free in the mesh (tri_mesh_compact).
  *
  * ORDER OF EDGES: triangles in their order; in each the edges from its first to its second, second to third, third
  * to first corner; each edge where it is met first. So an edge is known by the code (4 * triangle + opposite corner)
@@ -33,7 +33,7 @@ static inline int32_t tri_edge_marker(const struct tri_mesh *mesh, int32_t code)
 struct tri_edge_list {
     int32_t n;
     int32_t *codes;  /* [n] */
-    int32_t *number; /* [n_slots][3] number of the edge opposite each corner; NULL: not asked for */
+    int32_t *number; /* [n_triangles][3] number of the edge opposite each corner; NULL: not asked for */
 };
 
 /* Lists the edges. O(triangles); 6 bytes a triangle, with numbers 12 more. TRI_NO_MEMORY. */

@@ -69,7 +69,7 @@ static void find_triangles(void *context, size_t share)
     struct column *c = context;
     const struct tri_mesh *mesh = c->tiles->mesh;
     const int32_t *tile = c->tiles->tile;
-    struct tri_range range = tri_share_of(share, SHARES, mesh->n_slots);
+    struct tri_range range = tri_share_of(share, SHARES, mesh->n_triangles);
     for (int32_t t = range.first; t < range.last; t++) {
         const int32_t *v = mesh->tri[t].v;
         if (v[0] == TRI_NONE)
@@ -349,7 +349,7 @@ static bool let_triangles_go(struct column *c, struct par_room *spare)
     for (int s = 0; s < SHARES; s++) {
         for (int32_t i = 0; i < c->triangles[s].n; i++)
             c->tiles->mesh->tri[c->triangles[s].item[i]].v[0] = TRI_NONE;
-        memory = memory && add_runs(&spare->ranges[PAR_SLOTS], c->triangles[s].item, c->triangles[s].n);
+        memory = memory && add_runs(&spare->ranges[PAR_TRIANGLES], c->triangles[s].item, c->triangles[s].n);
     }
     return memory;
 }
@@ -361,7 +361,7 @@ static int ascending(const void *left, const void *right)
 }
 
 /* Corners of triangles that stay. */
-static bool corners_that_stay(const struct column *c, struct par_slots *stay)
+static bool corners_that_stay(const struct column *c, struct par_worklist *stay)
 {
     int32_t n = 0;
     for (int s = 0; s < SHARES; s++)
@@ -394,7 +394,7 @@ static void let_vertex_go(struct column *c, int32_t v)
 }
 
 /* Of a list, ascending, those that do not stay; in place. */
-static int32_t leaving(int32_t *item, int32_t n, const struct par_slots *stay)
+static int32_t leaving(int32_t *item, int32_t n, const struct par_worklist *stay)
 {
     int32_t left = 0;
     for (int32_t i = 0, k = 0; i < n; i++) {
@@ -408,7 +408,7 @@ static int32_t leaving(int32_t *item, int32_t n, const struct par_slots *stay)
 
 static bool let_vertices_go(struct column *c, struct par_room *spare)
 {
-    struct par_slots stay;
+    struct par_worklist stay;
     bool memory = corners_that_stay(c, &stay);
     for (int s = 0; s <= SHARES && memory; s++) {
         int32_t *item = s < SHARES ? c->vertices[s].item : c->tiles->held.item;
@@ -472,5 +472,5 @@ void par_tiles_free(struct par_tiles *tiles)
     free(tiles->held.item);
     tiles->number = NULL;
     tiles->tile = NULL;
-    tiles->held = (struct par_slots){0};
+    tiles->held = (struct par_worklist){0};
 }

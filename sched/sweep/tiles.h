@@ -13,7 +13,7 @@
 #define SCHED_SWEEP_TILES_H
 
 #include "sched/partition.h"
-#include "sched/pool.h"
+#include "sched/worklist.h"
 #include "sched/room.h"
 #include "triangle/executor.h"
 
@@ -42,7 +42,7 @@ struct par_tiles {
                                      handed out, or not there */
     int32_t capacity;
     int64_t n_vertices, n_triangles; /* numbered so far, those that keep theirs counted in */
-    struct par_slots held;         /* numbered vertices that triangles beyond the last column still have */
+    struct par_worklist held;         /* numbered vertices that triangles beyond the last column still have */
 };
 
 /* Numbers, and hands out, the tiles of an odd column. Every triangle whose corners lie in it and before it must be

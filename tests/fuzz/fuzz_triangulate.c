@@ -1,5 +1,6 @@
 /* Fuzz target: triangulate() with any switches and any arrays that its contract allows. Whatever they hold, it returns;
- * after an error nothing has changed; else, where no mesh was given (which may overlap itself), the output is a mesh. */
+ * after an error nothing has changed; else, where no mesh was given (which may overlap itself), the output is a
+ * mesh. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -95,8 +96,8 @@ static void require(bool condition, const char *what, const char *switches)
 
 static bool is_mesh_fault(int kind) { return kind <= TRI_CHECK_OVERLAP; }
 
-/* Do all coordinates that are not 0 have about the same size? Where not, the smallest count as 0, but are handed back as
- * they came. */
+/* Do all coordinates that are not 0 have about the same size? Where not, the smallest count as 0, but are handed back
+ * as they came. */
 static bool is_even(const struct triangulateio *out)
 {
     double least = INFINITY, largest = 0;

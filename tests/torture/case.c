@@ -85,8 +85,8 @@ static void add_attributes(struct figure *f)
 
 /* --- switches */
 
-/* An area bound so that the figure has no more than some thousand triangles, and regions no more than some ten thousand;
- * 0 where an area has no ordinary number. */
+/* An area bound so that the figure has no more than some thousand triangles, and regions no more than some ten
+ * thousand; 0 where an area has no ordinary number. */
 static double draw_area(struct figure *f)
 {
     struct figure_bounds b = figure_bounds(&f->pslg);

@@ -90,7 +90,7 @@ static void make_star(struct figure *f)
         figure_box(f, -2, -2, 4, 4);
 }
 
-/* A hub whose spokes end on a chain. */
+/* A hub whose incident end on a chain. */
 static void make_fan(struct figure *f)
 {
     int32_t n = figure_size(f, 3, 60);

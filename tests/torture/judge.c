@@ -137,7 +137,7 @@ static void judge_mesh(const struct outcome *o, const struct tri_pslg *pslg, boo
                                     .base = 1};
     bool conforming = o->options.refine && o->options.quality.conforming && o->options.quality.max_steiner < 0;
     ask.delaunay = conforming && o->switches.protect == 0 ? TRI_CHECK_CONFORMING : TRI_CHECK_CONSTRAINED;
-    verdict->triangles = o->mesh.n_slots;
+    verdict->triangles = o->mesh.n_triangles;
     if (tri_mesh_validate(&o->mesh, &error) != TRI_OK)
         judge_fault(verdict, "links", "%s", error.text);
     struct support_copy copy = support_copy(&o->mesh);
@@ -166,7 +166,7 @@ static bool same_bytes(const void *a, const void *b, int32_t n, size_t item)
 
 static bool same_triangles(const struct tri_mesh *a, const struct tri_mesh *b)
 {
-    for (int32_t t = 0; t < a->n_slots; t++) {
+    for (int32_t t = 0; t < a->n_triangles; t++) {
         const struct tri_triangle *p = &a->tri[t], *q = &b->tri[t];
         if (!same_bytes(p->v, q->v, 3, sizeof *p->v) || !same_bytes(p->n, q->n, 3, sizeof *p->n) ||
             p->region != q->region)
@@ -177,7 +177,7 @@ static bool same_triangles(const struct tri_mesh *a, const struct tri_mesh *b)
 
 static bool same_meshes(const struct tri_mesh *a, const struct tri_mesh *b)
 {
-    return a->n_vertices == b->n_vertices && a->n_slots == b->n_slots && a->n_subs == b->n_subs &&
+    return a->n_vertices == b->n_vertices && a->n_triangles == b->n_triangles && a->n_subs == b->n_subs &&
            same_bytes(a->xy, b->xy, a->n_vertices, sizeof *a->xy) &&
            same_bytes(a->on, b->on, a->n_vertices, sizeof *a->on) &&
            same_bytes(a->vertex_markers, b->vertex_markers, a->n_vertices, sizeof *a->vertex_markers) &&
@@ -195,8 +195,8 @@ static void judge_threads(const struct outcome *first, const struct tri_pslg *ps
     if (generate(&o, pslg, 3, &error))
         judge_fault(verdict, "threads", "on 3 threads: %s", error.text);
     else if (!same_meshes(&first->mesh, &o.mesh))
-        judge_fault(verdict, "threads", "%d triangles on 1 thread, another mesh of %d on 3", (int)first->mesh.n_slots,
-                    (int)o.mesh.n_slots);
+        judge_fault(verdict, "threads", "%d triangles on 1 thread, another mesh of %d on 3", (int)first->mesh.n_triangles,
+                    (int)o.mesh.n_triangles);
     tri_mesh_free(&o.mesh);
 }
 
@@ -210,7 +210,7 @@ static void judge_points(const struct torture_case *c, struct verdict *verdict)
     struct tri_mesh parts = support_delaunay(&c->figure.pslg, 1 + c->figure.pslg.n_points % 40, &executor);
     if (!same_meshes(&whole, &parts))
         judge_fault(verdict, "points", "%d triangles in one leaf, another triangulation of %d in many",
-                    (int)whole.n_slots, (int)parts.n_slots);
+                    (int)whole.n_triangles, (int)parts.n_triangles);
     tri_mesh_free(&whole);
     tri_mesh_free(&parts);
 }
@@ -224,7 +224,7 @@ static int32_t triangles_of(const struct torture_case *as, const struct outcome 
     struct outcome o = {.of = as, .switches = first->switches, .options = first->options};
     if (generate(&o, pslg, 1, &error))
         judge_fault(verdict, "error", "schedule size: %s", error.text);
-    int32_t n = o.mesh.n_slots;
+    int32_t n = o.mesh.n_triangles;
     tri_mesh_free(&o.mesh);
     return n;
 }
@@ -243,9 +243,9 @@ static void judge_schedule_size(const struct outcome *first, const struct tri_ps
     int32_t own = triangles_of(&by_itself, first, pslg, verdict);
     if (own > OWN_CELLS * one_call + FEW)
         judge_fault(verdict, "schedule size", "%d triangles, sequentially %d", (int)own, (int)one_call);
-    if (first->mesh.n_slots > TINY_CELLS * one_call + FEW)
+    if (first->mesh.n_triangles > TINY_CELLS * one_call + FEW)
         judge_fault(verdict, "schedule size", "%d triangles in tiny cells, sequentially %d",
-                    (int)first->mesh.n_slots, (int)one_call);
+                    (int)first->mesh.n_triangles, (int)one_call);
 }
 
 /* --- the second step: the mesh as input */
@@ -266,7 +266,7 @@ static void judge_again(const struct outcome *first, struct verdict *verdict)
     struct support_copy copy = support_copy(&first->mesh);
     struct tri_pslg pslg = pslg_of(&first->mesh, &copy);
     struct tri_elements elements = {
-        .n = first->mesh.n_slots, .corners = copy.triangles, .n_nodes = 3, .areas = copy.max_areas};
+        .n = first->mesh.n_triangles, .corners = copy.triangles, .n_nodes = 3, .areas = copy.max_areas};
     struct outcome o = {.of = first->of, .switches = first->switches, .options = first->options};
     struct tri_reconstruct_options how = {.use_segments = true, .refine = true, .base = 1};
     enter(verdict, "rebuilding");
@@ -298,8 +298,8 @@ static void judge_first(struct outcome *o, const struct tri_pslg *pslg, struct v
     }
     enter(verdict, "judging");
     judge_mesh(o, pslg, false, verdict);
-    if (o->mesh.n_slots > MOST_TRIANGLES)
-        judge_fault(verdict, "too many", "%d triangles for %d points", (int)o->mesh.n_slots, (int)pslg->n_points);
+    if (o->mesh.n_triangles > MOST_TRIANGLES)
+        judge_fault(verdict, "too many", "%d triangles for %d points", (int)o->mesh.n_triangles, (int)pslg->n_points);
     enter(verdict, "carving again");
     if (!verdict->fault[0])
         judge_carving(o, verdict);
@@ -317,12 +317,12 @@ void judge_case(const struct torture_case *c, struct verdict *verdict)
     judge_points(c, verdict);
     if (!verdict->fault[0] && !tri_pslg_is_one_place(pslg))
         judge_first(&o, pslg, verdict);
-    if (!verdict->fault[0] && o.mesh.n_slots > 0 && o.options.refine && c->block > 0)
+    if (!verdict->fault[0] && o.mesh.n_triangles > 0 && o.options.refine && c->block > 0)
         judge_threads(&o, pslg, verdict);
     if (!verdict->fault[0] && o.options.refine && o.options.quality.max_steiner < 0 && c->block > 0 &&
         o.options.quality.min_angle <= TRI_USUAL_ANGLE)
         judge_schedule_size(&o, pslg, verdict);
-    if (!verdict->fault[0] && o.mesh.n_slots > 0 && o.options.refine && c->again)
+    if (!verdict->fault[0] && o.mesh.n_triangles > 0 && o.options.refine && c->again)
         judge_again(&o, verdict);
     enter(verdict, "freeing");
     tri_mesh_free(&o.mesh);

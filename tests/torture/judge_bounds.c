@@ -8,9 +8,9 @@
 /* Heights below this share of the largest coordinate are at the resolution of coordinates. */
 static const double RESOLUTION = 1e-12;
 
-/* A vertex that is level with an end of a subsegment up to rounding, an ulp, leaves the circles of parts not longer than
- * height^2 / ulp: where more of them than that are needed, the place is not resolved. From SHORTEST ulps on it is not
- * for rounding that the vertex lies in the circle. */
+/* A vertex that is level with an end of a subsegment up to rounding, an ulp, leaves the circles of parts not longer
+ * than height^2 / ulp: where more of them than that are needed, the place is not resolved. From SHORTEST ulps on it is
+ * not for rounding that the vertex lies in the circle. */
 enum { MOST_PARTS = 64, SHORTEST = 128 };
 
 struct bounds {
@@ -48,7 +48,7 @@ static void judge_areas(const struct outcome *o, struct bounds *b, struct verdic
 {
     struct figure_bounds box = figure_bounds(&o->of->figure.pslg);
     *b = (struct bounds){.outcome = o, .least_height = RESOLUTION * box.largest / o->mesh.unit};
-    for (int32_t t = 0; t < o->mesh.n_slots; t++)
+    for (int32_t t = 0; t < o->mesh.n_triangles; t++)
         measure(b, t);
     if (b->too_large > 0 && o->switches.protect == 0)
         judge_fault(verdict, "area", "%lld triangles too large, the worst %d by a factor of %.3g",
@@ -84,11 +84,11 @@ static void judge_angles(const struct outcome *o, const struct bounds *b, const 
                     o->options.quality.min_angle);
     int64_t unexplained = report->n_small - report->n_small_explained, beside = AROUND * b->too_flat;
     int64_t flat = count[TRI_EXCUSE_PRECISION] < beside ? count[TRI_EXCUSE_PRECISION] : beside;
-    if (unexplained > count[TRI_EXCUSE_CHANNEL] + flat)
+    if (unexplained > count[TRI_EXCUSE_NARROW_GAP] + flat)
         judge_fault(verdict, "angle",
-                    "%lld small angles without a reason (input angle %lld, channel %lld, precision %lld)",
-                    (long long)(unexplained - count[TRI_EXCUSE_CHANNEL] - flat),
-                    (long long)count[TRI_EXCUSE_INPUT_ANGLE], (long long)count[TRI_EXCUSE_CHANNEL],
+                    "%lld small angles without a reason (input angle %lld, gap %lld, precision %lld)",
+                    (long long)(unexplained - count[TRI_EXCUSE_NARROW_GAP] - flat),
+                    (long long)count[TRI_EXCUSE_INPUT_ANGLE], (long long)count[TRI_EXCUSE_NARROW_GAP],
                     (long long)count[TRI_EXCUSE_PRECISION]);
 }
 
@@ -120,8 +120,8 @@ static bool is_resolvable(const struct tri_mesh *mesh, const struct tri_subsegme
            (off >= SHORTEST * ulp || fmax(off, ulp) * length <= MOST_PARTS * height * height);
 }
 
-/* What is not conforming must be counted, and lie at the resolution of coordinates or where filling a narrow space would
- * cost too much. The checker has found so many faults. */
+/* What is not conforming must be counted, and lie at the resolution of coordinates or where filling a narrow space
+ * would cost too much. The checker has found so many faults. */
 void judge_conforming(const struct outcome *o, int64_t faults, struct verdict *verdict)
 {
     struct figure_bounds box = figure_bounds(&o->of->figure.pslg);
@@ -135,11 +135,11 @@ void judge_conforming(const struct outcome *o, int64_t faults, struct verdict *v
                       is_resolvable(&o->mesh, &o->mesh.sub[s], 1, largest);
     if (sum == 0)
         judge_fault(verdict, "conforming uncounted", "%lld faults", (long long)faults);
-    if (resolvable > count[TRI_EXCUSE_CHANNEL])
+    if (resolvable > count[TRI_EXCUSE_NARROW_GAP])
         judge_fault(verdict, "conforming",
-                    "%lld subsegments without a reason (input angle %lld, channel %lld, precision %lld)",
-                    (long long)(resolvable - count[TRI_EXCUSE_CHANNEL]), (long long)count[TRI_EXCUSE_INPUT_ANGLE],
-                    (long long)count[TRI_EXCUSE_CHANNEL], (long long)count[TRI_EXCUSE_PRECISION]);
+                    "%lld subsegments without a reason (input angle %lld, gap %lld, precision %lld)",
+                    (long long)(resolvable - count[TRI_EXCUSE_NARROW_GAP]), (long long)count[TRI_EXCUSE_INPUT_ANGLE],
+                    (long long)count[TRI_EXCUSE_NARROW_GAP], (long long)count[TRI_EXCUSE_PRECISION]);
 }
 
 static bool is_new(const struct tri_mesh *mesh, int32_t v) { return v >= mesh->n_input && mesh->on[v] >= 0; }

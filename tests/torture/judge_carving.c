@@ -8,8 +8,8 @@ enum { GONE = -1 };
 
 struct flood {
     struct tri_mesh mesh;
-    int32_t *mark;  /* [n_slots] region, or GONE */
-    int32_t *stack; /* [n_slots] */
+    int32_t *mark;  /* [n_triangles] region, or GONE */
+    int32_t *stack; /* [n_triangles] */
     bool doubtful;  /* a point lies on an edge: which side it means is nobody's concern */
 };
 
@@ -50,7 +50,7 @@ static int32_t locate(struct flood *f, const double at[2])
     if (!(fabs(p.x) <= limit && fabs(p.y) <= limit))
         return TRI_NONE;
     p = (struct tri_point){tri_round_coordinate(p.x), tri_round_coordinate(p.y)};
-    for (int32_t t = 0; t < m->n_slots; t++) {
+    for (int32_t t = 0; t < m->n_triangles; t++) {
         const int32_t *v = m->tri[t].v;
         double a = tri_orient2d(m->xy[v[0]], m->xy[v[1]], p), b = tri_orient2d(m->xy[v[1]], m->xy[v[2]], p),
                c = tri_orient2d(m->xy[v[2]], m->xy[v[0]], p);
@@ -65,7 +65,7 @@ static int32_t locate(struct flood *f, const double at[2])
 static void flood_all(struct flood *f, const struct outcome *o)
 {
     const struct tri_pslg *pslg = &o->of->figure.pslg;
-    for (int32_t t = 0; t < f->mesh.n_slots && !o->switches.keep_hull; t++)
+    for (int32_t t = 0; t < f->mesh.n_triangles && !o->switches.keep_hull; t++)
         for (int e = 0; e < 3; e++)
             if (!is_segment(&f->mesh, t, e) && tri_across(&f->mesh, tri_code(t, e)) == TRI_NONE)
                 spread(f, t, GONE);
@@ -107,17 +107,17 @@ static void compare(const struct flood *f, const struct outcome *o, double *area
     const struct tri_mesh *mesh = &o->mesh;
     int32_t left = 0;
     double whole = 0, tolerance = rounding(mesh);
-    for (int32_t t = 0; t < f->mesh.n_slots; t++) {
+    for (int32_t t = 0; t < f->mesh.n_triangles; t++) {
         double area = area_of(&f->mesh, t);
         left += f->mark[t] != GONE;
         whole += area;
         if (f->mark[t] != GONE)
             areas[f->mark[t]] += area;
     }
-    for (int32_t t = 0; t < mesh->n_slots; t++)
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
         areas[mesh->tri[t].region] -= area_of(mesh, t);
-    if (!o->options.refine && left != mesh->n_slots)
-        judge_fault(verdict, "carving", "%d triangles, by naive carving %d", (int)mesh->n_slots, (int)left);
+    if (!o->options.refine && left != mesh->n_triangles)
+        judge_fault(verdict, "carving", "%d triangles, by naive carving %d", (int)mesh->n_triangles, (int)left);
     for (int32_t r = 0; r < mesh->n_regions; r++)
         if (fabs(areas[r]) > 1e-9 * whole + tolerance)
             judge_fault(verdict, "carving", "region %d lacks %.3g of the hull's area", (int)r, areas[r] / whole);
@@ -133,8 +133,8 @@ void judge_carving(const struct outcome *o, struct verdict *verdict)
     options.keep_hull = options.ignore_holes = true;
     if (!o->switches.segments || tri_generate(&f.mesh, &o->of->figure.pslg, &options, &report, &error) != TRI_OK)
         return;
-    f.mark = calloc((size_t)f.mesh.n_slots + 1, sizeof *f.mark);
-    f.stack = calloc((size_t)f.mesh.n_slots + 1, sizeof *f.stack);
+    f.mark = calloc((size_t)f.mesh.n_triangles + 1, sizeof *f.mark);
+    f.stack = calloc((size_t)f.mesh.n_triangles + 1, sizeof *f.stack);
     double *areas = calloc((size_t)o->mesh.n_regions + (size_t)o->of->figure.pslg.n_regions + 1, sizeof *areas);
     assert_true(f.mark && f.stack && areas);
     flood_all(&f, o);

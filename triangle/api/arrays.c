@@ -31,13 +31,13 @@ struct tri_ints tri_mesh_point_markers(const struct tri_mesh *mesh)
 
 struct tri_ints tri_mesh_triangles(const struct tri_mesh *mesh)
 {
-    struct tri_ints corners = {mesh->n_slots > 0 ? mesh->tri[0].v : NULL, mesh->n_slots, 3, TRIANGLE_STRIDE};
+    struct tri_ints corners = {mesh->n_triangles > 0 ? mesh->tri[0].v : NULL, mesh->n_triangles, 3, TRIANGLE_STRIDE};
     return corners;
 }
 
 struct tri_reals tri_mesh_triangle_attributes(const struct tri_mesh *mesh)
 {
-    return tri_reals_of(api(mesh)->attributes, api(mesh)->attributes ? mesh->n_slots : 0,
+    return tri_reals_of(api(mesh)->attributes, api(mesh)->attributes ? mesh->n_triangles : 0,
                         mesh->columns ? mesh->n_columns : 1);
 }
 
@@ -70,14 +70,14 @@ enum tri_status tri_mesh_neighbors(struct tri_mesh *mesh, struct tri_ints *neigh
 {
     struct tri_api_mesh *m = (struct tri_api_mesh *)mesh;
     if (!m->neighbors) {
-        m->neighbors = malloc(((size_t)mesh->n_slots + 1) * 3 * sizeof *m->neighbors);
+        m->neighbors = malloc(((size_t)mesh->n_triangles + 1) * 3 * sizeof *m->neighbors);
         if (!m->neighbors)
             return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for neighbours of %d triangles",
-                            (int)mesh->n_slots);
-        for (int32_t t = 0; t < mesh->n_slots; t++)
+                            (int)mesh->n_triangles);
+        for (int32_t t = 0; t < mesh->n_triangles; t++)
             tri_neighbors(mesh, t, &m->neighbors[3 * (size_t)t]);
     }
-    *neighbors = tri_ints_of(m->neighbors, mesh->n_slots, 3);
+    *neighbors = tri_ints_of(m->neighbors, mesh->n_triangles, 3);
     return TRI_OK;
 }
 

@@ -1,7 +1,7 @@
 /* Meshes of the public header: made, refined, deleted.
  *
- * INVARIANT: between calls a mesh has no free slots, its points lie in the order of the caller, and the arrays that are
- * made from it speak of what it is now. */
+ * INVARIANT: between calls a mesh has no free numbers, its points lie in the order of the caller, and the arrays that
+ * are made from it speak of what it is now. */
 #include "triangle/api/mesh.h"
 
 #include <math.h>
@@ -110,7 +110,7 @@ static enum tri_status make_places(struct tri_api_mesh *m, struct tri_error *err
 static enum tri_status make_attributes(struct tri_api_mesh *m, struct tri_error *error)
 {
     const struct tri_mesh *mesh = &m->mesh;
-    size_t n = (size_t)mesh->n_slots, width = mesh->columns ? (size_t)mesh->n_columns : 1;
+    size_t n = (size_t)mesh->n_triangles, width = mesh->columns ? (size_t)mesh->n_columns : 1;
     if (!m->has_attributes)
         return TRI_OK;
     m->attributes = malloc((n * width + 1) * sizeof *m->attributes);
@@ -296,7 +296,7 @@ int64_t tri_mesh_count(const struct tri_mesh *mesh, enum tri_count what)
 }
 
 _Static_assert((int)TRI_REASONS == (int)TRI_EXCUSES && (int)TRI_REASON_INPUT_ANGLE == (int)TRI_EXCUSE_INPUT_ANGLE &&
-                   (int)TRI_REASON_CHANNEL == (int)TRI_EXCUSE_CHANNEL &&
+                   (int)TRI_REASON_CHANNEL == (int)TRI_EXCUSE_NARROW_GAP &&
                    (int)TRI_REASON_PROTECTED == (int)TRI_EXCUSE_PROTECTED &&
                    (int)TRI_REASON_LIMIT == (int)TRI_EXCUSE_LIMIT &&
                    (int)TRI_REASON_PRECISION == (int)TRI_EXCUSE_PRECISION &&

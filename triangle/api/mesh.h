@@ -6,14 +6,14 @@
 #include "triangle/generate.h"
 
 struct tri_api_mesh {
-    struct tri_mesh mesh; /* first: what callers point to. No free slots, points in the order of the caller */
+    struct tri_mesh mesh; /* first: what callers point to. No free numbers, points in the order of the caller */
     struct tri_report report;
     int64_t loose;        /* segments of a figure with triangles that are no edges */
     bool has_areas;       /* bounds of sizes came with the figure .. */
     bool has_attributes;  /* .. and attributes of triangles or regions did */
     double *places;       /* [n_vertices][2] in the caller's coordinates; NULL: they are mesh.xy */
-    double *attributes;   /* [n_slots][as many as tri_region_attributes has]; NULL where there are none */
-    int32_t *neighbors;   /* [n_slots][3] NULL until they are asked for .. */
+    double *attributes;   /* [n_triangles][as many as tri_region_attributes has]; NULL where there are none */
+    int32_t *neighbors;   /* [n_triangles][3] NULL until they are asked for .. */
     int32_t *edges;       /* [n_edges][2] .. these too .. */
     int32_t *edge_markers; /* [n_edges] .. with their markers */
     int32_t n_edges;

@@ -31,8 +31,8 @@ static uint32_t hash(struct tri_point p)
     return (uint32_t)(h >> 32);
 }
 
-/* Slot that holds a point at the place of p, or the free one where it belongs. */
-static uint32_t slot_of(const struct reference *r, struct tri_point p)
+/* Triangle that holds a point at the place of p, or the free one where it belongs. */
+static uint32_t triangle_of(const struct reference *r, struct tri_point p)
 {
     uint32_t i = hash(p) & r->mask;
     while (r->table[i] >= 0 && !check_same_place(point_of(r, r->table[i]), p))
@@ -72,18 +72,18 @@ static enum tri_status find_twins(struct checker *c, struct reference *r)
     if (status != TRI_OK)
         return status;
     for (int32_t v = 0; v < r->n; v++) {
-        uint32_t i = c->twin[v] < 0 ? slot_of(r, point_of(r, v)) : 0;
+        uint32_t i = c->twin[v] < 0 ? triangle_of(r, point_of(r, v)) : 0;
         if (c->twin[v] < 0 && r->table[i] < 0)
             r->table[i] = v;
     }
     for (int32_t v = 0; v < c->mesh->n_points; v++) {
-        int32_t found = check_is_used(c, v) ? r->table[slot_of(r, check_point(c, v))] : -1;
+        int32_t found = check_is_used(c, v) ? r->table[triangle_of(r, check_point(c, v))] : -1;
         if (found >= 0 && c->twin[found] < 0)
             c->twin[found] = v;
     }
     for (int32_t v = 0; v < r->n; v++) {
         if (c->twin[v] < 0)
-            c->twin[v] = c->twin[r->table[slot_of(r, point_of(r, v))]];
+            c->twin[v] = c->twin[r->table[triangle_of(r, point_of(r, v))]];
     }
     return TRI_OK;
 }

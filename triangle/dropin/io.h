@@ -29,7 +29,7 @@ enum tri_status tri_io_input_make(struct tri_io_input *input, const struct trian
                                   const struct tri_switches *switches, struct tri_error *error);
 void tri_io_input_free(struct tri_io_input *input);
 
-/* Writes what the switches select; the mesh has no free slots. TRI_NO_MEMORY. O(output). */
+/* Writes what the switches select; no number is free in the mesh. TRI_NO_MEMORY. O(output). */
 enum tri_status tri_io_output(const struct tri_mesh *mesh, const struct tri_io_input *input,
                               const struct tri_switches *switches, const struct triangulateio *in,
                               struct triangulateio *out, struct triangulateio *vorout, struct tri_error *error);

@@ -1,0 +1,155 @@
+/* Triangles are judged in shares, and gathered in the order of the shares. */
+#include "sched/worklist.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "sched/theory.h"
+
+#include "triangle/grow.h"
+
+bool par_worklist_add(struct par_worklist *triangles, int32_t triangle)
+{
+    assert(triangles->n >= 0 && triangles->n <= triangles->capacity);
+    if (!tri_grow(&triangles->item, &triangles->capacity, triangles->n + 1, sizeof *triangles->item))
+        return false;
+    triangles->item[triangles->n++] = triangle;
+    return true;
+}
+
+bool par_triangle_set_of(struct par_triangle_set *set, const struct par_worklist *triangles, int32_t n_triangles)
+{
+    set->word = calloc((size_t)n_triangles / 64 + 1, sizeof *set->word);
+    for (int32_t i = 0; set->word && i < triangles->n; i++) {
+        assert(triangles->item[i] >= 0 && triangles->item[i] < n_triangles);
+        set->word[triangles->item[i] / 64] |= (uint64_t)1 << triangles->item[i] % 64;
+    }
+    return set->word;
+}
+
+bool par_worklist_add_new(struct par_worklist *triangles, struct par_triangle_set *set, int32_t triangle)
+{
+    uint64_t bit = (uint64_t)1 << triangle % 64;
+    if (set->word[triangle / 64] & bit)
+        return true;
+    set->word[triangle / 64] |= bit;
+    return par_worklist_add(triangles, triangle);
+}
+
+struct finding {
+    struct tri_mesh *mesh;
+    const struct tri_refine_options *bounds;
+    const struct par_worklist *worklist; /* to choose from; or, when filling, the worklist as it was, or NULL */
+    int32_t *found;               /* [n_triangles or worklist.n] each share's own behind one another, with gaps */
+    int32_t n[TRI_MOST_SHARES];
+    double radius2[TRI_MOST_SHARES];
+};
+
+/* Brings together what the shares of n have found. */
+static int32_t gather(const struct finding *f, int32_t n)
+{
+    int32_t filled = 0;
+    for (size_t share = 0; share < tri_shares(n); share++) {
+        int32_t first = tri_share(share, n).first;
+        assert(f->n[share] <= tri_share(share, n).last - first && filled <= first);
+        for (int32_t i = 0; i < f->n[share]; i++)
+            f->found[filled++] = f->found[first + i];
+    }
+    return filled;
+}
+
+static int32_t first_in_worklist(const struct par_worklist *worklist, int32_t triangle)
+{
+    int32_t low = 0, high = worklist->n;
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if (worklist->item[middle] < triangle)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* The bad ones of a range, where the worklist holds those that are as old as it is. A new life has begun for every
+ * triangle when it was filled: who has a higher number was born since. */
+static int32_t find_newborn(const struct finding *f, struct tri_range range, int32_t *found)
+{
+    int32_t n = 0, next = first_in_worklist(f->worklist, range.first);
+    for (int32_t t = range.first; t < range.last; t++) {
+        bool was_bad = next < f->worklist->n && f->worklist->item[next] == t;
+        next += was_bad;
+        assert(next == f->worklist->n || f->worklist->item[next] > t); /* in order, and each once */
+        if (f->mesh->tri[t].state != 0)
+            n += tri_find_work(f->mesh, f->bounds, t, t + 1, found + n);
+        else if (was_bad)
+            found[n++] = t;
+    }
+    return n;
+}
+
+static double largest_radius2(const struct tri_mesh *mesh, const int32_t *triangle, int32_t n)
+{
+    double largest = 0;
+    for (int32_t i = 0; i < n; i++) {
+        const int32_t *v = mesh->tri[triangle[i]].v;
+        double r2 = par_radius2(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]);
+        largest = r2 > largest ? r2 : largest;
+    }
+    return largest;
+}
+
+static void fill_share(void *context, size_t share)
+{
+    struct finding *f = context;
+    struct tri_range range = tri_share(share, f->mesh->n_triangles);
+    int32_t *found = f->found + range.first;
+    f->n[share] = f->worklist ? find_newborn(f, range, found)
+                          : tri_find_work(f->mesh, f->bounds, range.first, range.last, found);
+    f->radius2[share] = largest_radius2(f->mesh, found, f->n[share]);
+    for (int32_t t = range.first; t < range.last; t++)
+        f->mesh->tri[t].state = 0;
+}
+
+enum tri_status par_worklist_fill(struct par_worklist *worklist, struct tri_mesh *mesh,
+                                  const struct tri_refine_options *quality, bool known,
+                                  const struct tri_executor *executor, double *radius, struct tri_error *error)
+{
+    int32_t n = mesh->n_triangles;
+    struct finding f = {mesh, quality, known ? worklist : NULL, malloc(((size_t)n + 1) * sizeof *f.found), {0}, {0}};
+    double largest2 = 0;
+    if (!f.found)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)n);
+    tri_execute(executor, tri_shares(n), fill_share, &f);
+    for (size_t share = 0; share < tri_shares(n); share++)
+        largest2 = f.radius2[share] > largest2 ? f.radius2[share] : largest2;
+    free(worklist->item);
+    *worklist = (struct par_worklist){f.found, gather(&f, n), n + 1};
+    *radius = sqrt(largest2);
+    return TRI_OK;
+}
+
+static void filter_share(void *context, size_t share)
+{
+    struct finding *f = context;
+    struct tri_range range = tri_share(share, f->worklist->n);
+    for (int32_t i = range.first; i < range.last; i++) {
+        int32_t triangle = f->worklist->item[i];
+        f->n[share] += tri_find_work(f->mesh, f->bounds, triangle, triangle + 1, &f->found[range.first + f->n[share]]);
+    }
+}
+
+bool par_worklist_filter(const struct par_worklist *worklist, const struct tri_mesh *mesh,
+                     const struct tri_refine_options *bounds, const struct tri_executor *executor,
+                     struct par_worklist *found)
+{
+    struct finding f = {(struct tri_mesh *)mesh, bounds, worklist, malloc(((size_t)worklist->n + 1) * sizeof *f.found),
+                        {0}, {0}};
+    *found = (struct par_worklist){f.found, 0, worklist->n};
+    if (!f.found)
+        return false;
+    tri_execute(executor, tri_shares(worklist->n), filter_share, &f);
+    found->n = gather(&f, worklist->n);
+    return true;
+}

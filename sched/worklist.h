@@ -1,0 +1,41 @@
+/* Triangles that may be bad: what a schedule works off. */
+#ifndef SCHED_WORKLIST_H
+#define SCHED_WORKLIST_H
+
+#include "triangle/executor.h"
+#include "triangle/refine.h"
+
+struct par_worklist {
+    int32_t *item;
+    int32_t n, capacity;
+};
+
+/* Amortised O(1). False: no memory. */
+bool par_worklist_add(struct par_worklist *triangles, int32_t triangle);
+
+/* A set of triangles, as bits. */
+struct par_triangle_set {
+    uint64_t *word; /* [(n_triangles + 63) / 64] */
+};
+
+/* The triangles of a list, out of n_triangles; false: no memory. To be freed by free(set->word). O(n_triangles). */
+bool par_triangle_set_of(struct par_triangle_set *set, const struct par_worklist *triangles, int32_t n_triangles);
+
+/* Adds a triangle to the list unless it is in the set, which is that of the list. False: no memory. */
+bool par_worklist_add_new(struct par_worklist *triangles, struct par_triangle_set *set, int32_t triangle);
+
+/* The worklist becomes all triangles that violate the bounds, in the order of their numbers; *radius, the largest
+ * circumradius among them. known: the worklist is that already, for the mesh as it was after the last call; then only
+ * triangles born since are judged. (Where options.conforming counts, a triangle may have become bad or good with the
+ * one across its subsegment, which was born since: that one is here.) All begin a new life, see struct
+ * tri_triangle.state. TRI_NO_MEMORY: the worklist is as before. O(triangles). */
+enum tri_status par_worklist_fill(struct par_worklist *worklist, struct tri_mesh *mesh,
+                                  const struct tri_refine_options *quality, bool known,
+                                  const struct tri_executor *executor, double *radius, struct tri_error *error);
+
+/* *found receives those that violate other bounds, in the same order. False: no memory, and *found is empty. */
+bool par_worklist_filter(const struct par_worklist *worklist, const struct tri_mesh *mesh,
+                     const struct tri_refine_options *bounds, const struct tri_executor *executor,
+                     struct par_worklist *found);
+
+#endif
