@@ -121,7 +121,7 @@ enum tri_check_kind {
      * segment through them, or 1 on the boundary; else 0. Not looked at where border is TRI_CHECK_BORDER_ANY. */
     TRI_CHECK_VERTEX_MARKERS,
     TRI_CHECK_HOLES,
-    TRI_CHECK_FACES, /* (8); not looked at where border is TRI_CHECK_BORDER_ANY */
+    TRI_CHECK_FACES, /* (8); not looked at in refined meshes, whose holes were there before: ignore_lost, BORDER_ANY */
     TRI_CHECK_ANGLES,
     TRI_CHECK_AREAS,
     TRI_N_CHECKS

@@ -300,7 +300,8 @@ static void sweep(struct sweep *w)
             return;
     }
     assert(tri_check_order_above(&w->order, -1) == -1);
-    if (w->c->input != NULL && w->c->options->border != TRI_CHECK_BORDER_ANY)
+    const struct tri_check_options *o = w->c->options;
+    if (w->c->input != NULL && !o->ignore_lost && o->border != TRI_CHECK_BORDER_ANY)
         check_faces(w);
 }
 
