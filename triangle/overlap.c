@@ -15,8 +15,7 @@ struct star {
 static int32_t start_of(const struct star *s, int32_t i)
 {
     int32_t a = s->piece[i].from, b = s->piece[i].to;
-    struct tri_point p = s->mesh->xy[a], q = s->mesh->xy[b];
-    return p.x < q.x || (p.x == q.x && p.y < q.y) ? a : b;
+    return tri_compare_places(s->mesh->xy[a], s->mesh->xy[b]) < 0 ? a : b;
 }
 
 static int32_t end_of(const struct star *s, int32_t i)
@@ -36,13 +35,11 @@ static bool is_before(const void *context, int32_t a, int32_t b)
 {
     const struct star *s = context;
     double side = turn(s, a, b);
-    struct tri_point p = s->mesh->xy[end_of(s, a)], q = s->mesh->xy[end_of(s, b)];
     if (side != 0)
         return side > 0;
-    return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : a < b;
+    int order = tri_compare_places(s->mesh->xy[end_of(s, a)], s->mesh->xy[end_of(s, b)]);
+    return order != 0 ? order < 0 : a < b;
 }
-
-static int32_t earlier(int32_t a, int32_t b) { return a == TRI_NONE || (b != TRI_NONE && b < a) ? b : a; }
 
 /* Pieces of one direction, the shortest first. */
 static void share(struct star *s, const int32_t *item, int32_t n)
@@ -50,8 +47,7 @@ static void share(struct star *s, const int32_t *item, int32_t n)
     for (int32_t k = n - 1; k > 0; k--) {
         struct tri_piece *longer = &s->piece[item[k]], *shorter = &s->piece[item[k - 1]];
         int32_t to = end_of(s, item[k]);
-        shorter->course.first = earlier(shorter->course.first, longer->course.first);
-        shorter->course.marked = earlier(shorter->course.marked, longer->course.marked);
+        shorter->course = tri_course_both(shorter->course, longer->course);
         longer->from = end_of(s, item[k - 1]);
         longer->to = to;
     }
