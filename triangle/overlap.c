@@ -1,6 +1,7 @@
 /* Pieces are grouped by the vertex at which they start, those of one vertex sorted by direction and length. */
 #include "triangle/overlap.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 #include "triangle/heap_sort.h"
@@ -44,6 +45,7 @@ static bool is_before(const void *context, int32_t a, int32_t b)
 /* Pieces of one direction, the shortest first. */
 static void share(struct star *s, const int32_t *item, int32_t n)
 {
+    assert(n >= 2);
     for (int32_t k = n - 1; k > 0; k--) {
         struct tri_piece *longer = &s->piece[item[k]], *shorter = &s->piece[item[k - 1]];
         int32_t to = end_of(s, item[k]);
@@ -76,6 +78,7 @@ bool tri_share_overlaps(const struct tri_mesh *mesh, struct tri_piece *piece, in
             start[v + 2] += start[v + 1];
         for (int32_t i = 0; i < n; i++)
             item[start[start_of(&s, i) + 1]++] = i;
+        assert(start[mesh->n_vertices] == n);
         for (int32_t v = 0; v < mesh->n_vertices; v++)
             if (start[v + 1] - start[v] > 1)
                 share_star(&s, item + start[v], start[v + 1] - start[v]);
