@@ -92,6 +92,7 @@ struct tri_check_options {
     bool convex;       /* the mesh must fill the convex hull and use every point */
     bool renumbered;   /* unused input vertices were dropped (-j): input vertices are known by coordinates alone */
     bool ignore_holes; /* hole points of the input were not carved */
+    bool any_holes;    /* faces may be empty without a hole point: the mesher chose them by another rule */
     bool ignore_lost;  /* unused vertices may lie inside the mesh (a refined mesh keeps those it was given) */
     int32_t base;      /* number of the first vertex and triangle in the texts of the report */
 };
@@ -121,7 +122,7 @@ enum tri_check_kind {
      * segment through them, or 1 on the boundary; else 0. Not looked at where border is TRI_CHECK_BORDER_ANY. */
     TRI_CHECK_VERTEX_MARKERS,
     TRI_CHECK_HOLES,
-    TRI_CHECK_FACES, /* (8); not looked at in refined meshes, whose holes were there before: ignore_lost, BORDER_ANY */
+    TRI_CHECK_FACES, /* (8); not with any_holes, nor in refined meshes, which keep theirs (ignore_lost, BORDER_ANY) */
     TRI_CHECK_ANGLES,
     TRI_CHECK_AREAS,
     TRI_N_CHECKS

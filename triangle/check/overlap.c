@@ -294,7 +294,7 @@ static void sweep(struct sweep *w)
     }
     assert(tri_check_order_above(&w->order, -1) == -1);
     const struct tri_check_options *o = w->c->options;
-    if (w->c->input != NULL && !o->ignore_lost && o->border != TRI_CHECK_BORDER_ANY)
+    if (w->c->input != NULL && !o->any_holes && !o->ignore_lost && o->border != TRI_CHECK_BORDER_ANY)
         check_faces(w);
 }
 
