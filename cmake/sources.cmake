@@ -15,6 +15,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/delaunay.c
     triangle/crossing.c
     triangle/recover.c
+    triangle/flip.c
     triangle/overlap.c
     triangle/constrain.c
     triangle/sweep_order.c
@@ -24,8 +25,10 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/reconstruct.c
     triangle/cavity.c
     triangle/interpolate.c
+    triangle/degrees.c
     triangle/quality.c
     triangle/small_angle.c
+    triangle/groundwork.c
     triangle/feature_size.c
     triangle/split.c
     triangle/disk.c
@@ -35,6 +38,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/refine.c
     triangle/numbering.c
     triangle/census.c
+    triangle/estimate.c
     triangle/stats.c
     triangle/generate.c
     triangle/api/figure.c

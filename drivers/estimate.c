@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 #include "drivers/resources.h"
-#include "sched/clock.h"
+#include "triangle/clock.h"
 
 /* Measured: bytes a triangle at the peak, at least and with one refinement loop or the schedule and its numbering; time
  * of the numbering against that of refining; triangles against the least number that area bounds ask for. */
@@ -78,9 +78,9 @@ static double seconds_a_triangle(void)
         struct tri_report report;
         if (tri_generate(&mesh, &square, &options, &report, NULL) != TRI_OK)
             return USUAL_SECONDS;
-        double began = par_seconds();
+        double began = tri_seconds();
         tri_refine(&mesh, &options.quality, &report.quality, NULL);
-        seconds = (par_seconds() - began) / (mesh.n_slots + 1);
+        seconds = (tri_seconds() - began) / (mesh.n_slots + 1);
         tri_mesh_free(&mesh);
     }
     return seconds;

@@ -13,6 +13,9 @@ const char long_options_help[] =
     "                     all cores. The mesh is the same for any number\n"
     "  --max-area X       as -aX: no triangle larger than X\n"
     "  --min-angle X      as -qX: no angle below X degrees\n"
+    "  --holes auto       with -p: segments tell what is inside, without hole points: what lies behind an even\n"
+    "                     number of them is removed. Rings may lie in rings\n"
+    "  --holes points     hole points tell (the default)\n"
     "  --output BASE      results are called BASE.node, BASE.ele, BASE.poly and so on\n"
     "  --output FILE.vtu | FILE.msh | FILE.2dm | FILE.14 | FILE.grd\n"
     "                     the mesh for VTK and ParaView, Gmsh, SMS or ADCIRC, in place of BASE.node and so on, or\n"
@@ -34,8 +37,8 @@ const char long_options_help[] =
     "  --version, --help  name and version; this help\n";
 
 enum id {
-    THREADS, MAX_AREA, MIN_ANGLE, OUTPUT, REPORT, BLOCKS, NUMBERING, DRY_RUN, TIME_LIMIT, WRITE_PARTIAL, PROGRESS,
-    NO_PROGRESS, VERSION, HELP
+    THREADS, MAX_AREA, MIN_ANGLE, HOLES, OUTPUT, REPORT, BLOCKS, NUMBERING, DRY_RUN, TIME_LIMIT, WRITE_PARTIAL,
+    PROGRESS, NO_PROGRESS, VERSION, HELP
 };
 
 static const struct kind {
@@ -47,7 +50,7 @@ static const struct kind {
     {"output", OUTPUT, true},       {"report", REPORT, true},      {"blocks", BLOCKS, true},
     {"numbering", NUMBERING, true}, {"progress", PROGRESS, false}, {"no-progress", NO_PROGRESS, false},
     {"dry-run", DRY_RUN, false},    {"time-limit", TIME_LIMIT, true}, {"write-partial", WRITE_PARTIAL, false},
-    {"version", VERSION, false},    {"help", HELP, false},
+    {"version", VERSION, false},    {"help", HELP, false},         {"holes", HOLES, true},
 };
 
 static const struct kind *find_kind(const char *name, size_t length)
@@ -114,6 +117,14 @@ static enum tri_status take_angle(struct tri_switches *switches, const char *val
     return TRI_OK;
 }
 
+static enum tri_status take_holes(struct tri_switches *switches, const char *value, struct tri_error *error)
+{
+    switches->even_odd = strcmp(value, "auto") == 0;
+    if (switches->even_odd || strcmp(value, "points") == 0)
+        return TRI_OK;
+    return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--holes: \"%.40s\" is neither auto nor points", value);
+}
+
 static enum tri_status take_numbering(struct long_options *options, const char *value, struct tri_error *error)
 {
     options->by_block = strcmp(value, "blocks") == 0;
@@ -169,6 +180,7 @@ static enum tri_status apply(struct long_options *options, struct tri_switches *
     case THREADS: return take_threads(options, value, error);
     case MAX_AREA: return take_area(switches, value, error);
     case MIN_ANGLE: return take_angle(switches, value, error);
+    case HOLES: return take_holes(switches, value, error);
     case OUTPUT: return take_output(options, kind, value, error);
     case REPORT: return take_name(&options->report, kind, value, error);
     case BLOCKS: return take_name(&options->blocks, kind, value, error);

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "sched/clock.h"
+#include "triangle/clock.h"
 #include "sched/schedule.h"
 
 static const double SECONDS_BETWEEN_LINES = 0.1;
@@ -27,7 +27,7 @@ void progress_stage(struct progress *progress, const char *what)
 
 void progress_begin(struct progress *progress, int64_t triangles, int threads)
 {
-    progress->began = progress->told = par_seconds();
+    progress->began = progress->told = tri_seconds();
     progress->first = triangles;
     progress->round = -1;
     if (progress->mode == PROGRESS_LOG)
@@ -67,7 +67,7 @@ static void rewrite(struct progress *p, double time, int round, int phase, int64
 void progress_step(void *user, int round, int phase, int64_t triangles)
 {
     struct progress *p = user;
-    double time = par_seconds();
+    double time = tri_seconds();
     bool phase_begins = round != p->round || phase != p->phase;
     if (p->mode == PROGRESS_LINE && (phase_begins || time - p->told >= SECONDS_BETWEEN_LINES)) {
         rewrite(p, time, round, phase, triangles);
@@ -83,7 +83,7 @@ void progress_step(void *user, int round, int phase, int64_t triangles)
 
 void progress_end(struct progress *p, int64_t triangles, double numbering)
 {
-    double time = par_seconds() - numbering;
+    double time = tri_seconds() - numbering;
     if (p->mode == PROGRESS_LINE && p->width > 0) {
         fprintf(stderr, "\r%*s\r", p->width, "");
         fflush(stderr);

@@ -14,6 +14,7 @@
 #include "drivers/run.h"
 #include "sched/schedule.h"
 #include "sched/threads.h"
+#include "triangle/estimate.h"
 #include "triangle/text/write.h"
 
 static const char PROGRAM[] = PTRIANGLE_NAME;
@@ -71,7 +72,7 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
 static double estimate(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *quality)
 {
     (void)user;
-    return par_estimate(mesh, quality);
+    return tri_estimate(mesh, quality);
 }
 
 static enum tri_status write_further(void *user, const struct run *run, struct tri_output_set *set,

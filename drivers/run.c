@@ -15,7 +15,7 @@
 #include "drivers/mesh_files.h"
 #include "drivers/self_check.h"
 #include "drivers/summary.h"
-#include "sched/clock.h"
+#include "triangle/clock.h"
 #include "triangle/quality.h"
 
 /* What is read: B.poly, B.node and so on. */
@@ -39,7 +39,7 @@ static struct tri_output_set outputs; /* signals look at it */
 /* Ends a stage; the next one begins. */
 static void end_stage(struct runner *r, enum run_stage stage)
 {
-    double time = par_seconds();
+    double time = tri_seconds();
     r->run.seconds[stage] += time - r->mark;
     r->mark = time;
 }
@@ -337,7 +337,7 @@ static void tell_of_stop(struct runner *r, bool partial)
     if (bad >= 0)
         snprintf(far + length, sizeof far - (size_t)length, ", %" PRId64 " of them below the bounds", bad);
     tri_fail(&line, TRI_STOPPED, NULL, 0, "stopped by %s after %.1f s while %s%s; %s", interrupt_cause(),
-             par_seconds() - r->begin, interrupt_stage_now(), far,
+             tri_seconds() - r->begin, interrupt_stage_now(), far,
              partial ? "the mesh so far is written" : "nothing was written");
     if (!partial)
         interrupt_told(); /* before: rather no line, if the handler comes between, than two */
@@ -371,7 +371,7 @@ static enum tri_status write_mesh(struct runner *r, const struct mesh_files *fil
     if (run->arguments->switches.second_order)
         console_say(&r->console, "Adding nodes amid edges.\n");
     console_say(&r->console, "\n");
-    r->mark = par_seconds();
+    r->mark = tri_seconds();
     enum tri_status status = mesh_files_write(files, &outputs, r->error);
     end_stage(r, RUN_WRITE);
     if (status)
@@ -386,7 +386,7 @@ static enum tri_status tell(struct runner *r)
     struct run *run = &r->run;
     const struct tri_switches *s = &run->arguments->switches;
     enum tri_status status = tri_count_mesh(&run->counts, &run->mesh, r->error);
-    run->total_seconds = par_seconds() - r->begin;
+    run->total_seconds = tri_seconds() - r->begin;
     if (status)
         return status;
     say_milliseconds(r, "Total running", run->total_seconds);
@@ -489,7 +489,7 @@ static enum tri_status run_stages(struct runner *r)
 static enum tri_status run_file(struct runner *r)
 {
     const struct run_limits *limits = &r->run.hooks->limits;
-    r->begin = r->mark = par_seconds();
+    r->begin = r->mark = tri_seconds();
     if (!interrupt_start(r->run.hooks->program, limits->seconds, limits->write_partial))
         return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "the system has no timer left");
     enum tri_status status = run_stages(r);

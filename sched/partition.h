@@ -20,7 +20,7 @@
 #ifndef SCHED_PARTITION_H
 #define SCHED_PARTITION_H
 
-#include "triangle/cavity.h"
+#include "triangle/fence.h"
 #include "triangle/refine.h"
 
 #ifdef __cplusplus
@@ -37,18 +37,7 @@ struct par_partition {
     double estimate; /* of final triangles in all */
 };
 
-/* Estimates the number of triangles that refinement will end with: for bounded areas from the areas, for a bounded
- * angle from the edges' lengths, for a size test by probing it with triangles that get smaller. O(triangles), and a
- * probe for each thousand triangles or so of those to come. */
-double par_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options);
-
-/* That part of it which is no guess: what there is, and what areas and the size test ask for. O(triangles). */
-double par_sure_work(const struct tri_mesh *mesh, const struct tri_refine_options *options);
-
-/* The share of one bad triangle in that. */
-double par_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t);
-
-/* Cuts the plane into cells of about cell_triangles. estimate: what par_estimate says. TRI_NO_MEMORY. O(triangles +
+/* Cuts the plane into cells of about cell_triangles. estimate: what tri_estimate says. TRI_NO_MEMORY. O(triangles +
  * samples log samples). */
 enum tri_status par_partition_make(struct par_partition *partition, const struct tri_mesh *mesh,
                                    const struct tri_refine_options *options, double estimate, double cell_triangles,

@@ -5,9 +5,9 @@
 #include <float.h>
 #include <stdlib.h>
 
-#include "sched/clock.h"
+#include "triangle/clock.h"
 #include "sched/theory.h"
-#include "triangle/quality.h"
+#include "triangle/estimate.h"
 
 enum { GONE = -2 }; /* in phase.block_of: the triangle is no more */
 
@@ -20,7 +20,7 @@ struct task {
     struct tri_fence fence, active; /* the second in the caller's coordinates */
     bool has_margin;
     struct par_room room;
-    struct tri_mesh view;
+    struct par_view view;
     struct tri_refine_options options;
     struct tri_refine_report report;
     struct tri_refiner *refiner;
@@ -44,7 +44,8 @@ struct phase {
     struct task *tasks;
     int32_t n_tasks;
     int32_t *order;     /* [n_tasks] in which tasks are started */
-    size_t n_owners;    /* debug builds: length of mesh->owner */
+    int32_t *mark;      /* [n_marks] debug builds: which block changed each triangle, see triangle/owners.h */
+    size_t n_marks;
 };
 
 static void leave_triangle(void *user, int32_t slot)
@@ -76,7 +77,7 @@ static void assign_blocks(struct phase *p)
     for (int32_t i = 0; i < pool->n; i++) {
         int32_t t = pool->item[i];
         p->block_of[i] = tri_is_live(&mesh->tri[t]) ? owner_now(p, t) : GONE;
-        p->work[i] = p->block_of[i] >= 0 ? par_work_of(mesh, p->state->quality, t) : 0;
+        p->work[i] = p->block_of[i] >= 0 ? tri_work_of(mesh, p->state->quality, t) : 0;
     }
 }
 
@@ -231,33 +232,32 @@ static enum tri_status deal_room(struct phase *p, bool first, struct tri_error *
 
 /* In debug builds every block marks the triangles that it changes; two blocks at one triangle fail an assert
  * (cavity.c). */
-static bool watch_owners(struct phase *p, bool first)
+static bool watch_owners(struct phase *p)
 {
 #ifdef NDEBUG
-    (void)p, (void)first;
+    (void)p;
 #else
-    struct tri_mesh *mesh = p->state->mesh;
-    size_t n = (size_t)mesh->slot_capacity + 1, before = first ? 0 : p->n_owners;
-    int32_t *owner = realloc(mesh->owner, n * sizeof *owner);
-    if (!owner)
+    size_t n = (size_t)p->state->mesh->slot_capacity + 1;
+    int32_t *mark = realloc(p->mark, n * sizeof *mark);
+    if (!mark)
         return false;
-    for (size_t i = before; i < n; i++)
-        owner[i] = 0;
-    mesh->owner = owner;
-    p->n_owners = n;
+    for (size_t i = p->n_marks; i < n; i++)
+        mark[i] = 0;
+    p->mark = mark;
+    p->n_marks = n;
 #endif
     return true;
 }
 
 static void run_task(struct phase *p, struct task *task)
 {
-    double began = par_seconds();
+    double began = tri_seconds();
     assert(task->pausing);
+    task->view.owners = (struct tri_owners){p->mark, task->block + 1};
     par_room_enter(&task->room, &task->view, p->state->mesh);
-    task->view.owner_id = task->block + 1;
     task->status = TRI_OK;
     if (!task->refiner)
-        task->status = tri_refiner_new(&task->refiner, &task->view, &task->options, &task->report, &task->error);
+        task->status = tri_refiner_new(&task->refiner, &task->view.mesh, &task->options, &task->report, &task->error);
     if (!task->status)
         task->status = tri_refiner_run(task->refiner, &task->error);
     par_room_leave(&task->room, &task->view);
@@ -266,13 +266,13 @@ static void run_task(struct phase *p, struct task *task)
         tri_refiner_free(task->refiner);
         task->refiner = NULL;
     }
-    task->seconds += par_seconds() - began;
+    task->seconds += tri_seconds() - began;
 }
 
 /* Runs every task that is not done; returns whether any waits for room. */
 static bool run_tasks(struct phase *p)
 {
-    double began = par_seconds();
+    double began = tri_seconds();
     bool waiting = false;
 #pragma omp parallel for num_threads(p->state->threads) schedule(dynamic, 1)
     for (int32_t i = 0; i < p->n_tasks; i++) {
@@ -282,7 +282,7 @@ static bool run_tasks(struct phase *p)
     }
     for (int32_t i = 0; i < p->n_tasks; i++)
         waiting |= p->tasks[i].pausing;
-    double seconds = par_seconds() - began;
+    double seconds = tri_seconds() - began;
     p->state->report->seconds_refine += seconds;
     p->state->report->phase_seconds[p->colour] += seconds;
     return waiting;
@@ -427,9 +427,9 @@ static enum tri_status collect(struct phase *p, struct tri_error *error)
 static enum tri_status run_phase(struct phase *p, struct tri_error *error)
 {
     struct par_report *report = p->state->report;
-    double began = par_seconds();
+    double began = tri_seconds();
     assign_blocks(p);
-    double assigned = par_seconds();
+    double assigned = tri_seconds();
     bool memory = deal_seeds(p);
     for (int32_t i = 0; memory && i < p->n_tasks; i++)
         set_up(p, &p->tasks[i]);
@@ -437,21 +437,21 @@ static enum tri_status run_phase(struct phase *p, struct tri_error *error)
     if (!memory || !order_tasks(p))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks of a phase");
     report->seconds_find += assigned - began;
-    report->seconds_seeds += par_seconds() - assigned;
+    report->seconds_seeds += tri_seconds() - assigned;
     enum tri_status status = TRI_OK;
     for (bool first = true, waiting = true; waiting && !status; first = false) {
-        double dealing = par_seconds();
+        double dealing = tri_seconds();
         status = deal_room(p, first, error);
-        if (!status && !watch_owners(p, first))
+        if (!status && !watch_owners(p))
             status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the owners of triangles");
-        report->seconds_room += par_seconds() - dealing;
+        report->seconds_room += tri_seconds() - dealing;
         waiting = !status && run_tasks(p);
     }
-    free(p->state->mesh->owner);
-    p->state->mesh->owner = NULL;
-    double merging = par_seconds();
+    free(p->mark);
+    p->mark = NULL;
+    double merging = tri_seconds();
     enum tri_status collected = collect(p, error);
-    report->seconds_merge += par_seconds() - merging;
+    report->seconds_merge += tri_seconds() - merging;
     return status ? status : collected;
 }
 

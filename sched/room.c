@@ -22,70 +22,76 @@ static bool reserve_ranges(struct par_ranges *ranges, int32_t need)
     return tri_grow(&ranges->item, &ranges->capacity, need, sizeof *ranges->item);
 }
 
-/* The view's count and capacity of a kind, as pointers. */
-static void counts_of(struct tri_mesh *view, enum par_kind kind, int32_t **count, int32_t **capacity)
+/* How many items of a kind there are in a mesh, and how many there can be. */
+struct counts {
+    int32_t *used, *capacity;
+};
+
+static struct counts counts_of(struct tri_mesh *mesh, enum par_kind kind)
 {
     switch (kind) {
-    case PAR_VERTICES:
-        *count = &view->n_vertices;
-        *capacity = &view->vertex_capacity;
-        return;
-    case PAR_SLOTS:
-        *count = &view->n_slots;
-        *capacity = &view->slot_capacity;
-        return;
-    default:
-        *count = &view->n_subs;
-        *capacity = &view->sub_capacity;
+    case PAR_VERTICES: return (struct counts){&mesh->n_vertices, &mesh->vertex_capacity};
+    case PAR_SLOTS: return (struct counts){&mesh->n_slots, &mesh->slot_capacity};
+    default: return (struct counts){&mesh->n_subs, &mesh->sub_capacity};
     }
 }
 
-static void enter(struct par_room *room, struct tri_mesh *view, enum par_kind kind)
+/* The room's current range of a kind; NULL: it has none. */
+static struct par_range *current_of(struct par_room *room, enum par_kind kind)
 {
-    int32_t *count, *capacity, current = room->current[kind];
-    bool any = current < room->ranges[kind].n;
-    counts_of(view, kind, &count, &capacity);
-    *count = any ? room->ranges[kind].item[current].next : 0;
-    *capacity = any ? room->ranges[kind].item[current].end : 0;
+    struct par_ranges *ranges = &room->ranges[kind];
+    return room->current[kind] < ranges->n ? &ranges->item[room->current[kind]] : NULL;
 }
 
-static void leave(struct par_room *room, const struct tri_mesh *view, enum par_kind kind)
+/* Shows a view's mesh the current range of a kind. */
+static void enter(struct par_room *room, struct tri_mesh *mesh, enum par_kind kind)
 {
-    int32_t *count, *capacity, current = room->current[kind];
-    counts_of((struct tri_mesh *)view, kind, &count, &capacity);
-    if (current < room->ranges[kind].n)
-        room->ranges[kind].item[current].next = *count;
+    const struct par_range *range = current_of(room, kind);
+    struct counts counts = counts_of(mesh, kind);
+    assert(!range || (0 <= range->next && range->next <= range->end));
+    *counts.used = range ? range->next : 0;
+    *counts.capacity = range ? range->end : 0;
 }
 
-enum tri_status par_more_room(void *user, struct tri_mesh *view, struct tri_error *error)
+static void leave(struct par_room *room, struct tri_mesh *mesh, enum par_kind kind)
+{
+    struct par_range *range = current_of(room, kind);
+    struct counts counts = counts_of(mesh, kind);
+    if (!range)
+        return;
+    assert(range->next <= *counts.used && *counts.used <= range->end && *counts.capacity == range->end);
+    range->next = *counts.used;
+}
+
+enum tri_status par_more_room(void *user, struct tri_mesh *mesh, struct tri_error *error)
 {
     struct par_room *room = user;
-    for (int kind = 0; kind < PAR_KINDS; kind++) {
-        int32_t *count, *capacity;
-        counts_of(view, (enum par_kind)kind, &count, &capacity);
-        assert(*count <= *capacity);
-        while (*capacity - *count < one_insertion[kind]) {
-            leave(room, view, (enum par_kind)kind);
+    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++) {
+        const struct counts counts = counts_of(mesh, kind);
+        assert(*counts.used <= *counts.capacity);
+        while (*counts.capacity - *counts.used < one_insertion[kind]) {
+            leave(room, mesh, kind);
             if (room->current[kind] + 1 >= room->ranges[kind].n)
                 return tri_fail(error, TRI_NO_ROOM, NULL, 0, "the block's room is full");
             room->current[kind]++;
-            enter(room, view, (enum par_kind)kind);
+            enter(room, mesh, kind);
         }
     }
     return TRI_OK;
 }
 
-void par_room_enter(struct par_room *room, struct tri_mesh *view, const struct tri_mesh *shared)
+void par_room_enter(struct par_room *room, struct par_view *view, const struct tri_mesh *shared)
 {
-    *view = *shared;
-    for (int kind = 0; kind < PAR_KINDS; kind++)
-        enter(room, view, (enum par_kind)kind);
+    view->mesh = *shared;
+    view->mesh.owners = view->owners.mark ? &view->owners : NULL;
+    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++)
+        enter(room, &view->mesh, kind);
 }
 
-void par_room_leave(struct par_room *room, const struct tri_mesh *view)
+void par_room_leave(struct par_room *room, struct par_view *view)
 {
-    for (int kind = 0; kind < PAR_KINDS; kind++)
-        leave(room, view, (enum par_kind)kind);
+    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++)
+        leave(room, &view->mesh, kind);
 }
 
 /* Room in both lists for one more range in a block's hands: to take it now, and to give it back later. */
@@ -123,10 +129,9 @@ static enum tri_status extend(struct par_room *room, struct par_room *spare, str
                                                   : tri_mesh_reserve_subs(shared, need, error);
     if (status)
         return status;
-    int32_t *count, *capacity;
-    counts_of(shared, kind, &count, &capacity);
-    deal(to, from, (struct par_range){*count, *count + need});
-    *count += need;
+    int32_t *used = counts_of(shared, kind).used;
+    deal(to, from, (struct par_range){*used, *used + need});
+    *used += need;
     return TRI_OK;
 }
 
@@ -150,15 +155,14 @@ enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, s
         [PAR_SUBS] = triangles / 16 + 64,
     };
     enum tri_status status = TRI_OK;
-    for (int kind = 0; !status && kind < PAR_KINDS; kind++)
-        status = extend(room, spare, shared, (enum par_kind)kind,
-                        wanted[kind] - left_of(room, (enum par_kind)kind), error);
+    for (enum par_kind kind = PAR_VERTICES; !status && kind < PAR_KINDS; kind++)
+        status = extend(room, spare, shared, kind, wanted[kind] - left_of(room, kind), error);
     return status;
 }
 
 void par_room_return(struct par_room *room, struct par_room *spare)
 {
-    for (int kind = 0; kind < PAR_KINDS; kind++) {
+    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++) {
         struct par_ranges *from = &room->ranges[kind], *to = &spare->ranges[kind];
         for (int32_t i = 0; i < from->n; i++) {
             to->dealt--;
@@ -172,7 +176,7 @@ void par_room_return(struct par_room *room, struct par_room *spare)
 
 void par_room_free(struct par_room *room)
 {
-    for (int kind = 0; kind < PAR_KINDS; kind++)
+    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++)
         free(room->ranges[kind].item);
     *room = (struct par_room){0};
 }
@@ -193,10 +197,10 @@ static void mark_free(struct tri_mesh *mesh, enum par_kind kind, int32_t at)
 
 void par_room_mark(const struct par_room *spare, struct tri_mesh *shared)
 {
-    for (int kind = 0; kind < PAR_KINDS; kind++)
+    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++)
         for (int32_t i = 0; i < spare->ranges[kind].n; i++)
             for (int32_t at = spare->ranges[kind].item[i].next; at < spare->ranges[kind].item[i].end; at++)
-                mark_free(shared, (enum par_kind)kind, at);
+                mark_free(shared, kind, at);
 }
 
 static int by_start(const void *left, const void *right)
@@ -277,14 +281,23 @@ static void move_vertex(struct tri_mesh *mesh, int32_t from, int32_t to)
         memcpy(mesh->attributes + (size_t)to * n, mesh->attributes + (size_t)from * n, n * sizeof *mesh->attributes);
 }
 
-/* Moves vertices into gaps. The old place of a vertex remembers the new one until all corners have learnt it. */
+/* The number that a vertex has now which has moved away from here, until all corners have learnt it. It is kept in the
+ * memory of the place left behind, since closing must not fail for want of memory. */
+static int32_t *forwarding_at(const struct tri_mesh *mesh, int32_t v, int32_t kept)
+{
+    (void)kept;
+    assert(v >= kept);
+    return &mesh->vertex_markers[v];
+}
+
+/* Moves vertices into gaps. */
 static void close_vertices(struct par_ranges *gaps, struct tri_mesh *mesh, int threads)
 {
     struct closing c = closing_of(gaps, mesh->n_vertices);
-    int32_t hole, item, *moved = mesh->on;
+    int32_t hole, item;
     while (next_move(&c, &hole, &item)) {
         move_vertex(mesh, item, hole);
-        moved[item] = hole;
+        *forwarding_at(mesh, item, c.last + 1) = hole;
     }
     int32_t kept = c.last + 1;
     (void)threads; /* without OpenMP */
@@ -292,11 +305,11 @@ static void close_vertices(struct par_ranges *gaps, struct tri_mesh *mesh, int t
     for (int32_t t = 0; t < mesh->n_slots; t++)
         for (int k = 0; k < 3; k++)
             if (mesh->tri[t].v[k] >= kept)
-                mesh->tri[t].v[k] = moved[mesh->tri[t].v[k]];
+                mesh->tri[t].v[k] = *forwarding_at(mesh, mesh->tri[t].v[k], kept);
     for (int32_t s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2; k++)
             if (mesh->sub[s].v[k] >= kept)
-                mesh->sub[s].v[k] = moved[mesh->sub[s].v[k]];
+                mesh->sub[s].v[k] = *forwarding_at(mesh, mesh->sub[s].v[k], kept);
     mesh->n_vertices = kept;
 }
 

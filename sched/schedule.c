@@ -7,13 +7,12 @@
 #include <assert.h>
 #include <stdlib.h>
 
-#include "sched/clock.h"
+#include "triangle/clock.h"
 #include "sched/phase.h"
 #include "sched/theory.h"
 #include "sched/threads.h"
-#include "triangle/criterion.h"
+#include "triangle/estimate.h"
 #include "triangle/numbering.h"
-#include "triangle/quality.h"
 
 /* Cells hold one in CELLS of the final triangles, within limits: small ones keep many threads busy, large ones make
  * fewer seams. Coarse triangles a cell has after pre-refinement: enough for seams to be narrow, few enough for
@@ -126,7 +125,7 @@ static bool areas_decide(const struct par_state *state, const struct tri_refine_
 {
     struct tri_refine_options coarse = coarse_bounds(quality, cell);
     return tri_has_sizes(quality) &&
-           par_estimate(state->mesh, &coarse) < estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
+           tri_estimate(state->mesh, &coarse) < estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
 }
 
 static enum tri_status prerefine_uniform(struct par_state *state, const struct tri_refine_options *quality,
@@ -165,7 +164,7 @@ static enum tri_status prerefine_graded(struct par_state *state, const struct tr
     coarse.max_steiner = (int64_t)(partition->estimate / 400);
     struct par_slots long_ones;
     struct tri_executor executor = par_executor(&state->threads);
-    double began = par_seconds();
+    double began = tri_seconds();
     enum tri_status status = fill_pool(state, quality, false, error);
     if (status)
         return status;
@@ -173,17 +172,17 @@ static enum tri_status prerefine_graded(struct par_state *state, const struct tr
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)state->pool.n);
     coarse.seeds = long_ones.item;
     coarse.n_seeds = long_ones.n;
-    double found = par_seconds(), refined = found;
+    double found = tri_seconds(), refined = found;
     if (long_ones.n > 0) {
         status = tri_refine(state->mesh, &coarse, &report, error);
         state->report->total.inserted_free += report.inserted_free;
         state->report->total.inserted_on_segments += report.inserted_on_segments;
-        refined = par_seconds();
+        refined = tri_seconds();
         status = status ? status : fill_pool(state, quality, true, error);
     }
     free(long_ones.item);
     state->report->seconds_prerefine += refined - found;
-    state->report->seconds_find += par_seconds() - refined + found - began;
+    state->report->seconds_find += tri_seconds() - refined + found - began;
     return status;
 }
 
@@ -207,12 +206,12 @@ static enum tri_status refine_rest(struct par_state *state, const struct tri_ref
 /* Numbers that depend on the mesh alone; what is free in its arrays is gone then. */
 static enum tri_status number_mesh(struct par_state *state, struct tri_error *error)
 {
-    double began = par_seconds();
+    double began = tri_seconds();
     tell(state, PAR_NUMBERING);
     struct tri_executor executor = par_executor(&state->threads);
     enum tri_status status = tri_number(state->mesh, state->n_kept, &executor, error);
     state->numbered = true;
-    state->report->seconds_number += par_seconds() - began;
+    state->report->seconds_number += tri_seconds() - began;
     return status;
 }
 
@@ -220,19 +219,19 @@ static enum tri_status number_mesh(struct par_state *state, struct tri_error *er
 static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    double began = par_seconds();
+    double began = tri_seconds();
     if (numbering) {
         par_room_mark(&state->spare, state->mesh);
-        state->report->seconds_merge += par_seconds() - began;
+        state->report->seconds_merge += tri_seconds() - began;
         status = number_mesh(state, error);
         if (!status) {
             par_room_free(&state->spare);
             return status;
         }
-        began = par_seconds();
+        began = tri_seconds();
     }
     par_room_close(&state->spare, state->mesh, state->threads);
-    state->report->seconds_merge += par_seconds() - began;
+    state->report->seconds_merge += tri_seconds() - began;
     return status;
 }
 
@@ -271,12 +270,12 @@ static bool is_left_behind(const struct par_state *state, double x)
 static enum tri_status finish_column(struct par_state *state, struct par_tiles *tiles, int32_t column,
                                      struct tri_error *error)
 {
-    double began = par_seconds();
+    double began = tri_seconds();
     enum tri_status status = TRI_OK;
     if (is_left_behind(state, par_fence(tiles->partition, column, 0).x_max))
         status = tri_fail(error, TRI_TOO_LARGE, NULL, 0, "a sweep leaves bad triangles over: keep the mesh in memory");
     status = status ? status : par_tiles_column(tiles, column, true, &state->spare, error);
-    state->report->seconds_number += par_seconds() - began;
+    state->report->seconds_number += tri_seconds() - began;
     return status;
 }
 
@@ -338,7 +337,7 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         status = par_partition_copy(&state->cells, partition, error);
     }
     status = status ? status : run_rounds(state, partition, error);
-    double last = par_seconds();
+    double last = tri_seconds();
     if (top)
         report->left_over += state->pool.n;
     if (state->sweeping)
@@ -347,7 +346,7 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         par_room_mark(&state->spare, state->mesh);
         status = refine_rest(state, quality, false, error);
     }
-    report->seconds_last += par_seconds() - last;
+    report->seconds_last += tri_seconds() - last;
     enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number, error);
     status = status ? status : closed;
     report->total.gated = report->total.deferred = 0; /* all of them have had their turn */
@@ -367,18 +366,18 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
                                       double estimate, double cell, struct tri_error *error)
 {
     struct par_partition partition;
-    double began = par_seconds();
+    double began = tri_seconds();
     enum tri_status status = par_partition_make(&partition, state->mesh, quality, estimate, cell, error);
-    state->report->seconds_partition += par_seconds() - began;
+    state->report->seconds_partition += tri_seconds() - began;
     if (status)
         return status;
     state->report->levels = level + 1 > state->report->levels ? level + 1 : state->report->levels;
     tell(state, 0);
     if (areas_decide(state, quality, estimate, cell)) {
         status = prerefine_uniform(state, quality, cell, level, error);
-        began = par_seconds();
+        began = tri_seconds();
         status = status ? status : fill_pool(state, quality, false, error);
-        state->report->seconds_find += par_seconds() - began;
+        state->report->seconds_find += tri_seconds() - began;
     } else {
         status = prerefine_graded(state, quality, &partition, error);
     }
@@ -390,8 +389,8 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
 
 static double estimate_of(struct par_state *state, const struct tri_refine_options *quality)
 {
-    double began = par_seconds(), estimate = par_estimate(state->mesh, quality);
-    state->report->seconds_partition += par_seconds() - began;
+    double began = tri_seconds(), estimate = tri_estimate(state->mesh, quality);
+    state->report->seconds_partition += tri_seconds() - began;
     return estimate;
 }
 
@@ -401,13 +400,13 @@ static enum tri_status refine_a_little(struct par_state *state, const struct tri
 {
     struct tri_refine_options options = *quality;
     struct tri_refine_report report;
-    double began = par_seconds();
+    double began = tri_seconds();
     options.max_steiner = (int64_t)(triangles / 2);
     enum tri_status status = tri_refine(state->mesh, &options, &report, error);
     *done = !report.hit_limit;
     report.hit_limit = false;
     par_add_up(&state->report->total, &report);
-    state->report->seconds_prerefine += par_seconds() - began;
+    state->report->seconds_prerefine += tri_seconds() - began;
     return status;
 }
 
@@ -420,7 +419,7 @@ static enum tri_status refine_level(struct par_state *state, const struct tri_re
 {
     double estimate = estimate_of(state, quality), cell = cell_size(state, estimate);
     double large = cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS);
-    if (estimate >= large && par_sure_work(state->mesh, quality) < large) {
+    if (estimate >= large && tri_sure_work(state->mesh, quality) < large) {
         bool done;
         enum tri_status status = refine_a_little(state, quality, large * A_LITTLE, &done, error);
         if (status || done)
@@ -430,9 +429,9 @@ static enum tri_status refine_level(struct par_state *state, const struct tri_re
     }
     if (estimate >= cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS))
         return schedule_level(state, quality, level, estimate, cell, error);
-    double began = par_seconds();
+    double began = tri_seconds();
     enum tri_status status = refine_rest(state, quality, true, error);
-    *(level > 0 ? &state->report->seconds_prerefine : &state->report->seconds_last) += par_seconds() - began;
+    *(level > 0 ? &state->report->seconds_prerefine : &state->report->seconds_last) += tri_seconds() - began;
     return status;
 }
 
@@ -475,7 +474,7 @@ static enum tri_status hand_out(struct par_state *state, const struct tri_refine
 enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
                            const struct par_options *options, struct par_report *report, struct tri_error *error)
 {
-    double began = par_seconds();
+    double began = tri_seconds();
     *report = (struct par_report){.threads = par_threads(options->threads, false)};
     struct par_state state = {.mesh = mesh, .options = options, .threads = report->threads, .report = report,
                               .n_kept = mesh->n_vertices};
@@ -485,16 +484,16 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
         return status;
     if (must_be_sequential(quality, options)) {
         status = refine_rest(&state, quality, true, error);
-        report->seconds_last += par_seconds() - began;
+        report->seconds_last += tri_seconds() - began;
     } else {
         usual.min_angle = quality->min_angle < TRI_USUAL_ANGLE ? quality->min_angle : TRI_USUAL_ANGLE;
         status = usual.min_angle > TRI_EASY_ANGLE ? refine_sizes_first(&state, &usual, error) : TRI_OK;
         state.may_number = !options->by_block && quality->min_angle <= TRI_USUAL_ANGLE;
         status = status ? status : refine_level(&state, &usual, 0, error);
-        double last = par_seconds();
+        double last = tri_seconds();
         if (!status && quality->min_angle > TRI_USUAL_ANGLE)
             status = refine_rest(&state, quality, true, error);
-        report->seconds_last += par_seconds() - last;
+        report->seconds_last += tri_seconds() - last;
     }
     if (!status && report->levels > 0 && !options->by_block && !state.numbered && !state.sweeping)
         status = number_mesh(&state, error);
@@ -504,6 +503,6 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     free(state.column.item);
     par_partition_free(&state.cells);
     par_room_free(&state.spare);
-    report->seconds_total = par_seconds() - began;
+    report->seconds_total = tri_seconds() - began;
     return status;
 }

@@ -4,7 +4,7 @@
 #include <assert.h>
 #include <math.h>
 
-#include "triangle/quality.h"
+#include "triangle/degrees.h"
 
 static double sine(double degrees)
 {

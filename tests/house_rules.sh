@@ -75,6 +75,14 @@ for file in triangle/check/*.[ch]; do
     [ -z "$strange" ] || breach "$file includes" $strange
 done
 
+# The schedule drives refinement by its hooks: how triangles are judged and points inserted is the mesher's own affair.
+# (api/ and dropin/ are the doors of the library, of which sched/ has its own.)
+hooks='mesh|owners|fence|refine|estimate|generate|numbering|executor|api/mesh|dropin/(triangle|io)'
+tools='clock|degrees|grow|hilbert|radix|point|status|stop'
+strange=$(grep -E '^sched/.*#[[:space:]]*include[[:space:]]*"triangle/' "$code" |
+    grep -vE '"triangle/('"$hooks|$tools"')\.h"' | head -n 3)
+[ -z "$strange" ] || breach "sched/ includes what is no hook: $strange"
+
 # 3. Libraries neither print nor end the process nor touch the locale.
 refuse '(^|[^_a-zA-Z0-9])(printf|puts|putchar|perror|exit|_exit|abort|setlocale|std(out|err))([^_a-zA-Z0-9]|$)' \
     'prints, exits or touches the locale' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp \

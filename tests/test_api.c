@@ -241,6 +241,21 @@ static void test_any_unit(void **state)
     tri_mesh_delete(huge);
 }
 
+/* The ring of the hole empties it by itself; the wall between the regions is no ring, and changes nothing. */
+static void test_even_odd(void **state)
+{
+    (void)state;
+    struct tri_figure figure = plate();
+    struct tri_settings settings = fine();
+    struct tri_mesh *wanted = mesh_of(&figure, &settings);
+    figure.holes.n = 0;
+    settings.even_odd = true;
+    struct tri_mesh *mesh = mesh_of(&figure, &settings);
+    assert_true(same_meshes(mesh, wanted));
+    tri_mesh_delete(mesh);
+    tri_mesh_delete(wanted);
+}
+
 /* --- callbacks */
 
 static double length_at(void *user, const double at[2])
@@ -528,6 +543,7 @@ int main(void)
         cmocka_unit_test(test_strides_and_attributes),
         cmocka_unit_test(test_a_mesh_as_figure),
         cmocka_unit_test(test_any_unit),
+        cmocka_unit_test(test_even_odd),
         cmocka_unit_test(test_edge_length),
         cmocka_unit_test(test_gate_and_fence),
         cmocka_unit_test(test_stop),

@@ -136,7 +136,7 @@ static void test_tangles_equal_naive_twin(void **state)
     (void)state;
     for (int which = 0; which < 8; which++)
         for (uint64_t seed = 0; seed < 25; seed++) {
-            struct tri_carve_options options = {which & 1, which & 2, which & 4};
+            struct tri_carve_options options = {which & 1, which & 2, which & 4, false};
             struct tri_pslg pslg = support_tangle(seed % 2 ? SUPPORT_RANDOM : SUPPORT_LATTICE, 25, 30, seed);
             if (seed % 3)
                 memmove(pslg.segments, pslg.segments + 8, (size_t)(pslg.n_segments -= 4) * 8); /* an open hull */
@@ -278,6 +278,178 @@ static void test_boundary_markers(void **state)
     tri_pslg_free(&pslg);
 }
 
+/* --- even_odd */
+
+/* How many segments a ray to the right of p crosses: the rule itself. */
+static int crossings(const struct tri_pslg *pslg, double x, double y)
+{
+    int n = 0;
+    for (int32_t k = 0; k < pslg->n_segments; k++) {
+        const double *a = &pslg->points[2 * pslg->segments[2 * k]], *b = &pslg->points[2 * pslg->segments[2 * k + 1]];
+        if ((a[1] > y) != (b[1] > y))
+            n += a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) > x;
+    }
+    return n;
+}
+
+static double area_of(const struct tri_mesh *mesh, int32_t t, double centroid[2])
+{
+    struct tri_point a = mesh->xy[mesh->tri[t].v[0]], b = mesh->xy[mesh->tri[t].v[1]], c = mesh->xy[mesh->tri[t].v[2]];
+    centroid[0] = (a.x + b.x + c.x) / 3;
+    centroid[1] = (a.y + b.y + c.y) / 3;
+    return ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
+}
+
+/* Area of what has an odd number of crossings, of all triangles of the hull or of what is left; `stays`: all have. */
+static double odd_area(const struct tri_mesh *mesh, const struct tri_pslg *pslg, bool *stays)
+{
+    double sum = 0, at[2];
+    *stays = true;
+    for (int32_t t = 0; t < mesh->n_slots; t++) {
+        double area = area_of(mesh, t, at);
+        bool odd = crossings(pslg, at[0], at[1]) % 2;
+        sum += odd ? area : 0;
+        *stays = *stays && (odd || area < 1e-9); /* thinner: rounding decides */
+    }
+    return sum;
+}
+
+static void add_ring(struct tri_pslg *pslg, int32_t n, struct support_random *random, bool lattice)
+{
+    int32_t first = pslg->n_points;
+    for (int32_t k = 0; k < n; k++) {
+        double x = support_unit(random), y = support_unit(random);
+        support_add_point(pslg, lattice ? floor(6 * x) : 6 * x, lattice ? floor(6 * y) : 6 * y);
+    }
+    for (int32_t k = 0; k < n; k++)
+        support_add_segment(pslg, first + k, first + (k + 1) % n);
+}
+
+static struct tri_mesh carved(const struct tri_pslg *pslg, const struct tri_carve_options *options)
+{
+    struct tri_constrain_report report;
+    struct tri_error error = {0};
+    struct tri_mesh mesh = support_constrained(pslg, &report);
+    assert_int_equal(tri_carve(&mesh, pslg, options, &error), TRI_OK);
+    if (tri_mesh_validate(&mesh, &error) != TRI_OK)
+        fail_msg("%s", error.text);
+    return mesh;
+}
+
+/* Rings that cross themselves and each other, and on a lattice overlap: what is left is what the rule says. */
+static void test_rings_keep_the_even_odd_rule(void **state)
+{
+    (void)state;
+    const struct tri_carve_options options = {.even_odd = true};
+    for (uint64_t seed = 0; seed < 120; seed++) {
+        struct support_random random = {seed};
+        struct tri_pslg pslg = support_pslg(64, 64, 1, 1);
+        struct tri_constrain_report report;
+        bool stays, all;
+        for (int ring = 0; ring < 4; ring++)
+            add_ring(&pslg, 3 + support_below(&random, 8), &random, seed % 2);
+        struct tri_mesh whole = support_constrained(&pslg, &report), mesh = carved(&pslg, &options);
+        double wanted = odd_area(&whole, &pslg, &all), found = odd_area(&mesh, &pslg, &stays);
+        assert_true(stays && !all && wanted > 0.1 && fabs(found - wanted) < 1e-8);
+        assert_compact(&mesh, pslg.n_segments);
+        tri_mesh_free(&whole);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+    }
+}
+
+/* The least number of odd subsegments on a way from outside, by sweeps until nothing changes. */
+static int32_t *naive_depths(const struct tri_mesh *mesh, bool keep_hull)
+{
+    int32_t *depth = calloc((size_t)mesh->n_slots + 1, sizeof *depth);
+    for (int32_t t = 0; t < mesh->n_slots; t++)
+        depth[t] = INT32_MAX / 2;
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (int32_t t = 0; t < mesh->n_slots; t++)
+            for (int e = 0; e < 3; e++) {
+                int32_t link = mesh->tri[t].n[e], other = tri_across(mesh, tri_code(t, e));
+                const struct tri_parent *parent = link < 0 ? &mesh->parents[mesh->sub[~link].parent] : NULL;
+                bool wall = parent && (parent->odd || (keep_hull && parent->segment == TRI_NONE));
+                int32_t there = other == TRI_NONE ? 0 : depth[tri_of(other)];
+                if (there + wall < depth[t]) {
+                    depth[t] = there + wall;
+                    changed = true;
+                }
+            }
+    }
+    return depth;
+}
+
+/* Rings, and any segments beside. */
+static void test_depths_equal_naive_twin(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 80; seed++) {
+        const struct tri_carve_options options = {.even_odd = true, .keep_hull = seed % 4 == 3};
+        struct support_random random = {seed};
+        struct tri_pslg pslg = support_pslg(64, 80, 1, 1);
+        struct tri_constrain_report report;
+        for (int ring = 0; ring < 3; ring++)
+            add_ring(&pslg, 3 + support_below(&random, 8), &random, seed % 2);
+        for (int k = 0; k < 12; k++)
+            support_add_segment(&pslg, support_below(&random, pslg.n_points), support_below(&random, pslg.n_points));
+        struct tri_mesh before = support_constrained(&pslg, &report), mesh = carved(&pslg, &options);
+        int32_t *depth = naive_depths(&before, options.keep_hull);
+        for (int32_t t = 0; t < before.n_slots; t++)
+            depth[t] = depth[t] % 2 ? 0 : TRI_NONE;
+        assert_same_triangles(&before, depth, &mesh, TRI_NONE);
+        free(depth);
+        tri_mesh_free(&before);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+    }
+}
+
+static void add_box(struct tri_pslg *pslg, double x, double y, double width, double height)
+{
+    int32_t first = support_add_point(pslg, x, y);
+    support_add_point(pslg, x + width, y);
+    support_add_point(pslg, x + width, y + height);
+    support_add_point(pslg, x, y + height);
+    for (int32_t k = 0; k < 4; k++)
+        support_add_segment(pslg, first + k, first + (k + 1) % 4);
+}
+
+static double area_left(const struct tri_pslg *pslg, bool keep_hull)
+{
+    const struct tri_carve_options options = {.even_odd = true, .keep_hull = keep_hull};
+    struct tri_mesh mesh = carved(pslg, &options);
+    double sum = 0, at[2];
+    for (int32_t t = 0; t < mesh.n_slots; t++)
+        sum += area_of(&mesh, t, at);
+    tri_mesh_free(&mesh);
+    return sum;
+}
+
+/* Boxes in, beside and along each other; each step adds to what is there. */
+static void test_boxes(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = support_pslg(64, 64, 1, 1);
+    add_box(&pslg, 0, 0, 8, 8);
+    add_box(&pslg, 1, 1, 4, 4); /* a hole */
+    assert_true(area_left(&pslg, false) == 48);
+    add_box(&pslg, 2, 2, 1, 1); /* an island */
+    assert_true(area_left(&pslg, false) == 49);
+    add_box(&pslg, 8, 0, 2, 4); /* a neighbour, which shares a piece of the border */
+    assert_true(area_left(&pslg, false) == 57);
+    add_box(&pslg, 0, 6, 2, 2); /* a hole along the border */
+    assert_true(area_left(&pslg, false) == 53);
+    support_add_segment(&pslg, 0, 4); /* across to the hole, and into it */
+    support_add_segment(&pslg, 0, 8);
+    assert_true(area_left(&pslg, false) == 53);
+    assert_true(area_left(&pslg, true) == 53 + 4); /* the hull is a ring: the pocket at the neighbour's corner stays */
+    add_box(&pslg, 2, 2, 1, 1); /* the island again: its ring is there twice, and none */
+    assert_true(area_left(&pslg, false) == 52);
+    tri_pslg_free(&pslg);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -287,6 +459,9 @@ int main(void)
         cmocka_unit_test(test_hole_points_in_odd_places),
         cmocka_unit_test(test_far_places_are_outside),
         cmocka_unit_test(test_boundary_markers),
+        cmocka_unit_test(test_rings_keep_the_even_odd_rule),
+        cmocka_unit_test(test_depths_equal_naive_twin),
+        cmocka_unit_test(test_boxes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -294,6 +294,98 @@ static void test_once_broken(void **state)
     }
 }
 
+/* --- what lies within rounding of y = 0, where places finer than a resolution can be given */
+
+static const double ULP = 0x1p-52;
+
+/* A segment from (1, 0) to (1.9, 0), and a point far above and far below. */
+static struct tri_pslg lying_segment(void)
+{
+    struct tri_pslg pslg = support_pslg(60, 8, 0, 0);
+    support_add_point(&pslg, 1, 0);
+    support_add_point(&pslg, 1.9, 0);
+    support_add_segment(&pslg, 0, 1);
+    support_add_point(&pslg, 1.5, 1);
+    support_add_point(&pslg, 1.5, -1);
+    return pslg;
+}
+
+/* Does an input segment run through the vertex? */
+static bool is_run_through(const struct tri_mesh *mesh, int32_t v)
+{
+    for (int32_t s = 0; s < mesh->n_subs; s++)
+        if ((mesh->sub[s].v[0] == v || mesh->sub[s].v[1] == v) &&
+            mesh->parents[mesh->sub[s].parent].segment != TRI_NONE)
+            return true;
+    return false;
+}
+
+/* Of two vertices on either side, each within half a resolution, the nearer one is taken, and the other is then too far
+ * away: whichever comes first along the segment, and above or below. */
+static void test_nearest_beside_is_taken(void **state)
+{
+    (void)state;
+    for (int turn = 0; turn < 4; turn++) {
+        struct tri_constrain_report report;
+        struct tri_pslg pslg = lying_segment();
+        double side = turn & 1 ? 1 : -1, before = turn & 2 ? 1.5 : 1.5625, behind = turn & 2 ? 1.5625 : 1.5;
+        int32_t far = support_add_point(&pslg, before, 0.45 * side * before * ULP);
+        int32_t near = support_add_point(&pslg, behind, -0.2 * side * behind * ULP);
+        struct tri_mesh mesh = support_constrained(&pslg, &report);
+        assert_int_equal(report.bent, 1);
+        assert_true(is_run_through(&mesh, near) && !is_run_through(&mesh, far));
+        judge(&mesh, &pslg);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+    }
+}
+
+/* Each vertex lies within half a resolution of the way from the one before to the end: the chain follows them, but no
+ * farther than three resolutions of the segment's larger end. */
+static void test_a_chain_does_not_drift(void **state)
+{
+    (void)state;
+    enum { VERTICES = 40 };
+    struct tri_constrain_report report;
+    struct tri_pslg pslg = lying_segment();
+    double x = 1, y = 0, height[VERTICES];
+    for (int i = 0; i < VERTICES; i++) {
+        double next = x + 0x1p-8;
+        y = y * (1.9 - next) / (1.9 - x) + 0.45 * next * ULP;
+        x = next;
+        height[i] = y;
+        support_add_point(&pslg, x, y);
+    }
+    assert_true(height[VERTICES - 1] > 1.5 * 3 * 1.9 * ULP);
+    struct tri_mesh mesh = support_constrained(&pslg, &report);
+    for (int i = 0; i < VERTICES; i++)
+        assert_int_equal(is_run_through(&mesh, 4 + i), height[i] <= 3 * 1.9 * ULP);
+    judge(&mesh, &pslg);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+/* Two segments that cross share a vertex within two resolutions of the crossing, though it is on neither; one farther
+ * away they do not. */
+static void test_crossing_at_a_vertex_nearby(void **state)
+{
+    (void)state;
+    for (int steps = 1; steps <= 3; steps++) {
+        struct tri_constrain_report report;
+        struct tri_pslg pslg = lying_segment();
+        support_add_segment(&pslg, 2, 3);
+        int32_t v = support_add_point(&pslg, 1.5 + steps * ULP, steps * ULP);
+        struct tri_mesh mesh = support_constrained(&pslg, &report);
+        bool shared = steps < 3; /* 1.41 and 2.83 ulps away, or 4.24: a resolution is 1.5 ulps here */
+        assert_int_equal(report.crossings, !shared);
+        assert_int_equal(mesh.n_vertices, pslg.n_points + !shared);
+        assert_int_equal(is_run_through(&mesh, v), shared);
+        judge(&mesh, &pslg);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+    }
+}
+
 static void test_no_triangles_no_segments(void **state)
 {
     (void)state;
@@ -389,6 +481,9 @@ int main(void)
         cmocka_unit_test(test_many_spokes_and_long_channels),
         cmocka_unit_test(test_crossings_below_resolution),
         cmocka_unit_test(test_once_broken),
+        cmocka_unit_test(test_nearest_beside_is_taken),
+        cmocka_unit_test(test_a_chain_does_not_drift),
+        cmocka_unit_test(test_crossing_at_a_vertex_nearby),
         cmocka_unit_test(test_no_triangles_no_segments),
         cmocka_unit_test(test_all_segment_files),
         cmocka_unit_test(test_overlaps_from_one_vertex),

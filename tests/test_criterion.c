@@ -116,9 +116,9 @@ static void test_flat(void **state)
     struct setting s;
     set_up(&s, (struct tri_point){0, 0}, (struct tri_point){1, 0}, (struct tri_point){0.5, 1e-6});
     struct tri_shape shape = tri_shape_of(s.xy, s.triangle.v);
-    s.mesh.shortest2 = 1e-14;
+    s.mesh.limits.shortest2 = 1e-14;
     assert_false(tri_is_flat(&s.mesh, &shape));
-    s.mesh.shortest2 = 1e-10;
+    s.mesh.limits.shortest2 = 1e-10;
     assert_true(tri_is_flat(&s.mesh, &shape));
 }
 

@@ -48,6 +48,10 @@ static void test_both_forms(void **state)
     assert_int_equal(TAKE(&t, "--progress", "letter"), TRI_OK);
     assert_int_equal(t.options.progress, PROGRESS_YES);
     assert_int_equal(t.at, 1);
+    assert_int_equal(TAKE(&t, "--holes", "auto"), TRI_OK);
+    assert_true(t.switches.even_odd);
+    assert_int_equal(TAKE_ALONE(&t, "--holes=points"), TRI_OK);
+    assert_false(t.switches.even_odd);
     assert_int_equal(TAKE(&t, "--numbering", "blocks"), TRI_OK);
     assert_true(t.options.by_block);
     assert_int_equal(TAKE_ALONE(&t, "--numbering=curve"), TRI_OK);
@@ -103,6 +107,7 @@ static void test_refused(void **state)
         {"--max-area", "1 "},     {"--min-angle", "60.1"},  {"--min-angle", "-0.1"},  {"--min-angle", "nan"},
         {"--output", ""},         {"--report", NULL},       {"--progress=1", NULL},   {"--help=", NULL},
         {"--numbering", "block"}, {"--numbering=", NULL},   {"--numbering", NULL},    {"--numbers", "curve"},
+        {"--holes", "none"},      {"--holes", NULL},        {"--holes=", NULL},       {"--hole", "auto"},
         {"--thread", "2"},        {"--threadss", "2"},      {"--", "letter"},         {"--=1", NULL},
     };
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {

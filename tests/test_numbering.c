@@ -37,7 +37,7 @@ static int32_t *scatter(int32_t n, int32_t first, int32_t *places, struct suppor
 static struct tri_mesh scrambled(const struct tri_mesh *from, struct support_random *random)
 {
     struct tri_mesh to;
-    int32_t hubs = from->n_hubs, vertices, slots, subs;
+    int32_t hubs = from->incidence.n_vertices, vertices, slots, subs;
     int32_t *vertex = scatter(from->n_vertices - hubs, hubs, &vertices, random);
     int32_t *slot = scatter(from->n_slots, 0, &slots, random), *sub = scatter(from->n_subs, 0, &subs, random);
     int32_t *turn = malloc((size_t)from->n_slots * sizeof *turn);
@@ -50,7 +50,7 @@ static struct tri_mesh scrambled(const struct tri_mesh *from, struct support_ran
     to.n_vertices = hubs + vertices;
     to.n_slots = slots;
     to.n_subs = subs;
-    to.n_hubs = hubs;
+    to.incidence.n_vertices = hubs;
     to.n_input = from->n_input;
     to.n_parents = from->n_parents;
     memcpy(to.parents, from->parents, (size_t)from->n_parents * sizeof *to.parents);
@@ -113,8 +113,8 @@ static void assert_in_order(const struct tri_mesh *mesh)
         assert_true(b->parent > a->parent || (b->parent == a->parent && b->v[0] > a->v[0]));
     }
     double steps = 0; /* along a curve: neighbours are near */
-    int32_t n = mesh->n_vertices - mesh->n_hubs;
-    for (int32_t v = mesh->n_hubs + 1; v < mesh->n_vertices; v++)
+    int32_t n = mesh->n_vertices - mesh->incidence.n_vertices;
+    for (int32_t v = mesh->incidence.n_vertices + 1; v < mesh->n_vertices; v++)
         steps += hypot(mesh->xy[v].x - mesh->xy[v - 1].x, mesh->xy[v].y - mesh->xy[v - 1].y);
     assert_true(steps < 6 * sqrt(n) + 1);
 }
@@ -140,15 +140,16 @@ static void test_any_scrambling_comes_out_the_same(void **state)
         struct tri_mesh mesh = refined(seed, seed < 2 ? 1e-4 : 1e-3);
         struct support_places places = support_places(&mesh), after;
         struct tri_mesh other = scrambled(&mesh, &random);
-        assert_true(mesh.n_vertices > mesh.n_hubs && mesh.n_hubs > mesh.n_input);
-        assert_int_equal(tri_number(&mesh, mesh.n_hubs, seed % 2 ? &support_backwards : NULL, NULL), TRI_OK);
-        assert_int_equal(tri_number(&other, other.n_hubs, seed % 2 ? NULL : &support_backwards, NULL), TRI_OK);
+        assert_true(mesh.n_vertices > mesh.incidence.n_vertices && mesh.incidence.n_vertices > mesh.n_input);
+        int32_t n_kept = mesh.incidence.n_vertices;
+        assert_int_equal(tri_number(&mesh, n_kept, seed % 2 ? &support_backwards : NULL, NULL), TRI_OK);
+        assert_int_equal(tri_number(&other, n_kept, seed % 2 ? NULL : &support_backwards, NULL), TRI_OK);
         support_assert_same_bytes(&mesh, &other);
         assert_in_order(&mesh);
         assert_is_whole(&mesh);
         after = support_places(&mesh);
         assert_true(support_same_places(&places, &after));
-        assert_int_equal(tri_number(&mesh, mesh.n_hubs, NULL, NULL), TRI_OK); /* once more: nothing to do */
+        assert_int_equal(tri_number(&mesh, n_kept, NULL, NULL), TRI_OK); /* once more: nothing to do */
         support_assert_same_bytes(&mesh, &other);
         support_places_free(&places);
         support_places_free(&after);
@@ -167,12 +168,12 @@ static void test_before_and_after_refinement(void **state)
     struct tri_refine_report report;
     options.refine = false;
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    assert_int_equal(tri_number(&mesh, mesh.n_hubs, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_number(&mesh, mesh.incidence.n_vertices, NULL, NULL), TRI_OK);
     assert_int_equal(mesh.n_vertices, 204);
     assert_in_order(&mesh);
     for (int round = 0; round < 2; round++) {
         assert_int_equal(tri_refine(&mesh, &options.quality, &report, NULL), TRI_OK);
-        assert_int_equal(tri_number(&mesh, mesh.n_hubs, NULL, NULL), TRI_OK);
+        assert_int_equal(tri_number(&mesh, mesh.incidence.n_vertices, NULL, NULL), TRI_OK);
         assert_in_order(&mesh);
         support_judge(&mesh, &pslg, &check, false, NULL);
         options.quality.max_area = check.max_area = 3e-4;
@@ -195,7 +196,7 @@ static void test_large_fan(void **state)
         support_add_segment(&pslg, i, (i + 1) % N);
     support_add_point(&pslg, 0, 0);
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    assert_int_equal(tri_number(&mesh, mesh.n_hubs, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_number(&mesh, mesh.incidence.n_vertices, NULL, NULL), TRI_OK);
     assert_int_equal(mesh.tri[mesh.n_slots / 2].v[0], N);
     assert_in_order(&mesh);
     assert_int_equal(tri_mesh_validate(&mesh, NULL), TRI_OK);
@@ -208,13 +209,13 @@ static void test_without_memory_nothing_changes(void **state)
     (void)state;
     struct support_random random = {9};
     struct tri_mesh mesh = refined(9, 1e-3), other = scrambled(&mesh, &random);
-    assert_int_equal(tri_number(&mesh, mesh.n_hubs, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_number(&mesh, mesh.incidence.n_vertices, NULL, NULL), TRI_OK);
     long long held = support_held;
     for (int call = 1;; call++) {
         struct support_places before = support_places(&other);
         support_calls = 0;
         support_fail_at = call;
-        enum tri_status status = tri_number(&other, other.n_hubs, NULL, NULL);
+        enum tri_status status = tri_number(&other, other.incidence.n_vertices, NULL, NULL);
         support_fail_at = INT64_MAX;
         struct support_places after = support_places(&other);
         assert_true(support_same_places(&before, &after));

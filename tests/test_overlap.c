@@ -33,7 +33,7 @@ static int32_t draw_pieces(struct support_random *random, struct tri_piece *piec
         int32_t line = ON_LINE * support_below(random, N_LINES), a = support_below(random, ON_LINE);
         int32_t length = 1 + support_below(random, support_below(random, 3) ? 3 : ON_LINE - 1);
         piece[k] = (struct tri_piece){line + a, line + (a + length) % ON_LINE,
-                                      {k, support_below(random, 2) ? k : TRI_NONE}};
+                                      {k, support_below(random, 2) ? k : TRI_NONE, true}};
     }
     return n;
 }
@@ -42,7 +42,7 @@ static int32_t draw_pieces(struct support_random *random, struct tri_piece *piec
 static void paint_units(const struct tri_piece *piece, int32_t n, struct tri_course *unit, int32_t *times)
 {
     for (int32_t u = 0; u < N_POINTS; u++)
-        unit[u] = (struct tri_course){TRI_NONE, TRI_NONE}, times[u] = 0;
+        unit[u] = (struct tri_course){TRI_NONE, TRI_NONE, false}, times[u] = 0;
     for (int32_t k = 0; k < n; k++) {
         int32_t a = piece[k].from, b = piece[k].to;
         for (int32_t u = a < b ? a : b; u < (a < b ? b : a); u++) {
@@ -51,6 +51,7 @@ static void paint_units(const struct tri_piece *piece, int32_t n, struct tri_cou
             if (piece[k].course.marked != TRI_NONE &&
                 (unit[u].marked == TRI_NONE || piece[k].course.marked < unit[u].marked))
                 unit[u].marked = piece[k].course.marked;
+            unit[u].odd ^= piece[k].course.odd;
             times[u]++;
         }
     }
@@ -76,6 +77,7 @@ static void test_each_elementary_piece_once(void **state)
             assert_int_equal(times[u], given[u] > 0);
             assert_int_equal(found[u].first, expected[u].first);
             assert_int_equal(found[u].marked, expected[u].marked);
+            assert_int_equal(found[u].odd, expected[u].odd);
         }
         assert_true(n < 2 * n_given);
         for (int32_t k = 1; k < n; k++)
@@ -103,7 +105,7 @@ static void test_long_overlaps_are_short_work(void **state)
         xy[j] = kept;
     }
     for (int32_t k = 0; k < N - 1; k++)
-        piece[k] = (struct tri_piece){k, k + 1, {k, TRI_NONE}};
+        piece[k] = (struct tri_piece){k, k + 1, {k, TRI_NONE, true}};
     int32_t n = N - 1;
     struct tri_mesh mesh = {.xy = xy, .n_vertices = N};
     assert_true(tri_share_overlaps(&mesh, &piece, &n, is_no_edge, NULL));
@@ -123,7 +125,7 @@ static void test_an_ulp_apart_is_apart(void **state)
     int32_t n = 3;
     assert_non_null(piece);
     for (int32_t k = 0; k < n; k++)
-        piece[k] = (struct tri_piece){2 * k, 2 * k + 1, {k, TRI_NONE}};
+        piece[k] = (struct tri_piece){2 * k, 2 * k + 1, {k, TRI_NONE, true}};
     struct tri_mesh mesh = {.xy = xy, .n_vertices = 6};
     assert_true(tri_share_overlaps(&mesh, &piece, &n, is_no_edge, NULL));
     assert_int_equal(n, 3);

@@ -1,5 +1,6 @@
 /* Bounds, shapes and placement against elementary geometry in long double. */
 #include "support.h"
+#include "triangle/degrees.h"
 #include "triangle/quality.h"
 
 static const double RADIANS = 0.017453292519943295769;

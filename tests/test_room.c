@@ -74,23 +74,24 @@ static void table_free(struct table *table)
 static bool use_room(struct table *table, struct par_room *room, const struct tri_mesh *shared, int32_t who, int32_t n,
                      struct support_random *random)
 {
-    struct tri_mesh view;
+    struct par_view view = {0};
     bool enough = true;
     par_room_enter(room, &view, shared);
     for (int32_t i = 0; i < n && enough; i++) {
-        bool need = view.vertex_capacity - view.n_vertices < 1 || view.slot_capacity - view.n_slots < 2 ||
-                    view.sub_capacity - view.n_subs < 1;
-        enum tri_status status = need ? par_more_room(room, &view, NULL) : TRI_OK;
+        struct tri_mesh *mesh = &view.mesh;
+        bool need = mesh->vertex_capacity - mesh->n_vertices < 1 || mesh->slot_capacity - mesh->n_slots < 2 ||
+                    mesh->sub_capacity - mesh->n_subs < 1;
+        enum tri_status status = need ? par_more_room(room, &view.mesh, NULL) : TRI_OK;
         assert_true(status == TRI_OK || status == TRI_NO_ROOM);
         enough = status == TRI_OK;
         if (!enough)
             break;
         int32_t taken[4][2] = {
-            {PAR_VERTICES, view.n_vertices++}, {PAR_SLOTS, view.n_slots++}, {PAR_SLOTS, view.n_slots++}};
+            {PAR_VERTICES, view.mesh.n_vertices++}, {PAR_SLOTS, view.mesh.n_slots++}, {PAR_SLOTS, view.mesh.n_slots++}};
         int n_taken = 3;
         if (support_below(random, 4) == 0) {
             taken[3][0] = PAR_SUBS;
-            taken[3][1] = view.n_subs++;
+            taken[3][1] = view.mesh.n_subs++;
             n_taken = 4;
         }
         for (int k = 0; k < n_taken; k++) {
@@ -170,7 +171,7 @@ static struct tri_mesh mesh_with_attributes(void)
 /* Refines some more on a view, until it is done, or its limit is reached, or it has no more room. */
 static int64_t refine_in_room(struct tri_mesh *shared, struct par_room *room, int64_t limit, double max_area)
 {
-    struct tri_mesh view;
+    struct par_view view = {0};
     struct tri_refine_options options = tri_refine_defaults();
     struct tri_refine_report report;
     int32_t n = shared->n_slots, *seeds = malloc((size_t)n * sizeof *seeds);
@@ -185,7 +186,7 @@ static int64_t refine_in_room(struct tri_mesh *shared, struct par_room *room, in
         if (tri_is_live(&shared->tri[i]))
             seeds[options.n_seeds++] = i;
     par_room_enter(room, &view, shared);
-    enum tri_status status = tri_refine(&view, &options, &report, NULL);
+    enum tri_status status = tri_refine(&view.mesh, &options, &report, NULL);
     assert_true(status == TRI_OK || status == TRI_NO_ROOM);
     par_room_leave(room, &view);
     free(seeds);
@@ -249,7 +250,8 @@ static void test_closing_keeps_the_mesh(void **state)
         if (seed % 2) {
             par_room_close(&spare, &mesh, 1 + (int)(seed % 3));
         } else {
-            assert_int_equal(tri_number(&mesh, mesh.n_hubs, NULL, NULL), TRI_OK); /* leaves out what is marked */
+            /* leaves out what is marked */
+            assert_int_equal(tri_number(&mesh, mesh.incidence.n_vertices, NULL, NULL), TRI_OK);
             par_room_free(&spare);
         }
         assert_closed(&mesh, &places, vertices);

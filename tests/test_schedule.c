@@ -236,7 +236,7 @@ static void test_room_moves_ids_alone(void **state)
             if (same && !options.by_block)
                 support_assert_same_bytes(&mesh, &other);
             if (same && options.by_block) {
-                assert_int_equal(tri_number(&other, other.n_hubs, NULL, NULL), TRI_OK);
+                assert_int_equal(tri_number(&other, other.incidence.n_vertices, NULL, NULL), TRI_OK);
                 support_assert_same_bytes(&mesh, &other);
             }
             print_message("  %-28s room %d: levels %d, left over %lld, %s\n", trials[i].file, (int)rooms[k],
@@ -383,7 +383,7 @@ static void test_the_way_of_numbering_moves_ids_alone(void **state)
         }
         assert_true(report[0].levels > 0 && report[0].seconds_number > 0 && report[1].seconds_number == 0);
         assert_true(support_same_places(&places[0], &places[1]));
-        assert_int_equal(tri_number(&mesh[1], mesh[1].n_hubs, NULL, NULL), TRI_OK);
+        assert_int_equal(tri_number(&mesh[1], mesh[1].incidence.n_vertices, NULL, NULL), TRI_OK);
         support_assert_same_bytes(&mesh[0], &mesh[1]);
         for (int k = 0; k < 2; k++) {
             support_places_free(&places[k]);

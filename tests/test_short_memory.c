@@ -1,5 +1,6 @@
 /* Readers, writers and the checker when each of their allocations fails: TRI_NO_MEMORY with words, an empty output, no
- * file, no leak. What the mesher itself does then: test_tri.c, test_reconstruct.c, test_par.c, test_triangulate.c.
+ * file, no leak. What the mesher itself does then: test_generate.c, test_reconstruct.c, test_schedule.c,
+ * test_triangulate.c.
  *
  * This program is linked with --wrap for malloc, calloc, realloc and free: see allocations.h. */
 #include "allocations.h"

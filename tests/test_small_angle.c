@@ -113,11 +113,11 @@ static void test_spokes_of_a_hub_are_in_order(void **state)
         support_add_segment(&pslg, i % 2 ? 0 : i + 1, i % 2 ? i + 1 : 0);
     options.use_segments = options.keep_hull = true;
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    int32_t first = mesh.spoke_start[0], n = mesh.spoke_start[1] - first, wraps = 0;
+    int32_t first = mesh.incidence.start[0], n = mesh.incidence.start[1] - first, wraps = 0;
     assert_true(n >= N);
     for (int32_t i = 0; i < n; i++) {
-        const int32_t *a = mesh.parents[mesh.spokes[first + i]].v;
-        const int32_t *b = mesh.parents[mesh.spokes[first + (i + 1) % n]].v;
+        const int32_t *a = mesh.parents[mesh.incidence.parent[first + i]].v;
+        const int32_t *b = mesh.parents[mesh.incidence.parent[first + (i + 1) % n]].v;
         struct tri_point p = mesh.xy[a[a[0] == 0]], q = mesh.xy[b[b[0] == 0]];
         wraps += p.y < -0.5 && q.y >= -0.5;
         assert_true(tri_orient2d(mesh.xy[0], p, q) > 0);

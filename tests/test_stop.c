@@ -31,6 +31,50 @@ static void assert_legal(const struct tri_mesh *mesh, const struct tri_pslg *psl
     support_judge(mesh, pslg, &check, false, NULL);
 }
 
+/* The stage that was told last, and that in which the answer was yes first. */
+struct stages {
+    struct trigger trigger;
+    enum tri_stage now, stopped_in;
+    bool stopped;
+};
+
+static void enter(void *user, enum tri_stage stage) { ((struct stages *)user)->now = stage; }
+
+static bool is_asked_in_stage(void *user)
+{
+    struct stages *s = user;
+    bool yes = is_asked(&s->trigger);
+    if (yes && !s->stopped)
+        s->stopped_in = s->now;
+    s->stopped = s->stopped || yes;
+    return yes;
+}
+
+/* Who stops in one stage is not told of the next. (After refinement there is a mesh, and that is told.) */
+static void test_no_stage_begins_after_a_stop(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = support_tangle(SUPPORT_RANDOM, 300, 60, 1);
+    struct tri_options options = support_quality(25, 0);
+    struct stages stages = {.now = TRI_STAGE_DELAUNAY};
+    bool in_segments = false;
+    for (int after = 0; stages.stopped_in != TRI_STAGE_QUALITY && after < 1000; after++) {
+        stages = (struct stages){.trigger = {.after = after}};
+        const struct tri_stop stop = {is_asked_in_stage, &stages};
+        struct tri_mesh mesh;
+        struct tri_report report;
+        options.stop = &stop;
+        options.stage = enter;
+        options.stage_user = &stages;
+        assert_int_equal(tri_generate(&mesh, &pslg, &options, &report, NULL), TRI_STOPPED);
+        assert_true(stages.now == stages.stopped_in || stages.stopped_in == TRI_STAGE_QUALITY);
+        in_segments = in_segments || stages.stopped_in == TRI_STAGE_SEGMENTS;
+        tri_mesh_free(&mesh);
+    }
+    assert_true(in_segments && stages.stopped_in == TRI_STAGE_QUALITY);
+    tri_pslg_free(&pslg);
+}
+
 static void test_generation_stops_anywhere(void **state)
 {
     (void)state;
@@ -196,6 +240,7 @@ static void test_triangulate_stops(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_no_stage_begins_after_a_stop),
         cmocka_unit_test(test_generation_stops_anywhere), cmocka_unit_test(test_the_schedule_stops_anywhere),
         cmocka_unit_test(test_reconstruction_stops),      cmocka_unit_test(test_reading_and_writing_stop),
         cmocka_unit_test(test_triangulate_stops),

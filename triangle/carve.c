@@ -49,6 +49,100 @@ static void kill_concavities(struct flood *f)
                 kill_from(f, t);
 }
 
+/* --- depth (carve.h, even_odd) */
+
+enum { UNSEEN, WAITING, SEEN };
+
+/* Triangles by depth: those of the depth that is being flooded on the stack, those behind its walls in `next`. */
+struct dive {
+    const struct tri_mesh *mesh;
+    uint8_t *state;         /* [n_slots] */
+    int32_t *stack, *next;  /* [n_slots] */
+    int32_t n, n_next;
+};
+
+static void visit(struct dive *d, int32_t t)
+{
+    if (d->state[t] == SEEN)
+        return;
+    d->state[t] = SEEN;
+    d->stack[d->n++] = t;
+}
+
+static void put_off(struct dive *d, int32_t t)
+{
+    if (d->state[t] != UNSEEN)
+        return;
+    d->state[t] = WAITING;
+    d->next[d->n_next++] = t;
+}
+
+static void cross(struct dive *d, int32_t code)
+{
+    int32_t link = d->mesh->tri[tri_of(code)].n[tri_edge(code)], other = tri_across(d->mesh, code);
+    if (other == TRI_NONE)
+        return;
+    if (link < 0 && d->mesh->parents[d->mesh->sub[~link].parent].odd)
+        put_off(d, tri_of(other));
+    else
+        visit(d, tri_of(other));
+}
+
+/* Triangles at the hull, at depth 0, or behind a wall. Those at depth 0 are on the stack first. */
+static void enter(struct dive *d, bool keep_hull)
+{
+    const struct tri_mesh *mesh = d->mesh;
+    for (int pass = 0; pass < 2; pass++)
+        for (int32_t t = 0; t < mesh->n_slots; t++)
+            for (int e = 0; e < 3; e++) {
+                int32_t link = mesh->tri[t].n[e];
+                if (link >= 0 || tri_across(mesh, tri_code(t, e)) != TRI_NONE)
+                    continue;
+                const struct tri_parent *parent = &mesh->parents[mesh->sub[~link].parent];
+                bool wall = parent->odd || (keep_hull && parent->segment == TRI_NONE);
+                if (pass == 0 && !wall)
+                    visit(d, t);
+                if (pass == 1 && wall)
+                    put_off(d, t);
+            }
+}
+
+/* INVARIANT: a depth is flooded to its end before the next begins; so the first depth at which a triangle is seen is
+ * the least. A triangle waits at most once, and visit() may overtake it. */
+static void kill_depths(struct flood *f, struct dive *d, bool keep_hull)
+{
+    enter(d, keep_hull);
+    for (uint8_t even = 1; d->n + d->n_next > 0; even ^= 1) {
+        while (d->n > 0) {
+            int32_t t = d->stack[--d->n];
+            f->dead[t] |= even;
+            for (int e = 0; e < 3; e++)
+                cross(d, tri_code(t, e));
+        }
+        int32_t n = d->n_next;
+        d->n_next = 0;
+        for (int32_t k = 0; k < n; k++)
+            visit(d, d->next[k]);
+    }
+}
+
+static enum tri_status kill_even(struct flood *f, bool keep_hull, struct tri_error *error)
+{
+    size_t n = (size_t)f->mesh->n_slots + 1;
+    struct dive d = {f->mesh, calloc(n, 1), f->stack, malloc(n * sizeof *d.next), 0, 0};
+    enum tri_status status = TRI_OK;
+    if (d.state && d.next)
+        kill_depths(f, &d, keep_hull);
+    else
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the depth of %d triangles",
+                          (int)f->mesh->n_slots);
+    free(d.state);
+    free(d.next);
+    return status;
+}
+
+/* --- places */
+
 /* The faces of n places, given `width` numbers apart, x and y first; to be freed. */
 static enum tri_status locate(const struct tri_mesh *mesh, const double *places, int32_t n, int32_t width,
                               int32_t **faces, struct tri_error *error)
@@ -216,9 +310,11 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)mesh->n_slots);
     mark_vertices(mesh);
     if (!status && mesh->n_slots > 0) {
-        if (!options->keep_hull)
+        if (options->even_odd)
+            status = kill_even(&f, options->keep_hull, error);
+        else if (!options->keep_hull)
             kill_concavities(&f);
-        if (!options->ignore_holes)
+        if (!status && !options->ignore_holes)
             status = kill_holes(&f, pslg, error);
         if (!status && options->spread_regions)
             status = spread_regions(&f, pslg, error);

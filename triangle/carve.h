@@ -12,13 +12,22 @@ struct tri_carve_options {
     bool keep_hull;     /* the convex hull stays whole: its edges count as segments (-c) */
     bool ignore_holes;  /* (-O) */
     bool spread_regions;
+    bool even_odd;      /* segments tell what is inside: see below */
 };
 
 /* Removes what is reachable from outside the hull, or from a hole point, without crossing a segment; then gives every
  * triangle the last region whose point reaches it (mesh->regions[k + 1] is region k of the PSLG). Points outside the
  * mesh are ignored. Segment markers pass to vertices that have none. Slots and subsegments are compact afterwards,
  * subsegments in the order of their input segments, hull edges last, each with a parent of its own. O(triangles), and
- * what it takes to locate the points (locate.h). */
+ * what it takes to locate the points (locate.h).
+ *
+ * even_odd: what has an even depth goes, too. The depth of a triangle is the least number of walls on a way to it from
+ * outside; a wall is a subsegment along which an odd number of input segments run. So rings may lie in rings, and where
+ * two polygons share a border, each with a segment of its own there, that is none. THEOREM. Where walls are closed
+ * rings, whatever they cross (at each vertex an even number of walls ends), this is the even-odd rule: any closed way
+ * crosses an even number of them, so that all ways to a triangle have the same parity. Otherwise: a wall with one
+ * triangle's component on both sides changes nothing (a dangling one), nor does one between two components of one depth
+ * (across a ring). With keep_hull, hull edges along which no segment runs are walls. */
 enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_carve_options *options,
                           struct tri_error *error);
 

@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "triangle/owners.h"
 #include "triangle/predicates.h"
 
 /* |error of the determinant| <= (10 + 96 u) u * permanent, u = 2^-53 (Shewchuk 1997, section 4.4). The permanent, the
@@ -248,12 +249,9 @@ static void take_slots(struct tri_cavity *c, struct tri_mesh *mesh)
 /* Every triangle of the cavity belongs to whoever works on this view, and to nobody else. */
 static bool claim(const struct tri_cavity *c, const struct tri_mesh *mesh)
 {
-    for (int32_t i = 0; mesh->owner && i < c->n_tri; i++) {
-        int32_t *owner = &mesh->owner[c->tri[i]];
-        if (*owner != 0 && *owner != mesh->owner_id)
+    for (int32_t i = 0; i < c->n_tri; i++)
+        if (!tri_owners_claim(mesh->owners, c->tri[i]))
             return false;
-        *owner = mesh->owner_id;
-    }
     return true;
 }
 #endif

@@ -19,6 +19,7 @@
 #ifndef TRIANGLE_CAVITY_H
 #define TRIANGLE_CAVITY_H
 
+#include "triangle/fence.h"
 #include "triangle/mesh.h"
 
 #ifdef __cplusplus
@@ -43,16 +44,6 @@ struct tri_pending { /* an edge behind which the search has not looked yet; it s
     struct tri_relative rend;
     double area2;
 };
-
-/* A half-open box; a triangle is owned if all its corners lie in it. */
-struct tri_fence {
-    double x_min, y_min, x_max, y_max; /* x_min <= x < x_max */
-};
-
-static inline bool tri_fence_holds(const struct tri_fence *f, struct tri_point q)
-{
-    return q.x >= f->x_min && q.x < f->x_max && q.y >= f->y_min && q.y < f->y_max;
-}
 
 struct tri_cavity {
     struct tri_point p;

@@ -82,7 +82,7 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, int32_t slot, c
     if (tri_is_too_large(c, t, shape))
         badness = TRI_BAD_SIZE;
     if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, slot, shape))
-        return shape->l[shape->shortest] < c->mesh->shortest2 ? TRI_EXCUSE_PRECISION
+        return shape->l[shape->shortest] < c->mesh->limits.shortest2 ? TRI_EXCUSE_PRECISION
                : tri_is_channel(c->mesh, slot, shape)      ? TRI_EXCUSE_CHANNEL
                : tri_crosses_angle(c->mesh, slot, shape)   ? TRI_EXCUSE_INPUT_ANGLE
                                                            : TRI_EXCUSE_LIMIT;

@@ -32,6 +32,7 @@
 
 #include "triangle/cavity.h"
 #include "triangle/crossing.h"
+#include "triangle/flip.h"
 #include "triangle/grow.h"
 #include "triangle/interpolate.h"
 #include "triangle/overlap.h"
@@ -44,22 +45,20 @@ enum { BESIDE = 3, HUB = 16 };
  * others. */
 static const double NEAR = 0.5, APART = 2;
 
-static const struct tri_course NOBODY = {TRI_NONE, TRI_NONE};
+static const struct tri_course NOBODY = {TRI_NONE, TRI_NONE, false};
 
 struct layer {
     struct tri_mesh *mesh;
     const struct tri_pslg *pslg;
     struct tri_cavity cavity;
     struct tri_recovery recovery;
-    bool ties_stay;  /* an edge is flipped only where that makes a difference; else ties are broken by coordinates */
+    struct tri_flips flips;
     int32_t *corner; /* [corner_capacity] */
     int32_t corner_capacity;
     struct tri_course *course; /* [course_capacity] of each subsegment */
     int32_t course_capacity;
     struct tri_piece *piece; /* stack of what remains of the segment, and of earlier ones that had to be taken up */
     int32_t n_pieces, piece_capacity;
-    int32_t *touched; /* stack of edge codes to test for the Delaunay property */
-    int32_t n_touched, touched_capacity;
     int32_t segment; /* the input segment that is being laid */
     uint32_t step; /* see tri_stop_is_due */
     struct tri_constrain_report *report;
@@ -78,14 +77,6 @@ static bool push_piece(struct layer *l, int32_t from, int32_t to, struct tri_cou
     bool room = tri_grow(&l->piece, &l->piece_capacity, l->n_pieces + 1, sizeof *l->piece);
     if (room)
         l->piece[l->n_pieces++] = (struct tri_piece){from, to, course};
-    return room;
-}
-
-static bool touch(struct layer *l, int32_t t)
-{
-    bool room = tri_grow(&l->touched, &l->touched_capacity, l->n_touched + 3, sizeof *l->touched);
-    for (int e = 0; room && e < 3; e++)
-        l->touched[l->n_touched++] = tri_code(t, e);
     return room;
 }
 
@@ -168,13 +159,6 @@ static int32_t find_exit(struct layer *l, int32_t *a, int32_t *b)
     return l->corner[*a] = found;
 }
 
-static int32_t lower(int32_t a, int32_t b) { return a == TRI_NONE || (b != TRI_NONE && b < a) ? b : a; }
-
-static struct tri_course both(struct tri_course a, struct tri_course b)
-{
-    return (struct tri_course){lower(a.first, b.first), lower(a.marked, b.marked)};
-}
-
 static int32_t marker_of(const struct layer *l, struct tri_course course)
 {
     return course.marked == TRI_NONE ? 0 : l->pslg->segment_markers[course.marked];
@@ -193,7 +177,7 @@ static bool mark_edge(struct layer *l, int32_t t, int e, struct tri_course cours
     struct tri_mesh *mesh = l->mesh;
     int32_t link = mesh->tri[t].n[e], from = mesh->tri[t].v[tri_next[e]], to = mesh->tri[t].v[tri_prev[e]];
     if (link < 0) {
-        l->course[~link] = both(l->course[~link], course);
+        l->course[~link] = tri_course_both(l->course[~link], course);
         return true;
     }
     if (tri_mesh_reserve_subs(mesh, 1, l->error))
@@ -204,66 +188,6 @@ static bool mark_edge(struct layer *l, int32_t t, int e, struct tri_course cours
     mesh->tri[t].n[e] = ~s;
     mesh->tri[tri_of(link)].n[tri_edge(link)] = ~s;
     return set_course(l, s, course);
-}
-
-/* Flips edge e of t, whose quadrilateral is strictly convex. Near apex n, right r, far apex o, left s: t becomes (n, r,
- * o), the neighbour (n, o, s). Returns the neighbour. */
-static int32_t flip(struct layer *l, int32_t t, int e)
-{
-    struct tri_mesh *mesh = l->mesh;
-    struct tri_triangle *near = &mesh->tri[t];
-    int32_t u = tri_of(near->n[e]);
-    int f = tri_edge(near->n[e]);
-    struct tri_triangle *far = &mesh->tri[u];
-    assert(near->n[e] >= 0 && far->n[f] == tri_code(t, e));
-    int32_t n = near->v[e], r = near->v[tri_next[e]], s = near->v[tri_prev[e]], o = far->v[f];
-    int32_t nr = near->n[tri_prev[e]], sn = near->n[tri_next[e]], ro = far->n[tri_next[f]], os = far->n[tri_prev[f]];
-    near->v[0] = n, near->v[1] = r, near->v[2] = o;
-    near->n[0] = ro, near->n[1] = tri_code(u, 2), near->n[2] = nr;
-    far->v[0] = n, far->v[1] = o, far->v[2] = s;
-    far->n[0] = os, far->n[1] = sn, far->n[2] = tri_code(t, 1);
-    tri_relink(mesh, ro, r, tri_code(t, 0));
-    tri_relink(mesh, nr, n, tri_code(t, 2));
-    tri_relink(mesh, os, o, tri_code(u, 0));
-    tri_relink(mesh, sn, s, tri_code(u, 1));
-    l->corner[n] = l->corner[r] = l->corner[o] = t;
-    l->corner[s] = u;
-    return u;
-}
-
-static bool is_convex(const struct tri_mesh *mesh, int32_t t, int e)
-{
-    const struct tri_triangle *near = &mesh->tri[t];
-    struct tri_point n = mesh->xy[near->v[e]], r = mesh->xy[near->v[tri_next[e]]], s = mesh->xy[near->v[tri_prev[e]]];
-    struct tri_point o = mesh->xy[mesh->tri[tri_of(near->n[e])].v[tri_edge(near->n[e])]];
-    return tri_orient2d(n, r, o) > 0 && tri_orient2d(n, o, s) > 0;
-}
-
-/* Does the apex beyond edge e of t lie inside the circle of t? */
-static bool is_illegal(const struct layer *l, int32_t t, int e)
-{
-    const struct tri_mesh *mesh = l->mesh;
-    const int32_t *v = mesh->tri[t].v;
-    int32_t link = mesh->tri[t].n[e];
-    struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
-    struct tri_point apex = mesh->xy[mesh->tri[tri_of(link)].v[tri_edge(link)]];
-    return l->ties_stay ? tri_incircle(a, b, c, apex) > 0 : tri_in_circle(a, b, c, apex);
-}
-
-/* Lawson: flips what is not Delaunay until everything touched is. */
-static bool legalise(struct layer *l)
-{
-    struct tri_mesh *mesh = l->mesh;
-    while (l->n_touched > 0) {
-        int32_t code = l->touched[--l->n_touched], t = tri_of(code);
-        int e = tri_edge(code);
-        if (mesh->tri[t].n[e] < 0 || !is_illegal(l, t, e) || !is_convex(mesh, t, e))
-            continue;
-        int32_t u = flip(l, t, e);
-        if (!touch(l, t) || !touch(l, u))
-            return false;
-    }
-    return true;
 }
 
 static struct tri_point end_of(const struct layer *l, int32_t segment, int k)
@@ -325,6 +249,7 @@ static bool keep_corners(struct layer *l, int32_t v)
     bool room = tri_grow(&l->corner, &l->corner_capacity, l->mesh->n_vertices, sizeof *l->corner);
     if (!room)
         return false;
+    l->flips.corner = l->corner;
     for (int32_t i = 0; i < l->cavity.n_rim; i++) {
         const struct tri_triangle *t = &l->mesh->tri[l->cavity.rim[i].slot];
         for (int k = 0; k < 3; k++)
@@ -347,13 +272,8 @@ static bool take_up(struct layer *l, int32_t s)
     for (int side = 0; s != last && side < 2; side++)
         if (mesh->sub[s].side[side] != TRI_NONE)
             mesh->tri[tri_of(mesh->sub[s].side[side])].n[tri_edge(mesh->sub[s].side[side])] = ~s;
-    return touch(l, tri_of(left)) && touch(l, tri_of(right)) && legalise(l);
-}
-
-static double squared(struct tri_point a, struct tri_point b)
-{
-    double x = b.x - a.x, y = b.y - a.y;
-    return x * x + y * y;
+    return tri_flip_touch(&l->flips, tri_of(left)) && tri_flip_touch(&l->flips, tri_of(right)) &&
+           tri_flip_legalise(&l->flips);
 }
 
 /* The triangle that holds q (TRI_NONE outside the hull), by a walk from triangle t. In a constrained triangulation a
@@ -448,7 +368,7 @@ static bool lies_between(const struct layer *l, int32_t v, const struct tri_piec
 static void try_vertex(const struct layer *l, int32_t first, int32_t v, struct tri_point p, double within,
                        struct choice *best)
 {
-    struct choice now = {v, 0, squared(l->mesh->xy[v], p)};
+    struct choice now = {v, 0, tri_distance2(l->mesh->xy[v], p)};
     if (now.distance > within * within)
         return;
     for (int32_t i = first; i < l->n_pieces; i++)
@@ -672,7 +592,7 @@ static int32_t list_segments(struct layer *l, struct tri_piece *piece)
         if (!valid || a == b)
             l->report->skipped++;
         else if (l->corner[a] != TRI_NONE && l->corner[b] != TRI_NONE) /* else all points are on one line */
-            piece[n++] = (struct tri_piece){a, b, {k, markers && markers[k] ? k : TRI_NONE}};
+            piece[n++] = (struct tri_piece){a, b, {k, markers && markers[k] ? k : TRI_NONE, true}};
     }
     return n;
 }
@@ -699,7 +619,7 @@ static enum tri_status find_corners(struct layer *l)
 {
     struct tri_mesh *mesh = l->mesh;
     l->corner_capacity = mesh->n_vertices + 64;
-    l->corner = malloc((size_t)l->corner_capacity * sizeof *l->corner);
+    l->corner = l->flips.corner = malloc((size_t)l->corner_capacity * sizeof *l->corner);
     if (!l->corner)
         return no_memory(l);
     for (int32_t v = 0; v < mesh->n_vertices; v++)
@@ -717,7 +637,7 @@ static void free_layer(struct layer *l)
     free(l->corner);
     free(l->course);
     free(l->piece);
-    free(l->touched);
+    tri_flips_free(&l->flips);
 }
 
 /* Hull edges, along which nothing has been laid yet. */
@@ -739,7 +659,8 @@ static enum tri_status settle(struct layer *l)
         struct tri_subsegment *sub = &mesh->sub[s];
         sub->marker = marker_of(l, l->course[s]);
         sub->parent = mesh->n_parents++;
-        mesh->parents[sub->parent] = (struct tri_parent){{sub->v[0], sub->v[1]}, l->course[s].first, {NAN, NAN}};
+        mesh->parents[sub->parent] = (struct tri_parent){{sub->v[0], sub->v[1]}, l->course[s].first, l->course[s].odd,
+                                                         {NAN, NAN}};
     }
     return status;
 }
@@ -747,80 +668,12 @@ static enum tri_status settle(struct layer *l)
 enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_constrain_report *report,
                               struct tri_error *error)
 {
-    struct layer l = {.mesh = mesh, .pslg = pslg, .report = report, .error = error};
+    struct layer l = {.mesh = mesh, .flips.mesh = mesh, .pslg = pslg, .report = report, .error = error};
     *report = (struct tri_constrain_report){0};
     enum tri_status status = find_corners(&l);
     status = status ? status : list_courses(&l);
     status = status ? status : lay_all(&l);
     status = status ? status : settle(&l);
     free_layer(&l);
-    return status;
-}
-
-/* --- flips of a whole mesh */
-
-/* Triangles with an edge that has to be flipped, found in shares of the mesh. An edge is looked at from that of its two
- * triangles which has the lower number. */
-struct suspicion {
-    struct layer *layer;
-    int32_t *suspect; /* [n_slots] each share's behind one another, with gaps */
-    int32_t n[TRI_MOST_SHARES];
-};
-
-static void suspect_share(void *context, size_t share)
-{
-    struct suspicion *s = context;
-    const struct tri_mesh *mesh = s->layer->mesh;
-    struct tri_range range = tri_share(share, mesh->n_slots);
-    uint32_t step = 0;
-    for (int32_t t = range.first; t < range.last && !tri_stop_is_due(mesh->stop, &step); t++)
-        for (int e = 0; e < 3; e++)
-            if (mesh->tri[t].n[e] > tri_code(t, e) && is_illegal(s->layer, t, e)) {
-                s->suspect[range.first + s->n[share]++] = t;
-                break;
-            }
-}
-
-/* Touches the edges that lead to triangles of higher number: so each edge is touched by one of its two. */
-static bool touch_upwards(struct layer *l, int32_t t)
-{
-    if (!touch(l, t))
-        return false;
-    l->n_touched -= 3;
-    for (int e = 0; e < 3; e++)
-        if (l->mesh->tri[t].n[e] > tri_code(t, e))
-            l->touched[l->n_touched++] = tri_code(t, e);
-    return true;
-}
-
-/* An edge that no flip has come near is as it was found; any other has been touched since, and is Delaunay. */
-static enum tri_status flip_suspects(struct layer *l, const struct suspicion *s)
-{
-    enum tri_status status = tri_stop_is_asked(l->mesh->stop) ? tri_fail_stopped(l->error) : TRI_OK;
-    for (size_t share = 0; share < tri_shares(l->mesh->n_slots); share++) {
-        const int32_t *suspect = s->suspect + tri_share(share, l->mesh->n_slots).first;
-        for (int32_t i = 0; !status && i < s->n[share]; i++) {
-            if (!l->corner)
-                status = find_corners(l);
-            if (!status && tri_stop_is_due(l->mesh->stop, &l->step))
-                status = tri_fail_stopped(l->error);
-            if (!status && (!touch_upwards(l, suspect[i]) || !legalise(l)))
-                status = tri_fail(l->error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
-        }
-    }
-    return status;
-}
-
-enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, const struct tri_executor *executor,
-                                     struct tri_error *error)
-{
-    struct layer l = {.mesh = mesh, .ties_stay = true, .error = error};
-    struct suspicion s = {&l, malloc(((size_t)mesh->n_slots + 1) * sizeof *s.suspect), {0}};
-    if (!s.suspect)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
-    tri_execute(executor, tri_shares(mesh->n_slots), suspect_share, &s);
-    enum tri_status status = flip_suspects(&l, &s);
-    free_layer(&l);
-    free(s.suspect);
     return status;
 }

@@ -26,12 +26,6 @@ struct tri_constrain_report {
 enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_constrain_report *report,
                               struct tri_error *error);
 
-/* Flips edges that are no subsegments until the mesh is constrained Delaunay; where four points lie on one circle it
- * stays as it is. A slot keeps its region. O(triangles) where little is to do, and near that in practice; flips may be
- * quadratic (a fan of n triangles over a thin ellipse). On TRI_NO_MEMORY the mesh is valid. */
-enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, const struct tri_executor *executor,
-                                     struct tri_error *error);
-
 #ifdef __cplusplus
 }
 #endif

@@ -14,17 +14,6 @@ struct tri_criterion {
     double area2;             /* twice the bound that options have for all areas, in the mesh's units; infinity: none */
 };
 
-/* Is there any bound on sizes? */
-static inline bool tri_has_sizes(const struct tri_refine_options *options)
-{
-    return options->max_area > 0 || options->region_areas || options->unsuitable;
-}
-
-static inline double tri_area_scale(const struct tri_refine_options *options)
-{
-    return options->area_scale > 0 ? options->area_scale : 1;
-}
-
 enum tri_badness { TRI_GOOD, TRI_BAD_SIZE, TRI_BAD_ANGLE };
 
 /* What these options ask for, and the same for areas alone. Both are borrowed. */

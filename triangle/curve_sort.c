@@ -8,7 +8,6 @@
 #include <stdlib.h>
 
 #include "triangle/insertion.h"
-#include "triangle/quality.h"
 #include "triangle/radix.h"
 
 /* What is sorted: a vertex, and the triangle that is sorted by it, with the corner at which that begins. */
@@ -86,16 +85,24 @@ static enum tri_status take_hull(struct tri_mesh *mesh, struct tri_triangle *tri
 
 /* --- the order */
 
-/* The corner that is the lower end of the shortest edge. Lengths are rounded, and several may be shortest: so they are
- * asked for with the lowest corner in front, however the triangle is turned. */
+/* The corner that is the lower end of the shortest edge, of several the lowest. Lengths are the same whatever corner
+ * comes first, since differences are rounded alike in both directions. Without branches: they would be as good as
+ * random. */
 static int first_corner(const struct tri_point *xy, const int32_t v[3])
 {
-    int lowest = v[1] < v[0] ? 1 : 0;
-    lowest = v[2] < v[lowest] ? 2 : lowest;
-    int corner[] = {lowest, tri_next[lowest], tri_prev[lowest]};
-    const int32_t turned[] = {v[corner[0]], v[corner[1]], v[corner[2]]};
-    int shortest = tri_shape_of(xy, turned).shortest;
-    return shortest == 0 && turned[2] < turned[1] ? corner[2] : corner[shortest == 0 ? 1 : 0];
+    double length2[3];
+    int low[3], best = 0;
+    for (int e = 0; e < 3; e++) {
+        int a = tri_next[e], b = tri_prev[e];
+        double x = xy[v[a]].x - xy[v[b]].x, y = xy[v[a]].y - xy[v[b]].y;
+        length2[e] = x * x + y * y;
+        low[e] = v[a] < v[b] ? a : b;
+    }
+    for (int e = 1; e < 3; e++) {
+        bool tie = (length2[e] == length2[best]) & (v[low[e]] < v[low[best]]);
+        best = ((length2[e] < length2[best]) | tie) ? e : best;
+    }
+    return low[best];
 }
 
 static void list_share(void *context, size_t share)

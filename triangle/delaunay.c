@@ -37,6 +37,7 @@ struct leaf {
     struct tri_range range;
     int32_t round[MOST_ROUNDS + 1]; /* the points of round r wait at waiting[round[r] .. round[r + 1]) */
     int32_t n_waiting;              /* in the round that runs: the first so many of these still do */
+    int32_t n_inserted;             /* in that round */
     int32_t near;                   /* a triangle near the leaf, when all is quiet */
     int32_t entry;                  /* a triangle that the block of the leaf owns; TRI_NONE: go on where others ended */
     enum tri_status status;         /* of the block that begins here */
@@ -45,7 +46,7 @@ struct leaf {
 struct builder {
     struct tri_mesh *mesh;
     const struct tri_executor *executor;
-    struct tri_triangle *tri; /* [2 n_vertices] */
+    struct tri_triangle *tri; /* [2 n_vertices + 4] two for each place in waiting, and the first four */
     int32_t *waiting;         /* [n_vertices] */
     struct leaf *leaf;
     int32_t n_leaves, n_rounds;
@@ -123,19 +124,16 @@ static bool is_to_insert(const struct builder *b, int32_t v)
     return !is_twin(b->mesh, v) && v != b->first[0] && v != b->first[1] && v != b->first[2];
 }
 
-/* The points of a leaf by rounds, along the curve in each; slots that no point will bring are marked as free. */
+/* The points of a leaf by rounds, along the curve in each; slots that no point will take are marked as free. */
 static void arrange_leaf(void *context, size_t index)
 {
     const struct builder *b = context;
     struct leaf *leaf = &b->leaf[index];
     int32_t at[MOST_ROUNDS + 1] = {0};
     leaf->range = tri_share_of(index, (size_t)b->n_leaves, b->mesh->n_vertices);
-    for (int32_t v = leaf->range.first; v < leaf->range.last; v++) {
+    for (int32_t v = leaf->range.first; v < leaf->range.last; v++)
         if (is_to_insert(b, v))
             at[round_of(b, v) + 1]++;
-        if (is_twin(b->mesh, v))
-            b->tri[2 * v].v[0] = b->tri[2 * v + 1].v[0] = TRI_NONE;
-    }
     at[0] = leaf->range.first;
     for (int r = 0; r < MOST_ROUNDS; r++)
         at[r + 1] += at[r];
@@ -144,7 +142,9 @@ static void arrange_leaf(void *context, size_t index)
     for (int32_t v = leaf->range.first; v < leaf->range.last; v++)
         if (is_to_insert(b, v))
             b->waiting[at[round_of(b, v)]++] = v;
-    leaf->near = 2 * b->first[0];
+    for (int32_t t = 2 * at[MOST_ROUNDS]; t < 2 * leaf->range.last; t++)
+        b->tri[t].v[0] = TRI_NONE;
+    leaf->near = 2 * b->mesh->n_vertices;
 }
 
 /* --- a phase: all blocks of some width */
@@ -182,11 +182,14 @@ static enum tri_status insert_leaf(const struct builder *b, struct leaf *leaf, s
     for (int32_t i = 0; i < leaf->n_waiting; i++) {
         if (tri_stop_is_due(b->mesh->stop, step))
             return TRI_STOPPED;
-        enum tri_insertion done = tri_insert(inserter, waiting[i]);
+        int32_t slot = 2 * (leaf->round[b->round] + leaf->n_inserted);
+        enum tri_insertion done = tri_insert(inserter, waiting[i], slot);
         if (done == TRI_NO_ROOM_FOR_CAVITY)
             return TRI_NO_MEMORY;
         if (done == TRI_NOT_OWNED)
             waiting[kept++] = waiting[i];
+        else
+            leaf->n_inserted++;
     }
     leaf->n_waiting = kept;
     leaf->near = inserter->last;
@@ -235,8 +238,10 @@ static int64_t count_waiting(const struct builder *b)
 static enum tri_status run_round(struct builder *b, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    for (int32_t i = 0; i < b->n_leaves; i++)
+    for (int32_t i = 0; i < b->n_leaves; i++) {
         b->leaf[i].n_waiting = b->leaf[i].round[b->round + 1] - b->leaf[i].round[b->round];
+        b->leaf[i].n_inserted = 0;
+    }
     int64_t waiting = count_waiting(b);
     for (b->width = 1; b->width < b->n_leaves && waiting * b->width < (int64_t)b->least * b->n_leaves;)
         b->width *= WIDER;
@@ -277,7 +282,7 @@ static enum tri_status build(struct builder *b, int32_t leaf_size, struct tri_er
     if (!b->leaf || !b->waiting)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d points", (int)n);
     if (!status) {
-        tri_insert_first(b->mesh->xy, b->tri, b->first);
+        tri_insert_first(b->mesh->xy, b->tri, 2 * b->mesh->n_vertices, b->first);
         tri_execute(b->executor, (size_t)b->n_leaves, arrange_leaf, b);
     }
     for (b->round = 0; !status && b->round < b->n_rounds; b->round++)
@@ -292,16 +297,16 @@ enum tri_status tri_delaunay_in_leaves(struct tri_mesh *mesh, int32_t leaf_size,
 {
     struct builder b = {.mesh = mesh, .executor = executor};
     assert(mesh->origin && mesh->n_slots == 0 && mesh->n_subs == 0 && leaf_size > 0);
-    int32_t n_twins = 0, n_slots = 2 * mesh->n_vertices;
+    int32_t n_twins = 0, n_slots = 2 * mesh->n_vertices + 4;
     enum tri_status status = list_twins(mesh, &n_twins, executor, error);
     if (status || !find_first(&b))
         return status;
-    void *raw = malloc(((size_t)mesh->n_vertices + 1) * 2 * sizeof *b.tri);
+    void *raw = malloc(((size_t)n_slots + 2) * sizeof *b.tri);
     if (!raw)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d points", (int)mesh->n_vertices);
     b.tri = (struct tri_triangle *)((char *)raw + (-(uintptr_t)raw & 63)); /* a cache line holds two */
     status = build(&b, leaf_size, error);
-    int32_t n_live = n_slots - 2 * n_twins - 2; /* two a vertex, and four instead of six for the first three */
+    int32_t n_live = n_slots - 2 * n_twins - 6; /* the first three bring four together */
     status = status ? status : tri_curve_sort(mesh, b.tri, n_slots, n_live, executor, error);
     free(raw);
     return status;

@@ -17,8 +17,8 @@
  * vertices, not length / width of them, and a vertex in a bundle of parents is handed on across it once. All rays from
  * one vertex share their levels: nothing spirals around it (concentric shells: Ruppert 1995).
  *
- * THEOREM (end). Each part is at least a quarter of the whole, and none shorter than twice mesh.shortest2's root is
- * split: so there are finitely many splits, whatever the rest of refinement does.
+ * THEOREM (end). Each part is at least a quarter of the whole, and none shorter than twice the root of limits.shortest2
+ * is split: so there are finitely many splits, whatever the rest of refinement does.
  *
  * Rounding puts the point level with v an ulp beside its place. Where h, the distance of v from e, is so small that
  * this leaves v in a circle (h^2 < ulp * length), only shorter parts help: length * ulp / h^2 of them. That is done
@@ -43,11 +43,7 @@ static const double ULP = 0x1p-7;
 
 enum { NARROW = 8, MOST_PARTS = 64 }; /* see the rule; most parts that rounding may ask for */
 
-static double distance(struct tri_point a, struct tri_point b)
-{
-    double x = b.x - a.x, y = b.y - a.y;
-    return sqrt(x * x + y * y);
-}
+static double distance(struct tri_point a, struct tri_point b) { return sqrt(tri_distance2(a, b)); }
 
 /* Where on the subsegment from a to b is the point level with v? */
 static double level_with(const struct tri_mesh *mesh, const struct tri_subsegment *s, int32_t v)
@@ -68,7 +64,7 @@ static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegmen
 {
     struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], at = mesh->xy[v];
     double x = b.x - a.x, y = b.y - a.y, l = x * x + y * y, cross = x * (at.y - a.y) - y * (at.x - a.x);
-    if (!tri_can_split(mesh, a, b) || cross * cross < mesh->shortest2 * l)
+    if (!tri_can_split(mesh, a, b) || cross * cross < mesh->limits.shortest2 * l)
         return false;
     *fraction = tri_split_fraction(mesh, s);
     if (NARROW * NARROW * cross * cross >= l * l)
@@ -76,7 +72,7 @@ static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegmen
     double level = level_with(mesh, s, v), nearer = level < 0.5 ? level : 1 - level;
     if (nearer >= 0.25)
         *fraction = level;
-    double shortest = sqrt(mesh->shortest2), off = fmax(nearer * sqrt(l), ULP * shortest);
+    double shortest = sqrt(mesh->limits.shortest2), off = fmax(nearer * sqrt(l), ULP * shortest);
     return off >= shortest || off * l * sqrt(l) <= MOST_PARTS * cross * cross;
 }
 

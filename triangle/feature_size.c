@@ -23,7 +23,7 @@
  * them: to a constant as many as Ruppert's algorithm inserts for a bound for which it is known to end. C does not
  * depend on the bound, and nothing depends on the order of insertion: it holds for any schedule. What sources at split
  * points add is finite, too: a space between two segments is as wide as s there, so the integral over it is about its
- * length over its width, that is its cost (tri_filling_cost): no more than mesh.dearest_channel for segments that do
+ * length over its width, that is its cost (tri_filling_cost): no more than limits.dearest_channel for segments that do
  * not touch, which is chosen such that all such spaces together cost no more than the mesh can afford; and no more
  * than SHARP for each octave of distance from the vertex where two segments meet.
  *
@@ -131,7 +131,7 @@ static bool counts(const struct tri_mesh *mesh, int32_t p, int32_t q, struct tri
         for (int k = 0; k < 2; k++)
             if (a[i] == b[k])
                 return p != q && is_narrow_corner(mesh->xy[a[i]], mesh->xy[a[1 - i]], mesh->xy[b[1 - k]]);
-    return tri_filling_cost(mesh, p, q, at, w) <= mesh->dearest_channel;
+    return tri_filling_cost(mesh, p, q, at, w) <= mesh->limits.dearest_channel;
 }
 
 /* What vertex v, at `distance` from a point on parent p, says about the size there. */

@@ -37,9 +37,12 @@ static enum tri_status constrain_and_carve(struct tri_mesh *mesh, const struct t
     enum tri_status status = TRI_OK;
     if (options->use_segments)
         status = tri_constrain(mesh, pslg, &report->constrain, error);
+    if (status)
+        return status; /* this stage's, not the next one's */
     announce(options, TRI_STAGE_HOLES);
-    if (!status && options->use_segments) {
-        struct tri_carve_options carve = {options->keep_hull, options->ignore_holes, options->spread_regions};
+    if (options->use_segments) {
+        struct tri_carve_options carve = {options->keep_hull, options->ignore_holes, options->spread_regions,
+                                          options->even_odd};
         status = tri_carve(mesh, pslg, &carve, error);
     }
     return status;

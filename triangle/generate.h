@@ -42,6 +42,7 @@ struct tri_options {
     bool use_segments;  /* the segments and holes of the PSLG are part of the input (-p); else its points alone */
     bool keep_hull;     /* the convex hull stays whole (-c) */
     bool ignore_holes;  /* (-O) */
+    bool even_odd;      /* segments tell what is inside, see tri_carve */
     bool spread_regions; /* triangles learn the region they are in (-A, or -a without number) */
     bool refine;        /* the quality stage runs, with the options below */
     struct tri_refine_options quality;

@@ -50,20 +50,18 @@ bool tri_inserter_owns(const struct tri_inserter *b, const struct tri_triangle *
 }
 
 /* Ghost e + 1 sees edge e the other way round; its edge from the hull edge's far end to infinity is shared with the
- * ghost of the edge that starts there. They take the slots of the first two vertices; those of the third are free. */
-void tri_insert_first(const struct tri_point *xy, struct tri_triangle *tri, const int32_t v[3])
+ * ghost of the edge that starts there. */
+void tri_insert_first(const struct tri_point *xy, struct tri_triangle *tri, int32_t slot, const int32_t v[3])
 {
-    const int32_t slot[] = {2 * v[0], 2 * v[0] + 1, 2 * v[1], 2 * v[1] + 1};
     bool left = tri_orient2d(xy[v[0]], xy[v[1]], xy[v[2]]) > 0;
     const int32_t c[] = {v[left ? 0 : 1], v[left ? 1 : 0], v[2]};
-    tri[slot[0]] = (struct tri_triangle){
-        {c[0], c[1], c[2]}, {tri_code(slot[1], 0), tri_code(slot[2], 0), tri_code(slot[3], 0)}, 0, 0};
+    tri[slot] = (struct tri_triangle){
+        {c[0], c[1], c[2]}, {tri_code(slot + 1, 0), tri_code(slot + 2, 0), tri_code(slot + 3, 0)}, 0, 0};
     for (int e = 0; e < 3; e++) {
         int f = tri_next[e], g = tri_prev[e];
-        tri[slot[e + 1]] = (struct tri_triangle){
-            {TRI_GHOST, c[g], c[f]}, {tri_code(slot[0], e), tri_code(slot[g + 1], 2), tri_code(slot[f + 1], 1)}, 0, 0};
+        tri[slot + e + 1] = (struct tri_triangle){
+            {TRI_GHOST, c[g], c[f]}, {tri_code(slot, e), tri_code(slot + g + 1, 2), tri_code(slot + f + 1, 1)}, 0, 0};
     }
-    tri[2 * v[2]].v[0] = tri[2 * v[2] + 1].v[0] = TRI_NONE;
 }
 
 /* Strictly between a and b, where the three are collinear. */
@@ -149,12 +147,12 @@ static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, in
 }
 
 /* Replaces the cavity by the fan of v. */
-static void fill(struct tri_inserter *b, int32_t v)
+static void fill(struct tri_inserter *b, int32_t v, int32_t fresh)
 {
     int32_t before = TRI_NONE, first = TRI_NONE;
     assert(b->n_rim == b->n_cavity + 2); /* a disk without a vertex inside */
     for (int32_t i = 0; i < b->n_rim; i++) {
-        int32_t slot = i < b->n_cavity ? b->cavity[i] : 2 * v + (i - b->n_cavity);
+        int32_t slot = i < b->n_cavity ? b->cavity[i] : fresh++;
         int32_t outer = b->rim[i].outer, end = b->rim[i + 1 < b->n_rim ? i + 1 : 0].a;
         struct tri_triangle *t = &b->tri[slot];
         int32_t link = before == TRI_NONE ? TRI_NONE : tri_code(before, 1);
@@ -172,7 +170,7 @@ static void fill(struct tri_inserter *b, int32_t v)
     b->last = first;
 }
 
-enum tri_insertion tri_insert(struct tri_inserter *b, int32_t v)
+enum tri_insertion tri_insert(struct tri_inserter *b, int32_t v, int32_t slot)
 {
     struct tri_point q = b->xy[v];
     int32_t t = locate(b, q);
@@ -188,6 +186,6 @@ enum tri_insertion tri_insert(struct tri_inserter *b, int32_t v)
         if (found != TRI_INSERTED)
             return found;
     }
-    fill(b, v);
+    fill(b, v, slot);
     return TRI_INSERTED;
 }

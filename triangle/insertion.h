@@ -8,14 +8,14 @@
  * range, where infinity counts as in every range. A point is inserted only if the block owns its whole cavity.
  * THEOREM. Blocks that are disjoint may insert at the same time; the result is that of one after the other, in any
  * order. Proof: every edge has an end other than infinity, so triangles of different owners share no edge. What a block
- * writes are triangles it owns, two slots that are the new vertex's alone, and links back to these in triangles just
+ * writes are triangles it owns, two slots that are the insertion's alone, and links back to these in triangles just
  * outside the cavity. Such a triangle shares a corner in the range, so nobody else owns it or changes its corners; and
  * nobody else reads or writes its link across an edge of the block. What a block reads are corners and links of what it
  * owns, and corners of their neighbours: the same argument. New triangles have corners of the cavity and the new
  * vertex, so the block owns them: what it has owned it goes on owning, and what others own it never does.
  *
- * A disk without a vertex inside is replaced by two triangles more than it had, whatever its place: so vertex v brings
- * the slots 2 v and 2 v + 1 along, and nobody needs to be asked for room. */
+ * A disk without a vertex inside is replaced by two triangles more than it had, whatever its place: so who inserts n
+ * points knows beforehand how many slots that takes, and nobody needs to be asked for room. */
 #ifndef TRIANGLE_INSERTION_H
 #define TRIANGLE_INSERTION_H
 
@@ -40,8 +40,8 @@ struct tri_inserter {
 /* Frees what insertions have allocated. */
 void tri_inserter_free(struct tri_inserter *b);
 
-/* The first triangle, with its three ghosts, of three vertices that are not collinear. */
-void tri_insert_first(const struct tri_point *xy, struct tri_triangle *tri, const int32_t v[3]);
+/* The first triangle, with its three ghosts, of three vertices that are not collinear, in four slots. */
+void tri_insert_first(const struct tri_point *xy, struct tri_triangle *tri, int32_t slot, const int32_t v[3]);
 
 /* Which corner is at infinity? -1: none. */
 static inline int tri_ghost_corner(const struct tri_triangle *t)
@@ -58,8 +58,8 @@ int32_t tri_inserter_locate(struct tri_inserter *b, struct tri_point q);
 
 enum tri_insertion { TRI_INSERTED, TRI_NOT_OWNED, TRI_NO_ROOM_FOR_CAVITY };
 
-/* Inserts vertex v, of the block and at a place where no vertex is. TRI_NOT_OWNED: the block does not own the cavity,
- * or did not find it; nothing has changed. */
-enum tri_insertion tri_insert(struct tri_inserter *b, int32_t v);
+/* Inserts vertex v, of the block and at a place where no vertex is; takes this slot and the next. TRI_NOT_OWNED: the
+ * block does not own the cavity, or did not find it; nothing has changed. */
+enum tri_insertion tri_insert(struct tri_inserter *b, int32_t v, int32_t slot);
 
 #endif

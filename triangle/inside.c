@@ -45,7 +45,7 @@ bool tri_centroid(const struct tri_mesh *mesh, int32_t slot, const struct tri_sh
     struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
     p->x = tri_round_coordinate(a.x + ((b.x - a.x) + (c.x - a.x)) / 3);
     p->y = tri_round_coordinate(a.y + ((b.y - a.y) + (c.y - a.y)) / 3);
-    if (shape->area2 * shape->area2 < 9 * mesh->shortest2 * longest2(shape))
+    if (shape->area2 * shape->area2 < 9 * mesh->limits.shortest2 * longest2(shape))
         return false;
     return tri_orient2d(a, b, *p) > 0 && tri_orient2d(b, c, *p) > 0 && tri_orient2d(c, a, *p) > 0;
 }

@@ -60,18 +60,11 @@ struct sweep {
     struct sweep_order order;
 };
 
-static int compare_places(struct tri_point p, struct tri_point q)
-{
-    if (p.x != q.x)
-        return p.x < q.x ? -1 : 1;
-    return (p.y > q.y) - (p.y < q.y);
-}
-
 /* At one place the subsegments come first. */
 static int compare_events(const void *a, const void *b)
 {
     const struct event *e = a, *f = b;
-    int order = compare_places(e->at, f->at);
+    int order = tri_compare_places(e->at, f->at);
     return order != 0 ? order : (e->code < f->code) - (e->code > f->code);
 }
 
@@ -79,7 +72,7 @@ static int compare_events(const void *a, const void *b)
 static int left_end(const struct tri_mesh *mesh, int32_t s)
 {
     const int32_t *v = mesh->sub[s].v;
-    return compare_places(mesh->xy[v[0]], mesh->xy[v[1]]) > 0;
+    return tri_compare_places(mesh->xy[v[0]], mesh->xy[v[1]]) > 0;
 }
 
 static struct tri_point end_of(const struct tri_mesh *mesh, int32_t s, int right)
@@ -161,7 +154,7 @@ static void list_events(struct sweep *w, const struct tri_point *points, int32_t
 static void sweep(struct sweep *w, int32_t *faces)
 {
     for (int32_t i = 0, n_ends, end; i < w->n_events; i = end) {
-        for (end = i; end < w->n_events && compare_places(w->event[i].at, w->event[end].at) == 0;)
+        for (end = i; end < w->n_events && tri_compare_places(w->event[i].at, w->event[end].at) == 0;)
             end++;
         for (n_ends = 0; i + n_ends < end && w->event[i + n_ends].code >= 0;)
             n_ends++;

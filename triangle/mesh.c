@@ -93,8 +93,8 @@ void tri_mesh_free(struct tri_mesh *mesh)
     free(raw_of(mesh->tri));
     free(mesh->sub);
     free(mesh->parents);
-    free(mesh->spoke_start);
-    free(mesh->spokes);
+    free(mesh->incidence.start);
+    free(mesh->incidence.parent);
     free(mesh->regions);
     free(mesh->columns);
     *mesh = (struct tri_mesh){0};
@@ -167,7 +167,7 @@ static double unit_for(const struct tri_pslg *pslg)
     int exponent;
     for (int32_t i = 0; i < 2 * pslg->n_points; i++)
         size = fabs(pslg->points[i]) > size ? fabs(pslg->points[i]) : size;
-    if (size == 0 || (size >= 0x1p-100 && size <= 0x1p199))
+    if (size == 0 || (size >= 0x1p-100 && size <= TRI_LARGEST_COORDINATE / 2))
         return 1;
     frexp(size, &exponent);
     return ldexp(1, exponent > -1000 ? exponent - 1 : -1000); /* the largest is in [1, 2) then */
@@ -199,7 +199,7 @@ int32_t tri_mesh_add_sub(struct tri_mesh *mesh, int32_t from, int32_t to, int32_
 {
     int32_t s = mesh->n_subs++, parent = mesh->n_parents++;
     assert(s < mesh->sub_capacity && parent < mesh->parent_capacity);
-    mesh->parents[parent] = (struct tri_parent){{from, to}, segment, {NAN, NAN}};
+    mesh->parents[parent] = (struct tri_parent){{from, to}, segment, segment != TRI_NONE, {NAN, NAN}};
     mesh->sub[s] = (struct tri_subsegment){{from, to}, {TRI_NONE, TRI_NONE}, marker, parent};
     return s;
 }

@@ -21,6 +21,7 @@
 #include <stdint.h>
 
 #include "triangle/executor.h"
+#include "triangle/groundwork.h"
 #include "triangle/point.h"
 #include "triangle/pslg.h"
 #include "triangle/status.h"
@@ -62,6 +63,7 @@ struct tri_subsegment {
 struct tri_parent {
     int32_t v[2];
     int32_t segment; /* input segment, or TRI_NONE */
+    bool odd;        /* after tri_constrain: an odd number of input segments run along it */
     struct tri_point guard; /* with the ends, a triangle outside that is the parent's own, see split.c; NaN: all is */
 };
 
@@ -69,6 +71,8 @@ struct tri_region {
     double attribute;
     double max_area; /* <= 0: none */
 };
+
+struct tri_owners;
 
 struct tri_mesh {
     struct tri_point *xy;     /* [n_vertices] */
@@ -89,12 +93,8 @@ struct tri_mesh {
     int32_t n_subs, sub_capacity;
     struct tri_parent *parents; /* [n_parents] */
     int32_t n_parents, parent_capacity;
-    int32_t *spokes;          /* [2 * n_parents] spokes[spoke_start[v] .. spoke_start[v + 1]): parents that end at v */
-    int32_t *spoke_start;     /* [n_hubs + 1] */
-    double shortest2;         /* square of the shortest edge that coordinates of this size can carry */
-    double dearest_channel;   /* narrow spaces between parents that would cost more points than this are not filled */
-    double channel_points;    /* about so many points those that are filled take */
-    int32_t n_hubs;           /* vertices there were when the parents were listed; 0: not listed yet */
+    struct tri_incidence incidence; /* parents at each vertex of the input, see groundwork.h */
+    struct tri_limits limits;       /* of refinement, see there */
 
     struct tri_region *regions; /* [n_regions] regions[0] is "no region": attribute 0, no bound */
     int32_t n_regions;
@@ -102,9 +102,7 @@ struct tri_mesh {
                                  from triangles that had some; else NULL, and n_columns is 0 */
     int32_t n_columns;
 
-    int32_t *owner;           /* [slot_capacity] or NULL; for proofs in debug builds: who changed a triangle since the
-                                 array was cleared (0: nobody). Views of one mesh share it */
-    int32_t owner_id;         /* > 0: who works on this view */
+    const struct tri_owners *owners; /* for asserts in debug builds (owners.h); borrowed; NULL: none */
 
     double unit;              /* a power of two: the caller's coordinates are xy * unit */
 

@@ -225,7 +225,10 @@ static void park_share(void *context, size_t share)
     }
 }
 
-/* Links are parked; corners go where they were. */
+/* Where a slot keeps the corners of the triangle that it will hold, until its own triangle's corners have been read:
+ * the links there have been parked already. */
+static int32_t *waiting_corners(struct tri_triangle *slot) { return slot->n; }
+
 static void move_corners(void *context, size_t share)
 {
     const struct numbering *n = context;
@@ -234,7 +237,7 @@ static void move_corners(void *context, size_t share)
         const int32_t *from = n->mesh->tri[t].v;
         if (from[0] == TRI_NONE)
             continue;
-        int32_t *to = n->mesh->tri[n->place[t] >> 2].n;
+        int32_t *to = waiting_corners(&n->mesh->tri[n->place[t] >> 2]);
         for (int k = 0, old = n->place[t] & 3; k < 3; k++, old = tri_next[old])
             to[k] = from[old];
     }
@@ -246,7 +249,7 @@ static void settle_share(void *context, size_t share)
     const struct parked *park = n->park;
     struct tri_range range = tri_share(share, n->n_tri);
     for (int32_t t = range.first; t < range.last; t++) {
-        const int32_t *v = n->mesh->tri[t].n;
+        const int32_t *v = waiting_corners(&n->mesh->tri[t]);
         n->mesh->tri[t] = (struct tri_triangle){
             {v[0], v[1], v[2]}, {park[t].n[0], park[t].n[1], park[t].n[2]}, park[t].region, 0};
     }
@@ -308,7 +311,7 @@ static void renumber(struct numbering *n)
 enum tri_status tri_number(struct tri_mesh *mesh, int32_t n_kept, const struct tri_executor *executor,
                            struct tri_error *error)
 {
-    assert(mesh->n_hubs <= n_kept && n_kept <= mesh->n_vertices);
+    assert(mesh->incidence.n_vertices <= n_kept && n_kept <= mesh->n_vertices);
     struct numbering n = {
         .mesh = mesh, .executor = executor, .n_kept = n_kept, .vertex_bits = bits_of(mesh->n_vertices)};
     enum tri_status status = tri_stop_is_asked(mesh->stop) ? tri_fail_stopped(error) : allocate(&n, error);

@@ -17,7 +17,7 @@ extern "C" {
 
 /* Numbers a mesh. Free slots, subsegments with v[0] == TRI_NONE and vertices that are TRI_VERTEX_NONE, which nothing
  * refers to, are gone afterwards. The first n_kept vertices keep their numbers: those that parents end at (the first
- * tri_mesh.n_hubs), or more; none of them is free.
+ * tri_mesh.incidence.n_vertices), or more; none of them is free.
  *
  * Meshes whose first n_kept vertices and whose parents agree, and which have the same vertices, triangles and
  * subsegments beyond these under any numbers, become the same, byte for byte. O(n); beside the mesh about 20 bytes a

@@ -14,6 +14,7 @@
  *    what is taken, so each elementary piece is touched once, however many pieces run along it. */
 #include "triangle/overlap.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 #include "triangle/heap_sort.h"
@@ -33,6 +34,7 @@ struct sharing {
     struct reach *reach;          /* [n] */
     int32_t *next;                /* [n_stops + 1] union-find: the next elementary piece that nobody has taken */
     int32_t *marked;              /* [n_stops] the first with a marker along each elementary piece */
+    bool *odd;                    /* [n_stops] is the number of pieces along it odd? */
     struct tri_piece *result;
     int32_t n_results;
 };
@@ -41,7 +43,7 @@ struct sharing {
 
 static bool precedes(struct tri_point p, struct tri_point q)
 {
-    return p.x != q.x ? p.x < q.x : p.y < q.y;
+    return tri_compare_places(p, q) < 0;
 }
 
 /* Pieces of one line have one direction from start to end. */
@@ -259,15 +261,29 @@ static void take(struct sharing *s, int32_t i)
         s->result[s->n_results++] = s->piece[i];
     for (int32_t k = s->reach[i].first; (k = find_free(s, k)) < s->reach[i].last; s->next[k] = k + 1)
         s->result[s->n_results++] =
-            (struct tri_piece){s->stop[k], s->stop[k + 1], {s->piece[i].course.first, s->marked[k]}};
+            (struct tri_piece){s->stop[k], s->stop[k + 1], {s->piece[i].course.first, s->marked[k], s->odd[k]}};
+}
+
+/* Each piece changes the parity from its start on, and again from its end on. */
+static void find_odd(struct sharing *s)
+{
+    for (int32_t i = 0; i < s->n; i++) {
+        bool odd = s->piece[i].course.odd && s->reach[i].first < s->reach[i].last;
+        s->odd[s->reach[i].first] ^= odd;
+        s->odd[s->reach[i].last] ^= odd;
+    }
+    for (int32_t k = 1; k < s->n_stops; k++)
+        s->odd[k] ^= s->odd[k - 1];
+    assert(!s->odd[s->n_stops - 1]);
 }
 
 static bool paint(struct sharing *s)
 {
     s->next = malloc(((size_t)s->n_stops + 1) * sizeof *s->next);
     s->marked = malloc((size_t)s->n_stops * sizeof *s->marked);
+    s->odd = calloc((size_t)s->n_stops, sizeof *s->odd);
     s->result = malloc(((size_t)s->n + (size_t)s->n_stops) * sizeof *s->result);
-    if (!s->next || !s->marked || !s->result)
+    if (!s->next || !s->marked || !s->odd || !s->result)
         return false;
     for (int32_t k = 0; k < s->n_stops; k++)
         s->marked[k] = TRI_NONE;
@@ -275,6 +291,7 @@ static bool paint(struct sharing *s)
     for (int32_t i = 0; i < s->n; i++)
         if (s->piece[i].course.marked != TRI_NONE)
             take_marked(s, i);
+    find_odd(s);
     take_back(s);
     for (int32_t i = 0; i < s->n; i++)
         take(s, i);
@@ -288,6 +305,7 @@ static void free_sharing(struct sharing *s)
     free(s->reach);
     free(s->next);
     free(s->marked);
+    free(s->odd);
     free(s->result);
 }
 

@@ -4,10 +4,21 @@
 
 #include "triangle/mesh.h"
 
-/* The input segments that run along a piece or a subsegment: the first of them, and the first with a marker. */
+/* The input segments that run along a piece or a subsegment: the first of them, the first with a marker, and whether
+ * they are odd in number. */
 struct tri_course {
     int32_t first, marked; /* TRI_NONE: there is none */
+    bool odd;
 };
+
+static inline int32_t tri_earlier(int32_t a, int32_t b) { return a == TRI_NONE || (b != TRI_NONE && b < a) ? b : a; }
+
+/* The course of what both run along. */
+static inline struct tri_course tri_course_both(struct tri_course a, struct tri_course b)
+{
+    struct tri_course both = {tri_earlier(a.first, b.first), tri_earlier(a.marked, b.marked), a.odd != b.odd};
+    return both;
+}
 
 struct tri_piece {
     int32_t from, to;

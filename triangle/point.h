@@ -27,6 +27,21 @@ static inline bool tri_is_in_range(struct tri_point p)
     return fabs(p.x) <= TRI_LARGEST_COORDINATE && fabs(p.y) <= TRI_LARGEST_COORDINATE;
 }
 
+/* < 0: p comes first in the order of x, then y; 0: they are one place. */
+static inline int tri_compare_places(struct tri_point p, struct tri_point q)
+{
+    if (p.x != q.x)
+        return p.x < q.x ? -1 : 1;
+    return (p.y > q.y) - (p.y < q.y);
+}
+
+/* The squared distance. */
+static inline double tri_distance2(struct tri_point p, struct tri_point q)
+{
+    double x = q.x - p.x, y = q.y - p.y;
+    return x * x + y * y;
+}
+
 #ifdef __cplusplus
 }
 #endif

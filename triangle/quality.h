@@ -8,17 +8,6 @@
 
 #include "triangle/mesh.h"
 
-/* Up to about this bound in degrees refinement ends in practice (proved: 28.6 with input angles of 60 and more). */
-#define TRI_USUAL_ANGLE 34.0
-
-/* Above the first, in degrees, sizes are brought about before angles, with the second as bound: see refine.c,
- * stages. */
-#define TRI_EASY_ANGLE 31.0
-#define TRI_SIZES_ANGLE 25.0
-
-/* Cosine of an angle in degrees, 0 .. 180, by its power series: within 1e-15 of the true value everywhere. */
-double tri_cos_degrees(double degrees);
-
 /* The bounds in the form in which the inner loop compares them. */
 struct tri_bounds {
     double sin2;       /* square of the sine of the angle bound; 0: no angle bound */

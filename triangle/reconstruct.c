@@ -14,7 +14,7 @@
 
 #include "triangle/carve.h"
 #include "triangle/chain.h"
-#include "triangle/constrain.h"
+#include "triangle/flip.h"
 #include "triangle/predicates.h"
 #include "triangle/radix.h"
 #include "triangle/refine.h"
@@ -41,6 +41,7 @@ struct matcher {
     const struct tri_reconstruct_options *options;
     uint64_t *half;    /* [3 n] by range */
     int32_t width;     /* vertices in a range */
+    int width_bits;    /* width < 2^width_bits */
     int32_t at[TRI_MOST_SHARES][TRI_MOST_SHARES]; /* [share][range] where the next half-edge goes */
     int32_t end[TRI_MOST_SHARES];                 /* of each range in half[] */
     struct fault fault[TRI_MOST_SHARES];          /* of each share of triangles, or of each range */
@@ -125,6 +126,8 @@ static enum tri_status take_triangles(struct matcher *m)
     if (status)
         return status;
     m->width = m->mesh->n_vertices / (int32_t)n_shares(m) + 1;
+    for (m->width_bits = 1; m->width >> m->width_bits;)
+        m->width_bits++;
     tri_execute(m->options->executor, n_shares(m), take_share, m);
     status = first_fault(m);
     m->mesh->n_slots = status ? 0 : n;
@@ -260,7 +263,7 @@ static void match_range(void *context, size_t range)
     m->no_room[range] = !scratch;
     m->fault[range].what = NULL;
     if (scratch)
-        tri_radix_sort(half, scratch, n, CODE_BITS, 64, NULL);
+        tri_radix_sort(half, scratch, n, CODE_BITS, CODE_BITS + m->width_bits, NULL);
     for (int32_t i = 0, end; scratch && !m->fault[range].what && i < n; i = end) {
         uint64_t low = half[i] >> CODE_BITS;
         for (end = i + 1; end < n && half[end] >> CODE_BITS == low;)

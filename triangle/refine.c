@@ -16,6 +16,7 @@
 #include <stdlib.h>
 
 #include "triangle/bad_queue.h"
+#include "triangle/cavity.h"
 #include "triangle/criterion.h"
 #include "triangle/disk.h"
 #include "triangle/feature_size.h"
@@ -45,7 +46,7 @@ struct tri_refiner {
     struct tri_refine_report *report;
     struct tri_error *error;
     struct tri_criterion criterion;
-    int least_exponent; /* of mesh->shortest2 */
+    int least_exponent; /* of mesh->limits.shortest2 */
     struct tri_cavity cavity;
     struct tri_bad_queue queue;
     bool sized;       /* the triangle in hand asks for a point because of sizes, not of angles */
@@ -65,7 +66,7 @@ struct tri_refiner {
 enum { SEED_CHUNK = 1 << 16 };
 
 /* Beyond this lies no point that the predicates can carry: the triangle's area has been rounded to nothing. */
-static const double FARTHEST = 0x1p199;
+static const double FARTHEST = TRI_LARGEST_COORDINATE / 2;
 
 /* DONE: a point was inserted, or the triangle is gone; AGAIN: a subsegment was split instead, the triangle may still
  * stand; LEFT: it is somebody else's. */
@@ -404,6 +405,12 @@ static bool is_hopeless(const struct tri_refiner *r, int32_t slot, const struct 
     return r->report->hit_cap = true;
 }
 
+/* Somebody asks for the end: between two points the mesh is in order. */
+static bool must_stop(struct tri_refiner *r)
+{
+    return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(r->error);
+}
+
 /* Treats one bad triangle until it is gone or refused. */
 static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
 {
@@ -423,7 +430,7 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         }
         if (at_limit(r))
             return give_up(r, TRI_EXCUSE_LIMIT);
-        bool resolved = shape.l[shape.shortest] >= r->mesh->shortest2;
+        bool resolved = shape.l[shape.shortest] >= r->mesh->limits.shortest2;
         enum outcome outcome = resolved ? propose(r, entry.t, &shape, badness) : refuse(r, TRI_EXCUSE_PRECISION);
         if (outcome == REFUSED && tri_is_too_large(&r->criterion, t, &shape)) {
             r->sized = true;
@@ -433,12 +440,16 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
             count_point(r);
         if (outcome != AGAIN)
             return outcome == REFUSED ? give_up(r, r->excuse) : outcome;
+        if (must_stop(r))
+            return FAILED;
     }
 }
 
 static bool split_crowded(struct tri_refiner *r)
 {
     while (r->n_crowded > 0) {
+        if (must_stop(r))
+            return false;
         int32_t s = r->crowded[r->n_crowded - 1];
         const struct tri_subsegment *sub = &r->mesh->sub[s];
         int32_t beside = tri_of(sub->side[sub->side[0] == TRI_NONE]);
@@ -466,12 +477,6 @@ static bool next_entry(struct tri_refiner *r)
 {
     return r->step == FIRST_PASS ? tri_bad_queue_pop_angle(&r->queue, r->limit, &r->hand)
                                  : tri_bad_queue_pop(&r->queue, r->mesh->tri, &r->hand);
-}
-
-/* Somebody asks for the end: between two triangles the mesh is in order. */
-static bool must_stop(struct tri_refiner *r)
-{
-    return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(r->error);
 }
 
 static bool work_off(struct tri_refiner *r)
@@ -631,13 +636,13 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
         *refiner = NULL;
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for refinement");
     }
-    assert(mesh->n_slots == 0 || mesh->n_hubs > 0); /* tri_refine_prepare has been called */
+    assert(mesh->n_slots == 0 || mesh->incidence.n_vertices > 0); /* tri_refine_prepare has been called */
     r->mesh = mesh;
     r->options = options;
     r->criterion = tri_criterion_for(mesh, options);
     r->report = report;
     begin_stages(r);
-    frexp(mesh->shortest2, &r->least_exponent);
+    frexp(mesh->limits.shortest2, &r->least_exponent);
     r->cavity.fence = options->fence;
     return TRI_OK;
 }

@@ -10,12 +10,21 @@
 #ifndef TRIANGLE_REFINE_H
 #define TRIANGLE_REFINE_H
 
-#include "triangle/cavity.h"
 #include "triangle/executor.h"
+#include "triangle/fence.h"
+#include "triangle/mesh.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Up to about this bound in degrees refinement ends in practice (proved: 28.6 with input angles of 60 and more). */
+#define TRI_USUAL_ANGLE 34.0
+
+/* Above the first, in degrees, sizes are brought about before angles, with the second as bound: see refine.c,
+ * stages. */
+#define TRI_EASY_ANGLE 31.0
+#define TRI_SIZES_ANGLE 25.0
 
 /* Non-zero: the triangle a, b, c (counter-clockwise) must be refined. Called for triangles that satisfy all other size
  * bounds, by par_refine also for others (sched/schedule.h). */
@@ -56,6 +65,17 @@ struct tri_refine_options {
     tri_more_room *more_room; /* NULL: the mesh's arrays grow */
     void *more_room_user;
 };
+
+/* Is there any bound on sizes? */
+static inline bool tri_has_sizes(const struct tri_refine_options *options)
+{
+    return options->max_area > 0 || options->region_areas || options->unsuitable;
+}
+
+static inline double tri_area_scale(const struct tri_refine_options *options)
+{
+    return options->area_scale > 0 ? options->area_scale : 1;
+}
 
 enum tri_excuse { /* why a triangle is still bad */
     TRI_EXCUSE_INPUT_ANGLE, /* at, or across from, a small angle between input segments */
@@ -105,11 +125,6 @@ void tri_refiner_free(struct tri_refiner *refiner);
  * angle that is bad and not hopeless, a bad size; a crowded subsegment if conforming), in order; returns how many. */
 int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t first,
                       int32_t last, int32_t *found);
-
-/* Makes the mesh ready for refinement: lists the parents at each vertex, and marks the input vertices at which two
- * subsegments meet at less than 60 degrees inside the mesh (TRI_VERTEX_ACUTE). To be called once, after carving.
- * O(triangles). */
-enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error);
 
 /* Counts the subsegments with a vertex of a triangle beside them in their diametral circle, which -D could not mend, by
  * place: at a small angle of the input, between segments near to each other, and so on. */

@@ -9,10 +9,10 @@
  *      smaller is made because of it.
  *   2. Two segments side by side, nearer to each other than rounding, or than anyone could want to fill: spikes of no
  *      width, slits, borders that were digitised twice. The theory holds, but asks for length / width triangles. Such a
- *      channel is filled only if the mesh can afford it (choose_channels); a triangle whose shortest edge bridges
+ *      channel is filled only if the mesh can afford it (tri_choose_channels); a triangle whose shortest edge bridges
  *      one that is too dear stays.
  *   3. Rounding: points nearer than about 100 units in the last place, flat triangles, split points beside their
- *      segment. An edge or height below mesh.shortest2 stays; a point that does not see its whole cavity is not
+ *      segment. An edge or height below mesh.limits.shortest2 stays; a point that does not see its whole cavity is not
  *      inserted (cavity.h).
  * And above 28.6 degrees points may beget points in ever smaller triangles: feature_size.c says where that ends.
  * What stays is counted by reason (tri_count_bad). */
@@ -23,26 +23,17 @@
 #include <string.h>
 
 #include "triangle/feature_size.h"
-#include "triangle/heap_sort.h"
 #include "triangle/predicates.h"
 #include "triangle/refine.h"
 
-enum { HUB = 16 }; /* a vertex with more parents is one: they are in order of direction */
-
 static bool is_acute(const struct tri_mesh *mesh, int32_t v) { return mesh->on[v] == TRI_VERTEX_ACUTE; }
-
-static double squared(struct tri_point a, struct tri_point b)
-{
-    double x = b.x - a.x, y = b.y - a.y;
-    return x * x + y * y;
-}
 
 double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegment *s)
 {
     bool at_start = is_acute(mesh, s->v[0]), at_end = is_acute(mesh, s->v[1]);
     if (!at_start && !at_end)
         return 0.5;
-    double length = sqrt(squared(mesh->xy[s->v[0]], mesh->xy[s->v[1]]));
+    double length = sqrt(tri_distance2(mesh->xy[s->v[0]], mesh->xy[s->v[1]]));
     int exponent; /* half the length is mantissa * 2^exponent, mantissa in [0.5, 1) */
     double mantissa = frexp(0.5 * length, &exponent);
     double shell = ldexp(mantissa < 0.70710678118654752 ? 0.5 : 1, exponent);
@@ -52,7 +43,7 @@ double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegme
 
 bool tri_can_split(const struct tri_mesh *mesh, struct tri_point a, struct tri_point b)
 {
-    return squared(a, b) > 4 * mesh->shortest2;
+    return tri_distance2(a, b) > 4 * mesh->limits.shortest2;
 }
 
 /* The vertex where the parents on which u and v lie meet; TRI_NONE where they do not, or are the same. */
@@ -73,7 +64,7 @@ static bool on_one_shell(const struct tri_mesh *mesh, int32_t u, int32_t v, doub
     int32_t apex = apex_between(mesh, u, v);
     if (apex == TRI_NONE)
         return false;
-    double du = squared(mesh->xy[apex], mesh->xy[u]), dv = squared(mesh->xy[apex], mesh->xy[v]);
+    double du = tri_distance2(mesh->xy[apex], mesh->xy[u]), dv = tri_distance2(mesh->xy[apex], mesh->xy[v]);
     return du < 1.002 * dv && dv < 1.002 * du && uv2 < 0.99 * du;
 }
 
@@ -85,23 +76,10 @@ static const int32_t *parents_of(const struct tri_mesh *mesh, int32_t v, int32_t
         *n = 1;
         return &mesh->on[v];
     }
-    if (v >= mesh->n_hubs)
+    if (v >= mesh->incidence.n_vertices)
         return NULL;
-    *n = mesh->spoke_start[v + 1] - mesh->spoke_start[v];
-    return mesh->spokes + mesh->spoke_start[v];
-}
-
-/* Is the direction from o to a before that to b, counter-clockwise from that of the axis of x? */
-static bool turns_before(struct tri_point o, struct tri_point a, struct tri_point b)
-{
-    bool a_down = a.y < o.y || (a.y == o.y && a.x < o.x), b_down = b.y < o.y || (b.y == o.y && b.x < o.x);
-    return a_down != b_down ? b_down : tri_orient2d(o, a, b) > 0;
-}
-
-static struct tri_point far_end(const struct tri_mesh *mesh, int32_t parent, int32_t v)
-{
-    const int32_t *ends = mesh->parents[parent].v;
-    return mesh->xy[ends[ends[0] == v]];
+    *n = mesh->incidence.start[v + 1] - mesh->incidence.start[v];
+    return mesh->incidence.parent + mesh->incidence.start[v];
 }
 
 /* Of the n parents at a hub, in order of direction, the two before the direction to q, and the two that come next: one
@@ -112,7 +90,7 @@ static int list_neighbours(const struct tri_mesh *mesh, int32_t hub, const int32
     int32_t low = 0, high = n;
     while (low < high) {
         int32_t middle = low + (high - low) / 2;
-        if (turns_before(mesh->xy[hub], far_end(mesh, spokes[middle], hub), q))
+        if (tri_turns_before(mesh->xy[hub], tri_far_end(mesh, spokes[middle], hub), q))
             low = middle + 1;
         else
             high = middle;
@@ -127,7 +105,7 @@ static const int32_t *parents_beside(const struct tri_mesh *mesh, int32_t u, int
                                      int32_t *n)
 {
     const int32_t *spokes = parents_of(mesh, u, n);
-    if (*n <= HUB)
+    if (*n <= TRI_MANY_PARENTS)
         return spokes;
     int32_t all = *n;
     *n = list_neighbours(mesh, u, spokes, all, mesh->xy[v], beside);
@@ -229,7 +207,7 @@ double tri_channel_cost(const struct tri_mesh *mesh, int32_t slot, const struct 
 
 bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape)
 {
-    return tri_channel_cost(mesh, slot, shape) > mesh->dearest_channel;
+    return tri_channel_cost(mesh, slot, shape) > mesh->limits.dearest_channel;
 }
 
 bool tri_crosses_angle(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape)
@@ -243,7 +221,7 @@ bool tri_is_hopeless(const struct tri_mesh *mesh, int32_t slot, const struct tri
     const struct tri_triangle *t = &mesh->tri[slot];
     int k = shape->shortest;
     int32_t u = t->v[tri_next[k]], v = t->v[tri_prev[k]];
-    return shape->l[k] < mesh->shortest2 || tri_has_run_away(mesh, u, v, shape->l[k]) ||
+    return shape->l[k] < mesh->limits.shortest2 || tri_has_run_away(mesh, u, v, shape->l[k]) ||
            on_one_shell(mesh, u, v, shape->l[k]) || tri_is_channel(mesh, slot, shape);
 }
 
@@ -319,10 +297,9 @@ static struct demand whole_demand(const struct tri_mesh *mesh, const struct tri_
 /* Which narrow spaces are filled, by their cost. All of them, where a quarter of a million points is enough for
  * that: thin layers and slits of ordinary parts. Else, where there are spikes of no width or lines a few units in
  * the last place apart, the cheap ones: up to the largest power of two, 2^10 or more, such that filling every space
- * as far as this cost goes takes no more than PER_VERTEX points for each vertex of the input, or each
- * end of a segment if there are fewer, and an ALLOWANCE. (A
- * dearer space is still filled where it is wide.) */
-static void choose_channels(struct tri_mesh *mesh, const struct tri_executor *executor)
+ * as far as this cost goes takes no more than PER_VERTEX points for each vertex of the input, or each end of a segment
+ * if there are fewer, and an ALLOWANCE. (A dearer space is still filled where it is wide.) */
+void tri_choose_channels(struct tri_mesh *mesh, const struct tri_executor *executor)
 {
     const double ALL = 250000, ALLOWANCE = 20000, PER_VERTEX = 4;
     const struct demand demand = whole_demand(mesh, executor);
@@ -330,115 +307,14 @@ static void choose_channels(struct tri_mesh *mesh, const struct tri_executor *ex
     for (int octave = CHEAP + 1; octave < OCTAVES; octave++)
         dearer += demand.count[octave];
     int limit = demand.all <= ALL ? OCTAVES : CHEAP;
-    mesh->channel_points = demand.all <= ALL ? demand.all
-                                              : ALLOWANCE + PER_VERTEX * fmin(mesh->n_input, 2.0 * mesh->n_parents);
+    double affordable = ALLOWANCE + PER_VERTEX * fmin(mesh->n_input, 2.0 * mesh->n_parents);
+    mesh->limits.channel_points = demand.all <= ALL ? demand.all : affordable;
     for (int octave = CHEAP + 1; octave < OCTAVES && demand.all > ALL; octave++) {
         cheaper += demand.cost[octave];
         dearer -= demand.count[octave];
-        if (cheaper + ldexp(dearer, octave) > mesh->channel_points)
+        if (cheaper + ldexp(dearer, octave) > mesh->limits.channel_points)
             break;
         limit = octave;
     }
-    mesh->dearest_channel = ldexp(1, limit);
-}
-
-static bool is_input(int32_t on) { return on == TRI_VERTEX_INPUT || on == TRI_VERTEX_ACUTE; }
-
-/* The subsegment that comes next counter-clockwise after subsegment s around its end k, inside the mesh; TRI_NONE where
- * the outside comes first. */
-static int32_t next_around(const struct tri_mesh *mesh, int32_t s, int k)
-{
-    int32_t code = mesh->sub[s].side[k];
-    while (code != TRI_NONE) { /* edge `code` starts at the vertex, counter-clockwise in its triangle */
-        int32_t link = mesh->tri[tri_of(code)].n[tri_prev[tri_edge(code)]];
-        if (link < 0)
-            return ~link;
-        code = tri_code(tri_of(link), tri_edge(link));
-    }
-    return TRI_NONE;
-}
-
-static void find_acute(struct tri_mesh *mesh)
-{
-    for (int32_t s = 0; s < mesh->n_subs; s++)
-        for (int k = 0; k < 2; k++) {
-            int32_t v = mesh->sub[s].v[k];
-            int32_t other = is_input(mesh->on[v]) ? next_around(mesh, s, k) : TRI_NONE;
-            if (other == TRI_NONE || other == s)
-                continue;
-            struct tri_point o = mesh->xy[v], a = mesh->xy[mesh->sub[s].v[1 - k]];
-            struct tri_point b = mesh->xy[mesh->sub[other].v[mesh->sub[other].v[0] == v]];
-            double ax = a.x - o.x, ay = a.y - o.y, bx = b.x - o.x, by = b.y - o.y;
-            double dot = ax * bx + ay * by, cross = ax * by - ay * bx;
-            if (dot > 0 && cross > 0 && 4 * dot * dot > (ax * ax + ay * ay) * (bx * bx + by * by))
-                mesh->on[v] = TRI_VERTEX_ACUTE;
-        }
-}
-
-struct hub {
-    const struct tri_mesh *mesh;
-    int32_t vertex;
-};
-
-static bool is_before(const void *context, int32_t a, int32_t b)
-{
-    const struct hub *hub = context;
-    return turns_before(hub->mesh->xy[hub->vertex], far_end(hub->mesh, a, hub->vertex),
-                        far_end(hub->mesh, b, hub->vertex));
-}
-
-void tri_fill_spokes(struct tri_mesh *mesh)
-{
-    size_t n = (size_t)mesh->n_hubs;
-    int32_t *fill = mesh->spoke_start + 1; /* shifted by one, so that filling leaves the starts in place */
-    memset(mesh->spoke_start, 0, (n + 2) * sizeof *mesh->spoke_start);
-    for (int32_t p = 0; p < mesh->n_parents; p++)
-        for (int k = 0; k < 2; k++)
-            fill[mesh->parents[p].v[k] + 1]++;
-    for (size_t v = 0; v < n; v++)
-        fill[v + 1] += fill[v];
-    for (int32_t p = 0; p < mesh->n_parents; p++)
-        for (int k = 0; k < 2; k++)
-            mesh->spokes[fill[mesh->parents[p].v[k]]++] = p;
-    assert(mesh->spoke_start[n] == 2 * mesh->n_parents);
-    for (int32_t v = 0; v < mesh->n_hubs; v++) {
-        struct hub hub = {mesh, v};
-        int32_t first = mesh->spoke_start[v], count = mesh->spoke_start[v + 1] - first;
-        if (count > HUB)
-            tri_heap_sort(mesh->spokes + first, count, is_before, &hub);
-    }
-}
-
-static enum tri_status list_spokes(struct tri_mesh *mesh, struct tri_error *error)
-{
-    assert(!mesh->spoke_start && !mesh->spokes);
-    mesh->spoke_start = malloc(((size_t)mesh->n_vertices + 2) * sizeof *mesh->spoke_start);
-    mesh->spokes = malloc((2 * (size_t)mesh->n_parents + 1) * sizeof *mesh->spokes);
-    if (!mesh->spoke_start || !mesh->spokes)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)mesh->n_parents);
-    mesh->n_hubs = mesh->n_vertices;
-    tri_fill_spokes(mesh);
-    return TRI_OK;
-}
-
-/* New points lie about 100 units in the last place apart at least: nearer, rounding would decide on shapes. */
-static double shortest_edge2(const struct tri_mesh *mesh)
-{
-    double size = 0;
-    for (int32_t v = 0; v < mesh->n_input; v++) {
-        size = fabs(mesh->xy[v].x) > size ? fabs(mesh->xy[v].x) : size;
-        size = fabs(mesh->xy[v].y) > size ? fabs(mesh->xy[v].y) : size;
-    }
-    return size * 0x1p-45 * (size * 0x1p-45);
-}
-
-enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
-{
-    mesh->shortest2 = shortest_edge2(mesh);
-    tri_estimate_features(mesh, executor);
-    find_acute(mesh);
-    enum tri_status status = list_spokes(mesh, error);
-    if (!status)
-        choose_channels(mesh, executor);
-    return status;
+    mesh->limits.dearest_channel = ldexp(1, limit);
 }

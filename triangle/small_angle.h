@@ -36,9 +36,8 @@ double tri_channel_cost(const struct tri_mesh *mesh, int32_t slot, const struct 
 /* Does the shortest edge of the triangle bridge a space between two parents that is too dear to fill? */
 bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape);
 
-/* Lists the parents at each vertex, in the arrays that tri_refine_prepare has made; called again when vertices get
- * other numbers. Where there are many at one vertex, they are in order of direction. O(vertices + parents log parents)
- * at most. */
-void tri_fill_spokes(struct tri_mesh *mesh);
+/* Chooses which narrow spaces are filled, by their cost (mesh->limits): the parents at each vertex are listed.
+ * O(triangles). */
+void tri_choose_channels(struct tri_mesh *mesh, const struct tri_executor *executor);
 
 #endif

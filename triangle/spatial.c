@@ -8,7 +8,6 @@
 #include <stdlib.h>
 
 #include "triangle/hilbert.h"
-#include "triangle/small_angle.h"
 
 static void *array(int32_t n, size_t item) { return malloc(((size_t)n + 1) * item); }
 
@@ -114,7 +113,7 @@ enum tri_status tri_restore_points(struct tri_mesh *mesh, const struct tri_execu
     restore_ends(mesh);
     free(mesh->origin);
     mesh->origin = NULL;
-    if (mesh->n_hubs > 0)
-        tri_fill_spokes(mesh);
+    if (mesh->incidence.n_vertices > 0)
+        tri_incidence_fill(mesh);
     return TRI_OK;
 }

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "triangle/degrees.h"
 #include "triangle/quality.h"
 
 const double tri_aspect_limits[TRI_ASPECT_BINS] = {1.1547, 1.5, 2,  2.5, 3,   4,   6,    10,
@@ -19,7 +20,7 @@ enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh 
 {
     *counts = (struct tri_counts){.triangles = mesh->n_slots, .subsegments = mesh->n_subs};
     /* Vertices that refinement has made are all in use; others may lie outside, or be duplicates. */
-    int32_t n_doubtful = mesh->n_hubs > 0 ? mesh->n_hubs : mesh->n_vertices;
+    int32_t n_doubtful = mesh->incidence.n_vertices > 0 ? mesh->incidence.n_vertices : mesh->n_vertices;
     uint8_t *used = calloc((size_t)n_doubtful + 1, 1);
     if (!used)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to count %d vertices", (int)n_doubtful);

@@ -147,6 +147,12 @@ struct tri_settings {
                                    refines where they are set */
     bool numbered_by_block; /* new points and triangles lie as they were made: quicker. Else along a curve, as the
                                cache of a solver wants it */
+
+    /* Segments tell what is inside, without holes (which are emptied all the same): what lies behind an even number of
+     * them goes. Rings may lie in rings; where polygons share a border that both have listed, it is none. More exactly:
+     * the least number of segments' pieces on a way from outside counts, of those pieces along which an odd number of
+     * segments run. So dangling segments, and single ones across a ring, change nothing. */
+    bool even_odd;
 };
 
 static inline struct tri_settings tri_no_settings(void)

@@ -4,11 +4,12 @@
     m = ptriangle.mesh([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1], [1, 2], [2, 3], [3, 0]], min_angle=30, size=0.1)
     m.points, m.triangles
 
-mesh(points, segments=None, ...) -> Mesh
+mesh(points=None, segments=None, ...) -> Mesh
 
 What is given (anything that numpy makes an array of; arrays of the right type and equal steps are not copied):
     points [n, 2]; segments [s, 2], point numbers from 0 (without: the convex hull is meshed)
-    holes [h, 2]; regions [r, 4]: x, y, attribute, largest area (<= 0: any)
+    polygons: rings [k, 2], closed or not, one in the other as they are: what lies in an odd number of them is meshed
+    holes [h, 2], or "auto": the segments are such rings; regions [r, 4]: x, y, attribute, largest area (<= 0: any)
     point_attributes [n, k], point_markers [n], segment_markers [s]
     triangles [m, 3]: a mesh that is there, to be refined; triangle_attributes [m, k], triangle_areas [m]
 What is wanted:

@@ -52,7 +52,8 @@ class Settings(Sized):
                 ("unsuitable", Unsuitable), ("unsuitable_user", c_void_p),
                 ("gate", Gate), ("gate_user", c_void_p), ("fence", POINTER(c_double)),
                 ("stop", Stop), ("stop_user", c_void_p),
-                ("threads", c_int), ("callbacks_in_parallel", c_bool), ("numbered_by_block", c_bool)]
+                ("threads", c_int), ("callbacks_in_parallel", c_bool), ("numbered_by_block", c_bool),
+                ("even_odd", c_bool)]
 
 
 class Demands(Sized):

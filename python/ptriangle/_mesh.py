@@ -207,22 +207,50 @@ class Mesh:
         return "<Mesh: %d points, %d triangles>" % (len(self.points), len(self.triangles))
 
 
-def _make(figure, wanted):
+def _make(figure, wanted, even_odd=False):
     settings, calls = _settings_of(**wanted)
+    settings.even_odd = even_odd
     handle = _Handle()
     function = library.par_mesh_new if _PARALLEL else library.tri_mesh_new
     _run(function, calls, byref(handle.mesh), byref(figure), byref(settings))
     return Mesh(handle)
 
 
-def mesh(points, segments=None, *, holes=None, regions=None, point_attributes=None, point_markers=None,
+def _with_polygons(points, segments, polygons):
+    """Points and segments with those of rings behind them."""
+    points = np.empty((0, 2)) if points is None else np.asarray(points, float).reshape(-1, 2)
+    segments = np.empty((0, 2), int) if segments is None else np.asarray(segments).reshape(-1, 2)
+    first, all_points, all_segments = len(points), [points], [segments]
+    for ring in polygons:
+        ring = np.asarray(ring, float)
+        if ring.ndim != 2 or ring.shape[1] != 2:
+            raise InputError("polygons: a ring of shape %s instead of (n, 2)" % (ring.shape,), 3)
+        if len(ring) > 1 and np.array_equal(ring[0], ring[-1]):
+            ring = ring[:-1]
+        number = np.arange(first, first + len(ring))
+        all_points.append(ring)
+        all_segments.append(np.column_stack([number, np.roll(number, -1)]))
+        first += len(ring)
+    return np.concatenate(all_points), np.concatenate(all_segments)
+
+
+def mesh(points=None, segments=None, *, polygons=None, holes=None, regions=None, point_attributes=None, point_markers=None,
          segment_markers=None, triangles=None, triangle_attributes=None, triangle_areas=None, **wanted):
     """A triangle mesh of a planar figure; see help(ptriangle)."""
+    even_odd = polygons is not None or isinstance(holes, str)
+    if polygons is not None:
+        points, segments = _with_polygons(points, segments, polygons)
+    if points is None:
+        raise InputError("neither points nor polygons are given", 3)
+    if isinstance(holes, str):
+        if holes != "auto":
+            raise InputError('holes: %r is neither "auto" nor places' % holes, 3)
+        holes = None
     arrays = dict(points=points, segments=segments, holes=holes, regions=regions, point_attributes=point_attributes,
                   point_markers=point_markers, segment_markers=segment_markers, triangles=triangles,
                   triangle_attributes=triangle_attributes, triangle_areas=triangle_areas)
     figure, kept = _figure_of(arrays)
-    made = _make(figure, wanted)
+    made = _make(figure, wanted, even_odd)
     del kept  # which the library has looked at until here
     return made
 

@@ -73,6 +73,26 @@ def test_regions_and_attributes():
     assert np.allclose(m.point_attributes[:, 0], m.points.sum(axis=1))
 
 
+def box(x, y, width, height):
+    return [[x, y], [x + width, y], [x + width, y + height], [x, y + height]]
+
+
+def test_polygons():
+    rings = [box(0, 0, 8, 8), box(1, 1, 4, 4) + [[1, 1]], np.array(box(2, 2, 1, 1)), box(8, 0, 2, 4)]
+    m = ptriangle.mesh(polygons=rings, min_angle=30)
+    assert m.check(min_angle=30) and abs(areas(m).sum() - (64 - 16 + 1 + 8)) < 1e-9
+    same = ptriangle.mesh(PLATE, RINGS, holes="auto", min_angle=30)
+    assert np.array_equal(same.points, plate(min_angle=30).points)
+    mixed = ptriangle.mesh(PLATE, RINGS, polygons=[box(1.25, 1.25, 0.5, 0.5)])
+    assert abs(areas(mixed).sum() - 11.25) < 1e-9
+    with pytest.raises(ptriangle.InputError, match="ring"):
+        ptriangle.mesh(polygons=[[0, 1, 2]])
+    with pytest.raises(ptriangle.InputError, match="auto"):
+        ptriangle.mesh(PLATE, RINGS, holes="all")
+    with pytest.raises(ptriangle.InputError, match="neither"):
+        ptriangle.mesh()
+
+
 def test_size():
     m = plate(min_angle=30, size=0.2)
     assert areas(m).max() <= np.sqrt(3) / 4 * 0.04 * (1 + 1e-12)

@@ -35,6 +35,42 @@ program 0 -pQ --output other --no-progress letter
 check "other names" test -f other.node -a -f other.ele -a -f other.poly
 program 0 -pQI --output third letter
 check "other names, whatever -I says" test -f third.poly
+fresh letter.poly # a ring in a ring, which no hole point empties
+cat >rings.poly <<'END'
+12 2 0 0
+1 0 0
+2 8 0
+3 8 8
+4 0 8
+5 1 1
+6 5 1
+7 5 5
+8 1 5
+9 2 2
+10 3 2
+11 3 3
+12 2 3
+12 1
+1 1 2 1
+2 2 3 1
+3 3 4 1
+4 4 1 1
+5 5 6 2
+6 6 7 2
+7 7 8 2
+8 8 5 2
+9 9 10 3
+10 10 11 3
+11 11 12 3
+12 12 9 3
+0
+END
+program 0 --holes auto -pq30a0.5 rings
+judge rings.1 --poly rings.poly --min-angle 30 --max-area 0.5
+check "what is odd stays" sh -c '"$0/trianglecheck" rings.1 | grep -q "total 49\$"' "$bin"
+cp rings.1.ele auto.ele
+program 0 --holes points -pq30a0.5Q rings
+check "without, all stays" sh -c 'test "$(sed -n 1s/\ .*//p rings.1.ele)" -gt "$(sed -n 1s/\ .*//p auto.ele)"'
 fresh letter.poly
 program 1 --no-such-thing letter
 complains '^ptriangle: there is no option --no-such-thing'

@@ -179,6 +179,7 @@ static enum tri_status generate(struct tri_api_mesh *m, const struct tri_api_fig
     how.elements = figure->elements.n > 0 ? &figure->elements : NULL;
     how.use_segments = pslg->n_segments > 0 || (!how.elements && (pslg->n_holes > 0 || pslg->n_regions > 0));
     how.keep_hull = s->keep_hull || pslg->n_segments == 0;
+    how.even_odd = s->even_odd;
     how.spread_regions = pslg->n_regions > 0;
     how.refine = how.elements || has_bounds(m, s); /* a mesh may be refined later, and has to be Delaunay then */
     how.refine_call = refine;

@@ -36,17 +36,10 @@ struct sweep {
     struct check_order order;
 };
 
-static int compare_places(struct tri_point p, struct tri_point q)
-{
-    if (p.x != q.x)
-        return p.x < q.x ? -1 : 1;
-    return (p.y > q.y) - (p.y < q.y);
-}
-
 static int compare_events(const void *a, const void *b)
 {
     const struct event *e = a, *f = b;
-    int order = compare_places(e->at, f->at);
+    int order = tri_compare_places(e->at, f->at);
     return order != 0 ? order : (e->code > f->code) - (e->code < f->code);
 }
 
@@ -95,7 +88,7 @@ static bool neighbors_are_good(struct sweep *w, int32_t a, int32_t b)
 {
     if (a >= 0 && b >= 0) {
         struct tri_point p = w->edge[a].right, q = w->edge[b].right;
-        int order = compare_places(p, q);
+        int order = tri_compare_places(p, q);
         if (order < 0 ? side(w, b, p) >= 0 : order > 0 && side(w, a, q) <= 0)
             return fault(w, "they meet", a, b);
     }
@@ -216,7 +209,7 @@ static void collect(struct sweep *w)
         if (c->link[h] >= 0)
             continue;
         struct tri_point a = check_point(c, check_org(c, h)), b = check_point(c, check_dest(c, h));
-        bool above = compare_places(a, b) < 0; /* the mesh is on the left of the edge */
+        bool above = tri_compare_places(a, b) < 0; /* the mesh is on the left of the edge */
         int32_t s = w->n_edges++;
         w->edge[s] = above ? (struct sweep_edge){a, b, h, true} : (struct sweep_edge){b, a, h, false};
         w->event[w->n_events++] = (struct event){w->edge[s].left, 2 * s + LEFT_END};

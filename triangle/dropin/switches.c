@@ -202,6 +202,7 @@ struct tri_options tri_switches_options(const struct tri_switches *s)
     struct tri_options options = tri_defaults();
     options.use_segments = s->segments;
     options.keep_hull = s->keep_hull;
+    options.even_odd = s->even_odd;
     options.ignore_holes = s->ignore_holes;
     options.spread_regions = tri_switches_use_regions(s);
     options.refine = tri_switches_refine(s);

@@ -29,6 +29,7 @@ struct tri_switches {
     bool user_test;      /* u */
     bool regions;        /* A */
     bool keep_hull;      /* c */
+    bool even_odd;       /* --holes auto: no letter */
     bool conforming;     /* D */
     bool jettison;       /* j */
     bool edges, voronoi, neighbors, off; /* e v n g */

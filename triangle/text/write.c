@@ -5,7 +5,9 @@
  * writes the chunk that its buffer holds. So the bytes do not depend on who comes first, nobody waits for the disk
  * alone, and what is written is still in a cache. (Linux lets one thread at a time write into a file: writers that
  * format between writes keep out of each other's way.) A device or a pipe has no places: each wave is written in order.
- */
+ *
+ * A table of few chunks takes a few milliseconds; threads that are woken for it go on spinning for longer than that
+ * once it is done. So it is written chunk by chunk, without the executor. */
 #include "triangle/text/write.h"
 
 #include <assert.h>
@@ -18,7 +20,8 @@
 
 enum {
     CHUNK_BYTES = 1 << 16,
-    WAVE_CHUNKS = 256 /* at a time, where there is an executor */
+    WORTH_THREADS = 64, /* chunks; a table of fewer is written by one thread */
+    WAVE_CHUNKS = 256   /* at a time, where there is an executor */
 };
 
 static char *put(char *at, const char *text, size_t length)
@@ -133,7 +136,9 @@ enum tri_status tri_write_table(struct tri_output *output, size_t n_rows, size_t
     if (n_rows == 0)
         return TRI_OK;
     const size_t chunk_rows = max_row_bytes < CHUNK_BYTES ? CHUNK_BYTES / max_row_bytes : 1;
-    const size_t all_chunks = (n_rows - 1) / chunk_rows + 1, most = executor ? WAVE_CHUNKS : 1;
+    const size_t all_chunks = (n_rows - 1) / chunk_rows + 1;
+    executor = all_chunks < WORTH_THREADS ? NULL : executor;
+    const size_t most = executor ? WAVE_CHUNKS : 1;
     const size_t wave_chunks = all_chunks < most ? all_chunks : most;
     struct table table = {.output = output, .format_row = format_row, .user = user, .n_rows = n_rows,
                           .max_row_bytes = max_row_bytes, .chunk_rows = chunk_rows,

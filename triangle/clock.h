@@ -1,10 +1,10 @@
 /* Wall-clock seconds, for reports alone: no decision depends on them. */
-#ifndef SCHED_CLOCK_H
-#define SCHED_CLOCK_H
+#ifndef TRIANGLE_CLOCK_H
+#define TRIANGLE_CLOCK_H
 
 #include <time.h>
 
-static inline double par_seconds(void)
+static inline double tri_seconds(void)
 {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);

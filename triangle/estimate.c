@@ -1,0 +1,256 @@
+/* The work of a triangle has two parts: what an area bound asks for inside it, and what an angle bound asks for to
+ * grade from its shortest edge to its longest. For samples of the first, large triangles are cut into small ones, so
+ * that their work lies where it is; the second lies at the shortest edge. */
+#include "triangle/estimate.h"
+
+#include <assert.h>
+
+#include "triangle/criterion.h"
+#include "triangle/quality.h"
+#include "triangle/small_angle.h"
+
+enum { DEEPEST_CUT = 12, SURVEY = 1 << 17 };
+
+/* Measured: mean area over bound. */
+static const double MEAN_OVER_BOUND = 0.655;
+
+struct corners {
+    struct tri_point a, b, c;
+};
+
+/* What work is estimated from. */
+struct estimator {
+    const struct tri_mesh *mesh;
+    const struct tri_refine_options *options;
+    double large; /* a size test is probed in pieces no larger than this */
+    struct tri_criterion criterion;
+};
+
+/* Triangles that the bounds ask for on one unit of area in this region; 0 without bound. */
+static double density(const struct estimator *e, int32_t region)
+{
+    return 2 / (MEAN_OVER_BOUND * tri_area2_bound(&e->criterion, region));
+}
+
+/* Triangles that the caller's size test asks for in this one, by probing: it is asked about the triangle shrunk to a
+ * quarter, a sixteenth and so on of its area, until it says yes; 0 where it does at once, and also where it never does,
+ * since then it is no test of size. */
+static double probe_size(const struct estimator *e, const struct corners *t)
+{
+    enum { DEEPEST_PROBE = 16 };
+    double scale = tri_area_scale(e->options), pieces = 1;
+    for (int k = 0; k <= DEEPEST_PROBE; k++, pieces *= 4)
+        if (!tri_is_refused(e->options, e->mesh->unit, t->a, t->b, t->c, scale * pieces))
+            return k > 0 ? pieces : 0;
+    return 0;
+}
+
+static struct tri_point middle(struct tri_point a, struct tri_point b)
+{
+    return (struct tri_point){0.5 * (a.x + b.x), 0.5 * (a.y + b.y)};
+}
+
+/* A triangle in four. */
+static void quarter(const struct corners *t, struct corners part[4])
+{
+    struct tri_point ab = middle(t->a, t->b), bc = middle(t->b, t->c), ca = middle(t->c, t->a);
+    part[0] = (struct corners){t->a, ab, ca};
+    part[1] = (struct corners){ab, t->b, bc};
+    part[2] = (struct corners){ca, bc, t->c};
+    part[3] = (struct corners){ab, bc, ca};
+}
+
+static double area_of(const struct corners *t)
+{
+    double bx = t->b.x - t->a.x, by = t->b.y - t->a.y, cx = t->c.x - t->a.x, cy = t->c.y - t->a.y;
+    return 0.5 * (bx * cy - by * cx);
+}
+
+/* The same where sizes vary inside: in a large triangle, or where a probe says many, its quarters are probed. */
+static double size_work(const struct estimator *e, const struct corners *t, int depth)
+{
+    enum { MANY = 1024 };
+    double work = probe_size(e, t), sum = 0;
+    if (depth == 0 || (work <= MANY && area_of(t) <= e->large))
+        return work;
+    struct corners part[4];
+    quarter(t, part);
+    for (int i = 0; i < 4; i++)
+        sum += size_work(e, &part[i], depth - 1);
+    return work <= MANY ? fmax(work, sum) : sum;
+}
+
+/* Triangles that areas and size test ask for in a piece of a triangle of this region. */
+static double work_inside(const struct estimator *e, int32_t region, const struct corners *t)
+{
+    double work = area_of(t) * density(e, region);
+    if (e->options->unsuitable)
+        work = fmax(work, size_work(e, t, DEEPEST_CUT));
+    return work < TRI_MAX_TRIANGLES ? work : TRI_MAX_TRIANGLES;
+}
+
+static struct corners corners_of(const struct tri_mesh *mesh, int32_t t)
+{
+    const int32_t *v = mesh->tri[t].v;
+    return (struct corners){mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]};
+}
+
+static double area_work(const struct estimator *e, int32_t t)
+{
+    struct corners corners = corners_of(e->mesh, t);
+    return tri_has_sizes(e->options) ? work_inside(e, e->mesh->tri[t].region, &corners) : 0;
+}
+
+/* log2(x) for x >= 1, within 0.09: the exponent, and the mantissa for the rest. */
+static double rough_log2(double x)
+{
+    int exponent;
+    double mantissa = frexp(x, &exponent);
+    return exponent + 2 * mantissa - 2;
+}
+
+/* Triangles that an angle bound makes of one. Sizes grow by a factor from row to row, so that an octave between the
+ * shortest edge and the longest takes a number of triangles that the bound alone decides; a narrow space between
+ * segments takes as many as it is times longer than wide, and the triangle bridges as much of it as it is long. A
+ * hopeless triangle stays one.
+ * Fitted to 14 coasts, parts and point sets at 20 to 34 degrees: 0.8 to 1.25 times what comes out, with few
+ * exceptions (docs/performance.md). */
+static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
+{
+    struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
+    double longest2 = fmax(shape.l[0], fmax(shape.l[1], shape.l[2]));
+    double octaves = 0.5 * rough_log2(longest2 / shape.l[shape.shortest]);
+    double channel = tri_channel_cost(mesh, t, &shape), angle = fmin(options->min_angle, TRI_USUAL_ANGLE);
+    if (tri_is_hopeless(mesh, t, &shape))
+        return 1;
+    channel = fmin(channel, sqrt(longest2 / shape.l[shape.shortest]));
+    double work = angle > 0 ? 17 / (40 - angle) * (octaves + 2 * channel) : 0;
+    return work < 1 ? 1 : work < TRI_MAX_TRIANGLES ? work : TRI_MAX_TRIANGLES;
+}
+
+/* A bad triangle becomes more than triangles do on average. */
+static const double BAD = 1.25;
+
+double tri_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
+{
+    const struct estimator here = {mesh, options, HUGE_VAL, tri_criterion_of_areas(mesh, options)};
+    return tri_is_live(&mesh->tri[t]) ? area_work(&here, t) + BAD * angle_work(mesh, options, t) : 0;
+}
+
+/* Of a large mesh the angle's work is taken from every n-th triangle; triangles lie along a curve, so that is fair. */
+static int32_t survey_step(const struct tri_mesh *mesh) { return mesh->n_slots / SURVEY + 1; }
+
+static struct estimator estimator_for(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+{
+    enum { PIECES = 1 << 14 }; /* of the whole mesh */
+    struct estimator e = {mesh, options, HUGE_VAL, tri_criterion_of_areas(mesh, options)};
+    double all = 0;
+    for (int32_t t = 0; options->unsuitable && t < mesh->n_slots; t++)
+        if (tri_is_live(&mesh->tri[t])) {
+            struct corners corners = corners_of(mesh, t);
+            all += area_of(&corners);
+        }
+    if (options->unsuitable)
+        e.large = all / PIECES;
+    return e;
+}
+
+double tri_sure_work(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+{
+    const struct estimator e = estimator_for(mesh, options);
+    double sum = mesh->n_slots;
+    for (int32_t t = 0; tri_has_sizes(options) && t < mesh->n_slots; t++)
+        if (tri_is_live(&mesh->tri[t]))
+            sum += area_work(&e, t);
+    return sum;
+}
+
+/* As the bounds ask for, be it more than any mesh can hold. */
+static double whole_work(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+{
+    int32_t step = survey_step(mesh);
+    double sum = tri_sure_work(mesh, options) - mesh->n_slots;
+    for (int32_t t = 0; t < mesh->n_slots; t += step)
+        if (tri_is_live(&mesh->tri[t]))
+            sum += step * angle_work(mesh, options, t);
+    return sum;
+}
+
+double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+{
+    double work = whole_work(mesh, options);
+    return work < TRI_MAX_TRIANGLES ? work : TRI_MAX_TRIANGLES;
+}
+
+/* Who is given the samples. */
+struct receiver {
+    tri_take_work *take;
+    void *user;
+};
+
+/* Samples a triangle's work, cut into four as long as a piece holds more than `grain`; depth bounds the recursion. */
+static bool sample_triangle(const struct receiver *to, const struct estimator *e, int32_t region,
+                            const struct corners *t, double work, double grain, int depth)
+{
+    if (work <= grain || depth == 0) {
+        struct tri_point q = {(t->a.x + t->b.x + t->c.x) / 3, (t->a.y + t->b.y + t->c.y) / 3};
+        return to->take(to->user, q, work);
+    }
+    struct corners part[4];
+    quarter(t, part);
+    for (int i = 0; i < 4; i++) {
+        double inside = e->options->unsuitable ? work_inside(e, region, &part[i]) : work / 4;
+        if (!sample_triangle(to, e, region, &part[i], inside, grain, depth - 1))
+            return false;
+    }
+    return true;
+}
+
+/* Small pieces of work are gathered until they are worth a sample. */
+static bool sample_angles(const struct receiver *to, const struct tri_mesh *mesh,
+                          const struct tri_refine_options *options, double grain)
+{
+    int32_t step = survey_step(mesh);
+    double waiting = 0;
+    for (int32_t t = 0; t < mesh->n_slots; t += step) {
+        const int32_t *v = mesh->tri[t].v;
+        if (!tri_is_live(&mesh->tri[t]))
+            continue;
+        waiting += step * angle_work(mesh, options, t);
+        if (waiting < grain)
+            continue;
+        int k = tri_shape_of(mesh->xy, v).shortest;
+        if (!to->take(to->user, middle(mesh->xy[v[tri_next[k]]], mesh->xy[v[tri_prev[k]]]), waiting))
+            return false;
+        waiting = 0;
+    }
+    return true;
+}
+
+static bool sample_areas(const struct receiver *to, const struct tri_mesh *mesh,
+                         const struct tri_refine_options *options, double grain)
+{
+    const struct estimator e = estimator_for(mesh, options);
+    double waiting = 0;
+    for (int32_t t = 0; t < mesh->n_slots; t++) {
+        double work = tri_is_live(&mesh->tri[t]) ? area_work(&e, t) : 0;
+        waiting += work < grain ? work : 0;
+        if (work < grain && waiting < grain)
+            continue;
+        struct corners corners = corners_of(mesh, t);
+        if (!sample_triangle(to, &e, mesh->tri[t].region, &corners, work < grain ? waiting : work,
+                             work < grain ? waiting : grain, DEEPEST_CUT))
+            return false;
+        waiting = work < grain ? 0 : waiting;
+    }
+    return true;
+}
+
+bool tri_sample_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, double grain,
+                     tri_take_work *take, void *user)
+{
+    const struct receiver to = {take, user};
+    assert(take && grain >= 0);
+    return sample_angles(&to, mesh, options, grain) &&
+           (!tri_has_sizes(options) || sample_areas(&to, mesh, options, grain));
+}

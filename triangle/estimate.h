@@ -1,0 +1,34 @@
+/* How much refinement will have to do: in a mesh, in a triangle, and where. */
+#ifndef TRIANGLE_ESTIMATE_H
+#define TRIANGLE_ESTIMATE_H
+
+#include "triangle/refine.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Estimates the number of triangles that refinement will end with: for bounded areas from the areas, for a bounded
+ * angle from the edges' lengths, for a size test by probing it with triangles that get smaller. O(triangles), and a
+ * probe for each thousand triangles or so of those to come. */
+double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options);
+
+/* That part of it which is no guess: what there is, and what areas and the size test ask for. O(triangles). */
+double tri_sure_work(const struct tri_mesh *mesh, const struct tri_refine_options *options);
+
+/* The share of one bad triangle in that. */
+double tri_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t);
+
+/* Takes a place and the work (triangles) that lies about there. False: it cannot. */
+typedef bool tri_take_work(void *user, struct tri_point q, double work);
+
+/* Hands out the work in pieces of about `grain`, each with its place, in an order that the mesh decides; small ones are
+ * gathered. False: `take` said so. O(triangles + pieces). */
+bool tri_sample_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, double grain,
+                     tri_take_work *take, void *user);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

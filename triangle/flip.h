@@ -1,0 +1,38 @@
+/* Edge flips: from any triangulation to the constrained Delaunay triangulation. */
+#ifndef TRIANGLE_FLIP_H
+#define TRIANGLE_FLIP_H
+
+#include "triangle/mesh.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Flips edges that are no subsegments until the mesh is constrained Delaunay; where four points lie on one circle it
+ * stays as it is. A slot keeps its region. O(triangles) where little is to do, and near that in practice; flips may be
+ * quadratic (a fan of n triangles over a thin ellipse). On TRI_NO_MEMORY the mesh is valid. */
+enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, const struct tri_executor *executor,
+                                     struct tri_error *error);
+
+/* The same at one place: whoever changes triangles touches them, then makes them legal. */
+struct tri_flips {
+    struct tri_mesh *mesh;
+    int32_t *corner;  /* NULL, or for each vertex a live triangle that has it as a corner, kept so; not owned */
+    bool ties_stay;   /* an edge is flipped only where that makes a difference; else ties are broken by coordinates */
+    int32_t *touched; /* stack of edge codes to test for the Delaunay property */
+    int32_t n_touched, capacity;
+};
+
+void tri_flips_free(struct tri_flips *flips);
+
+/* The three edges of triangle t are to be tested. False: out of memory. */
+bool tri_flip_touch(struct tri_flips *flips, int32_t t);
+
+/* Lawson: flips what is not Delaunay until everything touched is. False: out of memory; the mesh is valid then. */
+bool tri_flip_legalise(struct tri_flips *flips);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,124 @@
+/* Made in this order: limits of size, feature sizes, acute vertices, incidence, and by these the limit of channels. */
+#include "triangle/groundwork.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "triangle/feature_size.h"
+#include "triangle/heap_sort.h"
+#include "triangle/predicates.h"
+#include "triangle/small_angle.h"
+
+bool tri_turns_before(struct tri_point o, struct tri_point a, struct tri_point b)
+{
+    bool a_down = a.y < o.y || (a.y == o.y && a.x < o.x), b_down = b.y < o.y || (b.y == o.y && b.x < o.x);
+    return a_down != b_down ? b_down : tri_orient2d(o, a, b) > 0;
+}
+
+struct tri_point tri_far_end(const struct tri_mesh *mesh, int32_t parent, int32_t v)
+{
+    const int32_t *ends = mesh->parents[parent].v;
+    return mesh->xy[ends[ends[0] == v]];
+}
+
+static bool is_input(int32_t on) { return on == TRI_VERTEX_INPUT || on == TRI_VERTEX_ACUTE; }
+
+/* The subsegment that comes next counter-clockwise after subsegment s around its end k, inside the mesh; TRI_NONE where
+ * the outside comes first. */
+static int32_t next_around(const struct tri_mesh *mesh, int32_t s, int k)
+{
+    int32_t code = mesh->sub[s].side[k];
+    while (code != TRI_NONE) { /* edge `code` starts at the vertex, counter-clockwise in its triangle */
+        int32_t link = mesh->tri[tri_of(code)].n[tri_prev[tri_edge(code)]];
+        if (link < 0)
+            return ~link;
+        code = tri_code(tri_of(link), tri_edge(link));
+    }
+    return TRI_NONE;
+}
+
+static void find_acute(struct tri_mesh *mesh)
+{
+    for (int32_t s = 0; s < mesh->n_subs; s++)
+        for (int k = 0; k < 2; k++) {
+            int32_t v = mesh->sub[s].v[k];
+            int32_t other = is_input(mesh->on[v]) ? next_around(mesh, s, k) : TRI_NONE;
+            if (other == TRI_NONE || other == s)
+                continue;
+            struct tri_point o = mesh->xy[v], a = mesh->xy[mesh->sub[s].v[1 - k]];
+            struct tri_point b = mesh->xy[mesh->sub[other].v[mesh->sub[other].v[0] == v]];
+            double ax = a.x - o.x, ay = a.y - o.y, bx = b.x - o.x, by = b.y - o.y;
+            double dot = ax * bx + ay * by, cross = ax * by - ay * bx;
+            if (dot > 0 && cross > 0 && 4 * dot * dot > (ax * ax + ay * ay) * (bx * bx + by * by))
+                mesh->on[v] = TRI_VERTEX_ACUTE;
+        }
+}
+
+struct hub {
+    const struct tri_mesh *mesh;
+    int32_t vertex;
+};
+
+static bool is_before(const void *context, int32_t a, int32_t b)
+{
+    const struct hub *hub = context;
+    return tri_turns_before(hub->mesh->xy[hub->vertex], tri_far_end(hub->mesh, a, hub->vertex),
+                            tri_far_end(hub->mesh, b, hub->vertex));
+}
+
+void tri_incidence_fill(struct tri_mesh *mesh)
+{
+    size_t n = (size_t)mesh->incidence.n_vertices;
+    int32_t *fill = mesh->incidence.start + 1; /* shifted by one, so that filling leaves the starts in place */
+    memset(mesh->incidence.start, 0, (n + 2) * sizeof *mesh->incidence.start);
+    for (int32_t p = 0; p < mesh->n_parents; p++)
+        for (int k = 0; k < 2; k++)
+            fill[mesh->parents[p].v[k] + 1]++;
+    for (size_t v = 0; v < n; v++)
+        fill[v + 1] += fill[v];
+    for (int32_t p = 0; p < mesh->n_parents; p++)
+        for (int k = 0; k < 2; k++)
+            mesh->incidence.parent[fill[mesh->parents[p].v[k]]++] = p;
+    assert(mesh->incidence.start[n] == 2 * mesh->n_parents);
+    for (int32_t v = 0; v < mesh->incidence.n_vertices; v++) {
+        struct hub hub = {mesh, v};
+        int32_t first = mesh->incidence.start[v], count = mesh->incidence.start[v + 1] - first;
+        if (count > TRI_MANY_PARENTS)
+            tri_heap_sort(mesh->incidence.parent + first, count, is_before, &hub);
+    }
+}
+
+static enum tri_status list_parents(struct tri_mesh *mesh, struct tri_error *error)
+{
+    assert(!mesh->incidence.start && !mesh->incidence.parent);
+    mesh->incidence.start = malloc(((size_t)mesh->n_vertices + 2) * sizeof *mesh->incidence.start);
+    mesh->incidence.parent = malloc((2 * (size_t)mesh->n_parents + 1) * sizeof *mesh->incidence.parent);
+    if (!mesh->incidence.start || !mesh->incidence.parent)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)mesh->n_parents);
+    mesh->incidence.n_vertices = mesh->n_vertices;
+    tri_incidence_fill(mesh);
+    return TRI_OK;
+}
+
+/* New points lie about 100 units in the last place apart at least: nearer, rounding would decide on shapes. */
+static double shortest_edge2(const struct tri_mesh *mesh)
+{
+    double size = 0;
+    for (int32_t v = 0; v < mesh->n_input; v++) {
+        size = fabs(mesh->xy[v].x) > size ? fabs(mesh->xy[v].x) : size;
+        size = fabs(mesh->xy[v].y) > size ? fabs(mesh->xy[v].y) : size;
+    }
+    return size * 0x1p-45 * (size * 0x1p-45);
+}
+
+enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
+{
+    mesh->limits.shortest2 = shortest_edge2(mesh);
+    tri_estimate_features(mesh, executor);
+    find_acute(mesh);
+    enum tri_status status = list_parents(mesh, error);
+    if (!status)
+        tri_choose_channels(mesh, executor);
+    return status;
+}
