@@ -1,6 +1,7 @@
 /* Triangles are judged in shares, and gathered in the order of the shares. */
 #include "sched/pool.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -10,6 +11,7 @@
 
 bool par_slots_add(struct par_slots *slots, int32_t slot)
 {
+    assert(slots->n >= 0 && slots->n <= slots->capacity);
     if (!tri_grow(&slots->item, &slots->capacity, slots->n + 1, sizeof *slots->item))
         return false;
     slots->item[slots->n++] = slot;
@@ -19,8 +21,10 @@ bool par_slots_add(struct par_slots *slots, int32_t slot)
 bool par_slot_set_of(struct par_slot_set *set, const struct par_slots *slots, int32_t n_slots)
 {
     set->word = calloc((size_t)n_slots / 64 + 1, sizeof *set->word);
-    for (int32_t i = 0; set->word && i < slots->n; i++)
+    for (int32_t i = 0; set->word && i < slots->n; i++) {
+        assert(slots->item[i] >= 0 && slots->item[i] < n_slots);
         set->word[slots->item[i] / 64] |= (uint64_t)1 << slots->item[i] % 64;
+    }
     return set->word;
 }
 
@@ -48,6 +52,7 @@ static int32_t gather(const struct finding *f, int32_t n)
     int32_t filled = 0;
     for (size_t share = 0; share < tri_shares(n); share++) {
         int32_t first = tri_share(share, n).first;
+        assert(f->n[share] <= tri_share(share, n).last - first && filled <= first);
         for (int32_t i = 0; i < f->n[share]; i++)
             f->found[filled++] = f->found[first + i];
     }
@@ -75,6 +80,7 @@ static int32_t find_newborn(const struct finding *f, struct tri_range range, int
     for (int32_t t = range.first; t < range.last; t++) {
         bool was_bad = next < f->pool->n && f->pool->item[next] == t;
         next += was_bad;
+        assert(next == f->pool->n || f->pool->item[next] > t); /* in order, and each once */
         if (f->mesh->tri[t].state != 0)
             n += tri_find_work(f->mesh, f->bounds, t, t + 1, found + n);
         else if (was_bad)

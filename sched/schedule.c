@@ -170,6 +170,7 @@ static enum tri_status prerefine_graded(struct par_state *state, const struct tr
         return status;
     if (!par_pool_filter(&state->pool, state->mesh, &coarse, &executor, &long_ones))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)state->pool.n);
+    assert(long_ones.n <= state->pool.n);
     coarse.seeds = long_ones.item;
     coarse.n_seeds = long_ones.n;
     double found = tri_seconds(), refined = found;
@@ -231,6 +232,7 @@ static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, st
         began = tri_seconds();
     }
     par_room_close(&state->spare, state->mesh, state->threads);
+    assert(tri_mesh_is_sound(state->mesh));
     state->report->seconds_merge += tri_seconds() - began;
     return status;
 }

@@ -71,6 +71,7 @@ static bool is_joint(const struct chains *c, int32_t v)
 static int32_t beyond(const struct chains *c, int32_t v, int32_t s)
 {
     const int32_t *at = &c->at[2 * (size_t)v];
+    assert((at[0] == s) != (at[1] == s));
     return at[at[0] == s];
 }
 
@@ -133,8 +134,10 @@ static void number_parents(struct tri_mesh *mesh, int32_t *number)
     int32_t n = 0;
     for (int32_t p = 0; p < mesh->n_parents; p++)
         number[p] = TRI_NONE;
-    for (int32_t s = 0; s < mesh->n_subs; s++)
+    for (int32_t s = 0; s < mesh->n_subs; s++) {
+        assert(mesh->sub[s].parent >= 0 && mesh->sub[s].parent < mesh->n_parents);
         number[mesh->sub[s].parent] = 0;
+    }
     for (int32_t p = 0; p < mesh->n_parents; p++)
         if (number[p] != TRI_NONE) {
             mesh->parents[n] = mesh->parents[p];
@@ -143,8 +146,10 @@ static void number_parents(struct tri_mesh *mesh, int32_t *number)
     mesh->n_parents = n;
     for (int32_t s = 0; s < mesh->n_subs; s++)
         mesh->sub[s].parent = number[mesh->sub[s].parent];
-    for (int32_t v = 0; v < mesh->n_vertices; v++)
+    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+        assert(mesh->on[v] < 0 || number[mesh->on[v]] != TRI_NONE);
         mesh->on[v] = mesh->on[v] >= 0 ? number[mesh->on[v]] : mesh->on[v];
+    }
 }
 
 static void unite_all(struct chains *c)

@@ -2,6 +2,8 @@
  * the rounding of single operations; the few units of 2^-104 lost in each do not show after the last rounding. */
 #include "triangle/crossing.h"
 
+#include <assert.h>
+
 #include "triangle/expansion.h"
 #include "triangle/predicates.h"
 
@@ -22,6 +24,7 @@ static struct tri_pair negative(struct tri_pair p) { return (struct tri_pair){-p
 /* p / q; q is not 0. */
 static struct tri_pair quotient(struct tri_pair p, struct tri_pair q)
 {
+    assert(q.head != 0);
     double first = p.head / q.head;
     struct tri_pair rest = sum(p, negative(product(q, (struct tri_pair){first, 0})));
     return tri_fast_two_sum(first, rest.head / q.head);

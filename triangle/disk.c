@@ -29,11 +29,14 @@
  * point (cavity.h). Nothing else. */
 #include "triangle/disk.h"
 
+#include <assert.h>
+
 #include "triangle/predicates.h"
 #include "triangle/small_angle.h"
 
 bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, int32_t code)
 {
+    assert(code >= 0 && tri_edge(code) < 3);
     struct tri_point apex = mesh->xy[mesh->tri[tri_of(code)].v[tri_edge(code)]];
     return tri_dot(mesh->xy[s->v[0]], mesh->xy[s->v[1]], apex) < 0;
 }
@@ -81,8 +84,10 @@ bool tri_is_crowded(const struct tri_mesh *mesh, const struct tri_subsegment *s,
     for (int side = 0; side < 2; side++) {
         int32_t code = s->side[side];
         if (code != TRI_NONE && tri_is_in_diametral_disk(mesh, s, code) &&
-            is_split_for(mesh, s, mesh->tri[tri_of(code)].v[tri_edge(code)], fraction))
+            is_split_for(mesh, s, mesh->tri[tri_of(code)].v[tri_edge(code)], fraction)) {
+            assert(*fraction > 0 && *fraction < 1);
             return true;
+        }
     }
     return false;
 }

@@ -57,6 +57,7 @@ static void divide_vertices(struct estimate *e)
     for (size_t i = 1; i < shares; i++) {
         int32_t v = e->mesh->tri[tri_share(i, e->mesh->n_slots).first].v[0];
         e->own[i] = v > e->own[i - 1] ? v : e->own[i - 1];
+        assert(e->own[i] >= e->own[i - 1] && e->own[i] < e->mesh->n_vertices);
     }
     e->own[shares] = e->mesh->n_vertices;
 }
@@ -110,6 +111,7 @@ void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *exe
 
 double tri_feature_inside(const struct tri_mesh *mesh, int32_t a, int32_t b, struct tri_point p, bool sized)
 {
+    assert(a != b);
     double sa = mesh->feature[a], sb = mesh->feature[b], near = sqrt(tri_relative(&mesh->xy[a], p).l);
     double inherited = (sa < sb ? sa : sb) + SLOPE * near;
     return sized && near < inherited ? near : inherited;
@@ -170,6 +172,7 @@ double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavi
         if (rim->outer < 0)
             size = fmin(size, size_from_wall(mesh, sub->parent, cavity->p, ~rim->outer));
     }
+    assert(half > 0 && half < HUGE_VAL && size < HUGE_VAL);
     return sized && half < size ? half : size;
 }
 

@@ -1,6 +1,7 @@
 /* The stages in their order. */
 #include "triangle/generate.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 #include "triangle/delaunay.h"
@@ -37,6 +38,7 @@ static enum tri_status constrain_and_carve(struct tri_mesh *mesh, const struct t
     enum tri_status status = TRI_OK;
     if (options->use_segments)
         status = tri_constrain(mesh, pslg, &report->constrain, error);
+    assert(status || tri_mesh_is_sound(mesh));
     if (status)
         return status; /* this stage's, not the next one's */
     announce(options, TRI_STAGE_HOLES);
@@ -44,6 +46,7 @@ static enum tri_status constrain_and_carve(struct tri_mesh *mesh, const struct t
         struct tri_carve_options carve = {options->keep_hull, options->ignore_holes, options->spread_regions,
                                           options->even_odd};
         status = tri_carve(mesh, pslg, &carve, error);
+        assert(status || tri_mesh_is_sound(mesh));
     }
     return status;
 }
@@ -58,6 +61,7 @@ static enum tri_status triangulate(struct tri_mesh *mesh, const struct tri_pslg 
     announce(options, TRI_STAGE_DELAUNAY);
     status = status ? status : tri_sort_points(mesh, &rank, options->executor, error);
     status = status ? status : tri_delaunay(mesh, options->executor, error);
+    assert(status || tri_mesh_is_sound(mesh));
     for (int32_t v = 0; !status && mesh->twin && v < mesh->n_input; v++)
         report->duplicates += mesh->twin[v] != v;
     status = status ? status : rename_segments(&renamed, pslg, rank, error);
@@ -113,12 +117,15 @@ enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg,
                                                : make(mesh, pslg, options, report, error);
     if (status)
         return status;
+    assert(tri_mesh_is_sound(mesh));
     status = refine(mesh, options, report, error);
+    assert(tri_mesh_is_sound(mesh)); /* refinement that failed, too, leaves a mesh that is valid */
     enum tri_status restored = tri_restore_points(mesh, options->executor, error);
     if (restored) {
         tri_mesh_free(mesh);
         return restored;
     }
+    assert(!mesh->origin && tri_mesh_is_sound(mesh));
     announce(options, TRI_STAGE_DONE);
     return status;
 }

@@ -20,6 +20,8 @@
  * of the largest coordinate. */
 #include "triangle/inside.h"
 
+#include <assert.h>
+
 #include "triangle/predicates.h"
 
 static double longest2(const struct tri_shape *shape) { return fmax(shape->l[0], fmax(shape->l[1], shape->l[2])); }
@@ -27,6 +29,7 @@ static double longest2(const struct tri_shape *shape) { return fmax(shape->l[0],
 int32_t tri_long_wall(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t slot,
                       const struct tri_shape *shape)
 {
+    assert(tri_is_live(&mesh->tri[slot]));
     int32_t found = TRI_NONE;
     double length2 = 0.25 * longest2(shape);
     for (int e = 0; e < 3; e++) {
@@ -41,6 +44,7 @@ int32_t tri_long_wall(const struct tri_mesh *mesh, const struct tri_refine_optio
 
 bool tri_centroid(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape, struct tri_point *p)
 {
+    assert(tri_is_live(&mesh->tri[slot]));
     const int32_t *v = mesh->tri[slot].v;
     struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
     p->x = tri_round_coordinate(a.x + ((b.x - a.x) + (c.x - a.x)) / 3);

@@ -325,3 +325,12 @@ enum tri_status tri_mesh_validate(const struct tri_mesh *mesh, struct tri_error 
                 return tri_fail(error, TRI_INTERNAL, NULL, 0, "side %d of subsegment %d is not mutual", k, (int)s);
     return TRI_OK;
 }
+
+bool tri_mesh_is_sound(const struct tri_mesh *mesh)
+{
+    enum { SMALL = 4096 };
+    return 0 <= mesh->n_vertices && mesh->n_vertices <= mesh->vertex_capacity && mesh->n_input <= mesh->n_vertices &&
+           0 <= mesh->n_slots && mesh->n_slots <= mesh->slot_capacity && 0 <= mesh->n_subs &&
+           mesh->n_subs <= mesh->sub_capacity && 0 <= mesh->n_parents && mesh->n_parents <= mesh->parent_capacity &&
+           (mesh->n_slots > SMALL || tri_mesh_validate(mesh, NULL) == TRI_OK);
+}

@@ -205,6 +205,10 @@ void tri_mesh_compact(struct tri_mesh *mesh);
 /* Checks the invariants of the links; what it finds first is told in *error. O(triangles). For asserts and tests. */
 enum tri_status tri_mesh_validate(const struct tri_mesh *mesh, struct tri_error *error);
 
+/* For asserts where a stage ends: are counts within capacities and, in a mesh so small that it takes no time, the
+ * invariants of the links kept? */
+bool tri_mesh_is_sound(const struct tri_mesh *mesh);
+
 #ifdef __cplusplus
 }
 #endif

@@ -317,6 +317,7 @@ enum tri_status tri_number(struct tri_mesh *mesh, int32_t n_kept, const struct t
     enum tri_status status = tri_stop_is_asked(mesh->stop) ? tri_fail_stopped(error) : allocate(&n, error);
     if (!status)
         renumber(&n);
+    assert(status || tri_mesh_is_sound(mesh));
     free(n.order);
     free(n.rank);
     free(n.sub_rank);

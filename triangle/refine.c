@@ -679,6 +679,7 @@ enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_option
     if (!status)
         status = tri_refiner_run(refiner, error);
     tri_refiner_free(refiner);
+    assert(options->more_room || tri_mesh_is_sound(mesh)); /* a view's counts are not those of the mesh */
     return status;
 }
 

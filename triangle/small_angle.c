@@ -87,6 +87,7 @@ static const int32_t *parents_of(const struct tri_mesh *mesh, int32_t v, int32_t
 static int list_neighbours(const struct tri_mesh *mesh, int32_t hub, const int32_t *spokes, int32_t n,
                            struct tri_point q, int32_t *beside)
 {
+    assert(n > TRI_MANY_PARENTS);
     int32_t low = 0, high = n;
     while (low < high) {
         int32_t middle = low + (high - low) / 2;
@@ -149,6 +150,7 @@ int32_t tri_common_end(const struct tri_mesh *mesh, int32_t parent, int32_t v)
 double tri_filling_cost(const struct tri_mesh *mesh, int32_t first, int32_t second, struct tri_point u,
                         struct tri_point v)
 {
+    assert(first != second);
     const struct tri_parent *p = &mesh->parents[first], *q = &mesh->parents[second];
     struct tri_point a = mesh->xy[p->v[0]], b = mesh->xy[p->v[1]], c = mesh->xy[q->v[0]], d = mesh->xy[q->v[1]];
     double px = b.x - a.x, py = b.y - a.y, qx = d.x - c.x, qy = d.y - c.y;
@@ -316,5 +318,6 @@ void tri_choose_channels(struct tri_mesh *mesh, const struct tri_executor *execu
             break;
         limit = octave;
     }
+    assert(limit >= CHEAP && limit <= OCTAVES);
     mesh->limits.dearest_channel = ldexp(1, limit);
 }

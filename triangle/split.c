@@ -16,6 +16,8 @@
  * which is convex. These triangles do not overlap, and hold no vertex and no part of the domain. */
 #include "triangle/split.h"
 
+#include <assert.h>
+
 #include "triangle/crossing.h"
 #include "triangle/predicates.h"
 
@@ -54,6 +56,7 @@ static bool find_place(const struct tri_mesh *mesh, const struct tri_subsegment 
 bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction,
                      struct tri_point *p)
 {
+    assert(fraction > 0 && fraction < 1 && s->parent >= 0 && s->parent < mesh->n_parents);
     const struct tri_parent *parent = &mesh->parents[s->parent];
     struct tri_point between = tri_point_between(mesh->xy[s->v[0]], mesh->xy[s->v[1]], fraction);
     *p = tri_onto_line(mesh->xy[parent->v[0]], mesh->xy[parent->v[1]], between);
