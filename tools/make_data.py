@@ -10,10 +10,10 @@ here for the tables, and not written.
 
 Each input is one function with the decorator @case, which says what the file is for and what a right program does.
 """
+import argparse
 import math
 import os
 import random
-import sys
 
 import pslg_facts
 
@@ -1067,4 +1067,6 @@ def main(folder):
 
 if __name__ == "__main__":
     here = os.path.dirname(os.path.abspath(__file__))
-    main(sys.argv[1] if len(sys.argv) > 1 else os.path.join(here, "..", "data"))
+    words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    words.add_argument("folder", nargs="?", default=os.path.join(here, "..", "data"))
+    main(words.parse_args().folder)

@@ -31,16 +31,18 @@ struct tri_relative {
 };
 
 struct tri_rim {
-    int32_t outer;  /* link across the rim: triangle code or subsegment */
-    int32_t a;      /* the rim starts at this vertex and ends where the next rim starts */
-    int32_t region; /* of the cavity triangle inside */
-    int32_t slot;   /* of the new triangle on this rim, once filled */
+    tri_link outer;       /* across the rim */
+    tri_vertex_id a;      /* the rim starts at this vertex and ends where the next rim starts */
+    tri_region_id region; /* of the cavity triangle inside */
+    tri_triangle_id slot; /* of the new triangle on this rim, once filled */
     struct tri_relative ra;
     double area2; /* twice the area of the triangle on this rim: the cross product of its ends */
 };
 
 struct tri_pending { /* an edge behind which the search has not looked yet; it starts where the last rim ended */
-    int32_t link, end, region;
+    tri_link link;
+    tri_vertex_id end;
+    tri_region_id region;
     struct tri_relative rend;
     double area2;
 };
@@ -50,9 +52,9 @@ struct tri_cavity {
     const struct tri_fence *fence; /* NULL: everything is owned */
     int32_t n_tri, n_rim, n_wall, capacity;
     int32_t n_left_tri;   /* of a split: triangles left of the subsegment, which come first */
-    int32_t region;       /* of the triangle at which the search began */
+    tri_region_id region; /* of the triangle at which the search began */
     uint32_t mixed;       /* not 0: there are triangles of other regions, which no subsegment separates */
-    int32_t *tri;         /* slots of the cavity's triangles; once filled, those of the fan */
+    tri_triangle_id *tri; /* slots of the cavity's triangles; once filled, those of the fan */
     struct tri_rim *rim;  /* at most n_tri + 2 of them, and one more that only says where the last one ends */
     int32_t *wall;        /* indices of the rims whose outer link is a subsegment */
     struct tri_pending *pending;
@@ -69,22 +71,23 @@ void tri_cavity_free(struct tri_cavity *cavity);
 
 /* Finds the cavity of p from triangle t. Reads the mesh only. Expected O(1) in a good mesh; O(cavity) always. */
 enum tri_search tri_cavity_search(struct tri_cavity *cavity, const struct tri_mesh *mesh, struct tri_point p,
-                                  int32_t t);
+                                  tri_triangle_id t);
 
 /* The same for a point on (within rounding of) subsegment s, which is to be split there: the chain is the rims left of
  * it from its end to its start, then, where there is a triangle on the right, those right of it from start to end.
  * *n_left receives the number of rims on the left. TRI_SEARCH_OUTSIDE also where p does not see every rim,
  * or where it is not in the disk of a triangle beside s (flatter than rounding). */
 enum tri_search tri_cavity_search_split(struct tri_cavity *cavity, const struct tri_mesh *mesh, struct tri_point p,
-                                        int32_t s, int32_t *n_left);
+                                        tri_sub_id s, int32_t *n_left);
 
 /* Replaces the cavity by the fan of vertex v (already stored, at cavity->p). Rims learn their slots; corner 0 of each
  * new triangle is v, corner 1 the start of its rim. Room for two more triangles must exist. */
-void tri_cavity_fill(struct tri_cavity *cavity, struct tri_mesh *mesh, int32_t v);
+void tri_cavity_fill(struct tri_cavity *cavity, struct tri_mesh *mesh, tri_vertex_id v);
 
 /* The same after tri_cavity_search_split: subsegment s becomes (v[0], v), a new one (v, v[1]) is appended. Room for one
  * more subsegment must exist. Returns the new subsegment. */
-int32_t tri_cavity_fill_split(struct tri_cavity *cavity, struct tri_mesh *mesh, int32_t v, int32_t s, int32_t n_left);
+tri_sub_id tri_cavity_fill_split(struct tri_cavity *cavity, struct tri_mesh *mesh, tri_vertex_id v, tri_sub_id s,
+                                 int32_t n_left);
 
 static inline struct tri_relative tri_relative(const struct tri_point *q, struct tri_point p)
 {

@@ -21,10 +21,10 @@ struct tri_criterion tri_criterion_for(const struct tri_mesh *mesh, const struct
 struct tri_criterion tri_criterion_of_areas(const struct tri_mesh *mesh, const struct tri_refine_options *options);
 
 /* The smaller of the bound for all areas and that of a region. */
-double tri_area2_in_region(const struct tri_criterion *criterion, int32_t region);
+double tri_area2_in_region(const struct tri_criterion *criterion, tri_region_id region);
 
 /* Twice the largest area allowed in a region, in the mesh's units; infinity where there is no bound. */
-static inline double tri_area2_bound(const struct tri_criterion *criterion, int32_t region)
+static inline double tri_area2_bound(const struct tri_criterion *criterion, tri_region_id region)
 {
     return criterion->options->region_areas ? tri_area2_in_region(criterion, region) : criterion->area2;
 }
@@ -36,7 +36,7 @@ bool tri_is_refused(const struct tri_refine_options *options, double unit, struc
                     struct tri_point c, double scale);
 
 /* The same for a triangle with these corners, at options->area_scale. Only where there is a test. */
-bool tri_is_unsuitable(const struct tri_criterion *criterion, const int32_t v[3]);
+bool tri_is_unsuitable(const struct tri_criterion *criterion, const tri_vertex_id v[3]);
 
 /* Does the triangle break a bound on sizes, or does the size test refuse it? */
 bool tri_is_too_large(const struct tri_criterion *criterion, const struct tri_triangle *t,

@@ -5,7 +5,7 @@
 #include "triangle/mesh.h"
 
 /* Does the apex of the triangle with this code lie strictly in the diametral circle of the subsegment? Exact. */
-bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, int32_t code);
+bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code);
 
 /* Does the apex of a triangle beside the subsegment lie in its circle, and do coordinates resolve a split because of
  * it? Where to split is then *fraction, from the start, in [1/4, 3/4]: see the rule in the .c file. */

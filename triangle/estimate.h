@@ -17,7 +17,7 @@ double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options
 double tri_sure_work(const struct tri_mesh *mesh, const struct tri_refine_options *options);
 
 /* The share of one bad triangle in that. */
-double tri_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t);
+double tri_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id t);
 
 /* Takes a place and the work (triangles) that lies about there. False: it cannot. */
 typedef bool tri_take_work(void *user, struct tri_point q, double work);

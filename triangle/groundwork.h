@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "triangle/executor.h"
+#include "triangle/ids.h"
 #include "triangle/point.h"
 #include "triangle/status.h"
 
@@ -19,9 +20,9 @@ struct tri_mesh;
 /* Which parents end at each vertex that there was when they were listed. The parents at vertex v are
  * parent[start[v] .. start[v + 1]); where they are more than TRI_MANY_PARENTS, in order of direction. */
 struct tri_incidence {
-    int32_t *parent;    /* [2 * n_parents] */
-    int32_t *start;     /* [n_vertices + 1] */
-    int32_t n_vertices; /* 0: not listed yet */
+    tri_parent_id *parent; /* [2 * n_parents] */
+    int32_t *start;        /* [n_vertices + 1] */
+    int32_t n_vertices;    /* 0: not listed yet */
 };
 
 enum { TRI_MANY_PARENTS = 16 };
@@ -46,7 +47,7 @@ void tri_incidence_fill(struct tri_mesh *mesh);
 bool tri_turns_before(struct tri_point o, struct tri_point a, struct tri_point b);
 
 /* The end of a parent that is not vertex v. */
-struct tri_point tri_far_end(const struct tri_mesh *mesh, int32_t parent, int32_t v);
+struct tri_point tri_far_end(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id v);
 
 #ifdef __cplusplus
 }

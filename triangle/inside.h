@@ -6,11 +6,12 @@
 
 /* The longest subsegment of the triangle, if it is at least half as long as the longest edge and may be split; else
  * TRI_NONE. */
-int32_t tri_long_wall(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t slot,
+tri_sub_id tri_long_wall(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id slot,
                       const struct tri_shape *shape);
 
 /* The triangle's centroid. False where it has none within the resolution of coordinates: a disk about it, in the
  * triangle, would have a radius below the shortest edge. */
-bool tri_centroid(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape, struct tri_point *p);
+bool tri_centroid(const struct tri_mesh *mesh, tri_triangle_id slot, const struct tri_shape *shape,
+                  struct tri_point *p);
 
 #endif

@@ -5,9 +5,10 @@
 #include "triangle/mesh.h"
 
 /* Attributes of vertex `to_vertex`, at the given fraction of the way from vertex a to vertex b. */
-void tri_interpolate_edge(struct tri_mesh *mesh, int32_t a, int32_t b, double fraction, int32_t to_vertex);
+void tri_interpolate_edge(struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, double fraction,
+                          tri_vertex_id to_vertex);
 
 /* Attributes of vertex v from the plane through the corners of a triangle; v may lie outside it (extrapolation). */
-void tri_interpolate_triangle(struct tri_mesh *mesh, const int32_t corners[3], int32_t v);
+void tri_interpolate_triangle(struct tri_mesh *mesh, const tri_vertex_id corners[3], tri_vertex_id v);
 
 #endif

@@ -22,6 +22,7 @@
 
 #include "triangle/executor.h"
 #include "triangle/groundwork.h"
+#include "triangle/ids.h"
 #include "triangle/point.h"
 #include "triangle/pslg.h"
 #include "triangle/status.h"
@@ -46,22 +47,22 @@ enum tri_vertex_kind { /* values of tri_mesh.on below 0 */
 };
 
 struct tri_triangle {
-    int32_t v[3];   /* corners, counter-clockwise; v[0] == TRI_NONE: the slot is free */
-    int32_t n[3];   /* links, see above */
-    int32_t region; /* index into tri_mesh.regions */
-    uint32_t state; /* counts the lives of the slot: a queue entry can tell whether it still speaks of this one */
+    tri_vertex_id v[3];   /* corners, counter-clockwise; v[0] == TRI_NONE: the slot is free */
+    tri_link n[3];        /* links, see above */
+    tri_region_id region;
+    uint32_t state;       /* counts the lives of the slot: a queue entry can tell whether it still speaks of this one */
 };
 
 struct tri_subsegment {
-    int32_t v[2];    /* from, to */
-    int32_t side[2]; /* triangle code left of v[0] -> v[1], and right of it; TRI_NONE where there is no triangle */
-    int32_t marker;  /* marker of the input segment, 0 where it has none */
-    int32_t parent;  /* index into tri_mesh.parents; TRI_NONE only in a record that is free (see tri_number) */
+    tri_vertex_id v[2];   /* from, to */
+    tri_halfedge side[2]; /* left of v[0] -> v[1], and right of it; TRI_NONE where there is no triangle */
+    int32_t marker;       /* marker of the input segment, 0 where it has none */
+    tri_parent_id parent; /* TRI_NONE only in a record that is free (see tri_number) */
 };
 
 /* A subsegment as it was before refinement: what splitting, shells and small input angles refer to. */
 struct tri_parent {
-    int32_t v[2];
+    tri_vertex_id v[2];
     int32_t segment; /* input segment, or TRI_NONE */
     bool odd;        /* after tri_constrain: an odd number of input segments run along it */
     struct tri_point guard; /* with the ends, a triangle outside that is the parent's own, see split.c; NaN: all is */
@@ -111,9 +112,9 @@ struct tri_mesh {
 
 static const int tri_next[3] = {1, 2, 0}, tri_prev[3] = {2, 0, 1};
 
-static inline int32_t tri_code(int32_t t, int e) { return t << 2 | e; }
-static inline int32_t tri_of(int32_t code) { return code >> 2; }
-static inline int tri_edge(int32_t code) { return code & 3; }
+static inline tri_halfedge tri_code(tri_triangle_id t, int e) { return t << 2 | e; }
+static inline tri_triangle_id tri_of(tri_halfedge code) { return code >> 2; }
+static inline int tri_edge(tri_halfedge code) { return code & 3; }
 
 static inline bool tri_is_live(const struct tri_triangle *t) { return t->v[0] >= 0; }
 
@@ -125,13 +126,13 @@ static inline struct tri_point tri_point_between(struct tri_point a, struct tri_
 }
 
 /* The attributes of the triangles in a region: n_columns of them, or one where that is 0. */
-static inline const double *tri_region_attributes(const struct tri_mesh *mesh, int32_t region)
+static inline const double *tri_region_attributes(const struct tri_mesh *mesh, tri_region_id region)
 {
     return mesh->columns ? mesh->columns + (size_t)region * (size_t)mesh->n_columns : &mesh->regions[region].attribute;
 }
 
 /* A vertex in the caller's coordinates. */
-static inline void tri_mesh_place(const struct tri_mesh *mesh, int32_t v, double at[2])
+static inline void tri_mesh_place(const struct tri_mesh *mesh, tri_vertex_id v, double at[2])
 {
     at[0] = mesh->xy[v].x * mesh->unit;
     at[1] = mesh->xy[v].y * mesh->unit;
@@ -160,16 +161,17 @@ enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_psl
 
 /* Appends a subsegment between two vertices and a parent for it; the caller links its sides. Room must have been
  * reserved. */
-int32_t tri_mesh_add_sub(struct tri_mesh *mesh, int32_t from, int32_t to, int32_t marker, int32_t segment);
+tri_sub_id tri_mesh_add_sub(struct tri_mesh *mesh, tri_vertex_id from, tri_vertex_id to, int32_t marker,
+                            int32_t segment);
 
 /* Which side of a subsegment's record belongs to the triangle that sees it as from -> to (counter-clockwise)? */
-static inline int tri_side(const struct tri_subsegment *s, int32_t from) { return s->v[0] == from ? 0 : 1; }
+static inline int tri_side(const struct tri_subsegment *s, tri_vertex_id from) { return s->v[0] == from ? 0 : 1; }
 
 /* The same edge as its other triangle sees it, subsegment or not; TRI_NONE at the boundary. */
-static inline int32_t tri_across(const struct tri_mesh *mesh, int32_t code)
+static inline tri_halfedge tri_across(const struct tri_mesh *mesh, tri_halfedge code)
 {
     const struct tri_triangle *t = &mesh->tri[tri_of(code)];
-    int32_t link = t->n[tri_edge(code)];
+    tri_link link = t->n[tri_edge(code)];
     if (link >= 0)
         return link;
     const struct tri_subsegment *s = &mesh->sub[~link];
@@ -178,7 +180,7 @@ static inline int32_t tri_across(const struct tri_mesh *mesh, int32_t code)
 
 /* Lets the triangle or subsegment behind `outer` know that its neighbour across that edge is now `code`. `from` is the
  * corner at which the edge starts, counter-clockwise in the triangle of `code`. */
-static inline void tri_relink(struct tri_mesh *mesh, int32_t outer, int32_t from, int32_t code)
+static inline void tri_relink(struct tri_mesh *mesh, tri_link outer, tri_vertex_id from, tri_halfedge code)
 {
     if (outer >= 0)
         mesh->tri[outer >> 2].n[outer & 3] = code;
@@ -196,8 +198,8 @@ static inline size_t tri_vertex_size(const struct tri_mesh *mesh)
 /* Vertex first + i becomes what vertex from[i] was, for all i < n, where from[] names vertices first and above.
  * Moves what the vertices have; whoever refers to them is the caller's to rename. scratch: n * tri_vertex_size
  * bytes. O(n). */
-void tri_mesh_gather_vertices(struct tri_mesh *mesh, int32_t first, const int32_t *from, int32_t n, void *scratch,
-                              const struct tri_executor *executor);
+void tri_mesh_gather_vertices(struct tri_mesh *mesh, tri_vertex_id first, const tri_vertex_id *from, int32_t n,
+                              void *scratch, const struct tri_executor *executor);
 
 /* Fills the holes that free slots leave with triangles from the end. O(slots). */
 void tri_mesh_compact(struct tri_mesh *mesh);

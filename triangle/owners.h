@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "triangle/ids.h"
+
 /* One for each view of a mesh; they share the marks. */
 struct tri_owners {
     int32_t *mark; /* [slots] who changed a triangle since the marks were cleared; 0: nobody */
@@ -14,7 +16,7 @@ struct tri_owners {
 };
 
 /* False: somebody else has changed the triangle. */
-static inline bool tri_owners_claim(const struct tri_owners *owners, int32_t slot)
+static inline bool tri_owners_claim(const struct tri_owners *owners, tri_triangle_id slot)
 {
     if (!owners || owners->mark[slot] == owners->self)
         return true;

@@ -29,7 +29,7 @@ struct tri_shape {
     int shortest; /* index of the shortest edge, the one opposite the smallest angle */
 };
 
-static inline struct tri_shape tri_shape_of(const struct tri_point *xy, const int32_t v[3])
+static inline struct tri_shape tri_shape_of(const struct tri_point *xy, const tri_vertex_id v[3])
 {
     double ax = xy[v[0]].x, ay = xy[v[0]].y;
     double bx = xy[v[1]].x - ax, by = xy[v[1]].y - ay, cx = xy[v[2]].x - ax, cy = xy[v[2]].y - ay;
@@ -50,6 +50,7 @@ static inline double tri_longer_product(double a, double b, double c)
 
 /* The point that replaces a bad triangle, on the bisector of its shortest edge: the circumcentre or, where that lies
  * farther from the edge than `reach` (a height over the edge), the point at that height (off-centres: Uengoer 2004). */
-struct tri_point tri_place(const struct tri_point *xy, const int32_t v[3], const struct tri_shape *shape, double reach);
+struct tri_point tri_place(const struct tri_point *xy, const tri_vertex_id v[3], const struct tri_shape *shape,
+                           double reach);
 
 #endif

@@ -35,7 +35,7 @@ typedef bool tri_gate(void *user, const double p[2]);
 
 /* Told of each triangle that the gate or the fence left as it is; its slot may live another life before the call
  * ends. */
-typedef void tri_left(void *user, int32_t slot);
+typedef void tri_left(void *user, tri_triangle_id slot);
 
 /* Makes room for at least 2 triangles, 1 vertex and 1 subsegment more in a mesh that is a view of shared arrays: moves
  * its counts and capacities to an unused range. TRI_NO_ROOM: not now. */
@@ -58,7 +58,7 @@ struct tri_refine_options {
     tri_gate *gate;        /* NULL: every bad triangle */
     void *gate_user;
     const struct tri_fence *fence; /* NULL: the whole mesh */
-    const int32_t *seeds;  /* [n_seeds] slots to look at first; NULL: all slots. The loop looks at all it makes, too */
+    const tri_triangle_id *seeds; /* [n_seeds] looked at first; NULL: all. The loop looks at all it makes, too */
     int32_t n_seeds;
     tri_left *left;        /* NULL: nobody */
     void *left_user;
@@ -123,8 +123,8 @@ void tri_refiner_free(struct tri_refiner *refiner);
 
 /* found[last - first] receives the slots from first to last - 1 at which there is something for the loop to do (an
  * angle that is bad and not hopeless, a bad size; a crowded subsegment if conforming), in order; returns how many. */
-int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t first,
-                      int32_t last, int32_t *found);
+int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id first,
+                      tri_triangle_id last, tri_triangle_id *found);
 
 /* Counts the subsegments with a vertex of a triangle beside them in their diametral circle, which -D could not mend, by
  * place: at a small angle of the input, between segments near to each other, and so on. */

@@ -13,28 +13,28 @@ double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegme
 bool tri_can_split(const struct tri_mesh *mesh, struct tri_point a, struct tri_point b);
 
 /* Does the shortest edge of the triangle join two segments that touch? */
-bool tri_crosses_angle(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape);
+bool tri_crosses_angle(const struct tri_mesh *mesh, tri_triangle_id slot, const struct tri_shape *shape);
 
 /* Does the vertex lie on a parent? */
-bool tri_is_on_parent(const struct tri_mesh *mesh, int32_t v);
+bool tri_is_on_parent(const struct tri_mesh *mesh, tri_vertex_id v);
 
 /* The common end of a parent and a parent that vertex v lies on; TRI_NONE where there is none. O(parents at v). */
-int32_t tri_common_end(const struct tri_mesh *mesh, int32_t parent, int32_t v);
+tri_vertex_id tri_common_end(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id v);
 
 /* A bad angle that no point can mend, or that would only move it: see the rules in the .c file. */
-bool tri_is_hopeless(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape);
+bool tri_is_hopeless(const struct tri_mesh *mesh, tri_triangle_id slot, const struct tri_shape *shape);
 
 /* How many points, to the order, would it take to fill the space between two parents, the first through u, the second
  * through v, that are as far apart there as v is from the line of the first? */
-double tri_filling_cost(const struct tri_mesh *mesh, int32_t first, int32_t second, struct tri_point u,
+double tri_filling_cost(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
                         struct tri_point v);
 
 /* About so many points it would take to fill the space between two parents that the shortest edge of the triangle
  * bridges; 0 where it bridges none. */
-double tri_channel_cost(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape);
+double tri_channel_cost(const struct tri_mesh *mesh, tri_triangle_id slot, const struct tri_shape *shape);
 
 /* Does the shortest edge of the triangle bridge a space between two parents that is too dear to fill? */
-bool tri_is_channel(const struct tri_mesh *mesh, int32_t slot, const struct tri_shape *shape);
+bool tri_is_channel(const struct tri_mesh *mesh, tri_triangle_id slot, const struct tri_shape *shape);
 
 /* Chooses which narrow spaces are filled, by their cost (mesh->limits): the parents at each vertex are listed.
  * O(triangles). */
