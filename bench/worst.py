@@ -105,6 +105,18 @@ def overlaps(n):
     return figure, "pc"
 
 
+def overlapping_path(n):
+    """A path through the points of a line in random order: its segments are a third of the line long on average."""
+    figure, places = Figure(), list(range(n))
+    random.Random(1).shuffle(places)
+    ids = [figure.point(x, x) for x in places]
+    for a, b in zip(ids, ids[1:]):
+        figure.segment(a, b)
+    figure.point(0, n)
+    figure.point(n, 0)
+    return figure, "pc"
+
+
 def long_crossing(n):
     """One segment across the triangles of n random points in a long strip."""
     figure, source = Figure(), random.Random(1)
@@ -138,6 +150,6 @@ def slits(n):
     return figure, "pcq20"
 
 
-TRIANGULATION = (hub, two_hubs, holes, circle_diameters, facing_curves, on_a_segment,
+TRIANGULATION = (hub, two_hubs, holes, circle_diameters, facing_curves, on_a_segment, overlaps, overlapping_path,
                  long_crossing)
-DEARER = (overlaps, circle_diameter_quality, needles, slits)  # the judge takes n * n steps on the first
+DEARER = (circle_diameter_quality, needles, slits)

@@ -223,6 +223,8 @@ static void check_orient(struct tri_point a, struct tri_point b, struct tri_poin
     int sign = oracle_orient(a, b, c);
     assert_int_equal(sign_of(tri_orient2d(a, b, c)), sign);
     assert_int_equal(sign_of(tri_orient2d_near(a, b, c)), sign);
+    assert_int_equal(sign_of(tri_turn(c, a, c, b)), sign);
+    assert_int_equal(sign_of(tri_turn_near(c, a, c, b)), sign);
 }
 
 static int oracle_dot(struct tri_point a, struct tri_point b, struct tri_point c)

@@ -759,6 +759,20 @@ def near_collinear_repeat():
     return poly
 
 
+@case("regress/overlap_path.poly", "path through the points of a slanted line in an order that goes to and fro, a "
+      "crossing segment", "each elementary piece once; once took time by the sum of the lengths", ("-pc",))
+def overlap_path():
+    poly = Poly(0)
+    for i in range(31):
+        poly.point(11 * i % 31, 2 * (11 * i % 31))
+    for x, y in ((0, 60), (30, 0), (-1, 30), (32, 31)):
+        poly.point(x, y)
+    for i in range(30):
+        poly.segment(i, i + 1, i % 3)
+    poly.segment(33, 34, 9)
+    return poly
+
+
 @case("regress/touching_squares.poly", "two squares that share a corner given as two vertices (github wo80/Triangle "
       "issue 10)", "7 used vertices, 4 triangles; the original may crash")
 def touching_squares():

@@ -597,11 +597,18 @@ static int32_t list_segments(struct layer *l, struct tri_piece *piece)
     return n;
 }
 
+static bool is_edge(void *context, const struct tri_piece *piece)
+{
+    struct layer *l = context;
+    int32_t a = piece->from, b = piece->to, t = find_exit(l, &a, &b);
+    return t != TRI_NONE && (l->mesh->tri[t].v[0] == b || l->mesh->tri[t].v[1] == b || l->mesh->tri[t].v[2] == b);
+}
+
 static enum tri_status lay_all(struct layer *l)
 {
     struct tri_piece *piece = malloc(((size_t)l->pslg->n_segments + 1) * sizeof *piece);
     int32_t n = piece ? list_segments(l, piece) : 0;
-    enum tri_status status = piece && tri_share_overlaps(l->mesh, piece, n) ? TRI_OK : no_memory(l);
+    enum tri_status status = piece && tri_share_overlaps(l->mesh, &piece, &n, is_edge, l) ? TRI_OK : no_memory(l);
     for (int32_t k = 0; !status && k < n; k++)
         status = lay_segment(l, &piece[k]);
     free(piece);

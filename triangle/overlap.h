@@ -1,4 +1,4 @@
-/* Segments that run along each other from a common end. */
+/* Segments that run along each other on one line. */
 #ifndef TRIANGLE_OVERLAP_H
 #define TRIANGLE_OVERLAP_H
 
@@ -25,10 +25,15 @@ struct tri_piece {
     struct tri_course course;
 };
 
-/* Where pieces start at one vertex in exactly the same direction, each keeps what reaches beyond the next shorter one,
- * and the shorter ones take over its course: so the lengths of all pieces at a vertex sum up to the longest, however
- * many there are. from and to: the ends of each piece, from before to. Empty pieces are left where two are equal. The
- * others stay as they are. O(n log n) at most, O(n) where few share ends; false: out of memory. */
-bool tri_share_overlaps(const struct tri_mesh *mesh, struct tri_piece *piece, int32_t n);
+/* Is the piece an edge of the mesh? */
+typedef bool tri_is_edge(void *context, const struct tri_piece *piece);
+
+/* Cuts pieces that overlap on exactly one line, and are no edges of the mesh, at each other's ends, and leaves one of
+ * each elementary piece, where the first piece along it was, with the course of all that run along it. So there are
+ * fewer than 2 *n, no two of which overlap unless one is an edge. The others stay as they are. (*piece)[*n]: from
+ * malloc, as what replaces it; its courses increase, and the ends of a piece differ. O(n log n) at most, O(n) where few
+ * lines hold several pieces, and as many questions. false: out of memory, nothing has changed. */
+bool tri_share_overlaps(const struct tri_mesh *mesh, struct tri_piece **piece, int32_t *n, tri_is_edge *is_edge,
+                        void *context);
 
 #endif

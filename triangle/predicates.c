@@ -144,6 +144,12 @@ double tri_orient2d_near(struct tri_point a, struct tri_point b, struct tri_poin
     return sign_of_minor(&p, &q);
 }
 
+double tri_turn_near(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)
+{
+    struct vector p = difference(b, a), q = difference(d, c);
+    return sign_of_minor(&p, &q);
+}
+
 /* p . q is the minor of p and q turned left. */
 double tri_dot_near(struct tri_point a, struct tri_point b, struct tri_point c)
 {

@@ -47,6 +47,7 @@ static inline bool tri_is_exact_point(struct tri_point p)
  * 5 to 50 ns where the structure of the coordinates (points of a grid, mirror images) or doubled precision decides; up
  * to 3 us, and 40 KB of stack, for points that are cocircular within a relative 10^-30 but lie on no grid. */
 double tri_orient2d_near(struct tri_point a, struct tri_point b, struct tri_point c);
+double tri_turn_near(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d);
 double tri_dot_near(struct tri_point a, struct tri_point b, struct tri_point c);
 double tri_incircle_near(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d);
 bool tri_in_circle_near(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d);
@@ -60,6 +61,16 @@ static inline double tri_orient2d(struct tri_point a, struct tri_point b, struct
     double left = (a.x - c.x) * (b.y - c.y), right = (b.x - c.x) * (a.y - c.y);
     double det = left - right, size = fabs(left) + fabs(right);
     return fabs(det) >= TRI_ORIENT2D_BOUND * size ? det : tri_orient2d_near(a, b, c);
+}
+
+/* > 0: the direction from c to d lies counter-clockwise of that from a to b; 0: they are parallel; < 0: clockwise. The
+ * bound is that of tri_orient2d. */
+static inline double tri_turn(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)
+{
+    assert(tri_is_exact_point(a) && tri_is_exact_point(b) && tri_is_exact_point(c) && tri_is_exact_point(d));
+    double left = (b.x - a.x) * (d.y - c.y), right = (d.x - c.x) * (b.y - a.y);
+    double det = left - right, size = fabs(left) + fabs(right);
+    return fabs(det) >= TRI_ORIENT2D_BOUND * size ? det : tri_turn_near(a, b, c, d);
 }
 
 /* The sign of (a - c) . (b - c), < 0 where c lies strictly inside the circle with diameter ab. The magnitude
