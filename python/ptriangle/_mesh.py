@@ -15,7 +15,7 @@ _SHAPES = {  # of a figure: the library's kind, and the width of a row
     "segment_markers": (Ints, 1), "holes": (Reals, 2), "regions": (Reals, 4), "triangles": (Ints, 3),
     "triangle_attributes": (Reals, None), "triangle_areas": (Reals, 1)}
 _COUNTS = ("duplicates", "crossings", "skipped_segments", "new_points", "new_points_on_segments", "gated", "fenced")
-_REASONS = ("input_angle", "channel", "protected", "limit", "precision", "deferred")
+_REASONS = ("input_angle", "narrow_gap", "protected", "limit", "precision", "deferred")
 
 
 def _figure_of(arrays):

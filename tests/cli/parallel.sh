@@ -13,7 +13,7 @@ check "many blocks" test "$(grep -c '"block":' report.json)" -gt 4
 judge letter.1 --poly letter.poly --min-angle 30 --max-area 0.1
 fresh regress/graded_1899.poly # what a block leaves comes back once: else work doubles in every phase
 PTRIANGLE_TEST_BLOCK=60 program 0 -pcOq25DQ --report report.json graded_1899
-check "seeds come back in numbers" awk '/"seeds":/ { gsub(/,/, ""); for (i = 1; i < NF; i++) if ($i == "\"seeds\":") n += $(i + 1) }
+check "worklist come back in numbers" awk '/"worklist":/ { gsub(/,/, ""); for (i = 1; i < NF; i++) if ($i == "\"worklist\":") n += $(i + 1) }
     END { exit !(n > 0 && n < 50000) }' report.json
 fresh regress/tangle.poly # what one stage makes bad for the next is in somebody's list
 PTRIANGLE_TEST_BLOCK=250 program 0 -pcq34a1.79824924 tangle
