@@ -93,8 +93,8 @@ set(PTRIANGLE_TEXT_SOURCES
 set(PTRIANGLE_TEXT_NEEDS triangle/status.c triangle/pslg.c triangle/api/figure.c)
 set(PTRIANGLE_CHECK_NEEDS ${PTRIANGLE_TEXT_NEEDS} triangle/predicates.c)
 
-# Room sched/, the parallel schedule: with drivers/ptriangle.c, which asks for the number of threads, the only sources
-# compiled with OpenMP.
+# Room sched/, the parallel schedule: compiled with OpenMP, as are drivers/ptriangle.c, which asks for the number of
+# threads, and the program trianglecheck with the judge in it (programs.cmake), and nothing else.
 set(PTRIANGLE_SCHED_SOURCES
     sched/theory.c
     sched/threads.c

@@ -39,6 +39,7 @@ static const char help[] = /* in the form that cmake/help.awk makes a manual pag
     "      --keep-hull      made with -c: the mesh may end at the convex hull of the vertices, not at segments alone\n"
     "  -j, --jettisoned     unused input vertices were dropped: know input vertices by their coordinates\n"
     "      --keep-holes     hole points were ignored\n"
+    "      --any-holes      faces may be empty without a hole point: found otherwise\n"
     "  -r, --refined        made by refining a mesh: hole points were ignored, unused vertices inside are no fault,\n"
     "                       and the mesh may end anywhere\n"
     "      --no-markers     do not compare the markers of subsegments and vertices\n"
@@ -139,6 +140,7 @@ enum long_option {
     NO_DELAUNAY = 256,
     SMALL_INPUT_ANGLE,
     KEEP_HOLES,
+    ANY_HOLES,
     KEEP_HULL,
     NO_MARKERS,
     THREADS,
@@ -158,6 +160,7 @@ static const struct option long_options[] = {
     {"convex", no_argument, NULL, 'c'},
     {"jettisoned", no_argument, NULL, 'j'},
     {"keep-holes", no_argument, NULL, KEEP_HOLES},
+    {"any-holes", no_argument, NULL, ANY_HOLES},
     {"keep-hull", no_argument, NULL, KEEP_HULL},
     {"threads", required_argument, NULL, THREADS},
     {"refined", no_argument, NULL, 'r'},
@@ -218,6 +221,9 @@ static bool apply(struct settings *s, int option)
     case 'r':
         s->check.ignore_holes = s->check.ignore_lost = true;
         s->check.border = TRI_CHECK_BORDER_ANY;
+        return true;
+    case ANY_HOLES:
+        s->check.any_holes = true;
         return true;
     case KEEP_HULL:
         s->check.border = TRI_CHECK_BORDER_HULL;

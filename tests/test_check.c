@@ -301,9 +301,15 @@ static void good_hole_and_island(void **state)
     list_boundary();
     list_neighbors();
     take_as_input();
+    expect(TRI_CHECK_FACES, 1, -1);
+    trial.options.border = TRI_CHECK_BORDER_ANY;
     expect_good();
+    trial.options.border = TRI_CHECK_BORDER_SEGMENTS;
     trial.input.n_holes = 1;
     trial.input.holes = hole;
+    hole[0] = 9; /* outside */
+    expect(TRI_CHECK_FACES, 1, -1);
+    hole[0] = 2.5;
     hole[1] = 1.65;
     expect_good();
     hole[1] = 1.7; /* on the island's edge */
@@ -311,8 +317,31 @@ static void good_hole_and_island(void **state)
     hole[1] = 1.7 + 0x1p-48; /* beside it: rounding may put an edge there */
     expect_good();
     hole[1] = 1.75; /* in the island */
-    expect(TRI_CHECK_HOLES, 1, -1);
+    expect(TRI_CHECK_HOLES, 1, TRI_CHECK_FACES);
     trial.options.ignore_holes = true;
+    expect(TRI_CHECK_FACES, 1, -1);
+    hole[1] = 1.65; /* then nothing is to be empty */
+    expect(TRI_CHECK_FACES, 1, -1);
+}
+
+/* Two holes that touch at a corner are two faces; a hole point at that corner is in both. */
+static void faces_that_touch(void **state)
+{
+    (void)state;
+    begin_patch();
+    trial.mesh.n_segments = 0;
+    remove_triangle(find_edge(at(1, 1), at(2, 1), NULL));
+    remove_triangle(find_edge(at(2, 1), at(3, 1), NULL));
+    list_boundary();
+    list_neighbors();
+    take_as_input();
+    expect(TRI_CHECK_FACES, 2, -1);
+    double hole[2] = {trial.points[2 * at(2, 1)] + 0.5, trial.points[2 * at(2, 1) + 1] + 0.1};
+    trial.input.n_holes = 1;
+    trial.input.holes = hole;
+    expect(TRI_CHECK_FACES, 1, -1);
+    hole[0] -= 0.5;
+    hole[1] -= 0.1;
     expect_good();
 }
 
@@ -1268,6 +1297,7 @@ int main(void)
         cmocka_unit_test(good_patch),
         cmocka_unit_test(good_nothing),
         cmocka_unit_test(good_hole_and_island),
+        cmocka_unit_test(faces_that_touch),
         cmocka_unit_test(good_dangling_segment),
         cmocka_unit_test(good_components_that_touch),
         cmocka_unit_test(good_rounded_chain),

@@ -29,6 +29,8 @@ struct tri_demands {
     bool convex;       /* the triangles fill the convex hull */
     bool ignore_holes; /* holes of the input were not emptied */
     bool renumbered;   /* input points are known by their coordinates, not by number */
+    bool keep_hull;    /* the mesh may end along the convex hull of the input's points, too, as tri_settings.keep_hull
+                          makes it; else along segments alone */
 };
 
 static inline struct tri_demands tri_no_demands(void)

@@ -58,7 +58,8 @@ class Settings(Sized):
 
 class Demands(Sized):
     _fields_ = [("size", c_size_t), ("min_angle", c_double), ("max_area", c_double), ("delaunay", c_int),
-                ("convex", c_bool), ("ignore_holes", c_bool), ("renumbered", c_bool)]
+                ("convex", c_bool), ("ignore_holes", c_bool), ("renumbered", c_bool),
+                ("keep_hull", c_bool)]
 
 
 class VerdictDetail(Structure):

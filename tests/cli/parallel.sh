@@ -66,7 +66,7 @@ cat >rings.poly <<'END'
 0
 END
 program 0 --holes auto -pq30a0.5 rings
-judge rings.1 --poly rings.poly --min-angle 30 --max-area 0.5
+judge rings.1 --poly rings.poly --any-holes --min-angle 30 --max-area 0.5
 check "what is odd stays" sh -c '"$0/trianglecheck" rings.1 | grep -q "total 49\$"' "$bin"
 cp rings.1.ele auto.ele
 program 0 --holes points -pq30a0.5Q rings

@@ -27,7 +27,8 @@ static struct tri_check_options options_of(const struct tri_demands *demands, co
                                       .delaunay = (enum tri_check_delaunay)demands->delaunay, .max_bad = -1,
                                       .convex = demands->convex, .renumbered = demands->renumbered,
                                       .ignore_holes = demands->ignore_holes,
-                                      .border = TRI_CHECK_BORDER_HULL}; /* whether concavities stay is not known */
+                                      .border = demands->keep_hull ? TRI_CHECK_BORDER_HULL
+                                                                   : TRI_CHECK_BORDER_SEGMENTS};
 }
 
 static void pronounce(struct tri_verdict *verdict, const struct tri_check_report *report)

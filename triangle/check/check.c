@@ -31,6 +31,7 @@ static const char *const names[TRI_N_CHECKS] = {
     [TRI_CHECK_BORDER] = "boundary along the input",
     [TRI_CHECK_VERTEX_MARKERS] = "vertex markers",
     [TRI_CHECK_HOLES] = "holes",
+    [TRI_CHECK_FACES] = "no face carved in vain",
     [TRI_CHECK_ANGLES] = "angles",
     [TRI_CHECK_AREAS] = "areas",
 };

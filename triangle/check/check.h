@@ -23,6 +23,9 @@
  *   (7) Every boundary edge is a piece of an input segment's chain, or of the convex hull of the input's points where
  *       options.border allows that: the mesh ends where the input says, and a segment whose outside was carved is
  *       there. By (3) the mesh is then a union of faces of the input, none of them in part.
+ *   (8) Every bounded component of the plane without the mesh has a hole point in it, or beside it within rounding:
+ *       carving takes what is reachable, without crossing a segment, from outside or from a hole point, and what it
+ *       takes is joined to there across edges, hence a part of one component with it.
  *
  * What is checked within a tolerance, because vertices on segments are rounded: each input segment is a chain of
  * subsegments whose vertices are at most TRI_CHECK_ULPS * 2^-52 * (the segment's largest coordinate) off its line.
@@ -31,8 +34,8 @@
  * Angles and areas are computed in double precision and may miss their bounds by a relative 1e-12 (of the squared
  * sine, of the area).
  *
- * What is not checked: that carving removed no more than it should. A face of the input that has no hole point but is
- * missing as a whole, boundary intact, goes unnoticed.
+ * What is not checked: a component of (8) that is lawful as a whole may consist of several faces of the input, cut from
+ * each other by segments that lie outside the mesh, not all of which carving could reach.
  *
  * Coordinates that are very large or very small as a whole are multiplied by a power of two first; those below 2^-216
  * then count as 0, in the mesh as in the input.
@@ -89,6 +92,7 @@ struct tri_check_options {
     bool convex;       /* the mesh must fill the convex hull and use every point */
     bool renumbered;   /* unused input vertices were dropped (-j): input vertices are known by coordinates alone */
     bool ignore_holes; /* hole points of the input were not carved */
+    bool any_holes;    /* faces may be empty without a hole point: the mesher chose them by another rule */
     bool ignore_lost;  /* unused vertices may lie inside the mesh (a refined mesh keeps those it was given) */
     int32_t base;      /* number of the first vertex and triangle in the texts of the report */
 };
@@ -118,6 +122,7 @@ enum tri_check_kind {
      * segment through them, or 1 on the boundary; else 0. Not looked at where border is TRI_CHECK_BORDER_ANY. */
     TRI_CHECK_VERTEX_MARKERS,
     TRI_CHECK_HOLES,
+    TRI_CHECK_FACES, /* (8); not with any_holes, nor in refined meshes, which keep theirs (ignore_lost, BORDER_ANY) */
     TRI_CHECK_ANGLES,
     TRI_CHECK_AREAS,
     TRI_N_CHECKS

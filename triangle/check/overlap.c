@@ -7,7 +7,13 @@
  *   4. from bottom to top, edges must alternate: mesh above, mesh below, mesh above ... which says that the winding
  *      number is 0, 1, 0, 1 ... everywhere.
  * The leftmost point where two edges meet wrongly has two of them as neighbours just before, so 1 or 3 finds it.
- * Queries (is this point inside the mesh?) ride along as events. O(b log b). */
+ * Queries (is this point inside the mesh?) ride along as events. O(b log b).
+ *
+ * Faces outside the mesh: two edges with no mesh between them that become neighbours bound the same face, and so do the
+ * lowest and the highest edge with the outer one. Faces are the classes of what that joins: between two events a face
+ * is cut into gaps between neighbours, and a gap that goes on beyond an event, on either side of what starts or ends
+ * there, keeps the edge below or above it, which has one side without mesh only. Each face but the outer one must have
+ * been emptied for a hole point. */
 #include <assert.h>
 #include <stdlib.h>
 
@@ -34,6 +40,8 @@ struct sweep {
     struct sweep_edge *start; /* [n_edges] work space: the edges that start at one event point ... */
     int32_t n_edges, n_events;
     struct check_order order;
+    int32_t *face;    /* [n_edges + 1] a forest: an edge of the same face outside the mesh; n_edges: the outer face */
+    uint8_t *emptied; /* [n_edges + 1] is there a hole point in the face? */
 };
 
 static int compare_events(const void *a, const void *b)
@@ -83,6 +91,24 @@ static bool fault(struct sweep *w, const char *what, int32_t s, int32_t r)
     return false;
 }
 
+/* The face outside the mesh beside edge s, -1: the outer one (Tarjan 1975, by halving). */
+static int32_t face_of(struct sweep *w, int32_t s)
+{
+    for (s = s < 0 ? w->n_edges : s; w->face[s] != s; s = w->face[s])
+        w->face[s] = w->face[w->face[s]];
+    return s;
+}
+
+/* The lesser number is the root, but for the outer face. */
+static void join_faces(struct sweep *w, int32_t a, int32_t b)
+{
+    int32_t f = face_of(w, a), g = face_of(w, b), last = f > g ? f : g, first = f + g - last;
+    if (last == w->n_edges)
+        w->face[first] = last;
+    else
+        w->face[last] = first;
+}
+
 /* Steps 3 and 4 for two neighbours, a below b; either may be -1. */
 static bool neighbors_are_good(struct sweep *w, int32_t a, int32_t b)
 {
@@ -93,8 +119,11 @@ static bool neighbors_are_good(struct sweep *w, int32_t a, int32_t b)
             return fault(w, "they meet", a, b);
     }
     bool meshed = a >= 0 && w->edge[a].above, wanted = b >= 0 && !w->edge[b].above;
-    if (meshed == wanted)
+    if (meshed == wanted) {
+        if (!meshed)
+            join_faces(w, a, b);
         return true;
+    }
     return fault(w, "the mesh covers itself between them", a >= 0 ? a : b, b >= 0 ? b : a);
 }
 
@@ -164,6 +193,19 @@ static void answer(struct sweep *w, int32_t number)
     q->inside = on_edge ? q->kind == TRI_CHECK_LOST_VERTICES : below >= 0 && w->edge[below].above;
     q->inside = q->inside && !is_near(w, below, q->at, q->tolerance) &&
                 !is_near(w, s, q->at, q->tolerance);
+    if (q->kind == TRI_CHECK_HOLES && !q->inside)
+        w->emptied[below < 0 ? w->n_edges : below] = w->emptied[s < 0 ? w->n_edges : s] = 1;
+}
+
+/* A hole point at a vertex of the boundary is in every face there. */
+static void empty_all(struct sweep *w, const struct event *event, int32_t n)
+{
+    bool is_hole = false;
+    for (int32_t i = 0; i < n; i++)
+        is_hole = is_hole || (event[i].code < 0 && w->c->queries[~event[i].code].kind == TRI_CHECK_HOLES);
+    for (int32_t i = 0; is_hole && i < n; i++)
+        if (event[i].code >= 0)
+            w->emptied[event[i].code >> 1] = 1;
 }
 
 static bool coincide(struct sweep *w, int32_t v, int32_t u)
@@ -195,6 +237,7 @@ static bool process(struct sweep *w, const struct event *event, int32_t n)
     }
     if (witness >= 0) { /* queries at a vertex of the boundary are not inside */
         int32_t below;
+        empty_all(w, event, n);
         return remove_ending(w, event->at, n_ending, witness, &below) && insert_starting(w, n_starting, below);
     }
     for (int32_t i = 0; i < n; i++)
@@ -220,9 +263,28 @@ static void collect(struct sweep *w)
     }
 }
 
+/* Every face outside the mesh was emptied for a hole point, or is the outer one. */
+static void check_faces(struct sweep *w)
+{
+    struct checker *c = w->c;
+    tri_check_begin(c, TRI_CHECK_FACES);
+    for (int32_t s = 0; s < w->n_edges; s++)
+        if (w->emptied[s])
+            w->emptied[face_of(w, s)] = 1;
+    for (int32_t s = 0; s < w->n_edges; s++) {
+        if (face_of(w, s) != s || w->emptied[s])
+            continue;
+        int32_t h = w->edge[s].half_edge;
+        tri_check_fault(c, TRI_CHECK_FACES, "beside edge %ld-%ld of triangle %ld a face is empty without a hole point",
+                        check_number(c, check_org(c, h)), check_number(c, check_dest(c, h)), check_number(c, h / 3));
+    }
+}
+
 static void sweep(struct sweep *w)
 {
     collect(w);
+    for (int32_t s = 0; s <= w->n_edges; s++)
+        w->face[s] = s;
     qsort(w->event, (size_t)w->n_events, sizeof *w->event, compare_events);
     for (int32_t i = 0, j; i < w->n_events; i = j) {
         for (j = i + 1; j < w->n_events && check_same_place(w->event[i].at, w->event[j].at); j++) {
@@ -231,6 +293,9 @@ static void sweep(struct sweep *w)
             return;
     }
     assert(tri_check_order_above(&w->order, -1) == -1);
+    const struct tri_check_options *o = w->c->options;
+    if (w->c->input != NULL && !o->any_holes && !o->ignore_lost && o->border != TRI_CHECK_BORDER_ANY)
+        check_faces(w);
 }
 
 enum tri_status tri_check_overlap(struct checker *c)
@@ -242,8 +307,10 @@ enum tri_status tri_check_overlap(struct checker *c)
     w.edge = tri_check_array(n, sizeof *w.edge);
     w.start = tri_check_array(n, sizeof *w.start);
     w.event = tri_check_array(n_events, sizeof *w.event);
+    w.face = tri_check_array(n + 1, sizeof *w.face);
+    w.emptied = tri_check_zeros(n + 1, 1);
     enum tri_status status = tri_check_order_init(&w.order, (int32_t)n);
-    if (w.edge == NULL || w.start == NULL || w.event == NULL)
+    if (w.edge == NULL || w.start == NULL || w.event == NULL || w.face == NULL || w.emptied == NULL)
         status = TRI_NO_MEMORY;
     if (status == TRI_OK) {
         tri_check_begin(c, TRI_CHECK_OVERLAP);
@@ -252,6 +319,8 @@ enum tri_status tri_check_overlap(struct checker *c)
     free(w.edge);
     free(w.start);
     free(w.event);
+    free(w.face);
+    free(w.emptied);
     tri_check_order_clear(&w.order);
     return status;
 }
