@@ -130,7 +130,7 @@ check "the report on standard output" sh -c 'head -n 1 .out | grep -qx "{" && ta
 fresh letter.poly
 program 0 -pq30a0.001Q --threads 2 --report report.json letter
 wrote letter.1.node letter.1.ele letter.1.poly report.json
-for key in threads peak_memory_bytes read delaunay segments holes quality write total prerefine partition find seeds room refine \
+for key in threads peak_memory_bytes read delaunay segments holes quality write total prerefine partition find worklist room refine \
     merge number last phases overhead_percent numbering_percent number_seconds free on_segments deferred left_over rounds pauses radius_lemma7 radius_theory \
     radius_measured sequential_share refine_seconds round phase block smallest_angle mean_area_over_bound; do
     check "no $key in the report" grep -q "\"$key\":" report.json
