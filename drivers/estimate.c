@@ -118,7 +118,7 @@ enum tri_status estimate_check(const struct estimate *e, const struct console *c
     if (e->least > TRI_MAX_TRIANGLES)
         return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
                         "the area bounds ask for at least %.0f million triangles, and a mesh holds %d million",
-                        1e-6 * e->least, TRI_MAX_TRIANGLES / 1000000);
+                        fmin(1e-6 * e->least, 1e9), TRI_MAX_TRIANGLES / 1000000);
     if (least > available)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
                         "the area bounds ask for at least %.3g million triangles, which take %.3g GB of memory; "

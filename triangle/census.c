@@ -1,5 +1,6 @@
 /* Looking over a whole mesh: what is there to do, can it be done, what has been left, and why. */
 #include <assert.h>
+#include <math.h>
 
 #include "triangle/criterion.h"
 #include "triangle/disk.h"
@@ -26,9 +27,10 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_r
     double triangles = options->max_steiner < 0 ? tri_area_demand(mesh, options) : 0;
     if (triangles <= TRI_MAX_TRIANGLES)
         return TRI_OK;
+    /* Far beyond, a lower bound that can be read will do. */
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
                     "the area bounds ask for at least %.0f million triangles, and a mesh holds %d million",
-                    1e-6 * triangles, TRI_MAX_TRIANGLES / 1000000);
+                    fmin(1e-6 * triangles, 1e9), TRI_MAX_TRIANGLES / 1000000);
 }
 
 static bool needs_work(const struct tri_criterion *c, int32_t triangle)

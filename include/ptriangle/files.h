@@ -15,8 +15,9 @@ extern "C" {
  * Files may count from 0 or from 1; *figure counts from 0. Strict where the format has no meaning, lenient where it has
  * one: words between numbers, extra fields, missing attributes and markers.
  *
- * The arrays belong to *figure, whose size is set, until tri_file_free. Errors, with file and line: TRI_CANNOT_READ,
- * TRI_BAD_INPUT, TRI_NO_MEMORY, TRI_TOO_LARGE; *figure is empty then. Linear; about 250 MB of text a second. */
+ * *figure comes from tri_no_figure; its arrays belong to it until tri_file_free. Errors, with file and line:
+ * TRI_CANNOT_READ, TRI_BAD_INPUT, TRI_NO_MEMORY, TRI_TOO_LARGE; *figure is empty then. Linear; about 250 MB of text a
+ * second. */
 enum tri_status tri_file_read(const char *path, struct tri_figure *figure, struct tri_error *error);
 
 /* Frees the arrays of a figure that was read, and empties it. */
@@ -24,8 +25,8 @@ void tri_file_free(struct tri_figure *figure);
 
 /* Writes base.node, base.ele where the figure has triangles, and base.poly where it has segments, counting from
  * `first`, 0 or 1. Coordinates have 17 digits: what is read back is the same. All files appear together, when all are
- * complete, or none; files that exist are replaced. TRI_CANNOT_WRITE, TRI_NO_MEMORY; TRI_BAD_INPUT: an array has not
- * the shape it should have. */
+ * complete, or none; files that exist are replaced. TRI_CANNOT_WRITE, TRI_NO_MEMORY; TRI_BAD_INPUT: another
+ * `first`, or an array has not the shape it should have. */
 enum tri_status tri_file_write(const char *base, const struct tri_figure *figure, int first, struct tri_error *error);
 
 #ifdef __cplusplus

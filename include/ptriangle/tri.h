@@ -206,7 +206,8 @@ enum tri_status tri_mesh_neighbors(struct tri_mesh *mesh, struct tri_ints *neigh
 enum tri_status tri_mesh_edges(struct tri_mesh *mesh, struct tri_ints *edges, struct tri_ints *markers,
                                struct tri_error *error);
 
-/* The arrays above as a figure, for ptriangle/files.h and ptriangle/check.h, or to begin again; figure->size is set. */
+/* The arrays above as a figure, for ptriangle/files.h and ptriangle/check.h, or to begin again. *figure comes
+ * from tri_no_figure: its size tells how much of it may be filled. */
 void tri_mesh_figure(const struct tri_mesh *mesh, struct tri_figure *figure);
 
 /* --- what was odd, and what could not be reached */

@@ -154,6 +154,10 @@ fresh square.poly
 mesher 1 triangle -pa.00000000226 square
 complains 'the area bounds ask for at least [0-9]+ million triangles, and a mesh holds 536 million'
 wrote
+# far over it, a number that can be read
+mesher 1 triangle -pa.00000000000000000000000000000000000000001 square
+complains 'the area bounds ask for at least 1000000000 million triangles, and a mesh holds 536 million'
+wrote
 if (ulimit -v 400000 && "$bin/triangle" -h) >/dev/null 2>&1; then
     what="little memory"
     (

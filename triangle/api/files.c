@@ -183,7 +183,7 @@ static struct tri_grid grid_of(const struct tri_api_figure *figure, int first)
 {
     const struct tri_pslg *pslg = &figure->pslg;
     const struct tri_elements *elements = &figure->elements;
-    return (struct tri_grid){.user = figure, .base = first != 0, .n_points = pslg->n_points,
+    return (struct tri_grid){.user = figure, .base = first, .n_points = pslg->n_points,
                              .n_attributes = pslg->n_attributes, .n_triangles = elements->n, .n_nodes = 3,
                              .n_columns = elements->n_attributes, .n_segments = pslg->n_segments, .figure = pslg,
                              .point = point, .attribute = attribute, .triangle = triangle, .column = column,
@@ -214,6 +214,8 @@ enum tri_status tri_file_write(const char *base, const struct tri_figure *figure
 {
     struct tri_api_figure taken;
     struct tri_output_set set;
+    if (first != 0 && first != 1)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "files count from 0 or from 1, not from %d", first);
     enum tri_status status = tri_api_figure_take(&taken, figure, error);
     if (!status) {
         tri_outputs_begin(&set);
