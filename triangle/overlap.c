@@ -107,7 +107,7 @@ static struct cells cells_of(const struct sharing *s, int32_t i, double largest)
     return cells;
 }
 
-static size_t triangle_of(int64_t direction, int64_t offset, int bits)
+static size_t entry_of(int64_t direction, int64_t offset, int bits)
 {
     uint64_t mixed = (uint64_t)direction * 0x9E3779B97F4A7C15u + (uint64_t)offset;
     return (size_t)(mixed * 0xD6E8FEB86659FD93u >> (64 - bits));
@@ -120,7 +120,7 @@ static bool visit(const struct sharing *s, int32_t i, double largest, unsigned c
     bool shared = false;
     for (int64_t d = c.direction[0]; d <= c.direction[1]; d++)
         for (int64_t o = c.offset[0]; o <= c.offset[1]; o++) {
-            unsigned char *entry = &entries[triangle_of(d, o, bits)];
+            unsigned char *entry = &entries[entry_of(d, o, bits)];
             if (enter && *entry < 2)
                 ++*entry;
             shared |= *entry > 1;
