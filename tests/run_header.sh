@@ -176,7 +176,7 @@ int main()
         tri_mesh_figure(mesh, &figure);
     tri_mesh_delete(mesh);
     tri_file_free(&figure);
-    return tri_check_figure(&figure, NULL, &demands, &verdict, NULL);
+    return (int)tri_check_figure(&figure, NULL, &demands, &verdict, NULL);
 }
 END
 sed 's/int main()/int main(void)/' client.cpp >client.c
