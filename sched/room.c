@@ -17,7 +17,7 @@ static enum tri_status no_memory(struct tri_error *error)
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the ranges of a block");
 }
 
-static bool reserve_ranges(struct par_ranges *ranges, int32_t need)
+bool par_ranges_reserve(struct par_ranges *ranges, int32_t need)
 {
     return tri_grow(&ranges->item, &ranges->capacity, need, sizeof *ranges->item);
 }
@@ -97,7 +97,7 @@ void par_room_leave(struct par_room *room, struct par_view *view)
 /* Room in both lists for one more range in a block's hands: to take it now, and to give it back later. */
 static bool reserve_deal(struct par_ranges *to, struct par_ranges *spare)
 {
-    return reserve_ranges(to, to->n + 1) && reserve_ranges(spare, spare->n + spare->dealt + 1);
+    return par_ranges_reserve(to, to->n + 1) && par_ranges_reserve(spare, spare->n + spare->dealt + 1);
 }
 
 static void deal(struct par_ranges *to, struct par_ranges *spare, struct par_range range)

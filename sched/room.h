@@ -31,6 +31,9 @@ struct par_view {
     struct tri_owners owners; /* owners.mark: NULL where nobody asks */
 };
 
+/* Room for `need` ranges in all; amortised O(1) a range. False: no memory. */
+bool par_ranges_reserve(struct par_ranges *ranges, int32_t need);
+
 /* What one block has. The current range of each kind lives in the view while the block runs. */
 struct par_room {
     struct par_ranges ranges[PAR_KINDS];

@@ -319,14 +319,8 @@ static bool add_run(struct par_ranges *to, int32_t first, int32_t end)
 {
     if (end - first < SHORTEST_RUN)
         return true;
-    if (to->n + to->dealt == to->capacity) {
-        int32_t capacity = to->capacity + to->capacity / 2 + 64;
-        struct par_range *fresh = realloc(to->item, (size_t)capacity * sizeof *fresh);
-        if (!fresh)
-            return false;
-        to->item = fresh;
-        to->capacity = capacity;
-    }
+    if (!par_ranges_reserve(to, to->n + to->dealt + 1))
+        return false;
     to->item[to->n++] = (struct par_range){first, end};
     return true;
 }

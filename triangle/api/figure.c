@@ -34,18 +34,21 @@ static enum tri_status check_shape(const void *at, int64_t n, int64_t width, int
     return TRI_OK;
 }
 
-/* n rows without gaps; only read. */
+/* The rows of an array that has its shape, without gaps; only read. NULL where there are none. */
 static enum tri_status pack(struct tri_api_figure *taken, void **packed, const void *at, int64_t n, int64_t width,
-                            int64_t stride, size_t item, struct tri_error *error)
+                            int64_t stride, size_t item, const struct shape *shape, struct tri_error *error)
 {
     size_t row = (size_t)width * item;
-    *packed = (void *)at;
-    if (stride == width)
-        return TRI_OK;
+    enum tri_status status = check_shape(at, n, width, stride, shape, error);
+    *packed = status || n == 0 ? NULL : (void *)at;
+    if (!*packed || stride == width)
+        return status;
     assert(taken->n_copies < TRI_API_MOST_COPIES);
     char *copy = malloc((size_t)n * row);
-    if (!copy)
+    if (!copy) {
+        *packed = NULL;
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a copy of the input");
+    }
     for (size_t i = 0; i < (size_t)n; i++)
         memcpy(copy + i * row, (const char *)at + i * (size_t)stride * item, row);
     taken->copies[taken->n_copies++] = copy;
@@ -56,10 +59,9 @@ static enum tri_status pack(struct tri_api_figure *taken, void **packed, const v
 static enum tri_status take_reals(struct tri_api_figure *taken, double **to, struct tri_reals given, struct shape shape,
                                   struct tri_error *error)
 {
-    void *packed = NULL;
-    enum tri_status status = check_shape(given.at, given.n, given.width, given.stride, &shape, error);
-    if (!status && given.n > 0)
-        status = pack(taken, &packed, given.at, given.n, given.width, given.stride, sizeof *given.at, error);
+    void *packed;
+    enum tri_status status = pack(taken, &packed, given.at, given.n, given.width, given.stride, sizeof *given.at,
+                                  &shape, error);
     *to = packed;
     return status;
 }
@@ -67,10 +69,9 @@ static enum tri_status take_reals(struct tri_api_figure *taken, double **to, str
 static enum tri_status take_ints(struct tri_api_figure *taken, int32_t **to, struct tri_ints given, struct shape shape,
                                  struct tri_error *error)
 {
-    void *packed = NULL;
-    enum tri_status status = check_shape(given.at, given.n, given.width, given.stride, &shape, error);
-    if (!status && given.n > 0)
-        status = pack(taken, &packed, given.at, given.n, given.width, given.stride, sizeof *given.at, error);
+    void *packed;
+    enum tri_status status = pack(taken, &packed, given.at, given.n, given.width, given.stride, sizeof *given.at,
+                                  &shape, error);
     *to = packed;
     return status;
 }
