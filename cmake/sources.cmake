@@ -110,6 +110,7 @@ set(PTRIANGLE_SCHED_SOURCES
 set(PTRIANGLE_PUBLIC_HEADERS
     include/ptriangle/tri.h
     include/ptriangle/par.h
+    include/ptriangle/tiles.h
     include/ptriangle/files.h
     include/ptriangle/check.h)
 
