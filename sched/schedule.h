@@ -30,13 +30,16 @@ struct par_options {
     bool by_block;           /* new vertices and triangles are numbered as blocks made them: quicker. Else what the
                                 schedule made is numbered by the mesh alone, along a curve (triangle/numbering.h): a
                                 solver that goes through the triangles runs twice as fast then */
-    par_take_tile *take;     /* takes the finished mesh, tile by tile (sched/sweep/tiles.h); NULL: nobody */
-    void *take_user;
-    bool sweep;              /* column by column, from left to right, with few columns in memory at a time, where `take`
-                                takes what is finished; *mesh is not a mesh then, to be freed and no more. The tiles are
-                                the same. TRI_TOO_LARGE where blocks leave something over, which asks for the whole
-                                mesh: tiles that have been taken are worth nothing then. Without `take`, and for bounds
-                                above TRI_USUAL_ANGLE, nothing goes */
+    const struct tri_sink *sink; /* takes the finished mesh, tile by tile (ptriangle/tiles.h); NULL: nobody */
+    const struct tri_pslg *figure; /* the mesh's input: its points are handed out bit by bit as they came; NULL: as they
+                                      are in the mesh, where what is smaller than 2^-216 units is 0 */
+    bool region_column;      /* the attribute of its region is handed out with a triangle, also where the mesh has no
+                                columns */
+    bool sweep;              /* column by column, from left to right, with few columns in memory at a time, where the
+                                sink takes what is finished; *mesh is not a mesh then, to be freed and no more. The
+                                tiles are the same. TRI_TOO_LARGE where blocks leave something over, which asks for the
+                                whole mesh: tiles that have been taken are worth nothing then. Without a sink, and for
+                                bounds above TRI_USUAL_ANGLE, nothing goes */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
     int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, and pause often */
     /* Told by the calling thread: the phase that begins (0: pre-refinement, then 1 to 4, at last PAR_NUMBERING),
