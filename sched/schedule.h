@@ -32,10 +32,10 @@ struct par_options {
                                 solver that goes through the triangles runs twice as fast then */
     par_take_tile *take;     /* takes the finished mesh, tile by tile (sched/sweep/tiles.h); NULL: nobody */
     void *take_user;
-    int64_t memory;          /* bytes that the process may have in memory, about; 0: no bound. Where the mesh is taken and
-                                would not fit, it is swept from left to right: few columns are in memory at a time, and
-                                *mesh is not a mesh afterwards, to be freed and no more. The tiles are the same for any
-                                bound. TRI_TOO_LARGE where that cannot be done */
+    int64_t memory;          /* bytes that the process may have in memory, about; 0: no bound. Where the mesh is taken
+                                and would not fit, it is swept from left to right: few columns are in memory at a time,
+                                and *mesh is not a mesh afterwards, to be freed and no more. The tiles are the same for
+                                any bound. TRI_TOO_LARGE where that cannot be done */
     const char *scratch;     /* directory for what has to be parked then; NULL: nothing can be */
     bool sweep;              /* for tests: whatever memory there is */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
