@@ -375,7 +375,7 @@ static void free_job(struct job *job)
     free(job->segment_markers);
 }
 
-static bool is_empty(const struct tri_tile *tile) { return tile->n_vertices + tile->n_triangles + tile->n_segments == 0; }
+static bool is_empty(const struct tri_tile *t) { return t->n_vertices + t->n_triangles + t->n_segments == 0; }
 
 /* Some rows at once: all are numbered, before any of their triangles is looked at, since a triangle may have corners in
  * the row below. */

@@ -23,7 +23,7 @@ struct par_tiles {
     const struct par_partition *partition;
     const struct tri_executor *executor;
     const struct tri_sink *sink;
-    const struct tri_pslg *figure; /* its points are handed out bit by bit as they came; NULL: as they are in the mesh */
+    const struct tri_pslg *figure; /* its points are handed out as they came, bit by bit; NULL: the mesh's are */
     int32_t n_kept;               /* vertices that there were before refinement */
     bool region_column;           /* the attribute of a triangle's region is handed out, unless the mesh has columns */
     int64_t *number;              /* [capacity] of each vertex; -1: none yet */
