@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "drivers/resources.h"
+#include "triangle/census.h"
 #include "triangle/clock.h"
 
 /* Measured: bytes a triangle at the peak, at least and with one refinement loop or the schedule and its numbering; time

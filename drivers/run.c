@@ -15,6 +15,7 @@
 #include "drivers/mesh_files.h"
 #include "drivers/self_check.h"
 #include "drivers/summary.h"
+#include "triangle/census.h"
 #include "triangle/clock.h"
 #include "triangle/quality.h"
 

@@ -11,6 +11,7 @@
 #include "sched/phase.h"
 #include "sched/theory.h"
 #include "sched/threads.h"
+#include "triangle/census.h"
 #include "triangle/estimate.h"
 #include "triangle/numbering.h"
 

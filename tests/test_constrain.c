@@ -194,7 +194,7 @@ static void test_segments_are_moved_to_the_lowest_copy(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* A fan of incident from one vertex, in order and far apart in angle by an ulp or so. */
+/* A fan of segments from one vertex, in order and far apart in angle by an ulp or so. */
 static void test_many_spokes_and_long_gaps(void **state)
 {
     (void)state;

@@ -24,7 +24,6 @@
 
 #include "triangle/feature_size.h"
 #include "triangle/predicates.h"
-#include "triangle/refine.h"
 
 static bool is_acute(const struct tri_mesh *mesh, int32_t v) { return mesh->on[v] == TRI_VERTEX_ACUTE; }
 
