@@ -319,6 +319,21 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
     return status;
 }
 
+/* Measured: bytes a triangle at the peak, where all stay in memory and are numbered. */
+static const double BYTES_IN_MEMORY = 74;
+
+static bool must_sweep(const struct par_state *state, double triangles)
+{
+    const struct par_options *options = state->options;
+    return options->sweep || (options->memory > 0 && triangles * BYTES_IN_MEMORY > (double)options->memory);
+}
+
+static void note_size(struct par_state *state)
+{
+    struct par_report *report = state->report;
+    report->most_live = state->mesh->n_triangles > report->most_live ? state->mesh->n_triangles : report->most_live;
+}
+
 /* The phases of one level, on a mesh that has been pre-refined, and what is bad in it. */
 static enum tri_status run_schedule(struct par_state *state, const struct tri_refine_options *quality,
                                     struct par_partition *partition, bool top, struct tri_error *error)
@@ -333,12 +348,15 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         report->radius_measured = state->radius * state->mesh->unit;
         report->prerefined = state->mesh->n_triangles;
     }
-    state->sweeping = top && state->may_number && state->options->sweep && state->options->take;
+    state->sweeping = top && state->may_number && state->options->take && must_sweep(state, partition->estimate);
     if (!status && top && state->options->take && !state->sweeping) {
         par_partition_free(&state->cells);
         status = par_partition_copy(&state->cells, partition, error);
     }
+    if (state->sweeping)
+        report->way = PAR_SWEPT;
     status = status ? status : run_rounds(state, partition, error);
+    note_size(state);
     double last = tri_seconds();
     if (top)
         report->left_over += state->worklist.n;
