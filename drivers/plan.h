@@ -5,7 +5,8 @@
 
 #include "drivers/estimate.h"
 
-/* What of this run asks for the whole mesh in memory: "-n (neighbours)"; NULL: nothing, it can be swept. */
+/* What of this run asks for the whole mesh in memory: "-n (neighbours)"; "": the program; NULL: nothing, it can be
+ * swept. */
 const char *plan_obstacle(const struct run *run);
 
 /* Bytes of memory that the process may still take: what is left of the system's and of --memory. */

@@ -61,15 +61,17 @@ struct run_limits {
 struct run_hooks {
     const char *program;
     const struct tri_executor *executor; /* for reading and writing; NULL: one task after another */
-    /* Refines the mesh as tri_refine does; NULL: tri_refine itself. */
-    enum tri_status (*refine)(void *user, struct tri_mesh *mesh, const struct tri_refine_options *options,
-                              struct tri_refine_report *report, struct tri_error *error);
+    /* Refines the mesh as tri_refine does, by the plan; NULL: tri_refine itself. */
+    enum tri_status (*refine)(void *user, const struct run_plan *plan, struct tri_mesh *mesh,
+                              const struct tri_refine_options *options, struct tri_refine_report *report,
+                              struct tri_error *error);
     /* Triangles that the mesh will have, and the share of them by which that may be wrong; NULL: what areas ask for is
      * all that is known. */
     double (*estimate)(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *options);
     /* Bytes of memory that sweeping so many triangles takes, beyond what is taken now; refine follows run->plan then.
      * NULL: nothing is ever swept. */
     double (*swept_memory)(void *user, double triangles);
+    const char *whole_mesh;         /* what of the program's own options asks for a mesh in memory; NULL: nothing */
     int threads;                    /* to refine with, for estimates */
     struct file_names exports;      /* the mesh in other formats .. */
     bool exports_alone;             /* .. and in no others */
