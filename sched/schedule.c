@@ -252,8 +252,8 @@ static struct par_tiles tiles_of(const struct par_state *state, const struct par
                                  const struct tri_executor *executor)
 {
     return (struct par_tiles){.mesh = state->mesh, .partition = partition, .executor = executor,
-                              .n_kept = state->n_kept, .n_vertices = state->n_kept,
-                              .take = state->options->take, .user = state->options->take_user};
+                              .n_kept = state->n_kept, .sink = state->options->sink,
+                              .figure = state->options->figure, .region_column = state->options->region_column};
 }
 
 /* Something that no block could do lies left of x, where every block has had its turn. */
@@ -288,6 +288,7 @@ static enum tri_status sweep_columns(struct par_state *state, const struct par_p
     enum tri_status status = TRI_OK;
     struct tri_executor executor = par_executor(&state->threads);
     struct par_tiles tiles = tiles_of(state, partition, &executor);
+    status = par_tiles_begin(&tiles, partition->estimate, error);
     for (int32_t odd = 1; !status && odd <= partition->n_columns; odd += 2) {
         for (int phase = 0; !status && phase < PAR_PHASES; phase++) {
             int32_t column = phase < 2 ? odd : odd - 1;
@@ -297,6 +298,7 @@ static enum tri_status sweep_columns(struct par_state *state, const struct par_p
         if (!status && odd > 2)
             status = finish_column(state, &tiles, odd - 2, error);
     }
+    status = status ? status : par_tiles_end(&tiles, error);
     par_tiles_free(&tiles);
     return status;
 }
@@ -348,8 +350,8 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         report->radius_measured = state->radius * state->mesh->unit;
         report->prerefined = state->mesh->n_triangles;
     }
-    state->sweeping = top && state->may_number && state->options->take && must_sweep(state, partition->estimate);
-    if (!status && top && state->options->take && !state->sweeping) {
+    state->sweeping = top && state->may_number && state->options->sink && must_sweep(state, partition->estimate);
+    if (!status && top && state->options->sink && !state->sweeping) {
         par_partition_free(&state->cells);
         status = par_partition_copy(&state->cells, partition, error);
     }
@@ -485,8 +487,10 @@ static enum tri_status hand_out(struct par_state *state, const struct tri_refine
     enum tri_status status = TRI_OK;
     if (!partition->x)
         status = par_partition_make(partition, state->mesh, quality, state->mesh->n_triangles, HUGE_VAL, error);
+    status = status ? status : par_tiles_begin(&tiles, state->mesh->n_triangles, error);
     for (int32_t odd = 1; !status && odd < partition->n_columns; odd += 2)
         status = par_tiles_column(&tiles, odd, false, &nothing, error);
+    status = status ? status : par_tiles_end(&tiles, error);
     par_tiles_free(&tiles);
     return status;
 }
@@ -517,7 +521,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     }
     if (!status && report->levels > 0 && !options->by_block && !state.numbered && !state.sweeping)
         status = number_mesh(&state, error);
-    if (!status && options->take && !state.sweeping)
+    if (!status && options->sink && !state.sweeping)
         status = hand_out(&state, quality, error);
     free(state.worklist.item);
     free(state.column.item);

@@ -30,12 +30,15 @@ struct par_options {
     bool by_block;           /* new vertices and triangles are numbered as blocks made them: quicker. Else what the
                                 schedule made is numbered by the mesh alone, along a curve (triangle/numbering.h): a
                                 solver that goes through the triangles runs twice as fast then */
-    par_take_tile *take;     /* takes the finished mesh, tile by tile (sched/sweep/tiles.h); NULL: nobody */
-    void *take_user;
-    int64_t memory;          /* bytes that the process may have in memory, about; 0: no bound. Where the mesh is taken
-                                and would not fit, it is swept from left to right: few columns are in memory at a time,
-                                and *mesh is not a mesh afterwards, to be freed and no more. The tiles are the same for
-                                any bound. TRI_TOO_LARGE where that cannot be done */
+    const struct tri_sink *sink; /* takes the finished mesh, tile by tile (ptriangle/tiles.h); NULL: nobody */
+    const struct tri_pslg *figure; /* the mesh's input: its points are handed out bit by bit as they came; NULL: as they
+                                      are in the mesh, where what is smaller than 2^-216 units is 0 */
+    bool region_column;      /* the attribute of its region is handed out with a triangle, also where the mesh has no
+                                columns */
+    int64_t memory;          /* bytes that the process may have in memory, about; 0: no bound. Where a sink takes the
+                                mesh and it would not fit, it is swept from left to right: few columns are in memory at
+                                a time, and *mesh is not a mesh afterwards, to be freed and no more. The tiles are the
+                                same for any bound. TRI_TOO_LARGE where that cannot be done */
     const char *scratch;     /* directory for what has to be parked then; NULL: nothing can be */
     bool sweep;              /* for tests: whatever memory there is */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
