@@ -161,7 +161,7 @@ void plan_print(const struct run *run, const struct estimate *e)
     printf("\nEstimate:\n\n  Triangles: %.3g million\n  Vertices: %.3g million\n", 1e-6 * e->triangles,
            1e-6 * e->vertices);
     if (run->options.refine)
-        printf("  Way: %s\n", run->plan.swept ? "swept, a few columns in memory at a time" : "the whole mesh in memory");
+        printf("  Way: %s\n", run->plan.swept ? "swept, a few columns in memory at a time" : "all in memory");
     print_bytes("Memory", resources_memory_used() + more, left);
     print_bytes("Disk", e->disk, resources_disk(run->arguments->output));
     printf("  Time: %.2g s on %d thread%s\n", e->seconds, threads, threads > 1 ? "s" : "");
