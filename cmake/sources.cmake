@@ -102,6 +102,10 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/room.c sched/sweep/tiles.c
     sched/worklist.c
     sched/phase.c
+    sched/ranks/carrier.c
+    sched/ranks/fragment.c
+    sched/ranks/hand_out.c
+    sched/ranks/ranks.c
     sched/schedule.c
     sched/triangulate.c
     sched/mesh.c)

@@ -125,7 +125,7 @@ static bool by_tile(const struct finds found[SHARES], int32_t n_rows, int32_t **
     return true;
 }
 
-static bool grow_numbers(struct par_tiles *tiles)
+bool par_tiles_reserve(struct par_tiles *tiles)
 {
     int32_t before = tiles->capacity, now = tiles->mesh->vertex_capacity;
     if (now <= before)
@@ -148,7 +148,7 @@ static bool find_all(struct column *c)
 {
     const struct tri_executor *executor = c->tiles->executor;
     int32_t n_rows = c->tiles->partition->n_rows;
-    bool memory = grow_numbers(c->tiles);
+    bool memory = par_tiles_reserve(c->tiles);
     if (memory) {
         tri_execute(executor, SHARES, find_vertices, c);
         tri_execute(executor, SHARES, find_triangles, c);
@@ -598,7 +598,7 @@ enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct
     if (tiles->sink->begin)
         status = tiles->sink->begin(tiles->sink->user, &stream, error);
     free(regions);
-    return status ? status : hand_out_kept(tiles, error);
+    return status || tiles->kept_elsewhere ? status : hand_out_kept(tiles, error);
 }
 
 enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error)
@@ -607,6 +607,29 @@ enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error)
 }
 
 /* --- a column */
+
+enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct tri_error *error)
+{
+    struct column *c = calloc(1, sizeof *c);
+    bool memory = c && par_tiles_reserve(tiles);
+    if (memory) {
+        *c = (struct column){.tiles = tiles, .column = column, .first_tile = column * tiles->partition->n_rows,
+                             .end = par_fence(tiles->partition, column, 0).x_max};
+        memory = find_all(c);
+    }
+    for (int32_t row = 0; memory && row < tiles->partition->n_rows; row++) {
+        struct job job = {.column = c, .row = row};
+        number_tile(&job, 0);
+        memory = !job.no_memory;
+        free_job(&job);
+    }
+    for (int32_t v = 0; memory && v < tiles->mesh->n_vertices; v++)
+        tiles->tile[v] = tiles->tile[v] >= c->first_tile ? INT32_MAX : tiles->tile[v];
+    if (c)
+        free_column(c);
+    free(c);
+    return memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the numbers of a column");
+}
 
 enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, bool let_go, struct par_room *spare,
                                  struct tri_error *error)
