@@ -12,7 +12,7 @@
 static const uint64_t MAGIC = 0x70746672616731ull; /* also tells the order of bytes */
 
 struct header {
-    uint64_t magic, bytes, hash; /* the hash is that of all that follows the header */
+    uint64_t magic, bytes, hash; /* the hash is that of all that follows it */
     struct tri_fence box;
     int32_t n_common, n_attributes;
     int32_t n_named, n_fresh, n_triangles, n_subs, n_entries, unused;
@@ -69,10 +69,11 @@ static uint64_t mixed(uint64_t word)
     return word ^ word >> 29;
 }
 
+/* Of a fragment of n bytes. */
 static uint64_t hash_of(const char *bytes, size_t n)
 {
     uint64_t hash = n, word;
-    for (size_t i = 0; i + sizeof word <= n; i += sizeof word) {
+    for (size_t i = offsetof(struct header, box); i + sizeof word <= n; i += sizeof word) {
         memcpy(&word, bytes + i, sizeof word);
         hash = mixed(hash ^ word);
     }
@@ -225,19 +226,6 @@ static void write_entries(const struct cutting *c, const struct parts *p)
     assert(n == c->header.n_entries);
 }
 
-static bool reserve(struct par_bytes *to, size_t more)
-{
-    size_t capacity = to->n + more + to->capacity / 2;
-    if (to->n + more <= to->capacity)
-        return true;
-    char *fresh = realloc(to->at, capacity);
-    if (!fresh)
-        return false;
-    to->at = fresh;
-    to->capacity = capacity;
-    return true;
-}
-
 static bool write_all(struct cutting *c, struct par_bytes *to)
 {
     struct header *h = &c->header;
@@ -247,8 +235,8 @@ static bool write_all(struct cutting *c, struct par_bytes *to)
     h->n_subs = c->subs.n;
     for (int32_t i = 0; i < c->state->worklist.n; i++)
         h->n_entries += entry_at(c, i) != NULL;
-    h->bytes = parts_of(h, NULL).bytes;
-    if (!reserve(to, h->bytes))
+    h->bytes = parts_of(h, (char *)h).bytes; /* their sizes alone */
+    if (!par_bytes_reserve(to, h->bytes))
         return false;
     char *bytes = to->at + to->n;
     const struct parts p = parts_of(h, bytes);
@@ -256,7 +244,8 @@ static bool write_all(struct cutting *c, struct par_bytes *to)
     write_vertices(c, &p);
     write_triangles(c, &p);
     write_entries(c, &p);
-    h->hash = hash_of(bytes + sizeof *h, h->bytes - sizeof *h);
+    memcpy(bytes, h, sizeof *h);
+    h->hash = hash_of(bytes, h->bytes);
     memcpy(bytes, h, sizeof *h);
     to->n += h->bytes;
     return true;
@@ -336,7 +325,8 @@ struct pasting {
     const struct header *header;
     struct parts parts;
     struct par_worklist doomed;      /* triangles that go, ascending */
-    struct par_worklist doomed_subs; /* subsegments with nothing on either side once they have gone */
+    struct par_worklist doomed_subs; /* subsegments with nothing on either side once they have gone .. */
+    int32_t n_subs_used;             /* .. of which so many numbers are in use again */
     struct par_worklist open_subs;   /* with a triangle on one side that stays */
     struct par_worklist rim;         /* edges of what stays that lead to what goes, or beyond */
     struct table edges;              /* to the code of an edge that has no partner yet, or to ~subsegment */
@@ -344,7 +334,6 @@ struct pasting {
     struct par_worklist entries;
     struct par_keys keys;
     int32_t *vertex;                 /* [n_named + n_fresh] ids here */
-    int32_t *sub;                    /* [n_subs] */
 };
 
 static bool is_doomed(const struct pasting *p, int32_t code)
@@ -385,9 +374,8 @@ static bool reserve_all(struct pasting *p)
     size_t edges = 3 * ((size_t)h->n_triangles + (size_t)p->rim.n) + (size_t)h->n_subs + (size_t)p->open_subs.n;
     struct par_ranges *triangles = &p->state->spare.ranges[PAR_TRIANGLES], *subs = &p->state->spare.ranges[PAR_SUBS];
     p->vertex = malloc(((size_t)h->n_named + (size_t)h->n_fresh + 1) * sizeof *p->vertex);
-    p->sub = malloc(((size_t)h->n_subs + 1) * sizeof *p->sub);
     int32_t entries = p->state->worklist.n + h->n_entries;
-    return p->vertex && p->sub && table_init(&p->edges, edges) && table_init(&p->places, 3 * (size_t)p->doomed.n) &&
+    return p->vertex && table_init(&p->edges, edges) && table_init(&p->places, 3 * (size_t)p->doomed.n) &&
            tri_grow(&p->entries.item, &p->entries.capacity, entries, sizeof *p->entries.item) &&
            tri_grow(&p->keys.item, &p->keys.capacity, entries, sizeof *p->keys.item) &&
            par_ranges_reserve(triangles, triangles->n + triangles->dealt + p->doomed.n) &&
@@ -514,8 +502,7 @@ static void paste_subs(struct pasting *p)
         p->mesh->sub[s] = (struct tri_subsegment){{a, b}, {TRI_NONE, TRI_NONE}, wire->marker, wire->parent};
         note_edge(p, a, b, ~s);
     }
-    p->doomed_subs.n -= used;
-    memmove(p->doomed_subs.item, p->doomed_subs.item + used, (size_t)p->doomed_subs.n * sizeof *p->doomed_subs.item);
+    p->n_subs_used = used;
 }
 
 static void link_edge(struct pasting *p, int32_t code)
@@ -566,9 +553,10 @@ static void paste_triangles(struct pasting *p)
             p->entries.item[i] = slot_of(p, ~p->entries.item[i], before);
 }
 
-static void give_back(struct par_ranges *to, const int32_t *item, int32_t n)
+/* Numbers item[first] to item[n - 1]. */
+static void give_back(struct par_ranges *to, const int32_t *item, int32_t first, int32_t n)
 {
-    for (int32_t first = 0, end; first < n; first = end) {
+    for (int32_t end; first < n; first = end) {
         for (end = first + 1; end < n && item[end] == item[end - 1] + 1;)
             end++;
         to->item[to->n++] = (struct par_range){item[first], item[end - 1] + 1};
@@ -587,8 +575,8 @@ static void replace(struct pasting *p)
     note_rim(p);
     paste_subs(p);
     paste_triangles(p);
-    give_back(&state->spare.ranges[PAR_TRIANGLES], p->doomed.item + n, p->doomed.n - n);
-    give_back(&state->spare.ranges[PAR_SUBS], p->doomed_subs.item, p->doomed_subs.n);
+    give_back(&state->spare.ranges[PAR_TRIANGLES], p->doomed.item, n, p->doomed.n);
+    give_back(&state->spare.ranges[PAR_SUBS], p->doomed_subs.item, p->n_subs_used, p->doomed_subs.n);
     free(state->worklist.item);
     free(state->key.item);
     state->worklist = p->entries;
@@ -615,11 +603,11 @@ static bool is_fragment(const struct par_state *state, const struct header *h, i
                         size_t n)
 {
     if (n < sizeof *h || h->magic != MAGIC || h->bytes > n || h->n_common != n_common || h->n_named < 0 ||
-        h->n_fresh < 0 || h->n_triangles < 0 || h->n_subs < 0 || h->n_entries < 0 ||
+        h->n_fresh < 0 || h->n_triangles < 0 || h->n_subs < 0 || h->n_entries < 0 || h->bytes < sizeof *h ||
         h->n_attributes != state->mesh->n_attributes)
         return false;
     const struct parts p = parts_of(h, (char *)bytes);
-    if (p.bytes != h->bytes || h->hash != hash_of(bytes + sizeof *h, h->bytes - sizeof *h))
+    if (p.bytes != h->bytes || h->hash != hash_of(bytes, h->bytes))
         return false;
     int32_t vertices = h->n_named + h->n_fresh;
     bool good = are_below(p.named, h->n_named, n_common) && are_below(p.entries, h->n_entries, h->n_triangles);
@@ -657,7 +645,6 @@ enum tri_status par_fragment_paste(struct par_state *state, int32_t n_common, co
         free(lists[i]->item);
     free(p.keys.item);
     free(p.vertex);
-    free(p.sub);
     table_free(&p.edges);
     table_free(&p.places);
     return status;
