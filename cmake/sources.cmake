@@ -60,7 +60,9 @@ set(PTRIANGLE_CHECK_SOURCES
     triangle/check/edges.c
     triangle/check/stars.c
     triangle/check/order.c
+    triangle/check/missing.c
     triangle/check/overlap.c
+    triangle/check/regions.c
     triangle/check/hull.c
     triangle/check/delaunay.c
     triangle/check/segments.c
@@ -153,6 +155,7 @@ set(PTRIANGLE_RUN_SOURCES
     drivers/self_check.c
     drivers/resources.c
     drivers/estimate.c
+    drivers/plan.c
     drivers/run.c)
 set(PTRIANGLE_RUN_PROGRAMS triangle ptriangle)
 

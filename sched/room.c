@@ -181,6 +181,11 @@ void par_room_free(struct par_room *room)
     *room = (struct par_room){0};
 }
 
+void par_room_mark_sub(struct tri_mesh *mesh, int32_t s)
+{
+    mesh->sub[s] = (struct tri_subsegment){{TRI_NONE, TRI_NONE}, {TRI_NONE, TRI_NONE}, 0, TRI_NONE};
+}
+
 static void mark_free(struct tri_mesh *mesh, enum par_kind kind, int32_t at)
 {
     switch (kind) {
@@ -191,7 +196,7 @@ static void mark_free(struct tri_mesh *mesh, enum par_kind kind, int32_t at)
         mesh->tri[at].v[0] = TRI_NONE;
         return;
     default:
-        mesh->sub[at] = (struct tri_subsegment){{TRI_NONE, TRI_NONE}, {TRI_NONE, TRI_NONE}, 0, TRI_NONE};
+        par_room_mark_sub(mesh, at);
     }
 }
 

@@ -61,6 +61,9 @@ void par_room_return(struct par_room *room, struct par_room *spare);
 /* Marks what `spare` lists as free in the shared arrays, as tri_number wants it; spare is as before. O(gaps). */
 void par_room_mark(const struct par_room *spare, struct tri_mesh *shared);
 
+/* The same for one subsegment. */
+void par_room_mark_sub(struct tri_mesh *shared, tri_sub_id s);
+
 /* Closes the gaps that `spare` lists in the shared arrays with the last items there; afterwards every vertex and
  * triangle below the mesh's counts is used, as before the first phase. O(gaps), and one parallel pass over the
  * triangles. Frees spare. Cannot fail. */

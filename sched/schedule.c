@@ -11,6 +11,7 @@
 #include "sched/phase.h"
 #include "sched/theory.h"
 #include "sched/threads.h"
+#include "triangle/census.h"
 #include "triangle/estimate.h"
 #include "triangle/numbering.h"
 
@@ -144,7 +145,7 @@ static enum tri_status fill_worklist(struct par_state *state, const struct tri_r
                                  struct tri_error *error)
 {
     struct tri_executor executor = par_executor(&state->threads);
-    state->column.n = 0;
+    state->key.n = 0;
     return par_worklist_fill(&state->worklist, state->mesh, quality, known, &executor, &state->radius, error);
 }
 
@@ -252,8 +253,8 @@ static struct par_tiles tiles_of(const struct par_state *state, const struct par
                                  const struct tri_executor *executor)
 {
     return (struct par_tiles){.mesh = state->mesh, .partition = partition, .executor = executor,
-                              .n_kept = state->n_kept, .n_vertices = state->n_kept,
-                              .take = state->options->take, .user = state->options->take_user};
+                              .n_kept = state->n_kept, .sink = state->options->sink,
+                              .figure = state->options->figure, .region_column = state->options->region_column};
 }
 
 /* Something that no block could do lies left of x, where every block has had its turn. */
@@ -288,6 +289,7 @@ static enum tri_status sweep_columns(struct par_state *state, const struct par_p
     enum tri_status status = TRI_OK;
     struct tri_executor executor = par_executor(&state->threads);
     struct par_tiles tiles = tiles_of(state, partition, &executor);
+    status = par_tiles_begin(&tiles, partition->estimate, error);
     for (int32_t odd = 1; !status && odd <= partition->n_columns; odd += 2) {
         for (int phase = 0; !status && phase < PAR_PHASES; phase++) {
             int32_t column = phase < 2 ? odd : odd - 1;
@@ -297,6 +299,7 @@ static enum tri_status sweep_columns(struct par_state *state, const struct par_p
         if (!status && odd > 2)
             status = finish_column(state, &tiles, odd - 2, error);
     }
+    status = status ? status : par_tiles_end(&tiles, error);
     par_tiles_free(&tiles);
     return status;
 }
@@ -308,7 +311,6 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
     assert(par_cells(partition) >= 4);
     state->n_schedules++;
     for (state->round = 0; !status && state->round < MAX_ROUNDS; state->round++) {
-        state->column.n = 0; /* of other blocks than those to come */
         status = state->sweeping ? sweep_columns(state, partition, error) : run_phases(state, partition, error);
         state->report->rounds++;
         if (state->worklist.n == 0 || par_cells(partition) < FEWEST_TO_COARSEN || state->sweeping)
@@ -317,6 +319,21 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
     }
     state->report->deferred += state->report->total.deferred; /* run_schedule clears it in the total */
     return status;
+}
+
+/* Measured: bytes a triangle at the peak, where all stay in memory and are numbered. */
+static const double BYTES_IN_MEMORY = 74;
+
+static bool must_sweep(const struct par_state *state, double triangles)
+{
+    const struct par_options *options = state->options;
+    return options->sweep || (options->memory > 0 && triangles * BYTES_IN_MEMORY > (double)options->memory);
+}
+
+static void note_size(struct par_state *state)
+{
+    struct par_report *report = state->report;
+    report->most_live = state->mesh->n_triangles > report->most_live ? state->mesh->n_triangles : report->most_live;
 }
 
 /* The phases of one level, on a mesh that has been pre-refined, and what is bad in it. */
@@ -333,12 +350,15 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         report->radius_measured = state->radius * state->mesh->unit;
         report->prerefined = state->mesh->n_triangles;
     }
-    state->sweeping = top && state->may_number && state->options->sweep && state->options->take;
-    if (!status && top && state->options->take && !state->sweeping) {
+    state->sweeping = top && state->may_number && state->options->sink && must_sweep(state, partition->estimate);
+    if (!status && top && state->options->sink && !state->sweeping) {
         par_partition_free(&state->cells);
         status = par_partition_copy(&state->cells, partition, error);
     }
+    if (state->sweeping)
+        report->way = PAR_SWEPT;
     status = status ? status : run_rounds(state, partition, error);
+    note_size(state);
     double last = tri_seconds();
     if (top)
         report->left_over += state->worklist.n;
@@ -467,8 +487,10 @@ static enum tri_status hand_out(struct par_state *state, const struct tri_refine
     enum tri_status status = TRI_OK;
     if (!partition->x)
         status = par_partition_make(partition, state->mesh, quality, state->mesh->n_triangles, HUGE_VAL, error);
+    status = status ? status : par_tiles_begin(&tiles, state->mesh->n_triangles, error);
     for (int32_t odd = 1; !status && odd < partition->n_columns; odd += 2)
         status = par_tiles_column(&tiles, odd, false, &nothing, error);
+    status = status ? status : par_tiles_end(&tiles, error);
     par_tiles_free(&tiles);
     return status;
 }
@@ -499,10 +521,10 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     }
     if (!status && report->levels > 0 && !options->by_block && !state.numbered && !state.sweeping)
         status = number_mesh(&state, error);
-    if (!status && options->take && !state.sweeping)
+    if (!status && options->sink && !state.sweeping)
         status = hand_out(&state, quality, error);
     free(state.worklist.item);
-    free(state.column.item);
+    free(state.key.item);
     par_partition_free(&state.cells);
     par_room_free(&state.spare);
     report->seconds_total = tri_seconds() - began;

@@ -30,19 +30,29 @@ struct par_options {
     bool by_block;           /* new vertices and triangles are numbered as blocks made them: quicker. Else what the
                                 schedule made is numbered by the mesh alone, along a curve (triangle/numbering.h): a
                                 solver that goes through the triangles runs twice as fast then */
-    par_take_tile *take;     /* takes the finished mesh, tile by tile (sched/sweep/tiles.h); NULL: nobody */
-    void *take_user;
-    bool sweep;              /* column by column, from left to right, with few columns in memory at a time, where `take`
-                                takes what is finished; *mesh is not a mesh then, to be freed and no more. The tiles are
-                                the same. TRI_TOO_LARGE where blocks leave something over, which asks for the whole
-                                mesh: tiles that have been taken are worth nothing then. Without `take`, and for bounds
-                                above TRI_USUAL_ANGLE, nothing goes */
+    const struct tri_sink *sink; /* takes the finished mesh, tile by tile (ptriangle/tiles.h); NULL: nobody */
+    const struct tri_pslg *figure; /* the mesh's input: its points are handed out bit by bit as they came; NULL: as they
+                                      are in the mesh, where what is smaller than 2^-216 units is 0 */
+    bool region_column;      /* the attribute of its region is handed out with a triangle, also where the mesh has no
+                                columns */
+    int64_t memory;          /* bytes that the process may have in memory, about; 0: no bound. Where a sink takes the
+                                mesh and it would not fit, it is swept from left to right: few columns are in memory at
+                                a time, and *mesh is not a mesh afterwards, to be freed and no more. The tiles are the
+                                same for any bound. TRI_TOO_LARGE where that cannot be done */
+    const char *scratch;     /* directory for what has to be parked then; NULL: nothing can be */
+    bool sweep;              /* for tests: whatever memory there is */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
     int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, and pause often */
     /* Told by the calling thread: the phase that begins (0: pre-refinement, then 1 to 4, at last PAR_NUMBERING),
      * triangles so far (with the room that blocks have been dealt). */
     void (*progress)(void *user, int round, int phase, int64_t triangles);
     void *progress_user;
+};
+
+enum par_way { /* how a mesh was carried through */
+    PAR_IN_MEMORY,
+    PAR_SWEPT,  /* column by column; what is finished went */
+    PAR_PARKED  /* column by column; it stayed, in a file */
 };
 
 struct par_block_report {
@@ -66,6 +76,9 @@ struct par_report {
     double radius_measured;       /* largest circumradius of a bad triangle when the first phase began */
     int64_t prerefined;           /* triangles when the first phase began */
     int64_t deferred, left_over;  /* refused by fences in all phases; bad triangles that sequential calls got at last */
+    enum par_way way;
+    int64_t most_live;            /* triangles in the mesh at a time, with the room that blocks have been dealt */
+    int64_t parked;               /* bytes of the file in `scratch`; 0: none */
     int64_t pauses;               /* times a block waited for room */
     double seconds_prerefine, seconds_partition, seconds_room, seconds_merge, seconds_last, seconds_total;
     double seconds_find;          /* bad triangles, and the block of each; in equal shares */

@@ -156,7 +156,7 @@ in_cxx no
 
 # The library's own headers, in clients that take no warning, and what they declare has C linkage.
 headers=$(sed -n 's/^ *include\/\(ptriangle\/[a-z_]*\.h\).*/\1/p' "$root/cmake/sources.cmake")
-[ "$(echo "$headers" | wc -l)" -eq 4 ] || { echo "header: there are not four public headers"; failed=1; }
+[ "$(echo "$headers" | wc -l)" -eq 5 ] || { echo "header: there are not five public headers"; failed=1; }
 cp -r "$root/include/ptriangle" only/
 for header in $headers; do
     printf '#include "%s"\n' "$header"

@@ -257,34 +257,59 @@ static void test_room_moves_ids_alone(void **state)
 /* Everything that is handed out, one after the other. */
 struct stream {
     char *byte;
-    size_t n, capacity;
-    int64_t n_vertices, n_triangles;
+    size_t n_bytes, capacity;
+    int64_t n, n_vertices, n_triangles, n_segments;
+    int32_t n_attributes, n_begun, n_ended;
 };
 
 static void append(struct stream *s, const void *bytes, size_t n)
 {
-    if (s->n + n > s->capacity) {
-        s->capacity = 2 * (s->n + n);
+    if (s->n_bytes + n > s->capacity) {
+        s->capacity = 2 * (s->n_bytes + n);
         s->byte = realloc(s->byte, s->capacity);
         assert_non_null(s->byte);
     }
-    memcpy(s->byte + s->n, bytes, n);
-    s->n += n;
+    if (n > 0)
+        memcpy(s->byte + s->n_bytes, bytes, n);
+    s->n_bytes += n;
 }
 
-static enum tri_status take_tile(void *user, const struct par_tile *tile, struct tri_error *error)
+static enum tri_status begin_stream(void *user, const struct tri_stream *told, struct tri_error *error)
 {
     struct stream *s = user;
     (void)error;
-    assert_true(tile->first_vertex == s->n_vertices && tile->first_triangle == s->n_triangles);
+    assert_true(s->n_begun++ == 0 && s->n_ended == 0 && told->estimate > 0);
+    s->n_attributes = told->n_attributes;
+    append(s, told->regions, (size_t)told->n_regions * (size_t)told->n_columns * sizeof *told->regions);
+    return TRI_OK;
+}
+
+static enum tri_status take_tile(void *user, const struct tri_tile *tile, struct tri_error *error)
+{
+    struct stream *s = user;
+    (void)error;
+    assert_true(s->n_begun == 1 && s->n_ended == 0 && tile->first_vertex == s->n_vertices &&
+                tile->first_triangle == s->n_triangles && tile->first_segment == s->n_segments);
+    assert_true((s->n++ == 0) == (tile->column == -1));
     s->n_vertices += tile->n_vertices;
     s->n_triangles += tile->n_triangles;
+    s->n_segments += tile->n_segments;
     append(s, &tile->column, sizeof tile->column);
     append(s, &tile->row, sizeof tile->row);
-    append(s, tile->xy, (size_t)tile->n_vertices * sizeof *tile->xy);
-    append(s, tile->markers, (size_t)tile->n_vertices * sizeof *tile->markers);
+    append(s, tile->points, (size_t)tile->n_vertices * sizeof *tile->points);
+    append(s, tile->point_markers, (size_t)tile->n_vertices * sizeof *tile->point_markers);
+    append(s, tile->attributes, (size_t)(tile->n_vertices * s->n_attributes) * sizeof *tile->attributes);
     append(s, tile->corners, (size_t)tile->n_triangles * sizeof *tile->corners);
     append(s, tile->regions, (size_t)tile->n_triangles * sizeof *tile->regions);
+    append(s, tile->ends, (size_t)tile->n_segments * sizeof *tile->ends);
+    append(s, tile->segment_markers, (size_t)tile->n_segments * sizeof *tile->segment_markers);
+    return TRI_OK;
+}
+
+static enum tri_status end_stream(void *user, struct tri_error *error)
+{
+    (void)error;
+    ((struct stream *)user)->n_ended++;
     return TRI_OK;
 }
 
@@ -293,10 +318,14 @@ static enum tri_status refine_to(struct stream *stream, const struct start *star
 {
     struct par_options options = *how;
     *mesh = coarse_mesh(start);
-    *stream = (struct stream){.n_vertices = mesh->n_vertices};
-    options.take = take_tile;
-    options.take_user = stream;
-    return par_refine(mesh, &start->options.quality, &options, report, NULL);
+    *stream = (struct stream){0};
+    const struct tri_sink sink = {stream, begin_stream, take_tile, end_stream};
+    options.sink = &sink;
+    options.figure = &start->pslg;
+    options.region_column = true;
+    enum tri_status status = par_refine(mesh, &start->options.quality, &options, report, NULL);
+    assert_int_equal(stream->n_ended, status == TRI_OK);
+    return status;
 }
 
 /* Column by column, on more threads, with other room: byte for byte what comes out of memory. Where blocks leave
@@ -312,7 +341,8 @@ static void test_a_sweep_hands_out_the_same_tiles(void **state)
         struct tri_mesh mesh, swept;
         struct stream whole, parts;
         assert_int_equal(refine_to(&whole, &start, &options, &report, &mesh), TRI_OK);
-        assert_true(whole.n_triangles == mesh.n_triangles && whole.n_vertices == mesh.n_vertices);
+        assert_true(whole.n_triangles == mesh.n_triangles && whole.n_vertices == mesh.n_vertices &&
+                    whole.n_segments == mesh.n_subs);
         options.sweep = true;
         options.threads = 3;
         if (start.options.quality.min_angle <= TRI_EASY_ANGLE) /* else a second schedule begins in the order of ids */
@@ -325,8 +355,8 @@ static void test_a_sweep_hands_out_the_same_tiles(void **state)
             assert_true(report.rounds > 1);
         } else {
             assert_int_equal(parts.n_triangles, whole.n_triangles);
-            assert_int_equal(parts.n, whole.n);
-            assert_memory_equal(parts.byte, whole.byte, whole.n);
+            assert_int_equal(parts.n_bytes, whole.n_bytes);
+            assert_memory_equal(parts.byte, whole.byte, whole.n_bytes);
         }
         swept_well += !status;
         free(whole.byte);

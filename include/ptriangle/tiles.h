@@ -1,7 +1,8 @@
 /* A mesh as a stream of finished tiles: how one of any size is handed out, to a file or to a solver, without ever being
  * in memory as a whole.
  *
- * First come the vertices that there were before refinement, as one tile without triangles; then the plane's tiles,
+ * First come the vertices that there were before refinement, as one tile without triangles: the caller's points in the
+ * caller's order, then crossings of segments; then the plane's tiles,
  * column by column, rows upwards. Numbers count from 0 and are 64 bits wide. They and their order depend on the figure
  * and the settings alone, and are those of the same mesh in memory: vertices, triangles and segments of a tile follow
  * on those of the tiles before it. A corner may have any number below that of the next tile's first vertex. */

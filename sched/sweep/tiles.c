@@ -24,11 +24,12 @@ struct column {
     int32_t first_tile;
     double end;                     /* all triangles left of it are final */
     struct finds vertices[SHARES], triangles[SHARES]; /* of this column */
+    struct finds subs[SHARES];
     struct finds straddling[SHARES]; /* triangles that reach beyond it */
     bool no_memory[SHARES];
-    int32_t *vertex, *triangle;     /* ids by tile */
-    int32_t *vertex_start, *triangle_start; /* [n_rows + 1] */
-    int32_t n_vertices, n_triangles;
+    int32_t *vertex, *triangle, *sub;     /* ids by tile */
+    int32_t *vertex_start, *triangle_start, *sub_start; /* [n_rows + 1] */
+    int32_t n_vertices, n_triangles, n_subs;
 };
 
 static bool add(struct finds *f, int32_t item, int32_t tile)
@@ -86,6 +87,22 @@ static void find_triangles(void *context, size_t share)
     }
 }
 
+/* What is right of the column is met again later. */
+static void find_subs(void *context, size_t share)
+{
+    struct column *c = context;
+    const struct tri_mesh *mesh = c->tiles->mesh;
+    struct tri_range range = tri_share_of(share, SHARES, mesh->n_subs);
+    for (int32_t s = range.first; s < range.last; s++) {
+        const int32_t *v = mesh->sub[s].v;
+        if (v[0] == TRI_NONE)
+            continue;
+        int32_t a = c->tiles->tile[v[0]], b = c->tiles->tile[v[1]], high = a > b ? a : b;
+        if (high >= c->first_tile && high != INT32_MAX && !add(&c->subs[share], s, high - c->first_tile))
+            c->no_memory[share] = true;
+    }
+}
+
 /* Finds of all shares by tile: a stable counting sort. */
 static bool by_tile(const struct finds found[SHARES], int32_t n_rows, int32_t **item, int32_t **start, int32_t *n)
 {
@@ -135,23 +152,44 @@ static bool find_all(struct column *c)
     if (memory) {
         tri_execute(executor, SHARES, find_vertices, c);
         tri_execute(executor, SHARES, find_triangles, c);
+        tri_execute(executor, SHARES, find_subs, c);
     }
     for (int s = 0; s < SHARES; s++)
         memory = memory && !c->no_memory[s];
     return memory && by_tile(c->vertices, n_rows, &c->vertex, &c->vertex_start, &c->n_vertices) &&
-           by_tile(c->triangles, n_rows, &c->triangle, &c->triangle_start, &c->n_triangles);
+           by_tile(c->triangles, n_rows, &c->triangle, &c->triangle_start, &c->n_triangles) &&
+           by_tile(c->subs, n_rows, &c->sub, &c->sub_start, &c->n_subs);
 }
 
-/* A tile being numbered. */
+/* A tile being numbered, and what is handed out of it. */
 struct job {
     struct column *column;
     int32_t row;
-    struct par_tile tile;
-    double (*xy)[2];
-    int32_t *markers, *regions;
-    int64_t (*corners)[3];
+    struct tri_tile tile;
+    double (*points)[2], *attributes;
+    int32_t *point_markers, *regions, *segment_markers;
+    int64_t (*corners)[3], (*ends)[2];
     bool no_memory;
 };
+
+static void *array(int32_t n, size_t item) { return malloc(((size_t)n + 1) * item); }
+
+static bool reserve_vertices(struct job *job, const struct tri_mesh *mesh, int32_t n)
+{
+    job->points = array(n, sizeof *job->points);
+    job->point_markers = array(n, sizeof *job->point_markers);
+    job->attributes = array(n, (size_t)mesh->n_attributes * sizeof *job->attributes + 1);
+    return job->points && job->point_markers && job->attributes;
+}
+
+static void copy_vertex(struct job *job, const struct tri_mesh *mesh, int32_t v, int32_t to)
+{
+    size_t n = (size_t)mesh->n_attributes;
+    tri_mesh_place(mesh, v, job->points[to]);
+    job->point_markers[to] = mesh->vertex_markers[v];
+    if (n > 0)
+        memcpy(job->attributes + (size_t)to * n, mesh->attributes + (size_t)v * n, n * sizeof *job->attributes);
+}
 
 /* Vertices get their numbers and are copied out. */
 static void number_tile(void *context, size_t index)
@@ -160,19 +198,24 @@ static void number_tile(void *context, size_t index)
     struct column *c = job->column;
     const struct tri_mesh *mesh = c->tiles->mesh;
     int32_t first = c->vertex_start[job->row], n = c->vertex_start[job->row + 1] - first, *order = c->vertex + first;
-    uint64_t *scratch = malloc((2 * (size_t)n + 1) * sizeof *scratch);
-    job->xy = malloc(((size_t)n + 1) * sizeof *job->xy);
-    job->markers = malloc(((size_t)n + 1) * sizeof *job->markers);
-    job->no_memory = !scratch || !job->xy || !job->markers;
+    uint64_t *scratch = array(2 * n, sizeof *scratch);
+    job->no_memory = !reserve_vertices(job, mesh, n) || !scratch;
     if (!job->no_memory) {
         tri_hilbert_order(mesh->xy, order, n, scratch, NULL);
         for (int32_t i = 0; i < n; i++) {
             c->tiles->number[order[i]] = c->tiles->n_vertices + first + i;
-            tri_mesh_place(mesh, order[i], job->xy[i]);
-            job->markers[i] = mesh->vertex_markers[order[i]];
+            copy_vertex(job, mesh, order[i], i);
         }
     }
     free(scratch);
+}
+
+/* The number by which a vertex is handed out: the caller's own for the caller's points. Else, and wherever vertices are
+ * compared, it is `number`. */
+static int64_t shown(const struct column *c, int64_t number)
+{
+    const struct tri_mesh *mesh = c->tiles->mesh;
+    return mesh->origin && number < mesh->n_input ? mesh->origin[number] : number;
 }
 
 /* A triangle's corners by number, the largest first. */
@@ -248,7 +291,8 @@ static bool sort_tile(struct job *job, const int32_t *triangle, int32_t n)
             end++;
         sort_fan(c, triangle, item + first, end - first, fan);
         for (int32_t i = first; i < end; i++) {
-            memcpy(job->corners[i], fan[i - first].corner, sizeof job->corners[i]);
+            for (int k = 0; k < 3; k++)
+                job->corners[i][k] = shown(c, fan[i - first].corner[k]);
             job->regions[i] = c->tiles->mesh->tri[fan[i - first].triangle].region;
         }
     }
@@ -257,34 +301,81 @@ static bool sort_tile(struct job *job, const int32_t *triangle, int32_t n)
     return memory;
 }
 
+struct numbered_sub {
+    int64_t end[2];
+    int32_t sub, parent;
+};
+
+static int compare_subs(const void *left, const void *right)
+{
+    const struct numbered_sub *a = left, *b = right;
+    if (a->parent != b->parent)
+        return a->parent < b->parent ? -1 : 1;
+    return (a->end[0] > b->end[0]) - (a->end[0] < b->end[0]);
+}
+
+static bool sort_subs(struct job *job, const int32_t *sub, int32_t n)
+{
+    const struct column *c = job->column;
+    const struct tri_mesh *mesh = c->tiles->mesh;
+    struct numbered_sub *item = array(n, sizeof *item);
+    job->ends = array(n, sizeof *job->ends);
+    job->segment_markers = array(n, sizeof *job->segment_markers);
+    bool memory = item && job->ends && job->segment_markers;
+    for (int32_t i = 0; memory && i < n; i++) {
+        const struct tri_subsegment *s = &mesh->sub[sub[i]];
+        item[i] = (struct numbered_sub){{c->tiles->number[s->v[0]], c->tiles->number[s->v[1]]}, sub[i], s->parent};
+    }
+    if (memory && n > 1)
+        qsort(item, (size_t)n, sizeof *item, compare_subs);
+    for (int32_t i = 0; memory && i < n; i++) {
+        for (int k = 0; k < 2; k++)
+            job->ends[i][k] = shown(c, item[i].end[k]);
+        job->segment_markers[i] = mesh->sub[item[i].sub].marker;
+    }
+    free(item);
+    return memory;
+}
+
+static struct tri_tile tile_of(const struct job *job)
+{
+    const struct column *c = job->column;
+    const struct par_tiles *tiles = c->tiles;
+    int32_t r = job->row, v = c->vertex_start[r], t = c->triangle_start[r], s = c->sub_start[r];
+    return (struct tri_tile){.column = c->column, .row = r, .first_vertex = tiles->n_vertices + v,
+                             .first_triangle = tiles->n_triangles + t, .first_segment = tiles->n_segments + s,
+                             .n_vertices = c->vertex_start[r + 1] - v, .n_triangles = c->triangle_start[r + 1] - t,
+                             .n_segments = c->sub_start[r + 1] - s, .points = (const double(*)[2])job->points,
+                             .point_markers = job->point_markers, .attributes = job->attributes,
+                             .corners = (const int64_t(*)[3])job->corners, .regions = job->regions,
+                             .ends = (const int64_t(*)[2])job->ends, .segment_markers = job->segment_markers};
+}
+
 static void fill_tile(void *context, size_t index)
 {
     struct job *job = (struct job *)context + index;
     const struct column *c = job->column;
-    int32_t first = c->triangle_start[job->row], n = c->triangle_start[job->row + 1] - first;
-    job->corners = malloc(((size_t)n + 1) * sizeof *job->corners);
-    job->regions = malloc(((size_t)n + 1) * sizeof *job->regions);
-    job->no_memory = !job->corners || !job->regions || !sort_tile(job, c->triangle + first, n);
-    int32_t v = c->vertex_start[job->row];
-    job->tile = (struct par_tile){.column = c->column,
-                                  .row = job->row,
-                                  .first_vertex = c->tiles->n_vertices + v,
-                                  .first_triangle = c->tiles->n_triangles + first,
-                                  .n_vertices = c->vertex_start[job->row + 1] - v,
-                                  .n_triangles = n,
-                                  .xy = (const double(*)[2])job->xy,
-                                  .markers = job->markers,
-                                  .corners = (const int64_t(*)[3])job->corners,
-                                  .regions = job->regions};
+    job->tile = tile_of(job);
+    job->corners = array(job->tile.n_triangles, sizeof *job->corners);
+    job->regions = array(job->tile.n_triangles, sizeof *job->regions);
+    job->no_memory = !job->corners || !job->regions ||
+                     !sort_tile(job, c->triangle + c->triangle_start[job->row], job->tile.n_triangles) ||
+                     !sort_subs(job, c->sub + c->sub_start[job->row], job->tile.n_segments);
+    job->tile = tile_of(job);
 }
 
 static void free_job(struct job *job)
 {
-    free(job->xy);
-    free(job->markers);
+    free(job->points);
+    free(job->point_markers);
+    free(job->attributes);
     free(job->corners);
     free(job->regions);
+    free(job->ends);
+    free(job->segment_markers);
 }
+
+static bool is_empty(const struct tri_tile *t) { return t->n_vertices + t->n_triangles + t->n_segments == 0; }
 
 /* Some rows at once: all are numbered, before any of their triangles is looked at, since a triangle may have corners in
  * the row below. */
@@ -306,8 +397,8 @@ static enum tri_status hand_out(struct column *c, int32_t first, int32_t end, st
     if (!memory)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the tiles of a column");
     for (size_t i = 0; i < n; i++) {
-        if (!status && job[i].tile.n_vertices + job[i].tile.n_triangles > 0 && c->tiles->take)
-            status = c->tiles->take(c->tiles->user, &job[i].tile, error);
+        if (!status && !is_empty(&job[i].tile))
+            status = c->tiles->sink->take(c->tiles->sink->user, &job[i].tile, error);
         free_job(&job[i]);
     }
     return status;
@@ -344,6 +435,17 @@ static bool let_triangles_go(struct column *c, struct par_room *spare)
         for (int32_t i = 0; i < c->triangles[s].n; i++)
             c->tiles->mesh->tri[c->triangles[s].item[i]].v[0] = TRI_NONE;
         memory = memory && add_runs(&spare->ranges[PAR_TRIANGLES], c->triangles[s].item, c->triangles[s].n);
+    }
+    return memory;
+}
+
+static bool let_subs_go(struct column *c, struct par_room *spare)
+{
+    bool memory = true;
+    for (int s = 0; s < SHARES; s++) {
+        for (int32_t i = 0; i < c->subs[s].n; i++)
+            par_room_mark_sub(c->tiles->mesh, c->subs[s].item[i]);
+        memory = memory && add_runs(&spare->ranges[PAR_SUBS], c->subs[s].item, c->subs[s].n);
     }
     return memory;
 }
@@ -419,17 +521,92 @@ static bool let_vertices_go(struct column *c, struct par_room *spare)
 static void free_column(struct column *c)
 {
     for (int s = 0; s < SHARES; s++) {
-        struct finds *all[3] = {&c->vertices[s], &c->triangles[s], &c->straddling[s]};
-        for (int k = 0; k < 3; k++) {
+        struct finds *all[4] = {&c->vertices[s], &c->triangles[s], &c->subs[s], &c->straddling[s]};
+        for (int k = 0; k < 4; k++) {
             free(all[k]->item);
             free(all[k]->tile);
         }
     }
     free(c->vertex);
     free(c->triangle);
+    free(c->sub);
     free(c->vertex_start);
     free(c->triangle_start);
+    free(c->sub_start);
 }
+
+/* --- what comes before and after */
+
+/* Who stands where in the caller's order; NULL: no memory. */
+static int32_t *caller_order(const struct tri_mesh *mesh, int32_t n_kept)
+{
+    int32_t *vertex = array(n_kept, sizeof *vertex);
+    for (int32_t v = 0; vertex && v < n_kept; v++)
+        vertex[mesh->origin && v < mesh->n_input ? mesh->origin[v] : v] = v;
+    return vertex;
+}
+
+static bool copy_kept(const struct par_tiles *tiles, struct job *job)
+{
+    const struct tri_mesh *mesh = tiles->mesh;
+    int32_t *vertex = caller_order(mesh, tiles->n_kept);
+    bool memory = reserve_vertices(job, mesh, tiles->n_kept) && vertex;
+    for (int32_t i = 0; memory && i < tiles->n_kept; i++) {
+        copy_vertex(job, mesh, vertex[i], i);
+        if (tiles->figure && i < mesh->n_input)
+            memcpy(job->points[i], &tiles->figure->points[2 * (size_t)i], sizeof job->points[i]);
+    }
+    free(vertex);
+    return memory;
+}
+
+static enum tri_status hand_out_kept(struct par_tiles *tiles, struct tri_error *error)
+{
+    struct job job = {.row = -1};
+    enum tri_status status = TRI_OK;
+    if (!copy_kept(tiles, &job))
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d vertices", (int)tiles->n_kept);
+    const struct tri_tile tile = {.column = -1, .row = -1, .n_vertices = tiles->n_kept,
+                                  .points = (const double(*)[2])job.points, .point_markers = job.point_markers,
+                                  .attributes = job.attributes};
+    status = status ? status : tiles->sink->take(tiles->sink->user, &tile, error);
+    tiles->n_vertices = tiles->n_kept;
+    free_job(&job);
+    return status;
+}
+
+/* Attributes of the triangles in each region. */
+static bool copy_regions(const struct tri_mesh *mesh, int32_t n_columns, double **regions)
+{
+    size_t n = (size_t)n_columns;
+    *regions = array(mesh->n_regions, n * sizeof **regions + 1);
+    for (int32_t r = 0; *regions && n > 0 && r < mesh->n_regions; r++)
+        memcpy(*regions + (size_t)r * n, tri_region_attributes(mesh, r), n * sizeof **regions);
+    return *regions;
+}
+
+enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct tri_error *error)
+{
+    const struct tri_mesh *mesh = tiles->mesh;
+    double *regions;
+    struct tri_stream stream = {.n_attributes = mesh->n_attributes, .n_regions = mesh->n_regions, .estimate = estimate,
+                                .n_columns = mesh->columns ? mesh->n_columns : tiles->region_column};
+    if (!copy_regions(mesh, stream.n_columns, &regions))
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d regions", (int)mesh->n_regions);
+    stream.regions = regions;
+    enum tri_status status = TRI_OK;
+    if (tiles->sink->begin)
+        status = tiles->sink->begin(tiles->sink->user, &stream, error);
+    free(regions);
+    return status ? status : hand_out_kept(tiles, error);
+}
+
+enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error)
+{
+    return tiles->sink->end ? tiles->sink->end(tiles->sink->user, error) : TRI_OK;
+}
+
+/* --- a column */
 
 enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, bool let_go, struct par_room *spare,
                                  struct tri_error *error)
@@ -450,10 +627,11 @@ enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, bool l
         int32_t end = row + BATCH < tiles->partition->n_rows ? row + BATCH : tiles->partition->n_rows;
         status = hand_out(c, row, end, error);
     }
-    if (!status && let_go && !(let_triangles_go(c, spare) && let_vertices_go(c, spare)))
+    if (!status && let_go && !(let_triangles_go(c, spare) && let_vertices_go(c, spare) && let_subs_go(c, spare)))
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the ranges of a column");
     tiles->n_vertices += c->n_vertices;
     tiles->n_triangles += c->n_triangles;
+    tiles->n_segments += c->n_subs;
     free_column(c);
     free(c);
     return status;
