@@ -1,5 +1,5 @@
-/* An XDMF text that names the arrays of an HDF5 file (XDMF model and format 3, xdmf.org). One grid, the triangles, since
- * readers such as meshio refuse a second one. */
+/* An XDMF text that names the arrays of an HDF5 file (XDMF model and format 3, xdmf.org). One grid, the triangles,
+ * since readers such as meshio refuse a second one. */
 #ifndef TRIANGLE_HDF5_XDMF_H
 #define TRIANGLE_HDF5_XDMF_H
 
