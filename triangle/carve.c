@@ -16,11 +16,6 @@ struct flood {
     uint8_t *dead;     /* [n_triangles] */
 };
 
-static bool is_wall(const struct tri_mesh *mesh, int32_t link, bool keep_hull)
-{
-    return link < 0 && (keep_hull || mesh->parents[mesh->sub[~link].parent].segment != TRI_NONE);
-}
-
 static void kill_from(struct flood *f, int32_t start)
 {
     int32_t n = 0;
@@ -40,12 +35,18 @@ static void kill_from(struct flood *f, int32_t start)
     }
 }
 
+/* Is there a subsegment behind the link along which no segment of the input runs? That is an edge of the hull. */
+static bool is_bare_hull(const struct tri_mesh *mesh, int32_t link)
+{
+    return link < 0 && mesh->parents[mesh->sub[~link].parent].segment == TRI_NONE;
+}
+
 static void kill_concavities(struct flood *f)
 {
     const struct tri_mesh *mesh = f->mesh;
     for (int32_t t = 0; t < mesh->n_triangles; t++)
         for (int e = 0; e < 3; e++)
-            if (mesh->tri[t].n[e] < 0 && !is_wall(mesh, mesh->tri[t].n[e], false))
+            if (is_bare_hull(mesh, mesh->tri[t].n[e]))
                 kill_from(f, t);
 }
 
@@ -230,8 +231,7 @@ static void guard_boundary(const struct flood *f, int32_t t)
     struct tri_point a = mesh->xy[at->v[0]], b = mesh->xy[at->v[1]], c = mesh->xy[at->v[2]];
     struct tri_point centroid = {tri_round_coordinate((a.x + b.x + c.x) / 3),
                                  tri_round_coordinate((a.y + b.y + c.y) / 3)};
-    bool inside = tri_orient2d(a, b, centroid) > 0 && tri_orient2d(b, c, centroid) > 0 &&
-                  tri_orient2d(c, a, centroid) > 0;
+    bool inside = tri_is_inside(a, b, c, centroid);
     for (int e = 0; e < 3; e++)
         if (at->n[e] < 0)
             mesh->parents[mesh->sub[~at->n[e]].parent].guard = inside ? centroid : mesh->xy[at->v[tri_next[e]]];

@@ -35,6 +35,7 @@
 #include "triangle/flip.h"
 #include "triangle/grow.h"
 #include "triangle/interpolate.h"
+#include "triangle/locate.h"
 #include "triangle/overlap.h"
 #include "triangle/predicates.h"
 #include "triangle/recover.h"
@@ -276,24 +277,14 @@ static bool take_up(struct layer *l, int32_t s)
            tri_flip_legalise(&l->flips);
 }
 
-/* The triangle that holds q (TRI_NONE outside the hull), by a walk from triangle t. In a constrained triangulation a
- * walk may go in circles; the edge it tries first turns with the number of steps. */
-static int32_t locate(const struct tri_mesh *mesh, int32_t t, struct tri_point q)
+/* The triangle that holds q (TRI_NONE outside the hull, which is convex), by a walk from triangle t. */
+static tri_triangle_id locate(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)
 {
-    for (int64_t steps = 0; steps < 3 * (int64_t)mesh->n_triangles; steps++) {
-        const struct tri_triangle *at = &mesh->tri[t];
-        int k = 0, e = 0;
-        for (; k < 3; k++) {
-            e = (int)((k + steps) % 3);
-            if (tri_orient2d(mesh->xy[at->v[tri_next[e]]], mesh->xy[at->v[tri_prev[e]]], q) < 0)
-                break;
-        }
-        if (k == 3)
-            return t;
-        int32_t beyond = tri_across(mesh, tri_code(t, e));
-        if (beyond == TRI_NONE)
-            return TRI_NONE; /* the hull is convex: whoever leaves it does not come back */
-        t = tri_of(beyond);
+    for (int64_t step = 0; step < 3 * (int64_t)mesh->n_triangles; step++) {
+        tri_triangle_id next = tri_step_towards(mesh, t, step, q);
+        if (next == t || next == TRI_NONE)
+            return next;
+        t = next;
     }
     return TRI_NONE;
 }
@@ -649,20 +640,20 @@ static enum tri_status list_courses(struct layer *l)
     return TRI_OK;
 }
 
-/* Gives each subsegment its marker, and a parent of its own. */
-static enum tri_status settle(struct layer *l)
+/* Gives each subsegment its marker, and a parent of its own: as many as there are, since each came with one, or fewer,
+ * since some were taken up. */
+static void settle(struct layer *l)
 {
     struct tri_mesh *mesh = l->mesh;
+    assert(mesh->n_subs <= mesh->n_parents);
     mesh->n_parents = 0;
-    enum tri_status status = tri_mesh_reserve_subs(mesh, mesh->n_subs, l->error);
-    for (int32_t s = 0; !status && s < mesh->n_subs; s++) {
+    for (int32_t s = 0; s < mesh->n_subs; s++) {
         struct tri_subsegment *sub = &mesh->sub[s];
         sub->marker = marker_of(l, l->course[s]);
         sub->parent = mesh->n_parents++;
         mesh->parents[sub->parent] = (struct tri_parent){{sub->v[0], sub->v[1]}, l->course[s].first, l->course[s].odd,
                                                          {NAN, NAN}};
     }
-    return status;
 }
 
 enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_constrain_report *report,
@@ -673,7 +664,8 @@ enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg
     enum tri_status status = find_corners(&l);
     status = status ? status : list_courses(&l);
     status = status ? status : lay_all(&l);
-    status = status ? status : settle(&l);
+    if (!status)
+        settle(&l);
     free_layer(&l);
     return status;
 }

@@ -7,12 +7,12 @@
 #include "triangle/predicates.h"
 
 /* An edge of the cavity: the code of its triangle outside, and the corner at which it starts. */
-struct tri_cavity_edge {
+struct tri_inserter_edge {
     int32_t outer, a;
 };
 
-/* A way into the cavity that is still to go. */
-struct tri_detour {
+/* An edge behind which the search has not looked yet; it starts where the last edge ended. */
+struct tri_inserter_pending {
     int32_t link, end;
 };
 
@@ -20,7 +20,7 @@ void tri_inserter_free(struct tri_inserter *b)
 {
     free(b->cavity);
     free(b->edge);
-    free(b->detour);
+    free(b->pending);
 }
 
 static bool grow(struct tri_inserter *b)
@@ -29,11 +29,11 @@ static bool grow(struct tri_inserter *b)
     size_t n = (size_t)capacity + 4;
     int32_t *cavity = realloc(b->cavity, n * sizeof *cavity);
     b->cavity = cavity ? cavity : b->cavity;
-    struct tri_cavity_edge *edge = realloc(b->edge, n * sizeof *edge);
+    struct tri_inserter_edge *edge = realloc(b->edge, n * sizeof *edge);
     b->edge = edge ? edge : b->edge;
-    struct tri_detour *detour = realloc(b->detour, n * sizeof *detour);
-    b->detour = detour ? detour : b->detour;
-    if (!cavity || !edge || !detour)
+    struct tri_inserter_pending *pending = realloc(b->pending, n * sizeof *pending);
+    b->pending = pending ? pending : b->pending;
+    if (!cavity || !edge || !pending)
         return false;
     b->capacity = capacity;
     return true;
@@ -122,7 +122,7 @@ int32_t tri_inserter_locate(struct tri_inserter *b, struct tri_point q) { return
 /* Adds what lies across one edge of the first triangle. */
 static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, int32_t link, int32_t a, int32_t end)
 {
-    int32_t n_detours = 0;
+    int32_t n_pending = 0;
     for (;;) {
         const struct tri_triangle *t = &b->tri[tri_of(link)];
         int e = tri_edge(link);
@@ -132,18 +132,18 @@ static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, in
             if (b->n_cavity == b->capacity && !grow(b))
                 return TRI_NO_ROOM_FOR_CAVITY;
             b->cavity[b->n_cavity++] = tri_of(link);
-            b->detour[n_detours++] = (struct tri_detour){t->n[tri_prev[e]], end};
+            b->pending[n_pending++] = (struct tri_inserter_pending){t->n[tri_prev[e]], end};
             link = t->n[tri_next[e]];
             end = t->v[e];
             continue;
         }
-        assert(b->n_edges < b->n_cavity + 2 && n_detours <= b->n_cavity);
-        b->edge[b->n_edges++] = (struct tri_cavity_edge){link, a};
-        if (n_detours == 0)
+        assert(b->n_edges < b->n_cavity + 2 && n_pending <= b->n_cavity);
+        b->edge[b->n_edges++] = (struct tri_inserter_edge){link, a};
+        if (n_pending == 0)
             return TRI_INSERTED;
         a = end;
-        link = b->detour[--n_detours].link;
-        end = b->detour[n_detours].end;
+        link = b->pending[--n_pending].link;
+        end = b->pending[n_pending].end;
     }
 }
 

@@ -23,8 +23,8 @@
 
 enum { TRI_GHOST = -2 };
 
-struct tri_cavity_edge;
-struct tri_detour;
+struct tri_inserter_edge;
+struct tri_inserter_pending;
 
 struct tri_inserter {
     const struct tri_point *xy;
@@ -32,9 +32,9 @@ struct tri_inserter {
     struct tri_range block;
     int32_t last; /* a triangle that the block owns, near the last place that was looked at; TRI_NONE: none is known */
     int32_t n_cavity, n_edges, capacity;
-    int32_t *cavity;
-    struct tri_cavity_edge *edge;
-    struct tri_detour *detour;
+    int32_t *cavity;                      /* [n_cavity] triangles */
+    struct tri_inserter_edge *edge;       /* [n_edges] their boundary, counter-clockwise */
+    struct tri_inserter_pending *pending; /* stack of the search */
 };
 
 /* Frees what insertions have allocated. */

@@ -51,5 +51,5 @@ bool tri_centroid(const struct tri_mesh *mesh, int32_t triangle, const struct tr
     p->y = tri_round_coordinate(a.y + ((b.y - a.y) + (c.y - a.y)) / 3);
     if (shape->area2 * shape->area2 < 9 * mesh->limits.shortest2 * longest2(shape))
         return false;
-    return tri_orient2d(a, b, *p) > 0 && tri_orient2d(b, c, *p) > 0 && tri_orient2d(c, a, *p) > 0;
+    return tri_is_inside(a, b, c, *p);
 }

@@ -22,25 +22,29 @@ struct walk {
     int64_t steps; /* that may still be made */
 };
 
-/* The triangle that holds q, TRI_NONE outside the hull, NOT_FOUND where the steps did not suffice. A visibility walk
- * over a constrained triangulation may cycle: the edge it tries first turns with the number of steps. */
-static int32_t walk_to(struct walk *w, struct tri_point q)
+tri_triangle_id tri_step_towards(const struct tri_mesh *mesh, tri_triangle_id t, int64_t step, struct tri_point q)
 {
-    const struct tri_mesh *mesh = w->mesh;
-    for (; w->steps > 0; w->steps--) {
-        const struct tri_triangle *t = &mesh->tri[w->at];
-        int k = 0, e = 0;
-        for (; k < 3; k++) {
-            e = (int)((k + w->steps) % 3);
-            if (tri_orient2d(mesh->xy[t->v[tri_next[e]]], mesh->xy[t->v[tri_prev[e]]], q) < 0)
-                break;
+    assert(step >= 0 && tri_is_live(&mesh->tri[t]));
+    const tri_vertex_id *v = mesh->tri[t].v;
+    for (int k = 0; k < 3; k++) {
+        int e = (int)((k + step) % 3);
+        if (tri_orient2d(mesh->xy[v[tri_next[e]]], mesh->xy[v[tri_prev[e]]], q) < 0) {
+            tri_halfedge beyond = tri_across(mesh, tri_code(t, e));
+            return beyond == TRI_NONE ? TRI_NONE : tri_of(beyond);
         }
-        if (k == 3)
-            return w->at;
-        int32_t beyond = tri_across(mesh, tri_code(w->at, e));
-        if (beyond == TRI_NONE)
-            return TRI_NONE; /* the hull is convex: whoever leaves it does not come back */
-        w->at = tri_of(beyond);
+    }
+    return t;
+}
+
+/* The triangle that holds q, TRI_NONE outside the hull (it is convex: whoever leaves it does not come back), NOT_FOUND
+ * where the steps did not suffice. */
+static tri_triangle_id walk_to(struct walk *w, struct tri_point q)
+{
+    for (; w->steps > 0; w->steps--) {
+        tri_triangle_id next = tri_step_towards(w->mesh, w->at, w->steps, q);
+        if (next == w->at || next == TRI_NONE)
+            return next;
+        w->at = next;
     }
     return NOT_FOUND;
 }
