@@ -16,7 +16,7 @@ struct flood {
     uint8_t *dead;     /* [n_triangles] */
 };
 
-static void kill_from(struct flood *f, int32_t start)
+static void kill_from(struct flood *f, tri_triangle_id start)
 {
     int32_t n = 0;
     if (f->dead[start])
@@ -24,9 +24,9 @@ static void kill_from(struct flood *f, int32_t start)
     f->dead[start] = 1;
     f->stack[n++] = start;
     while (n > 0) {
-        int32_t t = f->stack[--n];
+        tri_triangle_id t = f->stack[--n];
         for (int e = 0; e < 3; e++) {
-            int32_t link = f->mesh->tri[t].n[e];
+            tri_link link = f->mesh->tri[t].n[e];
             if (link >= 0 && !f->dead[tri_of(link)]) {
                 f->dead[tri_of(link)] = 1;
                 f->stack[n++] = tri_of(link);
@@ -36,7 +36,7 @@ static void kill_from(struct flood *f, int32_t start)
 }
 
 /* Is there a subsegment behind the link along which no segment of the input runs? That is an edge of the hull. */
-static bool is_bare_hull(const struct tri_mesh *mesh, int32_t link)
+static bool is_bare_hull(const struct tri_mesh *mesh, tri_link link)
 {
     return link < 0 && mesh->parents[mesh->sub[~link].parent].segment == TRI_NONE;
 }
@@ -44,7 +44,7 @@ static bool is_bare_hull(const struct tri_mesh *mesh, int32_t link)
 static void kill_concavities(struct flood *f)
 {
     const struct tri_mesh *mesh = f->mesh;
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
         for (int e = 0; e < 3; e++)
             if (is_bare_hull(mesh, mesh->tri[t].n[e]))
                 kill_from(f, t);
@@ -62,7 +62,7 @@ struct dive {
     int32_t n, n_next;
 };
 
-static void visit(struct dive *d, int32_t t)
+static void visit(struct dive *d, tri_triangle_id t)
 {
     if (d->state[t] == SEEN)
         return;
@@ -70,7 +70,7 @@ static void visit(struct dive *d, int32_t t)
     d->stack[d->n++] = t;
 }
 
-static void put_off(struct dive *d, int32_t t)
+static void put_off(struct dive *d, tri_triangle_id t)
 {
     if (d->state[t] != UNSEEN)
         return;
@@ -78,7 +78,7 @@ static void put_off(struct dive *d, int32_t t)
     d->next[d->n_next++] = t;
 }
 
-static void cross(struct dive *d, int32_t code)
+static void cross(struct dive *d, tri_halfedge code)
 {
     int32_t link = d->mesh->tri[tri_of(code)].n[tri_edge(code)], other = tri_across(d->mesh, code);
     if (other == TRI_NONE)
@@ -94,9 +94,9 @@ static void enter(struct dive *d, bool keep_hull)
 {
     const struct tri_mesh *mesh = d->mesh;
     for (int pass = 0; pass < 2; pass++)
-        for (int32_t t = 0; t < mesh->n_triangles; t++)
+        for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
             for (int e = 0; e < 3; e++) {
-                int32_t link = mesh->tri[t].n[e];
+                tri_link link = mesh->tri[t].n[e];
                 if (link >= 0 || tri_across(mesh, tri_code(t, e)) != TRI_NONE)
                     continue;
                 const struct tri_parent *parent = &mesh->parents[mesh->sub[~link].parent];
@@ -115,7 +115,7 @@ static void kill_depths(struct flood *f, struct dive *d, bool keep_hull)
     enter(d, keep_hull);
     for (uint8_t even = 1; d->n + d->n_next > 0; even ^= 1) {
         while (d->n > 0) {
-            int32_t t = d->stack[--d->n];
+            tri_triangle_id t = d->stack[--d->n];
             f->dead[t] |= even;
             for (int e = 0; e < 3; e++)
                 cross(d, tri_code(t, e));
@@ -174,7 +174,7 @@ static enum tri_status kill_holes(struct flood *f, const struct tri_pslg *pslg, 
 }
 
 /* Gives the region to what no region has reached yet. */
-static void spread(struct flood *f, int32_t start, int32_t region)
+static void spread(struct flood *f, tri_triangle_id start, tri_region_id region)
 {
     struct tri_triangle *tri = f->mesh->tri;
     int32_t n = 0;
@@ -182,9 +182,9 @@ static void spread(struct flood *f, int32_t start, int32_t region)
     f->stack[n++] = start;
     tri[start].region = region;
     while (n > 0) {
-        int32_t t = f->stack[--n];
+        tri_triangle_id t = f->stack[--n];
         for (int e = 0; e < 3; e++) {
-            int32_t link = tri[t].n[e];
+            tri_link link = tri[t].n[e];
             if (link >= 0 && tri[tri_of(link)].region == 0) {
                 tri[tri_of(link)].region = region;
                 f->stack[n++] = tri_of(link);
@@ -216,7 +216,7 @@ static enum tri_status spread_regions(struct flood *f, const struct tri_pslg *ps
 /* Markers of segments pass to vertices without one. */
 static void mark_vertices(struct tri_mesh *mesh)
 {
-    for (int32_t s = 0; s < mesh->n_subs; s++)
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2; k++)
             if (mesh->sub[s].marker && !mesh->vertex_markers[mesh->sub[s].v[k]])
                 mesh->vertex_markers[mesh->sub[s].v[k]] = mesh->sub[s].marker;
@@ -224,7 +224,7 @@ static void mark_vertices(struct tri_mesh *mesh)
 
 /* The centroid of a triangle that goes becomes the guard of each of its edges that stays as a part of the boundary: the
  * three parts of the triangle do not overlap, nor do triangles. */
-static void guard_boundary(const struct flood *f, int32_t t)
+static void guard_boundary(const struct flood *f, tri_triangle_id t)
 {
     const struct tri_mesh *mesh = f->mesh;
     const struct tri_triangle *at = &mesh->tri[t];
@@ -240,10 +240,10 @@ static void guard_boundary(const struct flood *f, int32_t t)
 static void remove_dead(struct flood *f)
 {
     struct tri_mesh *mesh = f->mesh;
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
         if (f->dead[t])
             guard_boundary(f, t);
-    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++) {
         struct tri_triangle *at = &mesh->tri[t];
         if (!f->dead[t])
             continue;
@@ -269,7 +269,7 @@ static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, str
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d subsegments", (int)mesh->n_subs);
         goto done;
     }
-    for (int32_t s = 0; s < mesh->n_subs; s++) {
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
         int32_t k = mesh->parents[mesh->sub[s].parent].segment;
         segment[s] = k == TRI_NONE ? n_segments : k;
         if (mesh->sub[s].side[0] != TRI_NONE || mesh->sub[s].side[1] != TRI_NONE)
@@ -277,13 +277,13 @@ static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, str
     }
     for (int32_t k = 0; k <= n_segments; k++)
         start[k + 1] += start[k];
-    for (int32_t s = 0; s < mesh->n_subs; s++)
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         if (mesh->sub[s].side[0] != TRI_NONE || mesh->sub[s].side[1] != TRI_NONE) {
             int32_t at = start[segment[s]]++;
             sorted[at] = mesh->sub[s];
             parents[at] = mesh->parents[mesh->sub[s].parent];
         }
-    for (int32_t s = 0; s < kept; s++) {
+    for (tri_sub_id s = 0; s < kept; s++) {
         mesh->sub[s] = sorted[s];
         mesh->parents[s] = parents[s];
         mesh->sub[s].parent = s;
@@ -328,7 +328,7 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
 
 void tri_mark_boundary(struct tri_mesh *mesh)
 {
-    for (int32_t s = 0; s < mesh->n_subs; s++) {
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
         struct tri_subsegment *sub = &mesh->sub[s];
         if (sub->side[0] != TRI_NONE && sub->side[1] != TRI_NONE)
             continue;

@@ -24,7 +24,7 @@ struct tri_criterion tri_criterion_for(const struct tri_mesh *mesh, const struct
     return c;
 }
 
-double tri_area2_in_region(const struct tri_criterion *c, int32_t region)
+double tri_area2_in_region(const struct tri_criterion *c, tri_region_id region)
 {
     double own = c->mesh->regions[region].max_area;
     return own > 0 ? tri_lesser(to_area2(c, own), c->area2) : c->area2;
@@ -58,7 +58,7 @@ bool tri_is_refused(const struct tri_refine_options *options, double unit, struc
 {
     return says_yes(options->unsuitable, options->unsuitable_user, unit, p, q, r, scale);
 }
-bool tri_is_unsuitable(const struct tri_criterion *criterion, const int32_t v[3])
+bool tri_is_unsuitable(const struct tri_criterion *criterion, const tri_vertex_id v[3])
 {
     const struct tri_refine_options *options = criterion->options;
     const struct tri_point *xy = criterion->mesh->xy;
@@ -71,7 +71,7 @@ bool tri_is_too_large(const struct tri_criterion *c, const struct tri_triangle *
     return shape->area2 > tri_area2_bound(c, t->region) || (c->options->unsuitable && tri_is_unsuitable(c, t->v));
 }
 
-static bool can_wait(const struct tri_criterion *c, const int32_t v[3])
+static bool can_wait(const struct tri_criterion *c, const tri_vertex_id v[3])
 {
     const struct tri_refine_options *options = c->options;
     const struct tri_point *xy = c->mesh->xy;
