@@ -80,7 +80,7 @@ static void put_off(struct dive *d, tri_triangle_id t)
 
 static void cross(struct dive *d, tri_halfedge code)
 {
-    int32_t link = d->mesh->tri[tri_of(code)].n[tri_edge(code)], other = tri_across(d->mesh, code);
+    int32_t link = *tri_link_at(d->mesh, code), other = tri_across(d->mesh, code);
     if (other == TRI_NONE)
         return;
     if (link < 0 && d->mesh->parents[d->mesh->sub[~link].parent].odd)
@@ -257,46 +257,68 @@ static void remove_dead(struct flood *f)
     tri_mesh_compact(mesh);
 }
 
-/* Counting sort of the living subsegments by input segment; hull edges, which have none, come last. */
-static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, struct tri_error *error)
+/* --- what is left, in order */
+
+/* Subsegments and their parents on the way to their new places. */
+struct sorting {
+    int32_t *start; /* [n_segments + 2] where the next one of each input segment goes; last, those of none: the hull */
+    struct tri_subsegment *sub; /* [n_subs] */
+    struct tri_parent *parent;  /* [n_subs] */
+};
+
+static bool has_triangle(const struct tri_subsegment *s) { return s->side[0] != TRI_NONE || s->side[1] != TRI_NONE; }
+
+/* Counting sort of the subsegments that have a triangle by input segment; returns how many they are. */
+static int32_t sort_subs(const struct tri_mesh *mesh, struct sorting *to, int32_t n_segments)
 {
-    int32_t *start = calloc((size_t)n_segments + 2, sizeof *start), kept = 0;
-    struct tri_subsegment *sorted = malloc(((size_t)mesh->n_subs + 1) * sizeof *sorted);
-    struct tri_parent *parents = malloc(((size_t)mesh->n_subs + 1) * sizeof *parents);
-    int32_t *segment = malloc(((size_t)mesh->n_subs + 1) * sizeof *segment);
-    enum tri_status status = TRI_OK;
-    if (!start || !sorted || !parents || !segment) {
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d subsegments", (int)mesh->n_subs);
-        goto done;
-    }
+    int32_t kept = 0;
     for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
         int32_t k = mesh->parents[mesh->sub[s].parent].segment;
-        segment[s] = k == TRI_NONE ? n_segments : k;
-        if (mesh->sub[s].side[0] != TRI_NONE || mesh->sub[s].side[1] != TRI_NONE)
-            start[segment[s] + 1]++, kept++;
+        assert(k == TRI_NONE || (k >= 0 && k < n_segments));
+        if (has_triangle(&mesh->sub[s]))
+            to->start[(k == TRI_NONE ? n_segments : k) + 1]++, kept++;
     }
     for (int32_t k = 0; k <= n_segments; k++)
-        start[k + 1] += start[k];
-    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
-        if (mesh->sub[s].side[0] != TRI_NONE || mesh->sub[s].side[1] != TRI_NONE) {
-            int32_t at = start[segment[s]]++;
-            sorted[at] = mesh->sub[s];
-            parents[at] = mesh->parents[mesh->sub[s].parent];
-        }
+        to->start[k + 1] += to->start[k];
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
+        const struct tri_parent *parent = &mesh->parents[mesh->sub[s].parent];
+        if (!has_triangle(&mesh->sub[s]))
+            continue;
+        int32_t at = to->start[parent->segment == TRI_NONE ? n_segments : parent->segment]++;
+        to->sub[at] = mesh->sub[s];
+        to->parent[at] = *parent;
+    }
+    assert(to->start[n_segments] == kept);
+    return kept;
+}
+
+static void adopt_subs(struct tri_mesh *mesh, const struct sorting *from, int32_t kept)
+{
     for (tri_sub_id s = 0; s < kept; s++) {
-        mesh->sub[s] = sorted[s];
-        mesh->parents[s] = parents[s];
+        mesh->sub[s] = from->sub[s];
         mesh->sub[s].parent = s;
+        mesh->parents[s] = from->parent[s];
         for (int side = 0; side < 2; side++)
-            if (sorted[s].side[side] != TRI_NONE)
-                mesh->tri[tri_of(sorted[s].side[side])].n[tri_edge(sorted[s].side[side])] = ~s;
+            if (mesh->sub[s].side[side] != TRI_NONE)
+                *tri_link_at(mesh, mesh->sub[s].side[side]) = ~s;
     }
     mesh->n_subs = mesh->n_parents = kept;
-done:
-    free(start);
-    free(sorted);
-    free(parents);
-    free(segment);
+}
+
+static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, struct tri_error *error)
+{
+    size_t n = (size_t)mesh->n_subs + 1;
+    struct sorting s = {calloc((size_t)n_segments + 2, sizeof *s.start), malloc(n * sizeof *s.sub),
+                        malloc(n * sizeof *s.parent)};
+    enum tri_status status = TRI_OK;
+    assert(mesh->n_subs <= mesh->n_parents);
+    if (s.start && s.sub && s.parent)
+        adopt_subs(mesh, &s, sort_subs(mesh, &s, n_segments));
+    else
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d subsegments", (int)mesh->n_subs);
+    free(s.start);
+    free(s.sub);
+    free(s.parent);
     return status;
 }
 
@@ -330,7 +352,7 @@ void tri_mark_boundary(struct tri_mesh *mesh)
 {
     for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
         struct tri_subsegment *sub = &mesh->sub[s];
-        if (sub->side[0] != TRI_NONE && sub->side[1] != TRI_NONE)
+        if (!tri_is_boundary(sub))
             continue;
         if (sub->marker == 0)
             sub->marker = 1;

@@ -107,7 +107,7 @@ static enum tri_excuse excuse_for_circle(const struct tri_mesh *mesh, const stru
                                          const struct tri_refine_report *report, const struct tri_subsegment *s,
                                          tri_halfedge code)
 {
-    tri_vertex_id apex = mesh->tri[tri_of(code)].v[tri_edge(code)];
+    tri_vertex_id apex = tri_apex(mesh, code);
     if (tri_is_protected(options, s))
         return TRI_EXCUSE_PROTECTED;
     if (report->hit_limit)

@@ -46,8 +46,6 @@ static tri_vertex_id other_end(const struct tri_mesh *mesh, tri_sub_id s, tri_ve
     return mesh->sub[s].v[mesh->sub[s].v[0] == v];
 }
 
-static bool is_boundary(const struct tri_subsegment *s) { return s->side[0] == TRI_NONE || s->side[1] == TRI_NONE; }
-
 /* Does v lie between a and b on their line? */
 static bool is_between(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, tri_vertex_id v)
 {
@@ -63,7 +61,7 @@ static bool is_joint(const struct chains *c, tri_vertex_id v)
     if (at[0] < 0 || at[1] < 0)
         return false;
     const struct tri_subsegment *a = &mesh->sub[at[0]], *b = &mesh->sub[at[1]];
-    return a->marker == b->marker && is_boundary(a) == is_boundary(b) &&
+    return a->marker == b->marker && tri_is_boundary(a) == tri_is_boundary(b) &&
            is_between(mesh, other_end(mesh, at[0], v), other_end(mesh, at[1], v), v);
 }
 

@@ -187,7 +187,7 @@ static bool mark_edge(struct layer *l, int32_t t, int e, struct tri_course cours
     mesh->sub[s].side[0] = tri_code(t, e);
     mesh->sub[s].side[1] = link;
     mesh->tri[t].n[e] = ~s;
-    mesh->tri[tri_of(link)].n[tri_edge(link)] = ~s;
+    *tri_link_at(mesh, link) = ~s;
     return set_course(l, s, course);
 }
 
@@ -265,14 +265,14 @@ static bool take_up(struct layer *l, int32_t s)
     struct tri_mesh *mesh = l->mesh;
     int32_t left = mesh->sub[s].side[0], right = mesh->sub[s].side[1];
     assert(left != TRI_NONE && right != TRI_NONE);
-    mesh->tri[tri_of(left)].n[tri_edge(left)] = right;
-    mesh->tri[tri_of(right)].n[tri_edge(right)] = left;
+    *tri_link_at(mesh, left) = right;
+    *tri_link_at(mesh, right) = left;
     int32_t last = --mesh->n_subs;
     mesh->sub[s] = mesh->sub[last];
     l->course[s] = l->course[last];
     for (int side = 0; s != last && side < 2; side++)
         if (mesh->sub[s].side[side] != TRI_NONE)
-            mesh->tri[tri_of(mesh->sub[s].side[side])].n[tri_edge(mesh->sub[s].side[side])] = ~s;
+            *tri_link_at(mesh, mesh->sub[s].side[side]) = ~s;
     return tri_flip_touch(&l->flips, tri_of(left)) && tri_flip_touch(&l->flips, tri_of(right)) &&
            tri_flip_legalise(&l->flips);
 }
@@ -299,11 +299,6 @@ static int32_t sub_under(const struct tri_mesh *mesh, int32_t t, struct tri_poin
     return TRI_NONE;
 }
 
-static bool is_hull(const struct tri_mesh *mesh, int32_t s)
-{
-    return mesh->sub[s].side[0] == TRI_NONE || mesh->sub[s].side[1] == TRI_NONE;
-}
-
 /* The triangle with *p in it, off the hull; rounding may have put *p on or beyond that: then it moves to a neighbouring
  * place. TRI_NONE where there is none. */
 static int32_t find_place(const struct layer *l, int32_t near, struct tri_point *p)
@@ -311,7 +306,7 @@ static int32_t find_place(const struct layer *l, int32_t near, struct tri_point 
     for (int i = 0; i < TRI_PLACES; i++) {
         struct tri_point q = tri_place_beside(*p, i);
         int32_t t = locate(l->mesh, l->corner[near], q), s = t == TRI_NONE ? TRI_NONE : sub_under(l->mesh, t, q);
-        if (t != TRI_NONE && (s == TRI_NONE || !is_hull(l->mesh, s))) {
+        if (t != TRI_NONE && (s == TRI_NONE || !tri_is_boundary(&l->mesh->sub[s]))) {
             *p = q;
             return t;
         }

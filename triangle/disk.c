@@ -38,7 +38,7 @@
 bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code)
 {
     assert(code >= 0 && tri_edge(code) < 3);
-    struct tri_point apex = mesh->xy[mesh->tri[tri_of(code)].v[tri_edge(code)]];
+    struct tri_point apex = mesh->xy[tri_apex(mesh, code)];
     return tri_dot(mesh->xy[s->v[0]], mesh->xy[s->v[1]], apex) < 0;
 }
 
@@ -85,7 +85,7 @@ bool tri_is_encroached(const struct tri_mesh *mesh, const struct tri_subsegment 
     for (int side = 0; side < 2; side++) {
         tri_halfedge code = s->side[side];
         if (code != TRI_NONE && tri_is_in_diametral_disk(mesh, s, code) &&
-            is_split_for(mesh, s, mesh->tri[tri_of(code)].v[tri_edge(code)], fraction)) {
+            is_split_for(mesh, s, tri_apex(mesh, code), fraction)) {
             assert(*fraction > 0 && *fraction < 1);
             return true;
         }

@@ -57,7 +57,7 @@ static bool is_convex(const struct tri_mesh *mesh, tri_triangle_id t, int e)
 {
     const struct tri_triangle *near = &mesh->tri[t];
     struct tri_point n = mesh->xy[near->v[e]], r = mesh->xy[near->v[tri_next[e]]], s = mesh->xy[near->v[tri_prev[e]]];
-    struct tri_point o = mesh->xy[mesh->tri[tri_of(near->n[e])].v[tri_edge(near->n[e])]];
+    struct tri_point o = mesh->xy[tri_apex(mesh, near->n[e])];
     return tri_orient2d(n, r, o) > 0 && tri_orient2d(n, o, s) > 0;
 }
 
@@ -68,7 +68,7 @@ static bool is_illegal(const struct tri_flips *f, tri_triangle_id t, int e)
     const tri_vertex_id *v = mesh->tri[t].v;
     tri_link link = mesh->tri[t].n[e];
     struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
-    struct tri_point apex = mesh->xy[mesh->tri[tri_of(link)].v[tri_edge(link)]];
+    struct tri_point apex = mesh->xy[tri_apex(mesh, link)];
     return f->ties_stay ? tri_incircle(a, b, c, apex) > 0 : tri_in_circle(a, b, c, apex);
 }
 

@@ -145,7 +145,7 @@ static int64_t count_edges(const struct tri_mesh *mesh)
 {
     int64_t boundary = 0;
     for (tri_sub_id s = 0; s < mesh->n_subs; s++)
-        boundary += mesh->sub[s].side[0] == TRI_NONE || mesh->sub[s].side[1] == TRI_NONE;
+        boundary += tri_is_boundary(&mesh->sub[s]);
     return (3 * (int64_t)mesh->n_triangles + boundary) / 2;
 }
 

@@ -13,7 +13,7 @@ tri_triangle_id tri_step_towards(const struct tri_mesh *mesh, tri_triangle_id t,
  * that is reached from it without crossing a subsegment; TRI_NONE outside. Of a point on a subsegment any face at it
  * may be told. The mesh fills its convex hull. O((triangles + n) log(triangles + n)) at worst, whatever the shapes;
  * near O(n log n) in a good triangulation. */
-enum tri_status tri_locate_faces(const struct tri_mesh *mesh, const struct tri_point *points, int32_t n, int32_t *faces,
-                                 struct tri_error *error);
+enum tri_status tri_locate_faces(const struct tri_mesh *mesh, const struct tri_point *points, int32_t n,
+                                 tri_triangle_id *faces, struct tri_error *error);
 
 #endif

@@ -162,11 +162,6 @@ static void deal_share(void *context, size_t share)
         }
 }
 
-static int32_t *link_of(const struct tri_mesh *mesh, tri_halfedge code)
-{
-    return &mesh->tri[tri_of(code)].n[tri_edge(code)];
-}
-
 static tri_halfedge code_of(uint64_t half) { return (int32_t)(half & ((UINT64_C(1) << CODE_BITS) - 1)); }
 static tri_vertex_id high_of(uint64_t half) { return (int32_t)(half >> HIGH_SHIFT); }
 static bool runs_down(uint64_t half) { return half >> CODE_BITS & 1; }
@@ -197,8 +192,8 @@ static struct fault join(const struct tri_mesh *mesh, const uint64_t *half, int3
     if (n > 2)
         return (struct fault){code_of(half[2]), "has an edge that two other triangles have, too"};
     if (n == 2) {
-        *link_of(mesh, code_of(half[0])) = code_of(half[1]);
-        *link_of(mesh, code_of(half[1])) = code_of(half[0]);
+        *tri_link_at(mesh, code_of(half[0])) = code_of(half[1]);
+        *tri_link_at(mesh, code_of(half[1])) = code_of(half[0]);
     }
     return (struct fault){0, NULL};
 }
@@ -308,15 +303,15 @@ static enum tri_status allocate_and_match(struct matcher *m)
 static void add_sub(struct tri_mesh *mesh, tri_halfedge code, tri_vertex_id from, tri_vertex_id to, int32_t marker,
                     int32_t segment)
 {
-    int32_t s = tri_mesh_add_sub(mesh, from, to, marker, segment), other = *link_of(mesh, code);
+    int32_t s = tri_mesh_add_sub(mesh, from, to, marker, segment), other = *tri_link_at(mesh, code);
     int side = tri_side(&mesh->sub[s], mesh->tri[tri_of(code)].v[tri_next[tri_edge(code)]]);
     mesh->parents[mesh->sub[s].parent].guard = mesh->xy[from]; /* what is outside is not known: nothing is its own */
     mesh->sub[s].side[side] = code;
-    *link_of(mesh, code) = ~s;
+    *tri_link_at(mesh, code) = ~s;
     if (other == LOOSE)
         return;
     mesh->sub[s].side[1 - side] = other;
-    *link_of(mesh, other) = ~s;
+    *tri_link_at(mesh, other) = ~s;
 }
 
 static void mark_ends(struct tri_mesh *mesh, const tri_vertex_id v[2], int32_t marker)
@@ -334,7 +329,7 @@ static void add_segments(const struct matcher *m)
         int32_t code = m->edge_of[k], marker = m->pslg->segment_markers ? m->pslg->segment_markers[k] : 0;
         if (code == TRI_NONE)
             continue;
-        tri_link link = *link_of(mesh, code);
+        tri_link link = *tri_link_at(mesh, code);
         if (link >= 0)
             add_sub(mesh, code, v[0], v[1], marker, k);
         else if (mesh->sub[~link].marker == 0)
@@ -349,7 +344,7 @@ static void add_boundary(const struct matcher *m)
     for (int32_t i = 0; i < m->n_loose; i++) {
         tri_halfedge code = m->loose[i];
         const tri_vertex_id *v = mesh->tri[tri_of(code)].v;
-        if (*link_of(mesh, code) == LOOSE)
+        if (*tri_link_at(mesh, code) == LOOSE)
             add_sub(mesh, code, v[tri_next[tri_edge(code)]], v[tri_prev[tri_edge(code)]], 0, TRI_NONE);
     }
 }

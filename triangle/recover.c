@@ -89,11 +89,11 @@ static bool cross(struct tri_recovery *r, const struct tri_mesh *mesh, tri_trian
     if (!add_crossed(r, code))
         return false;
     while (o != b) {
-        code = mesh->tri[tri_of(code)].n[tri_edge(code)];
+        code = *tri_link_at(mesh, code);
         assert(code >= 0); /* no subsegment */
         if (!add_crossed(r, code))
             return false;
-        o = mesh->tri[tri_of(code)].v[tri_edge(code)];
+        o = tri_apex(mesh, code);
         double side = o == b ? 0 : tri_orient2d(mesh->xy[a], mesh->xy[b], mesh->xy[o]);
         assert(o == b || side != 0); /* no vertex */
         r->n_left += side > 0;
@@ -183,7 +183,7 @@ static void put(struct gap *g, tri_link link, tri_link other)
 {
     int32_t n = n_places(g->r);
     if (link >= 0)
-        g->mesh->tri[tri_of(link)].n[tri_edge(link)] = other;
+        *tri_link_at(g->mesh, link) = other;
     else if (~link < n)
         g->r->at[~link].inner = other;
     else
@@ -356,8 +356,8 @@ enum tri_status tri_recover_edge(struct tri_recovery *r, struct tri_mesh *mesh, 
     link_walls(r, mesh);
     name_corners(r, mesh);
     int32_t left = r->at[0].above, right = r->at[r->n_left].above;
-    mesh->tri[tri_of(left)].n[tri_edge(left)] = right;
-    mesh->tri[tri_of(right)].n[tri_edge(right)] = left;
+    *tri_link_at(mesh, left) = right;
+    *tri_link_at(mesh, right) = left;
     *code = left;
     return TRI_OK;
 }

@@ -245,7 +245,7 @@ static double demand_of(const struct tri_mesh *mesh, tri_triangle_id triangle)
     for (int e = 0; e < 3; e++) {
         if (t->n[e] < 0 || !tri_is_on_parent(mesh, t->v[e]))
             continue;
-        tri_vertex_id apex = mesh->tri[tri_of(t->n[e])].v[tri_edge(t->n[e])];
+        tri_vertex_id apex = tri_apex(mesh, t->n[e]);
         demand = fmax(demand, cost_across(mesh, t->v[e], apex, t->v[tri_next[e]], t->v[tri_prev[e]]));
     }
     return demand;

@@ -33,8 +33,8 @@ enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh 
         counts->vertices += used[v];
     free(used);
     for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
-        bool inner = mesh->sub[s].side[0] != TRI_NONE && mesh->sub[s].side[1] != TRI_NONE;
-        *(inner ? &counts->interior : &counts->exterior) += 1;
+        bool boundary = tri_is_boundary(&mesh->sub[s]);
+        *(boundary ? &counts->exterior : &counts->interior) += 1;
     }
     counts->edges = (3 * counts->triangles + counts->exterior) / 2; /* every boundary edge is a subsegment */
     return TRI_OK;
