@@ -164,6 +164,24 @@ enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_psl
 tri_sub_id tri_mesh_add_sub(struct tri_mesh *mesh, tri_vertex_id from, tri_vertex_id to, int32_t marker,
                             int32_t segment);
 
+/* The link of an edge as its triangle holds it. */
+static inline tri_link *tri_link_at(const struct tri_mesh *mesh, tri_halfedge code)
+{
+    return &mesh->tri[tri_of(code)].n[tri_edge(code)];
+}
+
+/* The corner opposite an edge. */
+static inline tri_vertex_id tri_apex(const struct tri_mesh *mesh, tri_halfedge code)
+{
+    return mesh->tri[tri_of(code)].v[tri_edge(code)];
+}
+
+/* Is there a triangle on one side of the subsegment only? */
+static inline bool tri_is_boundary(const struct tri_subsegment *s)
+{
+    return s->side[0] == TRI_NONE || s->side[1] == TRI_NONE;
+}
+
 /* Which side of a subsegment's record belongs to the triangle that sees it as from -> to (counter-clockwise)? */
 static inline int tri_side(const struct tri_subsegment *s, tri_vertex_id from) { return s->v[0] == from ? 0 : 1; }
 
