@@ -35,8 +35,8 @@ struct par_carrier {
     /* Sends out[p] to rank p and fills in[p].n bytes at in[p].at from there, for all p but the own rank where n > 0.
      * Returns when everything has gone and come. False: the network has failed, which nobody may survive. */
     bool (*transfer)(void *self, const struct par_bytes *out, const struct par_bytes *in);
-    const double *share;     /* for tests: [n_ranks + 1] ascending from 0 to 1: rank p owns this part of the odd columns,
-                                share[p] to share[p + 1]; NULL: equal parts */
+    const double *share;     /* for tests: [n_ranks + 1] ascending from 0 to 1: rank p owns the part share[p] to
+                                share[p + 1] of the odd columns; NULL: equal parts */
     bool ended;              /* the ranks have agreed on an error: nothing is sent any more */
     enum tri_status status;  /* that error */
     struct par_traffic traffic[PAR_MOVES];

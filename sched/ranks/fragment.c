@@ -1,6 +1,6 @@
-/* Layout of a fragment: header; keys of entries; places, feature sizes and attributes of fresh vertices; then numbers of
- * 32 bits: the common vertices, kinds and markers of the fresh ones, triangles, subsegments, entries; filled up to eight
- * bytes. Vertices within a fragment are counted from 0, the common ones first. */
+/* Layout of a fragment: header; keys of entries; places, feature sizes and attributes of fresh vertices; then numbers
+ * of 32 bits: the common vertices, kinds and markers of the fresh ones, triangles, subsegments, entries; filled up to
+ * eight bytes. Vertices within a fragment are counted from 0, the common ones first. */
 #include "sched/ranks/fragment.h"
 
 #include <assert.h>
