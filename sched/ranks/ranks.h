@@ -1,19 +1,20 @@
 /* The schedule's last level on several ranks, each in an address space of its own: the same mesh, tile for tile, as
  * one process makes.
  *
- * Every rank has made the coarse mesh, and owns some odd columns of blocks that lie side by side: these are its tiles.
+ * Every rank has made the coarse mesh, and owns some odd columns of blocks that lie side by side: these are its
+ * tiles.
  *
  * INVARIANT. Between steps a rank's mesh holds the true triangles with a corner in its columns, and the worklist's
  * entries among them; what else is in its arrays is coarse, or old, and never looked at.
  *
- * A block may be refined wherever the invariant is brought about for its box: blocks change triangles inside their box
- * alone, and read those that share an edge with one, which have two corners there. So before a block over the columns of
- * several ranks has its turn, the others send what they hold in its box (fragment.h) to the one who does it, and get
- * that back afterwards. Blocks of odd columns, and of even ones between two columns of one rank, ask for nothing. An
- * even column on the border of two ranks is done by the left one. Blocks of later rounds, which are larger and have
- * work only where something is left over, are all done by rank 0, phase by phase; boxes without work stay where they
- * are. By the theorem on the order of columns (phase.h) the mesh is that of one process: worklists are kept in the order
- * of their keys, which do not depend on who left what. */
+ * A block may be refined wherever the invariant is brought about for its box: blocks change triangles inside their
+ * box alone, and read those that share an edge with one, which have two corners there. So before a block over the
+ * columns of several ranks has its turn, the others send what they hold in its box (fragment.h) to the one who does
+ * it, and get that back afterwards. Blocks of odd columns, and of even ones between two columns of one rank, ask for
+ * nothing. An even column on the border of two ranks is done by the left one. Blocks of later rounds, which are
+ * larger and have work only where something is left over, are all done by rank 0, phase by phase; boxes without work
+ * stay where they are. By the theorem on the order of columns (phase.h) the mesh is that of one process: worklists
+ * are kept in the order of their keys, which do not depend on who left what. */
 #ifndef SCHED_RANKS_RANKS_H
 #define SCHED_RANKS_RANKS_H
 
