@@ -20,8 +20,8 @@
 #include "triangle/hdf5/read.h"
 #include "triangle/hdf5/write.h"
 
-static const struct lattice SMALL = {5, 1, 2, 2, false}, WHOLE = {6, 2, 0, 1, true}, PLAIN = {4, 3, 0, 0, true},
-                            LARGE = {601, 37, 1, 1, true};
+static const struct lattice SMALL = {5, 1, 2, 2, false, false}, WHOLE = {6, 2, 0, 1, true, true},
+                            PLAIN = {4, 3, 0, 0, true, false}, LARGE = {601, 37, 1, 1, true, false};
 
 /* Writes it to x.h5 and x.xdmf. */
 static enum tri_status write_lattice(const struct lattice *lattice, bool markers, int64_t most_narrow,
@@ -176,7 +176,7 @@ static void test_what_is_written_is_read(void **state)
 static void test_wide_numbers(void **state)
 {
     (void)state;
-    const int64_t narrow[] = {1, 601, 50000, TRI_H5_CHUNK_ROWS / 2, 300000, 601 * 601 - 1};
+    const int64_t narrow[] = {1, 601, 50000, 131072, 262144, 300000, 601 * 601 - 1};
     struct tri_error error;
     for (size_t i = 0; i < sizeof narrow / sizeof *narrow; i++) {
         assert_int_equal(write_lattice(&LARGE, true, narrow[i], &error), TRI_OK);
@@ -194,21 +194,37 @@ static void test_small_files_are_small(void **state)
     assert_true(n < 20000);
 }
 
-static void test_same_tiles_same_bytes(void **state)
+/* However it is cut into tiles; with numbers that become wide on the way, and without. */
+static void test_same_mesh_same_bytes(void **state)
 {
     (void)state;
-    const struct lattice *all[] = {&SMALL, &LARGE};
-    for (int i = 0; i < 2; i++) {
+    const int64_t narrow[] = {0, 100000, 262144};
+    for (int i = 0; i < 9; i++) {
+        struct lattice lattice = i / 3 ? LARGE : SMALL, other = lattice;
         struct tri_error error;
         size_t n, m;
-        assert_int_equal(write_lattice(all[i], true, 0, &error), TRI_OK);
+        other.rows_in_tile = i / 3 == 1 ? 1 : 300;
+        other.one_by_one = i / 3 == 2;
+        assert_int_equal(write_lattice(&lattice, true, narrow[i % 3], &error), TRI_OK);
         char *first = bytes_of("x.h5", &n);
-        assert_int_equal(write_lattice(all[i], true, 0, &error), TRI_OK);
+        assert_int_equal(write_lattice(&other, true, narrow[i % 3], &error), TRI_OK);
         char *second = bytes_of("x.h5", &m);
         assert_int_equal(n, m);
         assert_int_equal(memcmp(first, second, n), 0);
         free(first);
         free(second);
+    }
+}
+
+/* As many points as fit in one chunk, one less, one more; and chunks of segments. */
+static void test_around_a_chunk(void **state)
+{
+    (void)state;
+    struct tri_error error;
+    for (int32_t side = 511; side <= 513; side++) {
+        const struct lattice lattice = {side, 100, 0, 1, true, side == 513};
+        assert_int_equal(write_lattice(&lattice, true, 0, &error), TRI_OK);
+        compare(&lattice, true);
     }
 }
 
@@ -303,6 +319,7 @@ static void test_stop(void **state)
     tri_outputs_begin(&set);
     set.stop = &stop;
     assert_int_equal(tri_output_open(&set, "x.h5", &options.file, &error), TRI_OK);
+    assert_int_equal(tri_output_open(&set, "x.xdmf", &options.xdmf, &error), TRI_OK);
     assert_int_equal(tri_h5_writer_new(&writer, &options, &sink, &error), TRI_OK);
     assert_int_equal(lattice_hand_out(&LARGE, &sink, &error), TRI_STOPPED);
     tri_h5_writer_free(writer);
@@ -360,7 +377,8 @@ int main(void)
         cmocka_unit_test_teardown(test_what_is_written_is_read, remove_files),
         cmocka_unit_test_teardown(test_wide_numbers, remove_files),
         cmocka_unit_test_teardown(test_small_files_are_small, remove_files),
-        cmocka_unit_test_teardown(test_same_tiles_same_bytes, remove_files),
+        cmocka_unit_test_teardown(test_same_mesh_same_bytes, remove_files),
+        cmocka_unit_test_teardown(test_around_a_chunk, remove_files),
         cmocka_unit_test_teardown(test_no_times, remove_files),
         cmocka_unit_test_teardown(test_xdmf, remove_files),
         cmocka_unit_test_teardown(test_full_disk, remove_files),
