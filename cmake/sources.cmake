@@ -97,6 +97,7 @@ set(PTRIANGLE_HDF5_SOURCES
     triangle/hdf5/items.c
     triangle/hdf5/array.c
     triangle/hdf5/segments.c
+    triangle/hdf5/ends.c
     triangle/hdf5/views.c
     triangle/hdf5/xdmf.c
     triangle/hdf5/write.c

@@ -184,6 +184,30 @@ static void test_wide_numbers(void **state)
     }
 }
 
+/* Where cells end, in all kinds of chunks. */
+static void test_ends_of_cells(void **state)
+{
+    (void)state;
+    const struct lattice *all[] = {&SMALL, &LARGE};
+    for (int i = 0; i < 2; i++) {
+        struct tri_error error;
+        const int64_t m = lattice_triangles(all[i]), n = m + lattice_segments(all[i]) + 1;
+        int64_t *ends = malloc((size_t)n * sizeof *ends);
+        assert_int_equal(write_lattice(all[i], true, 0, &error), TRI_OK);
+        hid_t file = H5Fopen("x.h5", H5F_ACC_RDONLY, H5P_DEFAULT);
+        hid_t dataset = H5Dopen2(file, "/VTKHDF/Offsets", H5P_DEFAULT), space = H5Dget_space(dataset);
+        assert_int_equal(H5Sget_simple_extent_npoints(space), n);
+        assert_true(H5Dread(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, ends) >= 0);
+        for (int64_t k = 0; k < n; k++)
+            assert_true(ends[k] == (k <= m ? 3 * k : 3 * m + 2 * (k - m)));
+        assert_true(i == 0 || H5Dget_storage_size(dataset) < (hsize_t)n / 8);
+        H5Sclose(space);
+        H5Dclose(dataset);
+        H5Fclose(file);
+        free(ends);
+    }
+}
+
 static void test_small_files_are_small(void **state)
 {
     (void)state;
@@ -376,6 +400,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(test_what_is_written_is_read, remove_files),
         cmocka_unit_test_teardown(test_wide_numbers, remove_files),
+        cmocka_unit_test_teardown(test_ends_of_cells, remove_files),
         cmocka_unit_test_teardown(test_small_files_are_small, remove_files),
         cmocka_unit_test_teardown(test_same_mesh_same_bytes, remove_files),
         cmocka_unit_test_teardown(test_around_a_chunk, remove_files),
