@@ -36,7 +36,6 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/criterion.c
     triangle/inside.c
     triangle/refine.c
-    triangle/numbering.c
     triangle/census.c
     triangle/estimate.c
     triangle/stats.c
@@ -114,9 +113,17 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/theory.c
     sched/threads.c
     sched/partition.c
-    sched/room.c sched/sweep/tiles.c
+    sched/room.c
+    sched/sweep/tile_copy.c
+    sched/sweep/tiles.c
+    sched/sweep/stream.c
+    sched/sweep/numbering.c
     sched/worklist.c
     sched/phase.c
+    sched/ranks/carrier.c
+    sched/ranks/fragment.c
+    sched/ranks/hand_out.c
+    sched/ranks/ranks.c
     sched/schedule.c
     sched/triangulate.c
     sched/mesh.c)
