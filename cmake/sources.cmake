@@ -117,6 +117,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/sweep/tile_copy.c
     sched/sweep/tiles.c
     sched/sweep/stream.c
+    sched/sweep/queue.c
     sched/sweep/numbering.c
     sched/worklist.c
     sched/phase.c
