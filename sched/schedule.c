@@ -318,7 +318,7 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
             break;
         par_partition_coarsen(partition);
     }
-    state->report->deferred += state->report->total.deferred; /* run_schedule clears it in the total */
+    state->report->deferred += state->report->total.fenced; /* run_schedule clears it in the total */
     return status;
 }
 
@@ -386,7 +386,7 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     report->seconds_last += tri_seconds() - last;
     enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number, error);
     status = status ? status : closed;
-    report->total.gated = report->total.deferred = 0; /* all of them have had their turn */
+    report->total.gated = report->total.fenced = 0; /* all of them have had their turn */
     return status;
 }
 
@@ -488,7 +488,7 @@ static enum tri_status refine_sizes_first(struct par_state *state, const struct 
 static bool must_be_sequential(const struct tri_refine_options *quality, const struct par_options *options)
 {
     return quality->max_steiner >= 0 || quality->gate || quality->fence || quality->worklist || quality->more_room ||
-           quality->left || (quality->unsuitable && !options->size_test_in_parallel);
+           quality->deferred || (quality->unsuitable && !options->size_test_in_parallel);
 }
 
 /* All tiles of a mesh that is in memory. */

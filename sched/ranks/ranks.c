@@ -285,10 +285,10 @@ static enum tri_status add_up(struct par_ranks *r, const struct tri_refine_repor
     int64_t mine[4 + TRI_EXCUSES] = {total->inserted_free - before->inserted_free,
                                      total->inserted_on_segments - before->inserted_on_segments,
                                      total->hit_cap && !before->hit_cap,
-                                     total->deferred - before->deferred};
+                                     total->fenced - before->fenced};
     int64_t sum[4 + TRI_EXCUSES];
     for (int k = 0; k < TRI_EXCUSES; k++)
-        mine[4 + k] = total->refused[k] - before->refused[k];
+        mine[4 + k] = total->given_up[k] - before->given_up[k];
     status = par_sum(r->carrier, mine, 4 + TRI_EXCUSES, sum, status, error);
     if (status)
         return status;
@@ -298,8 +298,8 @@ static enum tri_status add_up(struct par_ranks *r, const struct tri_refine_repor
     total->hit_cap = total->hit_cap || sum[2] > 0;
     r->state->report->deferred += sum[3];
     for (int k = 0; k < TRI_EXCUSES; k++)
-        total->refused[k] += sum[4 + k];
-    total->gated = total->deferred = 0;
+        total->given_up[k] += sum[4 + k];
+    total->gated = total->fenced = 0;
     return TRI_OK;
 }
 
