@@ -27,7 +27,7 @@ enum { ID_BITS = 29, FIRST_BITS = 2, KEY_SHIFT = ID_BITS + FIRST_BITS, STRAY_BIT
 
 enum {
     FEW = 24,        /* are sorted by insertion */
-    BATCH = 1 << 17, /* triangles that move at once, in a large mesh */
+    BATCH = 1 << 16, /* triangles that move at once, in a large mesh */
     BATCHES = 64,    /* in a small one */
     BATCH_SHARES = 16
 };
@@ -176,7 +176,7 @@ static void rank_tile(void *context, size_t tile)
 {
     const struct numbering *n = context;
     int32_t first = n->vertices.start[tile], end = n->vertices.start[tile + 1];
-    tri_hilbert_order(n->mesh->xy, n->order + first, end - first, items_of(n) + 2 * (size_t)first, NULL);
+    tri_hilbert_order_coarse(n->mesh->xy, n->order + first, end - first, items_of(n) + 2 * (size_t)first);
     for (int32_t i = first; i < end; i++)
         n->rank[n->order[i] - n->n_kept] = n->n_kept + i;
 }
@@ -481,25 +481,36 @@ static struct tri_range batch_share(const struct move *m, size_t share)
     return (struct tri_range){m->batch.first + range.first, m->batch.first + range.last};
 }
 
-static struct tri_triangle moved(const struct numbering *n, const struct tri_triangle *from, int first)
+static const struct tri_triangle *source_of(const struct numbering *n, uint64_t item)
 {
-    struct tri_triangle to = {.region = from->region};
-    for (int k = 0, old = first; k < 3; k++, old = tri_next[old]) {
-        to.v[k] = renamed(n, from->v[old]);
-        to.n[k] = from->n[old] >= 0 ? new_code(n, from->n[old]) : ~n->sub_rank[~from->n[old]];
-    }
-    return to;
+    return (item >> PARKED_BIT ? parked_of(n) : n->mesh->tri) + id_of(item);
 }
 
+static void rename_to(const struct numbering *n, const struct tri_triangle *from, int first, struct tri_triangle *to)
+{
+    for (int k = 0, old = first; k < 3; k++, old = tri_next[old]) {
+        to->v[k] = renamed(n, from->v[old]);
+        to->n[k] = from->n[old] >= 0 ? new_code(n, from->n[old]) : ~n->sub_rank[~from->n[old]];
+    }
+    to->region = from->region;
+    to->state = 0;
+}
+
+/* A few are fetched before the first is looked at, so that the memory works on all of them at once. */
 static void gather_batch(void *context, size_t share)
 {
+    enum { AT_ONCE = 32 };
     const struct move *m = context;
     const struct numbering *n = m->n;
     struct tri_range range = batch_share(m, share);
-    for (int32_t to = range.first; to < range.last; to++) {
-        uint64_t item = items_of(n)[to];
-        const struct tri_triangle *from = (item >> PARKED_BIT ? parked_of(n) : n->mesh->tri) + id_of(item);
-        n->buffer[to - m->batch.first] = moved(n, from, first_of(item));
+    struct tri_triangle from[AT_ONCE];
+    for (int32_t first = range.first; first < range.last; first += AT_ONCE) {
+        int32_t count = range.last - first < AT_ONCE ? range.last - first : AT_ONCE;
+        const uint64_t *item = items_of(n) + first;
+        for (int32_t i = 0; i < count; i++)
+            from[i] = *source_of(n, item[i]);
+        for (int32_t i = 0; i < count; i++)
+            rename_to(n, &from[i], first_of(item[i]), &n->buffer[first + i - m->batch.first]);
     }
 }
 
