@@ -86,6 +86,28 @@ static bool touches(const struct tri_mesh *mesh, const struct tri_triangle *t, c
                               tri_fence_holds(box, mesh->xy[t->v[2]]));
 }
 
+/* Which vertices lie in a box: one bit each, so that all of them stay in the cache while triangles are looked through. */
+struct inside {
+    uint64_t *word;
+};
+
+static bool inside_init(struct inside *inside, const struct tri_mesh *mesh, const struct tri_fence *box)
+{
+    inside->word = calloc((size_t)mesh->n_vertices / 64 + 1, sizeof *inside->word);
+    for (int32_t v = 0; inside->word && v < mesh->n_vertices; v++)
+        inside->word[v / 64] |= (uint64_t)tri_fence_holds(box, mesh->xy[v]) << v % 64;
+    return inside->word;
+}
+
+static inline uint64_t is_inside(const struct inside *inside, int32_t v) { return inside->word[v / 64] >> v % 64 & 1; }
+
+/* Has the triangle a corner in the box? */
+static inline bool reaches_in(const struct inside *inside, const struct tri_triangle *t)
+{
+    return tri_is_live(t) &&
+           (is_inside(inside, t->v[0]) | is_inside(inside, t->v[1]) | is_inside(inside, t->v[2])) != 0;
+}
+
 static enum tri_status no_memory(struct tri_error *error)
 {
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for what lies at the border of ranks");
@@ -124,6 +146,7 @@ struct cutting {
     const struct par_state *state;
     const struct tri_mesh *mesh;
     struct header header;
+    struct inside inside;
     int32_t *index;                  /* [n_vertices] in its list, + 1; 0: in none */
     struct par_worklist named, fresh; /* vertices */
     struct par_worklist triangles, subs; /* ids, the first ascending */
@@ -142,7 +165,7 @@ static bool add_vertex(struct cutting *c, int32_t v)
 static bool takes_sub(const struct cutting *c, int32_t t, const struct tri_subsegment *s)
 {
     int32_t left = s->side[0] == TRI_NONE ? TRI_NONE : tri_of(s->side[0]);
-    return left == t || left == TRI_NONE || !touches(c->mesh, &c->mesh->tri[left], &c->header.box);
+    return left == t || left == TRI_NONE || !reaches_in(&c->inside, &c->mesh->tri[left]);
 }
 
 static bool find_all(struct cutting *c)
@@ -151,7 +174,7 @@ static bool find_all(struct cutting *c)
     bool memory = true;
     for (int32_t t = 0; memory && t < mesh->n_triangles; t++) {
         const struct tri_triangle *triangle = &mesh->tri[t];
-        if (!touches(mesh, triangle, &c->header.box))
+        if (!reaches_in(&c->inside, triangle))
             continue;
         memory = par_worklist_add(&c->triangles, t);
         for (int k = 0; memory && k < 3; k++) {
@@ -260,8 +283,9 @@ enum tri_status par_fragment_cut(struct par_bytes *to, const struct par_state *s
     assert(state->key.n == state->worklist.n);
     par_room_mark(&state->spare, state->mesh);
     c.index = calloc((size_t)state->mesh->n_vertices + 1, sizeof *c.index);
-    bool done = c.index && find_all(&c) && write_all(&c, to);
+    bool done = c.index && inside_init(&c.inside, c.mesh, box) && find_all(&c) && write_all(&c, to);
     free(c.index);
+    free(c.inside.word);
     free(c.named.item);
     free(c.fresh.item);
     free(c.triangles.item);
@@ -324,6 +348,7 @@ struct pasting {
     struct tri_mesh *mesh;
     const struct header *header;
     struct parts parts;
+    struct inside inside;
     struct par_worklist doomed;      /* triangles that go, ascending */
     struct par_worklist doomed_subs; /* subsegments with nothing on either side once they have gone .. */
     int32_t n_subs_used;             /* .. of which so many numbers are in use again */
@@ -338,7 +363,20 @@ struct pasting {
 
 static bool is_doomed(const struct pasting *p, int32_t code)
 {
-    return code >= 0 && touches(p->mesh, &p->mesh->tri[tri_of(code)], &p->header->box);
+    return code >= 0 && reaches_in(&p->inside, &p->mesh->tri[tri_of(code)]);
+}
+
+/* A triangle goes: those beside it that stay are at the rim. */
+static bool doom(struct pasting *p, int32_t t)
+{
+    bool memory = par_worklist_add(&p->doomed, t);
+    for (int e = 0; memory && e < 3; e++) {
+        int32_t link = p->mesh->tri[t].n[e];
+        bool is_mutual = link >= 0 && p->mesh->tri[tri_of(link)].n[tri_edge(link)] == tri_code(t, e);
+        if (is_mutual && !is_doomed(p, link))
+            memory = par_worklist_add(&p->rim, link);
+    }
+    return memory;
 }
 
 static bool find_doomed(struct pasting *p)
@@ -347,11 +385,11 @@ static bool find_doomed(struct pasting *p)
     bool memory = true;
     for (int32_t t = 0; memory && t < mesh->n_triangles; t++) {
         const struct tri_triangle *triangle = &mesh->tri[t];
-        if (touches(mesh, triangle, &p->header->box))
-            memory = par_worklist_add(&p->doomed, t);
+        if (reaches_in(&p->inside, triangle))
+            memory = doom(p, t);
         else if (tri_is_live(triangle))
             for (int e = 0; memory && e < 3; e++)
-                if (triangle->n[e] == PAR_BEYOND || is_doomed(p, triangle->n[e]))
+                if (triangle->n[e] == PAR_BEYOND)
                     memory = par_worklist_add(&p->rim, tri_code(t, e));
     }
     for (int32_t s = 0; memory && s < mesh->n_subs; s++) {
@@ -390,7 +428,7 @@ static void merge_entries(struct pasting *p)
     int32_t n = 0;
     for (int32_t i = 0, k = 0; i < own->n || k < p->header->n_entries;) {
         if (k == p->header->n_entries || (i < own->n && own_key[i] < key[k])) {
-            if (!touches(p->mesh, &p->mesh->tri[own->item[i]], &p->header->box)) {
+            if (!reaches_in(&p->inside, &p->mesh->tri[own->item[i]])) {
                 p->entries.item[n] = own->item[i];
                 p->keys.item[n++] = own_key[i];
             }
@@ -635,7 +673,7 @@ enum tri_status par_fragment_paste(struct par_state *state, int32_t n_common, co
     p.parts = parts_of(p.header, (char *)bytes);
     par_room_mark(&state->spare, state->mesh);
     enum tri_status status = reserve_mesh(state->mesh, p.header, error);
-    if (!status && !(find_doomed(&p) && reserve_all(&p)))
+    if (!status && !(inside_init(&p.inside, p.mesh, &p.header->box) && find_doomed(&p) && reserve_all(&p)))
         status = no_memory(error);
     if (!status)
         replace(&p);
@@ -645,6 +683,7 @@ enum tri_status par_fragment_paste(struct par_state *state, int32_t n_common, co
         free(lists[i]->item);
     free(p.keys.item);
     free(p.vertex);
+    free(p.inside.word);
     table_free(&p.edges);
     table_free(&p.places);
     return status;
