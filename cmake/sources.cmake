@@ -95,6 +95,8 @@ set(PTRIANGLE_HDF5_SOURCES
     triangle/hdf5/file.c
     triangle/hdf5/items.c
     triangle/hdf5/array.c
+    triangle/hdf5/segments.c
+    triangle/hdf5/ends.c
     triangle/hdf5/views.c
     triangle/hdf5/xdmf.c
     triangle/hdf5/write.c
@@ -115,6 +117,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/sweep/tile_copy.c
     sched/sweep/tiles.c
     sched/sweep/stream.c
+    sched/sweep/queue.c
     sched/sweep/numbering.c
     sched/worklist.c
     sched/phase.c
@@ -122,9 +125,15 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/ranks/fragment.c
     sched/ranks/hand_out.c
     sched/ranks/ranks.c
+    sched/ranks/relay.c
+    sched/ranks/stream.c
     sched/schedule.c
     sched/triangulate.c
     sched/mesh.c)
+
+# The ranks of an MPI, where there is one: a library of its own.
+set(PTRIANGLE_MPI_SOURCES sched/ranks/mpi.c)
+set(PTRIANGLE_MPI_HEADER include/ptriangle/mpi.h)
 
 # Headers that are installed, below include/ptriangle/, beside triangle.h, which lies where Triangle's clients look for it.
 set(PTRIANGLE_PUBLIC_HEADERS
