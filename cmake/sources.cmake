@@ -55,17 +55,19 @@ set(PTRIANGLE_MESHER_SOURCES
 # Room triangle/check/, the judge of meshes, and its public door. Of the mesher it knows the predicates alone.
 set(PTRIANGLE_CHECK_SOURCES
     triangle/check/check.c
-    triangle/check/scale.c
+    triangle/check/survey.c
+    triangle/check/part.c
     triangle/check/triangles.c
     triangle/check/edges.c
+    triangle/check/pairs.c
+    triangle/check/store.c
+    triangle/check/match.c
+    triangle/check/segments.c
     triangle/check/stars.c
     triangle/check/order.c
     triangle/check/missing.c
     triangle/check/overlap.c
-    triangle/check/regions.c
     triangle/check/hull.c
-    triangle/check/delaunay.c
-    triangle/check/segments.c
     triangle/check/line.c
     triangle/check/chain.c
     triangle/check/border.c
