@@ -13,7 +13,7 @@
 #include "sched/threads.h"
 #include "triangle/census.h"
 #include "triangle/estimate.h"
-#include "triangle/numbering.h"
+#include "sched/sweep/numbering.h"
 
 /* Cells hold one in CELLS of the final triangles, within limits: small ones keep many threads busy, large ones make
  * fewer seams. Coarse triangles a cell has after pre-refinement: enough for seams to be narrow, few enough for
@@ -211,7 +211,7 @@ static enum tri_status number_mesh(struct par_state *state, struct tri_error *er
     double began = tri_seconds();
     tell(state, PAR_NUMBERING);
     struct tri_executor executor = par_executor(&state->threads);
-    enum tri_status status = tri_number(state->mesh, state->n_kept, &executor, error);
+    enum tri_status status = par_number(state->mesh, &state->cells, state->n_kept, &executor, error);
     state->numbered = true;
     state->report->seconds_number += tri_seconds() - began;
     return status;
@@ -351,7 +351,7 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         report->prerefined = state->mesh->n_triangles;
     }
     state->sweeping = top && state->may_number && state->options->sink && must_sweep(state, partition->estimate);
-    if (!status && top && state->options->sink && !state->sweeping) {
+    if (!status && top && !state->options->by_block && !state->sweeping) {
         par_partition_free(&state->cells);
         status = par_partition_copy(&state->cells, partition, error);
     }
@@ -476,23 +476,11 @@ static bool must_be_sequential(const struct tri_refine_options *quality, const s
            quality->left || (quality->unsuitable && !options->size_test_in_parallel);
 }
 
-/* All tiles of a mesh that is in memory: those of the last schedule, or, without one, a few. */
-static enum tri_status hand_out(struct par_state *state, const struct tri_refine_options *quality,
-                                struct tri_error *error)
+/* All tiles of a mesh that is in memory. */
+static enum tri_status hand_out(struct par_state *state, struct tri_error *error)
 {
-    struct par_partition *partition = &state->cells;
-    struct tri_executor executor = par_executor(&state->threads);
-    struct par_tiles tiles = tiles_of(state, partition, &executor);
-    struct par_room nothing = {0};
-    enum tri_status status = TRI_OK;
-    if (!partition->x)
-        status = par_partition_make(partition, state->mesh, quality, state->mesh->n_triangles, HUGE_VAL, error);
-    status = status ? status : par_tiles_begin(&tiles, state->mesh->n_triangles, error);
-    for (int32_t odd = 1; !status && odd < partition->n_columns; odd += 2)
-        status = par_tiles_column(&tiles, odd, false, &nothing, error);
-    status = status ? status : par_tiles_end(&tiles, error);
-    par_tiles_free(&tiles);
-    return status;
+    struct par_tiles tiles = tiles_of(state, state->numbered ? &state->cells : NULL, NULL);
+    return par_tiles_whole(&tiles, error);
 }
 
 enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
@@ -522,7 +510,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     if (!status && report->levels > 0 && !options->by_block && !state.numbered && !state.sweeping)
         status = number_mesh(&state, error);
     if (!status && options->sink && !state.sweeping)
-        status = hand_out(&state, quality, error);
+        status = hand_out(&state, error);
     free(state.worklist.item);
     free(state.key.item);
     par_partition_free(&state.cells);
