@@ -26,7 +26,8 @@ static bool is_meshed(const struct checker *c, int32_t fan_entry)
 static bool is_wedge(const struct apexes *w, int32_t v, int32_t i, int32_t j)
 {
     const struct checker *c = w->c;
-    struct tri_point o = check_point(c, v), p = check_point(c, c->segments[i ^ 1]), q = check_point(c, c->segments[j ^ 1]);
+    struct tri_point o = check_point(c, v);
+    struct tri_point p = check_point(c, c->segments[i ^ 1]), q = check_point(c, c->segments[j ^ 1]);
     double ax = p.x - o.x, ay = p.y - o.y, bx = q.x - o.x, by = q.y - o.y, dot = ax * bx + ay * by;
     if (dot * fabs(dot) <= (w->apex_cosine + TRI_CHECK_SLACK) * (ax * ax + ay * ay) * (bx * bx + by * by))
         return false;

@@ -220,7 +220,8 @@ static enum tri_status look_at_parts(struct checker *c, bool *good)
         status = tri_check_pair(c);
         status = status == TRI_OK ? tri_check_keep_open(c) : status;
         status = status == TRI_OK ? tri_check_shapes(c) : status;
-        tri_check_pairs(c);
+        if (status == TRI_OK)
+            tri_check_pairs(c);
     }
     return status;
 }

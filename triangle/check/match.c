@@ -104,8 +104,8 @@ static enum tri_status match_again(struct checker *c)
     return status == TRI_OK ? tri_check_store_drain(c, match_all) : status;
 }
 
-/* Is an edge of the boundary no listed subsegment, or on either side of one more than once, or are none listed? Else the
- * boundary is what it should be, and a half-edge more on it would have been seen. */
+/* Is an edge of the boundary no listed subsegment, or on either side of one more than once, or are none listed? Else
+ * the boundary is what it should be, and a half-edge more on it would have been seen. */
 static bool is_doubtful(const struct checker *c)
 {
     bool doubtful = !check_is_listed(c) || !check_good(c, TRI_CHECK_EDGES);

@@ -93,7 +93,8 @@ void tri_check_release_part(struct checker *c)
 /* Corners that are vertices of the mesh? */
 static bool judge_corners(struct checker *c, const int64_t *corners, const int32_t *own)
 {
-    int64_t n = 3 * (int64_t)c->part.n_triangles, n_bad = 0, least = n, before = c->report->item[TRI_CHECK_ARRAYS].count;
+    int64_t n = 3 * (int64_t)c->part.n_triangles, n_bad = 0, least = n;
+    int64_t before = c->report->item[TRI_CHECK_ARRAYS].count;
 #pragma omp parallel for schedule(static) reduction(+ : n_bad) reduction(min : least)
     for (int64_t h = 0; h < n; h++) {
         int64_t v = corners != NULL ? corners[h] : own[h];
