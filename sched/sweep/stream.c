@@ -75,7 +75,7 @@ enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct
     if (tiles->sink->begin)
         status = tiles->sink->begin(tiles->sink->user, &stream, error);
     free(regions);
-    return status ? status : hand_out_kept(tiles, error);
+    return status || tiles->kept_elsewhere ? status : hand_out_kept(tiles, error);
 }
 
 enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error)
