@@ -80,6 +80,7 @@ set(PTRIANGLE_CHECK_SOURCES
 set(PTRIANGLE_TEXT_SOURCES
     triangle/text/decimal.cpp
     triangle/text/text.c
+    triangle/text/window.c
     triangle/text/read.c
     triangle/text/output.c
     triangle/text/write.c
@@ -141,6 +142,11 @@ set(PTRIANGLE_PUBLIC_HEADERS
 set(PTRIANGLE_DRIVER_SOURCES)
 set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle)
 set(PTRIANGLE_JUDGE_SOURCES
+    drivers/all_cores.c
+    drivers/resources.c
+    drivers/scratch.c
+    drivers/judged_text.c
+    drivers/judged_h5.c
     drivers/judged_files.c
     drivers/verdict.c)
 set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed

@@ -5,8 +5,8 @@
  * A bound counts as missed from a relative 1e-12 on.
  *
  * Triangles are looked at in blocks of a fixed size, what is found put together in their order: so sums are rounded in
- * the same way whatever the number of threads, and wherever the mesh is cut into parts: a block that a part ends in goes
- * on in the next. */
+ * the same way whatever the number of threads, and wherever the mesh is cut into parts: a block that a part ends in
+ * goes on in the next. */
 #include <math.h>
 #include <stdlib.h>
 

@@ -156,7 +156,7 @@ static enum tri_status fetch(struct checker *c, struct file *file)
     }
     here->n = file->n;
     if (!read_all(file->descriptor, here->at, (size_t)here->n * sizeof *here->at))
-        return tri_fail(c->error, TRI_CANNOT_READ, folder_of(c), 0, "cannot read the half-edges that were parked there");
+        return tri_fail(c->error, TRI_CANNOT_READ, folder_of(c), 0, "cannot read what was parked there");
     (void)close(file->descriptor);
     *file = (struct file){-1, 0};
     return TRI_OK;
