@@ -125,7 +125,8 @@ static const char *parse_neighbors(void *user, size_t i, struct tri_fields *fiel
 static enum tri_status append(struct rows *r, enum tri_check_array array, const void *rows, size_t n,
                               struct tri_error *error)
 {
-    return (r->text->given >> array & 1) != 0 ? scratch_append(&r->text->array[array], rows, (int64_t)n, error) : TRI_OK;
+    bool given = (r->text->given >> array & 1) != 0;
+    return given ? scratch_append(&r->text->array[array], rows, (int64_t)n, error) : TRI_OK;
 }
 
 static enum tri_status flush(void *user, size_t n, struct tri_error *error)

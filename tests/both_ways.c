@@ -26,7 +26,7 @@ enum tri_status check_both_ways(const struct tri_check_mesh *mesh, const struct 
                               const struct tri_check_options *options, struct tri_check_report *report,
                               struct tri_error *error)
 {
-    enum { SMALL = 1500 }; /* triangles; else it takes too long */
+    enum { SMALL = 500 }; /* triangles; else it takes too long */
     enum tri_status status = tri_check(mesh, input, options, report, error);
     struct tri_check_source source = tri_check_source_of(mesh);
     struct tri_check_report again;

@@ -218,6 +218,8 @@ static enum tri_status look_at_parts(struct checker *c, bool *good)
             continue;
         tri_check_orientation(c);
         status = tri_check_pair(c);
+        if (status == TRI_OK)
+            tri_check_note_vertices(c);
         status = status == TRI_OK ? tri_check_keep_open(c) : status;
         status = status == TRI_OK ? tri_check_shapes(c) : status;
         if (status == TRI_OK)
@@ -307,7 +309,7 @@ static double bytes_of_triangle(const struct tri_check_source *source)
 /* As many triangles as the bound allows, at least a few. */
 static int64_t size_of_part(const struct tri_check_source *source)
 {
-    enum { LEAST = 64 };
+    enum { LEAST = 16 };
     int64_t most = INT32_MAX / 3 - 1;
     if (source->memory > 0) {
         double rest = source->memory * 0.75 - 1.25 * (double)source->n_points;

@@ -190,7 +190,7 @@ static void constrain(struct checker *c)
     }
 }
 
-static void note_state(struct checker *c)
+void tri_check_note_vertices(struct checker *c)
 {
     const struct check_part *p = &c->part;
 #pragma omp parallel for schedule(static)
@@ -224,7 +224,6 @@ enum tri_status tri_check_pair(struct checker *c)
     for (int32_t v = 0; v < p->n_points; v++)
         link_group(p, v);
     constrain(c);
-    note_state(c);
     return TRI_OK;
 }
 

@@ -176,8 +176,9 @@ void tri_check_release_part(struct checker *c);
 int32_t tri_check_local(const struct checker *c, int64_t v); /* number of vertex v in the part, -1: not there. O(1) */
 
 void tri_check_orientation(struct checker *c);      /* of the part */
-/* Pairs the half-edges of the part, constrains them, counts turns. */
+/* Pairs the half-edges of the part, and constrains them. */
 enum tri_status tri_check_pair(struct checker *c);
+void tri_check_note_vertices(struct checker *c); /* what pairing has seen of them, into c->state */
 enum tri_status tri_check_keep_open(struct checker *c); /* puts half-edges without other side into the store */
 void tri_check_pairs(struct checker *c); /* neighbours given, Delaunay, circles of segments, attributes: in the part */
 /* The same of two half-edges that have been matched across parts, or of one that has no other side (b is NULL). */
