@@ -355,7 +355,9 @@ struct pasting {
     struct par_worklist open_subs;   /* with a triangle on one side that stays */
     struct par_worklist rim;         /* edges of what stays that lead to what goes, or beyond */
     struct table edges;              /* to the code of an edge that has no partner yet, or to ~subsegment */
-    struct table places;             /* of the doomed triangles' vertices */
+    struct table places;             /* of the doomed triangles' vertices: to their ids, ~id: still there afterwards */
+    int32_t n_places;
+    struct par_worklist doomed_vertices; /* that are not */
     struct par_worklist entries;
     struct par_keys keys;
     int32_t *vertex;                 /* [n_named + n_fresh] ids here */
@@ -406,20 +408,6 @@ static bool find_doomed(struct pasting *p)
     return memory;
 }
 
-static bool reserve_all(struct pasting *p)
-{
-    const struct header *h = p->header;
-    size_t edges = 3 * ((size_t)h->n_triangles + (size_t)p->rim.n) + (size_t)h->n_subs + (size_t)p->open_subs.n;
-    struct par_ranges *triangles = &p->state->spare.ranges[PAR_TRIANGLES], *subs = &p->state->spare.ranges[PAR_SUBS];
-    p->vertex = malloc(((size_t)h->n_named + (size_t)h->n_fresh + 1) * sizeof *p->vertex);
-    int32_t entries = p->state->worklist.n + h->n_entries;
-    return p->vertex && table_init(&p->edges, edges) && table_init(&p->places, 3 * (size_t)p->doomed.n) &&
-           tri_grow(&p->entries.item, &p->entries.capacity, entries, sizeof *p->entries.item) &&
-           tri_grow(&p->keys.item, &p->keys.capacity, entries, sizeof *p->keys.item) &&
-           par_ranges_reserve(triangles, triangles->n + triangles->dealt + p->doomed.n) &&
-           par_ranges_reserve(subs, subs->n + subs->dealt + p->doomed_subs.n);
-}
-
 /* Entries of triangles that stay, and those of the fragment as ~their places there, by their keys. */
 static void merge_entries(struct pasting *p)
 {
@@ -445,9 +433,9 @@ static int32_t find_place(const struct pasting *p, struct tri_point q, size_t *a
 {
     const struct table *places = &p->places;
     for (*at = mixed(place_key(q)) & places->mask; places->key[*at] != 0; *at = (*at + 1) & places->mask) {
-        struct tri_point here = p->mesh->xy[places->value[*at]];
-        if (here.x == q.x && here.y == q.y)
-            return places->value[*at];
+        int32_t v = places->value[*at];
+        if (v >= 0 && p->mesh->xy[v].x == q.x && p->mesh->xy[v].y == q.y)
+            return v;
     }
     return TRI_NONE;
 }
@@ -462,7 +450,32 @@ static void note_places(struct pasting *p)
                 continue;
             p->places.key[at] = place_key(p->mesh->xy[v]);
             p->places.value[at] = v;
+            p->n_places++;
         }
+}
+
+static bool reserve_ranges(struct par_room *spare, enum par_kind kind, int32_t more)
+{
+    struct par_ranges *ranges = &spare->ranges[kind];
+    return par_ranges_reserve(ranges, ranges->n + ranges->dealt + more);
+}
+
+static bool reserve_all(struct pasting *p)
+{
+    const struct header *h = p->header;
+    struct par_room *spare = &p->state->spare;
+    size_t edges = 3 * (size_t)h->n_triangles + (size_t)p->rim.n + (size_t)h->n_subs + (size_t)p->open_subs.n;
+    int32_t entries = p->state->worklist.n + h->n_entries;
+    if (!table_init(&p->edges, edges) || !table_init(&p->places, 3 * (size_t)p->doomed.n))
+        return false;
+    note_places(p);
+    p->vertex = malloc(((size_t)h->n_named + (size_t)h->n_fresh + 1) * sizeof *p->vertex);
+    return p->vertex && tri_grow(&p->entries.item, &p->entries.capacity, entries, sizeof *p->entries.item) &&
+           tri_grow(&p->keys.item, &p->keys.capacity, entries, sizeof *p->keys.item) &&
+           tri_grow(&p->doomed_vertices.item, &p->doomed_vertices.capacity, p->n_places,
+                    sizeof *p->doomed_vertices.item) &&
+           reserve_ranges(spare, PAR_VERTICES, p->n_places) && reserve_ranges(spare, PAR_TRIANGLES, p->doomed.n) &&
+           reserve_ranges(spare, PAR_SUBS, p->doomed_subs.n);
 }
 
 static int32_t append_vertex(struct pasting *p, int32_t i)
@@ -482,13 +495,27 @@ static int32_t append_vertex(struct pasting *p, int32_t i)
 static void paste_vertices(struct pasting *p)
 {
     size_t at;
-    note_places(p);
     for (int32_t i = 0; i < p->header->n_named; i++)
         p->vertex[i] = p->parts.named[i];
     for (int32_t i = 0; i < p->header->n_fresh; i++) {
         int32_t v = find_place(p, p->parts.xy[i], &at);
         p->vertex[p->header->n_named + i] = v == TRI_NONE ? append_vertex(p, i) : v;
+        if (v != TRI_NONE)
+            p->places.value[at] = ~v;
     }
+}
+
+/* Vertices in the box that the fragment does not know have gone with their triangles. */
+static void drop_vertices(struct pasting *p)
+{
+    struct par_worklist *doomed = &p->doomed_vertices;
+    for (size_t at = 0; at <= p->places.mask; at++)
+        if (p->places.key[at] != 0 && p->places.value[at] >= 0 && is_inside(&p->inside, p->places.value[at]))
+            doomed->item[doomed->n++] = p->places.value[at];
+    if (doomed->n > 1)
+        qsort(doomed->item, (size_t)doomed->n, sizeof *doomed->item, ascending);
+    for (int32_t i = 0; i < doomed->n; i++)
+        p->mesh->on[doomed->item[i]] = TRI_VERTEX_NONE;
 }
 
 static void cut_loose(struct pasting *p)
@@ -609,11 +636,13 @@ static void replace(struct pasting *p)
     int32_t n = p->header->n_triangles < p->doomed.n ? p->header->n_triangles : p->doomed.n;
     merge_entries(p);
     paste_vertices(p);
+    drop_vertices(p);
     cut_loose(p);
     note_rim(p);
     paste_subs(p);
     paste_triangles(p);
     give_back(&state->spare.ranges[PAR_TRIANGLES], p->doomed.item, n, p->doomed.n);
+    give_back(&state->spare.ranges[PAR_VERTICES], p->doomed_vertices.item, 0, p->doomed_vertices.n);
     give_back(&state->spare.ranges[PAR_SUBS], p->doomed_subs.item, p->n_subs_used, p->doomed_subs.n);
     free(state->worklist.item);
     free(state->key.item);
@@ -678,7 +707,7 @@ enum tri_status par_fragment_paste(struct par_state *state, int32_t n_common, co
     if (!status)
         replace(&p);
     *used = p.header->bytes;
-    struct par_worklist *lists[] = {&p.doomed, &p.doomed_subs, &p.open_subs, &p.rim, &p.entries};
+    struct par_worklist *lists[] = {&p.doomed_vertices, &p.doomed, &p.doomed_subs, &p.open_subs, &p.rim, &p.entries};
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
         free(lists[i]->item);
     free(p.keys.item);
