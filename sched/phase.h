@@ -36,7 +36,7 @@ struct par_state {
     int round;
     int32_t n_kept;          /* vertices there were before */
     bool may_number;         /* nothing is refined after this schedule */
-    struct par_partition cells; /* of the last schedule, for handing out what is in memory */
+    struct par_partition cells; /* of the last schedule of the whole mesh: the tiles by which it is numbered */
     bool sweeping;           /* columns are handed out, and go, as they are finished */
     bool numbered;           /* and nothing was */
 };

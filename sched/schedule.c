@@ -9,11 +9,12 @@
 
 #include "triangle/clock.h"
 #include "sched/phase.h"
+#include "sched/ranks/ranks.h"
 #include "sched/theory.h"
 #include "sched/threads.h"
 #include "triangle/census.h"
 #include "triangle/estimate.h"
-#include "triangle/numbering.h"
+#include "sched/sweep/numbering.h"
 
 /* Cells hold one in CELLS of the final triangles, within limits: small ones keep many threads busy, large ones make
  * fewer seams. Coarse triangles a cell has after pre-refinement: enough for seams to be narrow, few enough for
@@ -23,7 +24,7 @@ static const double CELLS = 128, SMALLEST_CELL = 8192, LARGEST_CELL = 131072, CO
 /* Of the fewest triangles that are worth a schedule, a share that one call makes at once to see whether they come. */
 static const double A_LITTLE = 0.25;
 
-enum { FEWEST_CELLS = 8, FEWEST_COARSE_CELLS = 32, FEWEST_TO_COARSEN = 16, MAX_ROUNDS = 24 };
+enum { FEWEST_CELLS = 8, FEWEST_COARSE_CELLS = 32, MAX_ROUNDS = 24 };
 
 struct par_options par_defaults(void) { return (struct par_options){0}; }
 
@@ -211,7 +212,7 @@ static enum tri_status number_mesh(struct par_state *state, struct tri_error *er
     double began = tri_seconds();
     tell(state, PAR_NUMBERING);
     struct tri_executor executor = par_executor(&state->threads);
-    enum tri_status status = tri_number(state->mesh, state->n_kept, &executor, error);
+    enum tri_status status = par_number(state->mesh, &state->cells, state->n_kept, &executor, error);
     state->numbered = true;
     state->report->seconds_number += tri_seconds() - began;
     return status;
@@ -313,11 +314,21 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
     for (state->round = 0; !status && state->round < MAX_ROUNDS; state->round++) {
         status = state->sweeping ? sweep_columns(state, partition, error) : run_phases(state, partition, error);
         state->report->rounds++;
-        if (state->worklist.n == 0 || par_cells(partition) < FEWEST_TO_COARSEN || state->sweeping)
+        if (state->worklist.n == 0 || !par_can_coarsen(partition) || state->sweeping)
             break;
         par_partition_coarsen(partition);
     }
-    state->report->deferred += state->report->total.deferred; /* run_schedule clears it in the total */
+    state->report->deferred += state->report->total.fenced; /* run_schedule clears it in the total */
+    return status;
+}
+
+static enum tri_status refine_on_ranks(struct par_state *state, const struct par_partition *partition,
+                                       struct tri_error *error)
+{
+    struct tri_executor executor = par_executor(&state->threads);
+    struct par_tiles tiles = tiles_of(state, partition, &executor);
+    enum tri_status status = par_refine_on_ranks(state, partition, &tiles, error);
+    par_tiles_free(&tiles);
     return status;
 }
 
@@ -350,11 +361,15 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         report->radius_measured = state->radius * state->mesh->unit;
         report->prerefined = state->mesh->n_triangles;
     }
-    state->sweeping = top && state->may_number && state->options->sink && must_sweep(state, partition->estimate);
-    if (!status && top && state->options->sink && !state->sweeping) {
+    bool on_ranks = top && state->may_number && state->options->sink && state->options->carrier;
+    state->sweeping = on_ranks || (top && state->may_number && state->options->sink &&
+                                   must_sweep(state, partition->estimate));
+    if (!status && top && !state->options->by_block && !state->sweeping) {
         par_partition_free(&state->cells);
         status = par_partition_copy(&state->cells, partition, error);
     }
+    if (on_ranks)
+        return status ? status : refine_on_ranks(state, partition, error);
     if (state->sweeping)
         report->way = PAR_SWEPT;
     status = status ? status : run_rounds(state, partition, error);
@@ -371,7 +386,7 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     report->seconds_last += tri_seconds() - last;
     enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number, error);
     status = status ? status : closed;
-    report->total.gated = report->total.deferred = 0; /* all of them have had their turn */
+    report->total.gated = report->total.fenced = 0; /* all of them have had their turn */
     return status;
 }
 
@@ -473,26 +488,18 @@ static enum tri_status refine_sizes_first(struct par_state *state, const struct 
 static bool must_be_sequential(const struct tri_refine_options *quality, const struct par_options *options)
 {
     return quality->max_steiner >= 0 || quality->gate || quality->fence || quality->worklist || quality->more_room ||
-           quality->left || (quality->unsuitable && !options->size_test_in_parallel);
+           quality->deferred || (quality->unsuitable && !options->size_test_in_parallel);
 }
 
-/* All tiles of a mesh that is in memory: those of the last schedule, or, without one, a few. */
-static enum tri_status hand_out(struct par_state *state, const struct tri_refine_options *quality,
-                                struct tri_error *error)
+/* All tiles of a mesh that is in memory. */
+static enum tri_status hand_out(struct par_state *state, struct tri_error *error)
 {
-    struct par_partition *partition = &state->cells;
-    struct tri_executor executor = par_executor(&state->threads);
-    struct par_tiles tiles = tiles_of(state, partition, &executor);
-    struct par_room nothing = {0};
-    enum tri_status status = TRI_OK;
-    if (!partition->x)
-        status = par_partition_make(partition, state->mesh, quality, state->mesh->n_triangles, HUGE_VAL, error);
-    status = status ? status : par_tiles_begin(&tiles, state->mesh->n_triangles, error);
-    for (int32_t odd = 1; !status && odd < partition->n_columns; odd += 2)
-        status = par_tiles_column(&tiles, odd, false, &nothing, error);
-    status = status ? status : par_tiles_end(&tiles, error);
-    par_tiles_free(&tiles);
-    return status;
+    struct par_tiles tiles = tiles_of(state, state->numbered ? &state->cells : NULL, NULL);
+    if (!state->options->carrier || state->options->carrier->rank == 0)
+        return par_tiles_whole(&tiles, error);
+    tiles.kept_elsewhere = true; /* rank 0 has the whole mesh, too, and hands it out */
+    enum tri_status status = par_tiles_begin(&tiles, state->mesh->n_triangles, error);
+    return status ? status : par_tiles_end(&tiles, error);
 }
 
 enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
@@ -522,7 +529,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     if (!status && report->levels > 0 && !options->by_block && !state.numbered && !state.sweeping)
         status = number_mesh(&state, error);
     if (!status && options->sink && !state.sweeping)
-        status = hand_out(&state, quality, error);
+        status = hand_out(&state, error);
     free(state.worklist.item);
     free(state.key.item);
     par_partition_free(&state.cells);

@@ -28,7 +28,7 @@ struct par_options {
     bool size_test_in_parallel; /* quality.unsuitable may be called by several threads at once; else, where there is a
                                    size test, the mesh is refined sequentially */
     bool by_block;           /* new vertices and triangles are numbered as blocks made them: quicker. Else what the
-                                schedule made is numbered by the mesh alone, along a curve (triangle/numbering.h): a
+                                schedule made is numbered by the mesh alone, along a curve (sched/sweep/numbering.h): a
                                 solver that goes through the triangles runs twice as fast then */
     const struct tri_sink *sink; /* takes the finished mesh, tile by tile (ptriangle/tiles.h); NULL: nobody */
     const struct tri_pslg *figure; /* the mesh's input: its points are handed out bit by bit as they came; NULL: as they
@@ -41,6 +41,10 @@ struct par_options {
                                 same for any bound. TRI_TOO_LARGE where that cannot be done */
     const char *scratch;     /* directory for what has to be parked then; NULL: nothing can be */
     bool sweep;              /* for tests: whatever memory there is */
+    struct par_carrier *carrier; /* not NULL: this is one of several ranks, which all make this call with the same mesh,
+                                bounds and cells, and each gets tiles of its own (sched/ranks/ranks.h), in the numbers
+                                of one process. What is no schedule, or has another behind it, each rank does as a
+                                whole, and rank 0 gets all tiles. Whoever makes the call ends with par_agree */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
     int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, and pause often */
     /* Told by the calling thread: the phase that begins (0: pre-refinement, then 1 to 4, at last PAR_NUMBERING),
@@ -83,7 +87,7 @@ struct par_report {
     double seconds_prerefine, seconds_partition, seconds_room, seconds_merge, seconds_last, seconds_total;
     double seconds_find;          /* bad triangles, and the block of each; in equal shares */
     double seconds_deal;         /* dealing them to blocks */
-    double seconds_number;        /* tri_number, after all others; nearly all in equal shares */
+    double seconds_number;        /* par_number, after all others; nearly all in equal shares */
     double seconds_refine;        /* wall time of the phases' parallel parts */
     double phase_seconds[4];      /* refine, by phase, over all rounds */
     struct par_block_report *blocks; /* [n_blocks] in canonical order; owned by the report */

@@ -24,7 +24,7 @@
 enum { TRI_URGENT_BUCKET = 0, TRI_BUCKETS = 512, TRI_WINDOW = 1 << 13, TRI_BATCH = 16 };
 
 struct tri_entry {
-    int32_t t;
+    tri_triangle_id t;
     uint32_t state;
 };
 
