@@ -495,11 +495,9 @@ static bool must_be_sequential(const struct tri_refine_options *quality, const s
 static enum tri_status hand_out(struct par_state *state, struct tri_error *error)
 {
     struct par_tiles tiles = tiles_of(state, state->numbered ? &state->cells : NULL, NULL);
-    if (!state->options->carrier || state->options->carrier->rank == 0)
-        return par_tiles_whole(&tiles, error);
-    tiles.kept_elsewhere = true; /* rank 0 has the whole mesh, too, and hands it out */
-    enum tri_status status = par_tiles_begin(&tiles, state->mesh->n_triangles, error);
-    return status ? status : par_tiles_end(&tiles, error);
+    if (state->options->carrier)
+        return par_whole_on_ranks(state->options->carrier, &tiles, error);
+    return par_tiles_whole(&tiles, error);
 }
 
 enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
