@@ -6,8 +6,8 @@
  *
  * 1. The place is that on the parent's line, rounded once, or, for the sake of 2, a neighbour of it or of the place on
  * the subsegment, not more than ASTRAY away from the line. So a chain keeps to its line however often it is split;
- * where it cannot it is not split. Which of these places is taken the cavity decides: the first from which all of it can
- * be seen.
+ * where it cannot it is not split. Which of these places is taken the cavity decides: the first from which all of it
+ * can be seen.
  * 2. THEOREM (boundary). Each parent on the boundary has an empty triangle of its own outside: its ends and its guard,
  * the centroid of the triangle of the constrained Delaunay triangulation that was carved there. If every split point
  * of a boundary subsegment lies on the inner side of it (or on it), or in the parent's own triangle, the boundary never
@@ -51,6 +51,7 @@ bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s
     struct tri_point a = mesh->xy[parent->v[0]], b = mesh->xy[parent->v[1]];
     struct tri_point between = tri_point_between(mesh->xy[s->v[0]], mesh->xy[s->v[1]], fraction);
     bool on_line = choice < TRI_PLACES; /* else on the subsegment, which lies inside by now */
-    *p = on_line ? tri_place_beside(tri_onto_line(a, b, between), choice) : tri_place_beside(between, choice - TRI_PLACES);
+    struct tri_point exact = on_line ? tri_onto_line(a, b, between) : between;
+    *p = tri_place_beside(exact, choice % TRI_PLACES);
     return is_allowed(mesh, s, *p) && (on_line || tri_line_distance(a, b, *p) <= ASTRAY * tri_resolution(*p));
 }
