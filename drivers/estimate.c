@@ -3,14 +3,14 @@
 #include "drivers/estimate.h"
 
 #include <math.h>
-#include <stdio.h>
 
-#include "drivers/resources.h"
+#include "triangle/census.h"
 #include "triangle/clock.h"
 
 /* Measured: bytes a triangle at the peak, at least and with one refinement loop or the schedule and its numbering; time
  * of the numbering against that of refining; triangles against the least number that area bounds ask for. */
 static const double LEAST_BYTES = 44, LOOP_BYTES = 52, SCHEDULE_BYTES = 74, NUMBERING = 0.55, AREA_FACTOR = 1.14;
+static const double LEAST_SHARE = 0.5; /* of what a sweep is expected to hold, beyond doubt */
 /* Text that one thread writes in a second where a triangle takes it the usual time. */
 static const double TEXT_BYTES = 6.5e8, USUAL_SECONDS = 1.25e-7;
 
@@ -39,8 +39,8 @@ static double triangles_of(const struct run *run)
 
 static double digits(double number) { return number < 10 ? 1 : floor(log10(number)) + 1; }
 
-/* Of the files that are always written. A coordinate takes about 19 characters with its blanks. */
-static double disk_of(const struct run *run, double vertices, double triangles)
+/* Of Triangle's files, but for .poly. A coordinate takes about 19 characters with its blanks. */
+static double text_of(const struct run *run, double vertices, double triangles)
 {
     const struct tri_switches *s = &run->arguments->switches;
     double v = digits(vertices) + 2, t = digits(triangles) + 4, edges = 1.5 * triangles, points = 2 * 19.5;
@@ -52,6 +52,21 @@ static double disk_of(const struct run *run, double vertices, double triangles)
     bytes += s->voronoi ? triangles * (t + points) + edges * (t + 2 * v) : 0;
     bytes += s->second_order && !s->no_node ? edges * (v + points) : 0;
     return s->off ? bytes + vertices * points + triangles * (3 * v + 5) : bytes;
+}
+
+/* In other formats: numbers are about as long in all of them. */
+static double exports_of(const struct run *run, double vertices, double triangles)
+{
+    const struct tri_switches *s = &run->arguments->switches;
+    double index = vertices > INT32_MAX ? 8 : 4, nodes = s->second_order ? 6 : 3;
+    double row = vertices * (28 + 8 * run->mesh.n_attributes) + triangles * (nodes * index + 4);
+    return run->hooks->exports.n * row;
+}
+
+static double disk_of(const struct run *run, double vertices, double triangles)
+{
+    double text = run->hooks->exports_alone ? 0 : text_of(run, vertices, triangles);
+    return text + exports_of(run, vertices, triangles);
 }
 
 /* Beside what refining takes: what the mesh has for other reasons, and lists of edges. */
@@ -96,6 +111,12 @@ static double seconds_of(const struct run *run, double triangles, double disk)
 
 /* --- all together */
 
+static double swept_memory_of(const struct run *run, double triangles)
+{
+    const struct run_hooks *hooks = run->hooks;
+    return hooks->swept_memory ? hooks->swept_memory(hooks->user, triangles) : HUGE_VAL;
+}
+
 struct estimate estimate_make(const struct run *run, bool with_seconds)
 {
     const struct tri_refine_options *quality = &run->options.quality;
@@ -105,47 +126,11 @@ struct estimate estimate_make(const struct run *run, bool with_seconds)
     double grown = fmax(e.triangles - run->mesh.n_triangles, 0);
     e.vertices = run->mesh.n_vertices + grown / 2;
     e.more = grown * bytes_a_triangle(run);
-    e.memory = resources_memory_used() + e.more;
+    e.least_more = e.least * LEAST_BYTES;
+    e.swept = swept_memory_of(run, grown);
+    e.least_swept = LEAST_SHARE * swept_memory_of(run, e.least);
     e.disk = disk_of(run, e.vertices, e.triangles);
+    e.least_disk = disk_of(run, 0.5 * e.least, e.least);
     e.seconds = with_seconds ? seconds_of(run, e.triangles, e.disk) : 0;
     return e;
-}
-
-enum tri_status estimate_check(const struct estimate *e, const struct console *console, struct tri_error *error)
-{
-    double least = e->least * LEAST_BYTES;
-    double available = fmax(e->more, least) > 1e8 ? resources_memory() : HUGE_VAL; /* no need to look for less */
-    if (e->least > TRI_MAX_TRIANGLES)
-        return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
-                        "the area bounds ask for at least %.0f million triangles, and a mesh holds %d million",
-                        fmin(1e-6 * e->least, 1e9), TRI_MAX_TRIANGLES / 1000000);
-    if (least > available)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                        "the area bounds ask for at least %.3g million triangles, which take %.3g GB of memory; "
-                        "%.3g GB are left", 1e-6 * e->least, 1e-9 * least, 1e-9 * available);
-    if (e->triangles > TRI_MAX_TRIANGLES)
-        console_warn(console, "the bounds may ask for more triangles than the %d million that a mesh holds.\n",
-                     TRI_MAX_TRIANGLES / 1000000);
-    else if (e->more > available)
-        console_warn(console, "the bounds may take about %.3g GB of memory; %.3g GB are left.\n", 1e-9 * e->more,
-                     1e-9 * available);
-    return TRI_OK;
-}
-
-static void print_bytes(const char *what, double needed, double available)
-{
-    printf("  %s: %.0f MB", what, ceil(1e-6 * needed));
-    if (available < HUGE_VAL)
-        printf(" (%.0f MB left)", floor(1e-6 * available));
-    putchar('\n');
-}
-
-void estimate_print(const struct estimate *e, const struct run *run)
-{
-    int threads = run->hooks->threads;
-    printf("\nEstimate:\n\n  Triangles: %.3g million\n  Vertices: %.3g million\n", 1e-6 * e->triangles,
-           1e-6 * e->vertices);
-    print_bytes("Memory", e->memory, resources_memory());
-    print_bytes("Disk", e->disk, resources_disk(run->arguments->output));
-    printf("  Time: %.2g s on %d thread%s\n", e->seconds, threads > 1 ? threads : 1, threads > 1 ? "s" : "");
 }

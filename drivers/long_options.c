@@ -27,6 +27,10 @@ const char long_options_help[] =
     "                     curve: new vertices and triangles are numbered along a space-filling curve, which\n"
     "                     makes solvers faster (the default); blocks, quicker: as the blocks of the schedule\n"
     "                     made them\n"
+    "  --memory SIZE      memory that the program may take: 500M, 4G (K, M, G, T: powers of 1024), or 60% of what\n"
+    "                     the machine has. Default: what is left, by limits of batch systems too. A mesh that needs\n"
+    "                     more is refused before it costs time\n"
+    "  --scratch DIR      folder for what does not fit into memory. Default: TMPDIR, else that of the output\n"
     "  --dry-run          estimate triangles, memory, disk and time; refine and write nothing\n"
     "  --time-limit T     stop after T seconds (also 90s, 10m, 2h), with exit code 124\n"
     "  --write-partial    a run that is stopped while it refines, by the limit or a signal, writes the valid\n"
@@ -37,8 +41,8 @@ const char long_options_help[] =
     "  --version, --help  name and version; this help\n";
 
 enum id {
-    THREADS, MAX_AREA, MIN_ANGLE, HOLES, OUTPUT, REPORT, BLOCKS, NUMBERING, DRY_RUN, TIME_LIMIT, WRITE_PARTIAL,
-    PROGRESS, NO_PROGRESS, VERSION, HELP
+    THREADS, MAX_AREA, MIN_ANGLE, HOLES, OUTPUT, REPORT, BLOCKS, NUMBERING, MEMORY, SCRATCH, DRY_RUN, TIME_LIMIT,
+    WRITE_PARTIAL, PROGRESS, NO_PROGRESS, VERSION, HELP
 };
 
 static const struct kind {
@@ -51,6 +55,7 @@ static const struct kind {
     {"numbering", NUMBERING, true}, {"progress", PROGRESS, false}, {"no-progress", NO_PROGRESS, false},
     {"dry-run", DRY_RUN, false},    {"time-limit", TIME_LIMIT, true}, {"write-partial", WRITE_PARTIAL, false},
     {"version", VERSION, false},    {"help", HELP, false},         {"holes", HOLES, true},
+    {"memory", MEMORY, true},       {"scratch", SCRATCH, true},
 };
 
 static const struct kind *find_kind(const char *name, size_t length)
@@ -153,6 +158,34 @@ static enum tri_status take_time(struct long_options *options, const char *value
                     "--time-limit: \"%.40s\" is not a time such as 90, 90s, 10m or 2h, from 0.001 s to 1e9 s", value);
 }
 
+static bool ends_with(const char *end, char letter) { return end[0] == letter && (letter == 0 || end[1] == 0); }
+
+/* Bytes, a number with K, M, G or T behind it, or a share in per cent. */
+static enum tri_status take_memory(struct long_options *options, const char *value, struct tri_error *error)
+{
+    static const struct {
+        char letter;
+        double bytes;
+    } units[] = {{0, 1}, {'K', 0x1p10}, {'M', 0x1p20}, {'G', 0x1p30}, {'T', 0x1p40}};
+    double number = 0;
+    const char *end = tri_scan_real(value, value + strlen(value), &number);
+    if (end > value && ends_with(end, '%') && number > 0 && number <= 100) {
+        options->memory_share = number / 100;
+        options->memory = 0;
+        return TRI_OK;
+    }
+    for (size_t i = 0; end > value && i < sizeof units / sizeof *units; i++) {
+        double bytes = number * units[i].bytes;
+        if (!ends_with(end, units[i].letter) || !(bytes >= 0x1p20 && bytes <= 0x1p60))
+            continue;
+        options->memory = bytes;
+        options->memory_share = 0;
+        return TRI_OK;
+    }
+    return tri_fail(error, TRI_BAD_INPUT, NULL, 0,
+                    "--memory: \"%.40s\" is not a size such as 500M, 4G or 60%%, from 1M on", value);
+}
+
 static enum tri_status take_name(const char **name, const struct kind *kind, const char *value, struct tri_error *error)
 {
     if (!*value)
@@ -186,6 +219,8 @@ static enum tri_status apply(struct long_options *options, struct tri_switches *
     case BLOCKS: return take_name(&options->blocks, kind, value, error);
     case NUMBERING: return take_numbering(options, value, error);
     case TIME_LIMIT: return take_time(options, value, error);
+    case MEMORY: return take_memory(options, value, error);
+    case SCRATCH: return take_name(&options->scratch, kind, value, error);
     case DRY_RUN: options->dry_run = true; break;
     case WRITE_PARTIAL: options->write_partial = true; break;
     case PROGRESS: options->progress = PROGRESS_YES; break;

@@ -24,6 +24,9 @@ struct long_options {
     enum long_options_progress progress;
     bool by_block;      /* --numbering blocks */
     double time_limit;  /* seconds; 0: none */
+    double memory;      /* bytes that the process may take; 0: not given, or .. */
+    double memory_share; /* .. this share of what the machine has, to 1; 0: not given */
+    const char *scratch; /* directory; NULL: not given */
     bool write_partial, dry_run;
     bool version, help;
 };

@@ -1,5 +1,6 @@
 /* ptriangle: the mesh generator on all cores, with the command line, the files and the printed lines of Triangle, and
  * long options. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +12,7 @@
 #include "drivers/long_options.h"
 #include "drivers/progress.h"
 #include "drivers/report_json.h"
+#include "drivers/resources.h"
 #include "drivers/run.h"
 #include "sched/schedule.h"
 #include "sched/threads.h"
@@ -49,10 +51,12 @@ static void follow(void *user, int round, int phase, int64_t triangles)
     progress_step(&p->progress, round, phase, triangles);
 }
 
-static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_refine_options *quality,
-                              struct tri_refine_report *report, struct tri_error *error)
+static enum tri_status refine(void *user, const struct run_plan *plan, struct tri_mesh *mesh,
+                              const struct tri_refine_options *quality, struct tri_refine_report *report,
+                              struct tri_error *error)
 {
     struct program *p = user;
+    (void)plan;
     struct par_options options = par_defaults();
     options.threads = p->threads;
     options.by_block = p->options.by_block;
@@ -133,6 +137,13 @@ static void add_further(struct file_names *names, const char *name)
         names->name[names->n++] = name;
 }
 
+/* Bytes that the process may take; 0: whatever there is. */
+static double memory_of(const struct long_options *options)
+{
+    double total = options->memory_share > 0 ? resources_memory_total() : 0;
+    return options->memory_share > 0 ? options->memory_share * (total < HUGE_VAL ? total : 0) : options->memory;
+}
+
 static int run_program(struct program *p, const struct arguments *arguments)
 {
     p->threads = par_threads(long_options_threads(&p->options), true);
@@ -141,7 +152,7 @@ static int run_program(struct program *p, const struct arguments *arguments)
     const struct long_options *o = &p->options;
     struct run_hooks hooks = {.program = PROGRAM, .executor = &executor, .refine = refine, .estimate = estimate,
                               .threads = p->threads, .write = write_further, .user = p,
-                              .limits = {o->time_limit, o->write_partial, o->dry_run}};
+                              .limits = {o->time_limit, o->write_partial, o->dry_run, memory_of(o), o->scratch}};
     for (int i = 0; i < o->n_exports; i++)
         add_further(&hooks.exports, o->exports[i]);
     hooks.exports_alone = o->n_exports > 0 && !o->output;

@@ -12,6 +12,9 @@
 
 enum { LINE_BYTES = 512, PATH_BYTES = 4096 };
 
+/* What is asked of every limit: what is left below it, or all that it gives. */
+enum extent { LEFT, ALL };
+
 /* The number behind the word that begins a line of a file; -1: there is none. word "": the first line's number. */
 static double find_number(const char *path, const char *word)
 {
@@ -31,9 +34,13 @@ static double find_number(const char *path, const char *word)
     return value;
 }
 
-static double of_machine(void)
+static double of_machine(enum extent extent)
 {
     static const char file[] = "/proc/meminfo";
+    if (extent == ALL) {
+        double total = find_number(file, "MemTotal:");
+        return total < 0 ? HUGE_VAL : 1024 * total;
+    }
     double available = find_number(file, "MemAvailable:"), swap = find_number(file, "SwapFree:");
     return available < 0 ? HUGE_VAL : 1024 * (available + fmax(swap, 0));
 }
@@ -47,8 +54,10 @@ static double of_limit(int resource, double used)
 }
 
 /* Data and stack count against the one, all of the address space against the other. */
-static double of_process(void)
+static double of_process(enum extent extent)
 {
+    if (extent == ALL)
+        return fmin(of_limit(RLIMIT_AS, 0), of_limit(RLIMIT_DATA, 0));
     double space = find_number("/proc/self/status", "VmSize:"), data = find_number("/proc/self/status", "VmData:");
     return fmin(of_limit(RLIMIT_AS, 1024 * fmax(space, 0)), of_limit(RLIMIT_DATA, 1024 * fmax(data, 0)));
 }
@@ -57,8 +66,8 @@ struct files {
     const char *limit, *usage, *cache; /* the last: the word in memory.stat for what the kernel gives back */
 };
 
-/* What a group has left, and every group above it. path is shortened. */
-static double of_group(char *path, size_t root, const struct files *files)
+/* Of a group, and every group above it. path is shortened. */
+static double of_group(char *path, size_t root, const struct files *files, enum extent extent)
 {
     double least = HUGE_VAL;
     for (;;) {
@@ -66,9 +75,9 @@ static double of_group(char *path, size_t root, const struct files *files)
         snprintf(file, sizeof file, "%s/%s", path, files->limit);
         double limit = find_number(file, "");
         snprintf(file, sizeof file, "%s/%s", path, files->usage);
-        double usage = find_number(file, "");
+        double usage = extent == LEFT ? find_number(file, "") : 0;
         snprintf(file, sizeof file, "%s/memory.stat", path);
-        double cache = find_number(file, files->cache);
+        double cache = extent == LEFT ? find_number(file, files->cache) : 0;
         if (limit >= 0 && usage >= 0)
             least = fmin(least, fmax(limit - usage + fmax(cache, 0), 0));
         char *slash = strrchr(path, '/');
@@ -80,7 +89,7 @@ static double of_group(char *path, size_t root, const struct files *files)
 
 /* The group that this process is in, by a line of /proc/self/cgroup; where the tree is mounted at the group itself, as
  * in containers, its path does not exist, and the root is all that is looked at. */
-static double of_group_line(const char *line)
+static double of_group_line(const char *line, enum extent extent)
 {
     static const struct files first = {"memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file "},
                               second = {"memory.max", "memory.current", "inactive_file "};
@@ -95,22 +104,29 @@ static double of_group_line(const char *line)
         snprintf(path, sizeof path, "%s", root);
     while (strlen(path) > strlen(root) && path[strlen(path) - 1] == '/')
         path[strlen(path) - 1] = 0;
-    return of_group(path, strlen(root), unified ? &second : &first);
+    return of_group(path, strlen(root), unified ? &second : &first, extent);
 }
 
-static double of_groups(void)
+static double of_groups(enum extent extent)
 {
     char line[LINE_BYTES];
     double least = HUGE_VAL;
     FILE *file = fopen("/proc/self/cgroup", "r");
     while (file && fgets(line, sizeof line, file))
-        least = fmin(least, of_group_line(line));
+        least = fmin(least, of_group_line(line, extent));
     if (file)
         fclose(file);
     return least;
 }
 
-double resources_memory(void) { return fmin(of_machine(), fmin(of_process(), of_groups())); }
+static double least_of(enum extent extent)
+{
+    return fmin(of_machine(extent), fmin(of_process(extent), of_groups(extent)));
+}
+
+double resources_memory(void) { return least_of(LEFT); }
+
+double resources_memory_total(void) { return least_of(ALL); }
 
 double resources_memory_used(void) { return 1024 * fmax(find_number("/proc/self/status", "VmRSS:"), 0); }
 

@@ -7,6 +7,10 @@
  * up to the root. What of these cannot be read limits nothing; HUGE_VAL: nothing could be. */
 double resources_memory(void);
 
+/* Bytes of memory that the machine, the process's limits and its control groups, the least of them, give to begin with;
+ * HUGE_VAL: not known. */
+double resources_memory_total(void);
+
 /* Bytes of memory that it uses now, as far as they are in memory; 0: not known. */
 double resources_memory_used(void);
 

@@ -9,12 +9,13 @@
 #include <unistd.h>
 
 #include "drivers/console.h"
-#include "drivers/estimate.h"
 #include "drivers/help.h"
 #include "drivers/interrupt.h"
 #include "drivers/mesh_files.h"
+#include "drivers/plan.h"
 #include "drivers/self_check.h"
 #include "drivers/summary.h"
+#include "triangle/census.h"
 #include "triangle/clock.h"
 #include "triangle/quality.h"
 
@@ -245,7 +246,7 @@ static enum tri_status notice_stop(struct runner *r, enum tri_status status)
 static enum tri_status look_ahead(struct runner *r)
 {
     struct estimate estimate = estimate_make(&r->run, false);
-    return estimate_check(&estimate, &r->console, r->error);
+    return plan_make(&r->run.plan, &r->run, &estimate, &r->console, r->error);
 }
 
 /* For a dry run. */
@@ -266,7 +267,7 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
         return status;
     console_say(&r->console, "Adding vertices until the bounds are kept.\n");
     interrupt_stage("refining");
-    status = hooks->refine ? hooks->refine(hooks->user, mesh, quality, report, error)
+    status = hooks->refine ? hooks->refine(hooks->user, &r->run.plan, mesh, quality, report, error)
                            : tri_refine(mesh, quality, report, error);
     return notice_stop(r, status);
 }
@@ -461,8 +462,10 @@ static enum tri_status print_estimate(struct runner *r)
     if (status)
         return status;
     struct estimate estimate = estimate_make(&r->run, true);
-    estimate_print(&estimate, &r->run);
-    return r->run.options.refine ? estimate_check(&estimate, &r->console, r->error) : TRI_OK;
+    if (r->run.options.refine)
+        status = plan_make(&r->run.plan, &r->run, &estimate, &r->console, r->error);
+    plan_print(&r->run, &estimate);
+    return status;
 }
 
 static enum tri_status run_stages(struct runner *r)

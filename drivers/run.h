@@ -23,6 +23,12 @@ enum run_stage {
     RUN_STAGES
 };
 
+/* How the mesh is made: see drivers/plan.h. */
+struct run_plan {
+    bool swept;    /* by columns, of which few are in memory at a time; else the whole mesh is */
+    double memory; /* bytes of memory that the process may take; HUGE_VAL: not known */
+};
+
 /* All about a run, as far as it got. */
 struct run {
     const struct run_hooks *hooks;
@@ -34,6 +40,7 @@ struct run {
     int32_t n_loose;              /* segments that are not */
     int32_t base;                 /* 0 or 1 */
     bool points_in_poly;
+    struct run_plan plan; /* once refinement begins */
     struct tri_mesh mesh;
     struct tri_report report;
     struct tri_counts counts;
@@ -47,17 +54,24 @@ struct run_limits {
     double seconds;     /* the run ends after so much time; 0: none */
     bool write_partial; /* a run that is stopped while it refines writes the valid mesh that it has */
     bool dry_run;       /* nothing is refined or written: an estimate is printed */
+    double memory;      /* bytes that the process may take; 0: what there is */
+    const char *scratch; /* directory for what does not fit there; NULL: that of the output */
 };
 
 struct run_hooks {
     const char *program;
     const struct tri_executor *executor; /* for reading and writing; NULL: one task after another */
-    /* Refines the mesh as tri_refine does; NULL: tri_refine itself. */
-    enum tri_status (*refine)(void *user, struct tri_mesh *mesh, const struct tri_refine_options *options,
-                              struct tri_refine_report *report, struct tri_error *error);
+    /* Refines the mesh as tri_refine does, by the plan; NULL: tri_refine itself. */
+    enum tri_status (*refine)(void *user, const struct run_plan *plan, struct tri_mesh *mesh,
+                              const struct tri_refine_options *options, struct tri_refine_report *report,
+                              struct tri_error *error);
     /* Triangles that the mesh will have, and the share of them by which that may be wrong; NULL: what areas ask for is
      * all that is known. */
     double (*estimate)(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *options);
+    /* Bytes of memory that sweeping so many triangles takes, beyond what is taken now; refine follows run->plan then.
+     * NULL: nothing is ever swept. */
+    double (*swept_memory)(void *user, double triangles);
+    const char *whole_mesh;         /* what of the program's own options asks for a mesh in memory; NULL: nothing */
     int threads;                    /* to refine with, for estimates */
     struct file_names exports;      /* the mesh in other formats .. */
     bool exports_alone;             /* .. and in no others */

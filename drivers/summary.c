@@ -4,6 +4,8 @@
 #include <inttypes.h>
 #include <stdio.h>
 
+#include "triangle/census.h"
+
 /* --- what went otherwise */
 
 void summary_segments(const struct console *console, const struct tri_constrain_report *report)

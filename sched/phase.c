@@ -8,6 +8,7 @@
 #include "triangle/clock.h"
 #include "sched/theory.h"
 #include "triangle/estimate.h"
+#include "triangle/grow.h"
 
 enum { GONE = -2 }; /* in phase.block_of: the triangle is no more */
 
@@ -94,7 +95,8 @@ static int32_t expect(int phase, double work)
  * dropped. */
 static bool deal_worklists(struct phase *p)
 {
-    struct par_worklist *worklist = &p->state->worklist, *column = &p->state->column;
+    struct par_worklist *worklist = &p->state->worklist;
+    struct par_keys *key = &p->state->key;
     int32_t n_blocks = par_blocks(p->partition), kept = 0, used = 0;
     int32_t *start = calloc((size_t)n_blocks + 1, sizeof *start);
     double *work = calloc((size_t)n_blocks + 1, sizeof *work);
@@ -124,14 +126,14 @@ static bool deal_worklists(struct phase *p)
         if (p->block_of[i] >= 0)
             p->worklist[start[p->block_of[i]]++] = triangle;
         else if (p->block_of[i] == TRI_NONE) {
-            if (column->n > 0)
-                column->item[kept] = column->item[i];
+            if (key->n > 0)
+                key->item[kept] = key->item[i];
             worklist->item[kept++] = triangle;
         }
     }
     assert(kept <= worklist->n && p->n_tasks <= used);
     worklist->n = kept;
-    column->n = column->n > 0 ? kept : 0;
+    key->n = key->n > 0 ? kept : 0;
     free(start);
     free(work);
     return p->tasks;
@@ -347,10 +349,24 @@ void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *a
     sum->hit_cap |= add->hit_cap;
 }
 
-/* What a phase has left, with the columns of who left it. */
+static bool add_key(struct par_keys *keys, uint64_t key)
+{
+    if (!tri_grow(&keys->item, &keys->capacity, keys->n + 1, sizeof *keys->item))
+        return false;
+    keys->item[keys->n++] = key;
+    return true;
+}
+
+/* What a phase has left. */
 struct leftovers {
-    struct par_worklist item, column;
+    struct par_worklist item;
+    struct par_keys key;
 };
+
+static uint64_t next_key(struct par_state *state, int32_t column)
+{
+    return (uint64_t)state->round << 56 | (uint64_t)(column + 1) << 32 | state->n_left++;
+}
 
 /* A triangle goes back once, however often it was left: one with three encroached walls would count threefold, and
  * ninefold after the next phase. */
@@ -364,34 +380,34 @@ static bool gather_left(const struct phase *p, struct leftovers *left)
         memory = memory && !task->left_lost;
         for (int32_t k = 0; memory && k < task->left.n; k++)
             memory = par_worklist_add_new(&left->item, &seen, task->left.item[k]);
-        while (memory && left->column.n < left->item.n)
-            memory = par_worklist_add(&left->column, task->block / p->partition->n_rows);
+        while (memory && left->key.n < left->item.n)
+            memory = add_key(&left->key, next_key(p->state, task->block / p->partition->n_rows));
     }
     free(seen.word);
     return memory;
 }
 
-static int32_t column_of(const struct par_state *state, int32_t i)
+static uint64_t key_of(const struct par_state *state, int32_t i)
 {
-    return state->column.n > 0 ? state->column.item[i] : -1;
+    return state->key.n > 0 ? state->key.item[i] : (uint64_t)i;
 }
 
-/* The worklist and what was left, which no phase has had since, by column; what was in the worklist comes first. */
+/* The worklist and what was left, which no phase has had since, by their keys. */
 static bool merge_left(struct par_state *state, const struct leftovers *left)
 {
     struct leftovers merged = {{0}, {0}};
     bool memory = true;
     for (int32_t i = 0, k = 0; memory && (i < state->worklist.n || k < left->item.n);) {
-        bool old = k == left->item.n || (i < state->worklist.n && column_of(state, i) <= left->column.item[k]);
+        bool old = k == left->item.n || (i < state->worklist.n && key_of(state, i) < left->key.item[k]);
         memory = par_worklist_add(&merged.item, old ? state->worklist.item[i] : left->item.item[k]) &&
-                 par_worklist_add(&merged.column, old ? column_of(state, i) : left->column.item[k]);
+                 add_key(&merged.key, old ? key_of(state, i) : left->key.item[k]);
         i += old;
         k += !old;
     }
     free(state->worklist.item);
-    free(state->column.item);
+    free(state->key.item);
     state->worklist = merged.item;
-    state->column = merged.column;
+    state->key = merged.key;
     return memory;
 }
 
@@ -400,7 +416,7 @@ static bool take_back(struct phase *p)
     struct leftovers left = {{0}, {0}};
     bool memory = gather_left(p, &left) && merge_left(p->state, &left);
     free(left.item.item);
-    free(left.column.item);
+    free(left.key.item);
     return memory;
 }
 

@@ -13,6 +13,13 @@
 
 void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add);
 
+/* Who left each triangle of a worklist, and when: round (8 bits), column of the block + 1 (24 bits), how many had been
+ * left before (32 bits). Of those that no block has had, their places in the list. */
+struct par_keys {
+    uint64_t *item;
+    int32_t n, capacity;
+};
+
 /* What the phases of a schedule hand on. */
 struct par_state {
     struct tri_mesh *mesh;
@@ -20,8 +27,8 @@ struct par_state {
     const struct par_options *options;
     int threads;
     struct par_worklist worklist;   /* triangles that may be bad, in canonical order; some may have gone since */
-    struct par_worklist column; /* [worklist.n] column of the block that left each, ascending; -1: none
-                                   has had it; n == 0: so are all */
+    struct par_keys key;     /* [worklist.n] ascending; n == 0: no block has had any */
+    uint32_t n_left;         /* by blocks so far */
     struct par_room spare;   /* unused ranges of the arrays */
     double radius;           /* largest circumradius in the worklist when it was last filled */
     struct par_report *report;
@@ -40,9 +47,9 @@ struct par_state {
  * THEOREM (order of columns). A call with TRI_NONE is one for each column of this phase, in any order; and the phases
  * of odd columns may run column by column, an even one between them once both its neighbours are through. The mesh and
  * what is left are the same, up to ids. For blocks change only what lies in their fences, and fences of two columns
- * meet only if the columns are neighbours or the same; and a block finds its share of the worklist in the same order:
- * by the column of who left it, by phase, by row, and as they were left. Only a column or its neighbours leave
- * something for it. */
+ * meet only if the columns are neighbours or the same; and a block finds its share of the worklist in the same order,
+ * that of the keys: by round, by the column of who left it, by phase, by row, and as they were left. Only a column or
+ * its neighbours leave something for it. */
 enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int phase, int32_t only,
                           struct tri_error *error);
 

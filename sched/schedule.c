@@ -11,6 +11,7 @@
 #include "sched/phase.h"
 #include "sched/theory.h"
 #include "sched/threads.h"
+#include "triangle/census.h"
 #include "triangle/estimate.h"
 #include "triangle/numbering.h"
 
@@ -144,7 +145,7 @@ static enum tri_status fill_worklist(struct par_state *state, const struct tri_r
                                  struct tri_error *error)
 {
     struct tri_executor executor = par_executor(&state->threads);
-    state->column.n = 0;
+    state->key.n = 0;
     return par_worklist_fill(&state->worklist, state->mesh, quality, known, &executor, &state->radius, error);
 }
 
@@ -310,7 +311,6 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
     assert(par_cells(partition) >= 4);
     state->n_schedules++;
     for (state->round = 0; !status && state->round < MAX_ROUNDS; state->round++) {
-        state->column.n = 0; /* of other blocks than those to come */
         status = state->sweeping ? sweep_columns(state, partition, error) : run_phases(state, partition, error);
         state->report->rounds++;
         if (state->worklist.n == 0 || par_cells(partition) < FEWEST_TO_COARSEN || state->sweeping)
@@ -524,7 +524,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     if (!status && options->sink && !state.sweeping)
         status = hand_out(&state, quality, error);
     free(state.worklist.item);
-    free(state.column.item);
+    free(state.key.item);
     par_partition_free(&state.cells);
     par_room_free(&state.spare);
     report->seconds_total = tri_seconds() - began;

@@ -7,6 +7,7 @@
 
 #include "sched/theory.h"
 
+#include "triangle/census.h"
 #include "triangle/grow.h"
 
 bool par_worklist_add(struct par_worklist *triangles, int32_t triangle)

@@ -16,6 +16,7 @@
 
 #include <cmocka.h>
 
+#include "triangle/census.h"
 #include "triangle/check/check.h"
 #include "triangle/mesh.h"
 #include "triangle/predicates.h"

@@ -194,8 +194,8 @@ static void test_segments_are_moved_to_the_lowest_copy(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* A fan of incident from one vertex, in order and far apart in angle by an ulp or so. */
-static void test_many_spokes_and_long_channels(void **state)
+/* A fan of segments from one vertex, in order and far apart in angle by an ulp or so. */
+static void test_many_spokes_and_long_gaps(void **state)
 {
     (void)state;
     struct tri_constrain_report report;
@@ -478,7 +478,7 @@ int main(void)
         cmocka_unit_test(test_overlap_keeps_the_first_marker),
         cmocka_unit_test(test_meaningless_segments_are_skipped),
         cmocka_unit_test(test_segments_are_moved_to_the_lowest_copy),
-        cmocka_unit_test(test_many_spokes_and_long_channels),
+        cmocka_unit_test(test_many_spokes_and_long_gaps),
         cmocka_unit_test(test_crossings_below_resolution),
         cmocka_unit_test(test_once_broken),
         cmocka_unit_test(test_nearest_beside_is_taken),

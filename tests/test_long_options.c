@@ -58,6 +58,26 @@ static void test_both_forms(void **state)
     assert_false(t.options.by_block || t.options.help || t.options.version);
 }
 
+static void test_memory(void **state)
+{
+    (void)state;
+    struct taken t = nothing();
+    assert_int_equal(TAKE(&t, "--memory", "4G"), TRI_OK);
+    assert_true(t.options.memory == 4 * 0x1p30 && t.options.memory_share == 0);
+    assert_int_equal(TAKE(&t, "--memory", "60%"), TRI_OK);
+    assert_true(t.options.memory == 0 && t.options.memory_share == 0.6);
+    assert_int_equal(TAKE(&t, "--memory", "1.5e3K"), TRI_OK);
+    assert_true(t.options.memory == 1536000 && t.options.memory_share == 0);
+    assert_int_equal(TAKE(&t, "--memory", "2097152"), TRI_OK);
+    assert_true(t.options.memory == 0x1p21);
+    char *const wrong[] = {"", "G", "0", "-1G", "1g", "4GB", "0%", "101%", "nan", "1e99T", "1K", "4 G"};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+        assert_int_equal(take(&t, (char[]){"--memory"}, wrong[i]), TRI_BAD_INPUT);
+    assert_true(t.options.memory == 0x1p21);
+    assert_int_equal(TAKE(&t, "--scratch", "/tmp"), TRI_OK);
+    assert_string_equal(t.options.scratch, "/tmp");
+}
+
 /* A batch system's number counts where nobody asked for another. */
 static void test_threads_of_a_batch_system(void **state)
 {
@@ -126,7 +146,8 @@ static void test_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_both_forms), cmocka_unit_test(test_threads_of_a_batch_system),
+        cmocka_unit_test(test_both_forms),
+        cmocka_unit_test(test_memory), cmocka_unit_test(test_threads_of_a_batch_system),
         cmocka_unit_test(test_bounds),
         cmocka_unit_test(test_refused),
     };

@@ -210,7 +210,7 @@ static void test_each_broken_subsegment_is_seen(void **state)
 }
 
 /* A triangle freed while neighbours still point to it. */
-static void test_link_to_a_free_slot_is_seen(void **state)
+static void test_link_to_a_free_number_is_seen(void **state)
 {
     (void)state;
     struct tri_mesh mesh = two_triangles();
@@ -252,7 +252,7 @@ int main(void)
         cmocka_unit_test(test_compaction_of_nothing),
         cmocka_unit_test(test_each_broken_link_is_seen),
         cmocka_unit_test(test_each_broken_subsegment_is_seen),
-        cmocka_unit_test(test_link_to_a_free_slot_is_seen),
+        cmocka_unit_test(test_link_to_a_free_number_is_seen),
         cmocka_unit_test(test_copy_of_a_triangle_is_seen),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -179,7 +179,7 @@ static int64_t run_phase(struct tri_mesh *mesh, const struct tri_refine_options 
         assert_true(report.blocks[i].block >= 0 && report.blocks[i].block < par_blocks(p));
     par_report_free(&report);
     free(state.worklist.item);
-    free(state.column.item);
+    free(state.key.item);
     free(old);
     return inserted;
 }
@@ -247,7 +247,7 @@ static void test_four_phases_in_turn(void **state)
         support_assert_cdt(&mesh, false);
         par_report_free(&report);
         free(phases.worklist.item);
-        free(phases.column.item);
+        free(phases.key.item);
         par_partition_free(&partition);
         tri_mesh_free(&mesh);
     }
@@ -282,7 +282,7 @@ static void test_margin_keeps_cavities_inside(void **state)
             par_room_close(&lone.spare, &mesh, 2);
             par_report_free(&report);
             free(lone.worklist.item);
-            free(lone.column.item);
+            free(lone.key.item);
             tri_mesh_free(&mesh);
         }
     par_partition_free(&partition);

@@ -163,7 +163,7 @@ static void test_notes(void **state)
     assert_int_equal(strlen(s.notes[0]), TRI_SWITCH_NOTE_CHARS - 1);
 }
 
-/* What clients pass (contract of the original, section 7). */
+/* What clients of Triangle pass. */
 static void test_clients(void **state)
 {
     (void)state;

@@ -80,7 +80,7 @@ static struct triangulateio polygon(REAL *xy, int *ends, int n)
     return in;
 }
 
-/* --- what a call writes, by its letters: the table of the contract */
+/* --- what a call writes, by its letters: the table of triangle.h */
 
 struct written {
     bool points, attributes, markers, triangles, triangle_attributes, neighbors, segments, segment_markers, lists,
@@ -799,7 +799,7 @@ static void test_every_allocation_may_fail(void **state)
 }
 #endif
 
-/* --- inputs from public trouble reports (contract, section 10) */
+/* --- inputs from public trouble reports */
 
 static void test_hole_outside(void **state)
 {

@@ -235,7 +235,7 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
 
 /* Numbers for the fan: those of the cavity's triangles, then fresh ones. A fan has at least as many triangles as its
  * cavity (Euler), so no number is ever left over. The first comes again behind the last, as its neighbour. */
-static void take_slots(struct tri_cavity *c, struct tri_mesh *mesh)
+static void take_numbers(struct tri_cavity *c, struct tri_mesh *mesh)
 {
     for (int32_t i = c->n_tri; i < c->n_edges; i++) {
         assert(mesh->n_triangles < mesh->triangle_capacity);
@@ -310,7 +310,7 @@ void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v)
     assert(claim(c, mesh));
     if (c->mixed)
         place_regions(c, mesh, 0, c->n_edges, 0, c->n_tri);
-    take_slots(c, mesh);
+    take_numbers(c, mesh);
     fill_chain(c, mesh, v, 0, c->n_edges);
 }
 
@@ -324,7 +324,7 @@ int32_t tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, int32
         place_regions(c, mesh, 0, n_left, 0, c->n_left_tri);
         place_regions(c, mesh, n_left, c->n_edges, c->n_left_tri, c->n_tri);
     }
-    take_slots(c, mesh);
+    take_numbers(c, mesh);
     mesh->sub[s] = (struct tri_subsegment){{old.v[0], v}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
     mesh->sub[second] = (struct tri_subsegment){{v, old.v[1]}, {TRI_NONE, TRI_NONE}, old.marker, old.parent};
     for (int side = 0; side < 2; side++) {

@@ -10,8 +10,9 @@
  * cap of the disk of t beyond it lies in its neighbour's disk), unless it is a subsegment. A subsegment among them is a
  * wall; the caller tests its side.
  *
- * THEOREM (encroachment is local; design: Segments). Every subsegment that p encroaches and sees is a wall of its own
- * cavity.
+ * THEOREM (encroachment is local). Let no vertex of the mesh encroach subsegment e, and let p encroach e and see it.
+ * Then e is a wall of p's own cavity. Proof. The triangle beside e on p's side has its apex outside the disk in which p
+ * encroaches, so its circumdisk holds all of that disk that lies on this side of e, and p with it.
  *
  * The search carries coordinates relative to p, so each step loads one triangle and one vertex; the filter for incircle
  * is the bound (10 + 96 u) u of Shewchuk (1997) with the permanent overestimated by Cauchy-Schwarz, decided exactly in

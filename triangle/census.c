@@ -1,4 +1,6 @@
-/* Looking over a whole mesh: what is there to do, can it be done, what has been left, and why. */
+/* One pass over the triangles, or the subsegments, for each question. */
+#include "triangle/census.h"
+
 #include <assert.h>
 #include <math.h>
 

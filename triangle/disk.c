@@ -1,7 +1,7 @@
 /* Diametral circles.
  *
- * A vertex crowds a subsegment that it sees at more than 90 degrees. (If any vertex that sees it does, so does the apex
- * of a triangle beside it.) An encroached subsegment is split; no new point in the plane ever enters a circle
+ * A vertex encroaches a subsegment that it sees at more than 90 degrees. (If any vertex that sees it does, so does the
+ * apex of a triangle beside it.) An encroached subsegment is split; no new point in the plane ever enters a circle
  * (refine.c), and the circles of the parts lie in that of the whole. So the mesh is conforming once no subsegment is
  * encroached.
  *
@@ -11,8 +11,8 @@
  * split (tri_split_fraction).
  *
  * THEOREM (levels part two parents for good). Let u, on e, be level with v, on f, and f be all on one side of the line
- * of e. Then v crowds neither part of e, and u no part of f. Proof. With a common end, circles with a diameter on a ray
- * from o lie in the ring between the ends of the diameter, and meet its border on the ray alone; u and v lie on one
+ * of e. Then v encroaches neither part of e, and u no part of f. Proof. With a common end, circles with a diameter on a
+ * ray from o lie in the ring between the ends of the diameter, and meet its border on the ray alone; u and v lie on one
  * such border. Else v sees u and any point of e, and u sees v and any point of f, at no more than 90 degrees, since uv
  * is perpendicular to e. So two parents side by side, however near, take about as many points as they have vertices,
  * not length / width of them, and a vertex in a bundle of parents is handed on across it once. All rays from one vertex

@@ -120,6 +120,6 @@ enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_execu
     find_acute(mesh);
     enum tri_status status = list_parents(mesh, error);
     if (!status)
-        tri_choose_channels(mesh, executor);
+        tri_choose_gaps(mesh, executor);
     return status;
 }

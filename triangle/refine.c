@@ -17,6 +17,7 @@
 
 #include "triangle/bad_queue.h"
 #include "triangle/cavity.h"
+#include "triangle/census.h"
 #include "triangle/criterion.h"
 #include "triangle/disk.h"
 #include "triangle/feature_size.h"

@@ -9,7 +9,7 @@
  *      smaller is made because of it.
  *   2. Two segments side by side, nearer to each other than rounding, or than anyone could want to fill: spikes of no
  *      width, slits, borders that were digitised twice. The theory holds, but asks for length / width triangles. Such a
- *      gap is filled only if the mesh can afford it (tri_choose_channels); a triangle whose shortest edge bridges
+ *      gap is filled only if the mesh can afford it (tri_choose_gaps); a triangle whose shortest edge bridges
  *      one that is too dear stays.
  *   3. Rounding: points nearer than about 100 units in the last place, flat triangles, split points beside their
  *      segment. An edge or height below mesh.limits.shortest2 stays; a point that does not see its whole cavity is not
@@ -24,7 +24,6 @@
 
 #include "triangle/feature_size.h"
 #include "triangle/predicates.h"
-#include "triangle/refine.h"
 
 static bool is_acute(const struct tri_mesh *mesh, int32_t v) { return mesh->on[v] == TRI_VERTEX_ACUTE; }
 
@@ -301,7 +300,7 @@ static struct demand whole_demand(const struct tri_mesh *mesh, const struct tri_
  * the last place apart, the cheap ones: up to the largest power of two, 2^10 or more, such that filling every space
  * as far as this cost goes takes no more than PER_VERTEX points for each vertex of the input, or each end of a segment
  * if there are fewer, and an ALLOWANCE. (A dearer space is still filled where it is wide.) */
-void tri_choose_channels(struct tri_mesh *mesh, const struct tri_executor *executor)
+void tri_choose_gaps(struct tri_mesh *mesh, const struct tri_executor *executor)
 {
     const double ALL = 250000, ALLOWANCE = 20000, PER_VERTEX = 4;
     const struct demand demand = whole_demand(mesh, executor);

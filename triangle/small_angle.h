@@ -38,6 +38,6 @@ bool tri_is_narrow_gap(const struct tri_mesh *mesh, tri_triangle_id triangle, co
 
 /* Chooses which narrow spaces are filled, by their cost (mesh->limits): the parents at each vertex are listed.
  * O(triangles). */
-void tri_choose_channels(struct tri_mesh *mesh, const struct tri_executor *executor);
+void tri_choose_gaps(struct tri_mesh *mesh, const struct tri_executor *executor);
 
 #endif

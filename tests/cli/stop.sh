@@ -148,6 +148,17 @@ if [ -x "$bin/ptriangle" ]; then
     matches '^  Triangles: [0-9.e+]+ million$'
     complains 'the area bounds ask for at least [0-9]+ million triangles, and a mesh holds 536 million'
     wrote
+
+    # --- a bound on memory
+    fresh square.poly
+    for words in "" --dry-run; do
+        # shellcheck disable=SC2086 # none or one
+        mesher 1 ptriangle -pqa0.00000003 square --memory 200M $words
+        complains 'the area bounds ask for at least [0-9.]+ million triangles, which take [0-9.]+ GB of memory; 0\.[0-9]+ GB are left'
+        wrote
+    done
+    mesher 1 ptriangle -p square --memory 4GB
+    complains '^ptriangle: --memory: "4GB" is not a size such as 500M, 4G or 60%, from 1M on$'
 fi
 # the area over the bound is 0.83 of what a mesh holds, which no mesh would do with
 fresh square.poly

@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "tests/torture/judge.h"
+#include "triangle/census.h"
 #include "triangle/disk.h"
 #include "triangle/quality.h"
 

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "triangle/api/figure.h"
+#include "triangle/census.h"
 
 /* --- settings */
 

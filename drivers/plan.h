@@ -1,0 +1,24 @@
+/* How a run is carried out: with the whole mesh in memory, or swept, with a few columns of it there at a time and files
+ * written meanwhile. Decided by what the run will need and what there is, before it begins to refine. */
+#ifndef DRIVERS_PLAN_H
+#define DRIVERS_PLAN_H
+
+#include "drivers/estimate.h"
+
+/* What of this run asks for the whole mesh in memory: "-n (neighbours)"; "": the program; NULL: nothing, it can be
+ * swept. */
+const char *plan_obstacle(const struct run *run);
+
+/* Bytes of memory that the process may still take: what is left of the system's and of --memory. */
+double plan_memory_left(const struct run *run);
+
+/* Decides, and says a line where the mesh is swept. The run is to be refused, with what it needs and what there is,
+ * where memory or disk cannot do beyond doubt: TRI_TOO_LARGE, TRI_NO_MEMORY, TRI_CANNOT_WRITE; where they hardly can,
+ * there is a warning. */
+enum tri_status plan_make(struct run_plan *plan, const struct run *run, const struct estimate *estimate,
+                          const struct console *console, struct tri_error *error);
+
+/* For a dry run. */
+void plan_print(const struct run *run, const struct estimate *estimate);
+
+#endif

@@ -1,0 +1,41 @@
+/* Looking over a whole mesh without changing it: what is there to do, can it be done, what has been left, and why. */
+#ifndef TRIANGLE_CENSUS_H
+#define TRIANGLE_CENSUS_H
+
+#include "triangle/refine.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Triangles that the area bounds ask for at least: the sum of all areas over their bounds, and a third more, since no
+ * mesh fills its bounds; 0 without. O(triangles). */
+double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_options *options);
+
+/* TRI_TOO_LARGE where the area bounds ask for more triangles than one mesh can hold; tri_refine asks first.
+ * O(triangles). */
+enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                                 struct tri_error *error);
+
+/* found[last - first] receives the triangles from first to last - 1 at which there is something for the loop to do (an
+ * angle that is bad and not hopeless, a bad size; an encroached subsegment if conforming), in order; returns how
+ * many. */
+int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id first,
+                      tri_triangle_id last, tri_triangle_id *found);
+
+/* Counts the subsegments with a vertex of a triangle beside them in their diametral circle, which -D could not mend, by
+ * place: at a small angle of the input, between segments near to each other, and so on. */
+void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                          const struct tri_refine_report *report, int64_t count[TRI_EXCUSES]);
+
+/* Counts the triangles that violate the bounds, by reason. A size test is asked by the calling thread alone.
+ * O(triangles). */
+void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                   const struct tri_refine_report *report, const struct tri_executor *executor,
+                   int64_t count[TRI_EXCUSES]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
