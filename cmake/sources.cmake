@@ -99,7 +99,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/theory.c
     sched/threads.c
     sched/partition.c
-    sched/room.c sched/sweep/tiles.c sched/sweep/park.c
+    sched/room.c sched/sweep/tiles.c sched/sweep/park.c sched/sweep/sweep.c
     sched/worklist.c
     sched/phase.c
     sched/schedule.c
