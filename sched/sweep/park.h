@@ -2,9 +2,11 @@
  *
  * The file is mapped, so that all that works on a mesh works on this one, and makes the same. Its disk space is taken
  * before it is used: a full disk is an error of the call that grows the mesh, not a signal. It has no name once it is
- * open: nothing is left of it, however the process ends. Beside the threads that work, one looks at how much the process
- * has in memory, and unmaps all pages of the file when that is too much; who touches one finds it again. The system
- * writes pages to disk and drops them as it needs memory. So the less work jumps about in the mesh, the quicker it is. */
+ * open: nothing is left of it, however the process ends. Beside the threads that work, one looks at how much the
+ * process has in memory, and unmaps all pages of the file when that is too much; who touches one finds it again. The
+ * system writes pages to disk and drops them as it needs memory. So the less work jumps about in the mesh, the quicker
+ * it is.
+ */
 #ifndef SCHED_SWEEP_PARK_H
 #define SCHED_SWEEP_PARK_H
 
