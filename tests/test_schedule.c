@@ -279,7 +279,7 @@ static enum tri_status begin_stream(void *user, const struct tri_stream *told, s
     struct stream *s = user;
     (void)error;
     assert_true(s->n_ended == 0 && told->estimate > 0);
-    *s = (struct stream){.byte = s->byte, .capacity = s->capacity, .n_begun = s->n_begun + 1}; /* what there was is void */
+    *s = (struct stream){.byte = s->byte, .capacity = s->capacity, .n_begun = s->n_begun + 1}; /* void so far */
     s->n_attributes = told->n_attributes;
     append(s, told->regions, (size_t)told->n_regions * (size_t)told->n_columns * sizeof *told->regions);
     return TRI_OK;
