@@ -36,7 +36,6 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/criterion.c
     triangle/inside.c
     triangle/refine.c
-    triangle/numbering.c
     triangle/census.c
     triangle/estimate.c
     triangle/stats.c
@@ -91,7 +90,18 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/formats.c
     triangle/api/files.c)
 
-# What these two need of the mesher: all that their shared libraries have of it.
+# Room triangle/, HDF5 files, for the programs alone. Without the library of that name the second list stands in.
+set(PTRIANGLE_HDF5_SOURCES
+    triangle/hdf5/file.c
+    triangle/hdf5/items.c
+    triangle/hdf5/array.c
+    triangle/hdf5/views.c
+    triangle/hdf5/xdmf.c
+    triangle/hdf5/write.c
+    triangle/hdf5/read.c)
+set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c)
+
+# What text and judge need of the mesher: all that their shared libraries have of it.
 set(PTRIANGLE_TEXT_NEEDS triangle/status.c triangle/pslg.c triangle/api/figure.c)
 set(PTRIANGLE_CHECK_NEEDS ${PTRIANGLE_TEXT_NEEDS} triangle/predicates.c)
 
@@ -101,7 +111,13 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/theory.c
     sched/threads.c
     sched/partition.c
-    sched/room.c sched/sweep/tiles.c sched/sweep/park.c sched/sweep/sweep.c
+    sched/room.c
+    sched/sweep/tile_copy.c
+    sched/sweep/tiles.c
+    sched/sweep/stream.c
+    sched/sweep/numbering.c
+    sched/sweep/park.c
+    sched/sweep/sweep.c
     sched/worklist.c
     sched/phase.c
     sched/schedule.c
