@@ -126,7 +126,7 @@ static bool by_tile(const struct finds found[SHARES], int32_t n_rows, int32_t **
     return true;
 }
 
-static bool grow_numbers(struct par_tiles *tiles)
+bool par_tiles_reserve(struct par_tiles *tiles)
 {
     int32_t before = tiles->capacity, now = tiles->mesh->vertex_capacity;
     if (now <= before)
@@ -149,7 +149,7 @@ static bool find_all(struct column *c)
 {
     const struct tri_executor *executor = c->tiles->executor;
     int32_t n_rows = c->tiles->partition->n_rows;
-    bool memory = grow_numbers(c->tiles);
+    bool memory = par_tiles_reserve(c->tiles);
     if (memory) {
         tri_execute(executor, SHARES, find_vertices, c);
         tri_execute(executor, SHARES, find_triangles, c);
@@ -489,6 +489,31 @@ static void free_column(struct column *c)
     free(c->vertex_start);
     free(c->triangle_start);
     free(c->sub_start);
+}
+
+/* --- a column */
+
+enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct tri_error *error)
+{
+    struct column *c = calloc(1, sizeof *c);
+    bool memory = c && par_tiles_reserve(tiles);
+    if (memory) {
+        *c = (struct column){.tiles = tiles, .column = column, .first_tile = column * tiles->partition->n_rows,
+                             .end = par_fence(tiles->partition, column, 0).x_max};
+        memory = find_all(c);
+    }
+    for (int32_t row = 0; memory && row < tiles->partition->n_rows; row++) {
+        struct job job = {.column = c, .row = row};
+        number_tile(&job, 0);
+        memory = !job.no_memory;
+        par_tile_copy_free(&job.copy);
+    }
+    for (int32_t v = 0; memory && v < tiles->mesh->n_vertices; v++)
+        tiles->tile[v] = tiles->tile[v] >= c->first_tile ? INT32_MAX : tiles->tile[v];
+    if (c)
+        free_column(c);
+    free(c);
+    return memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the numbers of a column");
 }
 
 enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, bool let_go, struct par_room *spare,
