@@ -42,8 +42,9 @@ struct tri_tile {
     const int32_t *segment_markers;   /* [n_segments] */
 };
 
-/* Who takes tiles: called by one thread, in order. What the pointers name is gone when a call returns. A status other
- * than TRI_OK ends the run with it. */
+/* Who takes tiles: called by one thread, in order. begin may be called again, before end: what has been taken is void
+ * then, and all tiles come anew; whoever has no begin never has to forget anything, but it may take longer. What the
+ * pointers name is gone when a call returns. A status other than TRI_OK ends the run with it. */
 struct tri_sink {
     void *user;
     enum tri_status (*begin)(void *user, const struct tri_stream *stream, struct tri_error *error); /* NULL: not told */
