@@ -43,9 +43,11 @@ static bool grow(struct tri_cavity *c)
 static bool owns(struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t)
 {
     for (int k = 0; c->fence && k < 3; k++) {
-        c->outside = mesh->xy[mesh->tri[t].v[k]];
-        if (!tri_fence_holds(c->fence, c->outside))
+        struct tri_point corner = mesh->xy[mesh->tri[t].v[k]];
+        if (!tri_fence_holds(c->fence, corner)) {
+            c->outside = corner;
             return false;
+        }
     }
     return true;
 }

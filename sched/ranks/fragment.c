@@ -86,7 +86,7 @@ static bool touches(const struct tri_mesh *mesh, const struct tri_triangle *t, c
                               tri_fence_holds(box, mesh->xy[t->v[2]]));
 }
 
-/* Which vertices lie in a box: one bit each, so that all of them stay in the cache while triangles are looked through. */
+/* Which vertices lie in a box: one bit each, so that all of them stay in the cache while triangles are looked at. */
 struct inside {
     uint64_t *word;
 };
