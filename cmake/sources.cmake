@@ -100,6 +100,8 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/threads.c
     sched/partition.c
     sched/room.c sched/sweep/tiles.c
+    sched/sweep/spool.c
+    sched/sweep/checkpoint.c
     sched/worklist.c
     sched/phase.c
     sched/schedule.c

@@ -125,7 +125,7 @@ static bool by_tile(const struct finds found[SHARES], int32_t n_rows, int32_t **
     return true;
 }
 
-static bool grow_numbers(struct par_tiles *tiles)
+bool par_tiles_reserve(struct par_tiles *tiles)
 {
     int32_t before = tiles->capacity, now = tiles->mesh->vertex_capacity;
     if (now <= before)
@@ -148,7 +148,7 @@ static bool find_all(struct column *c)
 {
     const struct tri_executor *executor = c->tiles->executor;
     int32_t n_rows = c->tiles->partition->n_rows;
-    bool memory = grow_numbers(c->tiles);
+    bool memory = par_tiles_reserve(c->tiles);
     if (memory) {
         tri_execute(executor, SHARES, find_vertices, c);
         tri_execute(executor, SHARES, find_triangles, c);

@@ -45,6 +45,9 @@ enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct
 enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, bool let_go, struct par_room *spare,
                                  struct tri_error *error);
 
+/* Room for as many numbers as the mesh has room for vertices. False: no memory. */
+bool par_tiles_reserve(struct par_tiles *tiles);
+
 /* Tells the sink that all columns have had their turn. */
 enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error);
 
