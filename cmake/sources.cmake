@@ -60,7 +60,9 @@ set(PTRIANGLE_CHECK_SOURCES
     triangle/check/edges.c
     triangle/check/stars.c
     triangle/check/order.c
+    triangle/check/missing.c
     triangle/check/overlap.c
+    triangle/check/regions.c
     triangle/check/hull.c
     triangle/check/delaunay.c
     triangle/check/segments.c

@@ -119,7 +119,8 @@ enum tri_status judged_read_mesh(struct judged_files *f, const char *base, struc
 
 enum tri_status judged_read_input(struct judged_files *f, const char *path, struct tri_error *error)
 {
-    struct tri_read_options options = {.default_base = f->base, .executor = &all_cores};
+    struct tri_read_options options = {.default_base = f->base, .executor = &all_cores,
+                                       .regions_if_any = f->elements.n_attributes > 0};
     int32_t base;
     bool points_in_poly;
     char *stem = with_suffix(path, "");

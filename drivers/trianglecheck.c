@@ -43,6 +43,7 @@ static const char help[] = /* in the form that cmake/help.awk makes a manual pag
     "  -r, --refined        made by refining a mesh: hole points were ignored, unused vertices inside are no fault,\n"
     "                       and the mesh may end anywhere\n"
     "      --no-markers     do not compare the markers of subsegments and vertices\n"
+    "      --no-regions     do not compare the attributes of triangles with the input's regions\n"
     "      --threads N      at most so many (default: OMP_NUM_THREADS, or all cores); the verdict is the same\n"
     "      --json           report in JSON on standard output, instead of lines\n"
     "      --quiet          print faults only\n"
@@ -55,7 +56,7 @@ struct settings {
     const char *base; /* name without suffix */
     const char *input;
     struct tri_check_options check;
-    bool ignore_markers, json, quiet;
+    bool ignore_markers, ignore_regions, json, quiet;
     int64_t threads; /* 0: as OpenMP has it */
 };
 
@@ -126,6 +127,8 @@ static enum tri_status judge(const struct settings *s, const struct judged_files
         mesh.segments = f->mesh.segments != NULL ? f->mesh.segments : none;
         mesh.segment_markers = s->ignore_markers ? NULL : f->mesh.segment_markers;
     }
+    mesh.n_attributes = f->elements.n_attributes;
+    mesh.attributes = s->ignore_regions ? NULL : f->elements.attributes;
     mesh.point_markers = s->ignore_markers ? NULL : f->mesh.markers;
     struct tri_check_options options = s->check;
     options.base = f->base;
@@ -143,6 +146,7 @@ enum long_option {
     ANY_HOLES,
     KEEP_HULL,
     NO_MARKERS,
+    NO_REGIONS,
     THREADS,
     JSON,
     QUIET,
@@ -166,6 +170,7 @@ static const struct option long_options[] = {
     {"refined", no_argument, NULL, 'r'},
     {"small-input-angle", required_argument, NULL, SMALL_INPUT_ANGLE},
     {"no-markers", no_argument, NULL, NO_MARKERS},
+    {"no-regions", no_argument, NULL, NO_REGIONS},
     {"json", no_argument, NULL, JSON},
     {"quiet", no_argument, NULL, QUIET},
     {"version", no_argument, NULL, VERSION},
@@ -232,6 +237,9 @@ static bool apply(struct settings *s, int option)
         return parse_count(optarg, &s->threads) && s->threads > 0;
     case NO_MARKERS:
         s->ignore_markers = true;
+        return true;
+    case NO_REGIONS:
+        s->ignore_regions = true;
         return true;
     case JSON:
         s->json = true;

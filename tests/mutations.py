@@ -13,10 +13,12 @@ POINTS = [[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0],  # a square,
           [3, 3, 0], [5, 3, 0], [5, 5, 0], [3, 5, 0],      # a square hole in it,
           [6, 7, 9], [9, 8, 0],                            # a segment with a marker,
           [6, 1, 0], [9, 1, 0], [9, 3, 0], [6, 3, 0],      # a face of its own,
-          [2, 8, 0]]                                       # a point
+          [2, 8, 0],                                       # a point,
+          [8, 10, 0], [10, 9, 0]]                          # and a corner cut off
 SEGMENTS = [[0, 1, 2], [1, 2, 3], [2, 3, 0], [3, 0, 0], [4, 5, 0], [5, 6, 0], [6, 7, 0], [7, 4, 0], [8, 9, 7],
-            [10, 11, 4], [11, 12, 4], [12, 13, 4], [13, 10, 4]]
+            [10, 11, 4], [11, 12, 4], [12, 13, 4], [13, 10, 4], [15, 16, 5]]
 HOLES = [[4, 4]]
+REGIONS = [[9.5, 9.75, 3], [7, 2, 1], [8, 2, 2]]  # the corner, and twice the face
 
 
 class Mesh:
@@ -25,6 +27,7 @@ class Mesh:
     def __init__(self, base):
         self.points = [[float(r[0]), float(r[1]), int(r[-1])] for r in rows(base, ".node")]
         self.triangles = [[int(x) for x in r[:3]] for r in rows(base, ".ele")]
+        self.attributes = [float(r[3]) for r in rows(base, ".ele")]
         self.neighbors = [[int(x) for x in r[:3]] for r in rows(base, ".neigh")]
         segments = numbers(base, ".poly")
         count = int(segments[1][0])
@@ -33,6 +36,17 @@ class Mesh:
 
     def corners(self, t):
         return [self.points[v][:2] for v in self.triangles[t]]
+
+    def center(self, t):
+        return [sum(p[k] for p in self.corners(t)) / 3 for k in (0, 1)]
+
+    def in_face(self, t):
+        x, y = self.center(t)
+        return 6 < x < 9 and 1 < y < 3
+
+    def in_corner(self, t):
+        x, y = self.center(t)
+        return x + 2 * y > 28
 
     def edges(self):
         """{(a, b): triangle on the left}"""
@@ -56,6 +70,7 @@ class Mesh:
     def remove(self, triangles):
         """And the edges where the mesh ends then become subsegments, as a careless mesher would have it."""
         self.triangles = [c for t, c in enumerate(self.triangles) if t not in triangles]
+        self.attributes = [a for t, a in enumerate(self.attributes) if t not in triangles]
         self.list_border()
 
     def list_border(self):
@@ -68,7 +83,8 @@ class Mesh:
 
     def write(self, base):
         write(base, ".node", [f"{len(self.points)} 2 0 1"], self.points)
-        write(base, ".ele", [f"{len(self.triangles)} 3 0"], self.triangles)
+        attributes = self.attributes + [0.0] * (len(self.triangles) - len(self.attributes))
+        write(base, ".ele", [f"{len(self.triangles)} 3 1"], [[*c, a] for c, a in zip(self.triangles, attributes)])
         pathlib.Path(base + ".neigh").unlink(missing_ok=True)
         if self.neighbors is not None:
             write(base, ".neigh", [f"{len(self.neighbors)} 3"], self.neighbors)
@@ -94,6 +110,7 @@ def write_input(base, points, segments, holes):
     lines = [f"{len(points)} 2 0 1"] + [f"{i} {p[0]!r} {p[1]!r} {p[2]}" for i, p in enumerate(points)]
     lines += [f"{len(segments)} 1"] + [f"{i} {s[0]} {s[1]} {s[2]}" for i, s in enumerate(segments)]
     lines += [str(len(holes))] + [f"{i} {h[0]!r} {h[1]!r}" for i, h in enumerate(holes)]
+    lines += [str(len(REGIONS))] + [f"{i} {r[0]!r} {r[1]!r} {r[2]} -1" for i, r in enumerate(REGIONS)]
     pathlib.Path(base + ".poly").write_text("\n".join(lines) + "\n")
 
 
@@ -111,7 +128,9 @@ def mutation(kind):
 
 @mutation("boundary is subsegments")
 def triangle_dropped(m):
-    m.triangles.pop(m.inner())
+    t = m.inner()
+    m.triangles.pop(t)
+    m.attributes.pop(t)
     m.neighbors = None
 
 
@@ -291,9 +310,38 @@ def hole_extended(m):
 
 @mutation("no face carved in vain")
 def face_emptied(m):
-    def center(t):
-        return [sum(p[k] for p in m.corners(t)) / 3 for k in (0, 1)]
-    m.remove({t for t in range(len(m.triangles)) if 6 < center(t)[0] < 9 and 1 < center(t)[1] < 3})
+    m.remove({t for t in range(len(m.triangles)) if m.in_face(t)})
+
+
+@mutation("no face carved in vain")
+def face_cut_off_with_its_outer_segments(m):
+    m.remove({t for t in range(len(m.triangles)) if m.in_corner(t)})
+
+
+@mutation("vertex markers")
+def inner_vertex_marked_while_refining(m):
+    m.points[m.free()][2] = 1
+    return ["--refined"]
+
+
+@mutation("regions")
+def attribute_of_one_triangle_changed(m):
+    m.attributes[m.inner()] += 1
+
+
+@mutation("regions")
+def attribute_of_a_face_lost(m):
+    m.attributes = [0.0 if m.in_corner(t) else a for t, a in enumerate(m.attributes)]
+
+
+@mutation("regions")
+def attribute_of_the_first_of_two_points(m):
+    m.attributes = [1.0 if m.in_face(t) else a for t, a in enumerate(m.attributes)]
+
+
+@mutation("regions")
+def attribute_where_no_region_is(m):
+    m.attributes = [a if m.in_face(t) or m.in_corner(t) else 3.0 for t, a in enumerate(m.attributes)]
 
 
 @mutation("boundary is subsegments")
@@ -423,7 +471,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         base = str(pathlib.Path(folder) / "figure")
         write_input(base, POINTS, SEGMENTS, HOLES)
-        subprocess.run([binaries / "triangle", "-zpqa0.8nQ", base], check=True, timeout=60)
+        subprocess.run([binaries / "triangle", "-zpqa0.8nAQ", base], check=True, timeout=60)
         sound = Mesh(base + ".1")
         for kind, change in [(None, lambda m: None), *MUTATIONS]:
             mesh = copy.deepcopy(sound)

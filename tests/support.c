@@ -224,6 +224,7 @@ struct support_copy support_copy(const struct tri_mesh *mesh)
                              .neighbors = room_for(mesh->n_triangles, 3 * sizeof(int32_t)),
                              .segments = room_for(mesh->n_subs, 2 * sizeof(int32_t)),
                              .markers = room_for(mesh->n_subs, sizeof(int32_t)),
+                             .attributes = room_for(mesh->n_triangles, sizeof(double)),
                              .max_areas = room_for(mesh->n_triangles, sizeof(double))};
     for (int32_t v = 0; v < mesh->n_vertices; v++)
         tri_mesh_place(mesh, v, &c.points[2 * v]);
@@ -239,14 +240,17 @@ struct support_copy support_copy(const struct tri_mesh *mesh)
             c.neighbors[3 * t + e] = link == TRI_NONE ? -1 : tri_of(link);
         }
         c.max_areas[t] = mesh->regions[mesh->tri[t].region].max_area;
+        c.attributes[t] = mesh->regions[mesh->tri[t].region].attribute;
     }
     for (int32_t s = 0; s < mesh->n_subs; s++) {
         c.segments[2 * s] = mesh->sub[s].v[0];
         c.segments[2 * s + 1] = mesh->sub[s].v[1];
         c.markers[s] = mesh->sub[s].marker;
     }
+    bool spread = mesh->n_regions > 1 && mesh->n_columns == 0;
     c.mesh = (struct tri_check_mesh){mesh->n_vertices, c.points, mesh->n_triangles, c.triangles, c.neighbors,
-                                     mesh->n_subs, c.segments, c.markers, NULL};
+                                     mesh->n_subs, c.segments, c.markers, mesh->vertex_markers, 1,
+                                     spread ? c.attributes : NULL};
     return c;
 }
 
@@ -258,6 +262,7 @@ void support_copy_free(struct support_copy *copy)
     free(copy->segments);
     free(copy->markers);
     free(copy->max_areas);
+    free(copy->attributes);
     *copy = (struct support_copy){0};
 }
 

@@ -77,7 +77,7 @@ struct support_copy {
     struct tri_check_mesh mesh;
     double *points;
     int32_t *triangles, *neighbors, *segments, *markers;
-    double *max_areas; /* of the regions */
+    double *max_areas, *attributes; /* of the regions */
 };
 
 struct support_copy support_copy(const struct tri_mesh *mesh);

@@ -240,6 +240,7 @@ static void test_far_places_are_outside(void **state)
             assert_int_equal(mesh.n_triangles, n);
             for (int32_t t = 0; t < n; t++)
                 assert_int_equal(mesh.tri[t].region, 0);
+            tri_mark_vertices(&mesh);
             tri_mark_boundary(&mesh);
             support_judge(&mesh, &pslg, &judged, false, NULL);
             tri_mesh_free(&mesh);
@@ -266,6 +267,7 @@ static void test_boundary_markers(void **state)
     pslg.markers = vertex_markers;
     struct tri_mesh mesh = support_constrained(&pslg, &report);
     assert_int_equal(tri_carve(&mesh, &pslg, &options, NULL), TRI_OK);
+    tri_mark_vertices(&mesh);
     tri_mark_boundary(&mesh);
     static const int32_t want_vertex[5] = {1, 7, 3, 1, 0}, want_sub[4] = {1, 7, 1, 1};
     for (int k = 0; k < 5; k++)

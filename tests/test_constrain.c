@@ -6,6 +6,7 @@ static void judge(struct tri_mesh *mesh, const struct tri_pslg *pslg)
 {
     struct tri_check_options options = {.max_bad = -1, .ignore_holes = true, .convex = !mesh->twin,
                                         .border = TRI_CHECK_BORDER_HULL};
+    tri_mark_vertices(mesh);
     tri_mark_boundary(mesh);
     support_judge(mesh, pslg, &options, false, NULL);
 }

@@ -226,6 +226,7 @@ static void test_large_sets_pass_the_judge(void **state)
         struct tri_mesh mesh = triangulate(&pslg);
         struct tri_check_options options = {.max_bad = -1, .convex = !mesh.twin};
         support_assert_cdt(&mesh, false);
+        tri_mark_vertices(&mesh);
         tri_mark_boundary(&mesh);
         support_judge(&mesh, &pslg, &options, false, NULL);
         for (int32_t s = 0; s < mesh.n_subs; s++)
@@ -247,6 +248,7 @@ static void test_all_point_files(void **state)
         struct tri_mesh mesh = triangulate(&pslg);
         struct tri_check_options options = {.max_bad = -1, .convex = mesh.n_triangles > 0 && !mesh.twin};
         support_assert_cdt(&mesh, false);
+        tri_mark_vertices(&mesh);
         tri_mark_boundary(&mesh);
         support_judge(&mesh, &pslg, &options, false, NULL);
         tri_mesh_free(&mesh);

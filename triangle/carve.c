@@ -212,8 +212,7 @@ static enum tri_status spread_regions(struct flood *f, const struct tri_pslg *ps
     return status;
 }
 
-/* Markers of segments pass to vertices without one. */
-static void mark_vertices(struct tri_mesh *mesh)
+void tri_mark_vertices(struct tri_mesh *mesh)
 {
     for (int32_t s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2; k++)
@@ -308,7 +307,7 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
     enum tri_status status = TRI_OK;
     if (!f.stack || !f.dead)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)mesh->n_triangles);
-    mark_vertices(mesh);
+    tri_mark_vertices(mesh);
     if (!status && mesh->n_triangles > 0) {
         if (options->even_odd)
             status = kill_even(&f, options->keep_hull, error);

@@ -31,6 +31,9 @@ struct tri_carve_options {
 enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_carve_options *options,
                           struct tri_error *error);
 
+/* The marker of a subsegment for every vertex at it that has marker 0. */
+void tri_mark_vertices(struct tri_mesh *mesh);
+
 /* Marker 1 for every boundary subsegment and boundary vertex that has marker 0. */
 void tri_mark_boundary(struct tri_mesh *mesh);
 

@@ -31,6 +31,7 @@ struct tri_demands {
     bool renumbered;   /* input points are known by their coordinates, not by number */
     bool keep_hull;    /* the mesh may end along the convex hull of the input's points, too, as tri_settings.keep_hull
                           makes it; else along segments alone */
+    bool any_holes;    /* faces may be empty without a hole point: they were chosen by another rule */
 };
 
 static inline struct tri_demands tri_no_demands(void)

@@ -17,7 +17,9 @@ static struct tri_check_mesh mesh_of(const struct tri_api_figure *figure)
     return (struct tri_check_mesh){.n_points = pslg->n_points, .points = pslg->points,
                                    .n_triangles = figure->elements.n, .triangles = figure->elements.corners,
                                    .n_segments = pslg->n_segments, .segments = pslg->segments,
-                                   .segment_markers = pslg->segment_markers};
+                                   .segment_markers = pslg->segment_markers,
+                                   .n_attributes = figure->elements.n_attributes,
+                                   .attributes = figure->elements.attributes};
 }
 
 static struct tri_check_options options_of(const struct tri_demands *demands, const struct tri_api_figure *figure)
@@ -26,7 +28,7 @@ static struct tri_check_options options_of(const struct tri_demands *demands, co
                                       .max_areas = figure->elements.areas,
                                       .delaunay = (enum tri_check_delaunay)demands->delaunay, .max_bad = -1,
                                       .convex = demands->convex, .renumbered = demands->renumbered,
-                                      .ignore_holes = demands->ignore_holes,
+                                      .ignore_holes = demands->ignore_holes, .any_holes = demands->any_holes,
                                       .border = demands->keep_hull ? TRI_CHECK_BORDER_HULL
                                                                    : TRI_CHECK_BORDER_SEGMENTS};
 }

@@ -305,12 +305,30 @@ static enum tri_status find_stops(struct chains *k, const struct line *l)
     return status;
 }
 
-/* Step 3. Pieces as short as the tolerance are beneath notice. */
-static enum tri_status ask_about(struct chains *k, const struct line *l, double from, double to)
+static enum tri_status note_missing(struct checker *c, struct tri_point from, struct tri_point to)
 {
-    enum tri_status status = TRI_OK;
+    if (c->n_missing == c->missing_capacity) {
+        if (c->missing_capacity > INT32_MAX / 2 - 16)
+            return TRI_TOO_LARGE;
+        int32_t capacity = 2 * c->missing_capacity + 16;
+        struct check_piece *missing = realloc(c->missing, (size_t)capacity * sizeof *missing);
+        if (missing == NULL)
+            return TRI_NO_MEMORY;
+        c->missing = missing;
+        c->missing_capacity = capacity;
+    }
+    if (!check_same_place(from, to))
+        c->missing[c->n_missing++] = (struct check_piece){from, to};
+    return TRI_OK;
+}
+
+/* Step 3. Pieces as short as the tolerance are beneath notice. */
+static enum tri_status ask_about(struct chains *k, const struct line *l, struct tri_point begin, struct tri_point end)
+{
+    double from = along(l, begin), to = along(l, end);
+    enum tri_status status = note_missing(k->c, begin, end);
     if (to - from <= 4 * l->tolerance)
-        return TRI_OK;
+        return status;
     for (int i = 1; i <= 3 && status == TRI_OK; i++) {
         double s = (from + (to - from) * i / 4) / l->length;
         struct tri_point p = {l->a.x + s * l->dx, l->a.y + s * l->dy};
@@ -323,19 +341,20 @@ static enum tri_status ask_about(struct chains *k, const struct line *l, double 
 static enum tri_status cover(struct chains *k, const struct line *l)
 {
     enum tri_status status = find_stops(k, l);
-    double covered = 0;
+    struct tri_point covered = l->a;
     k->search++;
     for (int32_t i = 0; i < k->n_stops && status == TRI_OK; i++) {
         struct stop s = k->stop[i];
         if (k->seen[s.vertex] == k->search)
             continue;
-        if (s.at > covered)
-            status = ask_about(k, l, covered, s.at);
+        if (s.at > along(l, covered))
+            status = ask_about(k, l, covered, check_point(k->c, s.vertex));
         int32_t end = follow(k, l, s.vertex, -1);
         mark(k, l, end, false);
-        covered = fmax(covered, along(l, check_point(k->c, end)));
+        if (along(l, check_point(k->c, end)) >= along(l, covered))
+            covered = check_point(k->c, end);
     }
-    return status == TRI_OK ? ask_about(k, l, covered, l->length) : status;
+    return status == TRI_OK ? ask_about(k, l, covered, l->b) : status;
 }
 
 static bool names_points(const struct tri_pslg *input, int32_t id)

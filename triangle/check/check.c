@@ -32,6 +32,7 @@ static const char *const names[TRI_N_CHECKS] = {
     [TRI_CHECK_VERTEX_MARKERS] = "vertex markers",
     [TRI_CHECK_HOLES] = "holes",
     [TRI_CHECK_FACES] = "no face carved in vain",
+    [TRI_CHECK_REGIONS] = "regions",
     [TRI_CHECK_ANGLES] = "angles",
     [TRI_CHECK_AREAS] = "areas",
 };
@@ -140,7 +141,9 @@ static enum tri_status run(struct checker *c)
     if (status != TRI_OK || !check_good(c, TRI_CHECK_ORIENTATION) || !check_good(c, TRI_CHECK_EDGES))
         return status;
     tri_check_delaunay(c);
-    status = tri_check_stars(c);
+    status = tri_check_regions(c);
+    if (status == TRI_OK)
+        status = tri_check_stars(c);
     if (status == TRI_OK)
         status = tri_check_overlap(c);
     if (status != TRI_OK || !check_good(c, TRI_CHECK_OVERLAP))
@@ -151,7 +154,7 @@ static enum tri_status run(struct checker *c)
 
 static void release(struct checker *c)
 {
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 4; i++)
         free(c->scaled[i]);
     free(c->first);
     free(c->entry);
@@ -165,6 +168,7 @@ static void release(struct checker *c)
     free(c->fan);
     free(c->twin);
     free(c->is_along);
+    free(c->missing);
     free(c->queries);
 }
 

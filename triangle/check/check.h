@@ -23,9 +23,11 @@
  *   (7) Every boundary edge is a piece of an input segment's chain, or of the convex hull of the input's points where
  *       options.border allows that: the mesh ends where the input says, and a segment whose outside was carved is
  *       there. By (3) the mesh is then a union of faces of the input, none of them in part.
- *   (8) Every bounded component of the plane without the mesh has a hole point in it, or beside it within rounding:
- *       carving takes what is reachable, without crossing a segment, from outside or from a hole point, and what it
- *       takes is joined to there across edges, hence a part of one component with it.
+ *   (8) Every bounded component of the plane without the mesh and the input's segments has a hole point in it, or
+ *       beside it within rounding: carving takes what is reachable, without crossing a segment, from outside or from a
+ *       hole point.
+ *   (9) Triangles on the two sides of an edge that is no subsegment have the same attribute, and it is that of the last
+ *       region of the input whose point is in their face, or 0.
  *
  * What is checked within a tolerance, because vertices on segments are rounded: each input segment is a chain of
  * subsegments whose vertices are at most TRI_CHECK_ULPS * 2^-52 * (the segment's largest coordinate) off its line.
@@ -34,8 +36,9 @@
  * Angles and areas are computed in double precision and may miss their bounds by a relative 1e-12 (of the squared
  * sine, of the area).
  *
- * What is not checked: a component of (8) that is lawful as a whole may consist of several faces of the input, cut from
- * each other by segments that lie outside the mesh, not all of which carving could reach.
+ * What is not checked: (8) takes an input's segments outside the mesh for no walls where they meet each other, or the
+ * mesh, so close that rounding turns their order round; (9) not the faces beside which a region point lies within
+ * rounding.
  *
  * Coordinates that are very large or very small as a whole are multiplied by a power of two first; those below 2^-216
  * then count as 0, in the mesh as in the input.
@@ -68,6 +71,8 @@ struct tri_check_mesh {
     const int32_t *segments; /* [n_segments][2] subsegments; NULL: not given, the boundary edges take their place */
     const int32_t *segment_markers; /* [n_segments] or NULL: not given */
     const int32_t *point_markers;   /* [n_points] or NULL: not given */
+    int32_t n_attributes;
+    const double *attributes; /* [n_triangles][n_attributes], the last is the region's; or NULL: not given */
 };
 
 enum tri_check_delaunay { TRI_CHECK_CONSTRAINED, TRI_CHECK_CONFORMING, TRI_CHECK_NOT_DELAUNAY };
@@ -119,10 +124,11 @@ enum tri_check_kind {
     TRI_CHECK_MARKERS,
     TRI_CHECK_BORDER,         /* (7) */
     /* Vertices in use carry the marker of their input point, if that is not zero; else that of a subsegment or input
-     * segment through them, or 1 on the boundary; else 0. Not looked at where border is TRI_CHECK_BORDER_ANY. */
+     * segment through them, or 1 on the boundary; else 0. */
     TRI_CHECK_VERTEX_MARKERS,
     TRI_CHECK_HOLES,
     TRI_CHECK_FACES, /* (8); not with any_holes, nor in refined meshes, which keep theirs (ignore_lost, BORDER_ANY) */
+    TRI_CHECK_REGIONS, /* (9); where attributes and input regions are given, not where border is BORDER_ANY */
     TRI_CHECK_ANGLES,
     TRI_CHECK_AREAS,
     TRI_N_CHECKS

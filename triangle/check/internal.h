@@ -22,6 +22,11 @@ struct check_query {
     bool inside;              /* the sweep's answer: it is where it should not be */
 };
 
+/* Of an input segment: what lies between two places where the mesh has it, or its end. */
+struct check_piece {
+    struct tri_point from, to;
+};
+
 /* The half-edges between two vertices a and b. */
 struct check_edge {
     int32_t there, back;     /* the first from a to b, and from b to a; -1: none */
@@ -39,7 +44,7 @@ struct checker {
     int exponent; /* the coordinates seen are the given ones times 2^exponent */
     struct tri_check_mesh scaled_mesh;
     struct tri_pslg scaled_input;
-    double *scaled[3]; /* their points, the input's, its hole points; NULL: not scaled */
+    double *scaled[4]; /* their points, the input's, its hole points, its regions; NULL: not scaled */
 
     /* edges.c */
     int32_t *first;  /* [n_points + 1] into entry */
@@ -65,6 +70,8 @@ struct checker {
 
     /* chain.c */
     uint8_t *is_along; /* [n_segments] does the subsegment lie along an input segment? */
+    struct check_piece *missing; /* [n_missing] of input segments */
+    int32_t n_missing, missing_capacity;
 
     struct check_query *queries; /* for the sweep */
     int32_t n_queries, query_capacity;
@@ -79,6 +86,7 @@ enum tri_status tri_check_hull(struct checker *c);        /* needs OVERLAP */
 enum tri_status tri_check_subsegments(struct checker *c); /* needs EDGES; fills the fields above */
 void tri_check_delaunay(struct checker *c);               /* needs EDGES, ORIENTATION, subsegments */
 enum tri_status tri_check_input(struct checker *c);       /* needs ARRAYS, subsegments; adds queries */
+enum tri_status tri_check_regions(struct checker *c);     /* needs EDGES, subsegments; adds queries */
 enum tri_status tri_check_border(struct checker *c);      /* needs chains */
 enum tri_status tri_check_vertex_markers(struct checker *c); /* needs EDGES, subsegments, twins */
 void tri_check_answers(struct checker *c);                /* where overlap has found nothing: judges the answers */
@@ -140,6 +148,12 @@ static inline struct tri_point check_point(const struct checker *c, int32_t v)
 {
     const double *p = c->mesh->points + 2 * (size_t)v;
     return (struct tri_point){p[0], p[1]};
+}
+/* The last one of triangle t. */
+static inline double check_attribute(const struct checker *c, int32_t t)
+{
+    int32_t n = c->mesh->n_attributes;
+    return c->mesh->attributes[(size_t)n * (size_t)t + (size_t)n - 1];
 }
 static inline bool check_is_used(const struct checker *c, int32_t v)
 {

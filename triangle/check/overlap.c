@@ -9,39 +9,51 @@
  * The leftmost point where two edges meet wrongly has two of them as neighbours just before, so 1 or 3 finds it.
  * Queries (is this point inside the mesh?) ride along as events. O(b log b).
  *
- * Faces outside the mesh: two edges with no mesh between them that become neighbours bound the same face, and so do the
- * lowest and the highest edge with the outer one. Faces are the classes of what that joins: between two events a face
- * is cut into gaps between neighbours, and a gap that goes on beyond an event, on either side of what starts or ends
- * there, keeps the edge below or above it, which has one side without mesh only. Each face but the outer one must have
- * been emptied for a hole point. */
+ * Faces: what is above an edge and what is below the next one is the same face, and so are what is below the lowest and
+ * above the highest edge. Faces are the classes of sides that that joins: between two events a face is cut into gaps
+ * between neighbours, and a gap that goes on beyond an event, on either side of what starts or ends there, keeps the
+ * edge below or above it.
+ *   Each face outside the mesh but the outer one must have been emptied for a hole point. Where pieces of input
+ * segments are missing, or triangles have attributes, a second sweep has these pieces and the inner subsegments among
+ * its edges, since neither carving nor regions cross them. Missing pieces are rounded where they meet: should the sweep
+ * fail over that, they are left out. */
 #include <assert.h>
 #include <stdlib.h>
 
-#include "triangle/check/internal.h"
+#include "triangle/check/missing.h"
 #include "triangle/check/order.h"
 
 struct sweep_edge {
     struct tri_point left, right;
-    int32_t half_edge;
-    bool above; /* the mesh lies above */
+    int32_t vertex[2]; /* at its left and right end; -1: a place where missing pieces meet */
+    int32_t side[2];   /* half-edge whose triangle is below, above; -1: no mesh there */
 };
 
-enum { LEFT_END = 0, RIGHT_END = 1 };
+enum { LEFT_END = 0, RIGHT_END = 1, BELOW = 0, ABOVE = 1 };
 
 struct event {
     struct tri_point at;
     int32_t code; /* 2 * edge + end, or ~number of a query */
 };
 
+struct start { /* an edge that starts at the event point */
+    struct tri_point left, right;
+    int32_t edge;
+};
+
 struct sweep {
     struct checker *c;
+    bool again;               /* the second sweep: of faces */
     struct sweep_edge *edge;  /* [n_edges] */
     struct event *event;      /* [2 * n_edges + n_queries] */
-    struct sweep_edge *start; /* [n_edges] work space: the edges that start at one event point ... */
+    struct start *start;      /* [n_edges] work space */
     int32_t n_edges, n_events;
     struct check_order order;
-    int32_t *face;    /* [n_edges + 1] a forest: an edge of the same face outside the mesh; n_edges: the outer face */
-    uint8_t *emptied; /* [n_edges + 1] is there a hole point in the face? */
+    /* For each side 2 * edge + BELOW or ABOVE, and for the outer face, number 2 * n_edges: */
+    int32_t *face;    /* a forest: another side of the same face */
+    uint8_t *emptied; /* is there a hole point in the face? */
+    uint8_t *vague;   /* may a region point be in the face, within rounding? */
+    int32_t *region;  /* last one whose point is in the face, -1: none */
 };
 
 static int compare_events(const void *a, const void *b)
@@ -56,11 +68,16 @@ static double side(const struct sweep *w, int32_t s, struct tri_point p)
     return tri_orient2d(w->edge[s].left, w->edge[s].right, p);
 }
 
-/* Vertex at the given end of an edge. */
-static int32_t vertex_at(const struct sweep *w, int32_t s, int end)
+static bool is_meshed(const struct sweep *w, int32_t s, int side)
 {
-    int32_t h = w->edge[s].half_edge;
-    return w->edge[s].above == (end == LEFT_END) ? check_org(w->c, h) : check_dest(w->c, h);
+    return s >= 0 && w->edge[s].side[side] >= 0;
+}
+
+/* A half-edge there, that is no missing piece. */
+static int32_t half_edge_of(const struct sweep *w, int32_t s)
+{
+    const int32_t *h = w->edge[s].side;
+    return h[ABOVE] >= 0 ? h[ABOVE] : h[BELOW];
 }
 
 struct place {
@@ -84,26 +101,29 @@ static int32_t find_below(const struct sweep *w, struct tri_point p)
 static bool fault(struct sweep *w, const char *what, int32_t s, int32_t r)
 {
     struct checker *c = w->c;
-    int32_t h = w->edge[s].half_edge, g = w->edge[r].half_edge;
+    if (w->again)
+        return false;
+    int32_t h = half_edge_of(w, s), g = half_edge_of(w, r);
     tri_check_fault(c, TRI_CHECK_OVERLAP, "boundary edges %ld-%ld of triangle %ld and %ld-%ld of triangle %ld: %s",
                     check_number(c, check_org(c, h)), check_number(c, check_dest(c, h)), check_number(c, h / 3),
                     check_number(c, check_org(c, g)), check_number(c, check_dest(c, g)), check_number(c, g / 3), what);
     return false;
 }
 
-/* The face outside the mesh beside edge s, -1: the outer one (Tarjan 1975, by halving). */
-static int32_t face_of(struct sweep *w, int32_t s)
+/* The face on a side of edge s, -1: the outer one (Tarjan 1975, by halving). */
+static int32_t face_of(struct sweep *w, int32_t s, int side)
 {
-    for (s = s < 0 ? w->n_edges : s; w->face[s] != s; s = w->face[s])
-        w->face[s] = w->face[w->face[s]];
-    return s;
+    int32_t f = s < 0 ? 2 * w->n_edges : 2 * s + side;
+    for (; w->face[f] != f; f = w->face[f])
+        w->face[f] = w->face[w->face[f]];
+    return f;
 }
 
-/* The lesser number is the root, but for the outer face. */
+/* What is above a is what is below b. The lesser number is the root, but for the outer face. */
 static void join_faces(struct sweep *w, int32_t a, int32_t b)
 {
-    int32_t f = face_of(w, a), g = face_of(w, b), last = f > g ? f : g, first = f + g - last;
-    if (last == w->n_edges)
+    int32_t f = face_of(w, a, ABOVE), g = face_of(w, b, BELOW), last = f > g ? f : g, first = f + g - last;
+    if (last == 2 * w->n_edges)
         w->face[first] = last;
     else
         w->face[last] = first;
@@ -118,10 +138,8 @@ static bool neighbors_are_good(struct sweep *w, int32_t a, int32_t b)
         if (order < 0 ? side(w, b, p) >= 0 : order > 0 && side(w, a, q) <= 0)
             return fault(w, "they meet", a, b);
     }
-    bool meshed = a >= 0 && w->edge[a].above, wanted = b >= 0 && !w->edge[b].above;
-    if (meshed == wanted) {
-        if (!meshed)
-            join_faces(w, a, b);
+    if (is_meshed(w, a, ABOVE) == is_meshed(w, b, BELOW)) {
+        join_faces(w, a, b);
         return true;
     }
     return fault(w, "the mesh covers itself between them", a >= 0 ? a : b, b >= 0 ? b : a);
@@ -146,18 +164,18 @@ static bool remove_ending(struct sweep *w, struct tri_point p, int32_t n_ending,
 
 static int compare_directions(const void *a, const void *b)
 {
-    const struct sweep_edge *e = a, *f = b;
+    const struct start *e = a, *f = b;
     double turn = tri_orient2d(e->left, e->right, f->right);
     return (turn < 0) - (turn > 0);
 }
 
-/* Steps 2, the edges that start at p, and 3 and 4. start[i].half_edge names an edge of the sweep here. */
+/* Steps 2, the edges that start at p, and 3 and 4. */
 static bool insert_starting(struct sweep *w, int32_t n, int32_t below)
 {
     qsort(w->start, (size_t)n, sizeof *w->start, compare_directions);
     int32_t top = below;
     for (int32_t i = 0; i < n; i++) {
-        int32_t s = w->start[i].half_edge;
+        int32_t s = w->start[i].edge;
         if (i > 0 && compare_directions(&w->start[i - 1], &w->start[i]) == 0) {
             return fault(w, "one runs along the other", top, s);
         }
@@ -184,32 +202,52 @@ static bool is_near(const struct sweep *w, int32_t s, struct tri_point p, double
     return det * det <= distance * distance * (x * x + y * y);
 }
 
-/* On an edge, a lost vertex is as lost as inside; a hole or what is missing of a segment is where it should be. */
+/* Notes that the point of a hole or region is on that side of edge s, -1: outermost. */
+static void note_point(struct sweep *w, const struct check_query *q, int32_t s, int side, bool vague)
+{
+    int32_t f = s < 0 ? 2 * w->n_edges : 2 * s + side;
+    if (q->kind == TRI_CHECK_HOLES)
+        w->emptied[f] = 1;
+    else if (q->kind == TRI_CHECK_REGIONS && vague)
+        w->vague[f] = 1;
+    else if (q->kind == TRI_CHECK_REGIONS && q->id > w->region[f])
+        w->region[f] = q->id;
+}
+
+/* On an edge, a lost vertex is as lost as inside; a hole or what is missing of a segment is where it should be. Within
+ * rounding of an edge, a point may mean either side. */
 static void answer(struct sweep *w, int32_t number)
 {
     struct check_query *q = &w->c->queries[number];
     int32_t below = find_below(w, q->at), s = tri_check_order_above(&w->order, below);
     bool on_edge = s >= 0 && side(w, s, q->at) == 0;
-    q->inside = on_edge ? q->kind == TRI_CHECK_LOST_VERTICES : below >= 0 && w->edge[below].above;
-    q->inside = q->inside && !is_near(w, below, q->at, q->tolerance) &&
-                !is_near(w, s, q->at, q->tolerance);
-    if (q->kind == TRI_CHECK_HOLES && !q->inside)
-        w->emptied[below < 0 ? w->n_edges : below] = w->emptied[s < 0 ? w->n_edges : s] = 1;
+    bool near_below = is_near(w, below, q->at, q->tolerance), near_above = is_near(w, s, q->at, q->tolerance);
+    bool inside = on_edge ? q->kind == TRI_CHECK_LOST_VERTICES : is_meshed(w, below, ABOVE);
+    if (!w->again)
+        q->inside = inside && !near_below && !near_above;
+    bool vague = on_edge || near_below || near_above;
+    note_point(w, q, below, ABOVE, vague);
+    if (near_below)
+        note_point(w, q, below, BELOW, vague);
+    if (on_edge || near_above)
+        note_point(w, q, s, ABOVE, vague);
 }
 
-/* A hole point at a vertex of the boundary is in every face there. */
-static void empty_all(struct sweep *w, const struct event *event, int32_t n)
+/* A point at a vertex is in every face there. */
+static void note_all(struct sweep *w, const struct event *event, int32_t n)
 {
-    bool is_hole = false;
-    for (int32_t i = 0; i < n; i++)
-        is_hole = is_hole || (event[i].code < 0 && w->c->queries[~event[i].code].kind == TRI_CHECK_HOLES);
-    for (int32_t i = 0; is_hole && i < n; i++)
-        if (event[i].code >= 0)
-            w->emptied[event[i].code >> 1] = 1;
+    for (int32_t i = 0; i < n; i++) {
+        for (int32_t j = 0; event[i].code < 0 && j < n; j++) {
+            for (int side = 0; event[j].code >= 0 && side < 2; side++)
+                note_point(w, &w->c->queries[~event[i].code], event[j].code >> 1, side, true);
+        }
+    }
 }
 
 static bool coincide(struct sweep *w, int32_t v, int32_t u)
 {
+    if (w->again)
+        return false;
     tri_check_fault(w->c, TRI_CHECK_OVERLAP, "vertices %ld and %ld lie at the same place of the boundary",
                     check_number(w->c, v), check_number(w->c, u));
     return false;
@@ -224,20 +262,19 @@ static bool process(struct sweep *w, const struct event *event, int32_t n)
             continue;
         int32_t s = event[i].code >> 1;
         int end = event[i].code & 1;
-        if (vertex >= 0 && vertex_at(w, s, end) != vertex)
-            return coincide(w, vertex, vertex_at(w, s, end));
-        vertex = vertex_at(w, s, end);
+        int32_t v = w->edge[s].vertex[end];
+        if (vertex >= 0 && v >= 0 && v != vertex)
+            return coincide(w, vertex, v);
+        vertex = v >= 0 ? v : vertex;
         witness = s;
-        if (end == RIGHT_END) {
+        if (end == RIGHT_END)
             n_ending++;
-        } else {
-            w->start[n_starting] = w->edge[s];
-            w->start[n_starting++].half_edge = s;
-        }
+        else
+            w->start[n_starting++] = (struct start){w->edge[s].left, w->edge[s].right, s};
     }
     if (witness >= 0) { /* queries at a vertex of the boundary are not inside */
         int32_t below;
-        empty_all(w, event, n);
+        note_all(w, event, n);
         return remove_ending(w, event->at, n_ending, witness, &below) && insert_starting(w, n_starting, below);
     }
     for (int32_t i = 0; i < n; i++)
@@ -245,21 +282,92 @@ static bool process(struct sweep *w, const struct event *event, int32_t n)
     return true;
 }
 
-static void collect(struct sweep *w)
+/* The half-edges on the left and on the right of an edge from a to b, -1: no mesh there. */
+static void add_edge(struct sweep *w, struct tri_point a, struct tri_point b, int32_t u, int32_t v, int32_t left,
+                     int32_t right)
 {
-    struct checker *c = w->c;
+    int32_t s = w->n_edges++;
+    bool ascends = tri_compare_places(a, b) < 0; /* what is on the left is above then */
+    w->edge[s] = ascends ? (struct sweep_edge){a, b, {u, v}, {right, left}}
+                         : (struct sweep_edge){b, a, {v, u}, {left, right}};
+    w->event[w->n_events++] = (struct event){w->edge[s].left, 2 * s + LEFT_END};
+    w->event[w->n_events++] = (struct event){w->edge[s].right, 2 * s + RIGHT_END};
+}
+
+static void add_half_edge(struct sweep *w, int32_t h)
+{
+    const struct checker *c = w->c;
+    int32_t u = check_org(c, h), v = check_dest(c, h);
+    add_edge(w, check_point(c, u), check_point(c, v), u, v, h, c->link[h]);
+}
+
+static void collect(struct sweep *w, const struct check_pieces *missing)
+{
+    const struct checker *c = w->c;
     for (int32_t h = 0; h < c->n_half_edges; h++) {
-        if (c->link[h] >= 0)
-            continue;
-        struct tri_point a = check_point(c, check_org(c, h)), b = check_point(c, check_dest(c, h));
-        bool above = tri_compare_places(a, b) < 0; /* the mesh is on the left of the edge */
-        int32_t s = w->n_edges++;
-        w->edge[s] = above ? (struct sweep_edge){a, b, h, true} : (struct sweep_edge){b, a, h, false};
-        w->event[w->n_events++] = (struct event){w->edge[s].left, 2 * s + LEFT_END};
-        w->event[w->n_events++] = (struct event){w->edge[s].right, 2 * s + RIGHT_END};
+        if (c->link[h] < 0 || (w->again && h < c->link[h] && check_is_constrained(c, h)))
+            add_half_edge(w, h);
     }
-    for (int32_t i = 0; i < c->n_queries; i++) {
+    for (int32_t i = 0; i < missing->n; i++)
+        add_edge(w, missing->at[i].from, missing->at[i].to, -1, -1, -1, -1);
+    for (int32_t i = 0; i < c->n_queries; i++)
         w->event[w->n_events++] = (struct event){c->queries[i].at, ~i};
+    for (int32_t f = 0; f <= 2 * w->n_edges; f++) {
+        w->face[f] = f;
+        w->region[f] = -1;
+    }
+}
+
+static enum tri_status init(struct sweep *w, int64_t n)
+{
+    int64_t n_events = 2 * n + w->c->n_queries;
+    if (n_events >= INT32_MAX)
+        return TRI_TOO_LARGE;
+    w->edge = tri_check_array(n, sizeof *w->edge);
+    w->start = tri_check_array(n, sizeof *w->start);
+    w->event = tri_check_array(n_events, sizeof *w->event);
+    w->face = tri_check_array(2 * n + 1, sizeof *w->face);
+    w->emptied = tri_check_zeros(2 * n + 1, 1);
+    w->vague = tri_check_zeros(2 * n + 1, 1);
+    w->region = tri_check_array(2 * n + 1, sizeof *w->region);
+    bool room = w->edge && w->start && w->event && w->face && w->emptied && w->vague && w->region;
+    return room ? tri_check_order_init(&w->order, (int32_t)n) : TRI_NO_MEMORY;
+}
+
+static void clear(struct sweep *w)
+{
+    free(w->edge);
+    free(w->start);
+    free(w->event);
+    free(w->face);
+    free(w->emptied);
+    free(w->vague);
+    free(w->region);
+    tri_check_order_clear(&w->order);
+}
+
+/* False: the sweep has found a fault. */
+static bool run(struct sweep *w)
+{
+    qsort(w->event, (size_t)w->n_events, sizeof *w->event, compare_events);
+    for (int32_t i = 0, j; i < w->n_events; i = j) {
+        for (j = i + 1; j < w->n_events && check_same_place(w->event[i].at, w->event[j].at); j++) {
+        }
+        if (!process(w, w->event + i, j - i))
+            return false;
+    }
+    assert(tri_check_order_above(&w->order, -1) == -1);
+    return true;
+}
+
+/* Each side's marks also become its face's. */
+static void gather_marks(struct sweep *w)
+{
+    for (int32_t f = 0; f < 2 * w->n_edges; f++) {
+        int32_t root = face_of(w, f / 2, f % 2);
+        w->emptied[root] |= w->emptied[f];
+        w->vague[root] |= w->vague[f];
+        w->region[root] = w->region[f] > w->region[root] ? w->region[f] : w->region[root];
     }
 }
 
@@ -268,59 +376,78 @@ static void check_faces(struct sweep *w)
 {
     struct checker *c = w->c;
     tri_check_begin(c, TRI_CHECK_FACES);
-    for (int32_t s = 0; s < w->n_edges; s++)
-        if (w->emptied[s])
-            w->emptied[face_of(w, s)] = 1;
-    for (int32_t s = 0; s < w->n_edges; s++) {
-        if (face_of(w, s) != s || w->emptied[s])
+    for (int32_t f = 0; f < 2 * w->n_edges; f++) { /* told where mesh is beside it */
+        int32_t s = f / 2, root = face_of(w, s, f % 2);
+        if (w->emptied[root] || root == 2 * w->n_edges || is_meshed(w, s, f % 2) || !is_meshed(w, s, 1 - f % 2))
             continue;
-        int32_t h = w->edge[s].half_edge;
+        int32_t h = half_edge_of(w, s);
+        w->emptied[root] = 1;
         tri_check_fault(c, TRI_CHECK_FACES, "beside edge %ld-%ld of triangle %ld a face is empty without a hole point",
                         check_number(c, check_org(c, h)), check_number(c, check_dest(c, h)), check_number(c, h / 3));
     }
 }
 
-static void sweep(struct sweep *w)
+/* Triangles of each face in the mesh have the attribute of the last region whose point is there; that they all have the
+ * same is told apart (regions.c). */
+static void check_regions(struct sweep *w)
 {
-    collect(w);
-    for (int32_t s = 0; s <= w->n_edges; s++)
-        w->face[s] = s;
-    qsort(w->event, (size_t)w->n_events, sizeof *w->event, compare_events);
-    for (int32_t i = 0, j; i < w->n_events; i = j) {
-        for (j = i + 1; j < w->n_events && check_same_place(w->event[i].at, w->event[j].at); j++) {
-        }
-        if (!process(w, w->event + i, j - i))
-            return;
+    struct checker *c = w->c;
+    for (int32_t f = 0; f < 2 * w->n_edges; f++) {
+        int32_t s = f / 2, root = face_of(w, s, f % 2);
+        if (!is_meshed(w, s, f % 2) || w->vague[root])
+            continue;
+        int32_t t = w->edge[s].side[f % 2] / 3, k = w->region[root];
+        double given = check_attribute(c, t), expected = k < 0 ? 0 : c->input->regions[4 * (size_t)k + 2];
+        w->vague[root] = 1;
+        if (given != expected)
+            tri_check_fault(c, TRI_CHECK_REGIONS, "triangle %ld has attribute %.17g, expected %.17g",
+                            check_number(c, t), given, expected);
     }
-    assert(tri_check_order_above(&w->order, -1) == -1);
-    const struct tri_check_options *o = w->c->options;
-    if (w->c->input != NULL && !o->any_holes && !o->ignore_lost && o->border != TRI_CHECK_BORDER_ANY)
-        check_faces(w);
+}
+
+static bool faces_count(const struct checker *c)
+{
+    const struct tri_check_options *o = c->options;
+    return c->input != NULL && !o->any_holes && !o->ignore_lost && o->border != TRI_CHECK_BORDER_ANY;
+}
+
+/* One sweep, and what it says of faces where it is the last one. *good: it has come to its end. */
+static enum tri_status sweep(struct checker *c, const struct check_pieces *missing, bool again, bool last, bool *good)
+{
+    struct sweep w = {.c = c, .again = again};
+    enum tri_status status =
+        init(&w, c->report->n_boundary_edges + missing->n + (again ? (int64_t)c->n_segments : 0));
+    if (status == TRI_OK) {
+        collect(&w, missing);
+        *good = run(&w);
+        gather_marks(&w);
+        if (*good && last && faces_count(c))
+            check_faces(&w);
+        if (*good && again && check_good(c, TRI_CHECK_REGIONS))
+            check_regions(&w);
+    }
+    clear(&w);
+    return status;
 }
 
 enum tri_status tri_check_overlap(struct checker *c)
 {
-    int64_t n = c->report->n_boundary_edges, n_events = 2 * n + c->n_queries;
-    if (n_events > INT32_MAX)
-        return TRI_TOO_LARGE;
-    struct sweep w = {.c = c};
-    w.edge = tri_check_array(n, sizeof *w.edge);
-    w.start = tri_check_array(n, sizeof *w.start);
-    w.event = tri_check_array(n_events, sizeof *w.event);
-    w.face = tri_check_array(n + 1, sizeof *w.face);
-    w.emptied = tri_check_zeros(n + 1, 1);
-    enum tri_status status = tri_check_order_init(&w.order, (int32_t)n);
-    if (w.edge == NULL || w.start == NULL || w.event == NULL || w.face == NULL || w.emptied == NULL)
-        status = TRI_NO_MEMORY;
+    static const struct check_pieces none;
+    struct check_pieces missing = {0};
+    bool regions = check_good(c, TRI_CHECK_REGIONS), good = false;
+    enum tri_status status = TRI_OK;
+    if (faces_count(c))
+        status = tri_check_split_missing(c, &missing);
+    bool again = regions || missing.n > 0;
     if (status == TRI_OK) {
         tri_check_begin(c, TRI_CHECK_OVERLAP);
-        sweep(&w);
+        status = sweep(c, &none, false, !again, &good);
     }
-    free(w.edge);
-    free(w.start);
-    free(w.event);
-    free(w.face);
-    free(w.emptied);
-    tri_check_order_clear(&w.order);
+    again = again && good;
+    if (status == TRI_OK && again)
+        status = sweep(c, &missing, true, true, &good);
+    if (status == TRI_OK && again && !good)
+        status = sweep(c, &none, true, true, &good);
+    free(missing.at);
     return status;
 }

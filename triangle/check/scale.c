@@ -34,6 +34,17 @@ static double *scale(const double *values, int64_t n, int exponent)
     return scaled;
 }
 
+/* Their points only. */
+static double *scale_regions(const struct tri_pslg *input, int exponent)
+{
+    double *scaled = scale(input->regions, 4 * (int64_t)input->n_regions, exponent);
+    for (size_t k = 0; scaled != NULL && k < (size_t)input->n_regions; k++) {
+        scaled[4 * k + 2] = input->regions[4 * k + 2];
+        scaled[4 * k + 3] = input->regions[4 * k + 3];
+    }
+    return scaled;
+}
+
 enum tri_status tri_check_scale(struct checker *c)
 {
     const struct tri_pslg *input = c->input;
@@ -51,11 +62,13 @@ enum tri_status tri_check_scale(struct checker *c)
         return TRI_OK;
     c->scaled[1] = scale(c->input->points, 2 * (int64_t)c->input->n_points, c->exponent);
     c->scaled[2] = scale(c->input->holes, 2 * (int64_t)c->input->n_holes, c->exponent);
-    if (c->scaled[1] == NULL || c->scaled[2] == NULL)
+    c->scaled[3] = scale_regions(c->input, c->exponent);
+    if (c->scaled[1] == NULL || c->scaled[2] == NULL || c->scaled[3] == NULL)
         return TRI_NO_MEMORY;
     c->scaled_input = *c->input;
     c->scaled_input.points = c->scaled[1];
     c->scaled_input.holes = c->scaled[2];
+    c->scaled_input.regions = c->scaled[3];
     c->input = &c->scaled_input;
     return TRI_OK;
 }

@@ -101,8 +101,7 @@ static void check_all(struct markers *m)
 
 enum tri_status tri_check_vertex_markers(struct checker *c)
 {
-    if (c->input == NULL || c->mesh->point_markers == NULL || c->mesh->segment_markers == NULL ||
-        c->options->border == TRI_CHECK_BORDER_ANY)
+    if (c->input == NULL || c->mesh->point_markers == NULL || c->mesh->segment_markers == NULL)
         return TRI_OK;
     struct markers m = {.c = c};
     int32_t n = c->mesh->n_points;

@@ -1,0 +1,168 @@
+/* Missing pieces, cut where they meet.
+ *
+ *   1. In order of their left ends, each is compared with those that begin before it ends.
+ *   2. An end of one that lies on the other within the tolerance cuts that there; where no end does, but the two cross
+ *      (exactly decided), both are cut at the rounded crossing.
+ *   3. What lies between the cuts of a piece, in order, are the pieces wanted; of equal ones one is kept. */
+#include "triangle/check/missing.h"
+
+#include <stdlib.h>
+
+enum { MOST_TRIALS = 1 << 27 };
+
+struct cut {
+    int32_t piece;
+    double at; /* distance from the piece's first end */
+    struct tri_point point;
+};
+
+struct cutting {
+    double tolerance;
+    int32_t n;
+    struct check_piece *piece; /* [n] from left to right, in order */
+    int64_t n_trials;
+    int32_t n_cuts, capacity;
+    struct cut *cut;
+};
+
+static int compare_pieces(const void *a, const void *b)
+{
+    const struct check_piece *p = a, *q = b;
+    int order = tri_compare_places(p->from, q->from);
+    return order != 0 ? order : tri_compare_places(p->to, q->to);
+}
+
+static int compare_cuts(const void *a, const void *b)
+{
+    const struct cut *p = a, *q = b;
+    if (p->piece != q->piece)
+        return p->piece < q->piece ? -1 : 1;
+    if (p->at != q->at)
+        return p->at < q->at ? -1 : 1;
+    return tri_compare_places(p->point, q->point);
+}
+
+static void sort(struct check_piece *piece, int32_t n)
+{
+    for (int32_t i = 0; i < n; i++) {
+        if (tri_compare_places(piece[i].from, piece[i].to) > 0)
+            piece[i] = (struct check_piece){piece[i].to, piece[i].from};
+    }
+    if (n > 1)
+        qsort(piece, (size_t)n, sizeof *piece, compare_pieces);
+}
+
+static enum tri_status add_cut(struct cutting *k, int32_t i, struct tri_point p)
+{
+    if (k->n_cuts == k->capacity) {
+        if (k->capacity > INT32_MAX / 2 - 16)
+            return TRI_TOO_LARGE;
+        int32_t capacity = 2 * k->capacity + 16;
+        struct cut *cut = realloc(k->cut, (size_t)capacity * sizeof *cut);
+        if (cut == NULL)
+            return TRI_NO_MEMORY;
+        k->cut = cut;
+        k->capacity = capacity;
+    }
+    const struct check_piece *s = &k->piece[i];
+    double x = s->to.x - s->from.x, y = s->to.y - s->from.y;
+    double at = ((p.x - s->from.x) * x + (p.y - s->from.y) * y) / sqrt(x * x + y * y);
+    k->cut[k->n_cuts++] = (struct cut){i, at, p};
+    return TRI_OK;
+}
+
+/* Between the ends of the piece, within the tolerance of its line? */
+static bool is_inside(const struct cutting *k, const struct check_piece *s, struct tri_point p)
+{
+    double x = s->to.x - s->from.x, y = s->to.y - s->from.y, length = sqrt(x * x + y * y);
+    double along = (p.x - s->from.x) * x + (p.y - s->from.y) * y;
+    return along > 0 && along < length * length && !check_same_place(p, s->from) && !check_same_place(p, s->to) &&
+           fabs((p.x - s->from.x) * y - (p.y - s->from.y) * x) <= k->tolerance * length;
+}
+
+static bool separates(const struct check_piece *s, const struct check_piece *r)
+{
+    double p = tri_orient2d(s->from, s->to, r->from), q = tri_orient2d(s->from, s->to, r->to);
+    return (p > 0 && q < 0) || (p < 0 && q > 0);
+}
+
+static struct tri_point crossing_of(const struct check_piece *s, const struct check_piece *r)
+{
+    double x = s->to.x - s->from.x, y = s->to.y - s->from.y, u = r->to.x - r->from.x, v = r->to.y - r->from.y;
+    double at = ((r->from.x - s->from.x) * v - (r->from.y - s->from.y) * u) / (x * v - y * u);
+    return (struct tri_point){tri_round_coordinate(s->from.x + at * x), tri_round_coordinate(s->from.y + at * y)};
+}
+
+/* Step 2. */
+static enum tri_status meet(struct cutting *k, int32_t i, int32_t j)
+{
+    const struct check_piece *s = &k->piece[i], *r = &k->piece[j];
+    struct tri_point ends[4] = {r->from, r->to, s->from, s->to};
+    int n = 0;
+    enum tri_status status = TRI_OK;
+    for (int end = 0; end < 4 && status == TRI_OK; end++) {
+        if (!is_inside(k, end < 2 ? s : r, ends[end]))
+            continue;
+        status = add_cut(k, end < 2 ? i : j, ends[end]);
+        n++;
+    }
+    if (status != TRI_OK || n > 0 || !separates(s, r) || !separates(r, s))
+        return status;
+    struct tri_point p = crossing_of(s, r);
+    status = tri_is_exact_point(p) ? add_cut(k, i, p) : TRI_OK;
+    return status == TRI_OK && tri_is_exact_point(p) ? add_cut(k, j, p) : status;
+}
+
+/* Step 1; also cuts every piece at its ends. */
+static enum tri_status find_cuts(struct cutting *k)
+{
+    enum tri_status status = TRI_OK;
+    for (int32_t i = 0; i < k->n && status == TRI_OK; i++) {
+        const struct check_piece *s = &k->piece[i];
+        double low = fmin(s->from.y, s->to.y) - k->tolerance, high = fmax(s->from.y, s->to.y) + k->tolerance;
+        status = add_cut(k, i, s->from);
+        status = status == TRI_OK ? add_cut(k, i, s->to) : status;
+        for (int32_t j = i + 1; j < k->n && k->piece[j].from.x <= s->to.x + k->tolerance && status == TRI_OK; j++) {
+            const struct check_piece *r = &k->piece[j];
+            if (k->n_trials++ > MOST_TRIALS)
+                return TRI_OK;
+            if (fmax(r->from.y, r->to.y) >= low && fmin(r->from.y, r->to.y) <= high)
+                status = meet(k, i, j);
+        }
+    }
+    return status;
+}
+
+/* Step 3. */
+static enum tri_status take_between(struct cutting *k, struct check_pieces *out)
+{
+    out->at = tri_check_array(k->n_cuts, sizeof *out->at);
+    if (out->at == NULL)
+        return TRI_NO_MEMORY;
+    qsort(k->cut, (size_t)k->n_cuts, sizeof *k->cut, compare_cuts);
+    int32_t n = 0;
+    for (int32_t i = 1; i < k->n_cuts; i++) {
+        if (k->cut[i].piece == k->cut[i - 1].piece && !check_same_place(k->cut[i].point, k->cut[i - 1].point))
+            out->at[n++] = (struct check_piece){k->cut[i - 1].point, k->cut[i].point};
+    }
+    sort(out->at, n);
+    for (int32_t i = 0; i < n; i++) {
+        if (out->n == 0 || compare_pieces(&out->at[out->n - 1], &out->at[i]) != 0)
+            out->at[out->n++] = out->at[i];
+    }
+    return TRI_OK;
+}
+
+enum tri_status tri_check_split_missing(const struct checker *c, struct check_pieces *pieces)
+{
+    *pieces = (struct check_pieces){0};
+    if (c->n_missing == 0)
+        return TRI_OK;
+    struct cutting k = {.tolerance = c->tolerance, .n = c->n_missing, .piece = c->missing};
+    sort(k.piece, k.n);
+    enum tri_status status = find_cuts(&k);
+    if (status == TRI_OK && k.n_trials <= MOST_TRIALS)
+        status = take_between(&k, pieces);
+    free(k.cut);
+    return status;
+}
