@@ -155,6 +155,7 @@ set(PTRIANGLE_PARALLEL_SOURCES
     drivers/blocks_file.c
     drivers/long_options.c
     drivers/progress.c
+    drivers/streams.c
     drivers/prediction.c)
 set(PTRIANGLE_REPORT_SOURCE drivers/report_json.c)
 set(PTRIANGLE_NO_REPORT_SOURCE drivers/report_none.c)

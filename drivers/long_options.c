@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "drivers/streams.h"
 #include "triangle/text/decimal.h"
 #include "triangle/text/formats.h"
 
@@ -17,9 +18,10 @@ const char long_options_help[] =
     "                     number of them is removed. Rings may lie in rings\n"
     "  --holes points     hole points tell (the default)\n"
     "  --output BASE      results are called BASE.node, BASE.ele, BASE.poly and so on\n"
-    "  --output FILE.vtu | FILE.msh | FILE.2dm | FILE.14 | FILE.grd\n"
-    "                     the mesh for VTK and ParaView, Gmsh, SMS or ADCIRC, in place of BASE.node and so on, or\n"
-    "                     beside them if --output BASE is given, too; up to 4 such files\n"
+    "  --output FILE.h5 | FILE.vtu | FILE.msh | FILE.2dm | FILE.14 | FILE.grd\n"
+    "                     the mesh as HDF5, with FILE.xdmf beside it, or for VTK and ParaView, Gmsh, SMS or ADCIRC,\n"
+    "                     in place of BASE.node and so on, or beside them if --output BASE is given, too; up to 4\n"
+    "                     such files\n"
     "  --report FILE      seconds, blocks, memory and mesh statistics, as JSON; -: on standard output, where\n"
     "                     with -Q nothing else is printed\n"
     "  --blocks FILE      block and phase of each triangle, a line each, for meshplot --blocks\n"
@@ -194,16 +196,24 @@ static enum tri_status take_name(const char **name, const struct kind *kind, con
     return TRI_OK;
 }
 
+/* One more file of some kind. */
+static enum tri_status add_file(const char **names, int *n, const char *value, struct tri_error *error)
+{
+    if (*n == LONG_OPTIONS_MOST_EXPORTS)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--output: no more than %d files of other formats",
+                        LONG_OPTIONS_MOST_EXPORTS);
+    names[(*n)++] = value;
+    return TRI_OK;
+}
+
 static enum tri_status take_output(struct long_options *options, const struct kind *kind, const char *value,
                                    struct tri_error *error)
 {
-    if (!tri_format_of(value))
-        return take_name(&options->output, kind, value, error);
-    if (options->n_exports == LONG_OPTIONS_MOST_EXPORTS)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--output: no more than %d files of other formats",
-                        LONG_OPTIONS_MOST_EXPORTS);
-    options->exports[options->n_exports++] = value;
-    return TRI_OK;
+    if (stream_is_wanted(value))
+        return add_file(options->streams, &options->n_streams, value, error);
+    if (tri_format_of(value))
+        return add_file(options->exports, &options->n_exports, value, error);
+    return take_name(&options->output, kind, value, error);
 }
 
 static enum tri_status apply(struct long_options *options, struct tri_switches *switches, const struct kind *kind,

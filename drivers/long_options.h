@@ -19,6 +19,8 @@ struct long_options {
     const char *output; /* BASE of --output; NULL: not given. Words are borrowed from argv */
     int n_exports;      /* files in other programs' formats */
     const char *exports[LONG_OPTIONS_MOST_EXPORTS]; /* [n_exports] FILE of --output, whose suffix names a format */
+    int n_streams;      /* the same for HDF5 */
+    const char *streams[LONG_OPTIONS_MOST_EXPORTS]; /* [n_streams] */
     const char *report; /* file; NULL: none */
     const char *blocks; /* file; NULL: none */
     enum long_options_progress progress;

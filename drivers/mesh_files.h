@@ -10,7 +10,7 @@
 #include "triangle/pslg.h"
 #include "triangle/reconstruct.h"
 
-enum { MESH_FILES_MOST_NAMES = 4 };
+enum { MESH_FILES_MOST_NAMES = 16 };
 
 /* Names of files, borrowed. */
 struct file_names {

@@ -14,6 +14,7 @@
 #include "drivers/report_json.h"
 #include "drivers/resources.h"
 #include "drivers/run.h"
+#include "drivers/streams.h"
 #include "sched/schedule.h"
 #include "sched/threads.h"
 #include "triangle/estimate.h"
@@ -26,6 +27,10 @@ struct program {
     struct long_options options;
     int threads;
     struct progress progress;
+    struct file_names h5;      /* HDF5 files that are wanted */
+    char *texts[2 * STREAMS_MOST]; /* names of those beside them */
+    struct streams streams;
+    int32_t n_before;          /* vertices there were before refinement */
     bool refined;              /* the schedule has run: its report is filled */
     struct par_report schedule;
 };
@@ -51,25 +56,81 @@ static void follow(void *user, int round, int phase, int64_t triangles)
     progress_step(&p->progress, round, phase, triangles);
 }
 
-static enum tri_status refine(void *user, const struct run_plan *plan, struct tri_mesh *mesh,
-                              const struct tri_refine_options *quality, struct tri_refine_report *report,
-                              struct tri_error *error)
+static struct par_options options_of(struct program *p, const struct run *run)
 {
-    struct program *p = user;
-    (void)plan;
+    const struct tri_switches *s = &run->arguments->switches;
     struct par_options options = par_defaults();
     options.threads = p->threads;
     options.by_block = p->options.by_block;
     options.cell_triangles = cell_for_tests();
     options.progress = follow;
     options.progress_user = p;
-    progress_begin(&p->progress, mesh->n_triangles, p->threads);
-    enum tri_status status = par_refine(mesh, quality, &options, &p->schedule, error);
-    progress_end(&p->progress, mesh->n_triangles, p->schedule.seconds_number);
-    if (!status)
-        progress_stage(&p->progress, "writing");
-    *report = p->schedule.total;
+    options.figure = &run->pslg;
+    options.region_column = tri_switches_grid(s, &run->mesh, &run->pslg, &run->elements).regions;
+    options.sweep = run->plan.swept;
+    options.memory = run->plan.swept && run->plan.memory < HUGE_VAL ? (int64_t)run->plan.memory : 0;
+    options.scratch = run->hooks->limits.scratch;
+    return options;
+}
+
+static enum tri_status refine_with(struct program *p, struct run *run, const struct par_options *options,
+                                   struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                   struct tri_error *error)
+{
+    p->n_before = mesh->n_vertices;
+    progress_begin(&p->progress, mesh->n_triangles, run->plan.triangles, p->threads);
+    enum tri_status status = par_refine(mesh, quality, options, &p->schedule, error);
+    progress_end(&p->progress, options->sweep ? p->streams.triangles : mesh->n_triangles, p->schedule.seconds_number);
     p->refined = true;
+    return status;
+}
+
+/* Refinement keeps the number of holes and pieces: vertices - edges + triangles stays what it was. Every edge on the
+ * boundary is a subsegment. */
+static void count_streamed(struct tri_counts *c, const struct tri_counts *before, int64_t unused,
+                           const struct streams *streams)
+{
+    c->vertices = streams->vertices - unused;
+    c->triangles = streams->triangles;
+    c->subsegments = streams->segments;
+    c->edges = c->vertices + c->triangles - (before->vertices - before->edges + before->triangles);
+    c->exterior = 2 * c->edges - 3 * c->triangles;
+    c->interior = c->subsegments - c->exterior;
+}
+
+/* Refines, and writes what is finished meanwhile. */
+static enum tri_status sweep(struct program *p, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
+                             const struct tri_refine_options *quality, struct tri_error *error)
+{
+    struct par_options options = options_of(p, run);
+    struct tri_counts before;
+    struct tri_sink sink = streams_sink(&p->streams);
+    options.sink = &sink;
+    enum tri_status status = tri_count_mesh(&before, mesh, error);
+    int64_t unused = mesh->n_vertices - before.vertices;
+    status = status ? status : streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
+    status = status ? status : refine_with(p, run, &options, mesh, quality, error);
+    streams_close(&p->streams);
+    if (!status)
+        count_streamed(&run->counts, &before, unused, &p->streams);
+    return status;
+}
+
+static enum tri_status refine(void *user, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
+                              const struct tri_refine_options *quality, struct tri_refine_report *report,
+                              struct tri_error *error)
+{
+    struct program *p = user;
+    enum tri_status status;
+    if (run->plan.swept) {
+        status = sweep(p, run, set, mesh, quality, error);
+    } else {
+        struct par_options options = options_of(p, run);
+        status = refine_with(p, run, &options, mesh, quality, error);
+        if (!status)
+            progress_stage(&p->progress, "writing");
+    }
+    *report = p->schedule.total;
     return status;
 }
 
@@ -79,6 +140,29 @@ static double estimate(void *user, const struct tri_mesh *mesh, const struct tri
     return tri_estimate(mesh, quality);
 }
 
+/* Of a mesh that is in memory. */
+static enum tri_status write_streams(struct program *p, const struct run *run, struct tri_output_set *set,
+                                     struct tri_error *error)
+{
+    const struct tri_sink sink = streams_sink(&p->streams);
+    if (p->h5.n == 0)
+        return TRI_OK;
+    enum tri_status status = streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
+    int32_t n_before = p->refined ? p->n_before : run->mesh.n_vertices;
+    status = status ? status : streams_hand_out(run, n_before, &sink, error);
+    streams_close(&p->streams);
+    return status;
+}
+
+/* Measured: a sweep holds about three columns of cells, of up to so many triangles each. */
+static double swept_memory(void *user, double triangles)
+{
+    static const double BYTES = 290, SMALLEST_CELL = 8192, LARGEST_CELL = 131072, CELLS = 128;
+    double cell = fmin(fmax(triangles / CELLS, SMALLEST_CELL), LARGEST_CELL);
+    (void)user;
+    return BYTES * sqrt(triangles * cell);
+}
+
 static enum tri_status write_further(void *user, const struct run *run, struct tri_output_set *set,
                                      struct tri_error *error)
 {
@@ -86,8 +170,8 @@ static enum tri_status write_further(void *user, const struct run *run, struct t
     char text[96];
     snprintf(text, sizeof text, "done in %.2f s", run->total_seconds);
     progress_stage(&p->progress, text);
-    enum tri_status status = TRI_OK;
-    if (p->options.blocks)
+    enum tri_status status = run->plan.swept ? TRI_OK : write_streams(p, run, set, error);
+    if (!status && p->options.blocks)
         status = blocks_write(p->options.blocks, set, &p->schedule, &run->mesh, error);
     if (status || !p->options.report)
         return status;
@@ -144,6 +228,28 @@ static double memory_of(const struct long_options *options)
     return options->memory_share > 0 ? options->memory_share * (total < HUGE_VAL ? total : 0) : options->memory;
 }
 
+/* Names of HDF5 files, and of the texts beside them. */
+static enum tri_status name_streams(struct program *p, struct run_hooks *hooks, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (int i = 0; !status && i < p->options.n_streams; i++) {
+        char **texts = p->texts + 2 * i;
+        status = stream_names(p->options.streams[i], &texts[0], &texts[1], error);
+        add_further(&p->h5, p->options.streams[i]);
+        add_further(&hooks->further, p->options.streams[i]);
+        add_further(&hooks->further, texts[0]);
+        add_further(&hooks->further, texts[1]);
+    }
+    return status;
+}
+
+/* What of the long options asks for the whole mesh in memory. */
+static const char *whole_mesh(const struct long_options *o)
+{
+    return o->blocks ? "--blocks" : o->by_block ? "--numbering blocks" : o->write_partial ? "--write-partial"
+           : o->n_exports > 0 || o->n_streams == 0 || o->output ? "files other than .h5" : NULL;
+}
+
 static int run_program(struct program *p, const struct arguments *arguments)
 {
     p->threads = par_threads(long_options_threads(&p->options), true);
@@ -155,17 +261,26 @@ static int run_program(struct program *p, const struct arguments *arguments)
                               .limits = {o->time_limit, o->write_partial, o->dry_run, memory_of(o), o->scratch}};
     for (int i = 0; i < o->n_exports; i++)
         add_further(&hooks.exports, o->exports[i]);
-    hooks.exports_alone = o->n_exports > 0 && !o->output;
+    hooks.exports_alone = o->n_exports + o->n_streams > 0 && !o->output;
+    hooks.swept_memory = swept_memory;
+    hooks.whole_mesh = whole_mesh(o);
     add_further(&hooks.further, o->report && !report_is_printed(o->report) ? o->report : NULL);
     add_further(&hooks.further, o->blocks);
     if (arguments->file)
         progress_stage(&p->progress, "reading and triangulating");
-    int code = run_arguments(arguments, &hooks);
+    struct tri_error error = {0};
+    int code = EXIT_FAILURE;
+    if (name_streams(p, &hooks, &error))
+        console_error(&(struct console){.program = PROGRAM}, &error);
+    else
+        code = run_arguments(arguments, &hooks);
     if (!arguments->file)
         puts("  --threads N  --max-area X  --min-angle X  --output BASE|FILE.vtu|...  --report FILE  --blocks FILE"
              "  --numbering curve|blocks\n"
              "  --dry-run  --time-limit T  --write-partial  --progress  --help");
     par_report_free(&p->schedule);
+    for (int i = 0; i < 2 * STREAMS_MOST; i++)
+        free(p->texts[i]);
     return code;
 }
 

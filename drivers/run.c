@@ -257,6 +257,14 @@ static enum tri_status leave(void *user, struct tri_mesh *mesh, const struct tri
     return TRI_OK;
 }
 
+/* Files of a mesh that is there are written, whoever asks for the end. */
+static void begin_outputs(const struct runner *r)
+{
+    interrupt_begin(&outputs);
+    if (r->run.hooks->limits.write_partial)
+        outputs.stop = NULL;
+}
+
 static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_refine_options *quality,
                               struct tri_refine_report *report, struct tri_error *error)
 {
@@ -267,9 +275,14 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
         return status;
     console_say(&r->console, "Adding vertices until the bounds are kept.\n");
     interrupt_stage("refining");
-    status = hooks->refine ? hooks->refine(hooks->user, &r->run.plan, mesh, quality, report, error)
+    if (r->run.plan.swept)
+        begin_outputs(r);
+    status = hooks->refine ? hooks->refine(hooks->user, &r->run, &outputs, mesh, quality, report, error)
                            : tri_refine(mesh, quality, report, error);
-    return notice_stop(r, status);
+    status = notice_stop(r, status);
+    if (status && r->run.plan.swept)
+        interrupt_drop(&outputs);
+    return status;
 }
 
 /* The mesh, refined or, for an estimate, as it is before. */
@@ -305,10 +318,10 @@ static void tell_of_quality(struct runner *r)
     const struct tri_refine_report *report = &run->report.quality;
     if (!run->options.refine)
         return;
-    say_milliseconds(r, "Quality", run->seconds[RUN_QUALITY]);
+    say_milliseconds(r, run->plan.swept ? "Quality and output" : "Quality", run->seconds[RUN_QUALITY]);
     if (report->hit_limit && run->options.quality.conforming)
         console_warn(&r->console, "the limit of -S was reached before the mesh was conforming.\n");
-    if (!r->console.quiet) /* a pass over all triangles */
+    if (!r->console.quiet && !run->plan.swept) /* a pass over all triangles */
         summary_bounds(&r->console, &run->mesh, &run->options.quality, report, run->hooks->executor);
 }
 
@@ -320,7 +333,7 @@ static int64_t count_bad(const struct runner *r)
     enum { SOON_COUNTED = 1 << 22 };
     const struct run *run = &r->run;
     int64_t count[TRI_EXCUSES], sum = 0;
-    if (!run->options.refine || run->mesh.n_triangles > SOON_COUNTED)
+    if (!run->options.refine || run->plan.swept || run->mesh.n_triangles > SOON_COUNTED)
         return -1;
     tri_count_bad(&run->mesh, &run->options.quality, &run->report.quality, run->hooks->executor, count);
     for (int k = 0; k < TRI_EXCUSES; k++)
@@ -334,7 +347,8 @@ static void tell_of_stop(struct runner *r, bool partial)
     struct tri_error line = {.status = TRI_STOPPED};
     char far[160] = "";
     int64_t bad = r->built ? count_bad(r) : -1;
-    int length = r->built ? snprintf(far, sizeof far, ": %ld triangles", (long)r->run.mesh.n_triangles) : 0;
+    bool counted = r->built && !r->run.plan.swept;
+    int length = counted ? snprintf(far, sizeof far, ": %ld triangles", (long)r->run.mesh.n_triangles) : 0;
     if (bad >= 0)
         snprintf(far + length, sizeof far - (size_t)length, ", %" PRId64 " of them below the bounds", bad);
     tri_fail(&line, TRI_STOPPED, NULL, 0, "stopped by %s after %.1f s while %s%s; %s", interrupt_cause(),
@@ -386,7 +400,7 @@ static enum tri_status tell(struct runner *r)
 {
     struct run *run = &r->run;
     const struct tri_switches *s = &run->arguments->switches;
-    enum tri_status status = tri_count_mesh(&run->counts, &run->mesh, r->error);
+    enum tri_status status = run->plan.swept ? TRI_OK : tri_count_mesh(&run->counts, &run->mesh, r->error);
     run->total_seconds = tri_seconds() - r->begin;
     if (status)
         return status;
@@ -402,7 +416,7 @@ static enum tri_status tell(struct runner *r)
 static enum tri_status write_all(struct runner *r, const struct mesh_files *files)
 {
     const struct run_hooks *hooks = r->run.hooks;
-    enum tri_status status = write_mesh(r, files);
+    enum tri_status status = r->run.plan.swept ? TRI_OK : write_mesh(r, files);
     status = status ? status : tell(r);
     if (!status && hooks->write)
         status = hooks->write(hooks->user, &r->run, &outputs, r->error);
@@ -413,9 +427,8 @@ static enum tri_status write_all(struct runner *r, const struct mesh_files *file
 static enum tri_status write_output(struct runner *r, const struct mesh_files *files)
 {
     interrupt_stage("writing");
-    interrupt_begin(&outputs);
-    if (r->run.hooks->limits.write_partial) /* a mesh that is there is written */
-        outputs.stop = NULL;
+    if (!r->run.plan.swept)
+        begin_outputs(r);
     enum tri_status status = write_all(r, files);
     if (!status)
         return interrupt_commit(&outputs, r->error);
@@ -451,7 +464,8 @@ static enum tri_status make_mesh(struct runner *r)
         return status;
     tell_of_quality(r);
     tell_of_input(r);
-    tri_mesh_compact(&run->mesh);
+    if (!run->plan.swept)
+        tri_mesh_compact(&run->mesh);
     return TRI_OK;
 }
 

@@ -27,6 +27,7 @@ enum run_stage {
 struct run_plan {
     bool swept;    /* by columns, of which few are in memory at a time; else the whole mesh is */
     double memory; /* bytes of memory that the process may take; HUGE_VAL: not known */
+    double triangles; /* that are expected */
 };
 
 /* All about a run, as far as it got. */
@@ -61,8 +62,9 @@ struct run_limits {
 struct run_hooks {
     const char *program;
     const struct tri_executor *executor; /* for reading and writing; NULL: one task after another */
-    /* Refines the mesh as tri_refine does, by the plan; NULL: tri_refine itself. */
-    enum tri_status (*refine)(void *user, const struct run_plan *plan, struct tri_mesh *mesh,
+    /* Refines the mesh as tri_refine does; NULL: tri_refine itself. Where run->plan.swept, also writes its files into the
+     * guarded set (drivers/interrupt.h), and counts it: run->counts. The mesh is gone then. */
+    enum tri_status (*refine)(void *user, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
                               const struct tri_refine_options *options, struct tri_refine_report *report,
                               struct tri_error *error);
     /* Triangles that the mesh will have, and the share of them by which that may be wrong; NULL: what areas ask for is
