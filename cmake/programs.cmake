@@ -1,5 +1,28 @@
 # The executables and the example, from drivers/. They link the static libraries, whose inside they know.
 
+# HDF5, which ptriangle writes and its companions read; without, everything else is built. The serial C library, at least
+# 1.10.3, which writes chunks directly.
+include(CheckCSourceCompiles)
+find_path(HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial)
+find_library(HDF5_LIBRARY NAMES hdf5_serial hdf5 PATH_SUFFIXES hdf5/serial)
+if(HDF5_INCLUDE AND HDF5_LIBRARY)
+    set(CMAKE_REQUIRED_INCLUDES ${HDF5_INCLUDE})
+    check_c_source_compiles("#include <hdf5.h>\n#if !H5_VERSION_GE(1, 10, 3) || defined(H5_HAVE_PARALLEL)\n#error\n#endif\n\
+        int main(void) { return 0; }" PTRIANGLE_HDF5)
+    unset(CMAKE_REQUIRED_INCLUDES)
+endif()
+if(PTRIANGLE_HDF5)
+    add_library(libtrihdf5 STATIC ${PTRIANGLE_HDF5_SOURCES})
+    target_include_directories(libtrihdf5 SYSTEM PUBLIC ${HDF5_INCLUDE})
+    target_link_libraries(libtrihdf5 PUBLIC ${HDF5_LIBRARY})
+else()
+    message(STATUS "no HDF5 (Debian: libhdf5-dev): ptriangle is built without --output FILE.h5")
+    add_library(libtrihdf5 STATIC ${PTRIANGLE_NO_HDF5_SOURCES})
+endif()
+set_target_properties(libtrihdf5 PROPERTIES OUTPUT_NAME trihdf5)
+target_link_libraries(libtrihdf5 PUBLIC libtritext libtriangle)
+ptriangle_flags(libtrihdf5 STRICT)
+
 function(ptriangle_program name)
     add_executable(${name} drivers/${name}.c ${PTRIANGLE_DRIVER_SOURCES})
     set(output ${name})

@@ -91,7 +91,18 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/formats.c
     triangle/api/files.c)
 
-# What these two need of the mesher: all that their shared libraries have of it.
+# Room triangle/, HDF5 files, for the programs alone. Without the library of that name the second list stands in.
+set(PTRIANGLE_HDF5_SOURCES
+    triangle/hdf5/file.c
+    triangle/hdf5/items.c
+    triangle/hdf5/array.c
+    triangle/hdf5/views.c
+    triangle/hdf5/xdmf.c
+    triangle/hdf5/write.c
+    triangle/hdf5/read.c)
+set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c)
+
+# What text and judge need of the mesher: all that their shared libraries have of it.
 set(PTRIANGLE_TEXT_NEEDS triangle/status.c triangle/pslg.c triangle/api/figure.c)
 set(PTRIANGLE_CHECK_NEEDS ${PTRIANGLE_TEXT_NEEDS} triangle/predicates.c)
 

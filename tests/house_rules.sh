@@ -1,9 +1,10 @@
 #!/bin/sh
-# House rules that a command can see (CONTRIBUTING.md). Usage: house_rules.sh SOURCE_ROOT C_COMPILER
+# House rules that a command can see (CONTRIBUTING.md). Usage: house_rules.sh SOURCE_ROOT C_COMPILER [FOLDER_OF_HDF5_H]
 # Prints one line per breach; exit code 1 if there is any.
 set -u
 root=$1
 cc=$2
+hdf5=${3:-}
 cd "$root" || exit 2
 breaches=0
 
@@ -55,18 +56,21 @@ for file in tests/test_*.c; do
 done
 
 # 2. drivers/ -> sched/ -> triangle/, never back; only sched/ knows threads, and the judge. The folders in triangle/ may
-# include the mesher, the mesher none of them, and they none of each other, but for api/, the door to all.
+# include the mesher, the mesher none of them, and they none of each other, but for api/, the door to all, and
+# hdf5/, whose files are outputs of text/.
 refuse '#[[:space:]]*include[[:space:]]*"(sched|drivers|tests)/' 'includes an upper room' \
     triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp
 refuse '#[[:space:]]*include[[:space:]]*"(drivers|tests)/' 'includes an upper room' sched/*.[ch] sched/*/*.[ch]
-refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|text|dropin|check)/' 'includes a folder of the mesher' \
+refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|text|hdf5|dropin|check)/' 'includes a folder of the mesher' \
     triangle/*.[ch]
-refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|dropin|check)/' 'includes another folder' triangle/text/*.[ch]
-refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|text|check)/' 'includes another folder' triangle/dropin/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|hdf5|dropin|check)/' 'includes another folder' triangle/text/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|dropin|check)/' 'includes another folder' triangle/hdf5/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|text|hdf5|check)/' 'includes another folder' triangle/dropin/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"(triangle|sched|drivers)/' 'is public, and includes what is not' \
     include/ptriangle/*.h
 refuse '#[[:space:]]*pragma[[:space:]]+omp|<(omp|pthread|threads)\.h>' 'knows threads' \
-    triangle/*.[ch] triangle/api/*.[ch] triangle/text/*.[ch] triangle/dropin/*.[ch] triangle/*/*.cpp # the judge has loops on all cores
+    triangle/*.[ch] triangle/api/*.[ch] triangle/text/*.[ch] triangle/hdf5/*.[ch] triangle/dropin/*.[ch] \
+    triangle/*/*.cpp # the judge has loops on all cores
 
 # The judge knows nothing of the judged but input, status codes and predicates: nobody is judge of his own cause.
 for file in triangle/check/*.[ch]; do
@@ -93,11 +97,12 @@ long=$(LC_ALL=C.UTF-8 grep -nE '^.{121,}$' triangle/*.[ch] triangle/*/*.[ch] tri
     tests/*.[ch] include/*/*.h | head -n 3)
 [ -z "$long" ] || breach "lines of more than 120 characters: $long"
 
-# 5. Each header compiles alone.
+# 5. Each header compiles alone; those of hdf5/ where HDF5 is there.
 for file in include/*/*.h triangle/*.h triangle/*/*.h sched/*.h sched/*/*.h; do
     [ -f "$file" ] || continue
-    "$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Wno-unused -I . -I include -fsyntax-only -x c \
-        -include "$file" /dev/null || breach "$file does not compile alone"
+    case $file in triangle/hdf5/*) [ -n "$hdf5" ] || continue ;; esac
+    "$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Wno-unused -I . -I include ${hdf5:+-isystem "$hdf5"} \
+        -fsyntax-only -x c -include "$file" /dev/null || breach "$file does not compile alone"
 done
 
 # 6. The top folder holds what is listed here; what a run has left there is not committed.

@@ -1,8 +1,8 @@
 #!/bin/sh
 # Installs what building needs and this machine lacks, through apt; where there is no apt, says what is needed.
 # Usage: tools/setup.sh [build|tests|ci|ports]
-#   build  C and C++ compiler, make, CMake          (what the programs need), and cairo (for meshplot) and jansson (for
-#          ptriangle --report), which can be done without
+#   build  C and C++ compiler, make, CMake          (what the programs need), and cairo (for meshplot), jansson (for
+#          ptriangle --report) and HDF5 (for .h5 files), which can be done without
 #   tests  and cmocka, GMP, pkg-config              (what tools/test.sh needs)
 #   ci     and clang with its OpenMP library, its fuzzer and clang-tidy, cppcheck, valgrind, gcovr, Python (what
 #          .ci/run needs)
@@ -22,6 +22,17 @@ links() { # links HEADER LIBRARY: a C program with this header and library can b
     probe=$(mktemp)
     printf '#include <stdarg.h>\n#include <stddef.h>\n#include <stdint.h>\n#include <setjmp.h>\n#include <%s>\n%s\n' \
         "$1" 'int main(void) { return 0; }' | cc -x c - "-l$2" -o "$probe"
+    result=$?
+    rm -f "$probe"
+    return $result
+}
+
+hdf5() { # with its header in a folder of its own (Debian), or not
+    probe=$(mktemp)
+    program='#include <hdf5.h>
+int main(void) { return 0; }'
+    echo "$program" | cc -x c - -I/usr/include/hdf5/serial -lhdf5_serial -o "$probe" ||
+        echo "$program" | cc -x c - -lhdf5 -o "$probe"
     result=$?
     rm -f "$probe"
     return $result
@@ -62,6 +73,7 @@ list_missing() {
     wished=""
     links cairo/cairo.h cairo >/dev/null 2>&1 || wished=libcairo2-dev
     links jansson.h jansson >/dev/null 2>&1 || wished="${wished:+$wished }libjansson-dev"
+    hdf5 >/dev/null 2>&1 || wished="${wished:+$wished }libhdf5-dev"
     need build-essential compilers
     need cmake command -v cmake
     [ "$wanted" = build ] && return
@@ -90,6 +102,7 @@ list_missing() {
 consequence() { # what a machine without $wished does without
     case $wished in *cairo*) printf 'meshplot, which draws meshes, is not built; ' ;; esac
     case $wished in *jansson*) printf 'ptriangle has no --report; ' ;; esac
+    case $wished in *hdf5*) printf '.h5 files are neither written nor read; ' ;; esac
     echo "all else is"
 }
 

@@ -197,7 +197,7 @@ static enum tri_status create_temporary(struct tri_output *output, struct tri_er
         char *const name = temporary_name(output->path, i);
         if (!name)
             return tri_fail(error, TRI_NO_MEMORY, output->path, 0, "no memory to create the file");
-        output->file = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        output->file = open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (output->file >= 0 && is_kept(output->file)) {
             output->temporary = name;
             return TRI_OK;

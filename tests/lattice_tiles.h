@@ -1,0 +1,34 @@
+/* A mesh of a lattice, handed out as tiles, for the tests of sinks. */
+#ifndef TESTS_LATTICE_TILES_H
+#define TESTS_LATTICE_TILES_H
+
+#include "ptriangle/tiles.h"
+
+/* side * side points at whole places, each square cut into two triangles; the points of the lowest row were there
+ * before refinement. One row of squares is a tile, or a few are. All values follow from the item's number. */
+struct lattice {
+    int32_t side;          /* >= 2 */
+    int32_t rows_in_tile;  /* >= 1 */
+    int32_t n_attributes, n_columns;
+    bool whole;            /* attributes of triangles are whole numbers */
+};
+
+enum { LATTICE_REGIONS = 3 };
+
+int64_t lattice_points(const struct lattice *lattice);
+int64_t lattice_triangles(const struct lattice *lattice);
+int64_t lattice_segments(const struct lattice *lattice); /* left and right side */
+
+void lattice_point(const struct lattice *lattice, int64_t i, double at[2]);
+int32_t lattice_point_marker(int64_t i);
+double lattice_attribute(int64_t i, int32_t k);
+void lattice_corners(const struct lattice *lattice, int64_t i, int64_t corners[3]);
+int32_t lattice_region(int64_t i);
+double lattice_column(const struct lattice *lattice, int32_t region, int32_t k);
+void lattice_ends(const struct lattice *lattice, int64_t i, int64_t ends[2]);
+int32_t lattice_segment_marker(int64_t i);
+
+/* Hands everything out, up to the first call that fails; the status of the last one. */
+enum tri_status lattice_hand_out(const struct lattice *lattice, const struct tri_sink *sink, struct tri_error *error);
+
+#endif

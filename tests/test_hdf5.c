@@ -1,0 +1,372 @@
+/* HDF5 files: what is written is what is read, in chunks and without, narrow and wide; the same tiles give the same
+ * bytes; whatever fails, nothing remains. */
+#include <dirent.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "tests/allocations.h"
+#include "tests/lattice_tiles.h"
+#include "triangle/hdf5/array.h"
+#include "triangle/hdf5/read.h"
+#include "triangle/hdf5/write.h"
+
+static const struct lattice SMALL = {5, 1, 2, 2, false}, WHOLE = {6, 2, 0, 1, true}, PLAIN = {4, 3, 0, 0, true},
+                            LARGE = {601, 37, 1, 1, true};
+
+/* Writes it to x.h5 and x.xdmf. */
+static enum tri_status write_lattice(const struct lattice *lattice, bool markers, int64_t most_narrow,
+                                     struct tri_error *error)
+{
+    struct tri_output_set set;
+    struct tri_h5_options options = {.program = "test", .name = "x.h5", .markers = markers, .most_narrow = most_narrow};
+    struct tri_h5_writer *writer = NULL;
+    struct tri_sink sink;
+    tri_outputs_begin(&set);
+    enum tri_status status = tri_output_open(&set, "x.h5", &options.file, error);
+    status = status ? status : tri_output_open(&set, "x.xdmf", &options.xdmf, error);
+    status = status ? status : tri_h5_writer_new(&writer, &options, &sink, error);
+    status = status ? status : lattice_hand_out(lattice, &sink, error);
+    tri_h5_writer_free(writer);
+    if (!status)
+        return tri_outputs_commit(&set, error);
+    tri_outputs_abort(&set);
+    return status;
+}
+
+/* --- reading again */
+
+static void compare_points(struct tri_h5 *h5, const struct lattice *l, bool markers, int64_t first, int64_t n)
+{
+    double(*at)[2] = malloc((size_t)n * sizeof *at), *attributes = malloc((size_t)n * 16), place[2];
+    int32_t *marker = malloc((size_t)n * sizeof *marker);
+    assert_int_equal(tri_h5_points(h5, first, n, at, NULL), TRI_OK);
+    assert_int_equal(tri_h5_point_markers(h5, first, n, marker, NULL), TRI_OK);
+    assert_int_equal(tri_h5_point_attributes(h5, first, n, attributes, NULL), TRI_OK);
+    for (int64_t i = 0; i < n; i++) {
+        lattice_point(l, first + i, place);
+        assert_memory_equal(at[i], place, sizeof place);
+        assert_int_equal(marker[i], markers ? lattice_point_marker(first + i) : 0);
+        for (int32_t k = 0; k < l->n_attributes; k++)
+            assert_true(attributes[i * l->n_attributes + k] == lattice_attribute(first + i, k));
+    }
+    free(at);
+    free(attributes);
+    free(marker);
+}
+
+static void compare_triangles(struct tri_h5 *h5, const struct lattice *l, int64_t first, int64_t n)
+{
+    int64_t(*corners)[3] = malloc((size_t)n * sizeof *corners), wanted[3];
+    double *columns = malloc((size_t)n * 16);
+    assert_int_equal(tri_h5_triangles(h5, first, n, corners, NULL), TRI_OK);
+    assert_int_equal(tri_h5_triangle_attributes(h5, first, n, columns, NULL), TRI_OK);
+    for (int64_t i = 0; i < n; i++) {
+        lattice_corners(l, first + i, wanted);
+        assert_memory_equal(corners[i], wanted, sizeof wanted);
+        for (int32_t k = 0; k < l->n_columns; k++)
+            assert_true(columns[i * l->n_columns + k] == lattice_column(l, lattice_region(first + i), k));
+    }
+    free(corners);
+    free(columns);
+}
+
+static void compare_segments(struct tri_h5 *h5, const struct lattice *l, bool markers)
+{
+    const int64_t n = lattice_segments(l);
+    int64_t(*ends)[2] = malloc((size_t)n * sizeof *ends), wanted[2];
+    int32_t *marker = malloc((size_t)n * sizeof *marker);
+    assert_int_equal(tri_h5_segments(h5, 0, n, ends, NULL), TRI_OK);
+    assert_int_equal(tri_h5_segment_markers(h5, 0, n, marker, NULL), TRI_OK);
+    for (int64_t i = 0; i < n; i++) {
+        lattice_ends(l, i, wanted);
+        assert_memory_equal(ends[i], wanted, sizeof wanted);
+        assert_int_equal(marker[i], markers ? lattice_segment_marker(i) : 0);
+    }
+    free(ends);
+    free(marker);
+}
+
+static void compare_counts(const struct tri_h5_counts *found, const struct lattice *l, bool markers)
+{
+    assert_int_equal(found->points, lattice_points(l));
+    assert_int_equal(found->triangles, lattice_triangles(l));
+    assert_int_equal(found->segments, lattice_segments(l));
+    assert_int_equal(found->input_points, l->side);
+    assert_int_equal(found->attributes, l->n_attributes);
+    assert_int_equal(found->columns, l->n_columns);
+    assert_int_equal(found->point_markers, markers);
+    assert_int_equal(found->segment_markers, markers);
+}
+
+/* Opens x.h5, looks at all of it in slices, and removes it. */
+static void compare(const struct lattice *l, bool markers)
+{
+    struct tri_h5 *h5;
+    struct tri_error error;
+    const int64_t slice = 100003;
+    assert_int_equal(tri_h5_open("x.h5", &h5, &error), TRI_OK);
+    compare_counts(tri_h5_count(h5), l, markers);
+    for (int64_t first = 0; first < lattice_points(l); first += slice)
+        compare_points(h5, l, markers, first, lattice_points(l) - first < slice ? lattice_points(l) - first : slice);
+    for (int64_t first = 0; first < lattice_triangles(l); first += slice)
+        compare_triangles(h5, l, first, lattice_triangles(l) - first < slice ? lattice_triangles(l) - first : slice);
+    compare_segments(h5, l, markers);
+    assert_int_equal(tri_h5_points(h5, lattice_points(l), 0, NULL, NULL), TRI_OK);
+    tri_h5_free(h5);
+}
+
+static int n_files(void)
+{
+    int n = 0;
+    DIR *directory = opendir(".");
+    assert_non_null(directory);
+    for (struct dirent *entry; (entry = readdir(directory));)
+        n += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
+    closedir(directory);
+    return n;
+}
+
+static int remove_files(void **state)
+{
+    (void)state;
+    remove("x.h5");
+    remove("x.xdmf");
+    remove("y");
+    assert_int_equal(n_files(), 0);
+    return 0;
+}
+
+static char *bytes_of(const char *name, size_t *n)
+{
+    FILE *file = fopen(name, "rb");
+    assert_non_null(file);
+    assert_int_equal(fseek(file, 0, SEEK_END), 0);
+    *n = (size_t)ftell(file);
+    rewind(file);
+    char *bytes = malloc(*n + 1);
+    assert_non_null(bytes);
+    assert_int_equal(fread(bytes, 1, *n, file), *n);
+    bytes[*n] = 0;
+    fclose(file);
+    return bytes;
+}
+
+static void test_what_is_written_is_read(void **state)
+{
+    (void)state;
+    const struct lattice *all[] = {&SMALL, &WHOLE, &PLAIN, &LARGE};
+    for (int i = 0; i < 8; i++) {
+        struct tri_error error;
+        assert_int_equal(write_lattice(all[i / 2], i % 2, 0, &error), TRI_OK);
+        compare(all[i / 2], i % 2);
+    }
+}
+
+/* Wherever it happens: before, in and behind the first chunk, at its end. */
+static void test_wide_numbers(void **state)
+{
+    (void)state;
+    const int64_t narrow[] = {1, 601, 50000, TRI_H5_CHUNK_ROWS / 2, 300000, 601 * 601 - 1};
+    struct tri_error error;
+    for (size_t i = 0; i < sizeof narrow / sizeof *narrow; i++) {
+        assert_int_equal(write_lattice(&LARGE, true, narrow[i], &error), TRI_OK);
+        compare(&LARGE, true);
+    }
+}
+
+static void test_small_files_are_small(void **state)
+{
+    (void)state;
+    struct tri_error error;
+    size_t n;
+    assert_int_equal(write_lattice(&SMALL, true, 0, &error), TRI_OK);
+    free(bytes_of("x.h5", &n));
+    assert_true(n < 20000);
+}
+
+static void test_same_tiles_same_bytes(void **state)
+{
+    (void)state;
+    const struct lattice *all[] = {&SMALL, &LARGE};
+    for (int i = 0; i < 2; i++) {
+        struct tri_error error;
+        size_t n, m;
+        assert_int_equal(write_lattice(all[i], true, 0, &error), TRI_OK);
+        char *first = bytes_of("x.h5", &n);
+        assert_int_equal(write_lattice(all[i], true, 0, &error), TRI_OK);
+        char *second = bytes_of("x.h5", &m);
+        assert_int_equal(n, m);
+        assert_int_equal(memcmp(first, second, n), 0);
+        free(first);
+        free(second);
+    }
+}
+
+static void test_xdmf(void **state)
+{
+    (void)state;
+    struct tri_error error;
+    size_t n;
+    assert_int_equal(write_lattice(&SMALL, true, 0, &error), TRI_OK);
+    char *text = bytes_of("x.xdmf", &n);
+    assert_non_null(strstr(text, "TopologyType=\"Triangle\" NumberOfElements=\"32\""));
+    assert_non_null(strstr(text, "<DataItem Dimensions=\"25 2\" NumberType=\"Float\" Precision=\"8\" Format=\"HDF\">"
+                                 "x.h5:/points</DataItem>"));
+    free(text);
+}
+
+static herr_t has_no_time(hid_t object, const char *name, const H5O_info_t *info, void *user)
+{
+    (void)object, (void)name;
+    ++*(int *)user;
+    return info->atime == 0 && info->mtime == 0 && info->ctime == 0 && info->btime == 0 ? 0 : -1;
+}
+
+static void test_no_times(void **state)
+{
+    (void)state;
+    struct tri_error error;
+    int n = 0;
+    assert_int_equal(write_lattice(&SMALL, true, 0, &error), TRI_OK);
+    hid_t file = H5Fopen("x.h5", H5F_ACC_RDONLY, H5P_DEFAULT);
+    assert_true(H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, has_no_time, &n) >= 0);
+    H5Fclose(file);
+    assert_true(n > 20);
+}
+
+/* --- failures */
+
+/* A disk that is full after some bytes, whatever is being written then. */
+static void test_full_disk(void **state)
+{
+    (void)state;
+    struct rlimit before, limit;
+    struct tri_error error;
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    const rlim_t sizes[] = {0, 100, 3000, 1 << 20, 5 << 20, 9 << 20, 12 << 20, 17 << 20};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        limit = (struct rlimit){sizes[i], before.rlim_max};
+        assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+        enum tri_status status = write_lattice(&LARGE, true, i % 2 ? 200000 : 0, &error);
+        assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+        assert_int_equal(status, TRI_CANNOT_WRITE);
+        assert_non_null(strstr(error.text, "File too large"));
+        assert_int_equal(n_files(), 0);
+    }
+}
+
+/* Our own allocations, one after the other. */
+static void test_no_memory(void **state)
+{
+    (void)state;
+    struct tri_error error;
+    enum tri_status status = TRI_NO_MEMORY;
+    for (int64_t k = 1; status; k++) {
+        atomic_store(&support_calls, 0);
+        atomic_store(&support_fail_at, k);
+        int64_t held = atomic_load(&support_held);
+        status = write_lattice(&SMALL, true, 10, &error);
+        atomic_store(&support_fail_at, INT64_MAX);
+        assert_int_equal(atomic_load(&support_held), held);
+        assert_true(status == TRI_OK || n_files() == 0);
+        assert_true(k < 100);
+    }
+    compare(&SMALL, true);
+}
+
+static bool never(void *user)
+{
+    (void)user;
+    return true;
+}
+
+static void test_stop(void **state)
+{
+    (void)state;
+    const struct tri_stop stop = {never, NULL};
+    struct tri_output_set set;
+    struct tri_h5_options options = {.program = "test", .name = "x.h5", .markers = true};
+    struct tri_h5_writer *writer;
+    struct tri_sink sink;
+    struct tri_error error;
+    tri_outputs_begin(&set);
+    set.stop = &stop;
+    assert_int_equal(tri_output_open(&set, "x.h5", &options.file, &error), TRI_OK);
+    assert_int_equal(tri_h5_writer_new(&writer, &options, &sink, &error), TRI_OK);
+    assert_int_equal(lattice_hand_out(&LARGE, &sink, &error), TRI_STOPPED);
+    tri_h5_writer_free(writer);
+    tri_outputs_abort(&set);
+    assert_int_equal(n_files(), 0);
+}
+
+/* --- files that are no meshes */
+
+static void write_words(const char *name, const char *words, size_t n)
+{
+    FILE *file = fopen(name, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(words, 1, n, file), n);
+    fclose(file);
+}
+
+static void refuse(const char *path, enum tri_status wanted, const char *words)
+{
+    struct tri_h5 *h5;
+    struct tri_error error;
+    assert_int_equal(tri_h5_open(path, &h5, &error), wanted);
+    assert_null(h5);
+    assert_string_equal(error.file, path);
+    assert_non_null(strstr(error.text, words));
+}
+
+static void test_no_such_mesh(void **state)
+{
+    (void)state;
+    struct tri_error error;
+    size_t n;
+    refuse("x.h5", TRI_CANNOT_READ, "No such file");
+    write_words("y", "0 2 0 0\n", 8);
+    refuse("y", TRI_CANNOT_READ, "not an HDF5 file");
+    assert_int_equal(write_lattice(&SMALL, true, 0, &error), TRI_OK);
+    char *bytes = bytes_of("x.h5", &n);
+    write_words("y", bytes, n / 2);
+    refuse("y", TRI_CANNOT_READ, "not an HDF5 file");
+    free(bytes);
+    hid_t file = H5Fopen("x.h5", H5F_ACC_RDWR, H5P_DEFAULT);
+    H5Ldelete(file, "point_markers", H5P_DEFAULT);
+    H5Lcreate_hard(file, "triangles", file, "point_markers", H5P_DEFAULT, H5P_DEFAULT);
+    H5Fclose(file);
+    refuse("x.h5", TRI_BAD_INPUT, "/point_markers has not the type");
+    file = H5Fopen("x.h5", H5F_ACC_RDWR, H5P_DEFAULT);
+    H5Ldelete(file, "points", H5P_DEFAULT);
+    H5Fclose(file);
+    refuse("x.h5", TRI_BAD_INPUT, "no array /points");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_teardown(test_what_is_written_is_read, remove_files),
+        cmocka_unit_test_teardown(test_wide_numbers, remove_files),
+        cmocka_unit_test_teardown(test_small_files_are_small, remove_files),
+        cmocka_unit_test_teardown(test_same_tiles_same_bytes, remove_files),
+        cmocka_unit_test_teardown(test_no_times, remove_files),
+        cmocka_unit_test_teardown(test_xdmf, remove_files),
+        cmocka_unit_test_teardown(test_full_disk, remove_files),
+        cmocka_unit_test_teardown(test_no_memory, remove_files),
+        cmocka_unit_test_teardown(test_stop, remove_files),
+        cmocka_unit_test_teardown(test_no_such_mesh, remove_files),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,196 @@
+/* Chunks of an array, from a buffer into the file.
+ *
+ * INVARIANT between calls: dataset >= 0 holds exactly the first n / TRI_H5_CHUNK_ROWS * TRI_H5_CHUNK_ROWS rows, the
+ * buffer those behind them, fewer than a chunk; dataset < 0: n < TRI_H5_CHUNK_ROWS. */
+#include "triangle/hdf5/array.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+static size_t number_bytes(enum tri_h5_type type) { return type == TRI_H5_INT32 ? 4 : 8; }
+
+static size_t row_bytes(const struct tri_h5_array *array)
+{
+    return number_bytes(array->type) * (size_t)array->width;
+}
+
+static size_t chunk_bytes(const struct tri_h5_array *array) { return TRI_H5_CHUNK_ROWS * row_bytes(array); }
+
+static int32_t rows_in_buffer(const struct tri_h5_array *array) { return (int32_t)(array->n % TRI_H5_CHUNK_ROWS); }
+
+static int dimensions(const struct tri_h5_array *array) { return array->is_list ? 1 : 2; }
+
+hid_t tri_h5_type_id(enum tri_h5_type type)
+{
+    return type == TRI_H5_FLOAT64 ? H5T_IEEE_F64LE : type == TRI_H5_INT32 ? H5T_STD_I32LE : H5T_STD_I64LE;
+}
+
+static enum tri_status no_memory(const struct tri_h5_array *array, struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, array->file->output->path, 0, "no memory to write %s", array->name);
+}
+
+enum tri_status tri_h5_array_begin(struct tri_h5_array *array, struct tri_h5_file *file, const char *name,
+                                   enum tri_h5_type type, int32_t width, struct tri_error *error)
+{
+    *array = (struct tri_h5_array){.file = file, .name = name, .type = type, .width = width > 0 ? width : 1,
+                                   .is_list = width == 0, .dataset = -1};
+    array->buffer = malloc(chunk_bytes(array));
+    return array->buffer ? TRI_OK : no_memory(array, error);
+}
+
+void tri_h5_array_free(struct tri_h5_array *array)
+{
+    if (array->file && array->dataset >= 0)
+        H5Dclose(array->dataset);
+    free(array->buffer);
+    *array = (struct tri_h5_array){.dataset = -1};
+}
+
+/* --- datasets */
+
+/* How the dataset is kept: in chunks that nobody fills before they are written, or in one piece. < 0: an error. */
+static hid_t creation_of(const struct tri_h5_array *array, bool in_chunks)
+{
+    const hsize_t chunk[2] = {TRI_H5_CHUNK_ROWS, (hsize_t)array->width};
+    hid_t creation = tri_h5_no_times(H5P_DATASET_CREATE);
+    if (creation < 0 || !in_chunks)
+        return creation;
+    if (H5Pset_chunk(creation, dimensions(array), chunk) >= 0 && H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER) >= 0)
+        return creation;
+    H5Pclose(creation);
+    return -1;
+}
+
+/* A dataset of n rows; < 0: an error. */
+static hid_t create_dataset(const struct tri_h5_array *array, int64_t n, bool in_chunks)
+{
+    const hsize_t size[2] = {(hsize_t)n, (hsize_t)array->width}, most[2] = {H5S_UNLIMITED, (hsize_t)array->width};
+    hid_t space = H5Screate_simple(dimensions(array), size, in_chunks ? most : NULL);
+    hid_t creation = creation_of(array, in_chunks), dataset = -1;
+    if (space >= 0 && creation >= 0)
+        dataset = H5Dcreate2(array->file->id, array->name, tri_h5_type_id(array->type), space, H5P_DEFAULT, creation,
+                             H5P_DEFAULT);
+    if (creation >= 0)
+        H5Pclose(creation);
+    if (space >= 0)
+        H5Sclose(space);
+    return dataset;
+}
+
+/* The buffer as the chunk that begins with row `first`, behind which there are no others. n: rows then. */
+static enum tri_status write_chunk(struct tri_h5_array *array, int64_t first, int64_t n, struct tri_error *error)
+{
+    const hsize_t size[2] = {(hsize_t)n, (hsize_t)array->width}, place[2] = {(hsize_t)first, 0};
+    if (array->dataset < 0)
+        array->dataset = create_dataset(array, 0, true);
+    if (array->dataset < 0 || H5Dset_extent(array->dataset, size) < 0 ||
+        H5Dwrite_chunk(array->dataset, H5P_DEFAULT, 0, place, chunk_bytes(array), array->buffer) < 0)
+        return tri_h5_fail(array->file, array->name, error);
+    return TRI_OK;
+}
+
+static enum tri_status write_whole(struct tri_h5_array *array, struct tri_error *error)
+{
+    array->dataset = create_dataset(array, array->n, false);
+    if (array->dataset < 0 || H5Dwrite(array->dataset, tri_h5_type_id(array->type), H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                                       array->buffer) < 0)
+        return tri_h5_fail(array->file, array->name, error);
+    return TRI_OK;
+}
+
+/* --- rows */
+
+char *tri_h5_array_room(struct tri_h5_array *array, int32_t *rows)
+{
+    int32_t taken = rows_in_buffer(array);
+    *rows = TRI_H5_CHUNK_ROWS - taken;
+    return array->buffer + (size_t)taken * row_bytes(array);
+}
+
+enum tri_status tri_h5_array_advance(struct tri_h5_array *array, int32_t rows, struct tri_error *error)
+{
+    assert(rows >= 0 && rows <= TRI_H5_CHUNK_ROWS - rows_in_buffer(array));
+    array->n += rows;
+    if (rows == 0 || rows_in_buffer(array) != 0)
+        return TRI_OK;
+    return write_chunk(array, array->n - TRI_H5_CHUNK_ROWS, array->n, error);
+}
+
+/* Bytes behind the last row are written, and must not depend on what was there. */
+static void clear_rest(struct tri_h5_array *array)
+{
+    size_t taken = (size_t)rows_in_buffer(array) * row_bytes(array);
+    memset(array->buffer + taken, 0, chunk_bytes(array) - taken);
+}
+
+enum tri_status tri_h5_array_end(struct tri_h5_array *array, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    int32_t rest = rows_in_buffer(array);
+    clear_rest(array);
+    if (array->dataset < 0)
+        status = write_whole(array, error);
+    else if (rest > 0)
+        status = write_chunk(array, array->n - rest, array->n, error);
+    if (array->dataset >= 0 && H5Dclose(array->dataset) < 0 && !status)
+        status = tri_h5_fail(array->file, array->name, error);
+    array->dataset = -1;
+    return status;
+}
+
+/* --- wider numbers */
+
+/* n numbers of 32 bits, little-endian, as 64 bits; in place, from the last to the first. */
+static void widen_numbers(char *data, size_t n)
+{
+    for (size_t i = n; i-- > 0;) {
+        memmove(data + 8 * i, data + 4 * i, 4);
+        memset(data + 8 * i + 4, data[8 * i + 3] < 0 ? -1 : 0, 4);
+    }
+}
+
+/* Copies the full chunks of the old dataset, by way of the buffer. */
+static enum tri_status copy_chunks(struct tri_h5_array *array, hid_t old, struct tri_error *error)
+{
+    const int64_t end = array->n - rows_in_buffer(array);
+    enum tri_status status = TRI_OK;
+    for (int64_t first = 0; first < end && !status; first += TRI_H5_CHUNK_ROWS) {
+        const hsize_t place[2] = {(hsize_t)first, 0};
+        uint32_t filters = 0;
+        if (H5Dread_chunk(old, H5P_DEFAULT, place, &filters, array->buffer) < 0)
+            return tri_h5_fail(array->file, array->name, error);
+        widen_numbers(array->buffer, TRI_H5_CHUNK_ROWS * (size_t)array->width);
+        status = write_chunk(array, first, first + TRI_H5_CHUNK_ROWS, error);
+    }
+    return status;
+}
+
+static enum tri_status replace_dataset(struct tri_h5_array *array, struct tri_error *error)
+{
+    hid_t old = array->dataset;
+    enum tri_status status = TRI_OK;
+    array->dataset = -1;
+    if (H5Ldelete(array->file->id, array->name, H5P_DEFAULT) < 0)
+        status = tri_h5_fail(array->file, array->name, error);
+    status = status ? status : copy_chunks(array, old, error);
+    H5Dclose(old); /* and its space is free */
+    return status;
+}
+
+enum tri_status tri_h5_array_widen(struct tri_h5_array *array, struct tri_error *error)
+{
+    assert(array->type == TRI_H5_INT32);
+    const size_t rest = (size_t)rows_in_buffer(array) * (size_t)array->width;
+    char *wide = malloc(2 * chunk_bytes(array)), *narrow = array->buffer;
+    if (!wide)
+        return no_memory(array, error);
+    array->type = TRI_H5_INT64;
+    array->buffer = wide;
+    enum tri_status status = array->dataset >= 0 ? replace_dataset(array, error) : TRI_OK;
+    memcpy(wide, narrow, 4 * rest);
+    widen_numbers(wide, rest);
+    free(narrow);
+    return status;
+}

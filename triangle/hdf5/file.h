@@ -1,0 +1,41 @@
+/* An HDF5 file behind a tri_output (triangle/text/output.h): its temporary name, its lock, its stop and its errors are
+ * those of every other output.
+ *
+ * So that the same mesh gives the same bytes: no times are kept, and the version of the file format is fixed (1.10,
+ * the oldest that knows virtual datasets). */
+#ifndef TRIANGLE_HDF5_FILE_H
+#define TRIANGLE_HDF5_FILE_H
+
+#include <hdf5.h>
+
+#include "triangle/status.h"
+#include "triangle/text/output.h"
+
+struct tri_h5_file {
+    hid_t id;       /* of the file; < 0: not open */
+    hid_t driver;
+    struct tri_output *output; /* borrowed */
+    int failure;    /* what writing has met first, as of tri_output_write_at; 0: nothing. From then on nothing is
+                       written, and HDF5 is told that all is well, so that it lets go of what it has */
+};
+
+/* Creates the file in an output that has places: else TRI_CANNOT_WRITE. To be closed in any case; may not move. */
+enum tri_status tri_h5_create(struct tri_h5_file *file, struct tri_output *output, struct tri_error *error);
+
+/* Writes what HDF5 has kept, and closes the file, unless that has been done; the output stays open. */
+enum tri_status tri_h5_close(struct tri_h5_file *file, struct tri_error *error);
+
+/* What to say after a call of HDF5 has failed: what writing met, or what HDF5 tells. Never TRI_OK. */
+enum tri_status tri_h5_fail(struct tri_h5_file *file, const char *what, struct tri_error *error);
+
+/* The innermost message of HDF5's stack of errors, and whether memory was the reason. */
+struct tri_h5_reason {
+    char text[200];
+    bool no_memory;
+};
+struct tri_h5_reason tri_h5_reason(void);
+
+/* Properties of a new file, group or dataset (H5P_.._CREATE) that keeps no times; to be closed. < 0: an error. */
+hid_t tri_h5_no_times(hid_t kind);
+
+#endif

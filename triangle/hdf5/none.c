@@ -1,0 +1,83 @@
+/* A build without HDF5: nothing can be opened, and what is told so. */
+#include <assert.h>
+#include <stddef.h>
+
+#include "triangle/hdf5/read.h"
+#include "triangle/hdf5/write.h"
+
+static const char NONE[] = "this build has no HDF5 (Debian: libhdf5-dev, then build again)";
+
+bool tri_h5_is_there(void) { return false; }
+
+enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tri_h5_options *options,
+                                  struct tri_sink *sink, struct tri_error *error)
+{
+    (void)sink;
+    *writer = NULL;
+    return tri_fail(error, TRI_CANNOT_WRITE, options->name, 0, "%s", NONE);
+}
+
+void tri_h5_writer_free(struct tri_h5_writer *writer) { (void)writer; }
+
+enum tri_status tri_h5_open(const char *path, struct tri_h5 **h5, struct tri_error *error)
+{
+    *h5 = NULL;
+    return tri_fail(error, TRI_CANNOT_READ, path, 0, "%s", NONE);
+}
+
+void tri_h5_free(struct tri_h5 *h5) { (void)h5; }
+
+/* --- never called, since there is nothing open */
+
+const struct tri_h5_counts *tri_h5_count(const struct tri_h5 *h5)
+{
+    (void)h5;
+    assert(false);
+    return NULL;
+}
+
+enum tri_status tri_h5_points(struct tri_h5 *h5, int64_t first, int64_t n, double (*out)[2], struct tri_error *error)
+{
+    (void)h5, (void)first, (void)n, (void)out;
+    return tri_fail(error, TRI_INTERNAL, NULL, 0, "%s", NONE);
+}
+
+enum tri_status tri_h5_point_markers(struct tri_h5 *h5, int64_t first, int64_t n, int32_t *out, struct tri_error *error)
+{
+    (void)h5, (void)first, (void)n, (void)out;
+    return tri_fail(error, TRI_INTERNAL, NULL, 0, "%s", NONE);
+}
+
+enum tri_status tri_h5_point_attributes(struct tri_h5 *h5, int64_t first, int64_t n, double *out,
+                                        struct tri_error *error)
+{
+    (void)h5, (void)first, (void)n, (void)out;
+    return tri_fail(error, TRI_INTERNAL, NULL, 0, "%s", NONE);
+}
+
+enum tri_status tri_h5_triangles(struct tri_h5 *h5, int64_t first, int64_t n, int64_t (*out)[3],
+                                 struct tri_error *error)
+{
+    (void)h5, (void)first, (void)n, (void)out;
+    return tri_fail(error, TRI_INTERNAL, NULL, 0, "%s", NONE);
+}
+
+enum tri_status tri_h5_triangle_attributes(struct tri_h5 *h5, int64_t first, int64_t n, double *out,
+                                           struct tri_error *error)
+{
+    (void)h5, (void)first, (void)n, (void)out;
+    return tri_fail(error, TRI_INTERNAL, NULL, 0, "%s", NONE);
+}
+
+enum tri_status tri_h5_segments(struct tri_h5 *h5, int64_t first, int64_t n, int64_t (*out)[2], struct tri_error *error)
+{
+    (void)h5, (void)first, (void)n, (void)out;
+    return tri_fail(error, TRI_INTERNAL, NULL, 0, "%s", NONE);
+}
+
+enum tri_status tri_h5_segment_markers(struct tri_h5 *h5, int64_t first, int64_t n, int32_t *out,
+                                       struct tri_error *error)
+{
+    (void)h5, (void)first, (void)n, (void)out;
+    return tri_fail(error, TRI_INTERNAL, NULL, 0, "%s", NONE);
+}

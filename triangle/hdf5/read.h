@@ -1,0 +1,53 @@
+/* Reads slices of a mesh from an HDF5 file (triangle/hdf5/layout.h), so that one of any size can be gone through. What
+ * wants no more than points and triangles may come from another program. Calls come from one thread at a time. */
+#ifndef TRIANGLE_HDF5_READ_H
+#define TRIANGLE_HDF5_READ_H
+
+#include <stdint.h>
+
+#include "triangle/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct tri_h5;
+
+struct tri_h5_counts {
+    int64_t points, triangles, segments;
+    int64_t input_points;  /* the first so many were there before refinement; -1: not known */
+    int32_t attributes;    /* of a point */
+    int32_t columns;       /* attributes of a triangle */
+    bool point_markers, segment_markers; /* there are any */
+};
+
+/* Opens a file. TRI_CANNOT_READ: no such file, no HDF5 file, or no HDF5 in this build; TRI_BAD_INPUT: it holds no such
+ * mesh; TRI_NO_MEMORY. *h5 is NULL then. */
+enum tri_status tri_h5_open(const char *path, struct tri_h5 **h5, struct tri_error *error);
+
+/* NULL is fine. */
+void tri_h5_free(struct tri_h5 *h5);
+
+const struct tri_h5_counts *tri_h5_count(const struct tri_h5 *h5);
+
+/* Rows first .. first + n - 1, which are there. Of an array that is not there: 0. Values are as the file has them, and
+ * not looked at. TRI_CANNOT_READ, TRI_NO_MEMORY. */
+enum tri_status tri_h5_points(struct tri_h5 *h5, int64_t first, int64_t n, double (*out)[2], struct tri_error *error);
+enum tri_status tri_h5_point_markers(struct tri_h5 *h5, int64_t first, int64_t n, int32_t *out,
+                                     struct tri_error *error);
+enum tri_status tri_h5_point_attributes(struct tri_h5 *h5, int64_t first, int64_t n, double *out,
+                                        struct tri_error *error); /* [n][attributes] */
+enum tri_status tri_h5_triangles(struct tri_h5 *h5, int64_t first, int64_t n, int64_t (*out)[3],
+                                 struct tri_error *error);
+enum tri_status tri_h5_triangle_attributes(struct tri_h5 *h5, int64_t first, int64_t n, double *out,
+                                           struct tri_error *error); /* [n][columns] */
+enum tri_status tri_h5_segments(struct tri_h5 *h5, int64_t first, int64_t n, int64_t (*out)[2],
+                                struct tri_error *error);
+enum tri_status tri_h5_segment_markers(struct tri_h5 *h5, int64_t first, int64_t n, int32_t *out,
+                                       struct tri_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

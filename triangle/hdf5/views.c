@@ -1,0 +1,237 @@
+/* Virtual datasets and hard links. A call of HDF5 that fails makes all that follow do nothing; the end tells. */
+#include "triangle/hdf5/views.h"
+
+#include <stdlib.h>
+
+#include "triangle/hdf5/items.h"
+#include "triangle/hdf5/layout.h"
+#include "triangle/text/binary.h"
+
+enum { VTK_LINE = 3, VTK_TRIANGLE = 5 };
+enum { ENDS_CHUNK = 1 << 18, DEFLATE_LEVEL = 1 };
+
+static const char LINE_TYPES[] = "/VTKHDF/LineTypes";
+
+struct views {
+    struct tri_h5_file *file;
+    const struct tri_h5_arrays *arrays;
+    bool failed, no_memory;
+};
+
+static hid_t checked(struct views *v, hid_t id)
+{
+    v->failed = v->failed || id < 0;
+    return id;
+}
+
+/* Closes what there is. */
+static void close_with(herr_t (*close_call)(hid_t), hid_t id)
+{
+    if (id >= 0)
+        close_call(id);
+}
+
+/* --- groups, links, attributes, by paths */
+
+static void add_group(struct views *v, const char *path)
+{
+    v->failed = v->failed || !tri_h5_add_group(v->file, path);
+}
+
+static void add_link(struct views *v, const struct tri_h5_array *array, const char *path)
+{
+    if (!v->failed && array->file)
+        checked(v, H5Lcreate_hard(v->file->id, array->name, v->file->id, path, H5P_DEFAULT, H5P_DEFAULT));
+}
+
+static void add_integers(struct views *v, const char *path, const char *name, int n, const int64_t *values)
+{
+    v->failed = v->failed || !tri_h5_add_integers(v->file, path, name, n, values);
+}
+
+/* --- virtual datasets */
+
+struct part { /* a whole dataset, as a box of the view */
+    const char *source;
+    int source_rank;
+    hsize_t source_size[2], first[2], size[2];
+};
+
+/* A box of an array of `size`; < 0: an error. */
+static hid_t box_in(int rank, const hsize_t size[2], const hsize_t first[2], const hsize_t box[2])
+{
+    hid_t space = H5Screate_simple(rank, size, NULL);
+    if (space >= 0 && H5Sselect_hyperslab(space, H5S_SELECT_SET, first, NULL, box, NULL) >= 0)
+        return space;
+    close_with(H5Sclose, space);
+    return -1;
+}
+
+static void add_part(struct views *v, hid_t creation, int rank, const hsize_t size[2], const struct part *part)
+{
+    if (v->failed || part->source_size[0] == 0)
+        return;
+    hid_t box = checked(v, box_in(rank, size, part->first, part->size));
+    hid_t source = checked(v, H5Screate_simple(part->source_rank, part->source_size, NULL));
+    if (!v->failed)
+        checked(v, H5Pset_virtual(creation, box, ".", part->source, source));
+    close_with(H5Sclose, source);
+    close_with(H5Sclose, box);
+}
+
+/* A dataset that consists of parts of others and, elsewhere, of the fill value. */
+static void add_view(struct views *v, const char *path, hid_t type, int rank, const hsize_t size[2], int fill,
+                     const struct part *parts, int n)
+{
+    if (v->failed)
+        return;
+    hid_t creation = checked(v, tri_h5_no_times(H5P_DATASET_CREATE)), dataset = -1;
+    hid_t space = checked(v, H5Screate_simple(rank, size, NULL));
+    if (!v->failed)
+        checked(v, H5Pset_fill_value(creation, H5T_NATIVE_INT, &fill));
+    for (int i = 0; i < n; i++)
+        add_part(v, creation, rank, size, &parts[i]);
+    if (!v->failed)
+        dataset = checked(v, H5Dcreate2(v->file->id, path, type, space, H5P_DEFAULT, creation, H5P_DEFAULT));
+    close_with(H5Dclose, dataset);
+    close_with(H5Sclose, space);
+    close_with(H5Pclose, creation);
+}
+
+/* --- where the nodes of each cell end: 0, 3, 6, ..., then in steps of two */
+
+struct ends {
+    int64_t triangles, n; /* cells of three nodes; numbers in all */
+};
+
+static int64_t end_of(const struct ends *ends, int64_t i)
+{
+    return i <= ends->triangles ? 3 * i : 3 * ends->triangles + 2 * (i - ends->triangles);
+}
+
+static void write_ends(struct views *v, hid_t dataset, hid_t space, const struct ends *ends, char *buffer)
+{
+    for (int64_t first = 0; first < ends->n && !v->failed; first += ENDS_CHUNK) {
+        const int64_t left = ends->n - first, n = left < ENDS_CHUNK ? left : ENDS_CHUNK;
+        const hsize_t place = (hsize_t)first, size = (hsize_t)n;
+        char *at = buffer;
+        for (int64_t i = first; i < first + n; i++)
+            at = tri_put_i64(at, end_of(ends, i));
+        hid_t memory = checked(v, H5Screate_simple(1, &size, NULL));
+        checked(v, H5Sselect_hyperslab(space, H5S_SELECT_SET, &place, NULL, &size, NULL));
+        if (!v->failed)
+            checked(v, H5Dwrite(dataset, H5T_STD_I64LE, memory, space, H5P_DEFAULT, buffer));
+        close_with(H5Sclose, memory);
+    }
+}
+
+static void add_ends(struct views *v, const char *path, const struct ends *ends)
+{
+    const hsize_t n = (hsize_t)ends->n, chunk = n < ENDS_CHUNK ? n : ENDS_CHUNK;
+    char *buffer = v->failed ? NULL : malloc(8 * (size_t)chunk);
+    if (!buffer) {
+        v->no_memory = v->no_memory || !v->failed;
+        v->failed = true;
+        return;
+    }
+    hid_t creation = checked(v, tri_h5_no_times(H5P_DATASET_CREATE)), dataset = -1;
+    hid_t space = checked(v, H5Screate_simple(1, &n, NULL));
+    if (!v->failed && (H5Pset_chunk(creation, 1, &chunk) < 0 || H5Pset_shuffle(creation) < 0 ||
+                       H5Pset_deflate(creation, DEFLATE_LEVEL) < 0))
+        v->failed = true;
+    if (!v->failed)
+        dataset = checked(v, H5Dcreate2(v->file->id, path, H5T_STD_I64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT));
+    write_ends(v, dataset, space, ends, buffer);
+    close_with(H5Dclose, dataset);
+    close_with(H5Sclose, space);
+    close_with(H5Pclose, creation);
+    free(buffer);
+}
+
+/* --- VTK */
+
+/* One number, as an array. */
+static void add_count(struct views *v, const char *path, int64_t count)
+{
+    const hsize_t one = 1;
+    if (v->failed)
+        return;
+    hid_t creation = checked(v, tri_h5_no_times(H5P_DATASET_CREATE)), dataset = -1;
+    hid_t space = checked(v, H5Screate_simple(1, &one, NULL));
+    if (!v->failed)
+        dataset = checked(v, H5Dcreate2(v->file->id, path, H5T_STD_I64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT));
+    if (dataset >= 0)
+        checked(v, H5Dwrite(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &count));
+    close_with(H5Dclose, dataset);
+    close_with(H5Pclose, creation);
+    close_with(H5Sclose, space);
+}
+
+static void add_vtk_cells(struct views *v)
+{
+    const hsize_t m = (hsize_t)v->arrays->triangles.n, s = (hsize_t)v->arrays->segments.n;
+    const hid_t type = tri_h5_type_id(v->arrays->triangles.type);
+    const struct part nodes[2] = {{"/" TRI_H5_TRIANGLES, 2, {m, 3}, {0, 0}, {3 * m, 0}},
+                                  {"/" TRI_H5_SEGMENTS, 2, {s, 2}, {3 * m, 0}, {2 * s, 0}}};
+    const struct part lines = {LINE_TYPES, 1, {s, 0}, {m, 0}, {s, 0}};
+    add_view(v, "/VTKHDF/Connectivity", type, 1, (hsize_t[2]){3 * m + 2 * s, 0}, 0, nodes, 2);
+    add_ends(v, "/VTKHDF/Offsets", &(struct ends){(int64_t)m, (int64_t)(m + s) + 1});
+    add_view(v, LINE_TYPES, H5T_STD_U8LE, 1, (hsize_t[2]){s, 0}, VTK_LINE, NULL, 0);
+    add_view(v, "/VTKHDF/Types", H5T_STD_U8LE, 1, (hsize_t[2]){m + s, 0}, VTK_TRIANGLE, &lines, 1);
+    add_count(v, "/VTKHDF/NumberOfCells", (int64_t)(m + s));
+    add_count(v, "/VTKHDF/NumberOfConnectivityIds", (int64_t)(3 * m + 2 * s));
+}
+
+static void add_vtk_data(struct views *v)
+{
+    const struct tri_h5_arrays *a = v->arrays;
+    const hsize_t m = (hsize_t)a->triangles.n, s = (hsize_t)a->segments.n, k = (hsize_t)a->triangle_attributes.width;
+    const struct part markers = {"/" TRI_H5_SEGMENT_MARKERS, 1, {s, 0}, {m, 0}, {s, 0}};
+    const struct part attributes = {"/" TRI_H5_TRIANGLE_ATTRIBUTES, 2, {m, k}, {0, 0}, {m, k}};
+    add_group(v, "/VTKHDF/PointData");
+    add_link(v, &a->point_markers, "/VTKHDF/PointData/marker");
+    add_link(v, &a->point_attributes, "/VTKHDF/PointData/attributes");
+    add_group(v, "/VTKHDF/CellData");
+    if (a->segment_markers.file)
+        add_view(v, "/VTKHDF/CellData/marker", H5T_STD_I32LE, 1, (hsize_t[2]){m + s, 0}, 0, &markers, 1);
+    if (a->triangle_attributes.file)
+        add_view(v, "/VTKHDF/CellData/attributes", tri_h5_type_id(a->triangle_attributes.type), 2,
+                 (hsize_t[2]){m + s, k}, 0, &attributes, 1);
+}
+
+static void add_vtk(struct views *v)
+{
+    const hsize_t n = (hsize_t)v->arrays->points.n;
+    const struct part places = {"/" TRI_H5_POINTS, 2, {n, 2}, {0, 0}, {n, 2}};
+    add_group(v, "/VTKHDF");
+    add_integers(v, "/VTKHDF", "Version", 2, (int64_t[2]){2, 0});
+    v->failed = v->failed || !tri_h5_add_text(v->file, "/VTKHDF", "Type", "UnstructuredGrid");
+    add_count(v, "/VTKHDF/NumberOfPoints", (int64_t)n);
+    add_view(v, "/VTKHDF/Points", H5T_IEEE_F64LE, 2, (hsize_t[2]){n, 3}, 0, &places, 1);
+    add_vtk_cells(v);
+    add_vtk_data(v);
+}
+
+/* --- PETSc, which older versions ask for the dimension and corners of cells */
+
+static void add_petsc(struct views *v)
+{
+    add_group(v, "/geometry");
+    add_link(v, &v->arrays->points, "/geometry/vertices");
+    add_group(v, "/viz");
+    add_group(v, "/viz/topology");
+    add_link(v, &v->arrays->triangles, "/viz/topology/cells");
+    add_integers(v, "/viz/topology/cells", "cell_dim", 0, &(int64_t){2});
+    add_integers(v, "/viz/topology/cells", "cell_corners", 0, &(int64_t){3});
+}
+
+enum tri_status tri_h5_write_views(struct tri_h5_file *file, const struct tri_h5_arrays *arrays,
+                                   struct tri_error *error)
+{
+    struct views v = {.file = file, .arrays = arrays};
+    add_vtk(&v);
+    add_petsc(&v);
+    if (v.no_memory)
+        return tri_fail(error, TRI_NO_MEMORY, file->output->path, 0, "no memory to write where cells end");
+    return v.failed ? tri_h5_fail(file, "the views for other programs", error) : TRI_OK;
+}

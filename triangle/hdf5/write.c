@@ -1,0 +1,337 @@
+/* Tiles into arrays.
+ *
+ * A tile's rows go into the arrays' buffers, converted to bytes of the file, in pieces as the buffers have room. All
+ * calls of HDF5 stand between H5E_BEGIN_TRY and H5E_END_TRY, which keep it from printing what goes wrong. */
+#include "triangle/hdf5/write.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "triangle/hdf5/items.h"
+#include "triangle/hdf5/layout.h"
+#include "triangle/hdf5/views.h"
+#include "triangle/hdf5/xdmf.h"
+#include "triangle/text/binary.h"
+
+struct tri_h5_writer {
+    struct tri_h5_options options;
+    struct tri_h5_file file;
+    struct tri_h5_arrays arrays;
+    int64_t most_narrow;
+    int64_t n_input;      /* points that there were before refinement */
+    double bounds[4];     /* least x, least y, largest x, largest y; none as long as there are no points */
+    int32_t n_columns;
+    double *columns;      /* [n_regions][n_columns] of the stream */
+};
+
+bool tri_h5_is_there(void) { return true; }
+
+/* --- beginning */
+
+/* Can all be kept as integers of 32 bits? */
+static bool are_whole(const double *values, int64_t n)
+{
+    for (int64_t i = 0; i < n; i++)
+        if (!(values[i] >= INT32_MIN && values[i] <= INT32_MAX) || values[i] != (double)(int32_t)values[i] ||
+            (values[i] == 0 && signbit(values[i])))
+            return false;
+    return true;
+}
+
+static enum tri_status copy_columns(struct tri_h5_writer *w, const struct tri_stream *stream, struct tri_error *error)
+{
+    const size_t n = (size_t)stream->n_regions * (size_t)stream->n_columns;
+    w->n_columns = stream->n_columns;
+    w->columns = malloc((n + 1) * sizeof *w->columns);
+    if (!w->columns)
+        return tri_fail(error, TRI_NO_MEMORY, w->options.file->path, 0, "no memory for %d regions",
+                        (int)stream->n_regions);
+    if (n > 0)
+        memcpy(w->columns, stream->regions, n * sizeof *w->columns);
+    return TRI_OK;
+}
+
+/* An array, where it is wanted. */
+static enum tri_status begin_array(struct tri_h5_writer *w, bool wanted, struct tri_h5_array *array, const char *name,
+                                   enum tri_h5_type type, int32_t width, struct tri_error *error)
+{
+    return wanted ? tri_h5_array_begin(array, &w->file, name, type, width, error) : TRI_OK;
+}
+
+static enum tri_status begin_arrays(struct tri_h5_writer *w, const struct tri_stream *stream, struct tri_error *error)
+{
+    struct tri_h5_arrays *a = &w->arrays;
+    const bool markers = w->options.markers;
+    const enum tri_h5_type columns =
+        are_whole(w->columns, (int64_t)stream->n_regions * w->n_columns) ? TRI_H5_INT32 : TRI_H5_FLOAT64;
+    enum tri_status s = begin_array(w, true, &a->points, TRI_H5_POINTS, TRI_H5_FLOAT64, 2, error);
+    s = s ? s : begin_array(w, markers, &a->point_markers, TRI_H5_POINT_MARKERS, TRI_H5_INT32, 0, error);
+    s = s ? s : begin_array(w, stream->n_attributes > 0, &a->point_attributes, TRI_H5_POINT_ATTRIBUTES, TRI_H5_FLOAT64,
+                            stream->n_attributes, error);
+    s = s ? s : begin_array(w, true, &a->triangles, TRI_H5_TRIANGLES, TRI_H5_INT32, 3, error);
+    s = s ? s : begin_array(w, w->n_columns > 0, &a->triangle_attributes, TRI_H5_TRIANGLE_ATTRIBUTES, columns,
+                            w->n_columns, error);
+    s = s ? s : begin_array(w, true, &a->segments, TRI_H5_SEGMENTS, TRI_H5_INT32, 2, error);
+    s = s ? s : begin_array(w, markers, &a->segment_markers, TRI_H5_SEGMENT_MARKERS, TRI_H5_INT32, 0, error);
+    return s;
+}
+
+static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
+{
+    struct tri_h5_writer *w = user;
+    enum tri_status status = copy_columns(w, stream, error);
+    H5E_BEGIN_TRY
+    {
+        status = status ? status : tri_h5_create(&w->file, w->options.file, error);
+        status = status ? status : begin_arrays(w, stream, error);
+    }
+    H5E_END_TRY
+    return status;
+}
+
+/* --- tiles */
+
+/* Puts row i of a tile at `at`, and returns its end. */
+typedef char *put_call(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at);
+
+static char *put_point(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
+{
+    (void)w;
+    return tri_put_f64(tri_put_f64(at, tile->points[i][0]), tile->points[i][1]);
+}
+
+static char *put_point_marker(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
+{
+    (void)w;
+    return tri_put_i32(at, tile->point_markers[i]);
+}
+
+static char *put_point_attributes(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
+{
+    const int32_t width = w->arrays.point_attributes.width;
+    for (int32_t k = 0; k < width; k++)
+        at = tri_put_f64(at, tile->attributes[(int64_t)i * width + k]);
+    return at;
+}
+
+static char *put_corners(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
+{
+    (void)w;
+    for (int k = 0; k < 3; k++)
+        at = tri_put_i32(at, (int32_t)tile->corners[i][k]);
+    return at;
+}
+
+static char *put_wide_corners(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
+{
+    (void)w;
+    for (int k = 0; k < 3; k++)
+        at = tri_put_i64(at, tile->corners[i][k]);
+    return at;
+}
+
+static char *put_columns(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
+{
+    const double *values = w->columns + (int64_t)tile->regions[i] * w->n_columns;
+    for (int32_t k = 0; k < w->n_columns; k++)
+        at = tri_put_f64(at, values[k]);
+    return at;
+}
+
+static char *put_whole_columns(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
+{
+    const double *values = w->columns + (int64_t)tile->regions[i] * w->n_columns;
+    for (int32_t k = 0; k < w->n_columns; k++)
+        at = tri_put_i32(at, (int32_t)values[k]);
+    return at;
+}
+
+static char *put_ends(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
+{
+    (void)w;
+    return tri_put_i32(tri_put_i32(at, (int32_t)tile->ends[i][0]), (int32_t)tile->ends[i][1]);
+}
+
+static char *put_wide_ends(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
+{
+    (void)w;
+    return tri_put_i64(tri_put_i64(at, tile->ends[i][0]), tile->ends[i][1]);
+}
+
+static char *put_segment_marker(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
+{
+    (void)w;
+    return tri_put_i32(at, tile->segment_markers[i]);
+}
+
+/* The tile's n rows of one array. */
+static enum tri_status add_rows(struct tri_h5_writer *w, struct tri_h5_array *array, const struct tri_tile *tile,
+                                int32_t n, put_call *put, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (int32_t i = 0; array->file && i < n && !status;) {
+        int32_t room;
+        char *at = tri_h5_array_room(array, &room);
+        const int32_t end = room < n - i ? i + room : n, begin = i;
+        for (; i < end; i++)
+            at = put(w, tile, i, at);
+        status = tri_h5_array_advance(array, end - begin, error);
+    }
+    return status;
+}
+
+static void extend_bounds(struct tri_h5_writer *w, const struct tri_tile *tile)
+{
+    double *b = w->bounds;
+    for (int32_t i = 0; i < tile->n_vertices; i++) {
+        const double *at = tile->points[i];
+        b[0] = at[0] < b[0] ? at[0] : b[0];
+        b[1] = at[1] < b[1] ? at[1] : b[1];
+        b[2] = at[0] > b[2] ? at[0] : b[2];
+        b[3] = at[1] > b[3] ? at[1] : b[3];
+    }
+}
+
+/* No corner, nor end, of this tile has a number above those of its points. */
+static enum tri_status widen_in_time(struct tri_h5_writer *w, struct tri_error *error)
+{
+    struct tri_h5_arrays *a = &w->arrays;
+    if (a->points.n <= w->most_narrow || a->triangles.type == TRI_H5_INT64)
+        return TRI_OK;
+    enum tri_status status = tri_h5_array_widen(&a->triangles, error);
+    return status ? status : tri_h5_array_widen(&a->segments, error);
+}
+
+static enum tri_status add_points(struct tri_h5_writer *w, const struct tri_tile *tile, struct tri_error *error)
+{
+    const int32_t n = tile->n_vertices;
+    enum tri_status status = add_rows(w, &w->arrays.points, tile, n, put_point, error);
+    status = status ? status : add_rows(w, &w->arrays.point_markers, tile, n, put_point_marker, error);
+    status = status ? status : add_rows(w, &w->arrays.point_attributes, tile, n, put_point_attributes, error);
+    extend_bounds(w, tile);
+    w->n_input += tile->column < 0 ? n : 0;
+    return status;
+}
+
+static enum tri_status add_triangles(struct tri_h5_writer *w, const struct tri_tile *tile, struct tri_error *error)
+{
+    struct tri_h5_arrays *a = &w->arrays;
+    put_call *corners = a->triangles.type == TRI_H5_INT64 ? put_wide_corners : put_corners;
+    put_call *columns = a->triangle_attributes.type == TRI_H5_INT32 ? put_whole_columns : put_columns;
+    enum tri_status status = add_rows(w, &a->triangles, tile, tile->n_triangles, corners, error);
+    return status ? status : add_rows(w, &a->triangle_attributes, tile, tile->n_triangles, columns, error);
+}
+
+static enum tri_status add_segments(struct tri_h5_writer *w, const struct tri_tile *tile, struct tri_error *error)
+{
+    struct tri_h5_arrays *a = &w->arrays;
+    put_call *ends = a->segments.type == TRI_H5_INT64 ? put_wide_ends : put_ends;
+    enum tri_status status = add_rows(w, &a->segments, tile, tile->n_segments, ends, error);
+    return status ? status : add_rows(w, &a->segment_markers, tile, tile->n_segments, put_segment_marker, error);
+}
+
+static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
+{
+    struct tri_h5_writer *w = user;
+    enum tri_status status = TRI_OK;
+    assert(tile->first_vertex == w->arrays.points.n && tile->first_triangle == w->arrays.triangles.n &&
+           tile->first_segment == w->arrays.segments.n);
+    H5E_BEGIN_TRY
+    {
+        status = add_points(w, tile, error);
+        status = status ? status : widen_in_time(w, error);
+        status = status ? status : add_triangles(w, tile, error);
+        status = status ? status : add_segments(w, tile, error);
+    }
+    H5E_END_TRY
+    return status;
+}
+
+/* --- ending */
+
+static enum tri_status end_arrays(struct tri_h5_arrays *a, struct tri_error *error)
+{
+    struct tri_h5_array *all[] = {&a->points, &a->point_markers, &a->point_attributes, &a->triangles,
+                                  &a->triangle_attributes, &a->segments, &a->segment_markers};
+    enum tri_status status = TRI_OK;
+    for (size_t i = 0; i < sizeof all / sizeof *all && !status; i++)
+        if (all[i]->file)
+            status = tri_h5_array_end(all[i], error);
+    return status;
+}
+
+static enum tri_status write_about(struct tri_h5_writer *w, struct tri_error *error)
+{
+    const char *about = "/" TRI_H5_ABOUT;
+    const double none[4] = {0};
+    struct tri_h5_file *f = &w->file;
+    bool done = tri_h5_add_group(f, about) && tri_h5_add_text(f, about, TRI_H5_ABOUT_FORMAT, TRI_H5_FORMAT) &&
+                tri_h5_add_integers(f, about, TRI_H5_ABOUT_VERSION, 0, &(int64_t){TRI_H5_VERSION}) &&
+                tri_h5_add_text(f, about, TRI_H5_ABOUT_PROGRAM, w->options.program) &&
+                tri_h5_add_integers(f, about, TRI_H5_ABOUT_POINTS, 0, &w->arrays.points.n) &&
+                tri_h5_add_integers(f, about, TRI_H5_ABOUT_TRIANGLES, 0, &w->arrays.triangles.n) &&
+                tri_h5_add_integers(f, about, TRI_H5_ABOUT_SEGMENTS, 0, &w->arrays.segments.n) &&
+                tri_h5_add_integers(f, about, TRI_H5_ABOUT_INPUT_POINTS, 0, &w->n_input) &&
+                tri_h5_add_reals(f, about, TRI_H5_ABOUT_BOUNDS, 4, w->arrays.points.n > 0 ? w->bounds : none);
+    return done ? TRI_OK : tri_h5_fail(f, about, error);
+}
+
+static enum tri_status end(void *user, struct tri_error *error)
+{
+    struct tri_h5_writer *w = user;
+    const struct tri_h5_options *o = &w->options;
+    enum tri_status status = TRI_OK;
+    H5E_BEGIN_TRY
+    {
+        status = end_arrays(&w->arrays, error);
+        status = status ? status : write_about(w, error);
+        status = status ? status : tri_h5_write_views(&w->file, &w->arrays, error);
+        status = status ? status : tri_h5_close(&w->file, error);
+    }
+    H5E_END_TRY
+    return status ? status : tri_h5_write_xdmf(o->xdmf, o->name, &w->arrays, error);
+}
+
+/* --- the writer */
+
+enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tri_h5_options *options,
+                                  struct tri_sink *sink, struct tri_error *error)
+{
+    struct tri_h5_writer *w = malloc(sizeof *w);
+    *writer = w;
+    if (!w)
+        return tri_fail(error, TRI_NO_MEMORY, options->file->path, 0, "no memory to write the file");
+    *w = (struct tri_h5_writer){.options = *options, .file = {.id = -1, .driver = -1},
+                                .bounds = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+    w->most_narrow = options->most_narrow > 0 ? options->most_narrow : (int64_t)INT32_MAX + 1;
+    *sink = (struct tri_sink){w, begin, take, end};
+    return TRI_OK;
+}
+
+/* What an unfinished file holds is of no use: it is let go of without a write. */
+static void let_go(struct tri_h5_writer *w)
+{
+    struct tri_h5_arrays *a = &w->arrays;
+    struct tri_h5_array *all[] = {&a->points, &a->point_markers, &a->point_attributes, &a->triangles,
+                                  &a->triangle_attributes, &a->segments, &a->segment_markers};
+    if (w->file.id >= 0 && w->file.failure == 0)
+        w->file.failure = -1;
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        tri_h5_array_free(all[i]);
+    (void)tri_h5_close(&w->file, NULL);
+}
+
+void tri_h5_writer_free(struct tri_h5_writer *writer)
+{
+    if (!writer)
+        return;
+    H5E_BEGIN_TRY
+    {
+        let_go(writer);
+    }
+    H5E_END_TRY
+    free(writer->columns);
+    free(writer);
+}

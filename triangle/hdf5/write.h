@@ -1,0 +1,44 @@
+/* A stream of tiles as an HDF5 file: the arrays of triangle/hdf5/layout.h, views for other programs, and beside the
+ * file a short XDMF text that names its arrays, for what reads meshes by way of that.
+ *
+ * The bytes depend on the tiles and their order, on nothing else. Numbers of points take 32 bits as long as they fit;
+ * only when one does not the arrays of triangles and segments are rewritten, once: sizes are not known before the end,
+ * and two thirds of a file are these numbers. Memory: about 20 MB, whatever the mesh. */
+#ifndef TRIANGLE_HDF5_WRITE_H
+#define TRIANGLE_HDF5_WRITE_H
+
+#include "ptriangle/tiles.h"
+#include "triangle/text/output.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct tri_h5_options {
+    const char *program;   /* name and version, for /about */
+    const char *name;      /* of the file, as the XDMF text beside it calls it */
+    bool markers;          /* they are written */
+    struct tri_output *file, *xdmf; /* opened, and the caller's; the first has places */
+    int64_t most_narrow;   /* so many points have 32-bit numbers; <= 0: as many as can */
+};
+
+struct tri_h5_writer;
+
+/* Is there HDF5 in this build? */
+bool tri_h5_is_there(void);
+
+/* *sink writes the file; its calls come from one thread at a time. After its end the outputs are complete, and their
+ * owner commits them; after any failure, or where no end comes, he aborts them. Texts and outputs of the options
+ * outlive the writer. TRI_NO_MEMORY; TRI_CANNOT_WRITE: this build has no HDF5. Errors of the sink: those of
+ * triangle/text/output.h. */
+enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tri_h5_options *options,
+                                  struct tri_sink *sink, struct tri_error *error);
+
+/* NULL is fine. */
+void tri_h5_writer_free(struct tri_h5_writer *writer);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
