@@ -112,9 +112,12 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/theory.c
     sched/threads.c
     sched/partition.c
-    sched/room.c sched/sweep/tiles.c
+    sched/room.c
+    sched/sweep/tiles.c
+    sched/sweep/park.c
     sched/sweep/spool.c
     sched/sweep/checkpoint.c
+    sched/sweep/sweep.c
     sched/worklist.c
     sched/phase.c
     sched/schedule.c

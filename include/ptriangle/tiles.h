@@ -38,7 +38,8 @@ struct tri_tile {
     const int32_t *segment_markers;   /* [n_segments] */
 };
 
-/* Who takes tiles: called by one thread, in order. What the pointers name is gone when a call returns. A status other
+/* Who takes tiles: called by one thread, in order. begin may be called again, before end: what has been taken is void
+ * then, and all tiles come anew; whoever has no begin never has to forget anything, but it may take longer. What the pointers name is gone when a call returns. A status other
  * than TRI_OK ends the run with it. */
 struct tri_sink {
     void *user;
