@@ -28,7 +28,7 @@ struct program {
     int threads;
     struct progress progress;
     struct file_names h5;      /* HDF5 files that are wanted */
-    char *texts[2 * STREAMS_MOST]; /* names of those beside them */
+    char *xdmf[STREAMS_MOST];  /* [h5.n] names of the texts beside them */
     struct streams streams;
     int32_t n_before;          /* vertices there were before refinement */
     bool refined;              /* the schedule has run: its report is filled */
@@ -111,6 +111,7 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
     status = status ? status : streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
     status = status ? status : refine_with(p, run, &options, mesh, quality, error);
     streams_close(&p->streams);
+    tri_mesh_free(mesh); /* what is left of it is no mesh */
     if (!status)
         count_streamed(&run->counts, &before, unused, &p->streams);
     return status;
@@ -228,19 +229,18 @@ static double memory_of(const struct long_options *options)
     return options->memory_share > 0 ? options->memory_share * (total < HUGE_VAL ? total : 0) : options->memory;
 }
 
-/* Names of HDF5 files, and of the texts beside them. */
+/* HDF5 files, and the texts beside them, are checked as all files are. */
 static enum tri_status name_streams(struct program *p, struct run_hooks *hooks, struct tri_error *error)
 {
-    enum tri_status status = TRI_OK;
-    for (int i = 0; !status && i < p->options.n_streams; i++) {
-        char **texts = p->texts + 2 * i;
-        status = stream_names(p->options.streams[i], &texts[0], &texts[1], error);
+    for (int i = 0; i < p->options.n_streams; i++) {
+        p->xdmf[i] = stream_xdmf(p->options.streams[i]);
+        if (!p->xdmf[i])
+            return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
         add_further(&p->h5, p->options.streams[i]);
         add_further(&hooks->further, p->options.streams[i]);
-        add_further(&hooks->further, texts[0]);
-        add_further(&hooks->further, texts[1]);
+        add_further(&hooks->further, p->xdmf[i]);
     }
-    return status;
+    return TRI_OK;
 }
 
 /* What of the long options asks for the whole mesh in memory. */
@@ -279,8 +279,8 @@ static int run_program(struct program *p, const struct arguments *arguments)
              "  --numbering curve|blocks\n"
              "  --dry-run  --time-limit T  --write-partial  --progress  --help");
     par_report_free(&p->schedule);
-    for (int i = 0; i < 2 * STREAMS_MOST; i++)
-        free(p->texts[i]);
+    for (int i = 0; i < STREAMS_MOST; i++)
+        free(p->xdmf[i]);
     return code;
 }
 

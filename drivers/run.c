@@ -31,6 +31,7 @@ struct runner {
     struct names names;
     struct console_series input_warnings;
     double begin, mark; /* when the run and the stage began */
+    int32_t *twin;      /* [pslg.n_points] first one of the points at a place, where the mesh will be gone; else NULL */
     bool built;         /* there is a mesh: what stops now leaves one that is valid */
     struct tri_error *error;
 };
@@ -265,6 +266,27 @@ static void begin_outputs(const struct runner *r)
         outputs.stop = NULL;
 }
 
+/* What will be told of the input, though its vertices will be gone then. */
+static enum tri_status keep_twins(struct runner *r, const struct tri_mesh *mesh)
+{
+    const int32_t *origin = mesh->origin, n = mesh->n_input;
+    if (!mesh->twin)
+        return TRI_OK;
+    r->twin = malloc(((size_t)n + 1) * sizeof *r->twin);
+    if (!r->twin)
+        return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d points", (int)n);
+    for (int32_t v = 0; v < n; v++)
+        r->twin[origin ? origin[v] : v] = origin ? origin[mesh->twin[v]] : mesh->twin[v];
+    return TRI_OK;
+}
+
+/* Files are written while the mesh is refined. */
+static enum tri_status begin_sweep(struct runner *r, const struct tri_mesh *mesh)
+{
+    begin_outputs(r);
+    return keep_twins(r, mesh);
+}
+
 static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_refine_options *quality,
                               struct tri_refine_report *report, struct tri_error *error)
 {
@@ -275,10 +297,10 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
         return status;
     console_say(&r->console, "Adding vertices until the bounds are kept.\n");
     interrupt_stage("refining");
-    if (r->run.plan.swept)
-        begin_outputs(r);
-    status = hooks->refine ? hooks->refine(hooks->user, &r->run, &outputs, mesh, quality, report, error)
-                           : tri_refine(mesh, quality, report, error);
+    status = r->run.plan.swept ? begin_sweep(r, mesh) : TRI_OK;
+    if (!status)
+        status = hooks->refine ? hooks->refine(hooks->user, &r->run, &outputs, mesh, quality, report, error)
+                               : tri_refine(mesh, quality, report, error);
     status = notice_stop(r, status);
     if (status && r->run.plan.swept)
         interrupt_drop(&outputs);
@@ -374,7 +396,7 @@ static enum tri_status keep_partial(struct runner *r, enum tri_status status)
 /* What was odd about the input; said when the vertices have the numbers of the input again. */
 static void tell_of_input(const struct runner *r)
 {
-    summary_duplicates(&r->console, &r->run.mesh, &r->run.pslg);
+    summary_duplicates(&r->console, r->run.plan.swept ? r->twin : r->run.mesh.twin, &r->run.pslg);
     summary_segments(&r->console, &r->run.report.constrain);
 }
 
@@ -523,6 +545,7 @@ static void free_run(struct runner *r)
     tri_pslg_free(&r->run.pslg);
     tri_elements_free(&r->run.elements);
     free(r->run.is_edge);
+    free(r->twin);
     free_names(&r->names);
 }
 

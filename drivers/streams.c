@@ -9,27 +9,16 @@ static const char program[] = PTRIANGLE_NAME " " PTRIANGLE_VERSION;
 
 /* --- names */
 
-static char *in_place_of_suffix(const char *name, const char *other)
+char *stream_xdmf(const char *name)
 {
-    size_t n = strlen(name) - strlen(STREAM_SUFFIX), m = strlen(other) + 1;
-    char *path = malloc(n + m);
+    static const char suffix[] = ".xdmf";
+    size_t n = strlen(name) - strlen(STREAM_SUFFIX);
+    char *path = malloc(n + sizeof suffix);
     if (path) {
         memcpy(path, name, n);
-        memcpy(path + n, other, m);
+        memcpy(path + n, suffix, sizeof suffix);
     }
     return path;
-}
-
-enum tri_status stream_names(const char *name, char **xdmf, char **segments_xdmf, struct tri_error *error)
-{
-    *xdmf = in_place_of_suffix(name, ".xdmf");
-    *segments_xdmf = in_place_of_suffix(name, "_segments.xdmf");
-    if (*xdmf && *segments_xdmf)
-        return TRI_OK;
-    free(*xdmf);
-    free(*segments_xdmf);
-    *xdmf = *segments_xdmf = NULL;
-    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
 }
 
 static const char *without_folder(const char *name)
@@ -44,10 +33,11 @@ static enum tri_status open_stream(struct stream *s, const char *name, bool mark
                                    struct tri_error *error)
 {
     s->options = (struct tri_h5_options){.program = program, .name = without_folder(name), .markers = markers};
-    enum tri_status status = stream_names(name, &s->xdmf, &s->segments_xdmf, error);
-    status = status ? status : interrupt_open(set, name, &s->options.file, error);
-    status = status ? status : interrupt_open(set, s->xdmf, &s->options.mesh_xdmf, error);
-    status = status ? status : interrupt_open(set, s->segments_xdmf, &s->options.segments_xdmf, error);
+    s->xdmf = stream_xdmf(name);
+    if (!s->xdmf)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
+    enum tri_status status = interrupt_open(set, name, &s->options.file, error);
+    status = status ? status : interrupt_open(set, s->xdmf, &s->options.xdmf, error);
     return status ? status : tri_h5_writer_new(&s->writer, &s->options, &s->sink, error);
 }
 
@@ -67,7 +57,6 @@ void streams_close(struct streams *streams)
         struct stream *s = &streams->stream[i];
         tri_h5_writer_free(s->writer);
         free(s->xdmf);
-        free(s->segments_xdmf);
     }
     streams->n = 0;
 }

@@ -10,9 +10,9 @@
 
 enum { STREAMS_MOST = 4 };
 
-/* One HDF5 file and the texts beside it. */
+/* One HDF5 file and the text beside it. */
 struct stream {
-    char *xdmf, *segments_xdmf; /* names */
+    char *xdmf; /* name */
     struct tri_h5_options options;
     struct tri_h5_writer *writer;
     struct tri_sink sink;
@@ -34,9 +34,8 @@ static inline bool stream_is_wanted(const char *name)
     return n > m && strcmp(name + n - m, STREAM_SUFFIX) == 0;
 }
 
-/* Adds the names of the texts beside a file of that name to a list, which must have room; they belong to the caller.
- * TRI_NO_MEMORY. */
-enum tri_status stream_names(const char *name, char **xdmf, char **segments_xdmf, struct tri_error *error);
+/* The name of the text beside a file of that name, malloc'ed; NULL: no memory. */
+char *stream_xdmf(const char *name);
 
 /* Opens these files in the guarded set (drivers/interrupt.h). To be closed in any case, before the set is committed. */
 enum tri_status streams_open(struct streams *streams, const struct file_names *names, bool markers,

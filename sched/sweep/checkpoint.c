@@ -341,6 +341,7 @@ static void set_counts(const struct head *h, struct par_state *state, struct par
     tiles->n_vertices = h->tiles_vertices;
     tiles->n_triangles = h->tiles_triangles;
     tiles->n_segments = h->tiles_segments;
+    state->gone = h->tiles_triangles;
     for (int k = 0; k < PAR_KINDS; k++)
         state->spare.ranges[k].n = (int32_t)h->n_spare[k];
     r->total = (struct tri_refine_report){.inserted_free = h->inserted_free, .gated = h->gated,
@@ -416,4 +417,12 @@ enum tri_status par_checkpoint_border(struct par_checkpoint *c, const struct par
     return failed ? c->spool.failed : status ? status : asked ? tri_fail_stopped(error) : TRI_OK;
 }
 
-void par_checkpoint_end(struct par_checkpoint *c, struct par_state *state) { state->mesh->stop = c->stop; }
+enum tri_status par_checkpoint_end(struct par_checkpoint *c, struct par_state *state, bool forget,
+                                   struct tri_error *error)
+{
+    state->mesh->stop = c->stop;
+    if (!forget)
+        return TRI_OK;
+    c->spool.length = 0;
+    return write_manifest(c, (struct par_manifest){.of = c->manifest.of}, error);
+}
