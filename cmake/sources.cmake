@@ -170,6 +170,7 @@ set(PTRIANGLE_PARALLEL_SOURCES
     drivers/long_options.c
     drivers/progress.c
     drivers/streams.c
+    drivers/restart.c
     drivers/prediction.c)
 set(PTRIANGLE_REPORT_SOURCE drivers/report_json.c)
 set(PTRIANGLE_NO_REPORT_SOURCE drivers/report_none.c)

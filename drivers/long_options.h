@@ -29,6 +29,9 @@ struct long_options {
     double memory;      /* bytes that the process may take; 0: not given, or .. */
     double memory_share; /* .. this share of what the machine has, to 1; 0: not given */
     const char *scratch; /* directory; NULL: not given */
+    const char *checkpoint, *resume; /* directories; NULL: not given */
+    bool has_every;
+    double every;       /* minutes between checkpoints, if given */
     bool write_partial, dry_run;
     bool version, help;
 };

@@ -13,6 +13,7 @@
 #include "drivers/progress.h"
 #include "drivers/report_json.h"
 #include "drivers/resources.h"
+#include "drivers/restart.h"
 #include "drivers/run.h"
 #include "drivers/streams.h"
 #include "sched/schedule.h"
@@ -27,6 +28,7 @@ struct program {
     struct long_options options;
     int threads;
     struct progress progress;
+    struct restart restart;
     struct file_names h5;      /* HDF5 files that are wanted */
     char *xdmf[STREAMS_MOST];  /* [h5.n] names of the texts beside them */
     struct streams streams;
@@ -44,6 +46,16 @@ static double cell_for_tests(void)
     return triangles > 0 ? (double)triangles : 0;
 #else
     return 0;
+#endif
+}
+
+/* And sweep what would fit in memory. */
+static bool sweep_for_tests(void)
+{
+#ifdef PTRIANGLE_TESTS
+    return getenv("PTRIANGLE_TEST_SWEEP") != NULL;
+#else
+    return false;
 #endif
 }
 
@@ -70,6 +82,7 @@ static struct par_options options_of(struct program *p, const struct run *run)
     options.sweep = run->plan.swept;
     options.memory = run->plan.swept && run->plan.memory < HUGE_VAL ? (int64_t)run->plan.memory : 0;
     options.scratch = run->hooks->limits.scratch;
+    options.checkpoint = p->restart.wanted ? &p->restart.checkpoint : NULL;
     return options;
 }
 
@@ -127,6 +140,9 @@ static enum tri_status refine(void *user, struct run *run, struct tri_output_set
         status = sweep(p, run, set, mesh, quality, error);
     } else {
         struct par_options options = options_of(p, run);
+        if (p->restart.wanted)
+            console_say(&(struct console){.program = PROGRAM, .quiet = run->arguments->switches.quiet},
+                        "The mesh stays in memory: there will be no checkpoint, and --resume starts over.\n");
         status = refine_with(p, run, &options, mesh, quality, error);
         if (!status)
             progress_stage(&p->progress, "writing");
@@ -250,58 +266,86 @@ static const char *whole_mesh(const struct long_options *o)
            : o->n_exports > 0 || o->n_streams == 0 || o->output ? "files other than .h5" : NULL;
 }
 
-static int run_program(struct program *p, const struct arguments *arguments)
+static struct run_hooks hooks_of(struct program *p)
+{
+    const struct long_options *o = &p->options;
+    bool goes_on = p->restart.wanted && par_checkpoint_has_state(&p->restart.checkpoint);
+    struct run_hooks hooks = {.program = PROGRAM, .refine = refine, .estimate = estimate, .write = write_further,
+                              .swept_memory = swept_memory, .always_sweep = goes_on || sweep_for_tests(),
+                              .whole_mesh = whole_mesh(o), .threads = p->threads, .user = p,
+                              .limits = {.seconds = o->time_limit, .write_partial = o->write_partial,
+                                         .dry_run = o->dry_run, .memory = memory_of(o), .scratch = o->scratch,
+                                         .checkpoint = p->restart.wanted}};
+    for (int i = 0; i < o->n_exports; i++)
+        add_further(&hooks.exports, o->exports[i]);
+    hooks.exports_alone = o->n_exports + o->n_streams > 0 && !o->output;
+    add_further(&hooks.further, o->report && !report_is_printed(o->report) ? o->report : NULL);
+    add_further(&hooks.further, o->blocks);
+    return hooks;
+}
+
+static int run_program(struct program *p, const struct arguments *arguments, struct tri_error *error)
 {
     p->threads = par_threads(long_options_threads(&p->options), true);
     p->progress = progress_start(PROGRAM, p->options.progress, arguments->switches.quiet);
     const struct tri_executor executor = par_executor(&p->threads);
-    const struct long_options *o = &p->options;
-    struct run_hooks hooks = {.program = PROGRAM, .executor = &executor, .refine = refine, .estimate = estimate,
-                              .threads = p->threads, .write = write_further, .user = p,
-                              .limits = {o->time_limit, o->write_partial, o->dry_run, memory_of(o), o->scratch}};
-    for (int i = 0; i < o->n_exports; i++)
-        add_further(&hooks.exports, o->exports[i]);
-    hooks.exports_alone = o->n_exports + o->n_streams > 0 && !o->output;
-    hooks.swept_memory = swept_memory;
-    hooks.whole_mesh = whole_mesh(o);
-    add_further(&hooks.further, o->report && !report_is_printed(o->report) ? o->report : NULL);
-    add_further(&hooks.further, o->blocks);
+    struct run_hooks hooks = hooks_of(p);
+    hooks.executor = &executor;
+    if (name_streams(p, &hooks, error)) {
+        console_error(&(struct console){.program = PROGRAM}, error);
+        return EXIT_FAILURE;
+    }
     if (arguments->file)
         progress_stage(&p->progress, "reading and triangulating");
-    struct tri_error error = {0};
-    int code = EXIT_FAILURE;
-    if (name_streams(p, &hooks, &error))
-        console_error(&(struct console){.program = PROGRAM}, &error);
-    else
-        code = run_arguments(arguments, &hooks);
+    int code = run_arguments(arguments, &hooks);
     if (!arguments->file)
-        puts("  --threads N  --max-area X  --min-angle X  --output BASE|FILE.vtu|...  --report FILE  --blocks FILE"
+        puts("  --threads N  --max-area X  --min-angle X  --output BASE|FILE.h5|...  --report FILE  --blocks FILE"
              "  --numbering curve|blocks\n"
-             "  --dry-run  --time-limit T  --write-partial  --progress  --help");
+             "  --dry-run  --memory SIZE  --checkpoint DIR  --resume DIR  --time-limit T  --write-partial  --progress"
+             "  --help");
+    return code;
+}
+
+static void free_program(struct program *p)
+{
     par_report_free(&p->schedule);
     for (int i = 0; i < STREAMS_MOST; i++)
         free(p->xdmf[i]);
+}
+
+/* Once the words have been taken. */
+static int carry_out(struct program *p, const struct arguments *arguments, struct tri_error *error)
+{
+    if (p->options.version) {
+        printf("%s %s\n", PROGRAM, PTRIANGLE_VERSION);
+        return EXIT_SUCCESS;
+    }
+    if (p->options.help || arguments->switches.help) {
+        help_full(PROGRAM, "on all cores", long_options_help);
+        return EXIT_SUCCESS;
+    }
+    if (arguments->file && restart_open(&p->restart, &p->options, error)) {
+        console_error(&(struct console){.program = PROGRAM}, error);
+        return EXIT_FAILURE;
+    }
+    int code = run_program(p, arguments, error);
+    restart_close(&p->restart, PROGRAM, arguments, code);
     return code;
 }
 
 int main(int argc, char **argv)
 {
-    struct program program = {0};
+    static struct program program;
     struct tri_error error = {0};
     const struct console console = {.program = PROGRAM};
     console_open();
     struct arguments arguments = arguments_begin(argc, argv);
-    int code = EXIT_SUCCESS;
-    if (take_words(&program, &arguments, &error)) {
+    int code = EXIT_FAILURE;
+    if (take_words(&program, &arguments, &error))
         console_error(&console, &error);
-        code = EXIT_FAILURE;
-    } else if (program.options.version) {
-        printf("%s %s\n", PROGRAM, PTRIANGLE_VERSION);
-    } else if (program.options.help || arguments.switches.help) {
-        help_full(PROGRAM, "on all cores", long_options_help);
-    } else {
-        code = run_program(&program, &arguments);
-    }
+    else
+        code = carry_out(&program, &arguments, &error);
+    free_program(&program);
     arguments_free(&arguments);
     return console_close(&console) ? code : EXIT_FAILURE;
 }

@@ -262,7 +262,7 @@ static enum tri_status leave(void *user, struct tri_mesh *mesh, const struct tri
 static void begin_outputs(const struct runner *r)
 {
     interrupt_begin(&outputs);
-    if (r->run.hooks->limits.write_partial)
+    if (r->run.hooks->limits.write_partial || r->run.hooks->limits.checkpoint)
         outputs.stop = NULL;
 }
 
@@ -529,7 +529,7 @@ static enum tri_status run_file(struct runner *r)
 {
     const struct run_limits *limits = &r->run.hooks->limits;
     r->begin = r->mark = tri_seconds();
-    if (!interrupt_start(r->run.hooks->program, limits->seconds, limits->write_partial))
+    if (!interrupt_start(r->run.hooks->program, limits->seconds, limits->write_partial || limits->checkpoint))
         return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "the system has no timer left");
     enum tri_status status = run_stages(r);
     if (status == TRI_STOPPED)

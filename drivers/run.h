@@ -56,6 +56,7 @@ struct run_limits {
     bool write_partial; /* a run that is stopped while it refines writes the valid mesh that it has */
     bool dry_run;       /* nothing is refined or written: an estimate is printed */
     double memory;      /* bytes that the process may take; 0: what there is */
+    bool checkpoint;    /* a run that is stopped while it is swept takes the time to keep its state */
     const char *scratch; /* directory for what does not fit there; NULL: that of the output */
 };
 
@@ -73,6 +74,7 @@ struct run_hooks {
     /* Bytes of memory that sweeping so many triangles takes, beyond what is taken now; refine follows run->plan then.
      * NULL: nothing is ever swept. */
     double (*swept_memory)(void *user, double triangles);
+    bool always_sweep;              /* for tests: also what would fit in memory */
     const char *whole_mesh;         /* what of the program's own options asks for a mesh in memory; NULL: nothing */
     int threads;                    /* to refine with, for estimates */
     struct file_names exports;      /* the mesh in other formats .. */
