@@ -29,6 +29,7 @@ struct program {
     int threads;
     struct progress progress;
     struct restart restart;
+    char *scratch;             /* folder for what is parked */
     struct file_names h5;      /* HDF5 files that are wanted */
     char *xdmf[STREAMS_MOST];  /* [h5.n] names of the texts beside them */
     struct streams streams;
@@ -81,7 +82,7 @@ static struct par_options options_of(struct program *p, const struct run *run)
     options.region_column = tri_switches_grid(s, &run->mesh, &run->pslg, &run->elements).regions;
     options.sweep = run->plan.swept;
     options.memory = run->plan.swept && run->plan.memory < HUGE_VAL ? (int64_t)run->plan.memory : 0;
-    options.scratch = run->hooks->limits.scratch;
+    options.scratch = p->scratch;
     options.checkpoint = p->restart.wanted ? &p->restart.checkpoint : NULL;
     return options;
 }
@@ -238,6 +239,20 @@ static void add_further(struct file_names *names, const char *name)
         names->name[names->n++] = name;
 }
 
+/* --scratch, TMPDIR, or the folder of the output; malloc'ed. */
+static char *scratch_of(const struct long_options *options, const struct arguments *arguments)
+{
+    const char *asked = options->scratch ? options->scratch : getenv("TMPDIR");
+    const char *output = options->n_streams > 0 ? options->streams[0] : arguments->output;
+    const char *slash = output ? strrchr(output, '/') : NULL;
+    if (asked && *asked)
+        return joined(asked, "");
+    char *folder = joined(slash ? output : ".", "");
+    if (folder && slash)
+        folder[slash - output + 1] = 0;
+    return folder;
+}
+
 /* Bytes that the process may take; 0: whatever there is. */
 static double memory_of(const struct long_options *options)
 {
@@ -291,6 +306,7 @@ static int run_program(struct program *p, const struct arguments *arguments, str
     const struct tri_executor executor = par_executor(&p->threads);
     struct run_hooks hooks = hooks_of(p);
     hooks.executor = &executor;
+    p->scratch = scratch_of(&p->options, arguments);
     if (name_streams(p, &hooks, error)) {
         console_error(&(struct console){.program = PROGRAM}, error);
         return EXIT_FAILURE;
@@ -309,6 +325,7 @@ static int run_program(struct program *p, const struct arguments *arguments, str
 static void free_program(struct program *p)
 {
     par_report_free(&p->schedule);
+    free(p->scratch);
     for (int i = 0; i < STREAMS_MOST; i++)
         free(p->xdmf[i]);
 }

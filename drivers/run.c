@@ -327,6 +327,8 @@ static enum tri_status generate(struct runner *r, bool refined)
     options.is_edge = run->is_edge;
     options.base = run->base;
     enum tri_status status = tri_generate(&run->mesh, &run->pslg, &options, &run->report, r->error);
+    if (r->built) /* not the input's fault */
+        return notice_stop(r, status);
     if (status == TRI_BAD_INPUT && s->mesh)
         snprintf(r->error->file, sizeof r->error->file, "%s.ele", run->arguments->input);
     else if (status == TRI_BAD_INPUT)
