@@ -36,7 +36,6 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/criterion.c
     triangle/inside.c
     triangle/refine.c
-    triangle/numbering.c
     triangle/census.c
     triangle/estimate.c
     triangle/stats.c
@@ -113,7 +112,10 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/threads.c
     sched/partition.c
     sched/room.c
+    sched/sweep/tile_copy.c
     sched/sweep/tiles.c
+    sched/sweep/stream.c
+    sched/sweep/numbering.c
     sched/sweep/park.c
     sched/sweep/spool.c
     sched/sweep/checkpoint.c

@@ -42,7 +42,7 @@ struct par_state {
     int round;
     int32_t n_kept;          /* vertices there were before */
     bool may_number;         /* nothing is refined after this schedule */
-    struct par_partition cells; /* of the last schedule, for handing out what is in memory */
+    struct par_partition cells; /* of the last schedule of the whole mesh: the tiles by which it is numbered */
     bool numbered;           /* and nothing was */
     double estimate;         /* of the triangles of a mesh that does not fit in memory */
     int64_t gone;            /* triangles that have been handed out, and are no more */

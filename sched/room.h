@@ -5,7 +5,7 @@
  * pauses until all others have paused or ended, and goes on after the arrays have grown. Ranges are dealt out between
  * phases, by one thread and in canonical order: so the ids that a block uses do not depend on who runs when. What a
  * block leaves unused goes to the blocks of the next phase; what is unused at the end is filled with the last items of
- * the arrays (par_room_close), or marked for tri_number, which leaves it out (par_room_mark). */
+ * the arrays (par_room_close), or marked for par_number, which leaves it out (par_room_mark). */
 #ifndef SCHED_ROOM_H
 #define SCHED_ROOM_H
 
@@ -58,7 +58,7 @@ enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, s
 /* Moves what is unused to `spare`, and frees the room. Cannot fail. */
 void par_room_return(struct par_room *room, struct par_room *spare);
 
-/* Marks what `spare` lists as free in the shared arrays, as tri_number wants it; spare is as before. O(gaps). */
+/* Marks what `spare` lists as free in the shared arrays, as par_number wants it; spare is as before. O(gaps). */
 void par_room_mark(const struct par_room *spare, struct tri_mesh *shared);
 
 /* The same for one subsegment. */

@@ -14,7 +14,7 @@
 #include "sched/threads.h"
 #include "triangle/census.h"
 #include "triangle/estimate.h"
-#include "triangle/numbering.h"
+#include "sched/sweep/numbering.h"
 
 /* Cells hold one in CELLS of the final triangles, within limits: small ones keep many threads busy, large ones make
  * fewer seams. Coarse triangles a cell has after pre-refinement: enough for seams to be narrow, few enough for
@@ -205,14 +205,13 @@ static enum tri_status number_mesh(struct par_state *state, struct tri_error *er
     double began = tri_seconds();
     par_tell(state, PAR_NUMBERING);
     struct tri_executor executor = par_executor(&state->threads);
-    enum tri_status status = tri_number(state->mesh, state->n_kept, &executor, error);
+    enum tri_status status = par_number(state->mesh, &state->cells, state->n_kept, &executor, error);
     state->numbered = true;
     state->report->seconds_number += tri_seconds() - began;
     return status;
 }
 
-/* What blocks have left unused is gone afterwards, by numbering if that is now due. Triangles move, unless the mesh is
- * parked and handed out next. */
+/* What blocks have left unused is gone afterwards, by numbering if that is now due. Triangles move. */
 static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -220,7 +219,7 @@ static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, st
     if (numbering) {
         par_room_mark(&state->spare, state->mesh);
         state->report->seconds_merge += tri_seconds() - began;
-        status = state->park ? TRI_OK : number_mesh(state, error);
+        status = number_mesh(state, error);
         if (!status) {
             par_room_free(&state->spare);
             return status;
@@ -397,7 +396,7 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     struct par_report *report = state->report;
     enum tri_status status = top ? report_schedule(state, partition, error) : TRI_OK;
     state->quality = quality;
-    if (!status && top && state->options->sink) {
+    if (!status && top && !state->options->by_block) {
         par_partition_free(&state->cells);
         status = par_partition_copy(&state->cells, partition, error);
     }
@@ -530,19 +529,14 @@ static enum tri_status refine_by_schedule(struct par_state *state, const struct 
 }
 
 /* Numbers, and hands out, what has not gone yet. */
-static enum tri_status deliver(struct par_state *state, const struct tri_refine_options *quality,
-                               struct tri_error *error)
+static enum tri_status deliver(struct par_state *state, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     if (state->swept)
         return TRI_OK;
-    if (state->report->levels > 0 && !state->options->by_block && !state->numbered && !state->park)
+    if (state->report->levels > 0 && !state->options->by_block && !state->numbered)
         status = number_mesh(state, error);
-    if (status || !state->options->sink)
-        return status;
-    if (!state->cells.x)
-        status = par_partition_make(&state->cells, state->mesh, quality, state->mesh->n_triangles, HUGE_VAL, error);
-    return status ? status : par_hand_out(state, error);
+    return !status && state->options->sink ? par_hand_out(state, error) : status;
 }
 
 static void clean_up(struct par_state *state)
@@ -572,7 +566,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     status = sequential ? refine_rest(&state, quality, true, error) : refine_by_schedule(&state, quality, error);
     if (sequential)
         report->seconds_last += tri_seconds() - began;
-    status = status ? status : deliver(&state, quality, error);
+    status = status ? status : deliver(&state, error);
     status = par_park_status(state.park, status, error);
     clean_up(&state);
     report->seconds_total = tri_seconds() - began;

@@ -29,7 +29,7 @@ struct par_options {
     bool size_test_in_parallel; /* quality.unsuitable may be called by several threads at once; else, where there is a
                                    size test, the mesh is refined sequentially */
     bool by_block;           /* new vertices and triangles are numbered as blocks made them: quicker. Else what the
-                                schedule made is numbered by the mesh alone, along a curve (triangle/numbering.h): a
+                                schedule made is numbered by the mesh alone, along a curve (sched/sweep/numbering.h): a
                                 solver that goes through the triangles runs twice as fast then */
     const struct tri_sink *sink; /* takes the finished mesh, tile by tile (ptriangle/tiles.h); NULL: nobody */
     const struct tri_pslg *figure; /* the mesh's input: its points are handed out bit by bit as they came; NULL: as they
@@ -86,7 +86,7 @@ struct par_report {
     double seconds_prerefine, seconds_partition, seconds_room, seconds_merge, seconds_last, seconds_total;
     double seconds_find;          /* bad triangles, and the block of each; in equal shares */
     double seconds_deal;         /* dealing them to blocks */
-    double seconds_number;        /* tri_number, after all others; nearly all in equal shares */
+    double seconds_number;        /* par_number, after all others; nearly all in equal shares */
     double seconds_refine;        /* wall time of the phases' parallel parts */
     double phase_seconds[4];      /* refine, by phase, over all rounds */
     struct par_block_report *blocks; /* [n_blocks] in canonical order; owned by the report */

@@ -1,7 +1,8 @@
 /* However a mesh is scrambled, numbering it gives the same bytes: those of the same mesh. */
 #include "allocations.h"
 #include "support.h"
-#include "triangle/numbering.h"
+#include "sched/sweep/numbering.h"
+#include "tile_order.h"
 
 /* Regions, crossing segments, and attributes that tell where a vertex is; so fine that work comes in shares. */
 static struct tri_mesh refined(uint64_t seed, double max_area)
@@ -33,11 +34,11 @@ static int32_t *scatter(int32_t n, int32_t first, int32_t *places, struct suppor
     return to;
 }
 
-/* The same mesh under other numbers, with free ids between them. */
-static struct tri_mesh scrambled(const struct tri_mesh *from, struct support_random *random)
+/* The same mesh under other numbers, but for the first vertices, with free ids between them. */
+static struct tri_mesh scrambled(const struct tri_mesh *from, int32_t hubs, struct support_random *random)
 {
     struct tri_mesh to;
-    int32_t hubs = from->incidence.n_vertices, vertices, triangles, subs;
+    int32_t vertices, triangles, subs;
     int32_t *vertex = scatter(from->n_vertices - hubs, hubs, &vertices, random);
     int32_t *triangle = scatter(from->n_triangles, 0, &triangles, random);
     int32_t *sub = scatter(from->n_subs, 0, &subs, random);
@@ -51,7 +52,7 @@ static struct tri_mesh scrambled(const struct tri_mesh *from, struct support_ran
     to.n_vertices = hubs + vertices;
     to.n_triangles = triangles;
     to.n_subs = subs;
-    to.incidence.n_vertices = hubs;
+    to.incidence.n_vertices = from->incidence.n_vertices;
     to.n_input = from->n_input;
     to.n_parents = from->n_parents;
     memcpy(to.parents, from->parents, (size_t)from->n_parents * sizeof *to.parents);
@@ -101,23 +102,28 @@ static struct tri_mesh scrambled(const struct tri_mesh *from, struct support_ran
     return to;
 }
 
-/* What the header promises of the order. */
-static void assert_in_order(const struct tri_mesh *mesh)
+/* Blocks of a hundred triangles or so. */
+static struct par_partition partition_of(const struct tri_mesh *mesh)
 {
-    for (int32_t t = 0; t < mesh->n_triangles; t++) {
-        const int32_t *v = mesh->tri[t].v, *before = mesh->tri[t - (t > 0)].v;
-        assert_true(v[0] > v[1] && v[0] > v[2]);
-        assert_true(t == 0 || v[0] > before[0] || (v[0] == before[0] && v[1] > before[1]));
-    }
-    for (int32_t s = 1; s < mesh->n_subs; s++) {
-        const struct tri_subsegment *a = &mesh->sub[s - 1], *b = &mesh->sub[s];
-        assert_true(b->parent > a->parent || (b->parent == a->parent && b->v[0] > a->v[0]));
-    }
-    double steps = 0; /* along a curve: neighbours are near */
-    int32_t n = mesh->n_vertices - mesh->incidence.n_vertices;
-    for (int32_t v = mesh->incidence.n_vertices + 1; v < mesh->n_vertices; v++)
-        steps += hypot(mesh->xy[v].x - mesh->xy[v - 1].x, mesh->xy[v].y - mesh->xy[v - 1].y);
-    assert_true(steps < 6 * sqrt(n) + 1);
+    struct par_partition partition;
+    const struct tri_refine_options none = tri_refine_defaults();
+    assert_int_equal(par_partition_make(&partition, mesh, &none, mesh->n_triangles, 50, NULL), TRI_OK);
+    return partition;
+}
+
+/* Behind the vertices that parents end at. */
+static enum tri_status number(struct tri_mesh *mesh, const struct par_partition *partition)
+{
+    return par_number(mesh, partition, mesh->incidence.n_vertices, NULL, NULL);
+}
+
+/* By blocks of its own. */
+static void number_and_judge(struct tri_mesh *mesh)
+{
+    struct par_partition partition = partition_of(mesh);
+    assert_int_equal(number(mesh, &partition), TRI_OK);
+    assert_in_order(mesh, &partition, mesh->incidence.n_vertices);
+    par_partition_free(&partition);
 }
 
 static void assert_is_whole(const struct tri_mesh *mesh)
@@ -140,18 +146,21 @@ static void test_any_scrambling_comes_out_the_same(void **state)
         struct support_random random = {seed};
         struct tri_mesh mesh = refined(seed, seed < 2 ? 1e-4 : 1e-3);
         struct support_places places = support_places(&mesh), after;
-        struct tri_mesh other = scrambled(&mesh, &random);
+        int32_t n_kept = seed % 3 ? mesh.incidence.n_vertices : mesh.n_vertices / 2;
+        struct tri_mesh other = scrambled(&mesh, n_kept, &random);
         assert_true(mesh.n_vertices > mesh.incidence.n_vertices && mesh.incidence.n_vertices > mesh.n_input);
-        int32_t n_kept = mesh.incidence.n_vertices;
-        assert_int_equal(tri_number(&mesh, n_kept, seed % 2 ? &support_backwards : NULL, NULL), TRI_OK);
-        assert_int_equal(tri_number(&other, n_kept, seed % 2 ? NULL : &support_backwards, NULL), TRI_OK);
+        struct par_partition partition = partition_of(&mesh);
+        assert_true(par_blocks(&partition) > 25);
+        assert_int_equal(par_number(&mesh, &partition, n_kept, seed % 2 ? &support_backwards : NULL, NULL), TRI_OK);
+        assert_int_equal(par_number(&other, &partition, n_kept, seed % 2 ? NULL : &support_backwards, NULL), TRI_OK);
         support_assert_same_bytes(&mesh, &other);
-        assert_in_order(&mesh);
+        assert_in_order(&mesh, &partition, n_kept);
         assert_is_whole(&mesh);
         after = support_places(&mesh);
         assert_true(support_same_places(&places, &after));
-        assert_int_equal(tri_number(&mesh, n_kept, NULL, NULL), TRI_OK); /* once more: nothing to do */
+        assert_int_equal(par_number(&mesh, &partition, n_kept, NULL, NULL), TRI_OK); /* once more: nothing to do */
         support_assert_same_bytes(&mesh, &other);
+        par_partition_free(&partition);
         support_places_free(&places);
         support_places_free(&after);
         tri_mesh_free(&mesh);
@@ -169,13 +178,11 @@ static void test_before_and_after_refinement(void **state)
     struct tri_refine_report report;
     options.refine = false;
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    assert_int_equal(tri_number(&mesh, mesh.incidence.n_vertices, NULL, NULL), TRI_OK);
+    number_and_judge(&mesh);
     assert_int_equal(mesh.n_vertices, 204);
-    assert_in_order(&mesh);
     for (int round = 0; round < 2; round++) {
         assert_int_equal(tri_refine(&mesh, &options.quality, &report, NULL), TRI_OK);
-        assert_int_equal(tri_number(&mesh, mesh.incidence.n_vertices, NULL, NULL), TRI_OK);
-        assert_in_order(&mesh);
+        number_and_judge(&mesh);
         support_judge(&mesh, &pslg, &check, false, NULL);
         options.quality.max_area = check.max_area = 3e-4;
     }
@@ -197,9 +204,8 @@ static void test_large_fan(void **state)
         support_add_segment(&pslg, i, (i + 1) % N);
     support_add_point(&pslg, 0, 0);
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    assert_int_equal(tri_number(&mesh, mesh.incidence.n_vertices, NULL, NULL), TRI_OK);
+    number_and_judge(&mesh);
     assert_int_equal(mesh.tri[mesh.n_triangles / 2].v[0], N);
-    assert_in_order(&mesh);
     assert_int_equal(tri_mesh_validate(&mesh, NULL), TRI_OK);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
@@ -209,14 +215,15 @@ static void test_without_memory_nothing_changes(void **state)
 {
     (void)state;
     struct support_random random = {9};
-    struct tri_mesh mesh = refined(9, 1e-3), other = scrambled(&mesh, &random);
-    assert_int_equal(tri_number(&mesh, mesh.incidence.n_vertices, NULL, NULL), TRI_OK);
+    struct tri_mesh mesh = refined(9, 1e-3), other = scrambled(&mesh, mesh.incidence.n_vertices, &random);
+    struct par_partition partition = partition_of(&mesh);
+    assert_int_equal(number(&mesh, &partition), TRI_OK);
     long long held = support_held;
     for (int call = 1;; call++) {
         struct support_places before = support_places(&other);
         support_calls = 0;
         support_fail_at = call;
-        enum tri_status status = tri_number(&other, other.incidence.n_vertices, NULL, NULL);
+        enum tri_status status = number(&other, &partition);
         support_fail_at = INT64_MAX;
         struct support_places after = support_places(&other);
         assert_true(support_same_places(&before, &after));
@@ -231,6 +238,7 @@ static void test_without_memory_nothing_changes(void **state)
         assert_int_equal(tri_mesh_validate(&other, NULL), TRI_OK);
     }
     support_assert_same_bytes(&mesh, &other);
+    par_partition_free(&partition);
     tri_mesh_free(&mesh);
     tri_mesh_free(&other);
 }

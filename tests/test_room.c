@@ -3,7 +3,7 @@
 #include "support.h"
 
 #include "sched/room.h"
-#include "triangle/numbering.h"
+#include "sched/sweep/numbering.h"
 
 enum { ROOMS = 6, NOBODY = -1, SPARE = -2, USED = -3 };
 
@@ -252,7 +252,11 @@ static void test_closing_keeps_the_mesh(void **state)
             par_room_close(&spare, &mesh, 1 + (int)(seed % 3));
         } else {
             /* leaves out what is marked */
-            assert_int_equal(tri_number(&mesh, mesh.incidence.n_vertices, NULL, NULL), TRI_OK);
+            struct par_partition tiles;
+            const struct tri_refine_options none = tri_refine_defaults();
+            assert_int_equal(par_partition_make(&tiles, &mesh, &none, mesh.n_triangles, 100, NULL), TRI_OK);
+            assert_int_equal(par_number(&mesh, &tiles, mesh.incidence.n_vertices, NULL, NULL), TRI_OK);
+            par_partition_free(&tiles);
             par_room_free(&spare);
         }
         assert_closed(&mesh, &places, vertices);

@@ -10,7 +10,8 @@
 #include <stdatomic.h>
 
 #include "sched/schedule.h"
-#include "triangle/numbering.h"
+#include "sched/sweep/numbering.h"
+#include "tile_order.h"
 #include "triangle/quality.h"
 
 
@@ -224,6 +225,9 @@ static void test_room_moves_ids_alone(void **state)
         struct par_report report, tight;
         struct tri_mesh mesh = refine(&start, &options, &report);
         struct support_places places = support_places(&mesh);
+        struct tri_mesh coarse = coarse_mesh(&start);
+        int32_t n_kept = coarse.n_vertices;
+        tri_mesh_free(&coarse);
         for (int k = 0; k < 3; k++) {
             options.tight_room = rooms[k];
             options.shuffle = (unsigned)k;
@@ -236,8 +240,8 @@ static void test_room_moves_ids_alone(void **state)
                 assert_true(same);
             if (same && !options.by_block)
                 support_assert_same_bytes(&mesh, &other);
-            if (same && options.by_block) {
-                assert_int_equal(tri_number(&other, other.incidence.n_vertices, NULL, NULL), TRI_OK);
+            if (same && options.by_block && trials[i].angle <= TRI_EASY_ANGLE) {
+                assert_int_equal(par_number(&other, &report.partition, n_kept, NULL, NULL), TRI_OK);
                 support_assert_same_bytes(&mesh, &other);
             }
             print_message("  %-28s room %d: levels %d, left over %lld, %s\n", trials[i].file, (int)rooms[k],
@@ -254,24 +258,43 @@ static void test_room_moves_ids_alone(void **state)
     }
 }
 
+struct bytes {
+    char *byte;
+    size_t n, capacity;
+};
+
 /* Everything that is handed out, one after the other. */
 struct stream {
-    char *byte;
-    size_t n_bytes, capacity;
+    struct bytes all, points, corners, ends;
     int64_t n, n_vertices, n_triangles, n_segments;
     int32_t n_attributes, n_begun, n_ended;
 };
 
-static void append(struct stream *s, const void *bytes, size_t n)
+static void append(struct bytes *b, const void *bytes, size_t n)
 {
-    if (s->n_bytes + n > s->capacity) {
-        s->capacity = 2 * (s->n_bytes + n);
-        s->byte = realloc(s->byte, s->capacity);
-        assert_non_null(s->byte);
+    if (b->n + n > b->capacity) {
+        b->capacity = 2 * (b->n + n);
+        b->byte = realloc(b->byte, b->capacity);
+        assert_non_null(b->byte);
     }
     if (n > 0)
-        memcpy(s->byte + s->n_bytes, bytes, n);
-    s->n_bytes += n;
+        memcpy(b->byte + b->n, bytes, n);
+    b->n += n;
+}
+
+static void free_stream(struct stream *s)
+{
+    free(s->all.byte);
+    free(s->points.byte);
+    free(s->corners.byte);
+    free(s->ends.byte);
+}
+
+static void assert_same_stream(const struct stream *a, const struct stream *b)
+{
+    assert_int_equal(a->n_triangles, b->n_triangles);
+    assert_int_equal(a->all.n, b->all.n);
+    assert_memory_equal(a->all.byte, b->all.byte, a->all.n);
 }
 
 static enum tri_status begin_stream(void *user, const struct tri_stream *told, struct tri_error *error)
@@ -279,9 +302,11 @@ static enum tri_status begin_stream(void *user, const struct tri_stream *told, s
     struct stream *s = user;
     (void)error;
     assert_true(s->n_ended == 0 && told->estimate > 0);
-    *s = (struct stream){.byte = s->byte, .capacity = s->capacity, .n_begun = s->n_begun + 1}; /* void so far */
+    free_stream(s); /* void so far */
+    *s = (struct stream){.n_begun = s->n_begun + 1};
+    append(&s->all, &told->estimate, sizeof told->estimate);
     s->n_attributes = told->n_attributes;
-    append(s, told->regions, (size_t)told->n_regions * (size_t)told->n_columns * sizeof *told->regions);
+    append(&s->all, told->regions, (size_t)told->n_regions * (size_t)told->n_columns * sizeof *told->regions);
     return TRI_OK;
 }
 
@@ -295,15 +320,18 @@ static enum tri_status take_tile(void *user, const struct tri_tile *tile, struct
     s->n_vertices += tile->n_vertices;
     s->n_triangles += tile->n_triangles;
     s->n_segments += tile->n_segments;
-    append(s, &tile->column, sizeof tile->column);
-    append(s, &tile->row, sizeof tile->row);
-    append(s, tile->points, (size_t)tile->n_vertices * sizeof *tile->points);
-    append(s, tile->point_markers, (size_t)tile->n_vertices * sizeof *tile->point_markers);
-    append(s, tile->attributes, (size_t)(tile->n_vertices * s->n_attributes) * sizeof *tile->attributes);
-    append(s, tile->corners, (size_t)tile->n_triangles * sizeof *tile->corners);
-    append(s, tile->regions, (size_t)tile->n_triangles * sizeof *tile->regions);
-    append(s, tile->ends, (size_t)tile->n_segments * sizeof *tile->ends);
-    append(s, tile->segment_markers, (size_t)tile->n_segments * sizeof *tile->segment_markers);
+    append(&s->all, &tile->column, sizeof tile->column);
+    append(&s->all, &tile->row, sizeof tile->row);
+    append(&s->all, tile->points, (size_t)tile->n_vertices * sizeof *tile->points);
+    append(&s->all, tile->point_markers, (size_t)tile->n_vertices * sizeof *tile->point_markers);
+    append(&s->all, tile->attributes, (size_t)(tile->n_vertices * s->n_attributes) * sizeof *tile->attributes);
+    append(&s->all, tile->corners, (size_t)tile->n_triangles * sizeof *tile->corners);
+    append(&s->all, tile->regions, (size_t)tile->n_triangles * sizeof *tile->regions);
+    append(&s->all, tile->ends, (size_t)tile->n_segments * sizeof *tile->ends);
+    append(&s->all, tile->segment_markers, (size_t)tile->n_segments * sizeof *tile->segment_markers);
+    append(&s->points, tile->points, (size_t)tile->n_vertices * sizeof *tile->points);
+    append(&s->corners, tile->corners, (size_t)tile->n_triangles * sizeof *tile->corners);
+    append(&s->ends, tile->ends, (size_t)tile->n_segments * sizeof *tile->ends);
     return TRI_OK;
 }
 
@@ -343,9 +371,14 @@ static void test_budgets_hand_out_the_same_tiles(void **state)
         struct par_report report, tight_report;
         struct tri_mesh mesh, tight;
         struct stream whole, parts;
+        mesh = coarse_mesh(&start);
+        int32_t n_kept = mesh.n_vertices;
+        tri_mesh_free(&mesh);
         assert_int_equal(refine_to(&whole, &start, &options, &report, &mesh), TRI_OK);
         assert_true(whole.n_triangles == mesh.n_triangles && whole.n_vertices == mesh.n_vertices &&
                     whole.n_segments == mesh.n_subs && report.way == PAR_IN_MEMORY);
+        if (start.options.quality.min_angle <= TRI_EASY_ANGLE)
+            assert_in_order(&mesh, &report.partition, n_kept);
         options.memory = 1000;
         options.scratch = ".";
         options.threads = 3;
@@ -355,15 +388,13 @@ static void test_budgets_hand_out_the_same_tiles(void **state)
         print_message("  %-28s %lld triangles, rounds %d, %s: %lld bytes on disk\n", trials[i].file,
                       (long long)whole.n_triangles, report.rounds, ways[tight_report.way],
                       (long long)tight_report.parked);
-        assert_int_equal(parts.n_triangles, whole.n_triangles);
-        assert_int_equal(parts.n_bytes, whole.n_bytes);
-        assert_memory_equal(parts.byte, whole.byte, whole.n_bytes);
+        assert_same_stream(&parts, &whole);
         assert_memory_equal(&tight_report.total, &report.total, sizeof report.total);
         assert_true((tight_report.way == PAR_PARKED) == (tight_report.parked > 0));
         n_ways[tight_report.way]++;
         begun_again += parts.n_begun > 1;
-        free(whole.byte);
-        free(parts.byte);
+        free_stream(&whole);
+        free_stream(&parts);
         par_report_free(&report);
         par_report_free(&tight_report);
         tri_mesh_free(&mesh);
@@ -371,6 +402,91 @@ static void test_budgets_hand_out_the_same_tiles(void **state)
         tri_pslg_free(&start.pslg);
     }
     assert_true(n_ways[PAR_SWEPT] >= 4 && n_ways[PAR_PARKED] >= 4 && begun_again >= 2);
+}
+
+/* A run from the figure on, in which the caller's points have other numbers while the mesh is made. */
+struct whole_run {
+    const struct start *start;
+    struct par_options options;
+    struct stream stream;
+    struct par_report report;
+};
+
+static enum tri_status refine_whole_run(void *user, struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                        struct tri_refine_report *total, struct tri_error *error)
+{
+    struct whole_run *run = user;
+    const struct tri_sink sink = {&run->stream, begin_stream, take_tile, end_stream};
+    run->options.sink = &sink;
+    run->options.figure = &run->start->pslg;
+    enum tri_status status = par_refine(mesh, quality, &run->options, &run->report, error);
+    *total = run->report.total;
+    if (run->options.sweep) { /* it is no mesh any more */
+        tri_mesh_free(mesh);
+        return tri_mesh_init(mesh, error) ? TRI_NO_MEMORY : status;
+    }
+    return status;
+}
+
+static struct tri_mesh generate_whole_run(struct whole_run *run)
+{
+    struct tri_options options = run->start->options;
+    options.use_segments = run->start->pslg.n_segments > 0;
+    options.refine = true;
+    options.refine_call = refine_whole_run;
+    options.refine_user = run;
+    return support_generate(&run->start->pslg, &options, NULL);
+}
+
+static void assert_stream_is(const struct stream *stream, const struct tri_mesh *mesh, const struct tri_pslg *pslg)
+{
+    const double(*points)[2] = (const double(*)[2])(void *)stream->points.byte;
+    const int64_t(*corners)[3] = (const int64_t(*)[3])(void *)stream->corners.byte;
+    const int64_t(*ends)[2] = (const int64_t(*)[2])(void *)stream->ends.byte;
+    assert_true(stream->n_vertices == mesh->n_vertices && stream->n_triangles == mesh->n_triangles &&
+                stream->n_segments == mesh->n_subs);
+    assert_memory_equal(points, pslg->points, (size_t)mesh->n_input * sizeof *points);
+    for (int32_t v = mesh->n_input; v < mesh->n_vertices; v++) {
+        double at[2];
+        tri_mesh_place(mesh, v, at);
+        assert_memory_equal(points[v], at, sizeof at);
+    }
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
+        for (int k = 0; k < 3; k++)
+            assert_int_equal(corners[t][k], mesh->tri[t].v[k]);
+    for (int32_t s = 0; s < mesh->n_subs; s++)
+        for (int k = 0; k < 2; k++)
+            assert_int_equal(ends[s][k], mesh->sub[s].v[k]);
+}
+
+/* In memory, in a stream and in a sweep, for one sequential call, too, and with blocks' own numbers. */
+static void test_a_stream_has_the_numbers_of_the_mesh(void **state)
+{
+    (void)state;
+    enum { SCHEDULE, SEQUENTIAL, BY_BLOCK, WAYS };
+    for (int i = 0; i < N_USUAL; i++)
+        for (int way = 0; way < WAYS; way++) {
+            struct start start = start_of(&trials[i]);
+            struct whole_run run = {.start = &start, .options = small_blocks(trials[i].block, 2)};
+            run.options.cell_triangles = way == SEQUENTIAL ? 1e9 : run.options.cell_triangles;
+            run.options.by_block = way == BY_BLOCK;
+            struct tri_mesh mesh = generate_whole_run(&run);
+            assert_true((run.report.levels == 0) == (way == SEQUENTIAL));
+            assert_stream_is(&run.stream, &mesh, &start.pslg);
+            if (way == SCHEDULE && run.report.rounds == 1) {
+                struct whole_run swept = {.start = &start, .options = small_blocks(trials[i].block, 3)};
+                swept.options.sweep = true;
+                struct tri_mesh nothing = generate_whole_run(&swept);
+                assert_same_stream(&swept.stream, &run.stream);
+                free_stream(&swept.stream);
+                par_report_free(&swept.report);
+                tri_mesh_free(&nothing);
+            }
+            free_stream(&run.stream);
+            par_report_free(&run.report);
+            tri_mesh_free(&mesh);
+            tri_pslg_free(&start.pslg);
+        }
 }
 
 /* Tiles that have been handed out give their memory to those that follow. */
@@ -386,7 +502,7 @@ static void test_a_sweep_holds_few_columns(void **state)
     assert_int_equal(refine_to(&stream, &start, &options, &report, &mesh), TRI_OK);
     print_message("  %lld triangles through %lld\n", (long long)stream.n_triangles, (long long)report.most_live);
     assert_true(report.way == PAR_SWEPT && report.most_live < stream.n_triangles / 2);
-    free(stream.byte);
+    free_stream(&stream);
     par_report_free(&report);
     tri_mesh_free(&mesh);
     tri_pslg_free(&start.pslg);
@@ -417,8 +533,10 @@ static void test_the_way_of_numbering_moves_ids_alone(void **state)
         }
         assert_true(report[0].levels > 0 && report[0].seconds_number > 0 && report[1].seconds_number == 0);
         assert_true(support_same_places(&places[0], &places[1]));
-        assert_int_equal(tri_number(&mesh[1], mesh[1].incidence.n_vertices, NULL, NULL), TRI_OK);
-        support_assert_same_bytes(&mesh[0], &mesh[1]);
+        if (angles[i] <= TRI_EASY_ANGLE) { /* else the report's partition is that of the first schedule */
+            assert_int_equal(par_number(&mesh[1], &report[1].partition, start.pslg.n_points, NULL, NULL), TRI_OK);
+            support_assert_same_bytes(&mesh[0], &mesh[1]);
+        }
         for (int k = 0; k < 2; k++) {
             support_places_free(&places[k]);
             par_report_free(&report[k]);
@@ -891,6 +1009,7 @@ int main(void)
         cmocka_unit_test(test_bounds_and_size_are_those_of_the_sequential_loop),
         cmocka_unit_test(test_any_number_of_threads_and_order_of_blocks_make_one_mesh),
         cmocka_unit_test(test_budgets_hand_out_the_same_tiles),
+        cmocka_unit_test(test_a_stream_has_the_numbers_of_the_mesh),
         cmocka_unit_test(test_a_sweep_holds_few_columns),
         cmocka_unit_test(test_room_moves_ids_alone),
         cmocka_unit_test(test_the_way_of_numbering_moves_ids_alone),

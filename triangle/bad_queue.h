@@ -23,7 +23,7 @@
 enum { TRI_BUCKETS = 512, TRI_WINDOW = 1 << 13, TRI_BATCH = 16 };
 
 struct tri_entry {
-    int32_t t;
+    tri_triangle_id t;
     uint32_t state;
 };
 

@@ -16,12 +16,7 @@ struct flood {
     uint8_t *dead;     /* [n_triangles] */
 };
 
-static bool is_wall(const struct tri_mesh *mesh, int32_t link, bool keep_hull)
-{
-    return link < 0 && (keep_hull || mesh->parents[mesh->sub[~link].parent].segment != TRI_NONE);
-}
-
-static void kill_from(struct flood *f, int32_t start)
+static void kill_from(struct flood *f, tri_triangle_id start)
 {
     int32_t n = 0;
     if (f->dead[start])
@@ -29,9 +24,9 @@ static void kill_from(struct flood *f, int32_t start)
     f->dead[start] = 1;
     f->stack[n++] = start;
     while (n > 0) {
-        int32_t t = f->stack[--n];
+        tri_triangle_id t = f->stack[--n];
         for (int e = 0; e < 3; e++) {
-            int32_t link = f->mesh->tri[t].n[e];
+            tri_link link = f->mesh->tri[t].n[e];
             if (link >= 0 && !f->dead[tri_of(link)]) {
                 f->dead[tri_of(link)] = 1;
                 f->stack[n++] = tri_of(link);
@@ -40,12 +35,18 @@ static void kill_from(struct flood *f, int32_t start)
     }
 }
 
+/* Is there a subsegment behind the link along which no segment of the input runs? That is an edge of the hull. */
+static bool is_bare_hull(const struct tri_mesh *mesh, tri_link link)
+{
+    return link < 0 && mesh->parents[mesh->sub[~link].parent].segment == TRI_NONE;
+}
+
 static void kill_concavities(struct flood *f)
 {
     const struct tri_mesh *mesh = f->mesh;
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
         for (int e = 0; e < 3; e++)
-            if (mesh->tri[t].n[e] < 0 && !is_wall(mesh, mesh->tri[t].n[e], false))
+            if (is_bare_hull(mesh, mesh->tri[t].n[e]))
                 kill_from(f, t);
 }
 
@@ -61,7 +62,7 @@ struct dive {
     int32_t n, n_next;
 };
 
-static void visit(struct dive *d, int32_t t)
+static void visit(struct dive *d, tri_triangle_id t)
 {
     if (d->state[t] == SEEN)
         return;
@@ -69,7 +70,7 @@ static void visit(struct dive *d, int32_t t)
     d->stack[d->n++] = t;
 }
 
-static void put_off(struct dive *d, int32_t t)
+static void put_off(struct dive *d, tri_triangle_id t)
 {
     if (d->state[t] != UNSEEN)
         return;
@@ -77,9 +78,9 @@ static void put_off(struct dive *d, int32_t t)
     d->next[d->n_next++] = t;
 }
 
-static void cross(struct dive *d, int32_t code)
+static void cross(struct dive *d, tri_halfedge code)
 {
-    int32_t link = d->mesh->tri[tri_of(code)].n[tri_edge(code)], other = tri_across(d->mesh, code);
+    int32_t link = *tri_link_at(d->mesh, code), other = tri_across(d->mesh, code);
     if (other == TRI_NONE)
         return;
     if (link < 0 && d->mesh->parents[d->mesh->sub[~link].parent].odd)
@@ -93,9 +94,9 @@ static void enter(struct dive *d, bool keep_hull)
 {
     const struct tri_mesh *mesh = d->mesh;
     for (int pass = 0; pass < 2; pass++)
-        for (int32_t t = 0; t < mesh->n_triangles; t++)
+        for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
             for (int e = 0; e < 3; e++) {
-                int32_t link = mesh->tri[t].n[e];
+                tri_link link = mesh->tri[t].n[e];
                 if (link >= 0 || tri_across(mesh, tri_code(t, e)) != TRI_NONE)
                     continue;
                 const struct tri_parent *parent = &mesh->parents[mesh->sub[~link].parent];
@@ -114,7 +115,7 @@ static void kill_depths(struct flood *f, struct dive *d, bool keep_hull)
     enter(d, keep_hull);
     for (uint8_t even = 1; d->n + d->n_next > 0; even ^= 1) {
         while (d->n > 0) {
-            int32_t t = d->stack[--d->n];
+            tri_triangle_id t = d->stack[--d->n];
             f->dead[t] |= even;
             for (int e = 0; e < 3; e++)
                 cross(d, tri_code(t, e));
@@ -173,7 +174,7 @@ static enum tri_status kill_holes(struct flood *f, const struct tri_pslg *pslg, 
 }
 
 /* Gives the region to what no region has reached yet. */
-static void spread(struct flood *f, int32_t start, int32_t region)
+static void spread(struct flood *f, tri_triangle_id start, tri_region_id region)
 {
     struct tri_triangle *tri = f->mesh->tri;
     int32_t n = 0;
@@ -181,9 +182,9 @@ static void spread(struct flood *f, int32_t start, int32_t region)
     f->stack[n++] = start;
     tri[start].region = region;
     while (n > 0) {
-        int32_t t = f->stack[--n];
+        tri_triangle_id t = f->stack[--n];
         for (int e = 0; e < 3; e++) {
-            int32_t link = tri[t].n[e];
+            tri_link link = tri[t].n[e];
             if (link >= 0 && tri[tri_of(link)].region == 0) {
                 tri[tri_of(link)].region = region;
                 f->stack[n++] = tri_of(link);
@@ -214,7 +215,7 @@ static enum tri_status spread_regions(struct flood *f, const struct tri_pslg *ps
 
 void tri_mark_vertices(struct tri_mesh *mesh)
 {
-    for (int32_t s = 0; s < mesh->n_subs; s++)
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2; k++)
             if (mesh->sub[s].marker && !mesh->vertex_markers[mesh->sub[s].v[k]])
                 mesh->vertex_markers[mesh->sub[s].v[k]] = mesh->sub[s].marker;
@@ -222,15 +223,14 @@ void tri_mark_vertices(struct tri_mesh *mesh)
 
 /* The centroid of a triangle that goes becomes the guard of each of its edges that stays as a part of the boundary: the
  * three parts of the triangle do not overlap, nor do triangles. */
-static void guard_boundary(const struct flood *f, int32_t t)
+static void guard_boundary(const struct flood *f, tri_triangle_id t)
 {
     const struct tri_mesh *mesh = f->mesh;
     const struct tri_triangle *at = &mesh->tri[t];
     struct tri_point a = mesh->xy[at->v[0]], b = mesh->xy[at->v[1]], c = mesh->xy[at->v[2]];
     struct tri_point centroid = {tri_round_coordinate((a.x + b.x + c.x) / 3),
                                  tri_round_coordinate((a.y + b.y + c.y) / 3)};
-    bool inside = tri_orient2d(a, b, centroid) > 0 && tri_orient2d(b, c, centroid) > 0 &&
-                  tri_orient2d(c, a, centroid) > 0;
+    bool inside = tri_is_inside(a, b, c, centroid);
     for (int e = 0; e < 3; e++)
         if (at->n[e] < 0)
             mesh->parents[mesh->sub[~at->n[e]].parent].guard = inside ? centroid : mesh->xy[at->v[tri_next[e]]];
@@ -239,10 +239,10 @@ static void guard_boundary(const struct flood *f, int32_t t)
 static void remove_dead(struct flood *f)
 {
     struct tri_mesh *mesh = f->mesh;
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
         if (f->dead[t])
             guard_boundary(f, t);
-    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++) {
         struct tri_triangle *at = &mesh->tri[t];
         if (!f->dead[t])
             continue;
@@ -256,46 +256,68 @@ static void remove_dead(struct flood *f)
     tri_mesh_compact(mesh);
 }
 
-/* Counting sort of the living subsegments by input segment; hull edges, which have none, come last. */
-static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, struct tri_error *error)
+/* --- what is left, in order */
+
+/* Subsegments and their parents on the way to their new places. */
+struct sorting {
+    int32_t *start; /* [n_segments + 2] where the next one of each input segment goes; last, those of none: the hull */
+    struct tri_subsegment *sub; /* [n_subs] */
+    struct tri_parent *parent;  /* [n_subs] */
+};
+
+static bool has_triangle(const struct tri_subsegment *s) { return s->side[0] != TRI_NONE || s->side[1] != TRI_NONE; }
+
+/* Counting sort of the subsegments that have a triangle by input segment; returns how many they are. */
+static int32_t sort_subs(const struct tri_mesh *mesh, struct sorting *to, int32_t n_segments)
 {
-    int32_t *start = calloc((size_t)n_segments + 2, sizeof *start), kept = 0;
-    struct tri_subsegment *sorted = malloc(((size_t)mesh->n_subs + 1) * sizeof *sorted);
-    struct tri_parent *parents = malloc(((size_t)mesh->n_subs + 1) * sizeof *parents);
-    int32_t *segment = malloc(((size_t)mesh->n_subs + 1) * sizeof *segment);
-    enum tri_status status = TRI_OK;
-    if (!start || !sorted || !parents || !segment) {
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d subsegments", (int)mesh->n_subs);
-        goto done;
-    }
-    for (int32_t s = 0; s < mesh->n_subs; s++) {
+    int32_t kept = 0;
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
         int32_t k = mesh->parents[mesh->sub[s].parent].segment;
-        segment[s] = k == TRI_NONE ? n_segments : k;
-        if (mesh->sub[s].side[0] != TRI_NONE || mesh->sub[s].side[1] != TRI_NONE)
-            start[segment[s] + 1]++, kept++;
+        assert(k == TRI_NONE || (k >= 0 && k < n_segments));
+        if (has_triangle(&mesh->sub[s]))
+            to->start[(k == TRI_NONE ? n_segments : k) + 1]++, kept++;
     }
     for (int32_t k = 0; k <= n_segments; k++)
-        start[k + 1] += start[k];
-    for (int32_t s = 0; s < mesh->n_subs; s++)
-        if (mesh->sub[s].side[0] != TRI_NONE || mesh->sub[s].side[1] != TRI_NONE) {
-            int32_t at = start[segment[s]]++;
-            sorted[at] = mesh->sub[s];
-            parents[at] = mesh->parents[mesh->sub[s].parent];
-        }
-    for (int32_t s = 0; s < kept; s++) {
-        mesh->sub[s] = sorted[s];
-        mesh->parents[s] = parents[s];
+        to->start[k + 1] += to->start[k];
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
+        const struct tri_parent *parent = &mesh->parents[mesh->sub[s].parent];
+        if (!has_triangle(&mesh->sub[s]))
+            continue;
+        int32_t at = to->start[parent->segment == TRI_NONE ? n_segments : parent->segment]++;
+        to->sub[at] = mesh->sub[s];
+        to->parent[at] = *parent;
+    }
+    assert(to->start[n_segments] == kept);
+    return kept;
+}
+
+static void adopt_subs(struct tri_mesh *mesh, const struct sorting *from, int32_t kept)
+{
+    for (tri_sub_id s = 0; s < kept; s++) {
+        mesh->sub[s] = from->sub[s];
         mesh->sub[s].parent = s;
+        mesh->parents[s] = from->parent[s];
         for (int side = 0; side < 2; side++)
-            if (sorted[s].side[side] != TRI_NONE)
-                mesh->tri[tri_of(sorted[s].side[side])].n[tri_edge(sorted[s].side[side])] = ~s;
+            if (mesh->sub[s].side[side] != TRI_NONE)
+                *tri_link_at(mesh, mesh->sub[s].side[side]) = ~s;
     }
     mesh->n_subs = mesh->n_parents = kept;
-done:
-    free(start);
-    free(sorted);
-    free(parents);
-    free(segment);
+}
+
+static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, struct tri_error *error)
+{
+    size_t n = (size_t)mesh->n_subs + 1;
+    struct sorting s = {calloc((size_t)n_segments + 2, sizeof *s.start), malloc(n * sizeof *s.sub),
+                        malloc(n * sizeof *s.parent)};
+    enum tri_status status = TRI_OK;
+    assert(mesh->n_subs <= mesh->n_parents);
+    if (s.start && s.sub && s.parent)
+        adopt_subs(mesh, &s, sort_subs(mesh, &s, n_segments));
+    else
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d subsegments", (int)mesh->n_subs);
+    free(s.start);
+    free(s.sub);
+    free(s.parent);
     return status;
 }
 
@@ -327,9 +349,9 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
 
 void tri_mark_boundary(struct tri_mesh *mesh)
 {
-    for (int32_t s = 0; s < mesh->n_subs; s++) {
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
         struct tri_subsegment *sub = &mesh->sub[s];
-        if (sub->side[0] != TRI_NONE && sub->side[1] != TRI_NONE)
+        if (!tri_is_boundary(sub))
             continue;
         if (sub->marker == 0)
             sub->marker = 1;

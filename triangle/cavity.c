@@ -40,17 +40,17 @@ static bool grow(struct tri_cavity *c)
     return true;
 }
 
-static bool owns(const struct tri_cavity *c, const struct tri_mesh *mesh, int32_t t)
+static bool owns(const struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t)
 {
-    const int32_t *v = mesh->tri[t].v;
+    const tri_vertex_id *v = mesh->tri[t].v;
     return !c->fence || (tri_fence_holds(c->fence, mesh->xy[v[0]]) && tri_fence_holds(c->fence, mesh->xy[v[1]]) &&
                          tri_fence_holds(c->fence, mesh->xy[v[2]]));
 }
 
 /* Is p in the circumdisk of a, b, c? The determinant has been worked out; where the filter leaves that open, which is
  * rare, it is decided exactly. The sum of products of the l is written so that what is known first is added first. */
-static inline bool in_circle(const struct tri_mesh *mesh, struct tri_point p, const int32_t v[3], double la, double lb,
-                             double lc, double det)
+static inline bool in_circle(const struct tri_mesh *mesh, struct tri_point p, const tri_vertex_id v[3], double la,
+                             double lb, double lc, double det)
 {
     if (fabs(det) > DOUBT * (la * lb + (la + lb) * lc))
         return det > 0;
@@ -60,7 +60,7 @@ static inline bool in_circle(const struct tri_mesh *mesh, struct tri_point p, co
 /* Goes around the cavity, depth first and left first, so that edges come out in order: each edge that waits starts
  * where the last edge before it has ended; the first at a. Each comes with the cross product of its ends; so of the
  * three products that a test needs one is known, and the other two are those of the edges behind. */
-static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t n_pending, int32_t a,
+static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t n_pending, tri_vertex_id a,
                                struct tri_relative ra)
 {
     const struct tri_triangle *tri = mesh->tri;
@@ -109,7 +109,7 @@ static bool begin(struct tri_cavity *c, struct tri_point p)
     return c->capacity > 0 || grow(c);
 }
 
-static bool add_start(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t t)
+static bool add_start(struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t)
 {
     if (c->n_tri == c->capacity && !grow(c))
         return false;
@@ -120,7 +120,8 @@ static bool add_start(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t
 
 /* Explores what lies in triangle t and behind n of its edges, in turn from the first on. Where p is not in the disk of
  * t, by rounding or since t is flatter than that, the fan would not be Delaunay. */
-static enum tri_search explore_from(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t t, int first, int n)
+static enum tri_search explore_from(struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t, int first,
+                                    int n)
 {
     if (!add_start(c, mesh, t))
         return TRI_SEARCH_NO_MEMORY;
@@ -143,7 +144,8 @@ static enum tri_search explore_from(struct tri_cavity *c, const struct tri_mesh 
     return explore(c, mesh, n, start->v[tri_next[first]], r[tri_next[first]]);
 }
 
-enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p, int32_t t)
+enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p,
+                                  tri_triangle_id t)
 {
     assert(tri_is_live(&mesh->tri[t]));
     if (!tri_is_in_range(p)) /* the circumcentre of a flat triangle: in the disk, perhaps, but in no figure */
@@ -189,7 +191,7 @@ static bool repeats_itself(const struct tri_cavity *c)
 }
 
 /* Rounding may put a split point beside a vertex, around which the search then comes back to where it has been. */
-static bool overlaps_itself(const struct tri_cavity *c, int32_t s)
+static bool overlaps_itself(const struct tri_cavity *c, tri_sub_id s)
 {
     enum { FEW = 64 };
     for (int32_t i = 0; i < c->n_wall; i++)
@@ -209,7 +211,7 @@ static bool overlaps_itself(const struct tri_cavity *c, int32_t s)
 }
 
 enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_mesh *mesh, struct tri_point p,
-                                        int32_t s, int32_t *n_left)
+                                        tri_sub_id s, int32_t *n_left)
 {
     const struct tri_subsegment *sub = &mesh->sub[s];
     *n_left = c->n_left_tri = 0;
@@ -219,7 +221,7 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
         int32_t first = c->n_edges;
         if (sub->side[side] == TRI_NONE)
             continue;
-        int32_t code = sub->side[side];
+        tri_halfedge code = sub->side[side];
         enum tri_search found = explore_from(c, mesh, tri_of(code), tri_next[tri_edge(code)], 2);
         if (found != TRI_SEARCH_FOUND)
             return found;
@@ -256,9 +258,9 @@ static bool claim(const struct tri_cavity *c, const struct tri_mesh *mesh)
 }
 #endif
 
-static bool is_inside(const struct tri_mesh *mesh, int32_t t, struct tri_point q)
+static bool is_inside(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)
 {
-    const int32_t *v = mesh->tri[t].v;
+    const tri_vertex_id *v = mesh->tri[t].v;
     struct tri_relative a = tri_relative(&mesh->xy[v[0]], q), b = tri_relative(&mesh->xy[v[1]], q);
     struct tri_relative c = tri_relative(&mesh->xy[v[2]], q);
     return tri_cross(a, b) >= 0 && tri_cross(b, c) >= 0 && tri_cross(c, a) >= 0;
@@ -283,12 +285,12 @@ static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int
 
 /* Makes the triangles of edges first .. end - 1. Each is linked with the next and the one before in the round of all
  * edges, so that nothing has to be asked; where a chain does not close, the caller puts that right. */
-static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v, int32_t first, int32_t end)
+static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, tri_vertex_id v, int32_t first, int32_t end)
 {
-    int32_t before = c->tri[first > 0 ? first - 1 : c->n_edges - 1];
+    tri_triangle_id before = c->tri[first > 0 ? first - 1 : c->n_edges - 1];
     for (int32_t i = first; i < end; i++) {
         struct tri_cavity_edge *edge = &c->edge[i];
-        int32_t triangle = c->tri[i];
+        tri_triangle_id triangle = c->tri[i];
         struct tri_triangle *t = &mesh->tri[triangle];
         edge->triangle = triangle;
         t->v[0] = v;
@@ -304,7 +306,7 @@ static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v, i
     }
 }
 
-void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v)
+void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, tri_vertex_id v)
 {
     assert(c->n_tri >= 1 && c->n_edges == c->n_tri + 2);
     assert(claim(c, mesh));
@@ -314,7 +316,8 @@ void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v)
     fill_chain(c, mesh, v, 0, c->n_edges);
 }
 
-int32_t tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, int32_t v, int32_t s, int32_t n_left)
+tri_sub_id tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, tri_vertex_id v, tri_sub_id s,
+                                 int32_t n_left)
 {
     const struct tri_subsegment old = mesh->sub[s];
     int32_t second = mesh->n_subs++, ends[2] = {0, n_left};

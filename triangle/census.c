@@ -17,7 +17,7 @@ double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_opti
     double triangles = 0;
     if (!(options->max_area > 0 || options->region_areas))
         return 0;
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
         if (tri_is_live(&mesh->tri[t]))
             triangles += tri_shape_of(mesh->xy, mesh->tri[t].v).area2 / tri_area2_bound(&c, mesh->tri[t].region);
     return triangles / MOST_OVER_BOUND;
@@ -35,7 +35,7 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_r
                     fmin(1e-6 * triangles, 1e9), TRI_MAX_TRIANGLES / 1000000);
 }
 
-static bool needs_work(const struct tri_criterion *c, int32_t triangle)
+static bool needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
 {
     const struct tri_triangle *t = &c->mesh->tri[triangle];
     if (!tri_is_live(t))
@@ -53,13 +53,13 @@ static bool needs_work(const struct tri_criterion *c, int32_t triangle)
     return false;
 }
 
-int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t first,
-                      int32_t last, int32_t *found)
+int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id first,
+                      tri_triangle_id last, int32_t *found)
 {
     const struct tri_criterion c = tri_criterion_for(mesh, options);
     int32_t n = 0;
     assert(first >= 0 && last <= mesh->n_triangles);
-    for (int32_t triangle = first; triangle < last; triangle++)
+    for (tri_triangle_id triangle = first; triangle < last; triangle++)
         if (needs_work(&c, triangle))
             found[n++] = triangle;
     return n;
@@ -79,8 +79,9 @@ static bool is_beside_protected(const struct tri_criterion *c, const struct tri_
     return false;
 }
 
-static enum tri_excuse excuse_for(const struct tri_criterion *c, int32_t triangle, const struct tri_shape *shape,
-                                  enum tri_badness badness, const struct tri_refine_report *report)
+static enum tri_excuse excuse_for(const struct tri_criterion *c, tri_triangle_id triangle,
+                                  const struct tri_shape *shape, enum tri_badness badness,
+                                  const struct tri_refine_report *report)
 {
     const struct tri_triangle *t = &c->mesh->tri[triangle];
     if (tri_is_too_large(c, t, shape))
@@ -104,9 +105,9 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, int32_t triangl
 
 static enum tri_excuse excuse_for_circle(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                                          const struct tri_refine_report *report, const struct tri_subsegment *s,
-                                         int32_t code)
+                                         tri_halfedge code)
 {
-    int32_t apex = mesh->tri[tri_of(code)].v[tri_edge(code)];
+    tri_vertex_id apex = tri_apex(mesh, code);
     if (tri_is_protected(options, s))
         return TRI_EXCUSE_PROTECTED;
     if (report->hit_limit)
@@ -121,7 +122,7 @@ void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_refine_o
 {
     for (int k = 0; k < TRI_EXCUSES; k++)
         count[k] = 0;
-    for (int32_t s = 0; s < mesh->n_subs; s++) {
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
         const struct tri_subsegment *sub = &mesh->sub[s];
         for (int side = 0; side < 2; side++)
             if (sub->side[side] != TRI_NONE && tri_is_in_diametral_disk(mesh, sub, sub->side[side])) {
@@ -143,7 +144,7 @@ static void count_share(void *context, size_t share)
     struct counting *c = context;
     const struct tri_mesh *mesh = c->criterion.mesh;
     struct tri_range range = tri_share(share, mesh->n_triangles);
-    for (int32_t t = range.first; t < range.last; t++) {
+    for (tri_triangle_id t = range.first; t < range.last; t++) {
         if (!tri_is_live(&mesh->tri[t]))
             continue;
         struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);

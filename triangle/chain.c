@@ -34,41 +34,39 @@ static void list_ends(struct chains *c)
     const struct tri_mesh *mesh = c->mesh;
     for (size_t i = 0; i < 2 * (size_t)mesh->n_vertices; i++)
         c->at[i] = TRI_NONE;
-    for (int32_t s = 0; s < mesh->n_subs; s++)
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2; k++) {
             int32_t *at = &c->at[2 * (size_t)mesh->sub[s].v[k]];
             at[at[0] == TRI_NONE ? 0 : 1] = at[1] == TRI_NONE ? s : MANY;
         }
 }
 
-static int32_t other_end(const struct tri_mesh *mesh, int32_t s, int32_t v)
+static tri_vertex_id other_end(const struct tri_mesh *mesh, tri_sub_id s, tri_vertex_id v)
 {
     return mesh->sub[s].v[mesh->sub[s].v[0] == v];
 }
 
-static bool is_boundary(const struct tri_subsegment *s) { return s->side[0] == TRI_NONE || s->side[1] == TRI_NONE; }
-
 /* Does v lie between a and b on their line? */
-static bool is_between(const struct tri_mesh *mesh, int32_t a, int32_t b, int32_t v)
+static bool is_between(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, tri_vertex_id v)
 {
     struct tri_point p = mesh->xy[a], q = mesh->xy[b], at = mesh->xy[v];
     double dot = (p.x - at.x) * (q.x - at.x) + (p.y - at.y) * (q.y - at.y);
     return dot < 0 && tri_line_distance(p, q, at) <= ASTRAY * tri_resolution(at);
 }
 
-static bool is_joint(const struct chains *c, int32_t v)
+static bool is_joint(const struct chains *c, tri_vertex_id v)
 {
     const int32_t *at = &c->at[2 * (size_t)v];
     const struct tri_mesh *mesh = c->mesh;
     if (at[0] < 0 || at[1] < 0)
         return false;
     const struct tri_subsegment *a = &mesh->sub[at[0]], *b = &mesh->sub[at[1]];
-    return a->marker == b->marker && is_boundary(a) == is_boundary(b) &&
+    return a->marker == b->marker && tri_is_boundary(a) == tri_is_boundary(b) &&
            is_between(mesh, other_end(mesh, at[0], v), other_end(mesh, at[1], v), v);
 }
 
 /* The subsegment behind joint v for who comes by s. */
-static int32_t beyond(const struct chains *c, int32_t v, int32_t s)
+static tri_sub_id beyond(const struct chains *c, tri_vertex_id v, tri_sub_id s)
 {
     const int32_t *at = &c->at[2 * (size_t)v];
     assert((at[0] == s) != (at[1] == s));
@@ -76,7 +74,7 @@ static int32_t beyond(const struct chains *c, int32_t v, int32_t s)
 }
 
 /* The chain that starts or ends with subsegment s at a vertex, and runs its way. */
-static struct chain follow(const struct chains *c, int32_t s, int32_t from)
+static struct chain follow(const struct chains *c, tri_sub_id s, tri_vertex_id from)
 {
     struct chain chain = {s, s, from, other_end(c->mesh, s, from)};
     while (is_joint(c, chain.to)) {
@@ -132,21 +130,21 @@ static void unite(const struct chains *c, const struct chain *chain)
 static void number_parents(struct tri_mesh *mesh, int32_t *number)
 {
     int32_t n = 0;
-    for (int32_t p = 0; p < mesh->n_parents; p++)
+    for (tri_parent_id p = 0; p < mesh->n_parents; p++)
         number[p] = TRI_NONE;
-    for (int32_t s = 0; s < mesh->n_subs; s++) {
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
         assert(mesh->sub[s].parent >= 0 && mesh->sub[s].parent < mesh->n_parents);
         number[mesh->sub[s].parent] = 0;
     }
-    for (int32_t p = 0; p < mesh->n_parents; p++)
+    for (tri_parent_id p = 0; p < mesh->n_parents; p++)
         if (number[p] != TRI_NONE) {
             mesh->parents[n] = mesh->parents[p];
             number[p] = n++;
         }
     mesh->n_parents = n;
-    for (int32_t s = 0; s < mesh->n_subs; s++)
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         mesh->sub[s].parent = number[mesh->sub[s].parent];
-    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++) {
         assert(mesh->on[v] < 0 || number[mesh->on[v]] != TRI_NONE);
         mesh->on[v] = mesh->on[v] >= 0 ? number[mesh->on[v]] : mesh->on[v];
     }
@@ -155,9 +153,9 @@ static void number_parents(struct tri_mesh *mesh, int32_t *number)
 static void unite_all(struct chains *c)
 {
     struct tri_mesh *mesh = c->mesh;
-    for (int32_t s = 0; s < mesh->n_subs; s++)
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2; k++) {
-            int32_t from = mesh->sub[s].v[k], next = mesh->sub[s].v[1 - k];
+            tri_vertex_id from = mesh->sub[s].v[k], next = mesh->sub[s].v[1 - k];
             if (is_joint(c, from) || !is_joint(c, next) || mesh->on[next] >= 0)
                 continue; /* in the middle of a chain, none, or done */
             struct chain chain = follow(c, s, from);

@@ -35,6 +35,7 @@
 #include "triangle/flip.h"
 #include "triangle/grow.h"
 #include "triangle/interpolate.h"
+#include "triangle/locate.h"
 #include "triangle/overlap.h"
 #include "triangle/predicates.h"
 #include "triangle/recover.h"
@@ -186,7 +187,7 @@ static bool mark_edge(struct layer *l, int32_t t, int e, struct tri_course cours
     mesh->sub[s].side[0] = tri_code(t, e);
     mesh->sub[s].side[1] = link;
     mesh->tri[t].n[e] = ~s;
-    mesh->tri[tri_of(link)].n[tri_edge(link)] = ~s;
+    *tri_link_at(mesh, link) = ~s;
     return set_course(l, s, course);
 }
 
@@ -264,36 +265,26 @@ static bool take_up(struct layer *l, int32_t s)
     struct tri_mesh *mesh = l->mesh;
     int32_t left = mesh->sub[s].side[0], right = mesh->sub[s].side[1];
     assert(left != TRI_NONE && right != TRI_NONE);
-    mesh->tri[tri_of(left)].n[tri_edge(left)] = right;
-    mesh->tri[tri_of(right)].n[tri_edge(right)] = left;
+    *tri_link_at(mesh, left) = right;
+    *tri_link_at(mesh, right) = left;
     int32_t last = --mesh->n_subs;
     mesh->sub[s] = mesh->sub[last];
     l->course[s] = l->course[last];
     for (int side = 0; s != last && side < 2; side++)
         if (mesh->sub[s].side[side] != TRI_NONE)
-            mesh->tri[tri_of(mesh->sub[s].side[side])].n[tri_edge(mesh->sub[s].side[side])] = ~s;
+            *tri_link_at(mesh, mesh->sub[s].side[side]) = ~s;
     return tri_flip_touch(&l->flips, tri_of(left)) && tri_flip_touch(&l->flips, tri_of(right)) &&
            tri_flip_legalise(&l->flips);
 }
 
-/* The triangle that holds q (TRI_NONE outside the hull), by a walk from triangle t. In a constrained triangulation a
- * walk may go in circles; the edge it tries first turns with the number of steps. */
-static int32_t locate(const struct tri_mesh *mesh, int32_t t, struct tri_point q)
+/* The triangle that holds q (TRI_NONE outside the hull, which is convex), by a walk from triangle t. */
+static tri_triangle_id locate(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)
 {
-    for (int64_t steps = 0; steps < 3 * (int64_t)mesh->n_triangles; steps++) {
-        const struct tri_triangle *at = &mesh->tri[t];
-        int k = 0, e = 0;
-        for (; k < 3; k++) {
-            e = (int)((k + steps) % 3);
-            if (tri_orient2d(mesh->xy[at->v[tri_next[e]]], mesh->xy[at->v[tri_prev[e]]], q) < 0)
-                break;
-        }
-        if (k == 3)
-            return t;
-        int32_t beyond = tri_across(mesh, tri_code(t, e));
-        if (beyond == TRI_NONE)
-            return TRI_NONE; /* the hull is convex: whoever leaves it does not come back */
-        t = tri_of(beyond);
+    for (int64_t step = 0; step < 3 * (int64_t)mesh->n_triangles; step++) {
+        tri_triangle_id next = tri_step_towards(mesh, t, step, q);
+        if (next == t || next == TRI_NONE)
+            return next;
+        t = next;
     }
     return TRI_NONE;
 }
@@ -308,11 +299,6 @@ static int32_t sub_under(const struct tri_mesh *mesh, int32_t t, struct tri_poin
     return TRI_NONE;
 }
 
-static bool is_hull(const struct tri_mesh *mesh, int32_t s)
-{
-    return mesh->sub[s].side[0] == TRI_NONE || mesh->sub[s].side[1] == TRI_NONE;
-}
-
 /* The triangle with *p in it, off the hull; rounding may have put *p on or beyond that: then it moves to a neighbouring
  * place. TRI_NONE where there is none. */
 static int32_t find_place(const struct layer *l, int32_t near, struct tri_point *p)
@@ -320,7 +306,7 @@ static int32_t find_place(const struct layer *l, int32_t near, struct tri_point 
     for (int i = 0; i < TRI_PLACES; i++) {
         struct tri_point q = tri_place_beside(*p, i);
         int32_t t = locate(l->mesh, l->corner[near], q), s = t == TRI_NONE ? TRI_NONE : sub_under(l->mesh, t, q);
-        if (t != TRI_NONE && (s == TRI_NONE || !is_hull(l->mesh, s))) {
+        if (t != TRI_NONE && (s == TRI_NONE || !tri_is_boundary(&l->mesh->sub[s]))) {
             *p = q;
             return t;
         }
@@ -649,20 +635,20 @@ static enum tri_status list_courses(struct layer *l)
     return TRI_OK;
 }
 
-/* Gives each subsegment its marker, and a parent of its own. */
-static enum tri_status settle(struct layer *l)
+/* Gives each subsegment its marker, and a parent of its own: as many as there are, since each came with one, or fewer,
+ * since some were taken up. */
+static void settle(struct layer *l)
 {
     struct tri_mesh *mesh = l->mesh;
+    assert(mesh->n_subs <= mesh->n_parents);
     mesh->n_parents = 0;
-    enum tri_status status = tri_mesh_reserve_subs(mesh, mesh->n_subs, l->error);
-    for (int32_t s = 0; !status && s < mesh->n_subs; s++) {
+    for (int32_t s = 0; s < mesh->n_subs; s++) {
         struct tri_subsegment *sub = &mesh->sub[s];
         sub->marker = marker_of(l, l->course[s]);
         sub->parent = mesh->n_parents++;
         mesh->parents[sub->parent] = (struct tri_parent){{sub->v[0], sub->v[1]}, l->course[s].first, l->course[s].odd,
                                                          {NAN, NAN}};
     }
-    return status;
 }
 
 enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_constrain_report *report,
@@ -673,7 +659,8 @@ enum tri_status tri_constrain(struct tri_mesh *mesh, const struct tri_pslg *pslg
     enum tri_status status = find_corners(&l);
     status = status ? status : list_courses(&l);
     status = status ? status : lay_all(&l);
-    status = status ? status : settle(&l);
+    if (!status)
+        settle(&l);
     free_layer(&l);
     return status;
 }

@@ -24,7 +24,7 @@ struct tri_criterion tri_criterion_for(const struct tri_mesh *mesh, const struct
     return c;
 }
 
-double tri_area2_in_region(const struct tri_criterion *c, int32_t region)
+double tri_area2_in_region(const struct tri_criterion *c, tri_region_id region)
 {
     double own = c->mesh->regions[region].max_area;
     return own > 0 ? tri_lesser(to_area2(c, own), c->area2) : c->area2;
@@ -58,12 +58,12 @@ bool tri_is_refused(const struct tri_refine_options *options, double unit, struc
 {
     return says_yes(options->unsuitable, options->unsuitable_user, unit, p, q, r, scale);
 }
-bool tri_is_unsuitable(const struct tri_criterion *criterion, const int32_t v[3])
+
+bool tri_is_unsuitable(const struct tri_criterion *criterion, const tri_vertex_id v[3])
 {
     const struct tri_refine_options *options = criterion->options;
     const struct tri_point *xy = criterion->mesh->xy;
-    return tri_is_refused(options, criterion->mesh->unit, xy[v[0]], xy[v[1]], xy[v[2]],
-                          tri_area_scale(options));
+    return tri_is_refused(options, criterion->mesh->unit, xy[v[0]], xy[v[1]], xy[v[2]], tri_area_scale(options));
 }
 
 bool tri_is_too_large(const struct tri_criterion *c, const struct tri_triangle *t, const struct tri_shape *shape)
@@ -71,7 +71,7 @@ bool tri_is_too_large(const struct tri_criterion *c, const struct tri_triangle *
     return shape->area2 > tri_area2_bound(c, t->region) || (c->options->unsuitable && tri_is_unsuitable(c, t->v));
 }
 
-static bool can_wait(const struct tri_criterion *c, const int32_t v[3])
+static bool can_wait(const struct tri_criterion *c, const tri_vertex_id v[3])
 {
     const struct tri_refine_options *options = c->options;
     const struct tri_point *xy = c->mesh->xy;
@@ -90,8 +90,7 @@ enum tri_badness tri_judge(const struct tri_criterion *c, const struct tri_trian
 
 bool tri_is_protected(const struct tri_refine_options *options, const struct tri_subsegment *s)
 {
-    bool boundary = s->side[0] == TRI_NONE || s->side[1] == TRI_NONE;
-    return options->protect >= 2 || (options->protect == 1 && boundary);
+    return options->protect >= 2 || (options->protect == 1 && tri_is_boundary(s));
 }
 
 bool tri_is_flat(const struct tri_mesh *mesh, const struct tri_shape *shape)

@@ -25,37 +25,43 @@ struct sorting {
     int vertex_bits;          /* of the largest number of a vertex, and one more */
 };
 
-static uint64_t item_of(int32_t key, int corner, int32_t id)
+static uint64_t item_of(int32_t key, int corner, tri_triangle_id id)
 {
     return (uint64_t)key << KEY_SHIFT | (uint64_t)corner << ID_BITS | (uint64_t)id;
 }
 
 static int32_t key_of(uint64_t item) { return (int32_t)(item >> KEY_SHIFT); }
 static int corner_of(uint64_t item) { return (int)(item >> ID_BITS & 3); }
-static int32_t id_of(uint64_t item) { return (int32_t)(item & ((UINT64_C(1) << ID_BITS) - 1)); }
+static tri_triangle_id id_of(uint64_t item) { return (int32_t)(item & ((UINT64_C(1) << ID_BITS) - 1)); }
 
 /* --- the hull */
 
 /* A ghost by the code of its corner at infinity; its hull edge, seen from inside, is start -> end. */
-static int32_t hull_start(const struct tri_triangle *tri, int32_t g) { return tri[tri_of(g)].v[tri_prev[tri_edge(g)]]; }
-static int32_t hull_end(const struct tri_triangle *tri, int32_t g) { return tri[tri_of(g)].v[tri_next[tri_edge(g)]]; }
+static tri_vertex_id hull_start(const struct tri_triangle *tri, tri_halfedge g)
+{
+    return tri[tri_of(g)].v[tri_prev[tri_edge(g)]];
+}
+static tri_vertex_id hull_end(const struct tri_triangle *tri, tri_halfedge g)
+{
+    return tri[tri_of(g)].v[tri_next[tri_edge(g)]];
+}
 
 /* The ghost across the edge from the end to infinity. */
-static int32_t next_ghost(const struct tri_triangle *tri, int32_t g)
+static tri_halfedge next_ghost(const struct tri_triangle *tri, tri_halfedge g)
 {
-    int32_t link = tri[tri_of(g)].n[tri_prev[tri_edge(g)]];
+    tri_link link = tri[tri_of(g)].n[tri_prev[tri_edge(g)]];
     return tri_code(tri_of(link), tri_prev[tri_edge(link)]);
 }
 
-static int32_t any_ghost(const struct tri_triangle *tri)
+static tri_halfedge any_ghost(const struct tri_triangle *tri)
 {
-    int32_t t = 0;
+    tri_triangle_id t = 0;
     while (tri[t].v[0] == TRI_NONE || tri_ghost_corner(&tri[t]) < 0)
         t++;
     return tri_code(t, tri_ghost_corner(&tri[t]));
 }
 
-static int32_t lowest_ghost(const struct tri_triangle *tri, int32_t *count)
+static tri_halfedge lowest_ghost(const struct tri_triangle *tri, int32_t *count)
 {
     int32_t end = any_ghost(tri), g = end, lowest = end;
     *count = 0;
@@ -74,7 +80,7 @@ static enum tri_status take_hull(struct tri_mesh *mesh, struct tri_triangle *tri
     enum tri_status status = tri_mesh_reserve_subs(mesh, count, error);
     for (int32_t i = 0; !status && i < count; i++) {
         int32_t inner = tri[tri_of(g)].n[tri_edge(g)], next = next_ghost(tri, g);
-        int32_t s = tri_mesh_add_sub(mesh, hull_start(tri, g), hull_end(tri, g), 0, TRI_NONE);
+        tri_sub_id s = tri_mesh_add_sub(mesh, hull_start(tri, g), hull_end(tri, g), 0, TRI_NONE);
         mesh->sub[s].side[0] = inner;
         tri[tri_of(inner)].n[tri_edge(inner)] = ~s;
         tri[tri_of(g)].v[0] = TRI_NONE;
@@ -88,7 +94,7 @@ static enum tri_status take_hull(struct tri_mesh *mesh, struct tri_triangle *tri
 /* The corner that is the lower end of the shortest edge, of several the lowest. Lengths are the same whatever corner
  * comes first, since differences are rounded alike in both directions. Without branches: they would be as good as
  * random. */
-static int first_corner(const struct tri_point *xy, const int32_t v[3])
+static int first_corner(const struct tri_point *xy, const tri_vertex_id v[3])
 {
     double length2[3];
     int low[3], best = 0;
@@ -109,8 +115,8 @@ static void list_share(void *context, size_t share)
 {
     const struct sorting *s = context;
     struct tri_range range = tri_share(share, s->n_triangles);
-    for (int32_t t = range.first; t < range.last; t++) {
-        const int32_t *v = s->tri[t].v;
+    for (tri_triangle_id t = range.first; t < range.last; t++) {
+        const tri_vertex_id *v = s->tri[t].v;
         if (v[0] == TRI_NONE) {
             s->item[t] = item_of(s->mesh->n_vertices, 0, t);
             continue;
@@ -182,7 +188,7 @@ static void find_order(struct sorting *s, const struct tri_executor *executor)
 
 /* --- all move */
 
-static int32_t new_code(const struct sorting *s, int32_t code)
+static tri_halfedge new_code(const struct sorting *s, tri_halfedge code)
 {
     int32_t to = s->to[tri_of(code)];
     int e = tri_edge(code) - tri_edge(to);
@@ -193,7 +199,7 @@ static void move_share(void *context, size_t share)
 {
     const struct sorting *s = context;
     struct tri_range range = tri_share(share, s->n_triangles);
-    for (int32_t t = range.first; t < range.last; t++) {
+    for (tri_triangle_id t = range.first; t < range.last; t++) {
         const struct tri_triangle *from = &s->tri[t];
         if (!tri_is_live(from))
             continue;

@@ -35,10 +35,10 @@
 #include "triangle/predicates.h"
 #include "triangle/small_angle.h"
 
-bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, int32_t code)
+bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code)
 {
     assert(code >= 0 && tri_edge(code) < 3);
-    struct tri_point apex = mesh->xy[mesh->tri[tri_of(code)].v[tri_edge(code)]];
+    struct tri_point apex = mesh->xy[tri_apex(mesh, code)];
     return tri_dot(mesh->xy[s->v[0]], mesh->xy[s->v[1]], apex) < 0;
 }
 
@@ -50,10 +50,10 @@ enum { NARROW = 8, MOST_PARTS = 64 }; /* see the rule; most parts that rounding 
 static double distance(struct tri_point a, struct tri_point b) { return sqrt(tri_distance2(a, b)); }
 
 /* Where on the subsegment from a to b is the point level with v? */
-static double level_with(const struct tri_mesh *mesh, const struct tri_subsegment *s, int32_t v)
+static double level_with(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v)
 {
     struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], at = mesh->xy[v];
-    int32_t end = tri_common_end(mesh, s->parent, v);
+    tri_vertex_id end = tri_common_end(mesh, s->parent, v);
     if (end != TRI_NONE) {
         struct tri_point o = mesh->xy[end];
         double at_a = distance(o, a), at_b = distance(o, b);
@@ -64,7 +64,7 @@ static double level_with(const struct tri_mesh *mesh, const struct tri_subsegmen
 }
 
 /* Is the subsegment to be split for the sake of vertex v in its circle, and where? */
-static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegment *s, int32_t v, double *fraction)
+static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v, double *fraction)
 {
     struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], at = mesh->xy[v];
     double x = b.x - a.x, y = b.y - a.y, l = x * x + y * y, cross = x * (at.y - a.y) - y * (at.x - a.x);
@@ -83,9 +83,9 @@ static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegmen
 bool tri_is_encroached(const struct tri_mesh *mesh, const struct tri_subsegment *s, double *fraction)
 {
     for (int side = 0; side < 2; side++) {
-        int32_t code = s->side[side];
+        tri_halfedge code = s->side[side];
         if (code != TRI_NONE && tri_is_in_diametral_disk(mesh, s, code) &&
-            is_split_for(mesh, s, mesh->tri[tri_of(code)].v[tri_edge(code)], fraction)) {
+            is_split_for(mesh, s, tri_apex(mesh, code), fraction)) {
             assert(*fraction > 0 && *fraction < 1);
             return true;
         }

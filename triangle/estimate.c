@@ -30,7 +30,7 @@ struct estimator {
 };
 
 /* Triangles that the bounds ask for on one unit of area in this region; 0 without bound. */
-static double density(const struct estimator *e, int32_t region)
+static double density(const struct estimator *e, tri_region_id region)
 {
     return 2 / (MEAN_OVER_BOUND * tri_area2_bound(&e->criterion, region));
 }
@@ -84,7 +84,7 @@ static double size_work(const struct estimator *e, const struct corners *t, int 
 }
 
 /* Triangles that areas and size test ask for in a piece of a triangle of this region. */
-static double work_inside(const struct estimator *e, int32_t region, const struct corners *t)
+static double work_inside(const struct estimator *e, tri_region_id region, const struct corners *t)
 {
     double work = area_of(t) * density(e, region);
     if (e->options->unsuitable)
@@ -92,13 +92,13 @@ static double work_inside(const struct estimator *e, int32_t region, const struc
     return work < MOST_WORK ? work : MOST_WORK;
 }
 
-static struct corners corners_of(const struct tri_mesh *mesh, int32_t t)
+static struct corners corners_of(const struct tri_mesh *mesh, tri_triangle_id t)
 {
-    const int32_t *v = mesh->tri[t].v;
+    const tri_vertex_id *v = mesh->tri[t].v;
     return (struct corners){mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]};
 }
 
-static double area_work(const struct estimator *e, int32_t t)
+static double area_work(const struct estimator *e, tri_triangle_id t)
 {
     struct corners corners = corners_of(e->mesh, t);
     return tri_has_sizes(e->options) ? work_inside(e, e->mesh->tri[t].region, &corners) : 0;
@@ -118,7 +118,7 @@ static double rough_log2(double x)
  * hopeless triangle stays one.
  * Fitted to 14 coasts, parts and point sets at 20 to 34 degrees: 0.8 to 1.25 times what comes out, with few
  * exceptions (docs/performance.md). */
-static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
+static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id t)
 {
     struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
     double longest2 = fmax(shape.l[0], fmax(shape.l[1], shape.l[2]));
@@ -134,7 +134,7 @@ static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_op
 /* A bad triangle becomes more than triangles do on average. */
 static const double BAD = 1.25;
 
-double tri_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, int32_t t)
+double tri_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id t)
 {
     const struct estimator here = {mesh, options, HUGE_VAL, tri_criterion_of_areas(mesh, options)};
     return tri_is_live(&mesh->tri[t]) ? area_work(&here, t) + BAD * angle_work(mesh, options, t) : 0;
@@ -148,7 +148,7 @@ static struct estimator estimator_for(const struct tri_mesh *mesh, const struct 
     enum { PIECES = 1 << 14 }; /* of the whole mesh */
     struct estimator e = {mesh, options, HUGE_VAL, tri_criterion_of_areas(mesh, options)};
     double all = 0;
-    for (int32_t t = 0; options->unsuitable && t < mesh->n_triangles; t++)
+    for (tri_triangle_id t = 0; options->unsuitable && t < mesh->n_triangles; t++)
         if (tri_is_live(&mesh->tri[t])) {
             struct corners corners = corners_of(mesh, t);
             all += area_of(&corners);
@@ -162,7 +162,7 @@ double tri_sure_work(const struct tri_mesh *mesh, const struct tri_refine_option
 {
     const struct estimator e = estimator_for(mesh, options);
     double sum = mesh->n_triangles;
-    for (int32_t t = 0; tri_has_sizes(options) && t < mesh->n_triangles; t++)
+    for (tri_triangle_id t = 0; tri_has_sizes(options) && t < mesh->n_triangles; t++)
         if (tri_is_live(&mesh->tri[t]))
             sum += area_work(&e, t);
     return sum;
@@ -172,7 +172,7 @@ double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options
 {
     int32_t step = survey_step(mesh);
     double sum = tri_sure_work(mesh, options) - mesh->n_triangles;
-    for (int32_t t = 0; t < mesh->n_triangles; t += step)
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t += step)
         if (tri_is_live(&mesh->tri[t]))
             sum += step * angle_work(mesh, options, t);
     return sum;
@@ -185,7 +185,7 @@ struct receiver {
 };
 
 /* Samples a triangle's work, cut into four as long as a piece holds more than `grain`; depth bounds the recursion. */
-static bool sample_triangle(const struct receiver *to, const struct estimator *e, int32_t region,
+static bool sample_triangle(const struct receiver *to, const struct estimator *e, tri_region_id region,
                             const struct corners *t, double work, double grain, int depth)
 {
     if (work <= grain || depth == 0) {
@@ -208,8 +208,8 @@ static bool sample_angles(const struct receiver *to, const struct tri_mesh *mesh
 {
     int32_t step = survey_step(mesh);
     double waiting = 0;
-    for (int32_t t = 0; t < mesh->n_triangles; t += step) {
-        const int32_t *v = mesh->tri[t].v;
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t += step) {
+        const tri_vertex_id *v = mesh->tri[t].v;
         if (!tri_is_live(&mesh->tri[t]))
             continue;
         waiting += step * angle_work(mesh, options, t);
@@ -228,7 +228,7 @@ static bool sample_areas(const struct receiver *to, const struct tri_mesh *mesh,
 {
     const struct estimator e = estimator_for(mesh, options);
     double waiting = 0;
-    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++) {
         double work = tri_is_live(&mesh->tri[t]) ? area_work(&e, t) : 0;
         waiting += work < grain ? work : 0;
         if (work < grain && waiting < grain)

@@ -17,7 +17,7 @@ static bool make_room(struct tri_flips *f)
     return tri_grow(&f->touched, &f->capacity, f->n_touched + 3, sizeof *f->touched);
 }
 
-bool tri_flip_touch(struct tri_flips *f, int32_t t)
+bool tri_flip_touch(struct tri_flips *f, tri_triangle_id t)
 {
     if (!make_room(f))
         return false;
@@ -28,11 +28,11 @@ bool tri_flip_touch(struct tri_flips *f, int32_t t)
 
 /* Flips edge e of t, whose quadrilateral is strictly convex. Near apex n, right r, far apex o, left s: t becomes (n, r,
  * o), the neighbour (n, o, s). Returns the neighbour. */
-static int32_t flip(struct tri_flips *f, int32_t t, int e)
+static tri_triangle_id flip(struct tri_flips *f, tri_triangle_id t, int e)
 {
     struct tri_mesh *mesh = f->mesh;
     struct tri_triangle *near = &mesh->tri[t];
-    int32_t u = tri_of(near->n[e]);
+    tri_triangle_id u = tri_of(near->n[e]);
     int g = tri_edge(near->n[e]);
     struct tri_triangle *far = &mesh->tri[u];
     assert(near->n[e] >= 0 && far->n[g] == tri_code(t, e));
@@ -53,22 +53,22 @@ static int32_t flip(struct tri_flips *f, int32_t t, int e)
     return u;
 }
 
-static bool is_convex(const struct tri_mesh *mesh, int32_t t, int e)
+static bool is_convex(const struct tri_mesh *mesh, tri_triangle_id t, int e)
 {
     const struct tri_triangle *near = &mesh->tri[t];
     struct tri_point n = mesh->xy[near->v[e]], r = mesh->xy[near->v[tri_next[e]]], s = mesh->xy[near->v[tri_prev[e]]];
-    struct tri_point o = mesh->xy[mesh->tri[tri_of(near->n[e])].v[tri_edge(near->n[e])]];
+    struct tri_point o = mesh->xy[tri_apex(mesh, near->n[e])];
     return tri_orient2d(n, r, o) > 0 && tri_orient2d(n, o, s) > 0;
 }
 
 /* Does the apex beyond edge e of t lie inside the circle of t? */
-static bool is_illegal(const struct tri_flips *f, int32_t t, int e)
+static bool is_illegal(const struct tri_flips *f, tri_triangle_id t, int e)
 {
     const struct tri_mesh *mesh = f->mesh;
-    const int32_t *v = mesh->tri[t].v;
-    int32_t link = mesh->tri[t].n[e];
+    const tri_vertex_id *v = mesh->tri[t].v;
+    tri_link link = mesh->tri[t].n[e];
     struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
-    struct tri_point apex = mesh->xy[mesh->tri[tri_of(link)].v[tri_edge(link)]];
+    struct tri_point apex = mesh->xy[tri_apex(mesh, link)];
     return f->ties_stay ? tri_incircle(a, b, c, apex) > 0 : tri_in_circle(a, b, c, apex);
 }
 
@@ -80,7 +80,7 @@ bool tri_flip_legalise(struct tri_flips *f)
         int e = tri_edge(code);
         if (mesh->tri[t].n[e] < 0 || !is_illegal(f, t, e) || !is_convex(mesh, t, e))
             continue;
-        int32_t u = flip(f, t, e);
+        tri_triangle_id u = flip(f, t, e);
         if (!tri_flip_touch(f, t) || !tri_flip_touch(f, u))
             return false;
     }
@@ -103,7 +103,7 @@ static void suspect_share(void *context, size_t share)
     const struct tri_mesh *mesh = s->flips->mesh;
     struct tri_range range = tri_share(share, mesh->n_triangles);
     uint32_t step = 0;
-    for (int32_t t = range.first; t < range.last && !tri_stop_is_due(mesh->stop, &step); t++)
+    for (tri_triangle_id t = range.first; t < range.last && !tri_stop_is_due(mesh->stop, &step); t++)
         for (int e = 0; e < 3; e++)
             if (mesh->tri[t].n[e] > tri_code(t, e) && is_illegal(s->flips, t, e)) {
                 s->suspect[range.first + s->n[share]++] = t;
@@ -112,7 +112,7 @@ static void suspect_share(void *context, size_t share)
 }
 
 /* Touches the edges that lead to triangles of higher number: so each edge is touched by one of its two. */
-static bool touch_upwards(struct tri_flips *f, int32_t t)
+static bool touch_upwards(struct tri_flips *f, tri_triangle_id t)
 {
     if (!make_room(f))
         return false;

@@ -17,16 +17,16 @@ enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, const struct tri_exe
 /* The same at one place: whoever changes triangles touches them, then makes them legal. */
 struct tri_flips {
     struct tri_mesh *mesh;
-    int32_t *corner;  /* NULL, or for each vertex a live triangle that has it as a corner, kept so; not owned */
-    bool ties_stay;   /* an edge is flipped only where that makes a difference; else ties are broken by coordinates */
-    int32_t *touched; /* stack of edge codes to test for the Delaunay property */
+    tri_triangle_id *corner; /* NULL, or for each vertex a live triangle that has it as a corner, kept so; not owned */
+    bool ties_stay;          /* of four points on one circle nothing is flipped; else coordinates break the tie */
+    tri_halfedge *touched;   /* stack of edges to test for the Delaunay property */
     int32_t n_touched, capacity;
 };
 
 void tri_flips_free(struct tri_flips *flips);
 
 /* The three edges of triangle t are to be tested. False: out of memory. */
-bool tri_flip_touch(struct tri_flips *flips, int32_t t);
+bool tri_flip_touch(struct tri_flips *flips, tri_triangle_id t);
 
 /* Lawson: flips what is not Delaunay until everything touched is. False: out of memory; the mesh is valid then. */
 bool tri_flip_legalise(struct tri_flips *flips);

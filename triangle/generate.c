@@ -24,7 +24,7 @@ static enum tri_status rename_segments(struct tri_pslg *renamed, const struct tr
     if (!renamed->segments)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)pslg->n_segments);
     for (size_t i = 0; i < n; i++) {
-        int32_t v = pslg->segments[i];
+        tri_vertex_id v = pslg->segments[i];
         renamed->segments[i] = v >= 0 && v < pslg->n_points ? rank[v] : TRI_NONE;
     }
     return TRI_OK;
@@ -62,7 +62,7 @@ static enum tri_status triangulate(struct tri_mesh *mesh, const struct tri_pslg 
     status = status ? status : tri_sort_points(mesh, &rank, options->executor, error);
     status = status ? status : tri_delaunay(mesh, options->executor, error);
     assert(status || tri_mesh_is_sound(mesh));
-    for (int32_t v = 0; !status && mesh->twin && v < mesh->n_input; v++)
+    for (tri_vertex_id v = 0; !status && mesh->twin && v < mesh->n_input; v++)
         report->duplicates += mesh->twin[v] != v;
     status = status ? status : rename_segments(&renamed, pslg, rank, error);
     free(rank);

@@ -21,9 +21,12 @@ struct source {
     int n_nodes;
 };
 
-static int32_t number_of(const struct source *s, int32_t v) { return s->used.number ? s->used.number[v] : v; }
-static int32_t vertex_of(const struct source *s, int64_t i) { return s->used.vertex ? s->used.vertex[i] : (int32_t)i; }
-static int32_t middle_of(const struct source *s, int64_t i) { return s->edges.codes[i - s->n_vertices]; }
+static int32_t number_of(const struct source *s, tri_vertex_id v) { return s->used.number ? s->used.number[v] : v; }
+static tri_vertex_id vertex_of(const struct source *s, int64_t i)
+{
+    return s->used.vertex ? s->used.vertex[i] : (int32_t)i;
+}
+static tri_halfedge middle_of(const struct source *s, int64_t i) { return s->edges.codes[i - s->n_vertices]; }
 
 /* --- items */
 
@@ -35,7 +38,7 @@ static void point(const void *user, int64_t i, struct tri_grid_point *point)
         *point = (struct tri_grid_point){{middle.at[0], middle.at[1]}, tri_edge_marker(s->mesh, middle_of(s, i))};
         return;
     }
-    int32_t v = vertex_of(s, i);
+    tri_vertex_id v = vertex_of(s, i);
     point->marker = s->mesh->vertex_markers[v];
     if (v < s->mesh->n_input)
         memcpy(point->at, &s->pslg->points[2 * (size_t)v], sizeof point->at);
@@ -141,8 +144,8 @@ struct tri_grid tri_grid_voronoi(const struct tri_grid *grid)
 static int64_t count_edges(const struct tri_mesh *mesh)
 {
     int64_t boundary = 0;
-    for (int32_t s = 0; s < mesh->n_subs; s++)
-        boundary += mesh->sub[s].side[0] == TRI_NONE || mesh->sub[s].side[1] == TRI_NONE;
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
+        boundary += tri_is_boundary(&mesh->sub[s]);
     return (3 * (int64_t)mesh->n_triangles + boundary) / 2;
 }
 

@@ -17,7 +17,7 @@ bool tri_turns_before(struct tri_point o, struct tri_point a, struct tri_point b
     return a_down != b_down ? b_down : tri_orient2d(o, a, b) > 0;
 }
 
-struct tri_point tri_far_end(const struct tri_mesh *mesh, int32_t parent, int32_t v)
+struct tri_point tri_far_end(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id v)
 {
     const int32_t *ends = mesh->parents[parent].v;
     return mesh->xy[ends[ends[0] == v]];
@@ -27,11 +27,11 @@ static bool is_input(int32_t on) { return on == TRI_VERTEX_INPUT || on == TRI_VE
 
 /* The subsegment that comes next counter-clockwise after subsegment s around its end k, inside the mesh; TRI_NONE where
  * the outside comes first. */
-static int32_t next_around(const struct tri_mesh *mesh, int32_t s, int k)
+static tri_sub_id next_around(const struct tri_mesh *mesh, tri_sub_id s, int k)
 {
-    int32_t code = mesh->sub[s].side[k];
+    tri_halfedge code = mesh->sub[s].side[k];
     while (code != TRI_NONE) { /* edge `code` starts at the vertex, counter-clockwise in its triangle */
-        int32_t link = mesh->tri[tri_of(code)].n[tri_prev[tri_edge(code)]];
+        tri_link link = mesh->tri[tri_of(code)].n[tri_prev[tri_edge(code)]];
         if (link < 0)
             return ~link;
         code = tri_code(tri_of(link), tri_edge(link));
@@ -41,10 +41,10 @@ static int32_t next_around(const struct tri_mesh *mesh, int32_t s, int k)
 
 static void find_acute(struct tri_mesh *mesh)
 {
-    for (int32_t s = 0; s < mesh->n_subs; s++)
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2; k++) {
-            int32_t v = mesh->sub[s].v[k];
-            int32_t other = is_input(mesh->on[v]) ? next_around(mesh, s, k) : TRI_NONE;
+            tri_vertex_id v = mesh->sub[s].v[k];
+            tri_sub_id other = is_input(mesh->on[v]) ? next_around(mesh, s, k) : TRI_NONE;
             if (other == TRI_NONE || other == s)
                 continue;
             struct tri_point o = mesh->xy[v], a = mesh->xy[mesh->sub[s].v[1 - k]];
@@ -58,7 +58,7 @@ static void find_acute(struct tri_mesh *mesh)
 
 struct hub {
     const struct tri_mesh *mesh;
-    int32_t vertex;
+    tri_vertex_id vertex;
 };
 
 static bool is_before(const void *context, int32_t a, int32_t b)
@@ -73,16 +73,16 @@ void tri_incidence_fill(struct tri_mesh *mesh)
     size_t n = (size_t)mesh->incidence.n_vertices;
     int32_t *fill = mesh->incidence.start + 1; /* shifted by one, so that filling leaves the starts in place */
     memset(mesh->incidence.start, 0, (n + 2) * sizeof *mesh->incidence.start);
-    for (int32_t p = 0; p < mesh->n_parents; p++)
+    for (tri_parent_id p = 0; p < mesh->n_parents; p++)
         for (int k = 0; k < 2; k++)
             fill[mesh->parents[p].v[k] + 1]++;
     for (size_t v = 0; v < n; v++)
         fill[v + 1] += fill[v];
-    for (int32_t p = 0; p < mesh->n_parents; p++)
+    for (tri_parent_id p = 0; p < mesh->n_parents; p++)
         for (int k = 0; k < 2; k++)
             mesh->incidence.parent[fill[mesh->parents[p].v[k]]++] = p;
     assert(mesh->incidence.start[n] == 2 * mesh->n_parents);
-    for (int32_t v = 0; v < mesh->incidence.n_vertices; v++) {
+    for (tri_vertex_id v = 0; v < mesh->incidence.n_vertices; v++) {
         struct hub hub = {mesh, v};
         int32_t first = mesh->incidence.start[v], count = mesh->incidence.start[v + 1] - first;
         if (count > TRI_MANY_PARENTS)
@@ -106,7 +106,7 @@ static enum tri_status list_parents(struct tri_mesh *mesh, struct tri_error *err
 static double shortest_edge2(const struct tri_mesh *mesh)
 {
     double size = 0;
-    for (int32_t v = 0; v < mesh->n_input; v++) {
+    for (tri_vertex_id v = 0; v < mesh->n_input; v++) {
         size = fabs(mesh->xy[v].x) > size ? fabs(mesh->xy[v].x) : size;
         size = fabs(mesh->xy[v].y) > size ? fabs(mesh->xy[v].y) : size;
     }

@@ -7,12 +7,12 @@
 #include "triangle/predicates.h"
 
 /* An edge of the cavity: the code of its triangle outside, and the corner at which it starts. */
-struct tri_cavity_edge {
+struct tri_inserter_edge {
     int32_t outer, a;
 };
 
-/* A way into the cavity that is still to go. */
-struct tri_detour {
+/* An edge behind which the search has not looked yet; it starts where the last edge ended. */
+struct tri_inserter_pending {
     int32_t link, end;
 };
 
@@ -20,7 +20,7 @@ void tri_inserter_free(struct tri_inserter *b)
 {
     free(b->cavity);
     free(b->edge);
-    free(b->detour);
+    free(b->pending);
 }
 
 static bool grow(struct tri_inserter *b)
@@ -29,17 +29,17 @@ static bool grow(struct tri_inserter *b)
     size_t n = (size_t)capacity + 4;
     int32_t *cavity = realloc(b->cavity, n * sizeof *cavity);
     b->cavity = cavity ? cavity : b->cavity;
-    struct tri_cavity_edge *edge = realloc(b->edge, n * sizeof *edge);
+    struct tri_inserter_edge *edge = realloc(b->edge, n * sizeof *edge);
     b->edge = edge ? edge : b->edge;
-    struct tri_detour *detour = realloc(b->detour, n * sizeof *detour);
-    b->detour = detour ? detour : b->detour;
-    if (!cavity || !edge || !detour)
+    struct tri_inserter_pending *pending = realloc(b->pending, n * sizeof *pending);
+    b->pending = pending ? pending : b->pending;
+    if (!cavity || !edge || !pending)
         return false;
     b->capacity = capacity;
     return true;
 }
 
-static inline bool holds(const struct tri_inserter *b, int32_t v)
+static inline bool holds(const struct tri_inserter *b, tri_vertex_id v)
 {
     return (uint32_t)(v - b->block.first) < (uint32_t)(b->block.last - b->block.first) || v == TRI_GHOST;
 }
@@ -51,7 +51,8 @@ bool tri_inserter_owns(const struct tri_inserter *b, const struct tri_triangle *
 
 /* Ghost e + 1 sees edge e the other way round; its edge from the hull edge's far end to infinity is shared with the
  * ghost of the edge that starts there. */
-void tri_insert_first(const struct tri_point *xy, struct tri_triangle *tri, int32_t triangle, const int32_t v[3])
+void tri_insert_first(const struct tri_point *xy, struct tri_triangle *tri, tri_triangle_id triangle,
+                      const tri_vertex_id v[3])
 {
     bool left = tri_orient2d(xy[v[0]], xy[v[1]], xy[v[2]]) > 0;
     const int32_t c[] = {v[left ? 0 : 1], v[left ? 1 : 0], v[2]};
@@ -90,9 +91,9 @@ static inline bool in_disk(const struct tri_inserter *b, const struct tri_triang
 /* A walk by visibility: the triangle contains q, or is a ghost beyond the hull edge that the walk leaves through. Exact
  * orientations: the walk cannot cycle in a Delaunay triangulation. Of a neighbour of what the block owns it is the
  * corner across the edge that tells whether the block owns it, too. */
-static inline int32_t locate(struct tri_inserter *b, struct tri_point q)
+static inline tri_triangle_id locate(struct tri_inserter *b, struct tri_point q)
 {
-    int32_t t = b->last;
+    tri_triangle_id t = b->last;
     int from = -1, ghost = tri_ghost_corner(&b->tri[t]);
     assert(tri_inserter_owns(b, &b->tri[t]));
     if (ghost >= 0)
@@ -117,12 +118,13 @@ static inline int32_t locate(struct tri_inserter *b, struct tri_point q)
     }
 }
 
-int32_t tri_inserter_locate(struct tri_inserter *b, struct tri_point q) { return locate(b, q); }
+tri_triangle_id tri_inserter_locate(struct tri_inserter *b, struct tri_point q) { return locate(b, q); }
 
 /* Adds what lies across one edge of the first triangle. */
-static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, int32_t link, int32_t a, int32_t end)
+static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, tri_link link, tri_vertex_id a,
+                                  tri_vertex_id end)
 {
-    int32_t n_detours = 0;
+    int32_t n_pending = 0;
     for (;;) {
         const struct tri_triangle *t = &b->tri[tri_of(link)];
         int e = tri_edge(link);
@@ -132,31 +134,31 @@ static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, in
             if (b->n_cavity == b->capacity && !grow(b))
                 return TRI_NO_ROOM_FOR_CAVITY;
             b->cavity[b->n_cavity++] = tri_of(link);
-            b->detour[n_detours++] = (struct tri_detour){t->n[tri_prev[e]], end};
+            b->pending[n_pending++] = (struct tri_inserter_pending){t->n[tri_prev[e]], end};
             link = t->n[tri_next[e]];
             end = t->v[e];
             continue;
         }
-        assert(b->n_edges < b->n_cavity + 2 && n_detours <= b->n_cavity);
-        b->edge[b->n_edges++] = (struct tri_cavity_edge){link, a};
-        if (n_detours == 0)
+        assert(b->n_edges < b->n_cavity + 2 && n_pending <= b->n_cavity);
+        b->edge[b->n_edges++] = (struct tri_inserter_edge){link, a};
+        if (n_pending == 0)
             return TRI_INSERTED;
         a = end;
-        link = b->detour[--n_detours].link;
-        end = b->detour[n_detours].end;
+        link = b->pending[--n_pending].link;
+        end = b->pending[n_pending].end;
     }
 }
 
 /* Replaces the cavity by the fan of v. */
-static void fill(struct tri_inserter *b, int32_t v, int32_t fresh)
+static void fill(struct tri_inserter *b, tri_vertex_id v, tri_triangle_id fresh)
 {
     int32_t before = TRI_NONE, first = TRI_NONE;
     assert(b->n_edges == b->n_cavity + 2); /* a disk without a vertex inside */
     for (int32_t i = 0; i < b->n_edges; i++) {
-        int32_t triangle = i < b->n_cavity ? b->cavity[i] : fresh++;
+        tri_triangle_id triangle = i < b->n_cavity ? b->cavity[i] : fresh++;
         int32_t outer = b->edge[i].outer, end = b->edge[i + 1 < b->n_edges ? i + 1 : 0].a;
         struct tri_triangle *t = &b->tri[triangle];
-        int32_t link = before == TRI_NONE ? TRI_NONE : tri_code(before, 1);
+        tri_link link = before == TRI_NONE ? TRI_NONE : tri_code(before, 1);
         *t = (struct tri_triangle){{v, b->edge[i].a, end}, {outer, TRI_NONE, link}, 0, 0};
         assert(tri_inserter_owns(b, t));
         b->tri[tri_of(outer)].n[tri_edge(outer)] = tri_code(triangle, 0);
@@ -171,10 +173,10 @@ static void fill(struct tri_inserter *b, int32_t v, int32_t fresh)
     b->last = first;
 }
 
-enum tri_insertion tri_insert(struct tri_inserter *b, int32_t v, int32_t triangle)
+enum tri_insertion tri_insert(struct tri_inserter *b, tri_vertex_id v, tri_triangle_id triangle)
 {
     struct tri_point q = b->xy[v];
-    int32_t t = locate(b, q);
+    tri_triangle_id t = locate(b, q);
     if (t == TRI_NONE)
         return TRI_NOT_OWNED;
     const struct tri_triangle start = b->tri[t];

@@ -23,25 +23,26 @@
 
 enum { TRI_GHOST = -2 };
 
-struct tri_cavity_edge;
-struct tri_detour;
+struct tri_inserter_edge;
+struct tri_inserter_pending;
 
 struct tri_inserter {
     const struct tri_point *xy;
     struct tri_triangle *tri;
     struct tri_range block;
-    int32_t last; /* a triangle that the block owns, near the last place that was looked at; TRI_NONE: none is known */
+    tri_triangle_id last; /* a triangle that the block owns, near the last place looked at; TRI_NONE: none is known */
     int32_t n_cavity, n_edges, capacity;
-    int32_t *cavity;
-    struct tri_cavity_edge *edge;
-    struct tri_detour *detour;
+    tri_triangle_id *cavity;              /* [n_cavity] triangles */
+    struct tri_inserter_edge *edge;       /* [n_edges] their boundary, counter-clockwise */
+    struct tri_inserter_pending *pending; /* stack of the search */
 };
 
 /* Frees what insertions have allocated. */
 void tri_inserter_free(struct tri_inserter *b);
 
 /* The first triangle, with its three ghosts, of three vertices that are not collinear, in four triangles. */
-void tri_insert_first(const struct tri_point *xy, struct tri_triangle *tri, int32_t triangle, const int32_t v[3]);
+void tri_insert_first(const struct tri_point *xy, struct tri_triangle *tri, tri_triangle_id triangle,
+                      const tri_vertex_id v[3]);
 
 /* Which corner is at infinity? -1: none. */
 static inline int tri_ghost_corner(const struct tri_triangle *t)
@@ -54,12 +55,12 @@ bool tri_inserter_owns(const struct tri_inserter *b, const struct tri_triangle *
 
 /* A triangle whose disk holds q, and which the block owns; TRI_NONE where the way there from `last` leaves what it
  * owns. Sets `last`. */
-int32_t tri_inserter_locate(struct tri_inserter *b, struct tri_point q);
+tri_triangle_id tri_inserter_locate(struct tri_inserter *b, struct tri_point q);
 
 enum tri_insertion { TRI_INSERTED, TRI_NOT_OWNED, TRI_NO_ROOM_FOR_CAVITY };
 
 /* Inserts vertex v, of the block and at a place where no vertex is; takes this triangle and the next. TRI_NOT_OWNED:
  * the block does not own the cavity, or did not find it; nothing has changed. */
-enum tri_insertion tri_insert(struct tri_inserter *b, int32_t v, int32_t triangle);
+enum tri_insertion tri_insert(struct tri_inserter *b, tri_vertex_id v, tri_triangle_id triangle);
 
 #endif

@@ -3,12 +3,13 @@
 
 #include <assert.h>
 
-static double *attributes_of(const struct tri_mesh *mesh, int32_t v)
+static double *attributes_of(const struct tri_mesh *mesh, tri_vertex_id v)
 {
     return mesh->attributes + (size_t)v * (size_t)mesh->n_attributes;
 }
 
-void tri_interpolate_edge(struct tri_mesh *mesh, int32_t a, int32_t b, double fraction, int32_t to_vertex)
+void tri_interpolate_edge(struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, double fraction,
+                          tri_vertex_id to_vertex)
 {
     assert(to_vertex < mesh->n_vertices && to_vertex != a && to_vertex != b);
     for (int32_t k = 0; k < mesh->n_attributes; k++) {
@@ -17,7 +18,7 @@ void tri_interpolate_edge(struct tri_mesh *mesh, int32_t a, int32_t b, double fr
     }
 }
 
-void tri_interpolate_triangle(struct tri_mesh *mesh, const int32_t corners[3], int32_t v)
+void tri_interpolate_triangle(struct tri_mesh *mesh, const tri_vertex_id corners[3], tri_vertex_id v)
 {
     if (mesh->n_attributes == 0)
         return;

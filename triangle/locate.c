@@ -22,25 +22,29 @@ struct walk {
     int64_t steps; /* that may still be made */
 };
 
-/* The triangle that holds q, TRI_NONE outside the hull, NOT_FOUND where the steps did not suffice. A visibility walk
- * over a constrained triangulation may cycle: the edge it tries first turns with the number of steps. */
-static int32_t walk_to(struct walk *w, struct tri_point q)
+tri_triangle_id tri_step_towards(const struct tri_mesh *mesh, tri_triangle_id t, int64_t step, struct tri_point q)
 {
-    const struct tri_mesh *mesh = w->mesh;
-    for (; w->steps > 0; w->steps--) {
-        const struct tri_triangle *t = &mesh->tri[w->at];
-        int k = 0, e = 0;
-        for (; k < 3; k++) {
-            e = (int)((k + w->steps) % 3);
-            if (tri_orient2d(mesh->xy[t->v[tri_next[e]]], mesh->xy[t->v[tri_prev[e]]], q) < 0)
-                break;
+    assert(step >= 0 && tri_is_live(&mesh->tri[t]));
+    const tri_vertex_id *v = mesh->tri[t].v;
+    for (int k = 0; k < 3; k++) {
+        int e = (int)((k + step) % 3);
+        if (tri_orient2d(mesh->xy[v[tri_next[e]]], mesh->xy[v[tri_prev[e]]], q) < 0) {
+            tri_halfedge beyond = tri_across(mesh, tri_code(t, e));
+            return beyond == TRI_NONE ? TRI_NONE : tri_of(beyond);
         }
-        if (k == 3)
-            return w->at;
-        int32_t beyond = tri_across(mesh, tri_code(w->at, e));
-        if (beyond == TRI_NONE)
-            return TRI_NONE; /* the hull is convex: whoever leaves it does not come back */
-        w->at = tri_of(beyond);
+    }
+    return t;
+}
+
+/* The triangle that holds q, TRI_NONE outside the hull (it is convex: whoever leaves it does not come back), NOT_FOUND
+ * where the steps did not suffice. */
+static tri_triangle_id walk_to(struct walk *w, struct tri_point q)
+{
+    for (; w->steps > 0; w->steps--) {
+        tri_triangle_id next = tri_step_towards(w->mesh, w->at, w->steps, q);
+        if (next == w->at || next == TRI_NONE)
+            return next;
+        w->at = next;
     }
     return NOT_FOUND;
 }
@@ -49,7 +53,7 @@ static int32_t walk_to(struct walk *w, struct tri_point q)
 
 struct event {
     struct tri_point at;
-    int32_t code; /* 2 * subsegment + end (0: left, 1: right), or ~number of a point */
+    tri_halfedge code; /* 2 * subsegment + end (0: left, 1: right), or ~number of a point */
 };
 
 struct sweep {
@@ -69,27 +73,27 @@ static int compare_events(const void *a, const void *b)
 }
 
 /* 0 or 1: which end of the subsegment is the left one? */
-static int left_end(const struct tri_mesh *mesh, int32_t s)
+static int left_end(const struct tri_mesh *mesh, tri_sub_id s)
 {
-    const int32_t *v = mesh->sub[s].v;
+    const tri_vertex_id *v = mesh->sub[s].v;
     return tri_compare_places(mesh->xy[v[0]], mesh->xy[v[1]]) > 0;
 }
 
-static struct tri_point end_of(const struct tri_mesh *mesh, int32_t s, int right)
+static struct tri_point end_of(const struct tri_mesh *mesh, tri_sub_id s, int right)
 {
     return mesh->xy[mesh->sub[s].v[left_end(mesh, s) ^ right]];
 }
 
 /* > 0: q lies above subsegment s, 0: on its line. */
-static double height_over(const struct tri_mesh *mesh, int32_t s, struct tri_point q)
+static double height_over(const struct tri_mesh *mesh, tri_sub_id s, struct tri_point q)
 {
     return tri_orient2d(end_of(mesh, s, 0), end_of(mesh, s, 1), q);
 }
 
 /* The highest subsegment below q, or TRI_NONE; *next, the lowest that is not. */
-static int32_t find_below(const struct sweep *w, struct tri_point q, int32_t *next)
+static tri_sub_id find_below(const struct sweep *w, struct tri_point q, tri_sub_id *next)
 {
-    int32_t s = w->order.root, below = TRI_NONE;
+    tri_sub_id s = w->order.root, below = TRI_NONE;
     *next = TRI_NONE;
     while (s >= 0) {
         bool under = height_over(w->mesh, s, q) > 0;
@@ -100,7 +104,7 @@ static int32_t find_below(const struct sweep *w, struct tri_point q, int32_t *ne
 }
 
 /* Of two subsegments that start at one place: does a lie below b? */
-static bool is_lower(const void *mesh, int32_t a, int32_t b)
+static bool is_lower(const void *mesh, tri_sub_id a, tri_sub_id b)
 {
     return height_over(mesh, a, end_of(mesh, b, 1)) > 0;
 }
@@ -124,17 +128,17 @@ static void pass_ends(struct sweep *w, const struct event *event, int32_t n)
 }
 
 /* The triangle above subsegment s; where q lies on it, and there is none, the one below. */
-static int32_t face_at(const struct tri_mesh *mesh, int32_t s, bool is_on)
+static tri_triangle_id face_at(const struct tri_mesh *mesh, tri_sub_id s, bool is_on)
 {
     const int32_t *side = mesh->sub[s].side;
     int above = left_end(mesh, s); /* left of its direction, if it runs to the right */
-    int32_t code = side[above] != TRI_NONE || !is_on ? side[above] : side[1 - above];
+    tri_halfedge code = side[above] != TRI_NONE || !is_on ? side[above] : side[1 - above];
     return code == TRI_NONE ? TRI_NONE : tri_of(code);
 }
 
-static int32_t face_of(const struct sweep *w, struct tri_point q)
+static tri_triangle_id face_of(const struct sweep *w, struct tri_point q)
 {
-    int32_t next, below = find_below(w, q, &next);
+    tri_sub_id next, below = find_below(w, q, &next);
     if (next != TRI_NONE && height_over(w->mesh, next, q) == 0)
         return face_at(w->mesh, next, true);
     return below == TRI_NONE ? TRI_NONE : face_at(w->mesh, below, false);
@@ -142,7 +146,7 @@ static int32_t face_of(const struct sweep *w, struct tri_point q)
 
 static void list_events(struct sweep *w, const struct tri_point *points, int32_t n, const int32_t *faces)
 {
-    for (int32_t s = 0; s < w->mesh->n_subs; s++)
+    for (tri_sub_id s = 0; s < w->mesh->n_subs; s++)
         for (int right = 0; right < 2; right++)
             w->event[w->n_events++] = (struct event){end_of(w->mesh, s, right), 2 * s + right};
     for (int32_t i = 0; i < n; i++)

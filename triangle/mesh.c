@@ -134,6 +134,17 @@ enum tri_status tri_mesh_init(struct tri_mesh *mesh, struct tri_error *error)
     return TRI_OK;
 }
 
+void *tri_mesh_extra(const struct tri_mesh *mesh, size_t bytes)
+{
+    return mesh->storage ? mesh->storage->extra(mesh->storage->user, bytes) : malloc(bytes);
+}
+
+void tri_mesh_extra_free(const struct tri_mesh *mesh, void *extra)
+{
+    if (!mesh->storage)
+        free(extra);
+}
+
 void tri_mesh_drop(struct tri_mesh *mesh)
 {
     for (enum tri_array which = TRI_XY; which < TRI_ARRAYS; which++) {
@@ -307,7 +318,7 @@ enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_psl
     return TRI_OK;
 }
 
-int32_t tri_mesh_add_sub(struct tri_mesh *mesh, int32_t from, int32_t to, int32_t marker, int32_t segment)
+tri_sub_id tri_mesh_add_sub(struct tri_mesh *mesh, int32_t from, int32_t to, int32_t marker, int32_t segment)
 {
     int32_t s = mesh->n_subs++, parent = mesh->n_parents++;
     assert(s < mesh->sub_capacity && parent < mesh->parent_capacity);
@@ -389,7 +400,7 @@ void tri_mesh_compact(struct tri_mesh *mesh)
     mesh->n_triangles = hole;
 }
 
-static bool edge_is_mutual(const struct tri_mesh *mesh, int32_t t, int e)
+static bool edge_is_mutual(const struct tri_mesh *mesh, tri_triangle_id t, int e)
 {
     int32_t link = mesh->tri[t].n[e], from = mesh->tri[t].v[tri_next[e]], to = mesh->tri[t].v[tri_prev[e]];
     if (link >= 0) {
@@ -406,9 +417,9 @@ static bool edge_is_mutual(const struct tri_mesh *mesh, int32_t t, int e)
     return s->v[side] == from && s->v[1 - side] == to && s->side[side] == tri_code(t, e);
 }
 
-static bool side_is_mutual(const struct tri_mesh *mesh, int32_t s, int k)
+static bool side_is_mutual(const struct tri_mesh *mesh, tri_sub_id s, int k)
 {
-    int32_t code = mesh->sub[s].side[k];
+    tri_halfedge code = mesh->sub[s].side[k];
     if (code == TRI_NONE)
         return true;
     if (code < 0 || tri_edge(code) > 2 || tri_of(code) >= mesh->n_triangles)
@@ -421,7 +432,7 @@ static bool side_is_mutual(const struct tri_mesh *mesh, int32_t s, int k)
 
 enum tri_status tri_mesh_validate(const struct tri_mesh *mesh, struct tri_error *error)
 {
-    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++) {
         if (!tri_is_live(&mesh->tri[t]))
             continue;
         for (int e = 0; e < 3; e++) {
@@ -431,7 +442,7 @@ enum tri_status tri_mesh_validate(const struct tri_mesh *mesh, struct tri_error 
                 return tri_fail(error, TRI_INTERNAL, NULL, 0, "edge %d of triangle %d is not mutual", e, (int)t);
         }
     }
-    for (int32_t s = 0; s < mesh->n_subs; s++)
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2; k++)
             if (!side_is_mutual(mesh, s, k))
                 return tri_fail(error, TRI_INTERNAL, NULL, 0, "side %d of subsegment %d is not mutual", k, (int)s);

@@ -42,7 +42,7 @@ enum tri_vertex_kind { /* values of tri_mesh.on below 0 */
     TRI_VERTEX_INPUT = -1, /* a point of the input, or a crossing of two of its segments */
     TRI_VERTEX_FREE = -2,  /* made by refinement in the interior of a region */
     TRI_VERTEX_ACUTE = -3, /* as TRI_VERTEX_INPUT, and two subsegments meet there at less than 60 degrees */
-    TRI_VERTEX_NONE = -4   /* no vertex: an id that is free (only until tri_number) */
+    TRI_VERTEX_NONE = -4   /* no vertex: an id that is free (only until par_number) */
     /* >= 0: made by refinement on the parent with that id */
 };
 
@@ -57,7 +57,7 @@ struct tri_subsegment {
     tri_vertex_id v[2];   /* from, to */
     tri_halfedge side[2]; /* left of v[0] -> v[1], and right of it; TRI_NONE where there is no triangle */
     int32_t marker;       /* marker of the input segment, 0 where it has none */
-    tri_parent_id parent; /* TRI_NONE only in a record that is free (see tri_number) */
+    tri_parent_id parent; /* TRI_NONE only in a record that is free (see par_number) */
 };
 
 /* A subsegment as it was before refinement: what splitting, shells and small input angles refer to. */
@@ -75,11 +75,12 @@ struct tri_region {
 
 /* Where the arrays are that grow with refinement, if not in memory from malloc. reserve: the array has at least so many
  * bytes afterwards, what is in it stays, pages are zero that have not been written to; NULL: there is no room. An array
- * starts at a page. */
+ * starts at a page. extra: so many bytes for what is larger than memory when the mesh is, until the storage goes. */
 enum tri_array { TRI_XY, TRI_ON, TRI_MARKERS, TRI_FEATURE, TRI_ATTRIBUTES, TRI_TRIANGLES, TRI_SUBS, TRI_ARRAYS };
 
 struct tri_storage {
     void *(*reserve)(void *user, enum tri_array array, size_t bytes);
+    void *(*extra)(void *user, size_t bytes);
     void *user;
 };
 
@@ -161,6 +162,10 @@ static inline struct tri_point tri_to_units(const struct tri_mesh *mesh, double 
 enum tri_status tri_mesh_init(struct tri_mesh *mesh, struct tri_error *error);
 void tri_mesh_free(struct tri_mesh *mesh);
 
+/* Memory for something as large as the mesh, where the mesh is. NULL: there is none. */
+void *tri_mesh_extra(const struct tri_mesh *mesh, size_t bytes);
+void tri_mesh_extra_free(const struct tri_mesh *mesh, void *extra);
+
 /* The arrays that grow with refinement. Move: to a storage, which the mesh borrows from then on. Copy: *copy has
  * another such mesh's, in memory from malloc, and nothing else. Swap: two meshes change theirs, and the counts of them.
  * Drop: there are none any more. TRI_NO_MEMORY: the mesh is as before, *copy has nothing. */
@@ -182,6 +187,24 @@ enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_psl
  * reserved. */
 tri_sub_id tri_mesh_add_sub(struct tri_mesh *mesh, tri_vertex_id from, tri_vertex_id to, int32_t marker,
                             int32_t segment);
+
+/* The link of an edge as its triangle holds it. */
+static inline tri_link *tri_link_at(const struct tri_mesh *mesh, tri_halfedge code)
+{
+    return &mesh->tri[tri_of(code)].n[tri_edge(code)];
+}
+
+/* The corner opposite an edge. */
+static inline tri_vertex_id tri_apex(const struct tri_mesh *mesh, tri_halfedge code)
+{
+    return mesh->tri[tri_of(code)].v[tri_edge(code)];
+}
+
+/* Is there a triangle on one side of the subsegment only? */
+static inline bool tri_is_boundary(const struct tri_subsegment *s)
+{
+    return s->side[0] == TRI_NONE || s->side[1] == TRI_NONE;
+}
 
 /* Which side of a subsegment's record belongs to the triangle that sees it as from -> to (counter-clockwise)? */
 static inline int tri_side(const struct tri_subsegment *s, tri_vertex_id from) { return s->v[0] == from ? 0 : 1; }

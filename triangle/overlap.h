@@ -21,7 +21,7 @@ static inline struct tri_course tri_course_both(struct tri_course a, struct tri_
 }
 
 struct tri_piece {
-    int32_t from, to;
+    tri_vertex_id from, to;
     struct tri_course course;
 };
 

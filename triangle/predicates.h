@@ -63,6 +63,12 @@ static inline double tri_orient2d(struct tri_point a, struct tri_point b, struct
     return fabs(det) >= TRI_ORIENT2D_BOUND * size ? det : tri_orient2d_near(a, b, c);
 }
 
+/* Does p lie strictly inside the triangle a, b, c? Never in one that does not turn counter-clockwise. */
+static inline bool tri_is_inside(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point p)
+{
+    return tri_orient2d(a, b, p) > 0 && tri_orient2d(b, c, p) > 0 && tri_orient2d(c, a, p) > 0;
+}
+
 /* > 0: the direction from c to d lies counter-clockwise of that from a to b; 0: they are parallel; < 0: clockwise. The
  * bound is that of tri_orient2d. */
 static inline double tri_turn(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)

@@ -23,7 +23,8 @@ struct tri_bounds tri_bounds_for(double min_angle, bool conforming)
     return bounds;
 }
 
-struct tri_point tri_place(const struct tri_point *xy, const int32_t v[3], const struct tri_shape *shape, double reach)
+struct tri_point tri_place(const struct tri_point *xy, const tri_vertex_id v[3], const struct tri_shape *shape,
+                           double reach)
 {
     int s = shape->shortest;
     assert(s >= 0 && s < 3 && reach >= 0);

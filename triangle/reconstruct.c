@@ -30,7 +30,7 @@ _Static_assert(4 * INT64_C(1) * TRI_MAX_TRIANGLES == INT64_C(1) << CODE_BITS, "c
 
 /* A triangle that belongs to no mesh. */
 struct fault {
-    int32_t code;     /* of it, and of its edge that is amiss */
+    tri_halfedge code;     /* of it, and of its edge that is amiss */
     const char *what; /* NULL: there is none */
 };
 
@@ -79,7 +79,7 @@ static enum tri_status first_fault(const struct matcher *m)
 /* --- triangles */
 
 /* Turns the triangle counter-clockwise; or says what is wrong with it. */
-static const char *orient(const struct tri_mesh *mesh, int32_t v[3])
+static const char *orient(const struct tri_mesh *mesh, tri_vertex_id v[3])
 {
     for (int k = 0; k < 3; k++)
         if (v[k] < 0 || v[k] >= mesh->n_vertices)
@@ -97,9 +97,9 @@ static const char *orient(const struct tri_mesh *mesh, int32_t v[3])
     return NULL;
 }
 
-static int32_t low_of(const struct tri_triangle *t, int e)
+static tri_vertex_id low_of(const struct tri_triangle *t, int e)
 {
-    int32_t from = t->v[tri_next[e]], to = t->v[tri_prev[e]];
+    tri_vertex_id from = t->v[tri_next[e]], to = t->v[tri_prev[e]];
     return from < to ? from : to;
 }
 
@@ -107,7 +107,7 @@ static void take_share(void *context, size_t share)
 {
     struct matcher *m = context;
     struct tri_range range = tri_share(share, m->elements->n);
-    for (int32_t t = range.first; t < range.last; t++) {
+    for (tri_triangle_id t = range.first; t < range.last; t++) {
         struct tri_triangle *at = &m->mesh->tri[t];
         *at = (struct tri_triangle){.n = {LOOSE, LOOSE, LOOSE}};
         memcpy(at->v, &m->elements->corners[3 * (size_t)t], sizeof at->v);
@@ -155,29 +155,24 @@ static void deal_share(void *context, size_t share)
 {
     struct matcher *m = context;
     struct tri_range range = tri_share(share, m->mesh->n_triangles);
-    for (int32_t t = range.first; t < range.last; t++)
+    for (tri_triangle_id t = range.first; t < range.last; t++)
         for (int e = 0; e < 3; e++) {
-            int32_t low = low_of(&m->mesh->tri[t], e), to = low / m->width;
+            tri_vertex_id low = low_of(&m->mesh->tri[t], e), to = low / m->width;
             m->half[m->at[share][to]++] = (uint64_t)(low - to * m->width) << CODE_BITS | (uint64_t)tri_code(t, e);
         }
 }
 
-static int32_t *link_of(const struct tri_mesh *mesh, int32_t code)
-{
-    return &mesh->tri[tri_of(code)].n[tri_edge(code)];
-}
-
-static int32_t code_of(uint64_t half) { return (int32_t)(half & ((UINT64_C(1) << CODE_BITS) - 1)); }
-static int32_t high_of(uint64_t half) { return (int32_t)(half >> HIGH_SHIFT); }
+static tri_halfedge code_of(uint64_t half) { return (int32_t)(half & ((UINT64_C(1) << CODE_BITS) - 1)); }
+static tri_vertex_id high_of(uint64_t half) { return (int32_t)(half >> HIGH_SHIFT); }
 static bool runs_down(uint64_t half) { return half >> CODE_BITS & 1; }
 
 /* The half-edges at one lower end by their upper ends; those with the same ends in order of their triangles. */
 static void sort_bucket(const struct tri_mesh *mesh, uint64_t *half, int32_t n, uint64_t *scratch)
 {
     for (int32_t i = 0; i < n; i++) {
-        int32_t code = code_of(half[i]);
+        tri_halfedge code = code_of(half[i]);
         const struct tri_triangle *t = &mesh->tri[tri_of(code)];
-        int32_t from = t->v[tri_next[tri_edge(code)]], to = t->v[tri_prev[tri_edge(code)]];
+        tri_vertex_id from = t->v[tri_next[tri_edge(code)]], to = t->v[tri_prev[tri_edge(code)]];
         uint64_t next = (uint64_t)(from < to ? to : from) << HIGH_SHIFT | (uint64_t)(from > to) << CODE_BITS |
                         (uint64_t)code;
         int32_t at = i;
@@ -197,8 +192,8 @@ static struct fault join(const struct tri_mesh *mesh, const uint64_t *half, int3
     if (n > 2)
         return (struct fault){code_of(half[2]), "has an edge that two other triangles have, too"};
     if (n == 2) {
-        *link_of(mesh, code_of(half[0])) = code_of(half[1]);
-        *link_of(mesh, code_of(half[1])) = code_of(half[0]);
+        *tri_link_at(mesh, code_of(half[0])) = code_of(half[1]);
+        *tri_link_at(mesh, code_of(half[1])) = code_of(half[0]);
     }
     return (struct fault){0, NULL};
 }
@@ -218,30 +213,30 @@ static struct fault match_bucket(const struct tri_mesh *mesh, const uint64_t *ha
 
 static bool names_edge(const struct matcher *m, int32_t k)
 {
-    const int32_t *v = &m->pslg->segments[2 * (size_t)k];
+    const tri_vertex_id *v = &m->pslg->segments[2 * (size_t)k];
     return v[0] >= 0 && v[0] < m->mesh->n_vertices && v[1] >= 0 && v[1] < m->mesh->n_vertices && v[0] != v[1];
 }
 
 static void list_segments(struct matcher *m)
 {
-    for (int32_t v = 0; v < m->mesh->n_vertices; v++)
+    for (tri_vertex_id v = 0; v < m->mesh->n_vertices; v++)
         m->head[v] = TRI_NONE;
     for (int32_t k = 0; k < m->n_segments; k++) {
-        const int32_t *v = &m->pslg->segments[2 * (size_t)k];
+        const tri_vertex_id *v = &m->pslg->segments[2 * (size_t)k];
         m->edge_of[k] = TRI_NONE;
         if (!names_edge(m, k))
             continue;
-        int32_t low = v[0] < v[1] ? v[0] : v[1];
+        tri_vertex_id low = v[0] < v[1] ? v[0] : v[1];
         m->next[k] = m->head[low];
         m->head[low] = k;
     }
 }
 
 /* Looks the segments with this lower end up among its edges. */
-static void find_segments(const struct matcher *m, int32_t low, const uint64_t *half, int32_t n)
+static void find_segments(const struct matcher *m, tri_vertex_id low, const uint64_t *half, int32_t n)
 {
     for (int32_t k = m->head[low]; k != TRI_NONE; k = m->next[k]) {
-        const int32_t *v = &m->pslg->segments[2 * (size_t)k];
+        const tri_vertex_id *v = &m->pslg->segments[2 * (size_t)k];
         int32_t high = v[0] == low ? v[1] : v[0], first = 0, last = n;
         while (first < last) {
             int32_t middle = first + (last - first) / 2;
@@ -305,20 +300,21 @@ static enum tri_status allocate_and_match(struct matcher *m)
 /* --- subsegments */
 
 /* The edge of this code becomes a subsegment between the same ends. */
-static void add_sub(struct tri_mesh *mesh, int32_t code, int32_t from, int32_t to, int32_t marker, int32_t segment)
+static void add_sub(struct tri_mesh *mesh, tri_halfedge code, tri_vertex_id from, tri_vertex_id to, int32_t marker,
+                    int32_t segment)
 {
-    int32_t s = tri_mesh_add_sub(mesh, from, to, marker, segment), other = *link_of(mesh, code);
+    int32_t s = tri_mesh_add_sub(mesh, from, to, marker, segment), other = *tri_link_at(mesh, code);
     int side = tri_side(&mesh->sub[s], mesh->tri[tri_of(code)].v[tri_next[tri_edge(code)]]);
     mesh->parents[mesh->sub[s].parent].guard = mesh->xy[from]; /* what is outside is not known: nothing is its own */
     mesh->sub[s].side[side] = code;
-    *link_of(mesh, code) = ~s;
+    *tri_link_at(mesh, code) = ~s;
     if (other == LOOSE)
         return;
     mesh->sub[s].side[1 - side] = other;
-    *link_of(mesh, other) = ~s;
+    *tri_link_at(mesh, other) = ~s;
 }
 
-static void mark_ends(struct tri_mesh *mesh, const int32_t v[2], int32_t marker)
+static void mark_ends(struct tri_mesh *mesh, const tri_vertex_id v[2], int32_t marker)
 {
     for (int k = 0; k < 2; k++)
         if (mesh->vertex_markers[v[k]] == 0)
@@ -329,11 +325,11 @@ static void add_segments(const struct matcher *m)
 {
     struct tri_mesh *mesh = m->mesh;
     for (int32_t k = 0; k < m->n_segments; k++) {
-        const int32_t *v = &m->pslg->segments[2 * (size_t)k];
+        const tri_vertex_id *v = &m->pslg->segments[2 * (size_t)k];
         int32_t code = m->edge_of[k], marker = m->pslg->segment_markers ? m->pslg->segment_markers[k] : 0;
         if (code == TRI_NONE)
             continue;
-        int32_t link = *link_of(mesh, code);
+        tri_link link = *tri_link_at(mesh, code);
         if (link >= 0)
             add_sub(mesh, code, v[0], v[1], marker, k);
         else if (mesh->sub[~link].marker == 0)
@@ -346,9 +342,9 @@ static void add_boundary(const struct matcher *m)
 {
     struct tri_mesh *mesh = m->mesh;
     for (int32_t i = 0; i < m->n_loose; i++) {
-        int32_t code = m->loose[i];
-        const int32_t *v = mesh->tri[tri_of(code)].v;
-        if (*link_of(mesh, code) == LOOSE)
+        tri_halfedge code = m->loose[i];
+        const tri_vertex_id *v = mesh->tri[tri_of(code)].v;
+        if (*tri_link_at(mesh, code) == LOOSE)
             add_sub(mesh, code, v[tri_next[tri_edge(code)]], v[tri_prev[tri_edge(code)]], 0, TRI_NONE);
     }
 }
@@ -358,7 +354,7 @@ static void count_loose(void *context, size_t share)
     struct matcher *m = context;
     struct tri_range range = tri_share(share, m->mesh->n_triangles);
     int32_t n = 0;
-    for (int32_t t = range.first; t < range.last; t++)
+    for (tri_triangle_id t = range.first; t < range.last; t++)
         for (int e = 0; e < 3; e++)
             n += m->mesh->tri[t].n[e] == LOOSE;
     m->loose_at[share + 1] = n;
@@ -369,7 +365,7 @@ static void list_loose(void *context, size_t share)
     struct matcher *m = context;
     struct tri_range range = tri_share(share, m->mesh->n_triangles);
     int32_t *next = m->loose + m->loose_at[share], *end = m->loose + m->loose_at[share + 1];
-    for (int32_t t = range.first; next < end && t < range.last; t++)
+    for (tri_triangle_id t = range.first; next < end && t < range.last; t++)
         for (int e = 0; e < 3; e++)
             if (m->mesh->tri[t].n[e] == LOOSE)
                 *next++ = tri_code(t, e);
@@ -415,12 +411,12 @@ struct values {
     size_t mask;
 };
 
-static const double *attributes_of(const struct tri_elements *elements, int32_t t)
+static const double *attributes_of(const struct tri_elements *elements, tri_triangle_id t)
 {
     return elements->attributes ? elements->attributes + (size_t)t * (size_t)elements->n_attributes : NULL;
 }
 
-static double bound_of(const struct tri_elements *elements, int32_t t)
+static double bound_of(const struct tri_elements *elements, tri_triangle_id t)
 {
     return elements->areas && elements->areas[t] > 0 ? elements->areas[t] : 0;
 }
@@ -433,7 +429,7 @@ static uint64_t mix(uint64_t hash, double value)
     return hash ^ hash >> 29;
 }
 
-static bool is_region(const struct tri_mesh *mesh, int32_t region, const double *attributes, double bound)
+static bool is_region(const struct tri_mesh *mesh, tri_region_id region, const double *attributes, double bound)
 {
     size_t n = (size_t)mesh->n_columns;
     return mesh->regions[region].max_area == bound &&
@@ -443,7 +439,7 @@ static bool is_region(const struct tri_mesh *mesh, int32_t region, const double 
 static void add_region(struct tri_mesh *mesh, const double *attributes, double bound)
 {
     size_t n = (size_t)mesh->n_columns;
-    int32_t region = mesh->n_regions++;
+    tri_region_id region = mesh->n_regions++;
     mesh->regions[region] = (struct tri_region){n > 0 ? attributes[0] : 0, bound};
     if (n > 0)
         memcpy(mesh->columns + (size_t)region * n, attributes, n * sizeof *attributes);
@@ -472,7 +468,7 @@ static void assign_regions(struct values *values)
     const struct tri_elements *elements = values->elements;
     struct tri_mesh *mesh = values->mesh;
     int32_t last = 0; /* most triangles have the values of the one before */
-    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++) {
         const double *attributes = attributes_of(elements, t);
         double bound = bound_of(elements, t);
         if (!is_region(mesh, last, attributes, bound))
@@ -567,12 +563,12 @@ enum tri_status tri_kept_make(struct tri_used *kept, const struct tri_mesh *mesh
     if (status || jettison || n == 0)
         return status;
     for (size_t i = 0; i < n; i++) {
-        int32_t v = elements->extra[i];
+        tri_vertex_id v = elements->extra[i];
         if (v >= 0 && v < mesh->n_input && kept->number[v] == TRI_NONE)
             kept->number[v] = DROPPED;
     }
     kept->n = 0;
-    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++) {
         bool is_kept = kept->number[v] != DROPPED;
         kept->number[v] = is_kept ? kept->n : TRI_NONE;
         if (is_kept)

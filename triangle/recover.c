@@ -36,8 +36,8 @@
  * While triangles are made their corners are places, and their links codes, ~i for wall i, or ~(places + i) for the
  * piece of a string that starts at place i. */
 struct tri_recovery_place {
-    int32_t vertex;
-    int32_t outer;      /* wall: the mesh's link on its outer side */
+    tri_vertex_id vertex;
+    tri_link outer;      /* wall: the mesh's link on its outer side */
     int32_t twin;       /* wall: which other one is the same edge, or TRI_NONE; before that, the code of its triangle */
     int32_t inner;      /* wall: link on its inner side */
     int32_t prev, next; /* string: neighbours */
@@ -70,7 +70,7 @@ void tri_recovery_free(struct tri_recovery *r)
 
 /* --- what is crossed */
 
-static bool add_crossed(struct tri_recovery *r, int32_t code)
+static bool add_crossed(struct tri_recovery *r, tri_halfedge code)
 {
     if (!tri_grow(&r->crossed, &r->crossed_capacity, r->n_crossed + 1, sizeof *r->crossed))
         return false;
@@ -79,20 +79,21 @@ static bool add_crossed(struct tri_recovery *r, int32_t code)
 }
 
 /* Lists the edges through which ab enters triangles (of the first triangle, the one it leaves through). */
-static bool cross(struct tri_recovery *r, const struct tri_mesh *mesh, int32_t t, int32_t a, int32_t b)
+static bool cross(struct tri_recovery *r, const struct tri_mesh *mesh, tri_triangle_id t, tri_vertex_id a,
+                  tri_vertex_id b)
 {
-    const int32_t *v = mesh->tri[t].v;
+    const tri_vertex_id *v = mesh->tri[t].v;
     int32_t code = tri_code(t, v[0] == a ? 0 : v[1] == a ? 1 : 2), o = a;
     r->n_crossed = 0;
     r->n_left = 1;
     if (!add_crossed(r, code))
         return false;
     while (o != b) {
-        code = mesh->tri[tri_of(code)].n[tri_edge(code)];
+        code = *tri_link_at(mesh, code);
         assert(code >= 0); /* no subsegment */
         if (!add_crossed(r, code))
             return false;
-        o = mesh->tri[tri_of(code)].v[tri_edge(code)];
+        o = tri_apex(mesh, code);
         double side = o == b ? 0 : tri_orient2d(mesh->xy[a], mesh->xy[b], mesh->xy[o]);
         assert(o == b || side != 0); /* no vertex */
         r->n_left += side > 0;
@@ -124,7 +125,7 @@ static bool make_room(struct tri_recovery *r)
 
 static int32_t n_places(const struct tri_recovery *r) { return r->n_crossed + 4; }
 
-static void set_wall(struct tri_recovery *r, const struct tri_mesh *mesh, int32_t i, int32_t t, int e)
+static void set_wall(struct tri_recovery *r, const struct tri_mesh *mesh, int32_t i, tri_triangle_id t, int e)
 {
     r->at[i].outer = mesh->tri[t].n[e];
     r->at[i].twin = tri_code(t, e);
@@ -135,7 +136,7 @@ static void list_places(struct tri_recovery *r, const struct tri_mesh *mesh)
 {
     int32_t left = 0, right = n_places(r) - 1, t = tri_of(r->crossed[0]);
     int k = tri_edge(r->crossed[0]);
-    const int32_t *v = mesh->tri[t].v;
+    const tri_vertex_id *v = mesh->tri[t].v;
     r->at[left].vertex = r->at[right].vertex = v[k];
     set_wall(r, mesh, left, t, tri_next[k]);
     r->at[++left] = (struct tri_recovery_place){.vertex = v[tri_prev[k]]};
@@ -178,18 +179,18 @@ static void clear_triangles(struct tri_recovery *r, struct tri_mesh *mesh)
 
 /* --- division and merging */
 
-static void put(struct gap *g, int32_t link, int32_t other)
+static void put(struct gap *g, tri_link link, tri_link other)
 {
     int32_t n = n_places(g->r);
     if (link >= 0)
-        g->mesh->tri[tri_of(link)].n[tri_edge(link)] = other;
+        *tri_link_at(g->mesh, link) = other;
     else if (~link < n)
         g->r->at[~link].inner = other;
     else
         g->r->at[~link - n].above = other;
 }
 
-static void join(struct gap *g, int32_t x, int32_t y)
+static void join(struct gap *g, tri_link x, tri_link y)
 {
     put(g, x, y);
     put(g, y, x);
@@ -201,12 +202,12 @@ static struct tri_point point_at(const struct gap *g, int32_t place)
 }
 
 /* Is the angle below less than 180 degrees in q, between places p < q < s that see q? */
-static bool is_slack(const struct gap *g, int32_t p, int32_t q, int32_t s)
+static bool is_slack(const struct gap *g, int32_t p, int32_t q, tri_sub_id s)
 {
     return tri_orient2d(point_at(g, p), point_at(g, q), point_at(g, s)) < 0;
 }
 
-static void push(struct gap *g, int side, int32_t place, int32_t link)
+static void push(struct gap *g, int side, int32_t place, tri_link link)
 {
     g->side[side][g->n[side]++] = (struct tri_recovery_node){place, link};
 }
@@ -276,8 +277,8 @@ static int choose(struct gap *g)
 static void add_triangle(struct gap *g, int side)
 {
     struct tri_recovery_node next = g->side[side][--g->n[side]];
-    int32_t triangle = g->r->pool[--g->r->n_free];
-    int32_t *v = g->mesh->tri[triangle].v;
+    tri_triangle_id triangle = g->r->pool[--g->r->n_free];
+    tri_vertex_id *v = g->mesh->tri[triangle].v;
     v[0] = g->end[0];
     v[1] = g->end[1];
     v[2] = next.place;
@@ -334,14 +335,14 @@ static void link_walls(struct tri_recovery *r, struct tri_mesh *mesh)
 static void name_corners(const struct tri_recovery *r, struct tri_mesh *mesh)
 {
     for (int32_t i = 0; i < r->n_crossed; i++) {
-        int32_t *v = mesh->tri[tri_of(r->crossed[i])].v;
+        tri_vertex_id *v = mesh->tri[tri_of(r->crossed[i])].v;
         for (int k = 0; k < 3; k++)
             v[k] = r->at[v[k]].vertex;
     }
 }
 
-enum tri_status tri_recover_edge(struct tri_recovery *r, struct tri_mesh *mesh, int32_t t, int32_t a, int32_t b,
-                                 int32_t *code, struct tri_error *error)
+enum tri_status tri_recover_edge(struct tri_recovery *r, struct tri_mesh *mesh, tri_triangle_id t, tri_vertex_id a,
+                                 tri_vertex_id b, tri_halfedge *code, struct tri_error *error)
 {
     if (!cross(r, mesh, t, a, b) || !make_room(r))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a segment across %d triangles",
@@ -355,8 +356,8 @@ enum tri_status tri_recover_edge(struct tri_recovery *r, struct tri_mesh *mesh, 
     link_walls(r, mesh);
     name_corners(r, mesh);
     int32_t left = r->at[0].above, right = r->at[r->n_left].above;
-    mesh->tri[tri_of(left)].n[tri_edge(left)] = right;
-    mesh->tri[tri_of(right)].n[tri_edge(right)] = left;
+    *tri_link_at(mesh, left) = right;
+    *tri_link_at(mesh, right) = left;
     *code = left;
     return TRI_OK;
 }

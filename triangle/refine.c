@@ -245,7 +245,7 @@ static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, 
         return refuse(r, TRI_EXCUSE_PRECISION);
     if (found == TRI_SEARCH_NO_MEMORY || make_room(r))
         return FAILED;
-    bool boundary = old.side[0] == TRI_NONE || old.side[1] == TRI_NONE;
+    bool boundary = tri_is_boundary(&old);
     int32_t v = add_vertex(r, r->cavity.p, old.parent, old.marker ? old.marker : boundary ? 1 : 0);
     m->feature[v] = tri_feature_on_segment(m, &r->cavity, s, r->sized);
     tri_interpolate_edge(m, old.v[0], old.v[1], fraction, v);

@@ -25,7 +25,7 @@
 #include "triangle/feature_size.h"
 #include "triangle/predicates.h"
 
-static bool is_acute(const struct tri_mesh *mesh, int32_t v) { return mesh->on[v] == TRI_VERTEX_ACUTE; }
+static bool is_acute(const struct tri_mesh *mesh, tri_vertex_id v) { return mesh->on[v] == TRI_VERTEX_ACUTE; }
 
 double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegment *s)
 {
@@ -46,9 +46,9 @@ bool tri_can_split(const struct tri_mesh *mesh, struct tri_point a, struct tri_p
 }
 
 /* The vertex where the parents on which u and v lie meet; TRI_NONE where they do not, or are the same. */
-static int32_t apex_between(const struct tri_mesh *mesh, int32_t u, int32_t v)
+static tri_vertex_id apex_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v)
 {
-    int32_t pu = mesh->on[u], pv = mesh->on[v];
+    tri_parent_id pu = mesh->on[u], pv = mesh->on[v];
     for (int i = 0; pu >= 0 && pv >= 0 && pu != pv && i < 2; i++)
         for (int k = 0; k < 2; k++)
             if (mesh->parents[pu].v[i] == mesh->parents[pv].v[k])
@@ -58,9 +58,9 @@ static int32_t apex_between(const struct tri_mesh *mesh, int32_t u, int32_t v)
 
 /* Both on subsegments of segments that meet at a common vertex, at the same distance from it? Then their distance is
  * dictated by the angle there (Miller, Pav & Walkington 2003). */
-static bool on_one_shell(const struct tri_mesh *mesh, int32_t u, int32_t v, double uv2)
+static bool on_one_shell(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v, double uv2)
 {
-    int32_t apex = apex_between(mesh, u, v);
+    tri_vertex_id apex = apex_between(mesh, u, v);
     if (apex == TRI_NONE)
         return false;
     double du = tri_distance2(mesh->xy[apex], mesh->xy[u]), dv = tri_distance2(mesh->xy[apex], mesh->xy[v]);
@@ -68,7 +68,7 @@ static bool on_one_shell(const struct tri_mesh *mesh, int32_t u, int32_t v, doub
 }
 
 /* The parents that vertex v lies on: its own, or those that end there. */
-static const int32_t *parents_of(const struct tri_mesh *mesh, int32_t v, int32_t *n)
+static const int32_t *parents_of(const struct tri_mesh *mesh, tri_vertex_id v, int32_t *n)
 {
     *n = 0;
     if (mesh->on[v] >= 0) {
@@ -83,8 +83,8 @@ static const int32_t *parents_of(const struct tri_mesh *mesh, int32_t v, int32_t
 
 /* Of the n parents at a hub, in order of direction, the two before the direction to q, and the two that come next: one
  * on which q lies, up to rounding, is among them, and those on either side of it. */
-static int list_neighbours(const struct tri_mesh *mesh, int32_t hub, const int32_t *incident, int32_t n,
-                           struct tri_point q, int32_t *beside)
+static int list_neighbours(const struct tri_mesh *mesh, tri_vertex_id hub, const tri_parent_id *incident, int32_t n,
+                           struct tri_point q, tri_parent_id *beside)
 {
     assert(n > TRI_MANY_PARENTS);
     int32_t low = 0, high = n;
@@ -101,10 +101,10 @@ static int list_neighbours(const struct tri_mesh *mesh, int32_t hub, const int32
 }
 
 /* The parents at u that bound spaces in which triangle u, v, w may lie: at a hub the next ones around it, else all. */
-static const int32_t *parents_beside(const struct tri_mesh *mesh, int32_t u, int32_t v, int32_t w, int32_t beside[8],
-                                     int32_t *n)
+static const int32_t *parents_beside(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v, tri_vertex_id w,
+                                     tri_parent_id beside[8], int32_t *n)
 {
-    const int32_t *incident = parents_of(mesh, u, n);
+    const tri_parent_id *incident = parents_of(mesh, u, n);
     if (*n <= TRI_MANY_PARENTS)
         return incident;
     int32_t all = *n;
@@ -113,7 +113,7 @@ static const int32_t *parents_beside(const struct tri_mesh *mesh, int32_t u, int
     return beside;
 }
 
-bool tri_is_on_parent(const struct tri_mesh *mesh, int32_t v)
+bool tri_is_on_parent(const struct tri_mesh *mesh, tri_vertex_id v)
 {
     int32_t n;
     parents_of(mesh, v, &n);
@@ -122,10 +122,10 @@ bool tri_is_on_parent(const struct tri_mesh *mesh, int32_t v)
 
 /* Is there a parent from one vertex to the other? Looks at the shorter of their lists: one may be the hub of a
  * wheel. */
-static bool are_joined(const struct tri_mesh *mesh, int32_t u, int32_t v)
+static bool are_joined(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v)
 {
     int32_t nu, nv;
-    const int32_t *pu = parents_of(mesh, u, &nu), *pv = parents_of(mesh, v, &nv);
+    const tri_parent_id *pu = parents_of(mesh, u, &nu), *pv = parents_of(mesh, v, &nv);
     for (int32_t i = 0; i < (nu < nv ? nu : nv); i++) {
         const int32_t *ends = mesh->parents[(nu < nv ? pu : pv)[i]].v;
         if ((ends[0] == u && ends[1] == v) || (ends[0] == v && ends[1] == u))
@@ -134,7 +134,7 @@ static bool are_joined(const struct tri_mesh *mesh, int32_t u, int32_t v)
     return false;
 }
 
-int32_t tri_common_end(const struct tri_mesh *mesh, int32_t parent, int32_t v)
+tri_vertex_id tri_common_end(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id v)
 {
     const int32_t *ends = mesh->parents[parent].v, on = mesh->on[v];
     for (int k = 0; k < 2; k++) {
@@ -146,7 +146,7 @@ int32_t tri_common_end(const struct tri_mesh *mesh, int32_t parent, int32_t v)
 }
 
 /* At the far end of the shorter one, of length l, they are at most width + l * sine apart. */
-double tri_filling_cost(const struct tri_mesh *mesh, int32_t first, int32_t second, struct tri_point u,
+double tri_filling_cost(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
                         struct tri_point v)
 {
     assert(first != second);
@@ -159,10 +159,10 @@ double tri_filling_cost(const struct tri_mesh *mesh, int32_t first, int32_t seco
     return shorter / (width + cross / longer); /* cross / longer = shorter * sine */
 }
 
-static bool is_end(const struct tri_parent *p, int32_t v) { return p->v[0] == v || p->v[1] == v; }
+static bool is_end(const struct tri_parent *p, tri_vertex_id v) { return p->v[0] == v || p->v[1] == v; }
 
 /* Does w lie ahead of v on the parent, rather than behind the end that v is? */
-static bool is_ahead(const struct tri_mesh *mesh, const struct tri_parent *p, int32_t v, int32_t w)
+static bool is_ahead(const struct tri_mesh *mesh, const struct tri_parent *p, tri_vertex_id v, tri_vertex_id w)
 {
     if (!is_end(p, v))
         return true;
@@ -171,7 +171,7 @@ static bool is_ahead(const struct tri_mesh *mesh, const struct tri_parent *p, in
 }
 
 /* Does q lie beside the parent, rather than before its start or beyond its end? */
-static bool is_beside(const struct tri_mesh *mesh, const struct tri_parent *p, int32_t q)
+static bool is_beside(const struct tri_mesh *mesh, const struct tri_parent *p, tri_vertex_id q)
 {
     struct tri_point a = mesh->xy[p->v[0]], b = mesh->xy[p->v[1]], at = mesh->xy[q];
     double x = b.x - a.x, y = b.y - a.y, along = x * (at.x - a.x) + y * (at.y - a.y);
@@ -180,11 +180,11 @@ static bool is_beside(const struct tri_mesh *mesh, const struct tri_parent *p, i
 
 /* The cost of filling the dearest space between two parents that the edge uv bridges and the triangle with apex w lies
  * in; 0 where uv does not bridge any. */
-static double gap_cost(const struct tri_mesh *mesh, int32_t u, int32_t v, int32_t w)
+static double gap_cost(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v, tri_vertex_id w)
 {
     int32_t nu, nv, beside[2][8];
-    const int32_t *pu = parents_beside(mesh, u, v, w, beside[0], &nu);
-    const int32_t *pv = parents_beside(mesh, v, u, w, beside[1], &nv);
+    const tri_parent_id *pu = parents_beside(mesh, u, v, w, beside[0], &nu);
+    const tri_parent_id *pv = parents_beside(mesh, v, u, w, beside[1], &nv);
     double dearest = 0;
     for (int32_t i = 0; i < nu; i++)
         for (int32_t k = 0; k < nv; k++) {
@@ -199,36 +199,37 @@ static double gap_cost(const struct tri_mesh *mesh, int32_t u, int32_t v, int32_
     return dearest;
 }
 
-double tri_gap_cost(const struct tri_mesh *mesh, int32_t triangle, const struct tri_shape *shape)
+double tri_gap_cost(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
 {
-    const int32_t *v = mesh->tri[triangle].v;
+    const tri_vertex_id *v = mesh->tri[triangle].v;
     int k = shape->shortest;
     return gap_cost(mesh, v[tri_next[k]], v[tri_prev[k]], v[k]);
 }
 
-bool tri_is_narrow_gap(const struct tri_mesh *mesh, int32_t triangle, const struct tri_shape *shape)
+bool tri_is_narrow_gap(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
 {
     return tri_gap_cost(mesh, triangle, shape) > mesh->limits.dearest_gap;
 }
 
-bool tri_crosses_angle(const struct tri_mesh *mesh, int32_t triangle, const struct tri_shape *shape)
+bool tri_crosses_angle(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
 {
-    const int32_t *v = mesh->tri[triangle].v;
+    const tri_vertex_id *v = mesh->tri[triangle].v;
     return apex_between(mesh, v[tri_next[shape->shortest]], v[tri_prev[shape->shortest]]) != TRI_NONE;
 }
 
-bool tri_is_hopeless(const struct tri_mesh *mesh, int32_t triangle, const struct tri_shape *shape)
+bool tri_is_hopeless(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
 {
     const struct tri_triangle *t = &mesh->tri[triangle];
     int k = shape->shortest;
-    int32_t u = t->v[tri_next[k]], v = t->v[tri_prev[k]];
+    tri_vertex_id u = t->v[tri_next[k]], v = t->v[tri_prev[k]];
     return shape->l[k] < mesh->limits.shortest2 || tri_has_run_away(mesh, u, v, shape->l[k]) ||
            on_one_shell(mesh, u, v, shape->l[k]) || tri_is_narrow_gap(mesh, triangle, shape);
 }
 
 /* The cost of filling the dearest space between a parent at u and one at v that face each other across the edge ab: u
  * and v are the apexes on its two sides. */
-static double cost_across(const struct tri_mesh *mesh, int32_t u, int32_t v, int32_t a, int32_t b)
+static double cost_across(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v, tri_vertex_id a,
+                          tri_vertex_id b)
 {
     return fmax(gap_cost(mesh, u, v, a), gap_cost(mesh, u, v, b));
 }
@@ -236,7 +237,7 @@ static double cost_across(const struct tri_mesh *mesh, int32_t u, int32_t v, int
 /* About so many points it takes to fill the space that a triangle of the input lies in. Where other vertices lie
  * between its two walls, as on the wall that closes its end, no edge bridges it: so the apexes across each edge count,
  * too. */
-static double demand_of(const struct tri_mesh *mesh, int32_t triangle)
+static double demand_of(const struct tri_mesh *mesh, tri_triangle_id triangle)
 {
     const struct tri_triangle *t = &mesh->tri[triangle];
     struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
@@ -244,7 +245,7 @@ static double demand_of(const struct tri_mesh *mesh, int32_t triangle)
     for (int e = 0; e < 3; e++) {
         if (t->n[e] < 0 || !tri_is_on_parent(mesh, t->v[e]))
             continue;
-        int32_t apex = mesh->tri[tri_of(t->n[e])].v[tri_edge(t->n[e])];
+        tri_vertex_id apex = tri_apex(mesh, t->n[e]);
         demand = fmax(demand, cost_across(mesh, t->v[e], apex, t->v[tri_next[e]], t->v[tri_prev[e]]));
     }
     return demand;
@@ -268,7 +269,7 @@ static void demand_share(void *context, size_t index)
     struct demand *sum = &d->share[index];
     struct tri_range range = tri_share(index, d->mesh->n_triangles);
     *sum = (struct demand){{0}, {0}, 0};
-    for (int32_t t = range.first; t < range.last; t++) {
+    for (tri_triangle_id t = range.first; t < range.last; t++) {
         double cost = demand_of(d->mesh, t);
         int octave; /* 2^(octave - 1) <= cost < 2^octave */
         frexp(cost, &octave);

@@ -27,7 +27,7 @@ static enum tri_status no_memory(const struct tri_mesh *mesh, struct tri_error *
 static int32_t *inverse_of(const int32_t *order, int32_t n)
 {
     int32_t *rank = array(n, sizeof *rank);
-    for (int32_t v = 0; rank && v < n; v++)
+    for (tri_vertex_id v = 0; rank && v < n; v++)
         rank[order[v]] = v;
     return rank;
 }
@@ -39,7 +39,7 @@ enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **rank, const str
     void *scratch = scratch_for(mesh);
     assert(mesh->n_vertices == n && mesh->n_triangles == 0 && !mesh->origin && !mesh->twin);
     if (origin && scratch) {
-        for (int32_t v = 0; v < n; v++)
+        for (tri_vertex_id v = 0; v < n; v++)
             origin[v] = v;
         tri_hilbert_order(mesh->xy, origin, n, scratch, executor);
     }
@@ -56,7 +56,7 @@ enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **rank, const str
 
 /* --- and back */
 
-static void restore_name(const struct tri_mesh *mesh, int32_t *v)
+static void restore_name(const struct tri_mesh *mesh, tri_vertex_id *v)
 {
     if (*v >= 0 && *v < mesh->n_input)
         *v = mesh->origin[*v];
@@ -66,14 +66,14 @@ static void restore_corners(void *context, size_t share)
 {
     const struct tri_mesh *mesh = context;
     struct tri_range range = tri_share(share, mesh->n_triangles);
-    for (int32_t t = range.first; t < range.last; t++)
+    for (tri_triangle_id t = range.first; t < range.last; t++)
         for (int k = 0; k < 3; k++)
             restore_name(mesh, &mesh->tri[t].v[k]);
 }
 
 static void restore_ends(const struct tri_mesh *mesh)
 {
-    for (int32_t s = 0; s < mesh->n_subs; s++)
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2; k++)
             restore_name(mesh, &mesh->sub[s].v[k]);
     for (int32_t p = 0; p < mesh->n_parents; p++)
@@ -84,7 +84,7 @@ static void restore_ends(const struct tri_mesh *mesh)
 /* The first of the points at a place, by the caller's numbers: twin[caller's index] = caller's index. */
 static void restore_twins(struct tri_mesh *mesh, int32_t *twin)
 {
-    for (int32_t v = 0; v < mesh->n_input; v++)
+    for (tri_vertex_id v = 0; v < mesh->n_input; v++)
         twin[mesh->origin[v]] = mesh->origin[mesh->twin[v]];
     free(mesh->twin);
     mesh->twin = twin;

@@ -24,12 +24,6 @@
 /* Resolutions that a split point may lie off its parent's line. */
 static const double ASTRAY = 4;
 
-/* Is p strictly inside the triangle a, b, c, if that is counter-clockwise? */
-static bool holds(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point p)
-{
-    return tri_orient2d(a, b, p) > 0 && tri_orient2d(b, c, p) > 0 && tri_orient2d(c, a, p) > 0;
-}
-
 /* May a boundary subsegment from `from` to `to`, the mesh on its left, be split at p? */
 static bool keeps_to_itself(const struct tri_mesh *mesh, const struct tri_parent *parent, struct tri_point from,
                             struct tri_point to, struct tri_point p)
@@ -37,7 +31,7 @@ static bool keeps_to_itself(const struct tri_mesh *mesh, const struct tri_parent
     struct tri_point a = mesh->xy[parent->v[0]], b = mesh->xy[parent->v[1]], guard = parent->guard;
     if (tri_orient2d(from, to, p) >= 0 || isnan(guard.x))
         return true;
-    return holds(a, b, guard, p) || holds(b, a, guard, p);
+    return tri_is_inside(a, b, guard, p) || tri_is_inside(b, a, guard, p);
 }
 
 /* Moves *p to a place at most one resolution away at which the subsegment may be split. */

@@ -24,17 +24,17 @@ enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh 
     uint8_t *used = calloc((size_t)n_doubtful + 1, 1);
     if (!used)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to count %d vertices", (int)n_doubtful);
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
         for (int k = 0; k < 3; k++)
             if (mesh->tri[t].v[k] < n_doubtful)
                 used[mesh->tri[t].v[k]] = 1;
     counts->vertices = mesh->n_vertices - n_doubtful;
-    for (int32_t v = 0; v < n_doubtful; v++)
+    for (tri_vertex_id v = 0; v < n_doubtful; v++)
         counts->vertices += used[v];
     free(used);
-    for (int32_t s = 0; s < mesh->n_subs; s++) {
-        bool inner = mesh->sub[s].side[0] != TRI_NONE && mesh->sub[s].side[1] != TRI_NONE;
-        *(inner ? &counts->interior : &counts->exterior) += 1;
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
+        bool boundary = tri_is_boundary(&mesh->sub[s]);
+        *(boundary ? &counts->exterior : &counts->interior) += 1;
     }
     counts->edges = (3 * counts->triangles + counts->exterior) / 2; /* every boundary edge is a subsegment */
     return TRI_OK;
@@ -126,7 +126,7 @@ static void measure_share(void *context, size_t share)
     struct tally *tally = &s->tally[share];
     struct tri_range range = tri_share(share, s->mesh->n_triangles);
     *tally = (struct tally){.extremes = {{HUGE_VAL, 0}, {HUGE_VAL, 0}, 0, HUGE_VAL, 0, 1, 1}};
-    for (int32_t t = range.first; t < range.last; t++) {
+    for (tri_triangle_id t = range.first; t < range.last; t++) {
         assert(tri_is_live(&s->mesh->tri[t]));
         struct tri_shape shape = tri_shape_of(s->mesh->xy, s->mesh->tri[t].v);
         measure(&tally->shapes, &tally->extremes, &shape, s->limits);

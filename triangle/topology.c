@@ -9,21 +9,21 @@
 /* Edges of a triangle in the order of the list, by their opposite corners. */
 static const int edge_order[3] = {2, 0, 1};
 
-void tri_neighbors(const struct tri_mesh *mesh, int32_t t, int32_t neighbors[3])
+void tri_neighbors(const struct tri_mesh *mesh, tri_triangle_id t, int32_t neighbors[3])
 {
     for (int e = 0; e < 3; e++) {
-        int32_t other = tri_across(mesh, tri_code(t, e));
+        tri_halfedge other = tri_across(mesh, tri_code(t, e));
         neighbors[e] = other == TRI_NONE ? TRI_NONE : tri_of(other);
     }
 }
 
 /* Does this triangle come first at the edge? `other` is the edge seen from beyond. */
-static bool is_first(int32_t code, int32_t other) { return other == TRI_NONE || other > code; }
+static bool is_first(tri_halfedge code, tri_halfedge other) { return other == TRI_NONE || other > code; }
 
 static int32_t count_edges(const struct tri_mesh *mesh)
 {
     int32_t n = 0;
-    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++) {
         assert(tri_is_live(&mesh->tri[t]));
         for (int e = 0; e < 3; e++)
             n += is_first(tri_code(t, e), tri_across(mesh, tri_code(t, e)));
@@ -34,9 +34,9 @@ static int32_t count_edges(const struct tri_mesh *mesh)
 static void list_edges(struct tri_edge_list *list, const struct tri_mesh *mesh)
 {
     int32_t n = 0;
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
         for (int k = 0; k < 3; k++) {
-            int32_t code = tri_code(t, edge_order[k]), other = tri_across(mesh, code);
+            tri_halfedge code = tri_code(t, edge_order[k]), other = tri_across(mesh, code);
             if (!is_first(code, other))
                 continue;
             if (list->number) {
@@ -72,7 +72,8 @@ void tri_edge_list_free(struct tri_edge_list *list)
     *list = (struct tri_edge_list){0};
 }
 
-void tri_middle_nodes(const struct tri_mesh *mesh, const struct tri_edge_list *edges, int32_t t, int32_t nodes[3])
+void tri_middle_nodes(const struct tri_mesh *mesh, const struct tri_edge_list *edges, tri_triangle_id t,
+                      int32_t nodes[3])
 {
     assert(edges->number);
     for (int e = 0; e < 3; e++)
@@ -87,7 +88,7 @@ double tri_blend_attribute(const struct tri_mesh *mesh, const struct tri_blend *
     return corner[0] + blend->weight[0] * (corner[1] - corner[0]) + blend->weight[1] * (corner[2] - corner[0]);
 }
 
-struct tri_blend tri_edge_middle(const struct tri_mesh *mesh, int32_t code)
+struct tri_blend tri_edge_middle(const struct tri_mesh *mesh, tri_halfedge code)
 {
     int32_t ends[2];
     tri_edge_ends(mesh, code, ends);
@@ -96,9 +97,9 @@ struct tri_blend tri_edge_middle(const struct tri_mesh *mesh, int32_t code)
 }
 
 /* The orientation predicate approximates the area well even where plain arithmetic has lost it. */
-struct tri_blend tri_voronoi_vertex(const struct tri_mesh *mesh, int32_t t)
+struct tri_blend tri_voronoi_vertex(const struct tri_mesh *mesh, tri_triangle_id t)
 {
-    const int32_t *v = mesh->tri[t].v;
+    const tri_vertex_id *v = mesh->tri[t].v;
     struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
     double bx = b.x - a.x, by = b.y - a.y, cx = c.x - a.x, cy = c.y - a.y;
     double b2 = bx * bx + by * by, c2 = cx * cx + cy * cy, area2 = tri_orient2d(a, b, c);
@@ -109,7 +110,7 @@ struct tri_blend tri_voronoi_vertex(const struct tri_mesh *mesh, int32_t t)
     return blend;
 }
 
-void tri_voronoi_edge(const struct tri_mesh *mesh, int32_t code, int32_t ends[2], double direction[2])
+void tri_voronoi_edge(const struct tri_mesh *mesh, tri_halfedge code, int32_t ends[2], double direction[2])
 {
     int32_t other = tri_across(mesh, code), edge[2];
     ends[0] = tri_of(code);
@@ -130,12 +131,12 @@ enum tri_status tri_used_make(struct tri_used *used, const struct tri_mesh *mesh
         tri_used_free(used);
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to number %d vertices", (int)mesh->n_vertices);
     }
-    for (int32_t v = 0; v < mesh->n_vertices; v++)
+    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
         used->number[v] = TRI_NONE;
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
         for (int k = 0; k < 3; k++)
             used->number[mesh->tri[t].v[k]] = 0;
-    for (int32_t v = 0; v < mesh->n_vertices; v++)
+    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
         if (used->number[v] != TRI_NONE) {
             used->number[v] = used->n;
             used->vertex[used->n++] = v;

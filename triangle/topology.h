@@ -12,28 +12,28 @@
 #include "triangle/mesh.h"
 
 /* Triangles opposite the corners of t; TRI_NONE: none. */
-void tri_neighbors(const struct tri_mesh *mesh, int32_t t, int32_t neighbors[3]);
+void tri_neighbors(const struct tri_mesh *mesh, tri_triangle_id t, tri_triangle_id neighbors[3]);
 
 /* From and to of the edge, its triangle on the left. */
-static inline void tri_edge_ends(const struct tri_mesh *mesh, int32_t code, int32_t ends[2])
+static inline void tri_edge_ends(const struct tri_mesh *mesh, tri_halfedge code, tri_vertex_id ends[2])
 {
-    const int32_t *v = mesh->tri[tri_of(code)].v;
+    const tri_vertex_id *v = mesh->tri[tri_of(code)].v;
     ends[0] = v[tri_next[tri_edge(code)]];
     ends[1] = v[tri_prev[tri_edge(code)]];
 }
 
 /* Marker of the subsegment that the edge is, else 0. (tri_generate gives boundary edges the marker 1 where they have
  * none.) */
-static inline int32_t tri_edge_marker(const struct tri_mesh *mesh, int32_t code)
+static inline int32_t tri_edge_marker(const struct tri_mesh *mesh, tri_halfedge code)
 {
-    int32_t link = mesh->tri[tri_of(code)].n[tri_edge(code)];
+    tri_link link = *tri_link_at(mesh, code);
     return link < 0 ? mesh->sub[~link].marker : 0;
 }
 
 struct tri_edge_list {
     int32_t n;
-    int32_t *codes;  /* [n] */
-    int32_t *number; /* [n_triangles][3] number of the edge opposite each corner; NULL: not asked for */
+    tri_halfedge *codes; /* [n] */
+    int32_t *number;     /* [n_triangles][3] number of the edge opposite each corner; NULL: not asked for */
 };
 
 /* Lists the edges. O(triangles); 6 bytes a triangle, with numbers 12 more. TRI_NO_MEMORY. */
@@ -43,34 +43,35 @@ void tri_edge_list_free(struct tri_edge_list *list);
 
 /* Second-order triangles: the node amid edge i is node n_vertices + i. Those opposite the corners of t, in their
  * order. */
-void tri_middle_nodes(const struct tri_mesh *mesh, const struct tri_edge_list *edges, int32_t t, int32_t nodes[3]);
+void tri_middle_nodes(const struct tri_mesh *mesh, const struct tri_edge_list *edges, tri_triangle_id t,
+                      int32_t nodes[3]);
 
 /* A place, and how attributes are interpolated there: that of corner 0, plus weight[k - 1] times the way to that of
  * corner k. The weights may lie outside 0 .. 1: extrapolation. */
 struct tri_blend {
     double at[2]; /* the caller's coordinates */
-    int32_t v[3];
+    tri_vertex_id v[3];
     double weight[2];
 };
 
 double tri_blend_attribute(const struct tri_mesh *mesh, const struct tri_blend *blend, int32_t attribute);
 
 /* The middle of an edge. */
-struct tri_blend tri_edge_middle(const struct tri_mesh *mesh, int32_t code);
+struct tri_blend tri_edge_middle(const struct tri_mesh *mesh, tri_halfedge code);
 
 /* Voronoi vertex t: the circumcentre of triangle t. */
-struct tri_blend tri_voronoi_vertex(const struct tri_mesh *mesh, int32_t t);
+struct tri_blend tri_voronoi_vertex(const struct tri_mesh *mesh, tri_triangle_id t);
 
 /* The Voronoi edge dual to an edge: ends[0] is the triangle on its left, ends[1] that on its right or, for a ray,
  * TRI_NONE. The direction of a ray is that of the edge turned right, as long as the edge; 0, 0 for an edge with two
  * ends. */
-void tri_voronoi_edge(const struct tri_mesh *mesh, int32_t code, int32_t ends[2], double direction[2]);
+void tri_voronoi_edge(const struct tri_mesh *mesh, tri_halfedge code, tri_triangle_id ends[2], double direction[2]);
 
 /* Vertices that are corners of triangles. */
 struct tri_used {
     int32_t n;
-    int32_t *vertex; /* [n] ascending */
-    int32_t *number; /* [n_vertices] place in `vertex`, or TRI_NONE */
+    tri_vertex_id *vertex; /* [n] ascending */
+    int32_t *number;       /* [n_vertices] place in `vertex`, or TRI_NONE */
 };
 
 /* O(vertices + triangles). TRI_NO_MEMORY. */

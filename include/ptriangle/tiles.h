@@ -39,8 +39,8 @@ struct tri_tile {
 };
 
 /* Who takes tiles: called by one thread, in order. begin may be called again, before end: what has been taken is void
- * then, and all tiles come anew; whoever has no begin never has to forget anything, but it may take longer. What the pointers name is gone when a call returns. A status other
- * than TRI_OK ends the run with it. */
+ * then, and all tiles come anew; whoever has no begin never has to forget anything, but it may take longer. What the
+ * pointers name is gone when a call returns. A status other than TRI_OK ends the run with it. */
 struct tri_sink {
     void *user;
     enum tri_status (*begin)(void *user, const struct tri_stream *stream, struct tri_error *error); /* NULL: not told */

@@ -17,7 +17,8 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { OTHERS = TRI_ARRAYS, PARTS, GRAIN = 1 << 21, LOOK_NANOSECONDS = 5000000 };
+/* MOST_EXTRA: bytes a triangle. */
+enum { OTHERS = TRI_ARRAYS, PARTS, GRAIN = 1 << 21, MOST_EXTRA = 64, LOOK_NANOSECONDS = 5000000 };
 
 struct part {
     size_t first, size, used; /* in the file; `used` bytes have disk space */
@@ -65,8 +66,9 @@ static void *reserve(void *user, enum tri_array array, size_t bytes)
     return reserve_part(park, &park->part[array], bytes);
 }
 
-void *par_park_array(struct par_park *park, size_t bytes)
+static void *extra(void *user, size_t bytes)
 {
+    struct par_park *park = user;
     char *part = reserve_part(park, &park->part[OTHERS], park->taken + bytes);
     if (!part)
         return NULL;
@@ -141,7 +143,7 @@ static void lay_out(struct par_park *park, const struct tri_mesh *mesh)
         [TRI_ATTRIBUTES] = vertices * (size_t)mesh->n_attributes * sizeof *mesh->attributes,
         [TRI_TRIANGLES] = triangles * sizeof *mesh->tri,
         [TRI_SUBS] = triangles * sizeof *mesh->sub,
-        [OTHERS] = vertices * 16 + triangles * 8,
+        [OTHERS] = triangles * MOST_EXTRA,
     };
     for (int k = 0; k < PARTS; k++) {
         park->part[k] = (struct part){park->size, rounded(size[k]), 0};
@@ -190,7 +192,7 @@ static enum tri_status set_up(struct par_park *park, struct tri_mesh *mesh, cons
     if (park->file < 0 || !map_file(park))
         return tri_fail(error, TRI_CANNOT_WRITE, scratch, 0, "cannot park a mesh in this directory: %s",
                         strerror(errno));
-    park->storage = (struct tri_storage){reserve, park};
+    park->storage = (struct tri_storage){reserve, extra, park};
     enum tri_status status = tri_mesh_move(mesh, &park->storage, error);
     if (!status && !start_watch(park))
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no thread can be made to watch over memory");

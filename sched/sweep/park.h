@@ -22,9 +22,6 @@ struct par_park;
 enum tri_status par_park_open(struct par_park **park, struct tri_mesh *mesh, const char *scratch, int64_t memory,
                               struct tri_error *error);
 
-/* Zeroed memory in the same file, until it is closed; NULL: there is no room. */
-void *par_park_array(struct par_park *park, size_t bytes);
-
 /* Why there was no room: instead of the status, TRI_NO_MEMORY, that the mesh gave it. Any other status stays. */
 enum tri_status par_park_status(const struct par_park *park, enum tri_status status, struct tri_error *error);
 

@@ -102,15 +102,6 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
 
 enum tri_status par_hand_out(struct par_state *state, struct tri_error *error)
 {
-    struct tri_executor executor = par_executor(&state->threads);
-    struct par_tiles tiles = tiles_of(state, &state->cells, &executor);
-    struct par_room nothing = {0};
-    double began = tri_seconds();
-    enum tri_status status = par_tiles_begin(&tiles, state->cells.estimate, error);
-    for (int32_t odd = 1; !status && odd < state->cells.n_columns; odd += 2)
-        status = par_tiles_column(&tiles, odd, false, &nothing, error);
-    status = status ? status : par_tiles_end(&tiles, error);
-    par_tiles_free(&tiles);
-    state->report->seconds_number += tri_seconds() - began;
-    return status;
+    struct par_tiles tiles = tiles_of(state, state->numbered ? &state->cells : NULL, NULL);
+    return par_tiles_whole(&tiles, error);
 }

@@ -14,7 +14,7 @@
 enum tri_status par_sweep(struct par_state *state, const struct par_partition *partition, bool *done,
                           struct tri_error *error);
 
-/* Hands out the tiles of state->cells, of a mesh that is finished. */
+/* Hands out a mesh that is finished, tile by tile if it is numbered. */
 enum tri_status par_hand_out(struct par_state *state, struct tri_error *error);
 
 #endif

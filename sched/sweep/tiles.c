@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sched/sweep/tile_copy.h"
 #include "triangle/hilbert.h"
 #include "triangle/radix.h"
 
@@ -166,30 +167,21 @@ struct job {
     struct column *column;
     int32_t row;
     struct tri_tile tile;
-    double (*points)[2], *attributes;
-    int32_t *point_markers, *regions, *segment_markers;
-    int64_t (*corners)[3], (*ends)[2];
+    struct par_tile_copy copy;
     bool no_memory;
 };
 
+static struct tri_tile tile_of(const struct column *c, int32_t r)
+{
+    const struct par_tiles *tiles = c->tiles;
+    int32_t v = c->vertex_start[r], t = c->triangle_start[r], s = c->sub_start[r];
+    return (struct tri_tile){.column = c->column, .row = r, .first_vertex = tiles->n_vertices + v,
+                             .first_triangle = tiles->n_triangles + t, .first_segment = tiles->n_segments + s,
+                             .n_vertices = c->vertex_start[r + 1] - v, .n_triangles = c->triangle_start[r + 1] - t,
+                             .n_segments = c->sub_start[r + 1] - s};
+}
+
 static void *array(int32_t n, size_t item) { return malloc(((size_t)n + 1) * item); }
-
-static bool reserve_vertices(struct job *job, const struct tri_mesh *mesh, int32_t n)
-{
-    job->points = array(n, sizeof *job->points);
-    job->point_markers = array(n, sizeof *job->point_markers);
-    job->attributes = array(n, (size_t)mesh->n_attributes * sizeof *job->attributes + 1);
-    return job->points && job->point_markers && job->attributes;
-}
-
-static void copy_vertex(struct job *job, const struct tri_mesh *mesh, int32_t v, int32_t to)
-{
-    size_t n = (size_t)mesh->n_attributes;
-    tri_mesh_place(mesh, v, job->points[to]);
-    job->point_markers[to] = mesh->vertex_markers[v];
-    if (n > 0)
-        memcpy(job->attributes + (size_t)to * n, mesh->attributes + (size_t)v * n, n * sizeof *job->attributes);
-}
 
 /* Vertices get their numbers and are copied out. */
 static void number_tile(void *context, size_t index)
@@ -197,25 +189,21 @@ static void number_tile(void *context, size_t index)
     struct job *job = (struct job *)context + index;
     struct column *c = job->column;
     const struct tri_mesh *mesh = c->tiles->mesh;
-    int32_t first = c->vertex_start[job->row], n = c->vertex_start[job->row + 1] - first, *order = c->vertex + first;
+    struct tri_tile *tile = &job->tile;
+    *tile = tile_of(c, job->row);
+    int32_t n = tile->n_vertices, *order = c->vertex + c->vertex_start[job->row];
     uint64_t *scratch = array(2 * n, sizeof *scratch);
-    job->no_memory = !reserve_vertices(job, mesh, n) || !scratch;
-    if (!job->no_memory) {
+    bool memory = par_tile_copy_reserve(&job->copy, mesh, n, tile->n_triangles, tile->n_segments) && scratch;
+    par_tile_copy_show(&job->copy, tile);
+    if (memory) {
         tri_hilbert_order(mesh->xy, order, n, scratch, NULL);
         for (int32_t i = 0; i < n; i++) {
-            c->tiles->number[order[i]] = c->tiles->n_vertices + first + i;
-            copy_vertex(job, mesh, order[i], i);
+            c->tiles->number[order[i]] = tile->first_vertex + i;
+            par_tile_copy_vertex(&job->copy, mesh, order[i], i);
         }
     }
+    job->no_memory = !memory;
     free(scratch);
-}
-
-/* The number by which a vertex is handed out: the caller's own for the caller's points. Else, and wherever vertices are
- * compared, it is `number`. */
-static int64_t shown(const struct column *c, int64_t number)
-{
-    const struct tri_mesh *mesh = c->tiles->mesh;
-    return mesh->origin && number < mesh->n_input ? mesh->origin[number] : number;
 }
 
 /* A triangle's corners by number, the largest first. */
@@ -292,8 +280,8 @@ static bool sort_tile(struct job *job, const int32_t *triangle, int32_t n)
         sort_fan(c, triangle, item + first, end - first, fan);
         for (int32_t i = first; i < end; i++) {
             for (int k = 0; k < 3; k++)
-                job->corners[i][k] = shown(c, fan[i - first].corner[k]);
-            job->regions[i] = c->tiles->mesh->tri[fan[i - first].triangle].region;
+                job->copy.corners[i][k] = par_shown(c->tiles->mesh, fan[i - first].corner[k]);
+            job->copy.regions[i] = c->tiles->mesh->tri[fan[i - first].triangle].region;
         }
     }
     free(item);
@@ -319,60 +307,28 @@ static bool sort_subs(struct job *job, const int32_t *sub, int32_t n)
     const struct column *c = job->column;
     const struct tri_mesh *mesh = c->tiles->mesh;
     struct numbered_sub *item = array(n, sizeof *item);
-    job->ends = array(n, sizeof *job->ends);
-    job->segment_markers = array(n, sizeof *job->segment_markers);
-    bool memory = item && job->ends && job->segment_markers;
-    for (int32_t i = 0; memory && i < n; i++) {
+    for (int32_t i = 0; item && i < n; i++) {
         const struct tri_subsegment *s = &mesh->sub[sub[i]];
         item[i] = (struct numbered_sub){{c->tiles->number[s->v[0]], c->tiles->number[s->v[1]]}, sub[i], s->parent};
     }
-    if (memory && n > 1)
+    if (item && n > 1)
         qsort(item, (size_t)n, sizeof *item, compare_subs);
-    for (int32_t i = 0; memory && i < n; i++) {
+    for (int32_t i = 0; item && i < n; i++) {
         for (int k = 0; k < 2; k++)
-            job->ends[i][k] = shown(c, item[i].end[k]);
-        job->segment_markers[i] = mesh->sub[item[i].sub].marker;
+            job->copy.ends[i][k] = par_shown(mesh, item[i].end[k]);
+        job->copy.segment_markers[i] = mesh->sub[item[i].sub].marker;
     }
+    bool memory = item;
     free(item);
     return memory;
-}
-
-static struct tri_tile tile_of(const struct job *job)
-{
-    const struct column *c = job->column;
-    const struct par_tiles *tiles = c->tiles;
-    int32_t r = job->row, v = c->vertex_start[r], t = c->triangle_start[r], s = c->sub_start[r];
-    return (struct tri_tile){.column = c->column, .row = r, .first_vertex = tiles->n_vertices + v,
-                             .first_triangle = tiles->n_triangles + t, .first_segment = tiles->n_segments + s,
-                             .n_vertices = c->vertex_start[r + 1] - v, .n_triangles = c->triangle_start[r + 1] - t,
-                             .n_segments = c->sub_start[r + 1] - s, .points = (const double(*)[2])job->points,
-                             .point_markers = job->point_markers, .attributes = job->attributes,
-                             .corners = (const int64_t(*)[3])job->corners, .regions = job->regions,
-                             .ends = (const int64_t(*)[2])job->ends, .segment_markers = job->segment_markers};
 }
 
 static void fill_tile(void *context, size_t index)
 {
     struct job *job = (struct job *)context + index;
     const struct column *c = job->column;
-    job->tile = tile_of(job);
-    job->corners = array(job->tile.n_triangles, sizeof *job->corners);
-    job->regions = array(job->tile.n_triangles, sizeof *job->regions);
-    job->no_memory = !job->corners || !job->regions ||
-                     !sort_tile(job, c->triangle + c->triangle_start[job->row], job->tile.n_triangles) ||
+    job->no_memory = !sort_tile(job, c->triangle + c->triangle_start[job->row], job->tile.n_triangles) ||
                      !sort_subs(job, c->sub + c->sub_start[job->row], job->tile.n_segments);
-    job->tile = tile_of(job);
-}
-
-static void free_job(struct job *job)
-{
-    free(job->points);
-    free(job->point_markers);
-    free(job->attributes);
-    free(job->corners);
-    free(job->regions);
-    free(job->ends);
-    free(job->segment_markers);
 }
 
 static bool is_empty(const struct tri_tile *t) { return t->n_vertices + t->n_triangles + t->n_segments == 0; }
@@ -399,7 +355,7 @@ static enum tri_status hand_out(struct column *c, int32_t first, int32_t end, st
     for (size_t i = 0; i < n; i++) {
         if (!status && !is_empty(&job[i].tile))
             status = c->tiles->sink->take(c->tiles->sink->user, &job[i].tile, error);
-        free_job(&job[i]);
+        par_tile_copy_free(&job[i].copy);
     }
     return status;
 }
@@ -534,79 +490,6 @@ static void free_column(struct column *c)
     free(c->triangle_start);
     free(c->sub_start);
 }
-
-/* --- what comes before and after */
-
-/* Who stands where in the caller's order; NULL: no memory. */
-static int32_t *caller_order(const struct tri_mesh *mesh, int32_t n_kept)
-{
-    int32_t *vertex = array(n_kept, sizeof *vertex);
-    for (int32_t v = 0; vertex && v < n_kept; v++)
-        vertex[mesh->origin && v < mesh->n_input ? mesh->origin[v] : v] = v;
-    return vertex;
-}
-
-static bool copy_kept(const struct par_tiles *tiles, struct job *job)
-{
-    const struct tri_mesh *mesh = tiles->mesh;
-    int32_t *vertex = caller_order(mesh, tiles->n_kept);
-    bool memory = reserve_vertices(job, mesh, tiles->n_kept) && vertex;
-    for (int32_t i = 0; memory && i < tiles->n_kept; i++) {
-        copy_vertex(job, mesh, vertex[i], i);
-        if (tiles->figure && i < mesh->n_input)
-            memcpy(job->points[i], &tiles->figure->points[2 * (size_t)i], sizeof job->points[i]);
-    }
-    free(vertex);
-    return memory;
-}
-
-static enum tri_status hand_out_kept(struct par_tiles *tiles, struct tri_error *error)
-{
-    struct job job = {.row = -1};
-    enum tri_status status = TRI_OK;
-    if (!copy_kept(tiles, &job))
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d vertices", (int)tiles->n_kept);
-    const struct tri_tile tile = {.column = -1, .row = -1, .n_vertices = tiles->n_kept,
-                                  .points = (const double(*)[2])job.points, .point_markers = job.point_markers,
-                                  .attributes = job.attributes};
-    status = status ? status : tiles->sink->take(tiles->sink->user, &tile, error);
-    tiles->n_vertices = tiles->n_kept;
-    free_job(&job);
-    return status;
-}
-
-/* Attributes of the triangles in each region. */
-static bool copy_regions(const struct tri_mesh *mesh, int32_t n_columns, double **regions)
-{
-    size_t n = (size_t)n_columns;
-    *regions = array(mesh->n_regions, n * sizeof **regions + 1);
-    for (int32_t r = 0; *regions && n > 0 && r < mesh->n_regions; r++)
-        memcpy(*regions + (size_t)r * n, tri_region_attributes(mesh, r), n * sizeof **regions);
-    return *regions;
-}
-
-enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct tri_error *error)
-{
-    const struct tri_mesh *mesh = tiles->mesh;
-    double *regions;
-    struct tri_stream stream = {.n_attributes = mesh->n_attributes, .n_regions = mesh->n_regions, .estimate = estimate,
-                                .n_columns = mesh->columns ? mesh->n_columns : tiles->region_column};
-    if (!copy_regions(mesh, stream.n_columns, &regions))
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d regions", (int)mesh->n_regions);
-    stream.regions = regions;
-    enum tri_status status = TRI_OK;
-    if (tiles->sink->begin)
-        status = tiles->sink->begin(tiles->sink->user, &stream, error);
-    free(regions);
-    return status ? status : hand_out_kept(tiles, error);
-}
-
-enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error)
-{
-    return tiles->sink->end ? tiles->sink->end(tiles->sink->user, error) : TRI_OK;
-}
-
-/* --- a column */
 
 enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, bool let_go, struct par_room *spare,
                                  struct tri_error *error)

@@ -7,8 +7,9 @@
  * NUMBERS. Vertices that there were before refinement keep theirs. The others are numbered tile by tile, along a
  * Hilbert curve over the tile's own vertices; so every corner of a triangle has its number when the triangle's tile has
  * its turn. A triangle starts at its corner with the largest number; the triangles of a tile are sorted by that corner,
- * then by the next one. So numbers depend on the mesh and the partition alone, and are 64 bits wide: only what is in
- * memory at one time must fit 32. */
+ * then by the next one; its subsegments by the parent, then by the end at which they start. So numbers depend on the
+ * mesh and the partition alone, and are 64 bits wide: only what is in memory at one time must fit 32. A mesh that is in
+ * memory as a whole has the same ones (sched/sweep/numbering.h). */
 #ifndef SCHED_SWEEP_TILES_H
 #define SCHED_SWEEP_TILES_H
 
@@ -20,7 +21,7 @@
 
 struct par_tiles {
     struct tri_mesh *mesh;
-    const struct par_partition *partition;
+    const struct par_partition *partition; /* NULL: the whole mesh is one tile */
     const struct tri_executor *executor;
     const struct tri_sink *sink;
     const struct tri_pslg *figure; /* its points are handed out as they came, bit by bit; NULL: the mesh's are */
@@ -50,6 +51,10 @@ bool par_tiles_reserve(struct par_tiles *tiles);
 
 /* Tells the sink that all columns have had their turn. */
 enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error);
+
+/* Hands out, from begin to end, a mesh in memory that has no free numbers: as it is, its tiles those of the partition
+ * that it was numbered by, if it was (sched/sweep/numbering.h). Instead of all calls above. */
+enum tri_status par_tiles_whole(struct par_tiles *tiles, struct tri_error *error);
 
 void par_tiles_free(struct par_tiles *tiles);
 

@@ -1,0 +1,536 @@
+/* Ranks of vertices, subsegments and triangles; then all move.
+ *
+ * THEOREM. Each order is total: new vertices lie at different places; of the triangles that start at a corner each has
+ * another second corner, since an edge has one triangle on its left; of the subsegments of a parent, which all run its
+ * way, each starts at another vertex. So nothing is left to how the mesh came about.
+ *
+ * What belongs to a tile is found by one counting sort, in shares; what is sorted then fits the cache, and tiles are
+ * tasks. A tile has an index here, in the order of tiles.
+ *
+ * All memory is asked for before anything moves. Items to be sorted take 16 bytes a triangle, and when they are
+ * sorted links and regions wait there while corners move into the places of links: there is never a second copy of the
+ * mesh. */
+#include "sched/sweep/numbering.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "triangle/hilbert.h"
+#include "triangle/radix.h"
+
+/* What is sorted: a number or parent, and the triangle or subsegment that is sorted by it. A triangle tells also which
+ * of its corners is the first, and whether its tile is another than that of its first corner. */
+enum { ID_BITS = 29, FIRST_BITS = 2, KEY_SHIFT = ID_BITS + FIRST_BITS, STRAY_BIT = 63 };
+
+enum { FEW = 24 }; /* are sorted by insertion */
+
+_Static_assert(INT64_C(1) << ID_BITS == TRI_MAX_TRIANGLES, "ids fill their bits");
+
+static const uint64_t FREE = UINT64_MAX; /* the item of a number that is free */
+
+static uint64_t item_of(int32_t key, int first, int32_t id)
+{
+    return (uint64_t)key << KEY_SHIFT | (uint64_t)first << ID_BITS | (uint64_t)id;
+}
+
+static int32_t key_of(uint64_t item) { return (int32_t)(item >> KEY_SHIFT); }
+static int first_of(uint64_t item) { return (int)(item >> ID_BITS & 3); }
+static int32_t id_of(uint64_t item) { return (int32_t)(item & ((UINT64_C(1) << ID_BITS) - 1)); }
+
+/* What a triangle has beside its corners, on the way to its new place. */
+struct parked {
+    int32_t n[3];
+    int32_t region;
+};
+
+/* Things of each tile: so many of each in each share of where they are now, then where the next one goes. */
+struct deal {
+    int32_t *at;         /* [shares][n_tiles] */
+    int32_t *start;      /* [n_tiles + 1] */
+    size_t shares;
+    int32_t n;           /* things that are dealt, free ones among them */
+};
+
+struct numbering {
+    struct tri_mesh *mesh;
+    const struct par_partition *partition;
+    const struct tri_executor *executor;
+    int32_t n_kept;    /* the vertices that keep their numbers */
+    int32_t n_tiles;
+    int32_t *kept_tile; /* [n_kept] */
+    struct deal vertices, triangles; /* new vertices; all triangles */
+    int32_t *order;    /* [n_vertices - n_kept] the new vertices, one after the other */
+    int32_t *rank;     /* [n_vertices - n_kept] first the tile, then the new number of vertex n_kept + i */
+    int32_t n_new;
+    int32_t *sub_rank; /* [n_subs] */
+    struct tri_subsegment *sub; /* [n_subs] */
+    int32_t *place;    /* [n_triangles] first the second corner of a triangle, then where it goes */
+    size_t n_items;    /* the larger of n_triangles and n_subs */
+    void *park;        /* [2 * n_items] items, or [n_items] struct parked */
+    int32_t n_tri, n_subs;            /* live ones */
+};
+
+static uint64_t *items_of(const struct numbering *n) { return n->park; }
+static uint64_t *dealt_items(const struct numbering *n) { return items_of(n) + n->n_items; } /* tile by tile */
+
+static int bits_of(int32_t number)
+{
+    int bits = 1;
+    while (bits < 31 && number >> bits)
+        bits++;
+    return bits;
+}
+
+/* --- tiles */
+
+static struct tri_range share_of(const struct deal *d, size_t share) { return tri_share_of(share, d->shares, d->n); }
+
+/* Counts become places: tile by tile, in each share by share. */
+static int32_t add_up_counts(struct deal *d, int32_t n_tiles)
+{
+    int32_t sum = 0;
+    for (int32_t tile = 0; tile < n_tiles; tile++) {
+        d->start[tile] = sum;
+        for (size_t share = 0; share < d->shares; share++) {
+            int32_t *at = &d->at[share * (size_t)n_tiles + (size_t)tile], count = *at;
+            *at = sum;
+            sum += count;
+        }
+    }
+    d->start[n_tiles] = sum;
+    return sum;
+}
+
+/* The tile of places that mostly lie in the same one as the last. */
+struct finder {
+    struct tri_fence fence;
+    int32_t tile;
+};
+
+static int32_t find_tile(struct finder *f, const struct par_partition *p, struct tri_point q)
+{
+    if (!tri_fence_holds(&f->fence, q)) {
+        int32_t block = par_block_at(p, 0, q), column = block / p->n_rows, row = block % p->n_rows;
+        f->fence = par_fence(p, column, row);
+        f->tile = column / 2 * (p->n_rows / 2) + row / 2;
+    }
+    return f->tile;
+}
+
+/* The tile of a new number. */
+static int32_t tile_of_number(const struct numbering *n, int32_t number)
+{
+    if (number < n->n_kept)
+        return n->kept_tile[number];
+    int32_t low = 0, high = n->n_tiles, place = number - n->n_kept; /* start[low] <= place < start[high] */
+    while (high - low > 1) {
+        int32_t middle = low + (high - low) / 2;
+        if (n->vertices.start[middle] <= place)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* --- vertices */
+
+static void count_vertices(void *context, size_t share)
+{
+    const struct numbering *n = context;
+    const struct tri_mesh *mesh = n->mesh;
+    struct tri_range range = share_of(&n->vertices, share);
+    int32_t *count = n->vertices.at + share * (size_t)n->n_tiles;
+    struct finder finder = {.fence = {1, 1, 0, 0}};
+    for (int32_t i = range.first; i < range.last; i++) {
+        int32_t v = n->n_kept + i;
+        n->rank[i] = TRI_NONE;
+        if (mesh->on[v] != TRI_VERTEX_NONE)
+            count[n->rank[i] = find_tile(&finder, n->partition, mesh->xy[v])]++;
+    }
+}
+
+static void deal_vertices(void *context, size_t share)
+{
+    const struct numbering *n = context;
+    struct tri_range range = share_of(&n->vertices, share);
+    int32_t *at = n->vertices.at + share * (size_t)n->n_tiles;
+    for (int32_t i = range.first; i < range.last; i++)
+        if (n->rank[i] != TRI_NONE)
+            n->order[at[n->rank[i]]++] = n->n_kept + i;
+}
+
+static void rank_tile(void *context, size_t tile)
+{
+    const struct numbering *n = context;
+    int32_t first = n->vertices.start[tile], end = n->vertices.start[tile + 1];
+    tri_hilbert_order(n->mesh->xy, n->order + first, end - first, items_of(n) + 2 * (size_t)first, NULL);
+    for (int32_t i = first; i < end; i++)
+        n->rank[n->order[i] - n->n_kept] = n->n_kept + i;
+}
+
+static void find_kept(void *context, size_t share)
+{
+    const struct numbering *n = context;
+    struct tri_range range = tri_share(share, n->n_kept);
+    struct finder finder = {.fence = {1, 1, 0, 0}};
+    for (int32_t v = range.first; v < range.last; v++)
+        n->kept_tile[v] = find_tile(&finder, n->partition, n->mesh->xy[v]);
+}
+
+static void rank_vertices(struct numbering *n)
+{
+    tri_execute(n->executor, tri_shares(n->n_kept), find_kept, n);
+    tri_execute(n->executor, n->vertices.shares, count_vertices, n);
+    n->n_new = add_up_counts(&n->vertices, n->n_tiles);
+    tri_execute(n->executor, n->vertices.shares, deal_vertices, n);
+    tri_execute(n->executor, (size_t)n->n_tiles, rank_tile, n);
+}
+
+static int32_t renamed(const struct numbering *n, int32_t v)
+{
+    return v < n->n_kept ? v : n->rank[v - n->n_kept];
+}
+
+/* --- subsegments */
+
+static void rename_subs(struct numbering *n)
+{
+    struct tri_mesh *mesh = n->mesh;
+    for (int32_t s = 0; s < mesh->n_subs; s++)
+        for (int k = 0; k < 2 && mesh->sub[s].v[k] != TRI_NONE; k++)
+            mesh->sub[s].v[k] = renamed(n, mesh->sub[s].v[k]);
+}
+
+static void sort_subs(const struct numbering *n, int32_t limit)
+{
+    tri_radix_sort(items_of(n), items_of(n) + n->n_items, n->n_subs, KEY_SHIFT, KEY_SHIFT + bits_of(limit),
+                   n->executor);
+}
+
+static int32_t tile_of_sub(const struct numbering *n, const struct tri_subsegment *s)
+{
+    int32_t a = tile_of_number(n, s->v[0]), b = tile_of_number(n, s->v[1]);
+    return a > b ? a : b;
+}
+
+/* By start, then, since sorting keeps the order of equals, by parent, then by tile. */
+static void rank_subs(struct numbering *n)
+{
+    const struct tri_mesh *mesh = n->mesh;
+    uint64_t *item = items_of(n);
+    for (int32_t s = 0; s < mesh->n_subs; s++)
+        if (mesh->sub[s].v[0] != TRI_NONE)
+            item[n->n_subs++] = item_of(mesh->sub[s].v[0], 0, s);
+    sort_subs(n, mesh->n_vertices);
+    for (int32_t i = 0; i < n->n_subs; i++) {
+        int32_t parent = mesh->sub[id_of(item[i])].parent;
+        assert(parent >= 0 && parent < mesh->n_parents);
+        item[i] = item_of(parent, 0, id_of(item[i]));
+    }
+    sort_subs(n, mesh->n_parents);
+    for (int32_t i = 0; i < n->n_subs; i++)
+        item[i] = item_of(tile_of_sub(n, &mesh->sub[id_of(item[i])]), 0, id_of(item[i]));
+    sort_subs(n, n->n_tiles);
+    for (int32_t i = 0; i < n->n_subs; i++)
+        n->sub_rank[id_of(item[i])] = i;
+}
+
+/* --- triangles. A place is the new number, and how far corners turn to bring the first to the front. */
+
+static int32_t place_of(int32_t number, int first) { return number << 2 | first; }
+
+static int32_t new_code(const struct numbering *n, int32_t code)
+{
+    int32_t place = n->place[tri_of(code)];
+    int e = tri_edge(code) - (place & 3);
+    return tri_code(place >> 2, e < 0 ? e + 3 : e);
+}
+
+/* The last tile of corners by their new numbers. */
+static int32_t tile_of_triangle(const struct numbering *n, const int32_t v[3])
+{
+    int32_t last = 0;
+    for (int k = 0; k < 3; k++) {
+        int32_t tile = tile_of_number(n, v[k]);
+        last = tile > last ? tile : last;
+    }
+    return last;
+}
+
+/* Of new vertices the one with the largest number is in the last tile. */
+static bool is_stray(const struct numbering *n, const int32_t v[3], int first)
+{
+    if (v[0] >= n->n_kept && v[1] >= n->n_kept && v[2] >= n->n_kept)
+        return false;
+    return tile_of_number(n, v[first]) != tile_of_triangle(n, v);
+}
+
+static int32_t tile_of_item(const struct numbering *n, uint64_t item)
+{
+    if (item >> STRAY_BIT)
+        return tile_of_triangle(n, n->mesh->tri[id_of(item)].v);
+    return tile_of_number(n, key_of(item));
+}
+
+/* The same for items that mostly are of the same tile as the last. */
+struct tile_range {
+    int32_t tile, first, end; /* numbers of its vertices: first .. end - 1 */
+};
+
+static int32_t tile_after(const struct numbering *n, struct tile_range *last, uint64_t item)
+{
+    int32_t key = key_of(item);
+    if (item >> STRAY_BIT || key < n->n_kept)
+        return tile_of_item(n, item);
+    if (key < last->first || key >= last->end) {
+        const int32_t *start = n->vertices.start;
+        int32_t tile = tile_of_number(n, key);
+        *last = (struct tile_range){tile, n->n_kept + start[tile], n->n_kept + start[tile + 1]};
+    }
+    return last->tile;
+}
+
+static uint64_t rename_triangle(const struct numbering *n, int32_t t)
+{
+    int32_t *v = n->mesh->tri[t].v;
+    for (int k = 0; k < 3; k++)
+        v[k] = renamed(n, v[k]);
+    int first = v[1] > v[0] ? 1 : 0;
+    first = v[2] > v[first] ? 2 : first;
+    n->place[t] = v[tri_next[first]];
+    return item_of(v[first], first, t) | (uint64_t)is_stray(n, v, first) << STRAY_BIT;
+}
+
+static void rename_corners(void *context, size_t share)
+{
+    const struct numbering *n = context;
+    struct tri_range range = share_of(&n->triangles, share);
+    struct tile_range last = {0};
+    int32_t *count = n->triangles.at + share * (size_t)n->n_tiles;
+    for (int32_t t = range.first; t < range.last; t++) {
+        items_of(n)[t] = FREE;
+        if (!tri_is_live(&n->mesh->tri[t]))
+            continue;
+        items_of(n)[t] = rename_triangle(n, t);
+        count[tile_after(n, &last, items_of(n)[t])]++;
+    }
+}
+
+static void deal_triangles(void *context, size_t share)
+{
+    const struct numbering *n = context;
+    struct tri_range range = share_of(&n->triangles, share);
+    struct tile_range last = {0};
+    int32_t *at = n->triangles.at + share * (size_t)n->n_tiles;
+    for (int32_t t = range.first; t < range.last; t++) {
+        uint64_t item = items_of(n)[t];
+        if (item != FREE)
+            dealt_items(n)[at[tile_after(n, &last, item)]++] = item & ~(UINT64_C(1) << STRAY_BIT);
+    }
+}
+
+/* Items by key, those of one tile. */
+static void sort_items(uint64_t *item, uint64_t *scratch, int32_t count)
+{
+    int32_t low = INT32_MAX, high = 0;
+    for (int32_t i = 0; i < count; i++) {
+        low = key_of(item[i]) < low ? key_of(item[i]) : low;
+        high = key_of(item[i]) > high ? key_of(item[i]) : high;
+    }
+    for (int32_t i = 0; i < count; i++)
+        item[i] -= (uint64_t)low << KEY_SHIFT;
+    tri_radix_sort(item, scratch, count, KEY_SHIFT, KEY_SHIFT + bits_of(high - low), NULL);
+}
+
+static void insert_items(uint64_t *item, int32_t count)
+{
+    for (int32_t i = 1; i < count; i++) {
+        uint64_t moving = item[i];
+        int32_t at = i;
+        for (; at > 0 && item[at - 1] > moving; at--)
+            item[at] = item[at - 1];
+        item[at] = moving;
+    }
+}
+
+/* The triangles that start at one corner, by the next one. */
+static void sort_fan(const struct numbering *n, uint64_t *item, uint64_t *scratch, int32_t count)
+{
+    if (count == 1)
+        return;
+    for (int32_t i = 0; i < count; i++)
+        item[i] = item_of(n->place[id_of(item[i])], first_of(item[i]), id_of(item[i]));
+    if (count <= FEW)
+        insert_items(item, count);
+    else
+        sort_items(item, scratch, count);
+}
+
+static void place_tile(void *context, size_t tile)
+{
+    const struct numbering *n = context;
+    int32_t first = n->triangles.start[tile], count = n->triangles.start[tile + 1] - first;
+    uint64_t *item = dealt_items(n) + first, *scratch = items_of(n) + first;
+    sort_items(item, scratch, count);
+    for (int32_t begin = 0, end; begin < count; begin = end) {
+        for (end = begin + 1; end < count && key_of(item[end]) == key_of(item[begin]);)
+            end++;
+        sort_fan(n, item + begin, scratch + begin, end - begin);
+        for (int32_t i = begin; i < end; i++)
+            n->place[id_of(item[i])] = place_of(first + i, first_of(item[i]));
+    }
+}
+
+static void rank_triangles(struct numbering *n)
+{
+    tri_execute(n->executor, n->triangles.shares, rename_corners, n);
+    n->n_tri = add_up_counts(&n->triangles, n->n_tiles);
+    tri_execute(n->executor, n->triangles.shares, deal_triangles, n);
+    tri_execute(n->executor, (size_t)n->n_tiles, place_tile, n);
+}
+
+/* --- all move */
+
+static void park_share(void *context, size_t share)
+{
+    const struct numbering *n = context;
+    struct parked *park = n->park;
+    struct tri_range range = tri_share(share, n->mesh->n_triangles);
+    for (int32_t t = range.first; t < range.last; t++) {
+        const struct tri_triangle *from = &n->mesh->tri[t];
+        if (!tri_is_live(from))
+            continue;
+        struct parked *to = &park[n->place[t] >> 2];
+        for (int k = 0, old = n->place[t] & 3; k < 3; k++, old = tri_next[old])
+            to->n[k] = from->n[old] >= 0 ? new_code(n, from->n[old]) : ~n->sub_rank[~from->n[old]];
+        to->region = from->region;
+    }
+}
+
+/* Where a triangle keeps the corners of the triangle that it will hold, until its own triangle's corners have been
+ * read: the links there have been parked already. */
+static int32_t *waiting_corners(struct tri_triangle *triangle) { return triangle->n; }
+
+static void move_corners(void *context, size_t share)
+{
+    const struct numbering *n = context;
+    struct tri_range range = tri_share(share, n->mesh->n_triangles);
+    for (int32_t t = range.first; t < range.last; t++) {
+        const int32_t *from = n->mesh->tri[t].v;
+        if (from[0] == TRI_NONE)
+            continue;
+        int32_t *to = waiting_corners(&n->mesh->tri[n->place[t] >> 2]);
+        for (int k = 0, old = n->place[t] & 3; k < 3; k++, old = tri_next[old])
+            to[k] = from[old];
+    }
+}
+
+static void settle_share(void *context, size_t share)
+{
+    const struct numbering *n = context;
+    const struct parked *park = n->park;
+    struct tri_range range = tri_share(share, n->n_tri);
+    for (int32_t t = range.first; t < range.last; t++) {
+        const int32_t *v = waiting_corners(&n->mesh->tri[t]);
+        n->mesh->tri[t] = (struct tri_triangle){
+            {v[0], v[1], v[2]}, {park[t].n[0], park[t].n[1], park[t].n[2]}, park[t].region, 0};
+    }
+}
+
+static void move_subs(struct numbering *n)
+{
+    struct tri_mesh *mesh = n->mesh;
+    for (int32_t s = 0; s < mesh->n_subs; s++) {
+        if (mesh->sub[s].v[0] == TRI_NONE)
+            continue;
+        struct tri_subsegment *to = &n->sub[n->sub_rank[s]];
+        *to = mesh->sub[s];
+        for (int side = 0; side < 2; side++)
+            if (to->side[side] != TRI_NONE)
+                to->side[side] = new_code(n, to->side[side]);
+    }
+    if (n->n_subs > 0)
+        memcpy(mesh->sub, n->sub, (size_t)n->n_subs * sizeof *n->sub);
+}
+
+/* Few enough shares for counts not to outgrow what is counted. */
+static bool reserve_deal(struct deal *d, int32_t n, int32_t n_tiles)
+{
+    size_t most = (size_t)n / (size_t)n_tiles + 1, shares = tri_shares(n);
+    *d = (struct deal){.n = n, .shares = shares < most ? shares : most};
+    d->at = calloc(d->shares * (size_t)n_tiles, sizeof *d->at);
+    d->start = malloc(((size_t)n_tiles + 1) * sizeof *d->start);
+    return d->at && d->start;
+}
+
+static enum tri_status allocate(struct numbering *n, struct tri_error *error)
+{
+    const struct tri_mesh *mesh = n->mesh;
+    size_t vertices = (size_t)(mesh->n_vertices - n->n_kept), subs = (size_t)mesh->n_subs;
+    n->n_items = (size_t)(mesh->n_triangles > mesh->n_subs ? mesh->n_triangles : mesh->n_subs);
+    size_t for_vertices = vertices * tri_vertex_size(mesh), for_items = n->n_items * sizeof(struct parked);
+    bool deals = reserve_deal(&n->vertices, mesh->n_vertices - n->n_kept, n->n_tiles);
+    deals = reserve_deal(&n->triangles, mesh->n_triangles, n->n_tiles) && deals;
+    n->kept_tile = malloc(((size_t)n->n_kept + 1) * sizeof *n->kept_tile);
+    n->order = tri_mesh_extra(mesh, (vertices + 1) * sizeof *n->order);
+    n->rank = tri_mesh_extra(mesh, (vertices + 1) * sizeof *n->rank);
+    n->sub_rank = tri_mesh_extra(mesh, (subs + 1) * sizeof *n->sub_rank);
+    n->sub = tri_mesh_extra(mesh, (subs + 1) * sizeof *n->sub);
+    n->place = tri_mesh_extra(mesh, ((size_t)mesh->n_triangles + 1) * sizeof *n->place);
+    n->park = tri_mesh_extra(mesh, (for_vertices > for_items ? for_vertices : for_items) + 1);
+    if (deals && n->kept_tile && n->order && n->rank && n->sub_rank && n->sub && n->place && n->park)
+        return TRI_OK;
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for numbering %d triangles", (int)mesh->n_triangles);
+}
+
+/* Cannot fail. */
+static void renumber(struct numbering *n)
+{
+    struct tri_mesh *mesh = n->mesh;
+    rank_vertices(n);
+    tri_mesh_gather_vertices(mesh, n->n_kept, n->order, n->n_new, n->park, n->executor);
+    tri_mesh_extra_free(mesh, n->order);
+    n->order = NULL;
+    rename_subs(n);
+    rank_subs(n);
+    rank_triangles(n);
+    tri_execute(n->executor, tri_shares(mesh->n_triangles), park_share, n);
+    tri_execute(n->executor, tri_shares(mesh->n_triangles), move_corners, n);
+    tri_execute(n->executor, tri_shares(n->n_tri), settle_share, n);
+    move_subs(n);
+    mesh->n_triangles = n->n_tri;
+    mesh->n_subs = n->n_subs;
+    mesh->n_vertices = n->n_kept + n->n_new;
+}
+
+static void free_numbering(struct numbering *n)
+{
+    struct deal *deals[] = {&n->vertices, &n->triangles};
+    for (int k = 0; k < 2; k++) {
+        free(deals[k]->at);
+        free(deals[k]->start);
+    }
+    free(n->kept_tile);
+    tri_mesh_extra_free(n->mesh, n->order);
+    tri_mesh_extra_free(n->mesh, n->rank);
+    tri_mesh_extra_free(n->mesh, n->sub_rank);
+    tri_mesh_extra_free(n->mesh, n->sub);
+    tri_mesh_extra_free(n->mesh, n->place);
+    tri_mesh_extra_free(n->mesh, n->park);
+}
+
+enum tri_status par_number(struct tri_mesh *mesh, const struct par_partition *partition, int32_t n_kept,
+                           const struct tri_executor *executor, struct tri_error *error)
+{
+    assert(mesh->incidence.n_vertices <= n_kept && n_kept <= mesh->n_vertices);
+    struct numbering n = {.mesh = mesh, .partition = partition, .executor = executor, .n_kept = n_kept,
+                          .n_tiles = partition->n_columns / 2 * (partition->n_rows / 2)};
+    enum tri_status status = tri_stop_is_asked(mesh->stop) ? tri_fail_stopped(error) : allocate(&n, error);
+    if (!status)
+        renumber(&n);
+    assert(status || tri_mesh_is_sound(mesh));
+    free_numbering(&n);
+    return status;
+}
