@@ -399,14 +399,15 @@ enum tri_status par_checkpoint_begin(struct par_checkpoint *c, struct par_state 
     c->stop = state->mesh->stop;
     c->last = tri_seconds();
     tiles->sink = &c->sink;
-    state->mesh->stop = NULL;
+    state->mesh->stop = again ? NULL : c->stop; /* as long as there is nothing to lose */
     enum tri_status status = par_tiles_begin(tiles, tiles->partition->estimate, error);
     return status || !again ? status : load(c, state, tiles, odd, error);
 }
 
-enum tri_status par_checkpoint_border(struct par_checkpoint *c, const struct par_state *state,
+enum tri_status par_checkpoint_border(struct par_checkpoint *c, struct par_state *state,
                                       const struct par_tiles *tiles, int32_t odd, struct tri_error *error)
 {
+    state->mesh->stop = NULL;
     bool asked = tri_stop_is_asked(c->stop), failed = c->spool.failed != TRI_OK;
     if (!asked && !failed && tri_seconds() - c->last < c->seconds)
         return TRI_OK;

@@ -65,8 +65,8 @@ void par_checkpoint_close(struct par_checkpoint *checkpoint, bool remove);
 
 /* --- for the sweep */
 
-/* When a sweep begins: the tiles' sink becomes the checkpoint's, which may hand out tiles again, and the mesh is no longer
- * stopped in the midst of a column. Then par_tiles_begin, for about so many triangles; and where there is a state, *odd
+/* When a sweep begins: the tiles' sink becomes the checkpoint's, which may hand out tiles again, and, once a
+ * column is finished, the mesh is no longer stopped in the midst of one. Then par_tiles_begin, for about so many triangles; and where there is a state, *odd
  * becomes the column that is next, and the mesh, the lists and the tiles' counts what they were. TRI_BAD_INPUT: the
  * state is another run's, or damaged. TRI_NO_MEMORY, TRI_CANNOT_WRITE, or what the sink says. */
 enum tri_status par_checkpoint_begin(struct par_checkpoint *checkpoint, struct par_state *state, struct par_tiles *tiles,
@@ -75,7 +75,7 @@ enum tri_status par_checkpoint_begin(struct par_checkpoint *checkpoint, struct p
 /* Between two columns, `odd` being next: writes the state where it is time to, where somebody asks for the end, and
  * where the tiles' taker has failed; then returns TRI_STOPPED or that failure. Else TRI_OK, TRI_CANNOT_WRITE,
  * TRI_NO_MEMORY. */
-enum tri_status par_checkpoint_border(struct par_checkpoint *checkpoint, const struct par_state *state,
+enum tri_status par_checkpoint_border(struct par_checkpoint *checkpoint, struct par_state *state,
                                       const struct par_tiles *tiles, int32_t odd, struct tri_error *error);
 
 /* The sweep has ended, in whatever way. forget: what it has done so far is worth nothing. TRI_CANNOT_WRITE. */
