@@ -122,6 +122,10 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/sweep/sweep.c
     sched/worklist.c
     sched/phase.c
+    sched/ranks/carrier.c
+    sched/ranks/fragment.c
+    sched/ranks/hand_out.c
+    sched/ranks/ranks.c
     sched/schedule.c
     sched/triangulate.c
     sched/mesh.c)

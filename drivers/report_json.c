@@ -91,10 +91,10 @@ static json_t *predictions_of(const struct par_report *r)
 
 static json_t *refused_of(const struct tri_refine_report *r)
 {
-    return json_pack("{s:o, s:o, s:o, s:o, s:o}", "input_angle", whole(r->refused[TRI_EXCUSE_INPUT_ANGLE]),
-                     "narrow_gap", whole(r->refused[TRI_EXCUSE_NARROW_GAP]), "protected",
-                     whole(r->refused[TRI_EXCUSE_PROTECTED]), "limit", whole(r->refused[TRI_EXCUSE_LIMIT]),
-                     "precision", whole(r->refused[TRI_EXCUSE_PRECISION]));
+    return json_pack("{s:o, s:o, s:o, s:o, s:o}", "input_angle", whole(r->given_up[TRI_EXCUSE_INPUT_ANGLE]),
+                     "narrow_gap", whole(r->given_up[TRI_EXCUSE_NARROW_GAP]), "protected",
+                     whole(r->given_up[TRI_EXCUSE_PROTECTED]), "limit", whole(r->given_up[TRI_EXCUSE_LIMIT]),
+                     "precision", whole(r->given_up[TRI_EXCUSE_PRECISION]));
 }
 
 static json_t *schedule_of(const struct par_report *r)

@@ -55,6 +55,9 @@ void par_partition_free(struct par_partition *partition);
 static inline int32_t par_blocks(const struct par_partition *p) { return p->n_columns * p->n_rows; }
 static inline int32_t par_cells(const struct par_partition *p) { return (p->n_columns - 1) * (p->n_rows - 1); }
 
+/* Is there a coarser one that is worth a round of phases? */
+static inline bool par_can_coarsen(const struct par_partition *p) { return par_cells(p) >= 16; }
+
 /* The box of block (column, row). */
 struct tri_fence par_fence(const struct par_partition *partition, int32_t column, int32_t row);
 

@@ -197,8 +197,8 @@ static void set_up(struct phase *p, struct task *task)
     task->options.fence = &task->fence;
     task->options.worklist = task->worklist;
     task->options.n_worklist = task->n_worklist;
-    task->options.left = leave_triangle;
-    task->options.left_user = task;
+    task->options.deferred = leave_triangle;
+    task->options.deferred_user = task;
     task->options.more_room = par_more_room;
     task->options.more_room_user = &task->room;
 }
@@ -333,7 +333,7 @@ static bool report_block(const struct phase *p, const struct task *task)
     }
     report->blocks[report->n_blocks++] = (struct par_block_report){
         p->state->n_schedules - 1, p->state->round, p->phase, task->block, task->n_worklist,
-        task->report.inserted_free + task->report.inserted_on_segments, task->report.deferred, task->seconds};
+        task->report.inserted_free + task->report.inserted_on_segments, task->report.fenced, task->seconds};
     return true;
 }
 
@@ -349,9 +349,9 @@ void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *a
     sum->inserted_free += add->inserted_free;
     sum->inserted_on_segments += add->inserted_on_segments;
     sum->gated += add->gated;
-    sum->deferred += add->deferred;
+    sum->fenced += add->fenced;
     for (int k = 0; k < TRI_EXCUSES; k++)
-        sum->refused[k] += add->refused[k];
+        sum->given_up[k] += add->given_up[k];
     sum->hit_limit |= add->hit_limit;
     sum->hit_cap |= add->hit_cap;
 }

@@ -46,7 +46,7 @@ struct par_state {
     bool numbered;           /* and nothing was */
     double estimate;         /* of the triangles of a mesh that does not fit in memory */
     int64_t gone;            /* triangles that have been handed out, and are no more */
-    bool swept;              /* all have */
+    bool delivered;          /* all have */
     struct par_park *park;   /* where the mesh lies; NULL: in memory */
 };
 

@@ -9,6 +9,7 @@
 
 #include "triangle/clock.h"
 #include "sched/phase.h"
+#include "sched/ranks/ranks.h"
 #include "sched/sweep/sweep.h"
 #include "sched/theory.h"
 #include "sched/threads.h"
@@ -24,7 +25,7 @@ static const double CELLS = 128, SMALLEST_CELL = 8192, LARGEST_CELL = 131072, CO
 /* Of the fewest triangles that are worth a schedule, a share that one call makes at once to see whether they come. */
 static const double A_LITTLE = 0.25;
 
-enum { FEWEST_CELLS = 8, FEWEST_COARSE_CELLS = 32, FEWEST_TO_COARSEN = 16, MAX_ROUNDS = 24 };
+enum { FEWEST_CELLS = 8, FEWEST_COARSE_CELLS = 32, MAX_ROUNDS = 24 };
 
 struct par_options par_defaults(void) { return (struct par_options){0}; }
 
@@ -252,11 +253,22 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
     for (state->round = 0; !status && state->round < MAX_ROUNDS; state->round++) {
         status = run_phases(state, partition, error);
         state->report->rounds++;
-        if (state->worklist.n == 0 || par_cells(partition) < FEWEST_TO_COARSEN)
+        if (state->worklist.n == 0 || !par_can_coarsen(partition))
             break;
         par_partition_coarsen(partition);
     }
-    state->report->deferred += state->report->total.deferred; /* run_schedule clears it in the total */
+    state->report->deferred += state->report->total.fenced; /* run_schedule clears it in the total */
+    return status;
+}
+
+static enum tri_status refine_on_ranks(struct par_state *state, const struct par_partition *partition,
+                                       struct tri_error *error)
+{
+    struct tri_executor executor = par_executor(&state->threads);
+    struct par_tiles tiles = par_tiles_of(state, partition, &executor);
+    enum tri_status status = par_refine_on_ranks(state, partition, &tiles, error);
+    state->delivered = true;
+    par_tiles_free(&tiles);
     return status;
 }
 
@@ -270,8 +282,9 @@ static const double SURELY_ONE_MESH = 0.8;
 static bool is_too_much(const struct par_state *state, double triangles)
 {
     const struct par_options *options = state->options;
-    return options->sink && (options->sweep || triangles > SURELY_ONE_MESH * TRI_MAX_TRIANGLES ||
-                             (options->memory > 0 && triangles * BYTES_IN_MEMORY > (double)options->memory));
+    return options->sink && !options->carrier &&
+           (options->sweep || triangles > SURELY_ONE_MESH * TRI_MAX_TRIANGLES ||
+            (options->memory > 0 && triangles * BYTES_IN_MEMORY > (double)options->memory));
 }
 
 static void note_size(struct par_state *state)
@@ -355,9 +368,9 @@ static enum tri_status leave_memory(struct par_state *state, const struct par_pa
     bool can_sweep = state->may_number && (state->options->sink->begin || !state->options->scratch);
     state->estimate = partition->estimate;
     if (can_sweep)
-        status = try_to_sweep(state, partition, &state->swept, error);
-    state->report->way = state->swept ? PAR_SWEPT : PAR_PARKED;
-    return status || state->swept ? status : park(state, error);
+        status = try_to_sweep(state, partition, &state->delivered, error);
+    state->report->way = state->delivered ? PAR_SWEPT : PAR_PARKED;
+    return status || state->delivered ? status : park(state, error);
 }
 
 /* What no block could do, and what blocks have left unused. */
@@ -371,7 +384,7 @@ static enum tri_status finish_schedule(struct par_state *state, const struct tri
     }
     state->report->seconds_last += tri_seconds() - last;
     enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number, error);
-    state->report->total.gated = state->report->total.deferred = 0; /* all of them have had their turn */
+    state->report->total.gated = state->report->total.fenced = 0; /* all of them have had their turn */
     return status ? status : closed;
 }
 
@@ -400,9 +413,11 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         par_partition_free(&state->cells);
         status = par_partition_copy(&state->cells, partition, error);
     }
-    if (!status && top && !state->park && is_too_much(state, partition->estimate))
+    if (!status && top && state->may_number && state->options->sink && state->options->carrier)
+        status = refine_on_ranks(state, partition, error);
+    else if (!status && top && !state->park && is_too_much(state, partition->estimate))
         status = leave_memory(state, partition, error);
-    if (status || state->swept)
+    if (status || state->delivered)
         return status;
     status = run_rounds(state, partition, error);
     note_size(state);
@@ -509,7 +524,7 @@ static enum tri_status refine_sizes_first(struct par_state *state, const struct 
 static bool must_be_sequential(const struct tri_refine_options *quality, const struct par_options *options)
 {
     return quality->max_steiner >= 0 || quality->gate || quality->fence || quality->worklist || quality->more_room ||
-           quality->left || (quality->unsuitable && !options->size_test_in_parallel);
+           quality->deferred || (quality->unsuitable && !options->size_test_in_parallel);
 }
 
 /* Refines by schedules: two where angles are dear, and a last call for what is beyond them. */
@@ -532,7 +547,7 @@ static enum tri_status refine_by_schedule(struct par_state *state, const struct 
 static enum tri_status deliver(struct par_state *state, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    if (state->swept)
+    if (state->delivered)
         return TRI_OK;
     if (state->report->levels > 0 && !state->options->by_block && !state->numbered)
         status = number_mesh(state, error);

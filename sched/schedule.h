@@ -44,6 +44,10 @@ struct par_options {
     struct par_checkpoint *checkpoint; /* where the state of a sweep is kept, and taken from (sched/sweep/checkpoint.h);
                                           NULL: nowhere */
     bool sweep;              /* for tests: whatever memory there is */
+    struct par_carrier *carrier; /* not NULL: this is one of several ranks, which all make this call with the same mesh,
+                                bounds and cells, and each gets tiles of its own (sched/ranks/ranks.h), in the numbers
+                                of one process. What is no schedule, or has another behind it, each rank does as a
+                                whole, and rank 0 gets all tiles. Whoever makes the call ends with par_agree */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
     int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, and pause often */
     /* Told by the calling thread: the phase that begins (0: pre-refinement, then 1 to 4, at last PAR_NUMBERING),

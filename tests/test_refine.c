@@ -414,7 +414,7 @@ static void refine_within(struct tri_mesh *mesh, const struct tri_fence *fence, 
     struct tri_refine_options options = support_quality(angle, area).quality;
     options.fence = fence;
     assert_int_equal(tri_refine(mesh, &options, &report, NULL), TRI_OK);
-    assert_true(report.inserted_free > 50 && report.deferred > 0);
+    assert_true(report.inserted_free > 50 && report.fenced > 0);
 }
 
 /* Each triangle with a corner outside the box is there before and after. */
@@ -566,11 +566,11 @@ static void test_what_is_left_is_told(void **state)
     options.gate = left_of;
     options.gate_user = &gate;
     options.fence = &fence;
-    options.left = count_left;
-    options.left_user = &left;
+    options.deferred = count_left;
+    options.deferred_user = &left;
     assert_int_equal(tri_refine(&mesh, &options, &report, NULL), TRI_OK);
-    assert_true(report.gated > 0 && report.deferred > 0);
-    assert_int_equal(left, report.gated + report.deferred);
+    assert_true(report.gated > 0 && report.fenced > 0);
+    assert_int_equal(left, report.gated + report.fenced);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
 }

@@ -97,9 +97,9 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, tri_triangle_id
         return TRI_EXCUSE_PROTECTED;
     if (report->hit_cap && badness == TRI_BAD_ANGLE)
         return TRI_EXCUSE_LIMIT;
-    if (report->gated + report->deferred > 0)
+    if (report->gated + report->fenced > 0)
         return TRI_EXCUSE_DEFERRED;
-    bool protected_more = report->refused[TRI_EXCUSE_PROTECTED] > report->refused[TRI_EXCUSE_PRECISION];
+    bool protected_more = report->given_up[TRI_EXCUSE_PROTECTED] > report->given_up[TRI_EXCUSE_PRECISION];
     return protected_more ? TRI_EXCUSE_PROTECTED : TRI_EXCUSE_PRECISION; /* behind a protected one that is far away */
 }
 

@@ -13,8 +13,8 @@
  * in a bounded figure. A subsegment that is split is at least half as long as the longest edge of the triangle, hence
  * longer than the root of A / 2, and is split near its middle: that is done finitely many times, too. Both counts do
  * not depend on what the rest of refinement inserts in between, for that only takes room away. Where a size test
- * refuses triangles of any size, the resolution of coordinates bounds both: the disk's radius and the subsegment's
- * length are at least the shortest edge.
+ * refuses triangles of any size, the shortest edge (limits.shortest2) bounds both: the disk's radius and the
+ * subsegment's length are no less.
  *
  * So the bound on areas is kept by every triangle whose least height is more than three shortest edges, some 400 ulps
  * of the largest coordinate. */

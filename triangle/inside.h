@@ -9,8 +9,8 @@
 tri_sub_id tri_long_wall(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                          tri_triangle_id triangle, const struct tri_shape *shape);
 
-/* The triangle's centroid. False where it has none within the resolution of coordinates: a disk about it, in the
- * triangle, would have a radius below the shortest edge. */
+/* The triangle's centroid. False where a disk about it, in the triangle, would have a radius below the shortest edge
+ * that coordinates resolve. */
 bool tri_centroid(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape,
                   struct tri_point *p);
 

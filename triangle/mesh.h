@@ -60,10 +60,11 @@ struct tri_subsegment {
     tri_parent_id parent; /* TRI_NONE only in a record that is free (see par_number) */
 };
 
-/* A subsegment as it was before refinement: what splitting, shells and small input angles refer to. */
+/* A segment: the parent of the subsegments that refinement splits it into. Splitting, shells and small input angles
+ * refer to it. */
 struct tri_parent {
     tri_vertex_id v[2];
-    int32_t segment; /* input segment, or TRI_NONE */
+    int32_t segment; /* the input segment that it is a part of, the first of several; TRI_NONE: of the hull alone */
     bool odd;        /* after tri_constrain: an odd number of input segments run along it */
     struct tri_point guard; /* with the ends, a triangle outside that is the parent's own, see split.c; NaN: all is */
 };

@@ -69,9 +69,15 @@ enum { WORKLIST_CHUNK = 1 << 16 };
 /* Beyond this lies no point that the predicates can carry: the triangle's area has been rounded to nothing. */
 static const double FARTHEST = TRI_LARGEST_COORDINATE / 2;
 
-/* DONE: a point was inserted, or the triangle is gone; AGAIN: a subsegment was split instead, the triangle may still
- * stand; LEFT: it is somebody else's. */
-enum outcome { DONE, AGAIN, REFUSED, LEFT, FAILED };
+/* What came of a bad triangle. */
+enum outcome {
+    DONE,     /* a point was inserted, or the triangle is gone */
+    AGAIN,    /* a subsegment was split instead, and the triangle may still stand */
+    REFUSED,  /* this point cannot be had, for the reason in `excuse`; perhaps another */
+    GIVEN_UP, /* it stays, and has been counted */
+    DEFERRED, /* the gate or the fence stands before it: somebody else's */
+    FAILED    /* no memory, no room, or somebody asks for the end */
+};
 
 struct tri_refine_options tri_refine_defaults(void)
 {
@@ -95,14 +101,14 @@ static bool push(struct tri_refiner *r, int32_t triangle, enum tri_badness badne
 }
 
 /* Judges the triangle of an edge and the new vertex, from the coordinates the cavity search left. */
-static bool judge_edge(struct tri_refiner *r, const struct tri_cavity_edge *edge, double bound2)
+static bool judge_edge(struct tri_refiner *r, const struct tri_cavity_edge *edge, double area2_bound)
 {
     struct tri_relative ra = edge[0].ra, rb = edge[1].ra;
     assert(edge->triangle >= 0);
     double area2 = edge->area2, x = ra.x - rb.x, y = ra.y - rb.y, l = x * x + y * y;
     if (area2 * area2 < r->criterion.bounds.sin2 * tri_longer_product(ra.l, rb.l, l))
         return push(r, edge->triangle, TRI_BAD_ANGLE, tri_lesser(ra.l, tri_lesser(rb.l, l)));
-    bool is_bad = area2 > bound2;
+    bool is_bad = area2 > area2_bound;
     if (r->options->unsuitable)
         is_bad = is_bad || tri_is_unsuitable(&r->criterion, r->mesh->tri[edge->triangle].v);
     struct tri_entry entry = {edge->triangle, r->mesh->tri[edge->triangle].state};
@@ -206,13 +212,12 @@ static enum outcome insert_free(struct tri_refiner *r, struct tri_point p, int32
     return judge_fan(r) && queue_walls(r) ? DONE : FAILED;
 }
 
-/* The gate or the fence stands before this triangle: somebody else's. */
-static enum outcome leave(struct tri_refiner *r, int32_t triangle, int64_t *counter)
+static enum outcome defer(struct tri_refiner *r, tri_triangle_id triangle, int64_t *counter)
 {
     ++*counter;
-    if (r->options->left)
-        r->options->left(r->options->left_user, triangle);
-    return LEFT;
+    if (r->options->deferred)
+        r->options->deferred(r->options->deferred_user, triangle);
+    return DEFERRED;
 }
 
 static enum outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
@@ -223,8 +228,8 @@ static enum outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
 
 static enum outcome give_up(struct tri_refiner *r, enum tri_excuse excuse)
 {
-    r->report->refused[excuse]++;
-    return REFUSED;
+    r->report->given_up[excuse]++;
+    return GIVEN_UP;
 }
 
 /* Splits subsegment s, at this fraction of it, for the sake of a triangle. */
@@ -240,7 +245,7 @@ static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, 
         return refuse(r, TRI_EXCUSE_PRECISION);
     enum tri_search found = tri_cavity_search_split(&r->cavity, m, p, s, &n_left);
     if (found == TRI_SEARCH_FENCED)
-        return leave(r, triangle, &r->report->deferred);
+        return defer(r, triangle, &r->report->fenced);
     if (found == TRI_SEARCH_OUTSIDE)
         return refuse(r, TRI_EXCUSE_PRECISION);
     if (found == TRI_SEARCH_NO_MEMORY || make_room(r))
@@ -308,9 +313,9 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
     if (r->options->urgent)
         return HUGE_VAL;
     double reach = r->criterion.bounds.off_centre > 0 ? r->criterion.bounds.off_centre * sqrt(l) : HUGE_VAL;
-    double bound2 = tri_area2_bound(&r->criterion, t->region);
-    if (badness == TRI_BAD_SIZE && shape->area2 > bound2) {
-        double ideal2 = IDEAL * EQUILATERAL * 0.5 * bound2 - 0.25 * l;
+    double area2_bound = tri_area2_bound(&r->criterion, t->region);
+    if (badness == TRI_BAD_SIZE && shape->area2 > area2_bound) {
+        double ideal2 = IDEAL * EQUILATERAL * 0.5 * area2_bound - 0.25 * l;
         double ideal = ideal2 > 0 ? sqrt(ideal2) : 0;
         reach = ideal2 > 0.25 * l && ideal < reach ? ideal : reach;
     }
@@ -325,13 +330,13 @@ static enum outcome find_cavity(struct tri_refiner *r, int32_t triangle, struct 
     if (r->options->gate) {
         double at[2] = {p.x * r->mesh->unit, p.y * r->mesh->unit};
         if (!r->options->gate(r->options->gate_user, at))
-            return leave(r, triangle, &r->report->gated);
+            return defer(r, triangle, &r->report->gated);
     }
     if (r->options->fence && !tri_fence_holds(r->options->fence, p)) /* then its cavity reaches beyond, too */
-        return leave(r, triangle, &r->report->deferred);
+        return defer(r, triangle, &r->report->fenced);
     switch (tri_cavity_search(&r->cavity, r->mesh, p, triangle)) {
     case TRI_SEARCH_FOUND: return DONE;
-    case TRI_SEARCH_FENCED: return leave(r, triangle, &r->report->deferred);
+    case TRI_SEARCH_FENCED: return defer(r, triangle, &r->report->fenced);
     case TRI_SEARCH_OUTSIDE: return refuse(r, TRI_EXCUSE_PRECISION);
     default: return FAILED;
     }
@@ -413,7 +418,7 @@ static bool must_stop(struct tri_refiner *r)
     return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(r->error);
 }
 
-/* Treats one bad triangle until it is gone or refused. */
+/* Treats one bad triangle until it is gone, given up or deferred. */
 static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
 {
     for (;;) {

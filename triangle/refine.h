@@ -33,9 +33,9 @@ typedef int tri_unsuitable(void *user, const double a[2], const double b[2], con
 /* May the bad triangle whose new point would be p (its circumcentre or off-centre) be refined now? */
 typedef bool tri_gate(void *user, const double p[2]);
 
-/* Told of each triangle that the gate or the fence left as it is; its number may live another life before the call
- * ends. */
-typedef void tri_left(void *user, tri_triangle_id triangle);
+/* Told of each triangle that is deferred: the gate or the fence left it as it is. Its number may live another life
+ * before the call ends. */
+typedef void tri_deferred(void *user, tri_triangle_id triangle);
 
 /* Makes room for at least 2 triangles, 1 vertex and 1 subsegment more in a mesh that is a view of shared arrays: moves
  * its counts and capacities to an unused range. TRI_NO_ROOM: not now. */
@@ -60,8 +60,8 @@ struct tri_refine_options {
     const struct tri_fence *fence; /* NULL: the whole mesh */
     const tri_triangle_id *worklist; /* [n_worklist] looked at first; NULL: all. The loop looks at all it makes, too */
     int32_t n_worklist;
-    tri_left *left;        /* NULL: nobody */
-    void *left_user;
+    tri_deferred *deferred; /* NULL: nobody */
+    void *deferred_user;
     tri_more_room *more_room; /* NULL: the mesh's arrays grow */
     void *more_room_user;
 };
@@ -89,15 +89,15 @@ enum tri_excuse { /* why a triangle is still bad */
 
 struct tri_refine_report {
     int64_t inserted_free, inserted_on_segments;
-    int64_t gated, deferred;          /* times the gate said no; times a cavity reached beyond the fence */
-    int64_t refused[TRI_EXCUSES];     /* bad triangles given up during the call, by reason; some vanish later */
+    int64_t gated, fenced;            /* triangles deferred: by the gate; since a cavity reached beyond the fence */
+    int64_t given_up[TRI_EXCUSES];    /* bad triangles given up during the call, by reason; some vanish later */
     bool hit_limit;                   /* max_steiner stopped the call */
     bool hit_cap;                     /* a bound above TRI_USUAL_ANGLE would have cost too many points */
 };
 
 struct tri_refine_options tri_refine_defaults(void);
 
-/* Refines until every bad triangle is refused, gated or deferred. On TRI_NO_MEMORY, TRI_TOO_LARGE or TRI_STOPPED
+/* Refines until every bad triangle is given up or deferred. On TRI_NO_MEMORY, TRI_TOO_LARGE or TRI_STOPPED
  * (mesh->stop) the mesh is valid and as far as it got; after the last, once mesh->stop is NULL, another call goes on.
  * Terminates for any PSLG and any bound. Amortised O(1) a point in practice. */
 enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,

@@ -1,11 +1,11 @@
 /* Columns in turn: refine, look for what is left behind, hand out. */
 #include "sched/sweep/sweep.h"
 
-#include "sched/sweep/tiles.h"
+#include "sched/ranks/carrier.h"
 #include "triangle/clock.h"
 
-static struct par_tiles tiles_of(const struct par_state *state, const struct par_partition *partition,
-                                 const struct tri_executor *executor)
+struct par_tiles par_tiles_of(const struct par_state *state, const struct par_partition *partition,
+                              const struct tri_executor *executor)
 {
     return (struct par_tiles){.mesh = state->mesh, .partition = partition, .executor = executor,
                               .n_kept = state->n_kept, .sink = state->options->sink,
@@ -81,7 +81,7 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
                           struct tri_error *error)
 {
     struct tri_executor executor = par_executor(&state->threads);
-    struct par_tiles tiles = tiles_of(state, partition, &executor);
+    struct par_tiles tiles = par_tiles_of(state, partition, &executor);
     bool left = false;
     int32_t odd;
     enum tri_status status = begin_sweep(state, &tiles, &odd, error);
@@ -94,14 +94,18 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
     }
     *done = !status && !left;
     state->report->rounds++;
-    state->report->deferred += state->report->total.deferred;
-    state->report->total.gated = state->report->total.deferred = 0; /* all of them have had their turn */
+    state->report->deferred += state->report->total.fenced;
+    state->report->total.gated = state->report->total.fenced = 0; /* all of them have had their turn */
     par_tiles_free(&tiles);
     return status;
 }
 
 enum tri_status par_hand_out(struct par_state *state, struct tri_error *error)
 {
-    struct par_tiles tiles = tiles_of(state, state->numbered ? &state->cells : NULL, NULL);
-    return par_tiles_whole(&tiles, error);
+    struct par_tiles tiles = par_tiles_of(state, state->numbered ? &state->cells : NULL, NULL);
+    if (!state->options->carrier || state->options->carrier->rank == 0)
+        return par_tiles_whole(&tiles, error);
+    tiles.kept_elsewhere = true; /* rank 0 has the whole mesh, too, and hands it out */
+    enum tri_status status = par_tiles_begin(&tiles, par_tiles_expected(&tiles), error);
+    return status ? status : par_tiles_end(&tiles, error);
 }

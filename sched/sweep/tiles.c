@@ -491,6 +491,31 @@ static void free_column(struct column *c)
     free(c->sub_start);
 }
 
+/* --- a column */
+
+enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct tri_error *error)
+{
+    struct column *c = calloc(1, sizeof *c);
+    bool memory = c && par_tiles_reserve(tiles);
+    if (memory) {
+        *c = (struct column){.tiles = tiles, .column = column, .first_tile = column * tiles->partition->n_rows,
+                             .end = par_fence(tiles->partition, column, 0).x_max};
+        memory = find_all(c);
+    }
+    for (int32_t row = 0; memory && row < tiles->partition->n_rows; row++) {
+        struct job job = {.column = c, .row = row};
+        number_tile(&job, 0);
+        memory = !job.no_memory;
+        par_tile_copy_free(&job.copy);
+    }
+    for (int32_t v = 0; memory && v < tiles->mesh->n_vertices; v++)
+        tiles->tile[v] = tiles->tile[v] >= c->first_tile ? INT32_MAX : tiles->tile[v];
+    if (c)
+        free_column(c);
+    free(c);
+    return memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the numbers of a column");
+}
+
 enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, bool let_go, struct par_room *spare,
                                  struct tri_error *error)
 {

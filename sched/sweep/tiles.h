@@ -27,6 +27,7 @@ struct par_tiles {
     const struct tri_pslg *figure; /* its points are handed out as they came, bit by bit; NULL: the mesh's are */
     int32_t n_kept;               /* vertices that there were before refinement */
     bool region_column;           /* the attribute of a triangle's region is handed out, unless the mesh has columns */
+    bool kept_elsewhere;          /* somebody else hands these out */
     int64_t *number;              /* [capacity] of each vertex; -1: none yet */
     int32_t *tile;                /* [capacity] column * n_rows + row of each vertex; INT32_MAX: right of what has been
                                      handed out, or not there */
@@ -34,6 +35,9 @@ struct par_tiles {
     int64_t n_vertices, n_triangles, n_segments; /* handed out so far */
     struct par_worklist held;         /* numbered vertices that triangles beyond the last column still have */
 };
+
+/* Triangles to expect, to the order: the same, however the mesh is carried through. */
+double par_tiles_expected(const struct par_tiles *tiles);
 
 /* Tells the sink what is to come, about so many triangles, and hands out the vertices that there were before: the
  * caller's points by the caller's numbers. TRI_NO_MEMORY, or what the sink says. */
@@ -46,8 +50,11 @@ enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct
 enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, bool let_go, struct par_room *spare,
                                  struct tri_error *error);
 
-/* Room for as many numbers as the mesh has room for vertices. False: no memory. */
+/* Room for what each vertex has here; nothing is known yet of those that come later. False: no memory. */
 bool par_tiles_reserve(struct par_tiles *tiles);
+
+/* Numbers the vertices of an odd column from tiles->n_vertices on, and nothing else: it has its turn later. */
+enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct tri_error *error);
 
 /* Tells the sink that all columns have had their turn. */
 enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error);

@@ -291,7 +291,7 @@ int64_t tri_mesh_count(const struct tri_mesh *mesh, enum tri_count what)
     case TRI_COUNT_NEW_POINTS: return report->quality.inserted_free;
     case TRI_COUNT_NEW_POINTS_ON_SEGMENTS: return report->quality.inserted_on_segments;
     case TRI_COUNT_GATED: return report->quality.gated;
-    case TRI_COUNT_FENCED: return report->quality.deferred;
+    case TRI_COUNT_FENCED: return report->quality.fenced;
     }
     return 0;
 }

@@ -1,0 +1,162 @@
+/* What all carriers have in common: agreements, and exchanges that begin with one. */
+#include "sched/ranks/carrier.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool par_bytes_reserve(struct par_bytes *bytes, size_t more)
+{
+    if (bytes->n + more <= bytes->capacity)
+        return true;
+    size_t capacity = bytes->n + more + bytes->capacity / 2;
+    char *fresh = realloc(bytes->at, capacity);
+    if (!fresh)
+        return false;
+    bytes->at = fresh;
+    bytes->capacity = capacity;
+    return true;
+}
+
+bool par_bytes_add(struct par_bytes *bytes, const void *item, size_t n)
+{
+    if (!par_bytes_reserve(bytes, n))
+        return false;
+    if (n > 0)
+        memcpy(bytes->at + bytes->n, item, n);
+    bytes->n += n;
+    return true;
+}
+
+static enum tri_status out_of_touch(struct par_carrier *carrier, struct tri_error *error)
+{
+    carrier->ended = true;
+    carrier->status = TRI_INTERNAL;
+    return tri_fail(error, TRI_INTERNAL, NULL, 0, "the ranks cannot reach each other");
+}
+
+static enum tri_status no_memory(struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for what ranks exchange");
+}
+
+/* The lowest rank's that has an error, or -1. `all` has room for a number of each rank. */
+static int first_to_fail(struct par_carrier *carrier, enum tri_status status, int64_t *all)
+{
+    int64_t mine = status;
+    if (!carrier->gather(carrier->self, &mine, 1, all))
+        return -2;
+    for (int p = 0; p < carrier->n_ranks; p++)
+        if (all[p] != TRI_OK)
+            return p;
+    return -1;
+}
+
+/* Everybody's error becomes that of one rank. */
+static enum tri_status share_error(struct par_carrier *carrier, int from, struct tri_error *error)
+{
+    enum { WORDS = sizeof(struct tri_error) / sizeof(int64_t) + 1 };
+    int64_t mine[WORDS] = {0}, *all = malloc((size_t)carrier->n_ranks * sizeof mine);
+    struct tri_error own = {0};
+    error = error ? error : &own;
+    memcpy(mine, error, sizeof *error);
+    if (all && carrier->gather(carrier->self, mine, WORDS, all))
+        memcpy(error, all + (size_t)from * WORDS, sizeof *error);
+    free(all);
+    return error->status;
+}
+
+enum tri_status par_agree(struct par_carrier *carrier, enum tri_status status, struct tri_error *error)
+{
+    enum { FEW = 64 };
+    int64_t few[FEW], *all = few;
+    if (carrier->ended)
+        return carrier->status;
+    if (carrier->n_ranks > FEW && !(all = malloc((size_t)carrier->n_ranks * sizeof *all)))
+        return out_of_touch(carrier, error);
+    int from = first_to_fail(carrier, status, all);
+    enum tri_status agreed = from >= 0 ? (enum tri_status)all[from] : TRI_OK;
+    if (all != few)
+        free(all);
+    if (from == -2)
+        return out_of_touch(carrier, error);
+    if (agreed) {
+        share_error(carrier, from, error);
+        carrier->ended = true;
+        carrier->status = agreed;
+    }
+    return agreed;
+}
+
+static void free_all(struct par_bytes *bytes, int n)
+{
+    for (int p = 0; p < n; p++) {
+        free(bytes[p].at);
+        bytes[p] = (struct par_bytes){0};
+    }
+}
+
+static void count(struct par_carrier *carrier, enum par_move move, const struct par_bytes *out)
+{
+    for (int p = 0; p < carrier->n_ranks; p++)
+        if (p != carrier->rank && out[p].n > 0) {
+            carrier->traffic[move].bytes += (int64_t)out[p].n;
+            carrier->traffic[move].messages++;
+        }
+}
+
+/* Sizes are known before anything is sent, so that who has no memory for it can say so. */
+static enum tri_status prepare(struct par_carrier *carrier, const struct par_bytes *out, struct par_bytes *in,
+                               struct tri_error *error)
+{
+    size_t n = (size_t)carrier->n_ranks;
+    int64_t *size = calloc(2 * n, sizeof *size);
+    enum tri_status status = par_agree(carrier, size ? TRI_OK : no_memory(error), error);
+    for (size_t p = 0; !status && p < n; p++)
+        size[p] = (int64_t)out[p].n;
+    if (!status && !carrier->deal(carrier->self, size, size + n))
+        status = out_of_touch(carrier, error);
+    for (size_t p = 0; !status && p < n; p++)
+        if (p != (size_t)carrier->rank && !par_bytes_reserve(&in[p], (size_t)size[n + p]))
+            status = no_memory(error);
+        else if (p != (size_t)carrier->rank)
+            in[p].n = (size_t)size[n + p];
+    free(size);
+    return par_agree(carrier, status, error);
+}
+
+enum tri_status par_swap(struct par_carrier *carrier, enum par_move move, struct par_bytes *out, struct par_bytes *in,
+                         enum tri_status status, struct tri_error *error)
+{
+    status = par_agree(carrier, status, error);
+    status = status ? status : prepare(carrier, out, in, error);
+    if (!status && !carrier->transfer(carrier->self, out, in))
+        status = out_of_touch(carrier, error);
+    count(carrier, move, out);
+    in[carrier->rank] = out[carrier->rank];
+    out[carrier->rank] = (struct par_bytes){0};
+    free_all(out, carrier->n_ranks);
+    return status;
+}
+
+enum tri_status par_sum(struct par_carrier *carrier, const int64_t *value, int32_t n, int64_t *sum, int64_t *before,
+                        enum tri_status status, struct tri_error *error)
+{
+    size_t width = (size_t)n;
+    int64_t *all = malloc((size_t)carrier->n_ranks * width * sizeof *all + 1);
+    assert(n <= PAR_MOST_SUMS);
+    status = par_agree(carrier, status ? status : all ? TRI_OK : no_memory(error), error);
+    if (!status && !carrier->gather(carrier->self, value, n, all))
+        status = out_of_touch(carrier, error);
+    for (size_t i = 0; i < width; i++) {
+        int64_t total = 0;
+        for (int p = 0; !status && p < carrier->n_ranks; p++) {
+            if (before && p == carrier->rank)
+                before[i] = total;
+            total += all[(size_t)p * width + i];
+        }
+        sum[i] = total;
+    }
+    free(all);
+    return status;
+}

@@ -1,0 +1,63 @@
+/* How ranks speak with each other: what a rank sees of the others, whatever lies between (threads of one process for
+ * tests, MPI).
+ *
+ * All ranks make the same calls in the same order. Each exchange begins with an agreement: where a rank has failed, all
+ * learn it there, return the same error, and nobody waits for anything afterwards. */
+#ifndef SCHED_RANKS_CARRIER_H
+#define SCHED_RANKS_CARRIER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "triangle/status.h"
+
+/* Bytes that grow. */
+struct par_bytes {
+    char *at; /* aligned as malloc does */
+    size_t n, capacity;
+};
+
+/* What moves for what reason. */
+enum par_move { PAR_MOVE_STRIPS, PAR_MOVE_BACK, PAR_MOVE_LEFT_OVER, PAR_MOVE_NUMBERS, PAR_MOVE_TILES, PAR_MOVES };
+
+struct par_traffic {
+    int64_t bytes, messages; /* sent by this rank */
+};
+
+struct par_carrier {
+    int rank, n_ranks;
+    void *self;
+    /* Collective: all[n_ranks][n] receives everybody's n numbers. */
+    bool (*gather)(void *self, const int64_t *mine, int32_t n, int64_t *all);
+    /* Collective: from[p] receives what rank p has in to[rank]. */
+    bool (*deal)(void *self, const int64_t *to, int64_t *from);
+    /* Sends out[p] to rank p and fills in[p].n bytes at in[p].at from there, for all p but the own rank where n > 0.
+     * Returns when everything has gone and come. False: the network has failed, which nobody may survive. */
+    bool (*transfer)(void *self, const struct par_bytes *out, const struct par_bytes *in);
+    const double *share;     /* for tests: [n_ranks + 1] ascending from 0 to 1: rank p owns the part share[p] to
+                                share[p + 1] of the odd columns; NULL: equal parts */
+    bool ended;              /* the ranks have agreed on an error: nothing is sent any more */
+    enum tri_status status;  /* that error */
+    struct par_traffic traffic[PAR_MOVES];
+};
+
+bool par_bytes_reserve(struct par_bytes *bytes, size_t more);
+bool par_bytes_add(struct par_bytes *bytes, const void *item, size_t n);
+
+/* Collective: the error of the lowest rank that has one, with its text; TRI_OK where nobody has. After that no call
+ * speaks with anybody: it returns the same status. */
+enum tri_status par_agree(struct par_carrier *carrier, enum tri_status status, struct tri_error *error);
+
+/* Collective: an agreement, then out[p] goes to rank p, and in[p] becomes what comes from there; what goes to the own
+ * rank is in[rank] afterwards. Frees `out` in any case; `in` is the caller's to free, in any case. */
+enum tri_status par_swap(struct par_carrier *carrier, enum par_move move, struct par_bytes *out, struct par_bytes *in,
+                         enum tri_status status, struct tri_error *error);
+
+/* Collective: an agreement, then sum[i] becomes the sum of value[i] over all ranks, and before[i], unless it is NULL,
+ * that over the ranks below this one. n is at most PAR_MOST_SUMS. */
+enum { PAR_MOST_SUMS = 16 };
+enum tri_status par_sum(struct par_carrier *carrier, const int64_t *value, int32_t n, int64_t *sum, int64_t *before,
+                        enum tri_status status, struct tri_error *error);
+
+#endif

@@ -1,0 +1,92 @@
+#include "fake_ranks.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void wait_for_all(struct fake_world *world) { pthread_barrier_wait(&world->barrier); }
+
+static bool gather(void *self, const int64_t *mine, int32_t n, int64_t *all)
+{
+    const struct fake_rank *rank = self;
+    struct fake_world *world = rank->world;
+    size_t width = (size_t)n;
+    world->numbers[rank->self] = mine;
+    wait_for_all(world);
+    for (int p = 0; p < world->n_ranks; p++)
+        memcpy(all + (size_t)p * width, world->numbers[p], width * sizeof *all);
+    wait_for_all(world);
+    return true;
+}
+
+static bool deal(void *self, const int64_t *to, int64_t *from)
+{
+    const struct fake_rank *rank = self;
+    struct fake_world *world = rank->world;
+    world->numbers[rank->self] = to;
+    wait_for_all(world);
+    for (int p = 0; p < world->n_ranks; p++)
+        from[p] = world->numbers[p][rank->self];
+    wait_for_all(world);
+    return true;
+}
+
+static bool transfer(void *self, const struct par_bytes *out, const struct par_bytes *in)
+{
+    const struct fake_rank *rank = self;
+    struct fake_world *world = rank->world;
+    bool fits = true;
+    world->out[rank->self] = out;
+    wait_for_all(world);
+    for (int p = 0; p < world->n_ranks; p++) {
+        const struct par_bytes *from = &world->out[p][rank->self];
+        if (p == rank->self)
+            continue;
+        fits = fits && from->n == in[p].n;
+        if (fits && from->n > 0)
+            memcpy(in[p].at, from->at, from->n);
+    }
+    wait_for_all(world);
+    return fits;
+}
+
+void fake_world_init(struct fake_world *world, int n_ranks)
+{
+    size_t n = (size_t)n_ranks;
+    *world = (struct fake_world){.n_ranks = n_ranks};
+    world->numbers = calloc(n, sizeof *world->numbers);
+    world->out = calloc(n, sizeof *world->out);
+    world->rank = calloc(n, sizeof *world->rank);
+    assert_true(world->numbers && world->out && world->rank);
+    assert_int_equal(pthread_barrier_init(&world->barrier, NULL, (unsigned)n_ranks), 0);
+    for (int p = 0; p < n_ranks; p++)
+        world->rank[p] = (struct fake_rank){world, p};
+}
+
+void fake_world_free(struct fake_world *world)
+{
+    pthread_barrier_destroy(&world->barrier);
+    free(world->numbers);
+    free(world->out);
+    free(world->rank);
+}
+
+struct par_carrier fake_carrier(struct fake_world *world, int rank)
+{
+    return (struct par_carrier){.rank = rank, .n_ranks = world->n_ranks, .self = &world->rank[rank],
+                                .gather = gather, .deal = deal, .transfer = transfer};
+}
+
+void fake_run(struct fake_world *world, void *(*work)(void *user), void *user, size_t size)
+{
+    pthread_t *thread = calloc((size_t)world->n_ranks, sizeof *thread);
+    assert_non_null(thread);
+    for (int p = 0; p < world->n_ranks; p++)
+        assert_int_equal(pthread_create(&thread[p], NULL, work, (char *)user + (size_t)p * size), 0);
+    for (int p = 0; p < world->n_ranks; p++)
+        assert_int_equal(pthread_join(thread[p], NULL), 0);
+    free(thread);
+}

@@ -1,0 +1,299 @@
+/* The schedule on ranks, which here are threads: tile for tile what one process makes, for any number of ranks and any
+ * shares of the columns; and one error on all of them, wherever it comes from. */
+#include "fake_ranks.h"
+#include "support.h"
+
+#include "sched/ranks/ranks.h"
+#include "sched/schedule.h"
+#include "triangle/quality.h"
+
+struct trial {
+    const char *file;
+    double angle, target, block; /* target: triangles to the order, from which the area bound is drawn; 0: none */
+    bool conforming, regions;
+    int protect;
+};
+
+static const struct trial trials[] = {
+    {"letter.poly", 30, 20000, 500, false, false, 0},
+    {"square_random1000.poly", 20, 20000, 700, false, false, 0},
+    {"section.poly", 28, 20000, 400, false, true, 0},
+    {"gear.poly", 30, 10000, 256, false, false, 0},
+    {"koch_lake.poly", 30, 0, 600, false, false, 0},
+    {"coast/norway_sea.poly", 25, 0, 2000, false, false, 0},
+    {"coast/borders.poly", 20, 30000, 1500, false, false, 0},
+    {"perforated.poly", 30, 25000, 1000, true, false, 0},
+    {"cracked_plate.poly", 28, 15000, 400, false, false, 1},
+    {"box_hole.poly", 0, 10000, 256, false, false, 0},
+    {"nasty/dense_parallel.poly", 20, 5000, 256, false, false, 2},
+    {"nasty/aspect_1e8.poly", 20, 10000, 256, false, false, 0},
+    {"nasty/huge_scale.poly", 30, 10000, 256, false, false, 0},
+    {"nasty/needle_1e-9.poly", 20, 4000, 256, false, false, 0},
+    {"square_random1000.poly", 33, 10000, 256, false, false, 0}, /* two schedules */
+    {"section.poly", 35, 10000, 500, true, true, 0},             /* and a sequential call behind them */
+};
+
+enum { N_TRIALS = sizeof trials / sizeof *trials, MOST_RANKS = 9 };
+
+struct start {
+    struct tri_pslg pslg;
+    struct tri_options options;
+};
+
+static double total_area(const struct tri_mesh *mesh)
+{
+    double sum = 0;
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
+        sum += 0.5 * tri_shape_of(mesh->xy, mesh->tri[t].v).area2;
+    return sum * mesh->unit * mesh->unit;
+}
+
+static struct tri_mesh coarse_mesh(const struct start *start)
+{
+    struct tri_options options = start->options;
+    options.refine = false;
+    return support_generate(&start->pslg, &options, NULL);
+}
+
+static struct start start_of(const struct trial *trial)
+{
+    struct start start = {.options = support_quality(trial->angle, 0)};
+    if (!support_read(trial->file, &start.pslg))
+        fail_msg("cannot read %s", trial->file);
+    start.options.keep_hull = start.pslg.n_segments == 0;
+    start.options.spread_regions = start.options.quality.region_areas = trial->regions;
+    start.options.quality.conforming = trial->conforming;
+    start.options.quality.protect = trial->protect;
+    struct tri_mesh mesh = coarse_mesh(&start);
+    if (trial->target > 0)
+        start.options.quality.max_area = total_area(&mesh) / (0.65 * trial->target);
+    tri_mesh_free(&mesh);
+    return start;
+}
+
+/* --- what is handed out */
+
+/* Everything that one sink has taken; cmocka's asserts belong to the main thread. */
+struct stream {
+    struct par_bytes bytes;
+    bool first_rank, lost;
+    int32_t n_attributes;
+    int64_t end[3];        /* of vertices, triangles and segments; -1: nothing has come yet */
+    int64_t begin[3];
+    int32_t fail_at;       /* > 0: this call of take fails */
+};
+
+static void append(struct stream *s, const void *bytes, int64_t n, size_t item)
+{
+    s->lost = s->lost || !par_bytes_add(&s->bytes, bytes, (size_t)n * item);
+}
+
+static enum tri_status begin_stream(void *user, const struct tri_stream *told, struct tri_error *error)
+{
+    struct stream *s = user;
+    (void)error;
+    s->n_attributes = told->n_attributes;
+    if (s->first_rank)
+        append(s, told->regions, (int64_t)told->n_regions * told->n_columns, sizeof *told->regions);
+    return TRI_OK;
+}
+
+static enum tri_status take_tile(void *user, const struct tri_tile *tile, struct tri_error *error)
+{
+    struct stream *s = user;
+    const int64_t first[3] = {tile->first_vertex, tile->first_triangle, tile->first_segment};
+    const int32_t n[3] = {tile->n_vertices, tile->n_triangles, tile->n_segments};
+    if (s->fail_at > 0 && --s->fail_at == 0)
+        return tri_fail(error, TRI_CANNOT_WRITE, "mesh.ele", 0, "no space left");
+    for (int k = 0; k < 3; k++) {
+        if (s->end[k] < 0)
+            s->begin[k] = s->end[k] = first[k];
+        s->lost = s->lost || s->end[k] != first[k];
+        s->end[k] += n[k];
+    }
+    append(s, &tile->column, 1, sizeof tile->column);
+    append(s, &tile->row, 1, sizeof tile->row);
+    append(s, first, 3, sizeof *first);
+    append(s, tile->points, tile->n_vertices, sizeof *tile->points);
+    append(s, tile->point_markers, tile->n_vertices, sizeof *tile->point_markers);
+    append(s, tile->attributes, (int64_t)tile->n_vertices * s->n_attributes, sizeof *tile->attributes);
+    append(s, tile->corners, tile->n_triangles, sizeof *tile->corners);
+    append(s, tile->regions, tile->n_triangles, sizeof *tile->regions);
+    append(s, tile->ends, tile->n_segments, sizeof *tile->ends);
+    append(s, tile->segment_markers, tile->n_segments, sizeof *tile->segment_markers);
+    return TRI_OK;
+}
+
+static struct stream new_stream(bool first_rank)
+{
+    return (struct stream){.first_rank = first_rank, .end = {-1, -1, -1}};
+}
+
+/* --- one rank */
+
+struct member {
+    const struct start *start;
+    struct par_options options;
+    struct par_carrier carrier;
+    struct tri_mesh mesh;
+    struct stream stream;
+    struct par_report report;
+    enum tri_status status;
+    struct tri_error error;
+};
+
+static void refine_to(struct member *m)
+{
+    const struct tri_sink sink = {&m->stream, begin_stream, take_tile, NULL};
+    m->options.sink = &sink;
+    m->options.figure = &m->start->pslg;
+    m->options.region_column = true;
+    m->status = par_refine(&m->mesh, &m->start->options.quality, &m->options, &m->report, &m->error);
+}
+
+static void *be_a_rank(void *user)
+{
+    struct member *m = user;
+    refine_to(m);
+    m->status = par_agree(&m->carrier, m->status, &m->error);
+    return NULL;
+}
+
+static void free_member(struct member *m)
+{
+    free(m->stream.bytes.at);
+    par_report_free(&m->report);
+    tri_mesh_free(&m->mesh);
+}
+
+static struct par_options small_blocks(const struct trial *trial, int threads)
+{
+    struct par_options options = par_defaults();
+    options.cell_triangles = trial->block;
+    options.threads = threads;
+    return options;
+}
+
+static struct member new_member(const struct start *start, const struct par_options *options)
+{
+    return (struct member){.start = start, .options = *options, .mesh = coarse_mesh(start), .stream = new_stream(true)};
+}
+
+/* Any shares, empty ones among them. */
+static void draw_shares(double share[MOST_RANKS + 1], int n_ranks, struct support_random *random)
+{
+    share[0] = 0;
+    for (int p = 1; p < n_ranks; p++) {
+        double cut = support_unit(random) * 1.2 - 0.1;
+        cut = cut < 0 ? 0 : cut > 1 ? 1 : cut;
+        int k = p;
+        for (; k > 1 && share[k - 1] > cut; k--)
+            share[k] = share[k - 1];
+        share[k] = cut;
+    }
+    share[n_ranks] = 1;
+}
+
+static void run_ranks(struct member *member, const struct start *start, const struct par_options *options, int n_ranks,
+                      const double *share, int fails)
+{
+    struct fake_world world;
+    fake_world_init(&world, n_ranks);
+    for (int p = 0; p < n_ranks; p++) {
+        member[p] = new_member(start, options);
+        member[p].carrier = fake_carrier(&world, p);
+        member[p].carrier.share = share;
+        member[p].options.carrier = &member[p].carrier;
+        member[p].options.threads = 1 + p % 2;
+        member[p].stream.first_rank = p == 0;
+        member[p].stream.fail_at = p == fails ? 2 : 0;
+    }
+    fake_run(&world, be_a_rank, member, sizeof *member);
+    fake_world_free(&world);
+}
+
+/* Of one process, and of these ranks one after the other: the same bytes. */
+static void compare(const struct member *alone, const struct member *member, int n_ranks)
+{
+    size_t at = 0;
+    for (int p = 0; p < n_ranks; p++) {
+        const struct stream *s = &member[p].stream;
+        if (member[p].status)
+            fail_msg("rank %d of %d: %s", p, n_ranks, member[p].error.text);
+        assert_false(s->lost);
+        if (s->bytes.n == 0)
+            continue;
+        if (at + s->bytes.n > alone->stream.bytes.n || memcmp(alone->stream.bytes.at + at, s->bytes.at, s->bytes.n))
+            fail_msg("rank %d of %d hands out something else", p, n_ranks);
+        at += s->bytes.n;
+    }
+    assert_int_equal(at, alone->stream.bytes.n);
+}
+
+static int64_t sent(const struct member *member, int n_ranks, enum par_move move)
+{
+    int64_t bytes = 0;
+    for (int p = 0; p < n_ranks; p++)
+        bytes += member[p].carrier.traffic[move].bytes;
+    return bytes;
+}
+
+static void test_ranks_hand_out_what_one_process_does(void **state)
+{
+    (void)state;
+    struct support_random random = {7};
+    for (int i = 0; i < N_TRIALS; i++) {
+        struct start start = start_of(&trials[i]);
+        struct par_options options = small_blocks(&trials[i], 2);
+        struct member alone = new_member(&start, &options), member[MOST_RANKS];
+        refine_to(&alone);
+        assert_int_equal(alone.status, TRI_OK);
+        for (int round = 0; round < 2; round++) {
+            int n_ranks = i == round ? 2 : 1 + support_below(&random, MOST_RANKS);
+            double share[MOST_RANKS + 1];
+            draw_shares(share, n_ranks, &random);
+            run_ranks(member, &start, &options, n_ranks, round == 1 ? share : NULL, -1);
+            compare(&alone, member, n_ranks);
+            print_message("  %-28s %7lld triangles, %d columns, rounds %d, left over %lld, %d ranks: bytes a triangle"
+                          " %.2f strips, %.2f back, %.2f left over, %.2f numbers\n",
+                          trials[i].file, (long long)alone.stream.end[1], (int)alone.report.columns,
+                          alone.report.rounds, (long long)alone.report.left_over, n_ranks,
+                          (double)sent(member, n_ranks, PAR_MOVE_STRIPS) / (double)alone.stream.end[1],
+                          (double)sent(member, n_ranks, PAR_MOVE_BACK) / (double)alone.stream.end[1],
+                          (double)sent(member, n_ranks, PAR_MOVE_LEFT_OVER) / (double)alone.stream.end[1],
+                          (double)sent(member, n_ranks, PAR_MOVE_NUMBERS) / (double)alone.stream.end[1]);
+            for (int p = 0; p < n_ranks; p++)
+                free_member(&member[p]);
+        }
+        free_member(&alone);
+        tri_pslg_free(&start.pslg);
+    }
+}
+
+/* A disk that is full on one rank: all say so, in its words. */
+static void test_an_error_of_one_is_an_error_of_all(void **state)
+{
+    (void)state;
+    for (int fails = 0; fails < 3; fails++) {
+        struct start start = start_of(&trials[1]);
+        struct par_options options = small_blocks(&trials[1], 1);
+        struct member member[3];
+        run_ranks(member, &start, &options, 3, NULL, fails);
+        for (int p = 0; p < 3; p++) {
+            assert_int_equal(member[p].status, TRI_CANNOT_WRITE);
+            assert_string_equal(member[p].error.file, "mesh.ele");
+            assert_string_equal(member[p].error.text, "no space left");
+            free_member(&member[p]);
+        }
+        tri_pslg_free(&start.pslg);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ranks_hand_out_what_one_process_does),
+        cmocka_unit_test(test_an_error_of_one_is_an_error_of_all),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
