@@ -1,7 +1,8 @@
 # The executables and the example, from drivers/. They link the static libraries, whose inside they know.
 
 # HDF5, which ptriangle writes and its companions read; without, everything else is built. The serial C library, at least
-# 1.10.3, which writes chunks directly.
+# 1.10.3, which writes chunks directly; and zlib, which it needs itself.
+find_package(ZLIB)
 include(CheckCSourceCompiles)
 find_path(HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial)
 find_library(HDF5_LIBRARY NAMES hdf5_serial hdf5 PATH_SUFFIXES hdf5/serial)
@@ -11,10 +12,10 @@ if(HDF5_INCLUDE AND HDF5_LIBRARY)
         int main(void) { return 0; }" PTRIANGLE_HDF5)
     unset(CMAKE_REQUIRED_INCLUDES)
 endif()
-if(PTRIANGLE_HDF5)
+if(PTRIANGLE_HDF5 AND ZLIB_FOUND)
     add_library(libtrihdf5 STATIC ${PTRIANGLE_HDF5_SOURCES})
     target_include_directories(libtrihdf5 SYSTEM PUBLIC ${HDF5_INCLUDE})
-    target_link_libraries(libtrihdf5 PUBLIC ${HDF5_LIBRARY})
+    target_link_libraries(libtrihdf5 PUBLIC ${HDF5_LIBRARY} ZLIB::ZLIB)
 else()
     message(STATUS "no HDF5 (Debian: libhdf5-dev): ptriangle is built without --output FILE.h5")
     add_library(libtrihdf5 STATIC ${PTRIANGLE_NO_HDF5_SOURCES})

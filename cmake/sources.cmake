@@ -95,6 +95,8 @@ set(PTRIANGLE_HDF5_SOURCES
     triangle/hdf5/file.c
     triangle/hdf5/items.c
     triangle/hdf5/array.c
+    triangle/hdf5/segments.c
+    triangle/hdf5/ends.c
     triangle/hdf5/views.c
     triangle/hdf5/xdmf.c
     triangle/hdf5/write.c
@@ -115,6 +117,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/sweep/tile_copy.c
     sched/sweep/tiles.c
     sched/sweep/stream.c
+    sched/sweep/queue.c
     sched/sweep/numbering.c
     sched/sweep/park.c
     sched/sweep/spool.c

@@ -5,7 +5,7 @@
 
 int64_t lattice_points(const struct lattice *l) { return (int64_t)l->side * l->side; }
 int64_t lattice_triangles(const struct lattice *l) { return 2 * (int64_t)(l->side - 1) * (l->side - 1); }
-int64_t lattice_segments(const struct lattice *l) { return 2 * (int64_t)(l->side - 1); }
+int64_t lattice_segments(const struct lattice *l) { return (int64_t)l->side * (l->side - 1); }
 
 void lattice_point(const struct lattice *l, int64_t i, double at[2])
 {
@@ -32,12 +32,10 @@ void lattice_corners(const struct lattice *l, int64_t i, int64_t corners[3])
     corners[2] = i % 2 ? b : c;
 }
 
-/* Row by row: left, right. */
 void lattice_ends(const struct lattice *l, int64_t i, int64_t ends[2])
 {
-    const int64_t low = i / 2 * l->side + (i % 2 ? l->side - 1 : 0);
-    ends[0] = low;
-    ends[1] = low + l->side;
+    ends[0] = i;
+    ends[1] = i + l->side;
 }
 
 struct buffers {
@@ -68,16 +66,18 @@ static void fill_cells(const struct lattice *l, struct buffers *b, const struct 
     }
 }
 
-/* n rows of points, the squares below them, to the sink; the tile moves on behind them. */
+enum { POINTS = 1, TRIANGLES = 2, SEGMENTS = 4 };
+
+/* n rows of points, or of what is below them, to the sink; the tile moves on behind them. */
 static enum tri_status hand_rows(const struct lattice *l, const struct tri_sink *sink, struct tri_tile *tile,
-                                 struct buffers *b, int32_t n, struct tri_error *error)
+                                 struct buffers *b, int32_t n, int what, struct tri_error *error)
 {
     const bool first = tile->first_vertex == 0;
     tile->column = first ? -1 : 1;
     tile->row = first ? -1 : tile->row + 2;
-    tile->n_vertices = n * l->side;
-    tile->n_triangles = first ? 0 : 2 * n * (l->side - 1);
-    tile->n_segments = first ? 0 : 2 * n;
+    tile->n_vertices = what & POINTS ? n * l->side : 0;
+    tile->n_triangles = what & TRIANGLES ? 2 * n * (l->side - 1) : 0;
+    tile->n_segments = what & SEGMENTS ? n * l->side : 0;
     fill_points(l, b, tile);
     fill_cells(l, b, tile);
     enum tri_status status = sink->take(sink->user, tile, error);
@@ -100,7 +100,7 @@ static void free_buffers(struct buffers *b)
 
 static struct buffers make_buffers(const struct lattice *l)
 {
-    const size_t rows = (size_t)l->rows_in_tile, n = rows * (size_t)l->side, m = 2 * n, s = 2 * rows;
+    const size_t rows = (size_t)l->rows_in_tile, n = rows * (size_t)l->side, m = 2 * n, s = n;
     return (struct buffers){malloc(n * 16), malloc(n * ((size_t)l->n_attributes + 1) * 8), malloc(n * 4),
                             malloc(m * 4), malloc(s * 4), malloc(m * 24), malloc(s * 16)};
 }
@@ -112,11 +112,13 @@ static enum tri_status hand_tiles(const struct lattice *l, const struct tri_sink
                             .attributes = b.attributes, .corners = (const int64_t (*)[3])b.corners,
                             .regions = b.regions, .ends = (const int64_t (*)[2])b.ends,
                             .segment_markers = b.segment_markers};
-    enum tri_status status = hand_rows(l, sink, &tile, &b, 1, error);
-    for (int32_t row = 1; row < l->side && !status; row += l->rows_in_tile) {
-        const int32_t left = l->side - row;
-        status = hand_rows(l, sink, &tile, &b, left < l->rows_in_tile ? left : l->rows_in_tile, error);
-    }
+    enum tri_status status = hand_rows(l, sink, &tile, &b, 1, POINTS, error);
+    const int what[] = {l->one_by_one ? POINTS : POINTS | TRIANGLES | SEGMENTS, TRIANGLES, SEGMENTS};
+    for (int k = 0; k < (l->one_by_one ? 3 : 1); k++)
+        for (int32_t row = 1; row < l->side && !status; row += l->rows_in_tile) {
+            const int32_t left = l->side - row;
+            status = hand_rows(l, sink, &tile, &b, left < l->rows_in_tile ? left : l->rows_in_tile, what[k], error);
+        }
     free_buffers(&b);
     return status;
 }

@@ -11,13 +11,14 @@ struct lattice {
     int32_t rows_in_tile;  /* >= 1 */
     int32_t n_attributes, n_columns;
     bool whole;            /* attributes of triangles are whole numbers */
+    bool one_by_one;       /* tiles of points come first, then tiles of triangles, then such of segments */
 };
 
 enum { LATTICE_REGIONS = 3 };
 
 int64_t lattice_points(const struct lattice *lattice);
 int64_t lattice_triangles(const struct lattice *lattice);
-int64_t lattice_segments(const struct lattice *lattice); /* left and right side */
+int64_t lattice_segments(const struct lattice *lattice); /* the upright sides of the squares */
 
 void lattice_point(const struct lattice *lattice, int64_t i, double at[2]);
 int32_t lattice_point_marker(int64_t i);

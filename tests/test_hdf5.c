@@ -20,8 +20,8 @@
 #include "triangle/hdf5/read.h"
 #include "triangle/hdf5/write.h"
 
-static const struct lattice SMALL = {5, 1, 2, 2, false}, WHOLE = {6, 2, 0, 1, true}, PLAIN = {4, 3, 0, 0, true},
-                            LARGE = {601, 37, 1, 1, true};
+static const struct lattice SMALL = {5, 1, 2, 2, false, false}, WHOLE = {6, 2, 0, 1, true, true},
+                            PLAIN = {4, 3, 0, 0, true, false}, LARGE = {601, 37, 1, 1, true, false};
 
 /* Writes it to x.h5 and x.xdmf. */
 static enum tri_status write_lattice(const struct lattice *lattice, bool markers, int64_t most_narrow,
@@ -176,11 +176,35 @@ static void test_what_is_written_is_read(void **state)
 static void test_wide_numbers(void **state)
 {
     (void)state;
-    const int64_t narrow[] = {1, 601, 50000, TRI_H5_CHUNK_ROWS / 2, 300000, 601 * 601 - 1};
+    const int64_t narrow[] = {1, 601, 50000, 131072, 262144, 300000, 601 * 601 - 1};
     struct tri_error error;
     for (size_t i = 0; i < sizeof narrow / sizeof *narrow; i++) {
         assert_int_equal(write_lattice(&LARGE, true, narrow[i], &error), TRI_OK);
         compare(&LARGE, true);
+    }
+}
+
+/* Where cells end, in all kinds of chunks. */
+static void test_ends_of_cells(void **state)
+{
+    (void)state;
+    const struct lattice *all[] = {&SMALL, &LARGE};
+    for (int i = 0; i < 2; i++) {
+        struct tri_error error;
+        const int64_t m = lattice_triangles(all[i]), n = m + lattice_segments(all[i]) + 1;
+        int64_t *ends = malloc((size_t)n * sizeof *ends);
+        assert_int_equal(write_lattice(all[i], true, 0, &error), TRI_OK);
+        hid_t file = H5Fopen("x.h5", H5F_ACC_RDONLY, H5P_DEFAULT);
+        hid_t dataset = H5Dopen2(file, "/VTKHDF/Offsets", H5P_DEFAULT), space = H5Dget_space(dataset);
+        assert_int_equal(H5Sget_simple_extent_npoints(space), n);
+        assert_true(H5Dread(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, ends) >= 0);
+        for (int64_t k = 0; k < n; k++)
+            assert_true(ends[k] == (k <= m ? 3 * k : 3 * m + 2 * (k - m)));
+        assert_true(i == 0 || H5Dget_storage_size(dataset) < (hsize_t)n / 8);
+        H5Sclose(space);
+        H5Dclose(dataset);
+        H5Fclose(file);
+        free(ends);
     }
 }
 
@@ -194,21 +218,37 @@ static void test_small_files_are_small(void **state)
     assert_true(n < 20000);
 }
 
-static void test_same_tiles_same_bytes(void **state)
+/* However it is cut into tiles; with numbers that become wide on the way, and without. */
+static void test_same_mesh_same_bytes(void **state)
 {
     (void)state;
-    const struct lattice *all[] = {&SMALL, &LARGE};
-    for (int i = 0; i < 2; i++) {
+    const int64_t narrow[] = {0, 100000, 262144};
+    for (int i = 0; i < 9; i++) {
+        struct lattice lattice = i / 3 ? LARGE : SMALL, other = lattice;
         struct tri_error error;
         size_t n, m;
-        assert_int_equal(write_lattice(all[i], true, 0, &error), TRI_OK);
+        other.rows_in_tile = i / 3 == 1 ? 1 : 300;
+        other.one_by_one = i / 3 == 2;
+        assert_int_equal(write_lattice(&lattice, true, narrow[i % 3], &error), TRI_OK);
         char *first = bytes_of("x.h5", &n);
-        assert_int_equal(write_lattice(all[i], true, 0, &error), TRI_OK);
+        assert_int_equal(write_lattice(&other, true, narrow[i % 3], &error), TRI_OK);
         char *second = bytes_of("x.h5", &m);
         assert_int_equal(n, m);
         assert_int_equal(memcmp(first, second, n), 0);
         free(first);
         free(second);
+    }
+}
+
+/* As many points as fit in one chunk, one less, one more; and chunks of segments. */
+static void test_around_a_chunk(void **state)
+{
+    (void)state;
+    struct tri_error error;
+    for (int32_t side = 511; side <= 513; side++) {
+        const struct lattice lattice = {side, 100, 0, 1, true, side == 513};
+        assert_int_equal(write_lattice(&lattice, true, 0, &error), TRI_OK);
+        compare(&lattice, true);
     }
 }
 
@@ -303,6 +343,7 @@ static void test_stop(void **state)
     tri_outputs_begin(&set);
     set.stop = &stop;
     assert_int_equal(tri_output_open(&set, "x.h5", &options.file, &error), TRI_OK);
+    assert_int_equal(tri_output_open(&set, "x.xdmf", &options.xdmf, &error), TRI_OK);
     assert_int_equal(tri_h5_writer_new(&writer, &options, &sink, &error), TRI_OK);
     assert_int_equal(lattice_hand_out(&LARGE, &sink, &error), TRI_STOPPED);
     tri_h5_writer_free(writer);
@@ -359,8 +400,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(test_what_is_written_is_read, remove_files),
         cmocka_unit_test_teardown(test_wide_numbers, remove_files),
+        cmocka_unit_test_teardown(test_ends_of_cells, remove_files),
         cmocka_unit_test_teardown(test_small_files_are_small, remove_files),
-        cmocka_unit_test_teardown(test_same_tiles_same_bytes, remove_files),
+        cmocka_unit_test_teardown(test_same_mesh_same_bytes, remove_files),
+        cmocka_unit_test_teardown(test_around_a_chunk, remove_files),
         cmocka_unit_test_teardown(test_no_times, remove_files),
         cmocka_unit_test_teardown(test_xdmf, remove_files),
         cmocka_unit_test_teardown(test_full_disk, remove_files),

@@ -164,6 +164,45 @@ static void test_any_order_comes_out_the_same(void **state)
     free(xy);
 }
 
+static double length_of(const struct tri_point *xy, const int32_t *order, int32_t n)
+{
+    double length = 0;
+    for (int32_t i = 1; i < n; i++)
+        length += hypot(xy[order[i]].x - xy[order[i - 1]].x, xy[order[i]].y - xy[order[i - 1]].y);
+    return length;
+}
+
+/* Through fewer cells: whatever order the ids are in, and nearly as short; dense corners have a curve of their own. */
+static void test_coarse_order(void **state)
+{
+    (void)state;
+    enum { N = 20000 };
+    struct support_random random = {7};
+    struct tri_point *xy = malloc(N * sizeof *xy);
+    int32_t *fine = malloc(N * sizeof *fine), *coarse = malloc(N * sizeof *coarse), *again = malloc(N * sizeof *again);
+    uint64_t *scratch = malloc(2 * N * sizeof *scratch);
+    for (int n = 1; n <= N; n = 3 * n + 1)
+        for (int dense = 0; dense < 2; dense++) {
+            for (int i = 0; i < n; i++) {
+                double size = dense ? ldexp(1, -10 * (i % 3)) : 1;
+                xy[i] = (struct tri_point){size * support_unit(&random), size * support_unit(&random)};
+                coarse[i] = n - 1 - i;
+                again[i] = i;
+            }
+            order_all(xy, n, fine);
+            tri_hilbert_order_coarse(xy, coarse, n, scratch);
+            tri_hilbert_order_coarse(xy, again, n, scratch);
+            assert_permutation(coarse, n);
+            assert_memory_equal(coarse, again, (size_t)n * sizeof *coarse);
+            assert_true(length_of(xy, coarse, n) <= 1.25 * length_of(xy, fine, n) + 1);
+        }
+    free(xy);
+    free(fine);
+    free(coarse);
+    free(again);
+    free(scratch);
+}
+
 static void test_degenerate_boxes(void **state)
 {
     (void)state;
@@ -190,6 +229,7 @@ int main(void)
         cmocka_unit_test(test_equal_points_are_neighbours_in_increasing_index),
         cmocka_unit_test(test_dense_cells_are_sorted),
         cmocka_unit_test(test_any_order_comes_out_the_same),
+        cmocka_unit_test(test_coarse_order),
         cmocka_unit_test(test_degenerate_boxes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

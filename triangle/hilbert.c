@@ -5,7 +5,6 @@
 #include "triangle/hilbert.h"
 
 #include <assert.h>
-#include <stdlib.h>
 
 #include "triangle/radix.h"
 
@@ -24,12 +23,13 @@ static const uint8_t two_levels[4][16] = {
     {42, 45, 48, 62, 38, 35, 53, 57, 26, 29, 11, 7, 22, 19, 12, 2},
     {43, 39, 27, 23, 44, 34, 28, 18, 49, 52, 10, 13, 63, 56, 6, 3}};
 
-uint64_t tri_hilbert(uint32_t x, uint32_t y)
+/* Of 2^bits x 2^bits cells, bits even. */
+static uint64_t hilbert_of(uint32_t x, uint32_t y, int bits)
 {
-    assert(x >> BITS == 0 && y >> BITS == 0);
+    assert(x >> bits == 0 && y >> bits == 0);
     uint64_t key = 0;
     unsigned orientation = 0;
-    for (int bit = BITS - 2; bit >= 0; bit -= 2) {
+    for (int bit = bits - 2; bit >= 0; bit -= 2) {
         unsigned step = two_levels[orientation][4 * (x >> bit & 3) + (y >> bit & 3)];
         key = key << 4 | step >> 2;
         orientation = step & 3;
@@ -37,10 +37,13 @@ uint64_t tri_hilbert(uint32_t x, uint32_t y)
     return key;
 }
 
+uint64_t tri_hilbert(uint32_t x, uint32_t y) { return hilbert_of(x, y, BITS); }
+
 struct ordering {
     const struct tri_point *xy;
     int32_t *order;
     int32_t n;
+    int bits;             /* 2^bits x 2^bits cells */
     struct tri_point low; /* of the box */
     double scale;         /* cells in a unit of length */
     uint64_t *item;
@@ -53,7 +56,7 @@ static void key_share(void *context, size_t share)
     for (int32_t i = range.first; i < range.last; i++) {
         struct tri_point p = k->xy[k->order[i]];
         uint32_t x = (uint32_t)((p.x - k->low.x) * k->scale), y = (uint32_t)((p.y - k->low.y) * k->scale);
-        k->item[i] = tri_hilbert(x, y) << ID_BITS | (uint32_t)k->order[i];
+        k->item[i] = hilbert_of(x, y, k->bits) << ID_BITS | (uint32_t)k->order[i];
     }
 }
 
@@ -104,42 +107,52 @@ struct placed {
     int32_t id;
 };
 
-static int compare_placed(const void *left, const void *right)
+static bool is_before(const struct placed *a, const struct placed *b)
 {
-    const struct placed *a = left, *b = right;
     if (a->q.x != b->q.x)
-        return a->q.x < b->q.x ? -1 : 1;
-    if (a->q.y != b->q.y)
-        return a->q.y < b->q.y ? -1 : 1;
-    return (a->id > b->id) - (a->id < b->id);
+        return a->q.x < b->q.x;
+    return a->q.y != b->q.y ? a->q.y < b->q.y : a->id < b->id;
 }
 
 static void order_few(const struct tri_point *xy, int32_t *order, int32_t n)
 {
     struct placed cell[FEW];
     assert(n <= FEW);
-    for (int32_t i = 0; i < n; i++)
-        cell[i] = (struct placed){xy[order[i]], order[i]};
-    qsort(cell, (size_t)n, sizeof *cell, compare_placed);
+    for (int32_t i = 0; i < n; i++) {
+        struct placed p = {xy[order[i]], order[i]};
+        int32_t at = i;
+        for (; at > 0 && is_before(&p, &cell[at - 1]); at--)
+            cell[at] = cell[at - 1];
+        cell[at] = p;
+    }
     for (int32_t i = 0; i < n; i++)
         order[i] = cell[i].id;
 }
 
-static void order_points(const struct tri_point *xy, int32_t *order, int32_t n, uint64_t *item, uint64_t *scratch,
-                         const struct tri_executor *executor);
+static void order_points(const struct tri_point *xy, int32_t *order, int32_t n, bool coarse, uint64_t *item,
+                         uint64_t *scratch, const struct tri_executor *executor);
 
 /* Cells with several points are sorted within: by coordinates, or along a curve of their own. */
-static void order_cells(const struct tri_point *xy, int32_t *order, int32_t n, uint64_t *item, uint64_t *scratch,
-                        const struct tri_executor *executor)
+static void order_cells(const struct tri_point *xy, int32_t *order, int32_t n, bool coarse, uint64_t *item,
+                        uint64_t *scratch, const struct tri_executor *executor)
 {
     for (int32_t first = 0, end; first < n; first = end) {
         for (end = first + 1; end < n && item[end] >> ID_BITS == item[first] >> ID_BITS;)
             end++;
         if (end - first > FEW)
-            order_points(xy, order + first, end - first, item + first, scratch + first, executor);
+            order_points(xy, order + first, end - first, coarse, item + first, scratch + first, executor);
         else if (end - first > 1)
             order_few(xy, order + first, end - first);
     }
+}
+
+/* Two cells for a point, at least. */
+static int coarse_bits(int32_t n)
+{
+    int bits = 2;
+    while (bits < BITS && INT64_C(1) << 2 * bits < 2 * (int64_t)n)
+        bits += 2;
+    return bits;
 }
 
 static void emit_share(void *context, size_t share)
@@ -150,22 +163,30 @@ static void emit_share(void *context, size_t share)
         e->order[i] = (int32_t)(e->item[i] & ((UINT64_C(1) << ID_BITS) - 1));
 }
 
-static void order_points(const struct tri_point *xy, int32_t *order, int32_t n, uint64_t *item, uint64_t *scratch,
-                         const struct tri_executor *executor)
+static void order_points(const struct tri_point *xy, int32_t *order, int32_t n, bool coarse, uint64_t *item,
+                         uint64_t *scratch, const struct tri_executor *executor)
 {
     struct box box = box_of(xy, order, n, executor);
     double width = box.high.x - box.low.x, height = box.high.y - box.low.y, side = width > height ? width : height;
-    struct ordering ordering = {xy, order, n, box.low, side > 0 ? ((1 << BITS) - 1) / side : 0, item};
+    int bits = coarse ? coarse_bits(n) : BITS;
+    struct ordering ordering = {xy, order, n, bits, box.low, side > 0 ? ((1 << bits) - 1) / side : 0, item};
     tri_execute(executor, tri_shares(n), key_share, &ordering);
-    tri_radix_sort(item, scratch, n, side > 0 ? ID_BITS : 0, side > 0 ? 64 : ID_BITS, executor); /* one place: by id */
+    tri_radix_sort(item, scratch, n, side > 0 ? ID_BITS : 0, side > 0 ? ID_BITS + 2 * bits : ID_BITS,
+                   executor); /* one place: by id */
     tri_execute(executor, tri_shares(n), emit_share, &ordering);
     if (side > 0)
-        order_cells(xy, order, n, item, scratch, executor);
+        order_cells(xy, order, n, coarse, item, scratch, executor);
 }
 
 void tri_hilbert_order(const struct tri_point *xy, int32_t *order, int32_t n, uint64_t *scratch,
                        const struct tri_executor *executor)
 {
     if (n > 0)
-        order_points(xy, order, n, scratch, scratch + n, executor);
+        order_points(xy, order, n, false, scratch, scratch + n, executor);
+}
+
+void tri_hilbert_order_coarse(const struct tri_point *xy, int32_t *order, int32_t n, uint64_t *scratch)
+{
+    if (n > 0)
+        order_points(xy, order, n, true, scratch, scratch + n, NULL);
 }

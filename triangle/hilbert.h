@@ -16,4 +16,7 @@ uint64_t tri_hilbert(uint32_t x, uint32_t y);
 void tri_hilbert_order(const struct tri_point *xy, int32_t *order, int32_t n, uint64_t *scratch,
                        const struct tri_executor *executor);
 
+/* The same along a curve through fewer cells, some for each point: in half the time. Not the same order. */
+void tri_hilbert_order_coarse(const struct tri_point *xy, int32_t *order, int32_t n, uint64_t *scratch);
+
 #endif

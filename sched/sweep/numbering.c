@@ -7,9 +7,11 @@
  * What belongs to a tile is found by one counting sort, in shares; what is sorted then fits the cache, and tiles are
  * tasks. A tile has an index here, in the order of tiles.
  *
- * All memory is asked for before anything moves. Items to be sorted take 16 bytes a triangle, and when they are
- * sorted links and regions wait there while corners move into the places of links: there is never a second copy of the
- * mesh. */
+ * All memory is asked for before anything moves. Triangles move in place, batch by batch of their new places, down from
+ * the last: those of a batch are gathered in a buffer; those that stand in their places, and belong to batches to come,
+ * are parked; then the batch is put down. So a triangle is parked only if it moves down, or, where more of them do than
+ * up, and batches go up from the first, only if it moves up: at most half of them, in the memory of the items that
+ * were sorted, and in what nobody touches otherwise. */
 #include "sched/sweep/numbering.h"
 
 #include <assert.h>
@@ -23,7 +25,12 @@
  * of its corners is the first, and whether its tile is another than that of its first corner. */
 enum { ID_BITS = 29, FIRST_BITS = 2, KEY_SHIFT = ID_BITS + FIRST_BITS, STRAY_BIT = 63 };
 
-enum { FEW = 24 }; /* are sorted by insertion */
+enum {
+    FEW = 24,        /* are sorted by insertion */
+    BATCH = 1 << 16, /* triangles that move at once, in a large mesh */
+    BATCHES = 64,    /* in a small one */
+    BATCH_SHARES = 16
+};
 
 _Static_assert(INT64_C(1) << ID_BITS == TRI_MAX_TRIANGLES, "ids fill their bits");
 
@@ -37,12 +44,6 @@ static uint64_t item_of(int32_t key, int first, int32_t id)
 static int32_t key_of(uint64_t item) { return (int32_t)(item >> KEY_SHIFT); }
 static int first_of(uint64_t item) { return (int)(item >> ID_BITS & 3); }
 static int32_t id_of(uint64_t item) { return (int32_t)(item & ((UINT64_C(1) << ID_BITS) - 1)); }
-
-/* What a triangle has beside its corners, on the way to its new place. */
-struct parked {
-    int32_t n[3];
-    int32_t region;
-};
 
 /* Things of each tile: so many of each in each share of where they are now, then where the next one goes. */
 struct deal {
@@ -65,14 +66,24 @@ struct numbering {
     int32_t n_new;
     int32_t *sub_rank; /* [n_subs] */
     struct tri_subsegment *sub; /* [n_subs] */
-    int32_t *place;    /* [n_triangles] first the second corner of a triangle, then where it goes */
+    int32_t *place;    /* [n_triangles] first the second corner of a triangle, then where it goes; TRI_NONE: free */
     size_t n_items;    /* the larger of n_triangles and n_subs */
-    void *park;        /* [2 * n_items] items, or [n_items] struct parked */
+    void *park;        /* [3 * n_items] items: as they lie, later in their new order; by tile; room to park */
+    struct tri_triangle *buffer; /* [batch] */
+    int32_t batch;
     int32_t n_tri, n_subs;            /* live ones */
 };
 
 static uint64_t *items_of(const struct numbering *n) { return n->park; }
 static uint64_t *dealt_items(const struct numbering *n) { return items_of(n) + n->n_items; } /* tile by tile */
+
+/* Of items in their new order: the triangle has been parked, and the id is its place there. */
+enum { PARKED_BIT = 63 };
+
+static struct tri_triangle *parked_of(const struct numbering *n)
+{
+    return (struct tri_triangle *)(void *)dealt_items(n);
+}
 
 static int bits_of(int32_t number)
 {
@@ -165,7 +176,7 @@ static void rank_tile(void *context, size_t tile)
 {
     const struct numbering *n = context;
     int32_t first = n->vertices.start[tile], end = n->vertices.start[tile + 1];
-    tri_hilbert_order(n->mesh->xy, n->order + first, end - first, items_of(n) + 2 * (size_t)first, NULL);
+    tri_hilbert_order_coarse(n->mesh->xy, n->order + first, end - first, items_of(n) + 2 * (size_t)first);
     for (int32_t i = first; i < end; i++)
         n->rank[n->order[i] - n->n_kept] = n->n_kept + i;
 }
@@ -269,9 +280,12 @@ static bool is_stray(const struct numbering *n, const int32_t v[3], int first)
 
 static int32_t tile_of_item(const struct numbering *n, uint64_t item)
 {
-    if (item >> STRAY_BIT)
-        return tile_of_triangle(n, n->mesh->tri[id_of(item)].v);
-    return tile_of_number(n, key_of(item));
+    int32_t v[3];
+    if (!(item >> STRAY_BIT))
+        return tile_of_number(n, key_of(item));
+    for (int k = 0; k < 3; k++)
+        v[k] = renamed(n, n->mesh->tri[id_of(item)].v[k]);
+    return tile_of_triangle(n, v);
 }
 
 /* The same for items that mostly are of the same tile as the last. */
@@ -292,18 +306,16 @@ static int32_t tile_after(const struct numbering *n, struct tile_range *last, ui
     return last->tile;
 }
 
-static uint64_t rename_triangle(const struct numbering *n, int32_t t)
+static uint64_t key_triangle(const struct numbering *n, int32_t t)
 {
-    int32_t *v = n->mesh->tri[t].v;
-    for (int k = 0; k < 3; k++)
-        v[k] = renamed(n, v[k]);
+    const int32_t *old = n->mesh->tri[t].v, v[3] = {renamed(n, old[0]), renamed(n, old[1]), renamed(n, old[2])};
     int first = v[1] > v[0] ? 1 : 0;
     first = v[2] > v[first] ? 2 : first;
     n->place[t] = v[tri_next[first]];
     return item_of(v[first], first, t) | (uint64_t)is_stray(n, v, first) << STRAY_BIT;
 }
 
-static void rename_corners(void *context, size_t share)
+static void key_share(void *context, size_t share)
 {
     const struct numbering *n = context;
     struct tri_range range = share_of(&n->triangles, share);
@@ -311,9 +323,10 @@ static void rename_corners(void *context, size_t share)
     int32_t *count = n->triangles.at + share * (size_t)n->n_tiles;
     for (int32_t t = range.first; t < range.last; t++) {
         items_of(n)[t] = FREE;
+        n->place[t] = TRI_NONE;
         if (!tri_is_live(&n->mesh->tri[t]))
             continue;
-        items_of(n)[t] = rename_triangle(n, t);
+        items_of(n)[t] = key_triangle(n, t);
         count[tile_after(n, &last, items_of(n)[t])]++;
     }
 }
@@ -355,89 +368,211 @@ static void insert_items(uint64_t *item, int32_t count)
     }
 }
 
-/* The triangles that start at one corner, by the next one. */
-static void sort_fan(const struct numbering *n, uint64_t *item, uint64_t *scratch, int32_t count)
+/* By the next corner, which is the key here, those that start at one. */
+static void sort_fan(uint64_t *item, uint64_t *scratch, int32_t count)
 {
-    if (count == 1)
-        return;
-    for (int32_t i = 0; i < count; i++)
-        item[i] = item_of(n->place[id_of(item[i])], first_of(item[i]), id_of(item[i]));
     if (count <= FEW)
         insert_items(item, count);
     else
         sort_items(item, scratch, count);
 }
 
+static uint64_t by_second(const struct numbering *n, uint64_t item)
+{
+    return item_of(n->place[id_of(item)], first_of(item), id_of(item));
+}
+
+/* A tile that is being sorted. Most of its triangles start at one of its own new vertices: they are sorted by counting.
+ * The others come before them. */
+struct sorting {
+    uint64_t *item, *sorted;
+    int32_t first, count;       /* of the triangles */
+    int32_t first_own, n_own;   /* of the vertices */
+    int32_t *end;               /* [n_own] of the fan at each */
+    int32_t n_others;
+};
+
+static bool is_own(const struct sorting *s, uint64_t item)
+{
+    return (uint32_t)(key_of(item) - s->first_own) < (uint32_t)s->n_own;
+}
+
+static void count_fans(struct sorting *s)
+{
+    memset(s->end, 0, (size_t)s->n_own * sizeof *s->end);
+    for (int32_t i = 0; i < s->count; i++)
+        if (is_own(s, s->item[i]))
+            s->end[key_of(s->item[i]) - s->first_own]++;
+        else
+            s->n_others++;
+    for (int32_t i = 0, sum = s->n_others; i < s->n_own; i++) {
+        int32_t count = s->end[i];
+        s->end[i] = sum; /* where it begins */
+        sum += count;
+    }
+}
+
+static void fill_fans(const struct numbering *n, struct sorting *s)
+{
+    int32_t other = 0;
+    for (int32_t i = 0; i < s->count; i++)
+        if (is_own(s, s->item[i]))
+            s->sorted[s->end[key_of(s->item[i]) - s->first_own]++] = by_second(n, s->item[i]);
+        else
+            s->sorted[other++] = s->item[i];
+}
+
+static void sort_others(const struct numbering *n, struct sorting *s)
+{
+    uint64_t *item = s->sorted;
+    if (s->n_others > 0)
+        sort_items(item, s->item, s->n_others);
+    for (int32_t begin = 0, end; begin < s->n_others; begin = end) {
+        int32_t key = key_of(item[begin]);
+        for (end = begin; end < s->n_others && key_of(item[end]) == key; end++)
+            ;
+        for (int32_t i = begin; i < end; i++)
+            item[i] = by_second(n, item[i]);
+        sort_fan(item + begin, s->item, end - begin);
+    }
+}
+
 static void place_tile(void *context, size_t tile)
 {
     const struct numbering *n = context;
-    int32_t first = n->triangles.start[tile], count = n->triangles.start[tile + 1] - first;
-    uint64_t *item = dealt_items(n) + first, *scratch = items_of(n) + first;
-    sort_items(item, scratch, count);
-    for (int32_t begin = 0, end; begin < count; begin = end) {
-        for (end = begin + 1; end < count && key_of(item[end]) == key_of(item[begin]);)
-            end++;
-        sort_fan(n, item + begin, scratch + begin, end - begin);
-        for (int32_t i = begin; i < end; i++)
-            n->place[id_of(item[i])] = place_of(first + i, first_of(item[i]));
+    int32_t first = n->triangles.start[tile], own = n->vertices.start[tile], down = 0;
+    struct sorting s = {.item = dealt_items(n) + first, .sorted = items_of(n) + first, .first = first,
+                        .count = n->triangles.start[tile + 1] - first, .first_own = n->n_kept + own,
+                        .n_own = n->vertices.start[tile + 1] - own, .end = n->order + own};
+    count_fans(&s);
+    fill_fans(n, &s);
+    sort_others(n, &s);
+    for (int32_t i = 0, begin = s.n_others; i < s.n_own; begin = s.end[i++])
+        sort_fan(s.sorted + begin, s.item, s.end[i] - begin);
+    for (int32_t i = 0; i < s.count; i++) {
+        int32_t t = id_of(s.sorted[i]);
+        n->place[t] = place_of(first + i, first_of(s.sorted[i]));
+        down += first + i < t;
     }
+    n->triangles.at[tile] = down;
 }
 
 static void rank_triangles(struct numbering *n)
 {
-    tri_execute(n->executor, n->triangles.shares, rename_corners, n);
+    tri_execute(n->executor, n->triangles.shares, key_share, n);
     n->n_tri = add_up_counts(&n->triangles, n->n_tiles);
     tri_execute(n->executor, n->triangles.shares, deal_triangles, n);
     tri_execute(n->executor, (size_t)n->n_tiles, place_tile, n);
 }
 
-/* --- all move */
+/* --- triangles move */
 
-static void park_share(void *context, size_t share)
+struct move {
+    const struct numbering *n;
+    struct tri_range batch;  /* of new places */
+    bool down;               /* batches go down: what is below has not moved yet */
+    int32_t n_parked;        /* before this batch */
+    int32_t parked[BATCH_SHARES]; /* by each share */
+};
+
+static struct tri_range batch_share(const struct move *m, size_t share)
 {
-    const struct numbering *n = context;
-    struct parked *park = n->park;
-    struct tri_range range = tri_share(share, n->mesh->n_triangles);
-    for (int32_t t = range.first; t < range.last; t++) {
-        const struct tri_triangle *from = &n->mesh->tri[t];
-        if (!tri_is_live(from))
-            continue;
-        struct parked *to = &park[n->place[t] >> 2];
-        for (int k = 0, old = n->place[t] & 3; k < 3; k++, old = tri_next[old])
-            to->n[k] = from->n[old] >= 0 ? new_code(n, from->n[old]) : ~n->sub_rank[~from->n[old]];
-        to->region = from->region;
+    struct tri_range range = tri_share_of(share, BATCH_SHARES, m->batch.last - m->batch.first);
+    return (struct tri_range){m->batch.first + range.first, m->batch.first + range.last};
+}
+
+static const struct tri_triangle *source_of(const struct numbering *n, uint64_t item)
+{
+    return (item >> PARKED_BIT ? parked_of(n) : n->mesh->tri) + id_of(item);
+}
+
+static void rename_to(const struct numbering *n, const struct tri_triangle *from, int first, struct tri_triangle *to)
+{
+    for (int k = 0, old = first; k < 3; k++, old = tri_next[old]) {
+        to->v[k] = renamed(n, from->v[old]);
+        to->n[k] = from->n[old] >= 0 ? new_code(n, from->n[old]) : ~n->sub_rank[~from->n[old]];
+    }
+    to->region = from->region;
+    to->state = 0;
+}
+
+/* A few are fetched before the first is looked at, so that the memory works on all of them at once. */
+static void gather_batch(void *context, size_t share)
+{
+    enum { AT_ONCE = 32 };
+    const struct move *m = context;
+    const struct numbering *n = m->n;
+    struct tri_range range = batch_share(m, share);
+    struct tri_triangle from[AT_ONCE];
+    for (int32_t first = range.first; first < range.last; first += AT_ONCE) {
+        int32_t count = range.last - first < AT_ONCE ? range.last - first : AT_ONCE;
+        const uint64_t *item = items_of(n) + first;
+        for (int32_t i = 0; i < count; i++)
+            from[i] = *source_of(n, item[i]);
+        for (int32_t i = 0; i < count; i++)
+            rename_to(n, &from[i], first_of(item[i]), &n->buffer[first + i - m->batch.first]);
     }
 }
 
-/* Where a triangle keeps the corners of the triangle that it will hold, until its own triangle's corners have been
- * read: the links there have been parked already. */
-static int32_t *waiting_corners(struct tri_triangle *triangle) { return triangle->n; }
-
-static void move_corners(void *context, size_t share)
+/* Something stands here that is to go to a batch to come. */
+static bool stands_here(const struct move *m, int32_t t)
 {
-    const struct numbering *n = context;
-    struct tri_range range = tri_share(share, n->mesh->n_triangles);
+    int32_t place = m->n->place[t];
+    return place != TRI_NONE && (m->down ? place >> 2 < m->batch.first : place >> 2 >= m->batch.last);
+}
+
+static void count_parked(void *context, size_t share)
+{
+    struct move *m = context;
+    struct tri_range range = batch_share(m, share);
+    for (int32_t t = range.first; t < range.last; t++)
+        m->parked[share] += stands_here(m, t);
+}
+
+static void put_down(void *context, size_t share)
+{
+    const struct move *m = context;
+    const struct numbering *n = m->n;
+    struct tri_range range = batch_share(m, share);
+    int32_t parked = m->parked[share];
     for (int32_t t = range.first; t < range.last; t++) {
-        const int32_t *from = n->mesh->tri[t].v;
-        if (from[0] == TRI_NONE)
-            continue;
-        int32_t *to = waiting_corners(&n->mesh->tri[n->place[t] >> 2]);
-        for (int k = 0, old = n->place[t] & 3; k < 3; k++, old = tri_next[old])
-            to[k] = from[old];
+        if (stands_here(m, t)) {
+            parked_of(n)[parked] = n->mesh->tri[t];
+            items_of(n)[n->place[t] >> 2] = UINT64_C(1) << PARKED_BIT | item_of(0, n->place[t] & 3, parked++);
+        }
+        n->mesh->tri[t] = n->buffer[t - m->batch.first];
     }
 }
 
-static void settle_share(void *context, size_t share)
+static void move_batch(struct move *m)
 {
-    const struct numbering *n = context;
-    const struct parked *park = n->park;
-    struct tri_range range = tri_share(share, n->n_tri);
-    for (int32_t t = range.first; t < range.last; t++) {
-        const int32_t *v = waiting_corners(&n->mesh->tri[t]);
-        n->mesh->tri[t] = (struct tri_triangle){
-            {v[0], v[1], v[2]}, {park[t].n[0], park[t].n[1], park[t].n[2]}, park[t].region, 0};
+    memset(m->parked, 0, sizeof m->parked);
+    tri_execute(m->n->executor, BATCH_SHARES, gather_batch, m);
+    tri_execute(m->n->executor, BATCH_SHARES, count_parked, m);
+    for (int share = 0; share < BATCH_SHARES; share++) {
+        int32_t count = m->parked[share];
+        m->parked[share] = m->n_parked;
+        m->n_parked += count;
     }
+    tri_execute(m->n->executor, BATCH_SHARES, put_down, m);
 }
+
+static void move_triangles(const struct numbering *n)
+{
+    int64_t down = 0;
+    for (int32_t tile = 0; tile < n->n_tiles; tile++)
+        down += n->triangles.at[tile];
+    struct move m = {.n = n, .down = 2 * down <= n->n_tri};
+    int32_t batches = n->n_tri / n->batch + 1;
+    for (int32_t i = 0; i < batches; i++) {
+        int32_t first = n->batch * (m.down ? batches - 1 - i : i), left = n->n_tri - first;
+        m.batch = (struct tri_range){first, first + (left < n->batch ? left : n->batch)};
+        move_batch(&m);
+    }
+    assert((size_t)m.n_parked <= n->n_items / 2);
+}
+
+/* --- subsegments move */
 
 static void move_subs(struct numbering *n)
 {
@@ -470,7 +605,7 @@ static enum tri_status allocate(struct numbering *n, struct tri_error *error)
     const struct tri_mesh *mesh = n->mesh;
     size_t vertices = (size_t)(mesh->n_vertices - n->n_kept), subs = (size_t)mesh->n_subs;
     n->n_items = (size_t)(mesh->n_triangles > mesh->n_subs ? mesh->n_triangles : mesh->n_subs);
-    size_t for_vertices = vertices * tri_vertex_size(mesh), for_items = n->n_items * sizeof(struct parked);
+    size_t for_vertices = vertices * tri_vertex_size(mesh), for_items = 3 * n->n_items * sizeof(uint64_t);
     bool deals = reserve_deal(&n->vertices, mesh->n_vertices - n->n_kept, n->n_tiles);
     deals = reserve_deal(&n->triangles, mesh->n_triangles, n->n_tiles) && deals;
     n->kept_tile = malloc(((size_t)n->n_kept + 1) * sizeof *n->kept_tile);
@@ -479,8 +614,11 @@ static enum tri_status allocate(struct numbering *n, struct tri_error *error)
     n->sub_rank = tri_mesh_extra(mesh, (subs + 1) * sizeof *n->sub_rank);
     n->sub = tri_mesh_extra(mesh, (subs + 1) * sizeof *n->sub);
     n->place = tri_mesh_extra(mesh, ((size_t)mesh->n_triangles + 1) * sizeof *n->place);
-    n->park = tri_mesh_extra(mesh, (for_vertices > for_items ? for_vertices : for_items) + 1);
-    if (deals && n->kept_tile && n->order && n->rank && n->sub_rank && n->sub && n->place && n->park)
+    n->park = tri_mesh_extra(mesh, (for_vertices > for_items ? for_vertices : for_items) + sizeof(struct tri_triangle));
+    n->batch = mesh->n_triangles / BATCHES < BATCH ? mesh->n_triangles / BATCHES + 1 : BATCH;
+    n->buffer = malloc((size_t)n->batch * sizeof *n->buffer);
+    if (deals && n->kept_tile && n->order && n->rank && n->sub_rank && n->sub && n->place && n->park &&
+        n->buffer)
         return TRI_OK;
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for numbering %d triangles", (int)mesh->n_triangles);
 }
@@ -491,14 +629,10 @@ static void renumber(struct numbering *n)
     struct tri_mesh *mesh = n->mesh;
     rank_vertices(n);
     tri_mesh_gather_vertices(mesh, n->n_kept, n->order, n->n_new, n->park, n->executor);
-    tri_mesh_extra_free(mesh, n->order);
-    n->order = NULL;
     rename_subs(n);
     rank_subs(n);
     rank_triangles(n);
-    tri_execute(n->executor, tri_shares(mesh->n_triangles), park_share, n);
-    tri_execute(n->executor, tri_shares(mesh->n_triangles), move_corners, n);
-    tri_execute(n->executor, tri_shares(n->n_tri), settle_share, n);
+    move_triangles(n);
     move_subs(n);
     mesh->n_triangles = n->n_tri;
     mesh->n_subs = n->n_subs;
@@ -519,6 +653,7 @@ static void free_numbering(struct numbering *n)
     tri_mesh_extra_free(n->mesh, n->sub);
     tri_mesh_extra_free(n->mesh, n->place);
     tri_mesh_extra_free(n->mesh, n->park);
+    free(n->buffer);
 }
 
 enum tri_status par_number(struct tri_mesh *mesh, const struct par_partition *partition, int32_t n_kept,

@@ -196,7 +196,7 @@ static void number_tile(void *context, size_t index)
     bool memory = par_tile_copy_reserve(&job->copy, mesh, n, tile->n_triangles, tile->n_segments) && scratch;
     par_tile_copy_show(&job->copy, tile);
     if (memory) {
-        tri_hilbert_order(mesh->xy, order, n, scratch, NULL);
+        tri_hilbert_order_coarse(mesh->xy, order, n, scratch);
         for (int32_t i = 0; i < n; i++) {
             c->tiles->number[order[i]] = tile->first_vertex + i;
             par_tile_copy_vertex(&job->copy, mesh, order[i], i);

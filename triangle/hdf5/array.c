@@ -1,7 +1,7 @@
 /* Chunks of an array, from a buffer into the file.
  *
- * INVARIANT between calls: dataset >= 0 holds exactly the first n / TRI_H5_CHUNK_ROWS * TRI_H5_CHUNK_ROWS rows, the
- * buffer those behind them, fewer than a chunk; dataset < 0: n < TRI_H5_CHUNK_ROWS. */
+ * INVARIANT between calls: the buffer holds the last n_buffer <= chunk_rows rows; those before it are a whole number of
+ * chunks, and in the file. */
 #include "triangle/hdf5/array.h"
 
 #include <assert.h>
@@ -15,9 +15,7 @@ static size_t row_bytes(const struct tri_h5_array *array)
     return number_bytes(array->type) * (size_t)array->width;
 }
 
-static size_t chunk_bytes(const struct tri_h5_array *array) { return TRI_H5_CHUNK_ROWS * row_bytes(array); }
-
-static int32_t rows_in_buffer(const struct tri_h5_array *array) { return (int32_t)(array->n % TRI_H5_CHUNK_ROWS); }
+static size_t chunk_bytes(const struct tri_h5_array *array) { return (size_t)array->chunk_rows * row_bytes(array); }
 
 static int dimensions(const struct tri_h5_array *array) { return array->is_list ? 1 : 2; }
 
@@ -32,10 +30,10 @@ static enum tri_status no_memory(const struct tri_h5_array *array, struct tri_er
 }
 
 enum tri_status tri_h5_array_begin(struct tri_h5_array *array, struct tri_h5_file *file, const char *name,
-                                   enum tri_h5_type type, int32_t width, struct tri_error *error)
+                                   enum tri_h5_type type, int32_t width, int32_t chunk_rows, struct tri_error *error)
 {
     *array = (struct tri_h5_array){.file = file, .name = name, .type = type, .width = width > 0 ? width : 1,
-                                   .is_list = width == 0, .dataset = -1};
+                                   .is_list = width == 0, .chunk_rows = chunk_rows, .dataset = -1};
     array->buffer = malloc(chunk_bytes(array));
     return array->buffer ? TRI_OK : no_memory(array, error);
 }
@@ -50,14 +48,17 @@ void tri_h5_array_free(struct tri_h5_array *array)
 
 /* --- datasets */
 
-/* How the dataset is kept: in chunks that nobody fills before they are written, or in one piece. < 0: an error. */
+/* How the dataset is kept: in chunks, which have their place as soon as they are part of it and are not filled before
+ * they are written, or in one piece. < 0: an error. */
 static hid_t creation_of(const struct tri_h5_array *array, bool in_chunks)
 {
-    const hsize_t chunk[2] = {TRI_H5_CHUNK_ROWS, (hsize_t)array->width};
+    const hsize_t chunk[2] = {(hsize_t)array->chunk_rows, (hsize_t)array->width};
     hid_t creation = tri_h5_no_times(H5P_DATASET_CREATE);
     if (creation < 0 || !in_chunks)
         return creation;
-    if (H5Pset_chunk(creation, dimensions(array), chunk) >= 0 && H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER) >= 0)
+    if (H5Pset_chunk(creation, dimensions(array), chunk) >= 0 &&
+        H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY) >= 0 &&
+        H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER) >= 0)
         return creation;
     H5Pclose(creation);
     return -1;
@@ -79,14 +80,33 @@ static hid_t create_dataset(const struct tri_h5_array *array, int64_t n, bool in
     return dataset;
 }
 
-/* The buffer as the chunk that begins with row `first`, behind which there are no others. n: rows then. */
-static enum tri_status write_chunk(struct tri_h5_array *array, int64_t first, int64_t n, struct tri_error *error)
+static enum tri_status resize(struct tri_h5_array *array, int64_t n, struct tri_error *error)
 {
-    const hsize_t size[2] = {(hsize_t)n, (hsize_t)array->width}, place[2] = {(hsize_t)first, 0};
+    const hsize_t size[2] = {(hsize_t)n, (hsize_t)array->width};
+    return H5Dset_extent(array->dataset, size) < 0 ? tri_h5_fail(array->file, array->name, error) : TRI_OK;
+}
+
+enum tri_status tri_h5_array_allocate(struct tri_h5_array *array, int64_t n_chunks, struct tri_error *error)
+{
+    if (n_chunks <= array->n_chunks)
+        return TRI_OK;
     if (array->dataset < 0)
         array->dataset = create_dataset(array, 0, true);
-    if (array->dataset < 0 || H5Dset_extent(array->dataset, size) < 0 ||
-        H5Dwrite_chunk(array->dataset, H5P_DEFAULT, 0, place, chunk_bytes(array), array->buffer) < 0)
+    if (array->dataset < 0)
+        return tri_h5_fail(array->file, array->name, error);
+    array->n_chunks = n_chunks;
+    return resize(array, n_chunks * array->chunk_rows, error);
+}
+
+/* The buffer as the chunk that begins with row `first`. */
+static enum tri_status write_chunk(struct tri_h5_array *array, int64_t first, struct tri_error *error)
+{
+    const hsize_t place[2] = {(hsize_t)first, 0};
+    assert(first % array->chunk_rows == 0);
+    if (first / array->chunk_rows >= array->n_chunks)
+        return tri_fail(error, TRI_INTERNAL, array->file->output->path, 0, "%s has more rows than expected",
+                        array->name);
+    if (H5Dwrite_chunk(array->dataset, H5P_DEFAULT, 0, place, chunk_bytes(array), array->buffer) < 0)
         return tri_h5_fail(array->file, array->name, error);
     return TRI_OK;
 }
@@ -102,38 +122,42 @@ static enum tri_status write_whole(struct tri_h5_array *array, struct tri_error 
 
 /* --- rows */
 
-char *tri_h5_array_room(struct tri_h5_array *array, int32_t *rows)
+enum tri_status tri_h5_array_room(struct tri_h5_array *array, char **at, int32_t *rows, struct tri_error *error)
 {
-    int32_t taken = rows_in_buffer(array);
-    *rows = TRI_H5_CHUNK_ROWS - taken;
-    return array->buffer + (size_t)taken * row_bytes(array);
+    enum tri_status status = TRI_OK;
+    if (array->n_buffer == array->chunk_rows) {
+        status = write_chunk(array, array->n - array->n_buffer, error);
+        array->n_buffer = 0;
+    }
+    *rows = array->chunk_rows - array->n_buffer;
+    *at = array->buffer + (size_t)array->n_buffer * row_bytes(array);
+    return status;
 }
 
-enum tri_status tri_h5_array_advance(struct tri_h5_array *array, int32_t rows, struct tri_error *error)
+void tri_h5_array_advance(struct tri_h5_array *array, int32_t rows)
 {
-    assert(rows >= 0 && rows <= TRI_H5_CHUNK_ROWS - rows_in_buffer(array));
+    assert(rows >= 0 && rows <= array->chunk_rows - array->n_buffer);
     array->n += rows;
-    if (rows == 0 || rows_in_buffer(array) != 0)
-        return TRI_OK;
-    return write_chunk(array, array->n - TRI_H5_CHUNK_ROWS, array->n, error);
+    array->n_buffer += rows;
 }
 
 /* Bytes behind the last row are written, and must not depend on what was there. */
 static void clear_rest(struct tri_h5_array *array)
 {
-    size_t taken = (size_t)rows_in_buffer(array) * row_bytes(array);
+    size_t taken = (size_t)array->n_buffer * row_bytes(array);
     memset(array->buffer + taken, 0, chunk_bytes(array) - taken);
 }
 
 enum tri_status tri_h5_array_end(struct tri_h5_array *array, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    int32_t rest = rows_in_buffer(array);
     clear_rest(array);
     if (array->dataset < 0)
         status = write_whole(array, error);
-    else if (rest > 0)
-        status = write_chunk(array, array->n - rest, array->n, error);
+    else if (array->n_buffer > 0)
+        status = write_chunk(array, array->n - array->n_buffer, error);
+    if (!status && array->n_chunks > 0)
+        status = resize(array, array->n, error);
     if (array->dataset >= 0 && H5Dclose(array->dataset) < 0 && !status)
         status = tri_h5_fail(array->file, array->name, error);
     array->dataset = -1;
@@ -151,29 +175,32 @@ static void widen_numbers(char *data, size_t n)
     }
 }
 
-/* Copies the full chunks of the old dataset, by way of the buffer. */
+/* Copies the chunks of the old dataset, by way of the buffer. */
 static enum tri_status copy_chunks(struct tri_h5_array *array, hid_t old, struct tri_error *error)
 {
-    const int64_t end = array->n - rows_in_buffer(array);
+    const int64_t end = array->n - array->n_buffer;
     enum tri_status status = TRI_OK;
-    for (int64_t first = 0; first < end && !status; first += TRI_H5_CHUNK_ROWS) {
+    for (int64_t first = 0; first < end && !status; first += array->chunk_rows) {
         const hsize_t place[2] = {(hsize_t)first, 0};
         uint32_t filters = 0;
         if (H5Dread_chunk(old, H5P_DEFAULT, place, &filters, array->buffer) < 0)
             return tri_h5_fail(array->file, array->name, error);
-        widen_numbers(array->buffer, TRI_H5_CHUNK_ROWS * (size_t)array->width);
-        status = write_chunk(array, first, first + TRI_H5_CHUNK_ROWS, error);
+        widen_numbers(array->buffer, (size_t)array->chunk_rows * (size_t)array->width);
+        status = write_chunk(array, first, error);
     }
     return status;
 }
 
 static enum tri_status replace_dataset(struct tri_h5_array *array, struct tri_error *error)
 {
+    const int64_t n_chunks = array->n_chunks;
     hid_t old = array->dataset;
     enum tri_status status = TRI_OK;
     array->dataset = -1;
+    array->n_chunks = 0;
     if (H5Ldelete(array->file->id, array->name, H5P_DEFAULT) < 0)
         status = tri_h5_fail(array->file, array->name, error);
+    status = status ? status : tri_h5_array_allocate(array, n_chunks, error);
     status = status ? status : copy_chunks(array, old, error);
     H5Dclose(old); /* and its space is free */
     return status;
@@ -182,7 +209,7 @@ static enum tri_status replace_dataset(struct tri_h5_array *array, struct tri_er
 enum tri_status tri_h5_array_widen(struct tri_h5_array *array, struct tri_error *error)
 {
     assert(array->type == TRI_H5_INT32);
-    const size_t rest = (size_t)rows_in_buffer(array) * (size_t)array->width;
+    const size_t rest = (size_t)array->n_buffer * (size_t)array->width;
     char *wide = malloc(2 * chunk_bytes(array)), *narrow = array->buffer;
     if (!wide)
         return no_memory(array, error);

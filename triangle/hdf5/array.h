@@ -1,14 +1,13 @@
 /* An array of an HDF5 file that grows row by row, its length unknown until it ends.
  *
- * Rows gather in a buffer of TRI_H5_CHUNK_ROWS of them, as bytes of the file. A full buffer becomes a chunk of the
- * dataset, written past HDF5's caches in one piece. An array that ends before its first chunk is full is a dataset
- * without chunks, of just its size. What the file holds depends on the rows alone, not on the pieces they came in. */
+ * Rows gather in a buffer, as bytes of the file. A full buffer becomes a chunk of the dataset, written past HDF5's
+ * caches in one piece. Where chunks lie in the file is decided by whoever allocates them, not by when they are full: so
+ * what the file holds need not depend on the order in which rows of several arrays come. An array whose rows fit in the
+ * buffer, and for which nothing was allocated, is a dataset without chunks, of just its size. */
 #ifndef TRIANGLE_HDF5_ARRAY_H
 #define TRIANGLE_HDF5_ARRAY_H
 
 #include "triangle/hdf5/file.h"
-
-enum { TRI_H5_CHUNK_ROWS = 1 << 18 }; /* 1 to 6 MiB each */
 
 enum tri_h5_type { TRI_H5_FLOAT64, TRI_H5_INT32, TRI_H5_INT64 };
 
@@ -18,26 +17,33 @@ struct tri_h5_array {
     enum tri_h5_type type;
     int32_t width;     /* numbers in a row */
     bool is_list;      /* of one dimension; width is 1 */
+    int32_t chunk_rows;
     int64_t n;         /* rows so far */
-    char *buffer;      /* [TRI_H5_CHUNK_ROWS] rows, those behind the last full chunk */
-    hid_t dataset;     /* < 0: the first chunk is not full yet */
+    int32_t n_buffer;  /* the last of them, which are in the buffer and not in the file */
+    char *buffer;      /* [chunk_rows] rows */
+    int64_t n_chunks;  /* allocated in the file */
+    hid_t dataset;     /* < 0: nothing is allocated */
 };
 
 /* Begins an array of tables [n][width], or, where width is 0, of lists [n]. TRI_NO_MEMORY. */
 enum tri_status tri_h5_array_begin(struct tri_h5_array *array, struct tri_h5_file *file, const char *name,
-                                   enum tri_h5_type type, int32_t width, struct tri_error *error);
+                                   enum tri_h5_type type, int32_t width, int32_t chunk_rows, struct tri_error *error);
 
-/* Where the next rows go, and how many there is room for, at least one. */
-char *tri_h5_array_room(struct tri_h5_array *array, int32_t *rows);
+/* Gives the array so many chunks in all, if it has fewer. */
+enum tri_status tri_h5_array_allocate(struct tri_h5_array *array, int64_t n_chunks, struct tri_error *error);
+
+/* Where the next rows go, and how many there is room for, at least one. If the buffer is full, it is written: a chunk
+ * must have been allocated for it, else TRI_INTERNAL. */
+enum tri_status tri_h5_array_room(struct tri_h5_array *array, char **at, int32_t *rows, struct tri_error *error);
 
 /* So many rows have been put there. */
-enum tri_status tri_h5_array_advance(struct tri_h5_array *array, int32_t rows, struct tri_error *error);
+void tri_h5_array_advance(struct tri_h5_array *array, int32_t rows);
 
 /* From now on the integers have 64 bits; those that there are already are rewritten. TRI_NO_MEMORY and errors of
  * writing. Reads and writes what has been written; the space in the file is used again. */
 enum tri_status tri_h5_array_widen(struct tri_h5_array *array, struct tri_error *error);
 
-/* Writes the rest, and closes the dataset. */
+/* Writes the rest, gives back chunks that were not needed, and closes the dataset. */
 enum tri_status tri_h5_array_end(struct tri_h5_array *array, struct tri_error *error);
 
 /* After any error, and after the end. */

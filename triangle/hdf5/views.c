@@ -1,21 +1,20 @@
 /* Virtual datasets and hard links. A call of HDF5 that fails makes all that follow do nothing; the end tells. */
 #include "triangle/hdf5/views.h"
 
-#include <stdlib.h>
-
+#include "triangle/hdf5/ends.h"
 #include "triangle/hdf5/items.h"
 #include "triangle/hdf5/layout.h"
-#include "triangle/text/binary.h"
 
 enum { VTK_LINE = 3, VTK_TRIANGLE = 5 };
-enum { ENDS_CHUNK = 1 << 18, DEFLATE_LEVEL = 1 };
 
 static const char LINE_TYPES[] = "/VTKHDF/LineTypes";
 
 struct views {
     struct tri_h5_file *file;
     const struct tri_h5_arrays *arrays;
-    bool failed, no_memory;
+    bool failed;
+    enum tri_status status; /* already told */
+    struct tri_error *error;
 };
 
 static hid_t checked(struct views *v, hid_t id)
@@ -98,56 +97,6 @@ static void add_view(struct views *v, const char *path, hid_t type, int rank, co
     close_with(H5Pclose, creation);
 }
 
-/* --- where the nodes of each cell end: 0, 3, 6, ..., then in steps of two */
-
-struct ends {
-    int64_t triangles, n; /* cells of three nodes; numbers in all */
-};
-
-static int64_t end_of(const struct ends *ends, int64_t i)
-{
-    return i <= ends->triangles ? 3 * i : 3 * ends->triangles + 2 * (i - ends->triangles);
-}
-
-static void write_ends(struct views *v, hid_t dataset, hid_t space, const struct ends *ends, char *buffer)
-{
-    for (int64_t first = 0; first < ends->n && !v->failed; first += ENDS_CHUNK) {
-        const int64_t left = ends->n - first, n = left < ENDS_CHUNK ? left : ENDS_CHUNK;
-        const hsize_t place = (hsize_t)first, size = (hsize_t)n;
-        char *at = buffer;
-        for (int64_t i = first; i < first + n; i++)
-            at = tri_put_i64(at, end_of(ends, i));
-        hid_t memory = checked(v, H5Screate_simple(1, &size, NULL));
-        checked(v, H5Sselect_hyperslab(space, H5S_SELECT_SET, &place, NULL, &size, NULL));
-        if (!v->failed)
-            checked(v, H5Dwrite(dataset, H5T_STD_I64LE, memory, space, H5P_DEFAULT, buffer));
-        close_with(H5Sclose, memory);
-    }
-}
-
-static void add_ends(struct views *v, const char *path, const struct ends *ends)
-{
-    const hsize_t n = (hsize_t)ends->n, chunk = n < ENDS_CHUNK ? n : ENDS_CHUNK;
-    char *buffer = v->failed ? NULL : malloc(8 * (size_t)chunk);
-    if (!buffer) {
-        v->no_memory = v->no_memory || !v->failed;
-        v->failed = true;
-        return;
-    }
-    hid_t creation = checked(v, tri_h5_no_times(H5P_DATASET_CREATE)), dataset = -1;
-    hid_t space = checked(v, H5Screate_simple(1, &n, NULL));
-    if (!v->failed && (H5Pset_chunk(creation, 1, &chunk) < 0 || H5Pset_shuffle(creation) < 0 ||
-                       H5Pset_deflate(creation, DEFLATE_LEVEL) < 0))
-        v->failed = true;
-    if (!v->failed)
-        dataset = checked(v, H5Dcreate2(v->file->id, path, H5T_STD_I64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT));
-    write_ends(v, dataset, space, ends, buffer);
-    close_with(H5Dclose, dataset);
-    close_with(H5Sclose, space);
-    close_with(H5Pclose, creation);
-    free(buffer);
-}
-
 /* --- VTK */
 
 /* One number, as an array. */
@@ -175,7 +124,9 @@ static void add_vtk_cells(struct views *v)
                                   {"/" TRI_H5_SEGMENTS, 2, {s, 2}, {3 * m, 0}, {2 * s, 0}}};
     const struct part lines = {LINE_TYPES, 1, {s, 0}, {m, 0}, {s, 0}};
     add_view(v, "/VTKHDF/Connectivity", type, 1, (hsize_t[2]){3 * m + 2 * s, 0}, 0, nodes, 2);
-    add_ends(v, "/VTKHDF/Offsets", &(struct ends){(int64_t)m, (int64_t)(m + s) + 1});
+    if (!v->failed)
+        v->status = tri_h5_write_ends(v->file, "/VTKHDF/Offsets", (int64_t)m, (int64_t)s, v->error);
+    v->failed = v->failed || v->status;
     add_view(v, LINE_TYPES, H5T_STD_U8LE, 1, (hsize_t[2]){s, 0}, VTK_LINE, NULL, 0);
     add_view(v, "/VTKHDF/Types", H5T_STD_U8LE, 1, (hsize_t[2]){m + s, 0}, VTK_TRIANGLE, &lines, 1);
     add_count(v, "/VTKHDF/NumberOfCells", (int64_t)(m + s));
@@ -228,10 +179,10 @@ static void add_petsc(struct views *v)
 enum tri_status tri_h5_write_views(struct tri_h5_file *file, const struct tri_h5_arrays *arrays,
                                    struct tri_error *error)
 {
-    struct views v = {.file = file, .arrays = arrays};
+    struct views v = {.file = file, .arrays = arrays, .error = error};
     add_vtk(&v);
     add_petsc(&v);
-    if (v.no_memory)
-        return tri_fail(error, TRI_NO_MEMORY, file->output->path, 0, "no memory to write where cells end");
+    if (v.status)
+        return v.status;
     return v.failed ? tri_h5_fail(file, "the views for other programs", error) : TRI_OK;
 }

@@ -6,8 +6,7 @@
  *     /geometry/vertices, /viz/topology/cells  PETSc: -dm_plex_create_from_hdf5_xdmf
  *
  * VTK wants three coordinates: the third column has no data but its fill value. The kinds of the cells are two fill
- * values. Where the nodes of each cell end is the one array that must be written: 8 bytes a cell, which deflate makes a
- * hundred times smaller. */
+ * values. Where the nodes of each cell end is the one array that must be written (triangle/hdf5/ends.h). */
 #ifndef TRIANGLE_HDF5_VIEWS_H
 #define TRIANGLE_HDF5_VIEWS_H
 

@@ -1,7 +1,13 @@
 /* Tiles into arrays.
  *
  * A tile's rows go into the arrays' buffers, converted to bytes of the file, in pieces as the buffers have room. All
- * calls of HDF5 stand between H5E_BEGIN_TRY and H5E_END_TRY, which keep it from printing what goes wrong. */
+ * calls of HDF5 stand between H5E_BEGIN_TRY and H5E_END_TRY, which keep it from printing what goes wrong.
+ *
+ * WHERE CHUNKS LIE depends on the numbers of points and triangles alone, not on what came first. A planar mesh has less
+ * than two triangles a point (Euler), and so has the part of it that has come so far, since corners come before
+ * triangles. A chunk of points has CHUNK_POINTS rows, one of triangles twice as many; chunk k of all these arrays is
+ * allocated, array by array, when the first point comes that belongs to it. Then every triangle has a chunk in time.
+ * As long as there are no more than CHUNK_POINTS points no array has chunks. Segments are written behind all else. */
 #include "triangle/hdf5/write.h"
 
 #include <assert.h>
@@ -11,14 +17,19 @@
 
 #include "triangle/hdf5/items.h"
 #include "triangle/hdf5/layout.h"
+#include "triangle/hdf5/segments.h"
 #include "triangle/hdf5/views.h"
 #include "triangle/hdf5/xdmf.h"
 #include "triangle/text/binary.h"
+
+enum { CHUNK_POINTS = 1 << 18, CHUNK_TRIANGLES = 2 * CHUNK_POINTS, CHUNK_SEGMENTS = CHUNK_POINTS };
 
 struct tri_h5_writer {
     struct tri_h5_options options;
     struct tri_h5_file file;
     struct tri_h5_arrays arrays;
+    struct tri_h5_segments segments;
+    int64_t n_chunks;     /* of points, and of triangles, allocated */
     int64_t most_narrow;
     int64_t n_input;      /* points that there were before refinement */
     double bounds[4];     /* least x, least y, largest x, largest y; none as long as there are no points */
@@ -55,27 +66,25 @@ static enum tri_status copy_columns(struct tri_h5_writer *w, const struct tri_st
 
 /* An array, where it is wanted. */
 static enum tri_status begin_array(struct tri_h5_writer *w, bool wanted, struct tri_h5_array *array, const char *name,
-                                   enum tri_h5_type type, int32_t width, struct tri_error *error)
+                                   enum tri_h5_type type, int32_t width, int32_t chunk, struct tri_error *error)
 {
-    return wanted ? tri_h5_array_begin(array, &w->file, name, type, width, error) : TRI_OK;
+    return wanted ? tri_h5_array_begin(array, &w->file, name, type, width, chunk, error) : TRI_OK;
 }
 
 static enum tri_status begin_arrays(struct tri_h5_writer *w, const struct tri_stream *stream, struct tri_error *error)
 {
     struct tri_h5_arrays *a = &w->arrays;
-    const bool markers = w->options.markers;
     const enum tri_h5_type columns =
         are_whole(w->columns, (int64_t)stream->n_regions * w->n_columns) ? TRI_H5_INT32 : TRI_H5_FLOAT64;
-    enum tri_status s = begin_array(w, true, &a->points, TRI_H5_POINTS, TRI_H5_FLOAT64, 2, error);
-    s = s ? s : begin_array(w, markers, &a->point_markers, TRI_H5_POINT_MARKERS, TRI_H5_INT32, 0, error);
+    enum tri_status s = begin_array(w, true, &a->points, TRI_H5_POINTS, TRI_H5_FLOAT64, 2, CHUNK_POINTS, error);
+    s = s ? s : begin_array(w, w->options.markers, &a->point_markers, TRI_H5_POINT_MARKERS, TRI_H5_INT32, 0,
+                            CHUNK_POINTS, error);
     s = s ? s : begin_array(w, stream->n_attributes > 0, &a->point_attributes, TRI_H5_POINT_ATTRIBUTES, TRI_H5_FLOAT64,
-                            stream->n_attributes, error);
-    s = s ? s : begin_array(w, true, &a->triangles, TRI_H5_TRIANGLES, TRI_H5_INT32, 3, error);
+                            stream->n_attributes, CHUNK_POINTS, error);
+    s = s ? s : begin_array(w, true, &a->triangles, TRI_H5_TRIANGLES, TRI_H5_INT32, 3, CHUNK_TRIANGLES, error);
     s = s ? s : begin_array(w, w->n_columns > 0, &a->triangle_attributes, TRI_H5_TRIANGLE_ATTRIBUTES, columns,
-                            w->n_columns, error);
-    s = s ? s : begin_array(w, true, &a->segments, TRI_H5_SEGMENTS, TRI_H5_INT32, 2, error);
-    s = s ? s : begin_array(w, markers, &a->segment_markers, TRI_H5_SEGMENT_MARKERS, TRI_H5_INT32, 0, error);
-    return s;
+                            w->n_columns, CHUNK_TRIANGLES, error);
+    return s ? s : tri_h5_segments_begin(&w->segments, w->options.xdmf, error);
 }
 
 static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
@@ -170,14 +179,43 @@ static char *put_segment_marker(const struct tri_h5_writer *w, const struct tri_
 static enum tri_status add_rows(struct tri_h5_writer *w, struct tri_h5_array *array, const struct tri_tile *tile,
                                 int32_t n, put_call *put, struct tri_error *error)
 {
-    enum tri_status status = TRI_OK;
-    for (int32_t i = 0; array->file && i < n && !status;) {
+    for (int32_t i = 0; array->file && i < n;) {
         int32_t room;
-        char *at = tri_h5_array_room(array, &room);
+        char *at;
+        enum tri_status status = tri_h5_array_room(array, &at, &room, error);
+        if (status)
+            return status;
         const int32_t end = room < n - i ? i + room : n, begin = i;
         for (; i < end; i++)
             at = put(w, tile, i, at);
-        status = tri_h5_array_advance(array, end - begin, error);
+        tri_h5_array_advance(array, end - begin);
+    }
+    return TRI_OK;
+}
+
+/* Corners among so many points have 64 bits from now on, if that is needed. */
+static enum tri_status widen_in_time(struct tri_h5_writer *w, int64_t n_points, struct tri_error *error)
+{
+    struct tri_h5_array *triangles = &w->arrays.triangles;
+    if (n_points <= w->most_narrow || triangles->type == TRI_H5_INT64)
+        return TRI_OK;
+    return tri_h5_array_widen(triangles, error);
+}
+
+/* Chunks for so many points and their triangles, in the order of the arrays; see above. */
+static enum tri_status allocate(struct tri_h5_writer *w, int64_t n_points, struct tri_error *error)
+{
+    struct tri_h5_arrays *a = &w->arrays;
+    struct tri_h5_array *all[] = {&a->points, &a->point_markers, &a->point_attributes, &a->triangles,
+                                  &a->triangle_attributes};
+    enum tri_status status = TRI_OK;
+    if (n_points <= CHUNK_POINTS)
+        return widen_in_time(w, n_points, error);
+    while (w->n_chunks * CHUNK_POINTS < n_points && !status) {
+        w->n_chunks++;
+        status = widen_in_time(w, w->n_chunks * CHUNK_POINTS, error);
+        for (size_t i = 0; i < sizeof all / sizeof *all && !status; i++)
+            status = all[i]->file ? tri_h5_array_allocate(all[i], w->n_chunks, error) : TRI_OK;
     }
     return status;
 }
@@ -194,20 +232,11 @@ static void extend_bounds(struct tri_h5_writer *w, const struct tri_tile *tile)
     }
 }
 
-/* No corner, nor end, of this tile has a number above those of its points. */
-static enum tri_status widen_in_time(struct tri_h5_writer *w, struct tri_error *error)
-{
-    struct tri_h5_arrays *a = &w->arrays;
-    if (a->points.n <= w->most_narrow || a->triangles.type == TRI_H5_INT64)
-        return TRI_OK;
-    enum tri_status status = tri_h5_array_widen(&a->triangles, error);
-    return status ? status : tri_h5_array_widen(&a->segments, error);
-}
-
 static enum tri_status add_points(struct tri_h5_writer *w, const struct tri_tile *tile, struct tri_error *error)
 {
     const int32_t n = tile->n_vertices;
-    enum tri_status status = add_rows(w, &w->arrays.points, tile, n, put_point, error);
+    enum tri_status status = allocate(w, w->arrays.points.n + n, error);
+    status = status ? status : add_rows(w, &w->arrays.points, tile, n, put_point, error);
     status = status ? status : add_rows(w, &w->arrays.point_markers, tile, n, put_point_marker, error);
     status = status ? status : add_rows(w, &w->arrays.point_attributes, tile, n, put_point_attributes, error);
     extend_bounds(w, tile);
@@ -224,26 +253,17 @@ static enum tri_status add_triangles(struct tri_h5_writer *w, const struct tri_t
     return status ? status : add_rows(w, &a->triangle_attributes, tile, tile->n_triangles, columns, error);
 }
 
-static enum tri_status add_segments(struct tri_h5_writer *w, const struct tri_tile *tile, struct tri_error *error)
-{
-    struct tri_h5_arrays *a = &w->arrays;
-    put_call *ends = a->segments.type == TRI_H5_INT64 ? put_wide_ends : put_ends;
-    enum tri_status status = add_rows(w, &a->segments, tile, tile->n_segments, ends, error);
-    return status ? status : add_rows(w, &a->segment_markers, tile, tile->n_segments, put_segment_marker, error);
-}
-
 static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct tri_h5_writer *w = user;
     enum tri_status status = TRI_OK;
     assert(tile->first_vertex == w->arrays.points.n && tile->first_triangle == w->arrays.triangles.n &&
-           tile->first_segment == w->arrays.segments.n);
+           tile->first_segment == w->segments.n);
     H5E_BEGIN_TRY
     {
         status = add_points(w, tile, error);
-        status = status ? status : widen_in_time(w, error);
         status = status ? status : add_triangles(w, tile, error);
-        status = status ? status : add_segments(w, tile, error);
+        status = status ? status : tri_h5_segments_add(&w->segments, tile, error);
     }
     H5E_END_TRY
     return status;
@@ -251,14 +271,46 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
 
 /* --- ending */
 
-static enum tri_status end_arrays(struct tri_h5_arrays *a, struct tri_error *error)
+static enum tri_status begin_segments(struct tri_h5_writer *w, struct tri_error *error)
 {
-    struct tri_h5_array *all[] = {&a->points, &a->point_markers, &a->point_attributes, &a->triangles,
-                                  &a->triangle_attributes, &a->segments, &a->segment_markers};
+    struct tri_h5_arrays *a = &w->arrays;
+    const int64_t n_chunks = w->segments.n > CHUNK_SEGMENTS ? (w->segments.n - 1) / CHUNK_SEGMENTS + 1 : 0;
+    enum tri_status status = begin_array(w, true, &a->segments, TRI_H5_SEGMENTS,
+                                         a->triangles.type, 2, CHUNK_SEGMENTS, error);
+    status = status ? status : tri_h5_array_allocate(&a->segments, n_chunks, error);
+    status = status ? status : begin_array(w, w->options.markers, &a->segment_markers, TRI_H5_SEGMENT_MARKERS,
+                                           TRI_H5_INT32, 0, CHUNK_SEGMENTS, error);
+    if (!status && w->options.markers)
+        status = tri_h5_array_allocate(&a->segment_markers, n_chunks, error);
+    return status;
+}
+
+static enum tri_status write_segments(struct tri_h5_writer *w, struct tri_error *error)
+{
+    struct tri_h5_arrays *a = &w->arrays;
+    struct tri_tile tile;
+    put_call *put = a->triangles.type == TRI_H5_INT64 ? put_wide_ends : put_ends;
+    enum tri_status status = begin_segments(w, error);
+    do {
+        status = status ? status : tri_h5_segments_next(&w->segments, &tile, error);
+        status = status ? status : add_rows(w, &a->segments, &tile, tile.n_segments, put, error);
+        status = status ? status
+                        : add_rows(w, &a->segment_markers, &tile, tile.n_segments, put_segment_marker, error);
+    } while (!status && tile.n_segments > 0);
+    return status;
+}
+
+static enum tri_status end_arrays(struct tri_h5_writer *w, struct tri_error *error)
+{
+    struct tri_h5_arrays *a = &w->arrays;
+    struct tri_h5_array *first[] = {&a->points, &a->point_markers, &a->point_attributes, &a->triangles,
+                                    &a->triangle_attributes}, *last[] = {&a->segments, &a->segment_markers};
     enum tri_status status = TRI_OK;
-    for (size_t i = 0; i < sizeof all / sizeof *all && !status; i++)
-        if (all[i]->file)
-            status = tri_h5_array_end(all[i], error);
+    for (size_t i = 0; i < sizeof first / sizeof *first && !status; i++)
+        status = first[i]->file ? tri_h5_array_end(first[i], error) : TRI_OK;
+    status = status ? status : write_segments(w, error);
+    for (size_t i = 0; i < sizeof last / sizeof *last && !status; i++)
+        status = last[i]->file ? tri_h5_array_end(last[i], error) : TRI_OK;
     return status;
 }
 
@@ -285,7 +337,7 @@ static enum tri_status end(void *user, struct tri_error *error)
     enum tri_status status = TRI_OK;
     H5E_BEGIN_TRY
     {
-        status = end_arrays(&w->arrays, error);
+        status = end_arrays(w, error);
         status = status ? status : write_about(w, error);
         status = status ? status : tri_h5_write_views(&w->file, &w->arrays, error);
         status = status ? status : tri_h5_close(&w->file, error);
@@ -320,6 +372,7 @@ static void let_go(struct tri_h5_writer *w)
         w->file.failure = -1;
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         tri_h5_array_free(all[i]);
+    tri_h5_segments_free(&w->segments);
     (void)tri_h5_close(&w->file, NULL);
 }
 

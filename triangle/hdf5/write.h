@@ -1,9 +1,9 @@
 /* A stream of tiles as an HDF5 file: the arrays of triangle/hdf5/layout.h, views for other programs, and beside the
  * file a short XDMF text that names its arrays, for what reads meshes by way of that.
  *
- * The bytes depend on the tiles and their order, on nothing else. Numbers of points take 32 bits as long as they fit;
- * only when one does not the arrays of triangles and segments are rewritten, once: sizes are not known before the end,
- * and two thirds of a file are these numbers. Memory: about 20 MB, whatever the mesh. */
+ * The bytes depend on the mesh alone, not on how it was cut into tiles. Numbers of points take 32 bits as long as they
+ * fit; only when one does not the array of triangles is rewritten, once: sizes are not known before the end, and half
+ * of a file are these numbers. Memory: about 20 MB, whatever the mesh. */
 #ifndef TRIANGLE_HDF5_WRITE_H
 #define TRIANGLE_HDF5_WRITE_H
 
