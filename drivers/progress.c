@@ -59,7 +59,8 @@ static int print_time(double seconds)
 /* How far, how long still, how much memory; where the estimate has been reached, how far is not known. */
 static int print_outlook(const struct progress *p, double time, int64_t triangles)
 {
-    double made = (double)(triangles - p->first), all = p->estimate - (double)p->first, memory = resources_memory_used();
+    double made = (double)(triangles - p->first), all = p->estimate - (double)p->first;
+    double memory = resources_memory_used();
     int width = 0;
     if (made > 0 && made < all) {
         width = fprintf(stderr, ", %.0f%%, ", floor(100 * made / all));

@@ -63,8 +63,8 @@ struct run_limits {
 struct run_hooks {
     const char *program;
     const struct tri_executor *executor; /* for reading and writing; NULL: one task after another */
-    /* Refines the mesh as tri_refine does; NULL: tri_refine itself. Where run->plan.swept, also writes its files into the
-     * guarded set (drivers/interrupt.h), and counts it: run->counts. The mesh is gone then. */
+    /* Refines the mesh as tri_refine does; NULL: tri_refine itself. Where run->plan.swept, also writes its files into
+     * the guarded set (drivers/interrupt.h), and counts it: run->counts. The mesh is gone then. */
     enum tri_status (*refine)(void *user, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
                               const struct tri_refine_options *options, struct tri_refine_report *report,
                               struct tri_error *error);

@@ -116,7 +116,7 @@ static enum tri_status check_run(const struct par_checkpoint *c, bool resume, ui
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "holds the checkpoint of a run already");
     enum tri_status status = resume ? read_manifest(&m, c->directory, error) : TRI_OK;
     if (!status && resume && m.of != of)
-        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "holds the checkpoint of another version of the program");
+        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "holds a checkpoint of another version of the program");
     return status;
 }
 
@@ -202,9 +202,9 @@ struct head {
     int64_t odd, n_left, round;
     int64_t n_vertices, n_triangles, n_subs, n_worklist, n_keys, n_held, n_spare[PAR_KINDS];
     int64_t tiles_vertices, tiles_triangles, tiles_segments;
-    int64_t inserted_free, inserted_on_segments, gated, deferred, refused[TRI_EXCUSES], hit_limit, hit_cap;
-    int64_t pauses, most_live, deferred_before, left_over;
+    int64_t pauses, most_live, deferred, left_over;
     double radius;
+    struct tri_refine_report total;
 };
 
 /* A state's file while it is written or read. */
@@ -219,7 +219,7 @@ struct carrier {
 static void carry(struct carrier *c, void *bytes, size_t n)
 {
     if (!c->failed && n > 0)
-        c->failed = !(c->writing ? par_write_at(c->file, bytes, n, c->place) : par_read_at(c->file, bytes, n, c->place));
+        c->failed = c->writing ? !par_write_at(c->file, bytes, n, c->place) : !par_read_at(c->file, bytes, n, c->place);
     if (!c->failed)
         c->hash = par_hash(c->hash, bytes, n);
     c->place += (int64_t)n;
@@ -233,14 +233,11 @@ static struct head head_of(const struct par_state *state, const struct par_tiles
                      .n_vertices = m->n_vertices, .n_triangles = m->n_triangles, .n_subs = m->n_subs,
                      .n_worklist = state->worklist.n, .n_keys = state->key.n, .n_held = tiles->held.n,
                      .tiles_vertices = tiles->n_vertices, .tiles_triangles = tiles->n_triangles,
-                     .tiles_segments = tiles->n_segments, .inserted_free = r->total.inserted_free, .inserted_on_segments = r->total.inserted_on_segments,
-                     .gated = r->total.gated, .deferred = r->total.deferred, .hit_limit = r->total.hit_limit,
-                     .hit_cap = r->total.hit_cap, .pauses = r->pauses, .most_live = r->most_live,
-                     .deferred_before = r->deferred, .left_over = r->left_over, .radius = state->radius};
+                     .tiles_segments = tiles->n_segments, .pauses = r->pauses,
+                     .most_live = r->most_live, .deferred = r->deferred, .left_over = r->left_over,
+                     .radius = state->radius, .total = r->total};
     for (int k = 0; k < PAR_KINDS; k++)
         h.n_spare[k] = state->spare.ranges[k].n;
-    for (int k = 0; k < TRI_EXCUSES; k++)
-        h.refused[k] = r->total.refused[k];
     return h;
 }
 
@@ -344,14 +341,10 @@ static void set_counts(const struct head *h, struct par_state *state, struct par
     state->gone = h->tiles_triangles;
     for (int k = 0; k < PAR_KINDS; k++)
         state->spare.ranges[k].n = (int32_t)h->n_spare[k];
-    r->total = (struct tri_refine_report){.inserted_free = h->inserted_free, .gated = h->gated,
-                                          .inserted_on_segments = h->inserted_on_segments, .deferred = h->deferred,
-                                          .hit_limit = h->hit_limit != 0, .hit_cap = h->hit_cap != 0};
-    for (int k = 0; k < TRI_EXCUSES; k++)
-        r->total.refused[k] = h->refused[k];
+    r->total = h->total;
     r->pauses = h->pauses;
     r->most_live = h->most_live;
-    r->deferred = h->deferred_before;
+    r->deferred = h->deferred;
     r->left_over = h->left_over;
 }
 

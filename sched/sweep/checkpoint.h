@@ -49,8 +49,8 @@ struct par_checkpoint {
 };
 
 /* Makes the directory unless it is there, and takes it: for a new run, or, resume, for one that goes on with what is in
- * it. `of`: a hash of whatever else must be the same then. TRI_BAD_INPUT: there is a run in it already, or, resume, there
- * is none, it is another program's, or damaged; another process works on it. TRI_CANNOT_WRITE. */
+ * it. `of`: a hash of whatever else must be the same then. TRI_BAD_INPUT: there is a run in it already, or, resume,
+ * there is none, it is another program's, or damaged; another process works on it. TRI_CANNOT_WRITE. */
 enum tri_status par_checkpoint_open(struct par_checkpoint *checkpoint, const char *directory, bool resume, uint64_t of,
                                     struct tri_error *error);
 
@@ -66,11 +66,11 @@ void par_checkpoint_close(struct par_checkpoint *checkpoint, bool remove);
 /* --- for the sweep */
 
 /* When a sweep begins: the tiles' sink becomes the checkpoint's, which may hand out tiles again, and, once a
- * column is finished, the mesh is no longer stopped in the midst of one. Then par_tiles_begin, for about so many triangles; and where there is a state, *odd
- * becomes the column that is next, and the mesh, the lists and the tiles' counts what they were. TRI_BAD_INPUT: the
- * state is another run's, or damaged. TRI_NO_MEMORY, TRI_CANNOT_WRITE, or what the sink says. */
-enum tri_status par_checkpoint_begin(struct par_checkpoint *checkpoint, struct par_state *state, struct par_tiles *tiles,
-                                     int32_t *odd, struct tri_error *error);
+ * column is finished, the mesh is no longer stopped in the midst of one. Then par_tiles_begin; and where there is a
+ * state, *odd becomes the column that is next, and the mesh, the lists and the tiles' counts what they were.
+ * TRI_BAD_INPUT: the state is another run's, or damaged. TRI_NO_MEMORY, TRI_CANNOT_WRITE, or what the sink says. */
+enum tri_status par_checkpoint_begin(struct par_checkpoint *checkpoint, struct par_state *state,
+                                     struct par_tiles *tiles, int32_t *odd, struct tri_error *error);
 
 /* Between two columns, `odd` being next: writes the state where it is time to, where somebody asks for the end, and
  * where the tiles' taker has failed; then returns TRI_STOPPED or that failure. Else TRI_OK, TRI_CANNOT_WRITE,

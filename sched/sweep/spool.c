@@ -150,6 +150,11 @@ static bool pack(struct packed *p, const struct tri_tile *tile, int32_t n_attrib
     return fits;
 }
 
+static enum tri_status no_memory(const struct par_spool *spool, struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, spool->path, 0, "out of memory for a tile");
+}
+
 static enum tri_status fail_writing(const struct par_spool *spool, struct tri_error *error)
 {
     return tri_fail(error, TRI_CANNOT_WRITE, spool->path, 0, "cannot write: %s", strerror(errno));
@@ -161,7 +166,7 @@ static enum tri_status keep(struct par_spool *spool, const struct tri_tile *tile
     struct packed p = {malloc(sizeof h + (size_t)h.bytes), sizeof h};
     enum tri_status status = TRI_OK;
     if (!p.bytes)
-        return tri_fail(error, TRI_NO_MEMORY, spool->path, 0, "out of memory for a tile");
+        return no_memory(spool, error);
     if (!pack(&p, tile, spool->n_attributes))
         status = tri_fail(error, TRI_TOO_LARGE, spool->path, 0, "a tile reaches back over 2^32 vertices");
     assert(p.n == sizeof h + (size_t)h.bytes);
@@ -210,8 +215,7 @@ static enum tri_status hand_out(const struct par_spool *spool, const struct head
     tile.regions = (const int32_t *)at[4];
     tile.ends = (const int64_t(*)[2])ends;
     tile.segment_markers = (const int32_t *)at[6];
-    enum tri_status status = corners && ends ? spool->to->take(spool->to->user, &tile, error)
-                                             : tri_fail(error, TRI_NO_MEMORY, spool->path, 0, "out of memory for a tile");
+    enum tri_status status = corners && ends ? spool->to->take(spool->to->user, &tile, error) : no_memory(spool, error);
     free(corners);
     free(ends);
     return status;
@@ -234,7 +238,7 @@ static enum tri_status read_tile(const struct par_spool *spool, int64_t place, s
         return fail_damaged(spool, place, error);
     *arrays = malloc((size_t)h->bytes + 1);
     if (!*arrays)
-        return tri_fail(error, TRI_NO_MEMORY, spool->path, 0, "out of memory for a tile");
+        return no_memory(spool, error);
     if (!par_read_at(spool->file, *arrays, (size_t)h->bytes, place + (int64_t)sizeof *h) ||
         h->hash != hash_of(h, *arrays))
         return fail_damaged(spool, place, error);

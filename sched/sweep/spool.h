@@ -1,8 +1,9 @@
 /* Tiles in a file, in the order in which they are handed out: so that whoever takes them can be given all of them again
  * after the process has died. A sink that passes on to another one.
  *
- * The file is only appended to. A tile is a head, with a hash over all of the tile, and its arrays; corners take 32 bits,
- * since they are counted back from the vertices of the tile's own. About 20 bytes a triangle. */
+ * The file is only appended to. A tile is a head, with a hash over all of the tile, and its arrays; corners take 32
+ * bits, since they are counted back from the last vertex of the tile: up to 2^32 vertices. About 26 bytes a
+ * triangle. */
 #ifndef SCHED_SWEEP_SPOOL_H
 #define SCHED_SWEEP_SPOOL_H
 
