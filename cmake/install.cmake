@@ -22,6 +22,9 @@ foreach(document IN LISTS documents)
     endif()
 endforeach()
 install(FILES ${PTRIANGLE_PUBLIC_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/ptriangle COMPONENT development)
+if(TARGET libptriangle-mpi)
+    install(FILES ${PTRIANGLE_MPI_HEADER} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/ptriangle COMPONENT development)
+endif()
 install(FILES triangle/dropin/triangle.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} # where Triangle's clients look for it
         RENAME ${PTRIANGLE_PREFIX}triangle.h COMPONENT development)
 
@@ -63,5 +66,12 @@ configure_file(cmake/triangle.pc.in ${PTRIANGLE_PREFIX}triangle.pc @ONLY)
 configure_file(cmake/ptriangle.pc.in ptriangle.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${PTRIANGLE_PREFIX}triangle.pc ${CMAKE_CURRENT_BINARY_DIR}/ptriangle.pc
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+
+# A C compiler of the MPI adds what its libraries need.
+if(TARGET libptriangle-mpi)
+    configure_file(cmake/ptriangle-mpi.pc.in ptriangle-mpi.pc @ONLY)
+    install(FILES ${CMAKE_CURRENT_BINARY_DIR}/ptriangle-mpi.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+            COMPONENT development)
+endif()
 
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)

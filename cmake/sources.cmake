@@ -129,9 +129,15 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/ranks/fragment.c
     sched/ranks/hand_out.c
     sched/ranks/ranks.c
+    sched/ranks/relay.c
+    sched/ranks/stream.c
     sched/schedule.c
     sched/triangulate.c
     sched/mesh.c)
+
+# The ranks of an MPI, where there is one: a library of its own.
+set(PTRIANGLE_MPI_SOURCES sched/ranks/mpi.c)
+set(PTRIANGLE_MPI_HEADER include/ptriangle/mpi.h)
 
 # Headers that are installed, below include/ptriangle/, beside triangle.h, which lies where Triangle's clients look for it.
 set(PTRIANGLE_PUBLIC_HEADERS

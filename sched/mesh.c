@@ -5,10 +5,11 @@
 #include "sched/threads.h"
 #include "triangle/api/mesh.h"
 
-static enum tri_status refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
-                              const struct tri_settings *settings, struct tri_refine_report *report,
-                              struct tri_error *error)
+static enum tri_status refine(const struct tri_api_way *way, struct tri_mesh *mesh,
+                              const struct tri_refine_options *quality, const struct tri_settings *settings,
+                              struct tri_refine_report *report, struct tri_error *error)
 {
+    (void)way;
     struct par_options how = par_defaults();
     struct par_report schedule;
     how.threads = settings->threads > 0 ? settings->threads : 0;
@@ -30,7 +31,7 @@ enum tri_status par_mesh_new(struct tri_mesh **mesh, const struct tri_figure *fi
         return status;
     int threads = par_threads(own.threads, false);
     const struct tri_executor executor = par_executor(&threads);
-    const struct tri_api_way way = {refine, &executor};
+    const struct tri_api_way way = {.refine = refine, .executor = &executor};
     return tri_api_mesh_new(mesh, figure, &own, &way, error);
 }
 
@@ -42,6 +43,6 @@ enum tri_status par_mesh_refine(struct tri_mesh *mesh, const struct tri_settings
         return status;
     int threads = par_threads(own.threads, false);
     const struct tri_executor executor = par_executor(&threads);
-    const struct tri_api_way way = {refine, &executor};
+    const struct tri_api_way way = {.refine = refine, .executor = &executor};
     return tri_api_mesh_refine(mesh, &own, &way, error);
 }

@@ -128,8 +128,9 @@ enum tri_status lattice_hand_out(const struct lattice *l, const struct tri_sink 
     double *columns = malloc(LATTICE_REGIONS * ((size_t)l->n_columns + 1) * sizeof *columns);
     for (int32_t i = 0; i < LATTICE_REGIONS * l->n_columns; i++)
         columns[i] = lattice_column(l, i / l->n_columns, i % l->n_columns);
-    const struct tri_stream stream = {l->n_attributes, l->n_columns, LATTICE_REGIONS, columns,
-                                      (double)lattice_triangles(l)};
+    const struct tri_stream stream = {.n_attributes = l->n_attributes, .n_columns = l->n_columns,
+                                      .n_regions = LATTICE_REGIONS, .regions = columns,
+                                      .estimate = (double)lattice_triangles(l), .n_ranks = 1};
     enum tri_status status = sink->begin ? sink->begin(sink->user, &stream, error) : TRI_OK;
     status = status ? status : hand_tiles(l, sink, error);
     free(columns);

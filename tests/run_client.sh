@@ -65,6 +65,12 @@ if [ -x "$work/cmake/dropin_parallel" ]; then
     [ "$(wc -l <"$work/sizes.txt")" -eq 1 ]
 fi
 
+echo "== ranks"
+if [ -x "$work/cmake/ranks" ] && command -v mpirun >/dev/null; then
+    OMP_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 \
+        timeout 100 mpirun -n 2 "$work/cmake/ranks" "$square" 30 0.00002
+fi
+
 echo "== executables"
 for program in "$build/bin/"*; do
     installed=$work/prefix/bin/$(basename "$program")

@@ -4,6 +4,7 @@
 #include "support.h"
 
 #include "sched/ranks/ranks.h"
+#include "sched/ranks/relay.h"
 #include "sched/schedule.h"
 #include "triangle/quality.h"
 
@@ -140,6 +141,7 @@ struct member {
     struct par_report report;
     enum tri_status status;
     struct tri_error error;
+    bool relayed;
 };
 
 static void refine_to(struct member *m)
@@ -151,10 +153,26 @@ static void refine_to(struct member *m)
     m->status = par_refine(&m->mesh, &m->start->options.quality, &m->options, &m->report, &m->error);
 }
 
+/* All tiles to the sink of rank 0. */
+static void refine_and_relay(struct member *m)
+{
+    const struct tri_sink to = {&m->stream, begin_stream, take_tile, NULL};
+    struct par_relay relay = {.carrier = &m->carrier, .to = &to, .most_bytes = 10000};
+    const struct tri_sink sink = par_relay_sink(&relay);
+    m->options.sink = &sink;
+    m->options.figure = &m->start->pslg;
+    m->options.region_column = true;
+    m->status = par_refine(&m->mesh, &m->start->options.quality, &m->options, &m->report, &m->error);
+    m->status = par_relay_finish(&relay, m->status, &m->error);
+}
+
 static void *be_a_rank(void *user)
 {
     struct member *m = user;
-    refine_to(m);
+    if (m->relayed)
+        refine_and_relay(m);
+    else
+        refine_to(m);
     m->status = par_agree(&m->carrier, m->status, &m->error);
     return NULL;
 }
@@ -195,7 +213,7 @@ static void draw_shares(double share[MOST_RANKS + 1], int n_ranks, struct suppor
 }
 
 static void run_ranks(struct member *member, const struct start *start, const struct par_options *options, int n_ranks,
-                      const double *share, int fails)
+                      const double *share, int fails, bool relayed)
 {
     struct fake_world world;
     fake_world_init(&world, n_ranks);
@@ -206,7 +224,8 @@ static void run_ranks(struct member *member, const struct start *start, const st
         member[p].options.carrier = &member[p].carrier;
         member[p].options.threads = 1 + p % 2;
         member[p].stream.first_rank = p == 0;
-        member[p].stream.fail_at = p == fails ? 2 : 0;
+        member[p].stream.fail_at = p == fails ? relayed ? 8 : 2 : 0;
+        member[p].relayed = relayed;
     }
     fake_run(&world, be_a_rank, member, sizeof *member);
     fake_world_free(&world);
@@ -252,7 +271,7 @@ static void test_ranks_hand_out_what_one_process_does(void **state)
             int n_ranks = i == round ? 2 : 1 + support_below(&random, MOST_RANKS);
             double share[MOST_RANKS + 1];
             draw_shares(share, n_ranks, &random);
-            run_ranks(member, &start, &options, n_ranks, round == 1 ? share : NULL, -1);
+            run_ranks(member, &start, &options, n_ranks, round == 1 ? share : NULL, -1, (i + round) % 3 == 0);
             compare(&alone, member, n_ranks);
             print_message("  %-28s %7lld triangles, %d columns, rounds %d, left over %lld, %d ranks: bytes a triangle"
                           " %.2f strips, %.2f back, %.2f left over, %.2f numbers\n",
@@ -274,11 +293,11 @@ static void test_ranks_hand_out_what_one_process_does(void **state)
 static void test_an_error_of_one_is_an_error_of_all(void **state)
 {
     (void)state;
-    for (int fails = 0; fails < 3; fails++) {
+    for (int fails = 0; fails < 4; fails++) { /* 3: rank 0, of tiles that others have sent */
         struct start start = start_of(&trials[1]);
         struct par_options options = small_blocks(&trials[1], 1);
         struct member member[3];
-        run_ranks(member, &start, &options, 3, NULL, fails);
+        run_ranks(member, &start, &options, 3, NULL, fails < 3 ? fails : 0, fails == 3);
         for (int p = 0; p < 3; p++) {
             assert_int_equal(member[p].status, TRI_CANNOT_WRITE);
             assert_string_equal(member[p].error.file, "mesh.ele");

@@ -23,6 +23,10 @@ struct tri_stream {         /* what holds for all tiles */
     int32_t n_regions;
     const double *regions;  /* [n_regions][n_columns] attributes of the triangles in each region */
     double estimate;        /* of the number of triangles, to the order: for progress and chunks */
+    /* On several ranks (ptriangle/mpi.h), else 1, 0 and NULL: rank p hands out, and owns, vertices first_vertex[p] to
+     * first_vertex[p + 1] - 1, and likewise with triangles and segments. */
+    int32_t n_ranks, rank;
+    const int64_t *first_vertex, *first_triangle, *first_segment; /* [n_ranks + 1] */
 };
 
 struct tri_tile {

@@ -139,23 +139,25 @@ enum tri_status par_swap(struct par_carrier *carrier, enum par_move move, struct
     return status;
 }
 
-enum tri_status par_sum(struct par_carrier *carrier, const int64_t *value, int32_t n, int64_t *sum, int64_t *before,
+enum tri_status par_gather(struct par_carrier *carrier, const int64_t *mine, int32_t n, int64_t *all,
+                           enum tri_status status, struct tri_error *error)
+{
+    status = par_agree(carrier, status, error);
+    if (!status && !carrier->gather(carrier->self, mine, n, all))
+        status = out_of_touch(carrier, error);
+    return status;
+}
+
+enum tri_status par_sum(struct par_carrier *carrier, const int64_t *value, int32_t n, int64_t *sum,
                         enum tri_status status, struct tri_error *error)
 {
     size_t width = (size_t)n;
     int64_t *all = malloc((size_t)carrier->n_ranks * width * sizeof *all + 1);
-    assert(n <= PAR_MOST_SUMS);
-    status = par_agree(carrier, status ? status : all ? TRI_OK : no_memory(error), error);
-    if (!status && !carrier->gather(carrier->self, value, n, all))
-        status = out_of_touch(carrier, error);
+    status = par_gather(carrier, value, n, all, status ? status : all ? TRI_OK : no_memory(error), error);
     for (size_t i = 0; i < width; i++) {
-        int64_t total = 0;
-        for (int p = 0; !status && p < carrier->n_ranks; p++) {
-            if (before && p == carrier->rank)
-                before[i] = total;
-            total += all[(size_t)p * width + i];
-        }
-        sum[i] = total;
+        sum[i] = 0;
+        for (size_t p = 0; !status && p < (size_t)carrier->n_ranks; p++)
+            sum[i] += all[p * width + i];
     }
     free(all);
     return status;

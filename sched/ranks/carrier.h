@@ -54,10 +54,12 @@ enum tri_status par_agree(struct par_carrier *carrier, enum tri_status status, s
 enum tri_status par_swap(struct par_carrier *carrier, enum par_move move, struct par_bytes *out, struct par_bytes *in,
                          enum tri_status status, struct tri_error *error);
 
-/* Collective: an agreement, then sum[i] becomes the sum of value[i] over all ranks, and before[i], unless it is NULL,
- * that over the ranks below this one. n is at most PAR_MOST_SUMS. */
-enum { PAR_MOST_SUMS = 16 };
-enum tri_status par_sum(struct par_carrier *carrier, const int64_t *value, int32_t n, int64_t *sum, int64_t *before,
+/* Collective: an agreement, then all[n_ranks][n] receives everybody's n numbers. */
+enum tri_status par_gather(struct par_carrier *carrier, const int64_t *mine, int32_t n, int64_t *all,
+                           enum tri_status status, struct tri_error *error);
+
+/* Collective: an agreement, then sum[i] becomes the sum of value[i] over all ranks. */
+enum tri_status par_sum(struct par_carrier *carrier, const int64_t *value, int32_t n, int64_t *sum,
                         enum tri_status status, struct tri_error *error);
 
 #endif

@@ -193,7 +193,6 @@ static enum tri_status hand_out(struct handing *h, const int64_t base[3], struct
 {
     struct par_tiles *tiles = h->tiles;
     forget_tiles(h, h->first_tile);
-    tiles->kept_elsewhere = h->ranks->carrier->rank > 0;
     enum tri_status status = par_tiles_begin(tiles, tiles->partition->estimate, error);
     tiles->n_vertices = base[0];
     tiles->n_triangles = base[1];
@@ -217,22 +216,76 @@ static enum tri_status prepare(struct handing *h, struct tri_error *error)
     return memory ? TRI_OK : no_memory(error);
 }
 
+/* Where each rank's numbers begin: *first receives three lists of n_ranks + 1. Collective. */
+static enum tri_status share_numbers(struct par_carrier *carrier, int32_t n_kept, const int64_t count[3],
+                                     int64_t **first, enum tri_status status, struct tri_error *error)
+{
+    size_t n = (size_t)carrier->n_ranks;
+    int64_t *all = malloc(3 * n * sizeof *all);
+    *first = calloc(3 * (n + 1), sizeof **first);
+    if (!status && !(all && *first))
+        status = no_memory(error);
+    status = par_gather(carrier, count, 3, all, status, error);
+    if (!status)
+        all[0] += n_kept; /* vertices of rank 0 */
+    for (size_t k = 0; !status && k < 3; k++)
+        for (size_t p = 0; p < n; p++)
+            (*first)[k * (n + 1) + p + 1] = (*first)[k * (n + 1) + p] + all[3 * p + k];
+    free(all);
+    return status;
+}
+
+static void tell_shares(struct par_tiles *tiles, const struct par_carrier *carrier, const int64_t *first)
+{
+    tiles->kept_elsewhere = carrier->rank > 0;
+    tiles->n_ranks = carrier->n_ranks;
+    tiles->rank = carrier->rank;
+    for (size_t k = 0; k < 3; k++)
+        tiles->first[k] = first + k * ((size_t)carrier->n_ranks + 1);
+}
+
+enum tri_status par_whole_on_ranks(const struct par_carrier *carrier, struct par_tiles *tiles, struct tri_error *error)
+{
+    const int64_t count[3] = {tiles->mesh->n_vertices, tiles->mesh->n_triangles, tiles->mesh->n_subs};
+    size_t n = (size_t)carrier->n_ranks + 1;
+    int64_t *first = calloc(3 * n, sizeof *first);
+    if (!first)
+        return no_memory(error);
+    for (size_t k = 0; k < 3; k++)
+        for (size_t p = 1; p < n; p++)
+            first[k * n + p] = count[k];
+    tell_shares(tiles, carrier, first);
+    enum tri_status status = TRI_OK;
+    if (carrier->rank == 0)
+        status = par_tiles_whole(tiles, error);
+    else
+        status = par_tiles_begin(tiles, tiles->mesh->n_triangles, error);
+    if (!status && carrier->rank > 0)
+        status = par_tiles_end(tiles, error);
+    free(first);
+    return status;
+}
+
 enum tri_status par_hand_out_on_ranks(struct par_ranks *r, struct par_tiles *tiles, enum tri_status status,
                                       struct tri_error *error)
 {
     int rank = r->carrier->rank;
     struct handing h = {.ranks = r, .tiles = tiles, .mesh = r->state->mesh, .first = r->start[rank],
                         .end = r->start[rank + 1]};
-    int64_t count[3] = {0}, sum[3], base[3] = {0};
+    int64_t count[3] = {0}, base[3] = {0}, *first;
     status = status ? status : prepare(&h, error);
     if (!status)
         count_own(&h, count);
-    status = par_sum(r->carrier, count, 3, sum, base, status, error);
-    base[0] += tiles->n_kept;
+    status = share_numbers(r->carrier, tiles->n_kept, count, &first, status, error);
+    if (!status)
+        tell_shares(tiles, r->carrier, first);
+    for (int k = 0; !status && k < 3; k++)
+        base[k] = tiles->first[k][rank] + (k == 0 && rank == 0 ? tiles->n_kept : 0);
     status = status ? status : number_borders(&h, base[0], error);
     status = exchange_numbers(&h, status, error);
     if (!status)
         status = hand_out(&h, base, error);
+    free(first);
     free(h.in_column);
     free(h.needed);
     free(h.told);

@@ -249,7 +249,7 @@ static enum tri_status refine_rest(struct par_ranks *r, struct tri_error *error)
 static enum tri_status count_rest(struct par_ranks *r, int64_t *left, enum tri_status status, struct tri_error *error)
 {
     int64_t mine = r->state->worklist.n;
-    return par_sum(r->carrier, &mine, 1, left, NULL, status, error);
+    return par_sum(r->carrier, &mine, 1, left, status, error);
 }
 
 static enum tri_status refine_later(struct par_ranks *r, enum tri_status status, struct tri_error *error)
@@ -289,7 +289,7 @@ static enum tri_status add_up(struct par_ranks *r, const struct tri_refine_repor
     int64_t sum[4 + TRI_EXCUSES];
     for (int k = 0; k < TRI_EXCUSES; k++)
         mine[4 + k] = total->given_up[k] - before->given_up[k];
-    status = par_sum(r->carrier, mine, 4 + TRI_EXCUSES, sum, NULL, status, error);
+    status = par_sum(r->carrier, mine, 4 + TRI_EXCUSES, sum, status, error);
     if (status)
         return status;
     *total = *before;
@@ -303,10 +303,45 @@ static enum tri_status add_up(struct par_ranks *r, const struct tri_refine_repor
     return TRI_OK;
 }
 
+static uint64_t mix(uint64_t hash, uint64_t word)
+{
+    hash = (hash ^ word) * 0x9e3779b97f4a7c15ull;
+    return hash ^ hash >> 29;
+}
+
+/* Of what all ranks must have alike. */
+static int64_t fingerprint(const struct par_ranks *r)
+{
+    const struct tri_mesh *mesh = r->state->mesh;
+    uint64_t hash = mix(mix((uint64_t)r->partition->n_columns, (uint64_t)r->partition->n_rows),
+                        (uint64_t)r->state->worklist.n), bits[2];
+    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+        memcpy(bits, &mesh->xy[v], sizeof bits);
+        hash = mix(mix(hash, bits[0]), bits[1]);
+    }
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
+        for (int k = 0; k < 3; k++)
+            hash = mix(hash, (uint64_t)mesh->tri[t].v[k]);
+    return (int64_t)hash;
+}
+
+static enum tri_status compare_meshes(struct par_ranks *r, enum tri_status status, struct tri_error *error)
+{
+    int64_t mine = fingerprint(r), *all = malloc((size_t)r->carrier->n_ranks * sizeof *all);
+    status = par_gather(r->carrier, &mine, 1, all, status ? status : all ? TRI_OK : no_memory(error), error);
+    for (int p = 0; !status && p < r->carrier->n_ranks; p++)
+        if (all[p] != all[0])
+            status = tri_fail(error, TRI_BAD_INPUT, NULL, 0,
+                              "the ranks have not been given the same figure and settings: see rank %d", p);
+    free(all);
+    return status;
+}
+
 static enum tri_status refine_all(struct par_ranks *r, struct par_tiles *tiles, enum tri_status status,
                                   struct tri_error *error)
 {
     const struct tri_refine_report before = r->state->report->total;
+    status = compare_meshes(r, status, error);
     if (!status) {
         keep_own(r);
         status = refine_own(r, error);

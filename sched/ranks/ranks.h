@@ -49,4 +49,7 @@ int par_owner_of_column(const struct par_ranks *ranks, int32_t i);
 enum tri_status par_hand_out_on_ranks(struct par_ranks *ranks, struct par_tiles *tiles, enum tri_status status,
                                       struct tri_error *error);
 
+/* Hands out a mesh that each rank has as a whole: the sink of rank 0 gets all tiles. */
+enum tri_status par_whole_on_ranks(const struct par_carrier *carrier, struct par_tiles *tiles, struct tri_error *error);
+
 #endif

@@ -616,7 +616,7 @@ static enum tri_status allocate(struct numbering *n, struct tri_error *error)
     n->place = tri_mesh_extra(mesh, ((size_t)mesh->n_triangles + 1) * sizeof *n->place);
     n->park = tri_mesh_extra(mesh, (for_vertices > for_items ? for_vertices : for_items) + sizeof(struct tri_triangle));
     n->batch = mesh->n_triangles / BATCHES < BATCH ? mesh->n_triangles / BATCHES + 1 : BATCH;
-    n->buffer = malloc((size_t)n->batch * sizeof *n->buffer);
+    n->buffer = tri_mesh_extra(mesh, (size_t)n->batch * sizeof *n->buffer);
     if (deals && n->kept_tile && n->order && n->rank && n->sub_rank && n->sub && n->place && n->park &&
         n->buffer)
         return TRI_OK;
@@ -653,7 +653,7 @@ static void free_numbering(struct numbering *n)
     tri_mesh_extra_free(n->mesh, n->sub);
     tri_mesh_extra_free(n->mesh, n->place);
     tri_mesh_extra_free(n->mesh, n->park);
-    free(n->buffer);
+    tri_mesh_extra_free(n->mesh, n->buffer);
 }
 
 enum tri_status par_number(struct tri_mesh *mesh, const struct par_partition *partition, int32_t n_kept,

@@ -67,7 +67,10 @@ enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct
     const struct tri_mesh *mesh = tiles->mesh;
     double *regions;
     struct tri_stream stream = {.n_attributes = mesh->n_attributes, .n_regions = mesh->n_regions, .estimate = estimate,
-                                .n_columns = mesh->columns ? mesh->n_columns : tiles->region_column};
+                                .n_columns = mesh->columns ? mesh->n_columns : tiles->region_column,
+                                .n_ranks = tiles->n_ranks > 0 ? tiles->n_ranks : 1, .rank = tiles->rank,
+                                .first_vertex = tiles->first[0], .first_triangle = tiles->first[1],
+                                .first_segment = tiles->first[2]};
     if (!copy_regions(mesh, stream.n_columns, &regions))
         return no_memory(error);
     stream.regions = regions;

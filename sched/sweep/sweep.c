@@ -1,7 +1,7 @@
 /* Columns in turn: refine, look for what is left behind, hand out. */
 #include "sched/sweep/sweep.h"
 
-#include "sched/ranks/carrier.h"
+#include "sched/ranks/ranks.h"
 #include "triangle/clock.h"
 
 struct par_tiles par_tiles_of(const struct par_state *state, const struct par_partition *partition,
@@ -103,9 +103,7 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
 enum tri_status par_hand_out(struct par_state *state, struct tri_error *error)
 {
     struct par_tiles tiles = par_tiles_of(state, state->numbered ? &state->cells : NULL, NULL);
-    if (!state->options->carrier || state->options->carrier->rank == 0)
-        return par_tiles_whole(&tiles, error);
-    tiles.kept_elsewhere = true; /* rank 0 has the whole mesh, too, and hands it out */
-    enum tri_status status = par_tiles_begin(&tiles, par_tiles_expected(&tiles), error);
-    return status ? status : par_tiles_end(&tiles, error);
+    if (state->options->carrier)
+        return par_whole_on_ranks(state->options->carrier, &tiles, error);
+    return par_tiles_whole(&tiles, error);
 }

@@ -28,6 +28,8 @@ struct par_tiles {
     int32_t n_kept;               /* vertices that there were before refinement */
     bool region_column;           /* the attribute of a triangle's region is handed out, unless the mesh has columns */
     bool kept_elsewhere;          /* somebody else hands these out */
+    int32_t n_ranks, rank;        /* see struct tri_stream; 0: one */
+    const int64_t *first[3];
     int64_t *number;              /* [capacity] of each vertex; -1: none yet */
     int32_t *tile;                /* [capacity] column * n_rows + row of each vertex; INT32_MAX: right of what has been
                                      handed out, or not there */

@@ -166,7 +166,9 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     const struct tri_refine_options how = quality_of(refiner->m, s, &fence);
     (void)options;
     *report = (struct tri_refine_report){0};
-    return has_bounds(refiner->m, s) ? refiner->way->refine(mesh, &how, s, report, error) : TRI_OK;
+    if (!has_bounds(refiner->m, s) && !refiner->way->figure)
+        return TRI_OK;
+    return refiner->way->refine(refiner->way, mesh, &how, s, report, error);
 }
 
 static enum tri_status generate(struct tri_api_mesh *m, const struct tri_api_figure *figure,
@@ -182,7 +184,8 @@ static enum tri_status generate(struct tri_api_mesh *m, const struct tri_api_fig
     how.keep_hull = s->keep_hull || pslg->n_segments == 0;
     how.even_odd = s->even_odd;
     how.spread_regions = pslg->n_regions > 0;
-    how.refine = how.elements || has_bounds(m, s); /* a mesh may be refined later, and has to be Delaunay then */
+    how.refine = how.elements || has_bounds(m, s) || way->figure; /* a mesh may be refined later, and has to be
+                                                                     Delaunay then */
     how.refine_call = refine;
     how.refine_user = (void *)&refiner; /* which only reads it */
     how.is_edge = is_edge;
@@ -230,6 +233,35 @@ enum tri_status tri_api_mesh_new(struct tri_mesh **mesh, const struct tri_figure
     return status;
 }
 
+/* For a figure that has been taken. */
+static enum tri_status stream(struct tri_api_figure *figure, const struct tri_settings *settings,
+                              const struct tri_api_way *given, struct tri_error *error)
+{
+    size_t n = figure->elements.n > 0 ? (size_t)figure->pslg.n_segments : 0;
+    struct tri_api_mesh m = {0};
+    struct tri_api_way way = *given;
+    bool *is_edge = malloc(n + 1);
+    if (!is_edge)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %zu segments", n);
+    note_sizes(&m, figure);
+    way.figure = &figure->pslg;
+    way.has_attributes = m.has_attributes;
+    enum tri_status status = generate(&m, figure, settings, &way, n > 0 ? is_edge : NULL, error);
+    free(is_edge);
+    tri_mesh_free(&m.mesh);
+    return status;
+}
+
+enum tri_status tri_api_mesh_stream(const struct tri_figure *figure, const struct tri_settings *settings,
+                                    const struct tri_api_way *way, struct tri_error *error)
+{
+    struct tri_api_figure taken;
+    enum tri_status status = tri_api_figure_take(&taken, figure, error);
+    status = status ? status : stream(&taken, settings, way, error);
+    tri_api_figure_free(&taken);
+    return status;
+}
+
 enum tri_status tri_api_mesh_refine(struct tri_mesh *mesh, const struct tri_settings *settings,
                                     const struct tri_api_way *way, struct tri_error *error)
 {
@@ -242,10 +274,11 @@ enum tri_status tri_api_mesh_refine(struct tri_mesh *mesh, const struct tri_sett
     return status ? status : settled;
 }
 
-static enum tri_status refine_here(struct tri_mesh *mesh, const struct tri_refine_options *quality,
-                                   const struct tri_settings *settings, struct tri_refine_report *report,
-                                   struct tri_error *error)
+static enum tri_status refine_here(const struct tri_api_way *way, struct tri_mesh *mesh,
+                                   const struct tri_refine_options *quality, const struct tri_settings *settings,
+                                   struct tri_refine_report *report, struct tri_error *error)
 {
+    (void)way;
     (void)settings;
     return tri_refine(mesh, quality, report, error);
 }
@@ -253,7 +286,7 @@ static enum tri_status refine_here(struct tri_mesh *mesh, const struct tri_refin
 enum tri_status tri_mesh_new(struct tri_mesh **mesh, const struct tri_figure *figure,
                              const struct tri_settings *settings, struct tri_error *error)
 {
-    const struct tri_api_way way = {refine_here, NULL};
+    const struct tri_api_way way = {.refine = refine_here};
     struct tri_settings own;
     *mesh = NULL;
     enum tri_status status = tri_api_settings_take(&own, settings, error);
@@ -262,7 +295,7 @@ enum tri_status tri_mesh_new(struct tri_mesh **mesh, const struct tri_figure *fi
 
 enum tri_status tri_mesh_refine(struct tri_mesh *mesh, const struct tri_settings *settings, struct tri_error *error)
 {
-    const struct tri_api_way way = {refine_here, NULL};
+    const struct tri_api_way way = {.refine = refine_here};
     struct tri_settings own;
     enum tri_status status = tri_api_settings_take(&own, settings, error);
     return status ? status : tri_api_mesh_refine(mesh, &own, &way, error);

@@ -21,10 +21,13 @@ struct tri_api_mesh {
 
 /* Who refines: tri_refine, or a schedule. */
 struct tri_api_way {
-    enum tri_status (*refine)(struct tri_mesh *mesh, const struct tri_refine_options *quality,
-                              const struct tri_settings *settings, struct tri_refine_report *report,
-                              struct tri_error *error);
+    enum tri_status (*refine)(const struct tri_api_way *way, struct tri_mesh *mesh,
+                              const struct tri_refine_options *quality, const struct tri_settings *settings,
+                              struct tri_refine_report *report, struct tri_error *error);
     const struct tri_executor *executor;
+    void *user;
+    const struct tri_pslg *figure; /* for tri_api_mesh_stream: the mesh's input .. */
+    bool has_attributes;           /* .. and whether regions or triangles have any there */
 };
 
 /* The caller's settings (NULL: none) as this library knows them. TRI_BAD_INPUT: one has no meaning. */
@@ -36,6 +39,11 @@ enum tri_status tri_api_mesh_new(struct tri_mesh **mesh, const struct tri_figure
                                  const struct tri_settings *settings, const struct tri_api_way *way,
                                  struct tri_error *error);
 enum tri_status tri_api_mesh_refine(struct tri_mesh *mesh, const struct tri_settings *settings,
+                                    const struct tri_api_way *way, struct tri_error *error);
+
+/* For a mesh that is handed out while it is refined: refine is called whatever the bounds, with way->figure and
+ * way->has_attributes set, and what it leaves is freed. Settings have been taken. */
+enum tri_status tri_api_mesh_stream(const struct tri_figure *figure, const struct tri_settings *settings,
                                     const struct tri_api_way *way, struct tri_error *error);
 
 #endif

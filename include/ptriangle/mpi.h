@@ -1,0 +1,50 @@
+/* A mesh made by all ranks of an MPI, each of which gets a part of it: the library ptriangle-mpi.
+ *
+ * The mesh is that of par_mesh_new with the same figure and settings, triangle by triangle and number by number,
+ * whatever the number of ranks and of their threads. Rank p gets a column of tiles after the other (ptriangle/tiles.h),
+ * those of all ranks side by side being the whole. Beside its part each rank holds a coarse mesh of all. */
+#ifndef PTRIANGLE_MPI_H
+#define PTRIANGLE_MPI_H
+
+#include <mpi.h>
+
+#include "ptriangle/tiles.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { /* why something moves */
+    PAR_EXCHANGE_BORDERS,   /* strips at the borders of ranks, to the rank on the left .. */
+    PAR_EXCHANGE_BACK,      /* .. and back */
+    PAR_EXCHANGE_LEFT_OVER, /* what lies in boxes where small blocks have left something over, to rank 0 and back */
+    PAR_EXCHANGE_NUMBERS,   /* numbers of vertices at borders */
+    PAR_EXCHANGE_TILES,     /* tiles that another rank takes; 0 here */
+    PAR_EXCHANGES
+};
+
+struct par_exchanges { /* sent by this rank */
+    int64_t bytes[PAR_EXCHANGES], messages[PAR_EXCHANGES];
+};
+
+/* Collective over comm: all its ranks call with the same figure and settings, and each with a sink of its own. Each
+ * sink is told first who owns which numbers (struct tri_stream); then it takes this rank's tiles, from the calling
+ * thread; that of rank 0 also the vertices that there were before. Corners may be vertices of other ranks, which come
+ * with no tile here: cells with global numbers, points without ghosts.
+ *
+ * All ranks return the same status, and where it is not TRI_OK the same *error: that of the lowest rank that failed.
+ * Tiles that have been taken are worth nothing then. settings->stop, where one rank's says true, stops all. In
+ * settings that par_mesh_new refines as one sequential call, with min_angle above 31 degrees, and for a small mesh,
+ * each rank makes the whole mesh, and rank 0 hands it out.
+ *
+ * MPI must run, with MPI_THREAD_FUNNELED where there is more than one thread. comm is duplicated for the time of the
+ * call; the copy has its error handler. Counts of messages stay below 2^31 however much is sent. exchanges: NULL where
+ * nobody asks. */
+enum tri_status par_stream_on(MPI_Comm comm, const struct tri_figure *figure, const struct tri_settings *settings,
+                              const struct tri_sink *sink, struct par_exchanges *exchanges, struct tri_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

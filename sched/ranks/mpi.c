@@ -1,0 +1,96 @@
+/* Ranks of an MPI: the one file here that knows it. The ranks of MPI_COMM_WORLD are nobody's business but the
+ * caller's. */
+#include "ptriangle/mpi.h"
+
+#include "sched/ranks/stream.h"
+
+/* Counts of MPI are ints. */
+enum { MOST_BYTES = 1 << 30 };
+
+struct messenger {
+    MPI_Comm comm;
+    int rank, n_ranks;
+};
+
+static bool gather(void *self, const int64_t *mine, int32_t n, int64_t *all)
+{
+    const struct messenger *m = self;
+    return MPI_Allgather(mine, n, MPI_INT64_T, all, n, MPI_INT64_T, m->comm) == MPI_SUCCESS;
+}
+
+static bool deal(void *self, const int64_t *to, int64_t *from)
+{
+    const struct messenger *m = self;
+    return MPI_Alltoall(to, 1, MPI_INT64_T, from, 1, MPI_INT64_T, m->comm) == MPI_SUCCESS;
+}
+
+static int piece_of(size_t n, size_t at)
+{
+    size_t left = at < n ? n - at : 0;
+    return (int)(left < MOST_BYTES ? left : MOST_BYTES);
+}
+
+/* Sends to one rank while it receives from another, piece by piece. */
+static bool exchange(const struct messenger *m, const struct par_bytes *out, int to, const struct par_bytes *in,
+                     int from)
+{
+    bool good = true;
+    for (size_t at = 0; good && (at < out->n || at < in->n); at += MOST_BYTES) {
+        MPI_Request request[2] = {MPI_REQUEST_NULL, MPI_REQUEST_NULL};
+        MPI_Status states[2];
+        if (at < in->n)
+            good = MPI_Irecv(in->at + at, piece_of(in->n, at), MPI_BYTE, from, 0, m->comm, &request[0]) == MPI_SUCCESS;
+        if (good && at < out->n)
+            good = MPI_Isend(out->at + at, piece_of(out->n, at), MPI_BYTE, to, 0, m->comm, &request[1]) == MPI_SUCCESS;
+        good = good && MPI_Waitall(2, request, states) == MPI_SUCCESS;
+    }
+    return good;
+}
+
+/* Who is k further on gets something in step k, when he looks at who is k before him: so all wait for each other in the
+ * same order. */
+static bool transfer(void *self, const struct par_bytes *out, const struct par_bytes *in)
+{
+    const struct messenger *m = self;
+    bool good = true;
+    for (int k = 1; good && k < m->n_ranks; k++) {
+        int to = (m->rank + k) % m->n_ranks, from = (m->rank - k + m->n_ranks) % m->n_ranks;
+        good = exchange(m, &out[to], to, &in[from], from);
+    }
+    return good;
+}
+
+static bool is_running(void)
+{
+    int begun = 0, ended = 0;
+    MPI_Initialized(&begun);
+    MPI_Finalized(&ended);
+    return begun && !ended;
+}
+
+static void tell_traffic(const struct par_carrier *carrier, struct par_exchanges *exchanges)
+{
+    _Static_assert((int)PAR_MOVES == (int)PAR_EXCHANGES, "what the header counts is what moves");
+    for (int k = 0; exchanges && k < PAR_EXCHANGES; k++) {
+        exchanges->bytes[k] = carrier->traffic[k].bytes;
+        exchanges->messages[k] = carrier->traffic[k].messages;
+    }
+}
+
+enum tri_status par_stream_on(MPI_Comm comm, const struct tri_figure *figure, const struct tri_settings *settings,
+                              const struct tri_sink *sink, struct par_exchanges *exchanges, struct tri_error *error)
+{
+    struct messenger messenger;
+    if (!is_running())
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "MPI has not been initialised, or has ended");
+    if (MPI_Comm_dup(comm, &messenger.comm) != MPI_SUCCESS)
+        return tri_fail(error, TRI_INTERNAL, NULL, 0, "the communicator cannot be duplicated");
+    MPI_Comm_rank(messenger.comm, &messenger.rank);
+    MPI_Comm_size(messenger.comm, &messenger.n_ranks);
+    struct par_carrier carrier = {.rank = messenger.rank, .n_ranks = messenger.n_ranks, .self = &messenger,
+                                  .gather = gather, .deal = deal, .transfer = transfer};
+    enum tri_status status = par_stream_over(&carrier, figure, settings, sink, error);
+    tell_traffic(&carrier, exchanges);
+    MPI_Comm_free(&messenger.comm);
+    return status;
+}
