@@ -43,7 +43,7 @@ foreach(name IN LISTS PTRIANGLE_SEQUENTIAL_PROGRAMS)
 endforeach()
 # The judge, on all cores where there is OpenMP: it is compiled into the program once more, so that the library, which is
 # in other programs too, needs no OpenMP.
-ptriangle_program(trianglecheck libtritext libtriangle)
+ptriangle_program(trianglecheck libtrihdf5 libtritext libtriangle)
 target_sources(trianglecheck PRIVATE ${PTRIANGLE_JUDGE_SOURCES} ${PTRIANGLE_CHECK_SOURCES})
 if(OpenMP_C_FOUND)
     target_link_libraries(trianglecheck PRIVATE OpenMP::OpenMP_C)

@@ -54,17 +54,19 @@ set(PTRIANGLE_MESHER_SOURCES
 # Room triangle/check/, the judge of meshes, and its public door. Of the mesher it knows the predicates alone.
 set(PTRIANGLE_CHECK_SOURCES
     triangle/check/check.c
-    triangle/check/scale.c
+    triangle/check/survey.c
+    triangle/check/part.c
     triangle/check/triangles.c
     triangle/check/edges.c
+    triangle/check/pairs.c
+    triangle/check/store.c
+    triangle/check/match.c
+    triangle/check/segments.c
     triangle/check/stars.c
     triangle/check/order.c
     triangle/check/missing.c
     triangle/check/overlap.c
-    triangle/check/regions.c
     triangle/check/hull.c
-    triangle/check/delaunay.c
-    triangle/check/segments.c
     triangle/check/line.c
     triangle/check/chain.c
     triangle/check/border.c
@@ -78,6 +80,7 @@ set(PTRIANGLE_CHECK_SOURCES
 set(PTRIANGLE_TEXT_SOURCES
     triangle/text/decimal.cpp
     triangle/text/text.c
+    triangle/text/window.c
     triangle/text/read.c
     triangle/text/output.c
     triangle/text/write.c
@@ -152,6 +155,11 @@ set(PTRIANGLE_PUBLIC_HEADERS
 set(PTRIANGLE_DRIVER_SOURCES)
 set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle)
 set(PTRIANGLE_JUDGE_SOURCES
+    drivers/all_cores.c
+    drivers/resources.c
+    drivers/scratch.c
+    drivers/judged_text.c
+    drivers/judged_h5.c
     drivers/judged_files.c
     drivers/verdict.c)
 set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed

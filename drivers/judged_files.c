@@ -5,22 +5,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
-#include "triangle/executor.h"
+#include "drivers/all_cores.h"
 #include "triangle/text/read.h"
 #include "triangle/text/text.h"
 
-/* One task for each thread of OpenMP; without it one after another. */
-static void run_tasks(void *self, size_t n, void (*task)(void *context, size_t i), void *context)
-{
-    (void)self;
-#pragma omp parallel for schedule(dynamic)
-    for (size_t i = 0; i < n; i++)
-        task(context, i);
-}
-
-static const struct tri_executor all_cores = {run_tasks, NULL};
+/* Bytes of memory for each byte of text: the text itself, arrays, and the judge's own. */
+#define TEXT_SHARE 4.0
 
 /* Stem + suffix, malloc'ed. */
 static char *with_suffix(const char *stem, const char *suffix)
@@ -92,35 +85,25 @@ static enum tri_status read_neighbors(struct judged_files *f, const char *path, 
     return status;
 }
 
-enum tri_status judged_read_mesh(struct judged_files *f, const char *base, struct tri_error *error)
+static enum tri_status read_arrays(struct judged_files *f, const struct judged_names *names, struct tri_error *error)
 {
     struct tri_read_options options = {.default_base = 1, .may_be_empty = true, .executor = &all_cores};
-    char *node = with_suffix(base, ".node"), *ele = with_suffix(base, ".ele");
-    char *poly = with_suffix(base, ".poly"), *neigh = with_suffix(base, ".neigh");
-    enum tri_status status = TRI_OK;
-    if (node == NULL || ele == NULL || poly == NULL || neigh == NULL) {
-        status = tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
-    } else {
-        bool points_in_poly;
-        f->has_poly = access(poly, F_OK) == 0;
-        status = f->has_poly ? tri_read_poly(poly, node, &options, &f->mesh, &f->base, &points_in_poly, error)
-                             : tri_read_node(node, &options, &f->mesh, &f->base, error);
-    }
+    bool points_in_poly;
+    enum tri_status status =
+        names->poly ? tri_read_poly(names->poly, names->node, &options, &f->mesh, &f->base, &points_in_poly, error)
+                    : tri_read_node(names->node, &options, &f->mesh, &f->base, error);
+    f->n_nodes = f->mesh.n_points;
     if (status == TRI_OK)
-        status = tri_read_ele(ele, &options, f->base, f->mesh.n_points, &f->elements, error);
-    if (status == TRI_OK && access(neigh, F_OK) == 0)
-        status = read_neighbors(f, neigh, error);
-    free(node);
-    free(ele);
-    free(poly);
-    free(neigh);
+        status = tri_read_ele(names->ele, &options, f->base, f->mesh.n_points, &f->elements, error);
+    if (status == TRI_OK && names->neigh)
+        status = read_neighbors(f, names->neigh, error);
     return status;
 }
 
-enum tri_status judged_read_input(struct judged_files *f, const char *path, struct tri_error *error)
+static enum tri_status read_input(struct judged_files *f, const char *path, struct tri_error *error)
 {
     struct tri_read_options options = {.default_base = f->base, .executor = &all_cores,
-                                       .regions_if_any = f->elements.n_attributes > 0};
+                                       .regions_if_any = (f->source.given >> TRI_CHECK_ATTRIBUTES & 1) != 0};
     int32_t base;
     bool points_in_poly;
     char *stem = with_suffix(path, "");
@@ -138,10 +121,113 @@ enum tri_status judged_read_input(struct judged_files *f, const char *path, stru
     return status;
 }
 
+static struct tri_check_source take_arrays(struct judged_files *f)
+{
+    static const int32_t none[2] = {0, 0};
+    f->arrays = (struct tri_check_mesh){
+        .n_points = f->mesh.n_points, .points = f->mesh.points,
+        .n_triangles = f->elements.n, .triangles = f->elements.corners != NULL ? f->elements.corners : none,
+        .neighbors = f->neighbors, .n_segments = f->listed ? f->mesh.n_segments : 0,
+        .segments = !f->listed ? NULL : f->mesh.segments != NULL ? f->mesh.segments : none,
+        .segment_markers = f->mesh.segment_markers, .point_markers = f->mesh.markers,
+        .n_attributes = f->elements.n_attributes, .attributes = f->elements.attributes};
+    return tri_check_source_of(&f->arrays);
+}
+
+/* Points that can be corners: those behind them are the nodes amid edges of six-node triangles, which are made last. */
+static void leave_out_nodes(struct judged_files *f)
+{
+    int64_t n = f->input.n_points < f->n_nodes ? f->input.n_points : f->n_nodes;
+    if (f->elements.n_nodes > 3) {
+        for (size_t i = 0; i < 3 * (size_t)f->elements.n; i++)
+            n = f->elements.corners[i] >= n ? f->elements.corners[i] + 1 : n;
+        f->arrays.n_points = (int32_t)n;
+        f->source.n_points = n;
+    } else if (f->source.n_points < n) { /* of scratch files */
+        f->source.n_points = n;
+    }
+}
+
+static double size_of(const char *path)
+{
+    struct stat status;
+    return path != NULL && stat(path, &status) == 0 ? (double)status.st_size : 0;
+}
+
+/* Into memory, if they and the judge fit. */
+static enum tri_status read_texts(struct judged_files *f, const struct judged_ask *ask,
+                                  const struct judged_names *names, struct tri_error *error)
+{
+    double bytes = size_of(names->node) + size_of(names->ele) + size_of(names->poly) + size_of(names->neigh);
+    f->listed = names->poly != NULL;
+    enum tri_status status = TRI_OK;
+    if (bytes * TEXT_SHARE <= ask->memory) {
+        status = read_arrays(f, names, error);
+        f->source = take_arrays(f);
+    } else {
+        status = judged_text_read(&f->text, names, ask->scratch, error);
+        f->source = judged_text_source(&f->text);
+        f->source.memory = ask->memory;
+        f->base = f->text.base;
+        f->n_nodes = f->text.n_nodes;
+        f->stale_neighbors = f->text.stale_neighbors;
+    }
+    return status;
+}
+
+static enum tri_status read_mesh(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
+{
+    char *node = with_suffix(ask->base, ".node"), *ele = with_suffix(ask->base, ".ele");
+    char *poly = with_suffix(ask->base, ".poly"), *neigh = with_suffix(ask->base, ".neigh");
+    enum tri_status status = TRI_OK;
+    if (node == NULL || ele == NULL || poly == NULL || neigh == NULL) {
+        status = tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
+    } else {
+        struct judged_names names = {node, ele, access(poly, F_OK) == 0 ? poly : NULL,
+                                     access(neigh, F_OK) == 0 ? neigh : NULL};
+        status = read_texts(f, ask, &names, error);
+    }
+    free(node);
+    free(ele);
+    free(poly);
+    free(neigh);
+    return status;
+}
+
+static bool is_hdf5(const char *name)
+{
+    size_t n = strlen(name);
+    return n > 3 && strcmp(name + n - 3, ".h5") == 0;
+}
+
+static enum tri_status open_h5(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
+{
+    enum tri_status status = judged_h5_open(&f->h5, ask->base, error);
+    if (status != TRI_OK)
+        return status;
+    f->source = judged_h5_source(f->h5);
+    f->source.memory = ask->memory;
+    f->n_nodes = f->source.n_points;
+    return TRI_OK;
+}
+
+enum tri_status judged_read(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
+{
+    enum tri_status status = is_hdf5(ask->base) ? open_h5(f, ask, error) : read_mesh(f, ask, error);
+    if (status == TRI_OK && ask->input != NULL)
+        status = read_input(f, ask->input, error);
+    if (status == TRI_OK)
+        leave_out_nodes(f);
+    f->source.scratch = ask->scratch;
+    return status;
+}
+
 void judged_files_free(struct judged_files *f)
 {
     tri_pslg_free(&f->mesh);
     tri_elements_free(&f->elements);
     free(f->neighbors);
     tri_pslg_free(&f->input);
+    judged_text_close(&f->text);
+    judged_h5_close(f->h5);
 }

@@ -1,28 +1,44 @@
-/* The files of a mesh on trial, and its input. */
+/* The files of a mesh on trial, and its input.
+ *
+ * Text files are read into memory where they fit, else turned into scratch files; an HDF5 file is read in slices. */
 #ifndef DRIVERS_JUDGED_FILES_H
 #define DRIVERS_JUDGED_FILES_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "drivers/judged_h5.h"
+#include "drivers/judged_text.h"
+#include "triangle/check/check.h"
 #include "triangle/pslg.h"
 #include "triangle/reconstruct.h"
 
 struct judged_files {
+    struct tri_check_source source; /* what they hold; its memory and scratch are those asked for */
+    struct tri_pslg input;
+    bool stale_neighbors; /* the .neigh file is of another mesh, of other size: not given */
+    int32_t base;         /* of their numbers */
+    int64_t n_nodes;      /* points, nodes amid edges included */
+
+    /* of the mesh: one of three */
     struct tri_pslg mesh; /* points and subsegments */
     struct tri_elements elements;
-    int32_t *neighbors;   /* [elements.n][3], or NULL: there is no such file, or ... */
-    bool stale_neighbors; /* ... it is of another mesh, of other size */
-    struct tri_pslg input;
-    bool has_poly;
-    int32_t base;
+    int32_t *neighbors; /* [elements.n][3] */
+    struct tri_check_mesh arrays;
+    bool listed; /* there is a .poly file */
+    struct judged_text text;
+    struct judged_h5 *h5;
 };
 
-/* Reads base.node or base.poly, base.ele and base.neigh. */
-enum tri_status judged_read_mesh(struct judged_files *files, const char *base, struct tri_error *error);
+struct judged_ask {
+    const char *base;    /* of the mesh's names; or the name of an HDF5 file */
+    const char *input;   /* NULL: none */
+    double memory;       /* bytes that may be used */
+    const char *scratch; /* folder */
+};
 
-/* Reads a .poly or .node file. */
-enum tri_status judged_read_input(struct judged_files *files, const char *path, struct tri_error *error);
+/* Reads base.node or base.poly, base.ele and base.neigh, or opens base; and the input, a .poly or .node file. */
+enum tri_status judged_read(struct judged_files *files, const struct judged_ask *ask, struct tri_error *error);
 void judged_files_free(struct judged_files *files);
 
 /* Cuts the suffix off, if it is there. */

@@ -12,6 +12,7 @@
 #endif
 
 #include "drivers/judged_files.h"
+#include "drivers/resources.h"
 #include "drivers/verdict.h"
 #include "triangle/check/check.h"
 
@@ -21,7 +22,8 @@ static const char usage[] = "Usage: " PTRIANGLE_NAME " [options] BASE\n";
 
 static const char help[] = /* in the form that cmake/help.awk makes a manual page of */
     "\n"
-    "Checks the mesh in BASE.node and BASE.ele; also BASE.poly (subsegments) and BASE.neigh where they exist.\n"
+    "Checks the mesh in BASE.node and BASE.ele; also BASE.poly (subsegments) and BASE.neigh where they exist. Or\n"
+    "that in one HDF5 file, where BASE ends in .h5.\n"
     "\n"
     "  -p, --poly FILE      compare with the input that the mesh was made from, a .poly or .node file: its\n"
     "                       vertices come first and unmoved, its segments are chains of subsegments except where\n"
@@ -45,6 +47,11 @@ static const char help[] = /* in the form that cmake/help.awk makes a manual pag
     "      --no-markers     do not compare the markers of subsegments and vertices\n"
     "      --no-regions     do not compare the attributes of triangles with the input's regions\n"
     "      --threads N      at most so many (default: OMP_NUM_THREADS, or all cores); the verdict is the same\n"
+    "      --memory SIZE    memory to use: 500M, 4G (K, M, G, T: powers of 1024), or 60% of what is free (default:\n"
+    "                       80%). A mesh that does not fit is judged part by part, with the same verdict; beside a\n"
+    "                       part, its boundary, segments and input, and a byte for each vertex stay in memory\n"
+    "      --scratch DIR    folder for what does not fit then (default: TMPDIR, else /tmp): text files as numbers,\n"
+    "                       20 bytes a vertex and 24 a triangle\n"
     "      --json           report in JSON on standard output, instead of lines\n"
     "      --quiet          print faults only\n"
     "      --version, --help  name and version; this help\n"
@@ -58,6 +65,8 @@ struct settings {
     struct tri_check_options check;
     bool ignore_markers, ignore_regions, json, quiet;
     int64_t threads; /* 0: as OpenMP has it */
+    double memory, memory_share; /* one of them, or 0: not given */
+    const char *scratch;         /* NULL: not given */
 };
 
 static int fail(const char *format, ...)
@@ -80,19 +89,6 @@ static int fail_with(const struct tri_error *e)
 
 /* --- judging */
 
-/* Points that can be corners: those behind them are the nodes amid edges of six-node triangles, which are made last. */
-static int32_t count_corner_points(const struct judged_files *f)
-{
-    if (f->elements.n_nodes <= 3)
-        return f->mesh.n_points;
-    int32_t n = f->input.n_points < f->mesh.n_points ? f->input.n_points : f->mesh.n_points;
-    for (size_t i = 0; i < 3 * (size_t)f->elements.n; i++) {
-        if (f->elements.corners[i] >= n)
-            n = f->elements.corners[i] + 1;
-    }
-    return n;
-}
-
 static void set_threads(int64_t n)
 {
 #ifdef _OPENMP
@@ -111,30 +107,29 @@ static int64_t usual_threads(void)
 #endif
 }
 
-static enum tri_status judge(const struct settings *s, const struct judged_files *f, struct tri_check_report *report,
+/* Bytes that the process may use: the number asked for, or the share of what there is; by default most of that. */
+static double memory_to_use(const struct settings *s)
+{
+    enum { USUAL_PERCENT = 80 };
+    if (s->memory > 0)
+        return s->memory;
+    return resources_memory() * (s->memory_share > 0 ? s->memory_share : USUAL_PERCENT / 100.0);
+}
+
+static enum tri_status judge(const struct settings *s, struct judged_files *f, struct tri_check_report *report,
                              struct tri_error *error)
 {
-    static const int32_t none[2] = {0, 0};
-    struct tri_check_mesh mesh = {
-        .n_points = count_corner_points(f),
-        .points = f->mesh.points,
-        .n_triangles = f->elements.n,
-        .triangles = f->elements.corners != NULL ? f->elements.corners : none,
-        .neighbors = f->neighbors,
-    };
-    if (f->has_poly) {
-        mesh.n_segments = f->mesh.n_segments;
-        mesh.segments = f->mesh.segments != NULL ? f->mesh.segments : none;
-        mesh.segment_markers = s->ignore_markers ? NULL : f->mesh.segment_markers;
-    }
-    mesh.n_attributes = f->elements.n_attributes;
-    mesh.attributes = s->ignore_regions ? NULL : f->elements.attributes;
-    mesh.point_markers = s->ignore_markers ? NULL : f->mesh.markers;
+    unsigned ignored = 0;
+    if (s->ignore_markers)
+        ignored |= 1u << TRI_CHECK_POINT_MARKERS | 1u << TRI_CHECK_SEGMENT_MARKERS;
+    if (s->ignore_regions)
+        ignored |= 1u << TRI_CHECK_ATTRIBUTES;
+    f->source.given &= ~ignored;
     struct tri_check_options options = s->check;
     options.base = f->base;
-    if (mesh.n_triangles < WORTH_THREADS)
+    if (f->source.n_triangles < WORTH_THREADS)
         set_threads(1);
-    return tri_check(&mesh, s->input != NULL ? &f->input : NULL, &options, report, error);
+    return tri_check_from(&f->source, s->input != NULL ? &f->input : NULL, &options, report, error);
 }
 
 /* --- arguments */
@@ -148,6 +143,8 @@ enum long_option {
     NO_MARKERS,
     NO_REGIONS,
     THREADS,
+    MEMORY,
+    SCRATCH,
     JSON,
     QUIET,
     VERSION,
@@ -171,6 +168,8 @@ static const struct option long_options[] = {
     {"small-input-angle", required_argument, NULL, SMALL_INPUT_ANGLE},
     {"no-markers", no_argument, NULL, NO_MARKERS},
     {"no-regions", no_argument, NULL, NO_REGIONS},
+    {"memory", required_argument, NULL, MEMORY},
+    {"scratch", required_argument, NULL, SCRATCH},
     {"json", no_argument, NULL, JSON},
     {"quiet", no_argument, NULL, QUIET},
     {"version", no_argument, NULL, VERSION},
@@ -191,6 +190,20 @@ static bool parse_count(const char *text, int64_t *value)
     errno = 0;
     *value = strtoll(text, &end, 10);
     return end != text && *end == '\0' && errno == 0 && *value >= 0;
+}
+
+/* Bytes, a number with K, M, G or T behind it, or a share in per cent. */
+static bool parse_size(const char *text, double *bytes, double *share)
+{
+    static const char units[] = "KMGT";
+    char *end;
+    double value = strtod(text, &end);
+    const char *unit = *end != '\0' ? strchr(units, *end) : NULL;
+    if (end == text || !(value > 0) || !isfinite(value) || (*end != '\0' && end[1] != '\0'))
+        return false;
+    *share = *end == '%' ? value / 100 : 0;
+    *bytes = *end == '%' ? 0 : unit != NULL ? ldexp(value, 10 * (int)(unit - units + 1)) : value;
+    return *end == '\0' || unit != NULL || (*end == '%' && value <= 100);
 }
 
 /* Applies one option; false: not an option, or no value for it. */
@@ -241,6 +254,11 @@ static bool apply(struct settings *s, int option)
     case NO_REGIONS:
         s->ignore_regions = true;
         return true;
+    case MEMORY:
+        return parse_size(optarg, &s->memory, &s->memory_share);
+    case SCRATCH:
+        s->scratch = optarg;
+        return true;
     case JSON:
         s->json = true;
         return true;
@@ -278,17 +296,22 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     return 0;
 }
 
+static const char *usual_scratch(void)
+{
+    const char *folder = getenv("TMPDIR");
+    return folder != NULL && folder[0] != '\0' ? folder : "/tmp";
+}
+
 static int run(const struct settings *s, struct judged_files *f)
 {
     struct tri_error error = {0};
     struct tri_check_report report;
     set_threads(s->threads > 0 ? s->threads : usual_threads());
-    enum tri_status status = judged_read_mesh(f, s->base, &error);
+    struct judged_ask ask = {s->base, s->input, memory_to_use(s), s->scratch != NULL ? s->scratch : usual_scratch()};
+    enum tri_status status = judged_read(f, &ask, &error);
     if (f->stale_neighbors)
         fail("%s.neigh is of another mesh than %s.ele, by their numbers of triangles: it is not judged", s->base,
              s->base);
-    if (status == TRI_OK && s->input != NULL)
-        status = judged_read_input(f, s->input, &error);
     if (status == TRI_OK)
         status = judge(s, f, &report, &error);
     if (status != TRI_OK)

@@ -20,11 +20,10 @@ static void print_items(const struct tri_check_report *r, bool quiet)
 
 static void print_summary(const struct verdict_style *s, const struct judged_files *f, const struct tri_check_report *r)
 {
-    printf("vertices %ld (%" PRId64 " used), triangles %ld, edges %" PRId64 ", boundary edges %" PRId64
-           ", subsegments %ld\n",
-           (long)f->mesh.n_points, r->n_used_points, (long)f->elements.n, r->n_edges, r->n_boundary_edges,
-           (long)f->mesh.n_segments);
-    if (f->elements.n == 0)
+    printf("vertices %" PRId64 " (%" PRId64 " used), triangles %" PRId64 ", edges %" PRId64 ", boundary edges %" PRId64
+           ", subsegments %" PRId64 "\n",
+           f->n_nodes, r->n_used_points, f->source.n_triangles, r->n_edges, r->n_boundary_edges, f->source.n_segments);
+    if (f->source.n_triangles == 0)
         return;
     printf("angles: smallest %.10g (triangle %" PRId64 "), largest %.10g (triangle %" PRId64 ")\n", r->smallest_angle,
            r->smallest_angle_at + f->base, r->largest_angle, r->largest_angle_at + f->base);
@@ -75,10 +74,9 @@ void verdict_print_json(const struct verdict_style *s, const struct judged_files
     static const char *const states[] = {"skipped", "ok", "failed"};
     printf("{\"passed\": %s, \"base\": ", tri_check_passed(r) ? "true" : "false");
     print_json_string(s->base);
-    printf(", \"vertices\": %ld, \"used_vertices\": %" PRId64 ", \"triangles\": %ld, \"edges\": %" PRId64
-           ", \"boundary_edges\": %" PRId64 ", \"subsegments\": %ld",
-           (long)f->mesh.n_points, r->n_used_points, (long)f->elements.n, r->n_edges, r->n_boundary_edges,
-           (long)f->mesh.n_segments);
+    printf(", \"vertices\": %" PRId64 ", \"used_vertices\": %" PRId64 ", \"triangles\": %" PRId64
+           ", \"edges\": %" PRId64 ", \"boundary_edges\": %" PRId64 ", \"subsegments\": %" PRId64,
+           f->n_nodes, r->n_used_points, f->source.n_triangles, r->n_edges, r->n_boundary_edges, f->source.n_segments);
     print_json_real("smallest_angle", r->smallest_angle);
     print_json_real("largest_angle", r->largest_angle);
     print_json_real("smallest_area", r->smallest_area);

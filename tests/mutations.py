@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""mutations.py BINARIES: breaks a finished mesh in one way after the other; trianglecheck must name each fault.
+"""mutations.py BINARIES: breaks a finished mesh in one way after the other; trianglecheck must name each fault, and say
+the same in every word with next to no memory.
 
 BINARIES is the folder of triangle and trianglecheck. The mesh itself must pass."""
 import copy
@@ -460,7 +461,10 @@ def smallest(m):
 def faults(binaries, base, options):
     """Names of the kinds of fault found; None: the files were refused."""
     command = [binaries / "trianglecheck", base, "--poly", base + "_input.poly", *options]
-    run = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    run, again = (subprocess.run(command + more, capture_output=True, text=True, timeout=60)
+                  for more in ([], ["--memory", "1", "--scratch", pathlib.Path(base).parent]))
+    if (run.returncode, run.stdout) != (again.returncode, again.stdout):
+        return [f"one thing in memory:\n{run.stdout}another in parts:\n{again.stdout}{again.stderr}"]
     if run.returncode == 2:
         return None
     return [line[4:].split(":")[0].strip() for line in run.stdout.splitlines() if line.startswith("FAIL")]

@@ -278,7 +278,7 @@ bool support_passes(const struct tri_mesh *mesh, const struct tri_pslg *pslg, co
     struct support_copy copy = support_copy(mesh);
     if (with_regions)
         asked.max_areas = copy.max_areas;
-    assert_int_equal(tri_check(&copy.mesh, pslg, &asked, report, &error), TRI_OK);
+    assert_int_equal(check_both_ways(&copy.mesh, pslg, &asked, report, &error), TRI_OK);
     for (int kind = TRI_N_CHECKS - 1; kind >= 0; kind--) /* the first one is told */
         if (report->item[kind].state == TRI_CHECK_FAILED)
             snprintf(text, SUPPORT_TEXT, "%s (%lld times): %s", tri_check_name((enum tri_check_kind)kind),

@@ -16,8 +16,8 @@
 
 #include <cmocka.h>
 
+#include "both_ways.h"
 #include "triangle/census.h"
-#include "triangle/check/check.h"
 #include "triangle/mesh.h"
 #include "triangle/predicates.h"
 #include "triangle/generate.h"

@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "triangle/check/check.h"
+#include "both_ways.h"
 #include "triangle/check/order.h"
 
 enum { ROOM = 4096 };
@@ -198,7 +198,7 @@ static void judge(void)
 {
     struct tri_error error = {0};
     const struct tri_pslg *input = trial.has_input ? &trial.input : NULL;
-    assert_int_equal(tri_check(&trial.mesh, input, &trial.options, &trial.report, &error), TRI_OK);
+    assert_int_equal(check_both_ways(&trial.mesh, input, &trial.options, &trial.report, &error), TRI_OK);
 }
 
 static void expect_good(void)

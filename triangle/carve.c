@@ -19,6 +19,7 @@ struct flood {
 static void kill_from(struct flood *f, tri_triangle_id start)
 {
     int32_t n = 0;
+    assert(start >= 0 && start < f->mesh->n_triangles);
     if (f->dead[start])
         return;
     f->dead[start] = 1;
@@ -28,6 +29,7 @@ static void kill_from(struct flood *f, tri_triangle_id start)
         for (int e = 0; e < 3; e++) {
             tri_link link = f->mesh->tri[t].n[e];
             if (link >= 0 && !f->dead[tri_of(link)]) {
+                assert(n < f->mesh->n_triangles);
                 f->dead[tri_of(link)] = 1;
                 f->stack[n++] = tri_of(link);
             }
@@ -66,6 +68,7 @@ static void visit(struct dive *d, tri_triangle_id t)
 {
     if (d->state[t] == SEEN)
         return;
+    assert(d->n < d->mesh->n_triangles);
     d->state[t] = SEEN;
     d->stack[d->n++] = t;
 }
@@ -74,6 +77,7 @@ static void put_off(struct dive *d, tri_triangle_id t)
 {
     if (d->state[t] != UNSEEN)
         return;
+    assert(d->n_next < d->mesh->n_triangles);
     d->state[t] = WAITING;
     d->next[d->n_next++] = t;
 }
@@ -116,6 +120,7 @@ static void kill_depths(struct flood *f, struct dive *d, bool keep_hull)
     for (uint8_t even = 1; d->n + d->n_next > 0; even ^= 1) {
         while (d->n > 0) {
             tri_triangle_id t = d->stack[--d->n];
+            assert(d->state[t] == SEEN);
             f->dead[t] |= even;
             for (int e = 0; e < 3; e++)
                 cross(d, tri_code(t, e));
@@ -149,6 +154,7 @@ static enum tri_status locate(const struct tri_mesh *mesh, const double *places,
                               int32_t **faces, struct tri_error *error)
 {
     struct tri_point *points = malloc(((size_t)n + 1) * sizeof *points);
+    assert(n >= 0 && width >= 2);
     *faces = malloc(((size_t)n + 1) * sizeof **faces);
     enum tri_status status = TRI_OK;
     if (!points || !*faces)
@@ -186,6 +192,7 @@ static void spread(struct flood *f, tri_triangle_id start, tri_region_id region)
         for (int e = 0; e < 3; e++) {
             tri_link link = tri[t].n[e];
             if (link >= 0 && tri[tri_of(link)].region == 0) {
+                assert(n < f->mesh->n_triangles);
                 tri[tri_of(link)].region = region;
                 f->stack[n++] = tri_of(link);
             }
@@ -199,6 +206,7 @@ static enum tri_status spread_regions(struct flood *f, const struct tri_pslg *ps
     struct tri_region *regions = realloc(mesh->regions, ((size_t)pslg->n_regions + 1) * sizeof *regions);
     if (!regions)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for regions");
+    assert(mesh->n_regions == 1 && !mesh->columns); /* "no region" alone */
     mesh->regions = regions;
     mesh->n_regions = pslg->n_regions + 1;
     int32_t *faces;
@@ -227,6 +235,7 @@ static void guard_boundary(const struct flood *f, tri_triangle_id t)
 {
     const struct tri_mesh *mesh = f->mesh;
     const struct tri_triangle *at = &mesh->tri[t];
+    assert(f->dead[t] && tri_is_live(at));
     struct tri_point a = mesh->xy[at->v[0]], b = mesh->xy[at->v[1]], c = mesh->xy[at->v[2]];
     struct tri_point centroid = {tri_round_coordinate((a.x + b.x + c.x) / 3),
                                  tri_round_coordinate((a.y + b.y + c.y) / 3)};
@@ -325,6 +334,7 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
                           struct tri_error *error)
 {
     size_t n = (size_t)mesh->n_triangles + 1;
+    assert(mesh->n_subs == mesh->n_parents); /* one each */
     struct flood f = {mesh, malloc(n * sizeof *f.stack), calloc(n, 1)};
     enum tri_status status = TRI_OK;
     if (!f.stack || !f.dead)

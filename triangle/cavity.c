@@ -81,14 +81,15 @@ static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh
                 return TRI_SEARCH_FENCED;
             if (n_tri == c->capacity && !grow(c))
                 return TRI_SEARCH_NO_MEMORY;
+            assert(t->v[tri_next[e]] == edge.end && t->v[tri_prev[e]] == a);
             c->tri[n_tri++] = edge.link >> 2;
             c->mixed |= (uint32_t)(t->region ^ c->region);
             c->pending[n_pending++] = (struct tri_pending){t->n[tri_prev[e]], edge.end, t->region, edge.rend, right};
             edge = (struct tri_pending){t->n[tri_next[e]], apex, t->region, rapex, left};
         }
+        assert(n_edges < n_tri + 2 && n_pending <= n_tri + 1 && c->n_wall <= n_edges && a != edge.end);
         if (edge.link < 0)
             c->wall[c->n_wall++] = n_edges;
-        assert(n_edges < n_tri + 2 && n_pending <= n_tri + 1);
         c->edge[n_edges++] = (struct tri_cavity_edge){edge.link, a, edge.region, TRI_NONE, ra, edge.area2};
         a = edge.end;
         ra = edge.rend;
@@ -111,6 +112,7 @@ static bool begin(struct tri_cavity *c, struct tri_point p)
 
 static bool add_start(struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t)
 {
+    assert(t >= 0 && tri_is_live(&mesh->tri[t]) && c->n_tri <= c->capacity);
     if (c->n_tri == c->capacity && !grow(c))
         return false;
     c->region = mesh->tri[t].region;
@@ -123,6 +125,7 @@ static bool add_start(struct tri_cavity *c, const struct tri_mesh *mesh, tri_tri
 static enum tri_search explore_from(struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t, int first,
                                     int n)
 {
+    assert(first >= 0 && first < 3 && (n == 2 || n == 3));
     if (!add_start(c, mesh, t))
         return TRI_SEARCH_NO_MEMORY;
     if (!owns(c, mesh, t))
@@ -158,6 +161,7 @@ enum tri_search tri_cavity_search(struct tri_cavity *c, const struct tri_mesh *m
 /* Rounding may place a split point off its subsegment: every edge must still be seen counter-clockwise. */
 static bool sees_edges(const struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end)
 {
+    assert(0 <= first && first <= end && end <= c->n_edges);
     for (const struct tri_cavity_edge *edge = &c->edge[first]; edge < &c->edge[end]; edge++)
         if (edge->ra.l == 0 || tri_orient2d(c->p, mesh->xy[edge[0].a], mesh->xy[edge[1].a]) <= 0)
             return false;
@@ -214,6 +218,7 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
                                         tri_sub_id s, int32_t *n_left)
 {
     const struct tri_subsegment *sub = &mesh->sub[s];
+    assert(s >= 0 && tri_is_in_range(p)); /* a view has subsegments beyond its counts */
     *n_left = c->n_left_tri = 0;
     if (!begin(c, p))
         return TRI_SEARCH_NO_MEMORY;
@@ -222,6 +227,7 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
         if (sub->side[side] == TRI_NONE)
             continue;
         tri_halfedge code = sub->side[side];
+        assert(*tri_link_at(mesh, code) == ~s);
         enum tri_search found = explore_from(c, mesh, tri_of(code), tri_next[tri_edge(code)], 2);
         if (found != TRI_SEARCH_FOUND)
             return found;
@@ -239,6 +245,7 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
  * cavity (Euler), so no number is ever left over. The first comes again behind the last, as its neighbour. */
 static void take_numbers(struct tri_cavity *c, struct tri_mesh *mesh)
 {
+    assert(c->n_tri <= c->n_edges);
     for (int32_t i = c->n_tri; i < c->n_edges; i++) {
         assert(mesh->n_triangles < mesh->triangle_capacity);
         mesh->tri[mesh->n_triangles].state = 0;
@@ -272,6 +279,7 @@ static bool is_inside(const struct tri_mesh *mesh, tri_triangle_id t, struct tri
 static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int32_t first, int32_t end,
                           int32_t first_tri, int32_t end_tri)
 {
+    assert(0 <= first && first <= end && end <= c->n_edges && 0 <= first_tri && end_tri <= c->n_tri);
     for (int32_t i = first; i < end; i++) {
         struct tri_point a = mesh->xy[c->edge[i].a], b = mesh->xy[c->edge[i + 1].a];
         struct tri_point centroid = {(a.x + b.x + c->p.x) / 3, (a.y + b.y + c->p.y) / 3};
@@ -288,10 +296,12 @@ static void place_regions(struct tri_cavity *c, const struct tri_mesh *mesh, int
 static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, tri_vertex_id v, int32_t first, int32_t end)
 {
     tri_triangle_id before = c->tri[first > 0 ? first - 1 : c->n_edges - 1];
+    assert(0 <= first && first < end && end <= c->n_edges);
     for (int32_t i = first; i < end; i++) {
         struct tri_cavity_edge *edge = &c->edge[i];
         tri_triangle_id triangle = c->tri[i];
         struct tri_triangle *t = &mesh->tri[triangle];
+        assert(edge[0].a != edge[1].a && edge[0].a != v && edge[1].a != v);
         edge->triangle = triangle;
         t->v[0] = v;
         t->v[1] = edge[0].a;
@@ -308,7 +318,8 @@ static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, tri_vertex_i
 
 void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, tri_vertex_id v)
 {
-    assert(c->n_tri >= 1 && c->n_edges == c->n_tri + 2);
+    assert(c->n_tri >= 1 && c->n_edges == c->n_tri + 2); /* Euler: a disk without a vertex inside */
+    assert(v >= 0 && v < mesh->n_vertices && mesh->xy[v].x == c->p.x && mesh->xy[v].y == c->p.y);
     assert(claim(c, mesh));
     if (c->mixed)
         place_regions(c, mesh, 0, c->n_edges, 0, c->n_tri);
@@ -321,7 +332,10 @@ tri_sub_id tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, tr
 {
     const struct tri_subsegment old = mesh->sub[s];
     int32_t second = mesh->n_subs++, ends[2] = {0, n_left};
-    assert(mesh->n_subs <= mesh->sub_capacity && c->n_edges >= c->n_tri && n_left >= 0 && n_left <= c->n_edges);
+    assert(mesh->n_subs <= mesh->sub_capacity && s >= 0 && s != second);
+    assert(n_left >= 0 && n_left <= c->n_edges && (n_left == 0) == (old.side[0] == TRI_NONE));
+    assert(c->n_edges == c->n_tri + (tri_is_boundary(&old) ? 1 : 2)); /* Euler: a disk on each side */
+    assert(v >= 0 && v < mesh->n_vertices && v != old.v[0] && v != old.v[1]);
     assert(claim(c, mesh));
     if (c->mixed) {
         place_regions(c, mesh, 0, n_left, 0, c->n_left_tri);

@@ -73,6 +73,7 @@ static enum tri_status no_memory(struct layer *l)
 
 static bool push_piece(struct layer *l, int32_t from, int32_t to, struct tri_course course)
 {
+    assert(from >= 0 && from < l->mesh->n_vertices && to >= 0 && to < l->mesh->n_vertices);
     if (from == to)
         return true;
     bool room = tri_grow(&l->piece, &l->piece_capacity, l->n_pieces + 1, sizeof *l->piece);
@@ -122,6 +123,7 @@ struct rotation {
 
 static struct rotation rotate_from(const struct layer *l, int32_t a, struct tri_point q)
 {
+    assert(l->corner[a] != TRI_NONE);
     return (struct rotation){a, l->corner[a], l->corner[a], q, false};
 }
 
@@ -178,6 +180,7 @@ static bool mark_edge(struct layer *l, int32_t t, int e, struct tri_course cours
     struct tri_mesh *mesh = l->mesh;
     int32_t link = mesh->tri[t].n[e], from = mesh->tri[t].v[tri_next[e]], to = mesh->tri[t].v[tri_prev[e]];
     if (link < 0) {
+        assert(~link < mesh->n_subs);
         l->course[~link] = tri_course_both(l->course[~link], course);
         return true;
     }
@@ -193,6 +196,7 @@ static bool mark_edge(struct layer *l, int32_t t, int e, struct tri_course cours
 
 static struct tri_point end_of(const struct layer *l, int32_t segment, int k)
 {
+    assert(segment >= 0 && segment < l->pslg->n_segments);
     return l->mesh->xy[l->pslg->segments[2 * segment + k]];
 }
 
@@ -265,6 +269,7 @@ static bool take_up(struct layer *l, int32_t s)
     struct tri_mesh *mesh = l->mesh;
     int32_t left = mesh->sub[s].side[0], right = mesh->sub[s].side[1];
     assert(left != TRI_NONE && right != TRI_NONE);
+    assert(*tri_link_at(mesh, left) == ~s && *tri_link_at(mesh, right) == ~s);
     *tri_link_at(mesh, left) = right;
     *tri_link_at(mesh, right) = left;
     int32_t last = --mesh->n_subs;
@@ -325,6 +330,7 @@ static bool take_apart(struct layer *l, int32_t s)
 /* Cuts the last n - first pieces of the stack at vertex v. */
 static bool finish_parts(struct layer *l, int32_t first, int32_t v)
 {
+    assert(first >= 0 && first < l->n_pieces && v != TRI_NONE);
     for (int32_t i = l->n_pieces - 1; i >= first; i--) {
         struct tri_piece whole = l->piece[i];
         if (whole.from == v || whole.to == v)
@@ -369,6 +375,7 @@ static void try_vertex(const struct layer *l, int32_t first, int32_t v, struct t
 static int32_t choose_vertex(const struct layer *l, int32_t first, int32_t t, struct tri_point p, double within)
 {
     struct choice best = {TRI_NONE, 0, 0};
+    assert(first < l->n_pieces && within >= 0);
     for (int32_t i = first; i < l->n_pieces; i++) {
         try_vertex(l, first, l->piece[i].from, p, within, &best);
         try_vertex(l, first, l->piece[i].to, p, within, &best);
@@ -420,6 +427,7 @@ static struct tri_point crossing_of(const struct layer *l, const struct tri_piec
 /* Rule 3: the piece crosses subsegment s. */
 static enum tri_status cross(struct layer *l, const struct tri_piece *piece, int32_t s)
 {
+    assert(s >= 0 && s < l->mesh->n_subs && !tri_is_boundary(&l->mesh->sub[s])); /* no piece leaves the hull */
     int32_t first = l->n_pieces, near = l->mesh->sub[s].v[0], on, t;
     if (!push_piece(l, piece->from, piece->to, piece->course) || !take_apart(l, s))
         return no_memory(l);
@@ -516,6 +524,7 @@ static struct meeting look_ahead(const struct layer *l, const struct tri_piece *
 /* The piece ends at vertex v for now; the rest waits below it on the stack. */
 static enum tri_status stop_at(struct layer *l, const struct tri_piece *piece, int32_t v)
 {
+    assert(v != piece->from && v != piece->to);
     bool room = push_piece(l, v, piece->to, piece->course) && push_piece(l, piece->from, v, piece->course);
     return room ? TRI_OK : no_memory(l);
 }
@@ -640,7 +649,7 @@ static enum tri_status list_courses(struct layer *l)
 static void settle(struct layer *l)
 {
     struct tri_mesh *mesh = l->mesh;
-    assert(mesh->n_subs <= mesh->n_parents);
+    assert(mesh->n_subs <= mesh->n_parents && mesh->n_subs <= l->course_capacity);
     mesh->n_parents = 0;
     for (int32_t s = 0; s < mesh->n_subs; s++) {
         struct tri_subsegment *sub = &mesh->sub[s];

@@ -137,6 +137,7 @@ static void arrange_leaf(void *context, size_t index)
     at[0] = leaf->range.first;
     for (int r = 0; r < MOST_ROUNDS; r++)
         at[r + 1] += at[r];
+    assert(at[MOST_ROUNDS] <= leaf->range.last);
     for (int r = 0; r <= MOST_ROUNDS; r++)
         leaf->round[r] = at[r];
     for (int32_t v = leaf->range.first; v < leaf->range.last; v++)
@@ -192,6 +193,7 @@ static enum tri_status insert_leaf(const struct builder *b, struct leaf *leaf, s
             leaf->n_inserted++;
     }
     leaf->n_waiting = kept;
+    assert(kept + leaf->n_inserted == leaf->round[b->round + 1] - leaf->round[b->round]);
     leaf->near = inserter->last;
     return TRI_OK;
 }

@@ -19,6 +19,7 @@ static bool make_room(struct tri_flips *f)
 
 bool tri_flip_touch(struct tri_flips *f, tri_triangle_id t)
 {
+    assert(t >= 0 && t < f->mesh->n_triangles && tri_is_live(&f->mesh->tri[t]));
     if (!make_room(f))
         return false;
     for (int e = 0; e < 3; e++)
@@ -38,6 +39,7 @@ static tri_triangle_id flip(struct tri_flips *f, tri_triangle_id t, int e)
     assert(near->n[e] >= 0 && far->n[g] == tri_code(t, e));
     int32_t n = near->v[e], r = near->v[tri_next[e]], s = near->v[tri_prev[e]], o = far->v[g];
     int32_t nr = near->n[tri_prev[e]], sn = near->n[tri_next[e]], ro = far->n[tri_next[g]], os = far->n[tri_prev[g]];
+    assert(far->v[tri_next[g]] == s && far->v[tri_prev[g]] == r && n != o);
     near->v[0] = n, near->v[1] = r, near->v[2] = o;
     near->n[0] = ro, near->n[1] = tri_code(u, 2), near->n[2] = nr;
     far->v[0] = n, far->v[1] = o, far->v[2] = s;
@@ -55,6 +57,7 @@ static tri_triangle_id flip(struct tri_flips *f, tri_triangle_id t, int e)
 
 static bool is_convex(const struct tri_mesh *mesh, tri_triangle_id t, int e)
 {
+    assert(mesh->tri[t].n[e] >= 0);
     const struct tri_triangle *near = &mesh->tri[t];
     struct tri_point n = mesh->xy[near->v[e]], r = mesh->xy[near->v[tri_next[e]]], s = mesh->xy[near->v[tri_prev[e]]];
     struct tri_point o = mesh->xy[tri_apex(mesh, near->n[e])];
@@ -67,6 +70,7 @@ static bool is_illegal(const struct tri_flips *f, tri_triangle_id t, int e)
     const struct tri_mesh *mesh = f->mesh;
     const tri_vertex_id *v = mesh->tri[t].v;
     tri_link link = mesh->tri[t].n[e];
+    assert(link >= 0 && tri_is_live(&mesh->tri[tri_of(link)]));
     struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
     struct tri_point apex = mesh->xy[tri_apex(mesh, link)];
     return f->ties_stay ? tri_incircle(a, b, c, apex) > 0 : tri_in_circle(a, b, c, apex);
@@ -109,6 +113,7 @@ static void suspect_share(void *context, size_t share)
                 s->suspect[range.first + s->n[share]++] = t;
                 break;
             }
+    assert(s->n[share] <= range.last - range.first);
 }
 
 /* Touches the edges that lead to triangles of higher number: so each edge is touched by one of its two. */

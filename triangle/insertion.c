@@ -55,6 +55,7 @@ void tri_insert_first(const struct tri_point *xy, struct tri_triangle *tri, tri_
                       const tri_vertex_id v[3])
 {
     bool left = tri_orient2d(xy[v[0]], xy[v[1]], xy[v[2]]) > 0;
+    assert(tri_orient2d(xy[v[0]], xy[v[1]], xy[v[2]]) != 0);
     const int32_t c[] = {v[left ? 0 : 1], v[left ? 1 : 0], v[2]};
     tri[triangle] = (struct tri_triangle){
         {c[0], c[1], c[2]}, {tri_code(triangle + 1, 0), tri_code(triangle + 2, 0), tri_code(triangle + 3, 0)}, 0, 0};
@@ -76,6 +77,7 @@ static bool between(struct tri_point a, struct tri_point b, struct tri_point q)
 /* A ghost's hull edge runs from -> to with the outside on its left. */
 static bool in_ghost(const struct tri_inserter *b, const struct tri_triangle *t, int ghost, struct tri_point q)
 {
+    assert(ghost >= 0 && t->v[tri_next[ghost]] >= 0 && t->v[tri_prev[ghost]] >= 0);
     struct tri_point from = b->xy[t->v[tri_next[ghost]]], to = b->xy[t->v[tri_prev[ghost]]];
     double side = tri_orient2d(from, to, q);
     return side > 0 || (side == 0 && between(from, to, q));
@@ -128,6 +130,7 @@ static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, tr
     for (;;) {
         const struct tri_triangle *t = &b->tri[tri_of(link)];
         int e = tri_edge(link);
+        assert(link >= 0 && t->v[tri_next[e]] == end && t->v[tri_prev[e]] == a);
         if (in_disk(b, t, q)) {
             if (!holds(b, t->v[e]))
                 return TRI_NOT_OWNED;
@@ -153,7 +156,7 @@ static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, tr
 static void fill(struct tri_inserter *b, tri_vertex_id v, tri_triangle_id fresh)
 {
     int32_t before = TRI_NONE, first = TRI_NONE;
-    assert(b->n_edges == b->n_cavity + 2); /* a disk without a vertex inside */
+    assert(b->n_edges == b->n_cavity + 2 && b->n_edges >= 3); /* Euler: a disk without a vertex inside */
     for (int32_t i = 0; i < b->n_edges; i++) {
         tri_triangle_id triangle = i < b->n_cavity ? b->cavity[i] : fresh++;
         int32_t outer = b->edge[i].outer, end = b->edge[i + 1 < b->n_edges ? i + 1 : 0].a;
@@ -180,6 +183,7 @@ enum tri_insertion tri_insert(struct tri_inserter *b, tri_vertex_id v, tri_trian
     if (t == TRI_NONE)
         return TRI_NOT_OWNED;
     const struct tri_triangle start = b->tri[t];
+    assert(holds(b, v) && tri_inserter_owns(b, &start) && in_disk(b, &start, q));
     b->n_cavity = b->n_edges = 0;
     if (b->capacity == 0 && !grow(b))
         return TRI_NO_ROOM_FOR_CAVITY;

@@ -87,6 +87,7 @@ static struct tri_point end_of(const struct tri_mesh *mesh, tri_sub_id s, int ri
 /* > 0: q lies above subsegment s, 0: on its line. */
 static double height_over(const struct tri_mesh *mesh, tri_sub_id s, struct tri_point q)
 {
+    assert(s >= 0 && s < mesh->n_subs);
     return tri_orient2d(end_of(mesh, s, 0), end_of(mesh, s, 1), q);
 }
 
@@ -113,6 +114,7 @@ static bool is_lower(const void *mesh, tri_sub_id a, tri_sub_id b)
 static void pass_ends(struct sweep *w, const struct event *event, int32_t n)
 {
     int32_t n_start = 0, next, below;
+    assert(n > 0);
     for (int32_t i = 0; i < n; i++) {
         if (event[i].code & 1)
             tri_sweep_order_remove(&w->order, event[i].code >> 1);
@@ -120,6 +122,7 @@ static void pass_ends(struct sweep *w, const struct event *event, int32_t n)
             w->start[n_start++] = event[i].code >> 1;
     }
     tri_heap_sort(w->start, n_start, is_lower, w->mesh);
+    assert(n_start <= w->mesh->n_subs);
     below = find_below(w, event->at, &next);
     for (int32_t i = 0; i < n_start; i++) {
         tri_sweep_order_insert(&w->order, w->start[i], below);
@@ -152,6 +155,7 @@ static void list_events(struct sweep *w, const struct tri_point *points, int32_t
     for (int32_t i = 0; i < n; i++)
         if (faces[i] == NOT_FOUND)
             w->event[w->n_events++] = (struct event){points[i], ~i};
+    assert(w->n_events >= 2 * w->mesh->n_subs && w->n_events <= 2 * w->mesh->n_subs + n);
     qsort(w->event, (size_t)w->n_events, sizeof *w->event, compare_events);
 }
 

@@ -157,7 +157,8 @@ static void deal_share(void *context, size_t share)
     struct tri_range range = tri_share(share, m->mesh->n_triangles);
     for (tri_triangle_id t = range.first; t < range.last; t++)
         for (int e = 0; e < 3; e++) {
-            tri_vertex_id low = low_of(&m->mesh->tri[t], e), to = low / m->width;
+            int32_t low = low_of(&m->mesh->tri[t], e), to = low / m->width;
+            assert(to < (int32_t)n_shares(m) && m->at[share][to] < m->end[to]);
             m->half[m->at[share][to]++] = (uint64_t)(low - to * m->width) << CODE_BITS | (uint64_t)tri_code(t, e);
         }
 }
@@ -187,6 +188,7 @@ static void sort_bucket(const struct tri_mesh *mesh, uint64_t *half, int32_t n, 
 /* Joins two sides of an edge; or finds a fault in a third, or in a second that is like the first. */
 static struct fault join(const struct tri_mesh *mesh, const uint64_t *half, int32_t n)
 {
+    assert(n > 0 && *tri_link_at(mesh, code_of(half[0])) == LOOSE);
     if (n > 1 && runs_down(half[0]) == runs_down(half[1]))
         return (struct fault){code_of(half[1]), "lies on the same side of an edge as another triangle"};
     if (n > 2)
@@ -245,6 +247,7 @@ static void find_segments(const struct matcher *m, tri_vertex_id low, const uint
             else
                 last = middle;
         }
+        assert(first == n || high_of(half[first]) >= high);
         if (first < n && high_of(half[first]) == high)
             m->edge_of[k] = code_of(half[first]);
     }
@@ -255,6 +258,7 @@ static void match_range(void *context, size_t range)
     struct matcher *m = context;
     int32_t first = range > 0 ? m->end[range - 1] : 0, n = m->end[range] - first;
     uint64_t *half = m->half + first, *scratch = malloc(((size_t)n + 1) * sizeof *scratch);
+    assert(n >= 0 && m->at[n_shares(m) - 1][range] == m->end[range]); /* all have been dealt */
     m->no_room[range] = !scratch;
     m->fault[range].what = NULL;
     if (scratch)
@@ -305,6 +309,7 @@ static void add_sub(struct tri_mesh *mesh, tri_halfedge code, tri_vertex_id from
 {
     int32_t s = tri_mesh_add_sub(mesh, from, to, marker, segment), other = *tri_link_at(mesh, code);
     int side = tri_side(&mesh->sub[s], mesh->tri[tri_of(code)].v[tri_next[tri_edge(code)]]);
+    assert(other >= 0 && mesh->sub[s].v[side] == mesh->tri[tri_of(code)].v[tri_next[tri_edge(code)]]);
     mesh->parents[mesh->sub[s].parent].guard = mesh->xy[from]; /* what is outside is not known: nothing is its own */
     mesh->sub[s].side[side] = code;
     *tri_link_at(mesh, code) = ~s;
@@ -369,6 +374,7 @@ static void list_loose(void *context, size_t share)
         for (int e = 0; e < 3; e++)
             if (m->mesh->tri[t].n[e] == LOOSE)
                 *next++ = tri_code(t, e);
+    assert(next == end);
 }
 
 static enum tri_status find_loose(struct matcher *m)
@@ -440,6 +446,7 @@ static void add_region(struct tri_mesh *mesh, const double *attributes, double b
 {
     size_t n = (size_t)mesh->n_columns;
     tri_region_id region = mesh->n_regions++;
+    assert(region <= mesh->n_triangles); /* no more than one each, and "no region" */
     mesh->regions[region] = (struct tri_region){n > 0 ? attributes[0] : 0, bound};
     if (n > 0)
         memcpy(mesh->columns + (size_t)region * n, attributes, n * sizeof *attributes);
@@ -453,6 +460,7 @@ static int32_t find_region(struct values *values, const double *attributes, doub
     uint64_t hash = mix(0, bound);
     for (int32_t i = 0; i < mesh->n_columns; i++)
         hash = mix(hash, attributes[i]);
+    assert(((values->mask + 1) & values->mask) == 0 && values->mask + 1 > 2 * (size_t)mesh->n_triangles);
     size_t at = (size_t)(hash >> 32) & values->mask;
     while (values->place[at] != TRI_NONE && !is_region(mesh, values->place[at], attributes, bound))
         at = (at + 1) & values->mask;
@@ -574,5 +582,6 @@ enum tri_status tri_kept_make(struct tri_used *kept, const struct tri_mesh *mesh
         if (is_kept)
             kept->vertex[kept->n++] = v;
     }
+    assert(kept->n <= mesh->n_vertices);
     return TRI_OK;
 }

@@ -84,6 +84,7 @@ static bool cross(struct tri_recovery *r, const struct tri_mesh *mesh, tri_trian
 {
     const tri_vertex_id *v = mesh->tri[t].v;
     int32_t code = tri_code(t, v[0] == a ? 0 : v[1] == a ? 1 : 2), o = a;
+    assert(a != b && tri_apex(mesh, code) == a);
     r->n_crossed = 0;
     r->n_left = 1;
     if (!add_crossed(r, code))
@@ -100,6 +101,7 @@ static bool cross(struct tri_recovery *r, const struct tri_mesh *mesh, tri_trian
         code = tri_code(tri_of(code), side > 0 ? tri_next[tri_edge(code)] : tri_prev[tri_edge(code)]);
     }
     r->n_left += 2; /* the first one, and b */
+    assert(r->n_crossed >= 2 && r->n_left >= 3 && r->n_left <= r->n_crossed + 1);
     return true;
 }
 
@@ -127,6 +129,7 @@ static int32_t n_places(const struct tri_recovery *r) { return r->n_crossed + 4;
 
 static void set_wall(struct tri_recovery *r, const struct tri_mesh *mesh, int32_t i, tri_triangle_id t, int e)
 {
+    assert(i >= 0 && i < n_places(r));
     r->at[i].outer = mesh->tri[t].n[e];
     r->at[i].twin = tri_code(t, e);
 }
@@ -182,6 +185,7 @@ static void clear_triangles(struct tri_recovery *r, struct tri_mesh *mesh)
 static void put(struct gap *g, tri_link link, tri_link other)
 {
     int32_t n = n_places(g->r);
+    assert(link >= 0 || ~link < 2 * n);
     if (link >= 0)
         *tri_link_at(g->mesh, link) = other;
     else if (~link < n)
@@ -204,11 +208,13 @@ static struct tri_point point_at(const struct gap *g, int32_t place)
 /* Is the angle below less than 180 degrees in q, between places p < q < s that see q? */
 static bool is_slack(const struct gap *g, int32_t p, int32_t q, tri_sub_id s)
 {
+    assert(p < q && q < s);
     return tri_orient2d(point_at(g, p), point_at(g, q), point_at(g, s)) < 0;
 }
 
 static void push(struct gap *g, int side, int32_t place, tri_link link)
 {
+    assert(g->n[side] < n_places(g->r));
     g->side[side][g->n[side]++] = (struct tri_recovery_node){place, link};
 }
 
@@ -217,6 +223,7 @@ static void open_gap(struct gap *g, int32_t i, int32_t j, int32_t k)
 {
     struct tri_recovery_place *at = g->r->at;
     int32_t l = at[j].prev, r = at[j].next;
+    assert(i <= l && l < j && j < r && r <= k);
     g->n[0] = g->n[1] = 0;
     push(g, 0, j, at[l].above);
     push(g, 1, j, at[j].above);
@@ -253,6 +260,7 @@ static int32_t candidate(struct gap *g, int side)
         int32_t apex = t->v[e];
         if (!tri_in_circle(l, r, point_at(g, top->place), point_at(g, apex)))
             break;
+        assert(tri_is_live(t) && g->r->n_free < g->r->n_crossed);
         g->r->pool[g->r->n_free++] = tri_of(top->link);
         t->v[0] = TRI_NONE;
         top->link = t->n[side == 0 ? tri_next[e] : tri_prev[e]];
@@ -276,6 +284,7 @@ static int choose(struct gap *g)
 /* Puts a triangle between the base and the next place of one side; its third edge is the new base. */
 static void add_triangle(struct gap *g, int side)
 {
+    assert(g->n[side] > 0 && g->r->n_free > 0);
     struct tri_recovery_node next = g->side[side][--g->n[side]];
     tri_triangle_id triangle = g->r->pool[--g->r->n_free];
     tri_vertex_id *v = g->mesh->tri[triangle].v;
@@ -305,6 +314,7 @@ static void merge(struct gap *g, int32_t i, int32_t j, int32_t k)
 
 static void solve(struct gap *g, int32_t i, int32_t k)
 {
+    assert(i < k);
     if (k == i + 1) {
         g->r->at[i].next = k;
         g->r->at[k].prev = i;
@@ -325,6 +335,7 @@ static void link_walls(struct tri_recovery *r, struct tri_mesh *mesh)
         int32_t inner = r->at[i].inner, outer = r->at[i].outer, twin = r->at[i].twin;
         if (i == r->n_left - 1)
             continue;
+        assert(inner >= 0 && (twin == TRI_NONE || r->at[twin].twin == i));
         struct tri_triangle *t = &mesh->tri[tri_of(inner)];
         t->n[tri_edge(inner)] = twin == TRI_NONE ? outer : r->at[twin].inner;
         if (twin == TRI_NONE)
@@ -336,6 +347,7 @@ static void name_corners(const struct tri_recovery *r, struct tri_mesh *mesh)
 {
     for (int32_t i = 0; i < r->n_crossed; i++) {
         tri_vertex_id *v = mesh->tri[tri_of(r->crossed[i])].v;
+        assert(v[0] >= 0 && v[0] < n_places(r)); /* every number is in use again */
         for (int k = 0; k < 3; k++)
             v[k] = r->at[v[k]].vertex;
     }

@@ -142,7 +142,7 @@ static void judge_mesh(const struct outcome *o, const struct tri_pslg *pslg, boo
         judge_fault(verdict, "links", "%s", error.text);
     struct support_copy copy = support_copy(&o->mesh);
     struct tri_pslg input = kept_input(o, pslg);
-    if (tri_check(&copy.mesh, &input, &ask, &report, &error) != TRI_OK)
+    if (check_both_ways(&copy.mesh, &input, &ask, &report, &error) != TRI_OK)
         judge_fault(verdict, "checker", "%s", error.text);
     for (int kind = 0; kind < TRI_N_CHECKS && !verdict->fault[0]; kind++) {
         const struct tri_check_item *item = &report.item[kind];

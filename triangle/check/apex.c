@@ -9,21 +9,30 @@
 #include <stdlib.h>
 
 enum {
+    SLICE = 1 << 14, /* triangles */
     MAX_LEGS = 24, /* legs of apexes that one corner is tried for */
     NO_APEX = -1,
     UNKNOWN = -2,
     UNDER_WAY = -3
 };
 
-static bool is_wedge(const struct apexes *w, int32_t v, int32_t a, int32_t b)
+/* Is there a triangle on the left of the subsegment, seen from its end that the fan entry names? */
+static bool is_meshed(const struct checker *c, int32_t fan_entry)
+{
+    return c->sides[fan_entry >> 1][fan_entry & 1].half_edge >= 0;
+}
+
+/* Between two fan entries at v. */
+static bool is_wedge(const struct apexes *w, int32_t v, int32_t i, int32_t j)
 {
     const struct checker *c = w->c;
-    struct tri_point o = check_point(c, v), p = check_point(c, a), q = check_point(c, b);
+    struct tri_point o = check_point(c, v);
+    struct tri_point p = check_point(c, c->segments[i ^ 1]), q = check_point(c, c->segments[j ^ 1]);
     double ax = p.x - o.x, ay = p.y - o.y, bx = q.x - o.x, by = q.y - o.y, dot = ax * bx + ay * by;
     if (dot * fabs(dot) <= (w->apex_cosine + TRI_CHECK_SLACK) * (ax * ax + ay * ay) * (bx * bx + by * by))
         return false;
     bool left = ax * by - ay * bx > 0;
-    return tri_check_find_edge(c, v, left ? a : b).there >= 0; /* a triangle between them? */
+    return is_meshed(c, left ? i : j); /* a triangle between them? */
 }
 
 /* More than 24 subsegments enclose an angle of 15 degrees at most: no need to compare them all. */
@@ -36,7 +45,7 @@ static bool is_apex(const struct apexes *q, int32_t v)
         return true;
     for (int32_t i = 0; i < n; i++) {
         for (int32_t j = i + 1; j < n; j++) {
-            if (is_wedge(q, v, c->segments[fan[i] ^ 1], c->segments[fan[j] ^ 1]))
+            if (is_wedge(q, v, fan[i], fan[j]))
                 return true;
         }
     }
@@ -89,12 +98,13 @@ static int apexes_of(struct apexes *q, int32_t v, int32_t *apex)
     return n;
 }
 
-static bool spans_legs(struct apexes *q, const int32_t *corners)
+static bool spans_legs(struct apexes *q, const int64_t *corners)
 {
     int32_t apex[3][MAX_LEGS];
     int n[3];
     for (int k = 0; k < 3; k++) {
-        n[k] = apexes_of(q, corners[k], apex[k]);
+        int32_t v = tri_check_in_frame(q->c, corners[k]);
+        n[k] = v < 0 ? 0 : apexes_of(q, v, apex[k]);
         for (int m = 0; m < k; m++) {
             for (int i = 0; i < n[k]; i++) {
                 for (int j = 0; j < n[m]; j++) {
@@ -107,10 +117,14 @@ static bool spans_legs(struct apexes *q, const int32_t *corners)
     return false;
 }
 
-bool tri_check_is_explained(struct apexes *q, int32_t t)
+static bool has_state(const struct checker *c, const int64_t *v, int state)
 {
-    const int32_t *v = q->c->mesh->triangles + 3 * (size_t)t;
-    return q->is_near[v[0]] || q->is_near[v[1]] || q->is_near[v[2]] || spans_legs(q, v);
+    return ((c->state[v[0]] | c->state[v[1]] | c->state[v[2]]) & state) != 0;
+}
+
+bool tri_check_is_explained(struct apexes *q, const int64_t *v)
+{
+    return has_state(q->c, v, CHECK_NEAR) || spans_legs(q, v);
 }
 
 static double signed_squared_cosine(double degrees)
@@ -121,31 +135,51 @@ static double signed_squared_cosine(double degrees)
 
 static void find_apexes(struct apexes *q)
 {
-    const struct checker *c = q->c;
+    struct checker *c = q->c;
     int64_t n_apexes = 0;
 #pragma omp parallel for schedule(dynamic, 4096) reduction(+ : n_apexes)
-    for (int32_t v = 0; v < c->mesh->n_points; v++) {
+    for (int32_t v = 0; v < c->n_frame; v++) {
         q->is_apex[v] = is_apex(q, v);
         n_apexes += q->is_apex[v];
+        if (q->is_apex[v])
+            c->state[check_vertex(c, v)] |= CHECK_APEX;
     }
     c->report->n_apexes = n_apexes;
-    for (int32_t t = 0; n_apexes > 0 && t < c->mesh->n_triangles; t++) {
-        const int32_t *v = c->mesh->triangles + 3 * (size_t)t;
-        if (q->is_apex[v[0]] || q->is_apex[v[1]] || q->is_apex[v[2]])
-            q->is_near[v[0]] = q->is_near[v[1]] = q->is_near[v[2]] = 1;
-    }
     for (int32_t i = 0; i < 2 * c->n_segments; i++)
         q->apex_of[i] = UNKNOWN;
+}
+
+static void mark_near(struct checker *c, const int64_t *corners, int64_t n)
+{
+    for (int64_t t = 0; t < n; t++) {
+        const int64_t *v = corners + 3 * t;
+        for (int k = 0; k < 3 && has_state(c, v, CHECK_APEX); k++)
+            c->state[v[k]] |= CHECK_NEAR;
+    }
+}
+
+enum tri_status tri_check_mark_near(struct apexes *q)
+{
+    struct checker *c = q->c;
+    int64_t *corners = tri_check_array(SLICE, 3 * sizeof *corners);
+    enum tri_status status = corners == NULL ? TRI_NO_MEMORY : TRI_OK;
+    for (int64_t t = 0; t < c->n_triangles && c->report->n_apexes > 0 && status == TRI_OK; t += SLICE) {
+        int64_t n = c->n_triangles - t < SLICE ? c->n_triangles - t : SLICE;
+        status = tri_check_read(c, TRI_CHECK_CORNERS, t, n, corners);
+        if (status == TRI_OK)
+            mark_near(c, corners, n);
+    }
+    free(corners);
+    return status;
 }
 
 enum tri_status tri_check_find_apexes(struct apexes *q, struct checker *c)
 {
     double small = c->options->small_input_angle;
     *q = (struct apexes){.c = c, .apex_cosine = signed_squared_cosine(small > 0 ? fmin(small, 180) : 60)};
-    q->is_apex = tri_check_zeros(c->mesh->n_points, 1);
-    q->is_near = tri_check_zeros(c->mesh->n_points, 1);
+    q->is_apex = tri_check_zeros(c->n_frame, 1);
     q->apex_of = tri_check_zeros(2 * (int64_t)c->n_segments, sizeof *q->apex_of);
-    if (q->is_apex == NULL || q->is_near == NULL || q->apex_of == NULL)
+    if (q->is_apex == NULL || q->apex_of == NULL)
         return TRI_NO_MEMORY;
     find_apexes(q);
     return TRI_OK;
@@ -154,6 +188,5 @@ enum tri_status tri_check_find_apexes(struct apexes *q, struct checker *c)
 void tri_check_free_apexes(struct apexes *q)
 {
     free(q->is_apex);
-    free(q->is_near);
     free(q->apex_of);
 }

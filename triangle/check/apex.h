@@ -10,13 +10,15 @@
 struct apexes {
     struct checker *c;
     double apex_cosine; /* signed square of the cosine of the largest small input angle */
-    uint8_t *is_apex;   /* [n_points] */
-    uint8_t *is_near;   /* [n_points]: in a triangle with an apex */
+    uint8_t *is_apex;   /* [n_frame] */
     int32_t *apex_of;   /* [2 n_segments], for each fan entry: the apex that its chain reaches, NO_APEX, UNKNOWN.. */
 };
 
 enum tri_status tri_check_find_apexes(struct apexes *apexes, struct checker *c);
+/* Marks in c->state the vertices in a triangle with an apex, in one pass over all triangles. */
+enum tri_status tri_check_mark_near(struct apexes *apexes);
 void tri_check_free_apexes(struct apexes *apexes);
-bool tri_check_is_explained(struct apexes *apexes, int32_t t);
+/* Is a triangle with these corners? */
+bool tri_check_is_explained(struct apexes *apexes, const int64_t *corners);
 
 #endif

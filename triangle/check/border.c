@@ -96,13 +96,13 @@ static void check_border(struct border *b, bool hull)
     for (int32_t s = 0; s < c->n_segments; s++) {
         if (!check_is_listed_well(c, s) || (c->is_along != NULL && c->is_along[s]))
             continue;
-        int32_t from = c->segments[2 * (size_t)s], to = c->segments[2 * (size_t)s + 1];
-        struct check_edge e = tri_check_find_edge(c, from, to);
-        if ((e.there < 0) == (e.back < 0) || (hull && is_along_hull(b, s)))
+        int64_t there = c->sides[s][0].half_edge, back = c->sides[s][1].half_edge;
+        if ((there < 0) == (back < 0) || (hull && is_along_hull(b, s)))
             continue;
-        int32_t triangle = (e.there < 0 ? e.back : e.there) / 3;
         tri_check_fault(c, TRI_CHECK_BORDER, "the mesh ends at %ld-%ld of triangle %ld, along no input segment%s",
-                        check_number(c, from), check_number(c, to), check_number(c, triangle),
+                        check_frame_vertex(c, c->segments[2 * (size_t)s]),
+                        check_frame_vertex(c, c->segments[2 * (size_t)s + 1]),
+                        check_number(c, (there < 0 ? back : there) / 3),
                         hull ? " and not along the convex hull" : "");
     }
 }
@@ -111,7 +111,7 @@ enum tri_status tri_check_border(struct checker *c)
 {
     struct border b = {.c = c};
     const struct tri_check_options *o = c->options;
-    bool listed = c->mesh->segments != NULL, segments = c->input->n_segments > 0;
+    bool listed = check_is_listed(c), segments = c->input->n_segments > 0;
     if (o->border == TRI_CHECK_BORDER_ANY || (segments && !listed)) /* which segments there are is not known */
         return TRI_OK;
     bool hull = !segments || o->convex || o->border == TRI_CHECK_BORDER_HULL;

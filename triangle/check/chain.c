@@ -80,7 +80,7 @@ static int32_t other_end(const struct chains *k, int32_t fan_entry)
 
 static void may_run_along(struct chains *k, const struct line *l, int32_t subsegment)
 {
-    const int32_t *given = k->c->mesh->segment_markers;
+    const int32_t *given = k->c->segment_markers;
     if (given != NULL && l->marker != 0 && l->marker == given[subsegment] && k->possible[subsegment] < 0)
         k->possible[subsegment] = l->id;
 }
@@ -192,7 +192,7 @@ static int32_t measure(const struct checker *c, struct tri_point *low, struct tr
     int32_t n = 0;
     *low = (struct tri_point){INFINITY, INFINITY};
     *high = (struct tri_point){-INFINITY, -INFINITY};
-    for (int32_t v = 0; v < c->mesh->n_points; v++) {
+    for (int32_t v = 0; v < c->n_frame; v++) {
         if (!has_subsegment(c, v))
             continue;
         struct tri_point p = check_point(c, v);
@@ -217,13 +217,13 @@ static enum tri_status make_grid(struct chains *k)
     g->vertex = tri_check_array(n, sizeof *g->vertex);
     if (g->first == NULL || g->vertex == NULL)
         return TRI_NO_MEMORY;
-    for (int32_t v = 0; v < c->mesh->n_points; v++) {
+    for (int32_t v = 0; v < c->n_frame; v++) {
         if (has_subsegment(c, v))
             g->first[cell_of(g, check_point(c, v)) + 1]++;
     }
     for (size_t i = 0; i < n_cells; i++)
         g->first[i + 1] += g->first[i];
-    for (int32_t v = 0; v < c->mesh->n_points; v++) {
+    for (int32_t v = 0; v < c->n_frame; v++) {
         if (has_subsegment(c, v))
             g->vertex[g->first[cell_of(g, check_point(c, v))]++] = v;
     }
@@ -438,25 +438,23 @@ static void check_markers(struct chains *k)
     struct checker *c = k->c;
     tri_check_begin(c, TRI_CHECK_MARKERS);
     for (int32_t s = 0; s < c->n_segments; s++) {
-        int32_t a = c->segments[2 * (size_t)s], b = c->segments[2 * (size_t)s + 1], n = c->mesh->n_points;
-        if (a < 0 || a >= n || b < 0 || b >= n)
+        if (!check_is_listed_well(c, s))
             continue;
-        struct check_edge e = tri_check_find_edge(c, a, b);
-        bool boundary = e.there < 0 || e.back < 0;
-        int32_t given = c->mesh->segment_markers[s], first = k->certain[s], own = k->possible[s];
+        bool boundary = c->sides[s][0].half_edge < 0 || c->sides[s][1].half_edge < 0;
+        int32_t given = c->segment_markers[s], first = k->certain[s], own = k->possible[s];
         int32_t expected = first >= 0 ? c->input->segment_markers[first] : boundary;
         if (given == expected || (own >= 0 && (first < 0 || own < first)))
             continue;
         tri_check_fault(c, TRI_CHECK_MARKERS, "subsegment %ld (%ld-%ld) has marker %ld, expected %ld",
-                        check_number(c, s),
-                        check_number(c, a), check_number(c, b), (long)given, (long)expected);
+                        check_number(c, s), check_frame_vertex(c, c->segments[2 * s]),
+                        check_frame_vertex(c, c->segments[2 * s + 1]), (long)given, (long)expected);
     }
 }
 
 static enum tri_status allocate(struct chains *k)
 {
     struct checker *c = k->c;
-    int32_t n = c->mesh->n_points, n_segments = c->n_segments;
+    int32_t n = c->n_frame, n_segments = c->n_segments;
     k->seen = tri_check_zeros(n, sizeof *k->seen);
     k->via = tri_check_array(n, sizeof *k->via);
     k->stack = tri_check_array(2 * (int64_t)n_segments, sizeof *k->stack);
@@ -519,7 +517,7 @@ enum tri_status tri_check_chains(struct checker *c)
     enum tri_status status = allocate(&k);
     if (status == TRI_OK)
         status = check_lines(&k);
-    if (status == TRI_OK && c->mesh->segment_markers != NULL)
+    if (status == TRI_OK && c->segment_markers != NULL)
         check_markers(&k);
     release(&k);
     return status;

@@ -9,8 +9,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
-#include "triangle/check/internal.h"
+#include "triangle/check/store.h"
 
 static const char *const names[TRI_N_CHECKS] = {
     [TRI_CHECK_ARRAYS] = "indices and coordinates",
@@ -59,35 +62,60 @@ void tri_check_begin(struct checker *c, enum tri_check_kind kind)
         item->state = TRI_CHECK_OK;
 }
 
+void tri_check_unask(struct checker *c, enum tri_check_kind kind)
+{
+    memset(&c->report->item[kind], 0, sizeof c->report->item[kind]);
+}
+
 void tri_check_fault(struct checker *c, enum tri_check_kind kind, const char *format, ...)
 {
     struct tri_check_item *item = &c->report->item[kind];
     item->state = TRI_CHECK_FAILED;
-    if (item->count++ > 0)
+    if (item->count++ > 0 && c->at >= c->key[kind])
         return;
+    c->key[kind] = c->at;
     va_list arguments;
     va_start(arguments, format);
     (void)vsnprintf(item->text, sizeof item->text, format, arguments);
     va_end(arguments);
 }
 
-void tri_check_each(struct checker *c, enum tri_check_kind kind, int32_t n,
-                    bool (*is_bad)(const struct checker *c, int32_t i), void (*tell)(struct checker *c, int32_t i))
+void tri_check_each(struct checker *c, enum tri_check_kind kind, int64_t first, int64_t n,
+                    bool (*is_bad)(const struct checker *c, int64_t i), void (*tell)(struct checker *c, int64_t i))
 {
-    int64_t n_bad = 0, before = c->report->item[kind].count;
-    int32_t first = n;
+    int64_t n_bad = 0, before = c->report->item[kind].count, least = n;
     tri_check_begin(c, kind);
-#pragma omp parallel for schedule(static) reduction(+ : n_bad) reduction(min : first)
-    for (int32_t i = 0; i < n; i++) {
+#pragma omp parallel for schedule(static) reduction(+ : n_bad) reduction(min : least)
+    for (int64_t i = 0; i < n; i++) {
         if (is_bad(c, i)) {
             n_bad++;
-            first = i < first ? i : first;
+            least = i < least ? i : least;
         }
     }
     if (n_bad == 0)
         return;
-    tell(c, first);
+    c->at = first + least;
+    tell(c, least);
+    c->at = 0;
     c->report->item[kind].count = before + n_bad;
+}
+
+bool tri_check_is_alone(void)
+{
+#ifdef _OPENMP
+    return omp_get_max_threads() == 1;
+#else
+    return true;
+#endif
+}
+
+enum tri_status tri_check_read(struct checker *c, enum tri_check_array array, int64_t first, int64_t n, void *out)
+{
+    enum tri_status status = n > 0 ? c->source->read(c->source->user, array, first, n, out, c->error) : TRI_OK;
+    double *values = out;
+    for (int64_t i = 0; array == TRI_CHECK_POINTS && c->rounded && i < 2 * n; i++)
+        values[i] = tri_round_coordinate(ldexp(values[i], c->exponent));
+    return status;
 }
 
 void *tri_check_array(int64_t n, size_t size)
@@ -124,70 +152,203 @@ enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_c
     return TRI_OK;
 }
 
-/* The checks proper, each on what the earlier ones allow. */
-static enum tri_status run(struct checker *c)
+/* --- the mesh as arrays */
+
+static void widen(int64_t *out, const int32_t *values, int64_t n)
 {
-    tri_check_arrays(c);
-    if (!check_good(c, TRI_CHECK_ARRAYS))
-        return TRI_OK;
-    tri_check_orientation(c);
-    enum tri_status status = tri_check_edges(c);
+    for (int64_t i = 0; i < n; i++)
+        out[i] = values[i];
+}
+
+static enum tri_status read_arrays(void *user, enum tri_check_array array, int64_t first, int64_t n, void *out,
+                                   struct tri_error *error)
+{
+    const struct tri_check_mesh *m = user;
+    (void)error;
+    switch (array) {
+    case TRI_CHECK_POINTS:
+        memcpy(out, m->points + 2 * first, (size_t)n * 2 * sizeof(double));
+        break;
+    case TRI_CHECK_CORNERS:
+        widen(out, m->triangles + 3 * first, 3 * n);
+        break;
+    case TRI_CHECK_NEIGHBORS_GIVEN:
+        widen(out, m->neighbors + 3 * first, 3 * n);
+        break;
+    case TRI_CHECK_ATTRIBUTES:
+        for (int64_t i = 0; i < n; i++)
+            ((double *)out)[i] = m->attributes[m->n_attributes * (first + i + 1) - 1];
+        break;
+    case TRI_CHECK_SEGMENT_ENDS:
+        widen(out, m->segments + 2 * first, 2 * n);
+        break;
+    case TRI_CHECK_POINT_MARKERS:
+    case TRI_CHECK_SEGMENT_MARKERS:
+        memcpy(out, (array == TRI_CHECK_POINT_MARKERS ? m->point_markers : m->segment_markers) + first,
+               (size_t)n * sizeof(int32_t));
+        break;
+    }
+    return TRI_OK;
+}
+
+struct tri_check_source tri_check_source_of(const struct tri_check_mesh *m)
+{
+    unsigned given = 1u << TRI_CHECK_POINTS | 1u << TRI_CHECK_CORNERS;
+    given |= (m->neighbors != NULL ? 1u : 0u) << TRI_CHECK_NEIGHBORS_GIVEN;
+    given |= (m->attributes != NULL && m->n_attributes > 0 ? 1u : 0u) << TRI_CHECK_ATTRIBUTES;
+    given |= (m->point_markers != NULL ? 1u : 0u) << TRI_CHECK_POINT_MARKERS;
+    given |= (m->segments != NULL ? 1u : 0u) << TRI_CHECK_SEGMENT_ENDS;
+    given |= (m->segments != NULL && m->segment_markers != NULL ? 1u : 0u) << TRI_CHECK_SEGMENT_MARKERS;
+    return (struct tri_check_source){.n_points = m->n_points, .n_triangles = m->n_triangles,
+                                     .n_segments = m->n_segments, .given = given, .read = read_arrays,
+                                     .user = (void *)m, .arrays = m};
+}
+
+/* --- the trial */
+
+/* What triangles and pairs of them say. *good: corners and coordinates are what they should be. */
+static enum tri_status look_at_parts(struct checker *c, bool *good)
+{
+    enum tri_status status = TRI_OK;
+    for (int64_t t = 0; (t < c->n_triangles || t == 0) && status == TRI_OK; t += c->part_triangles) {
+        bool loaded;
+        status = tri_check_load(c, t, &loaded);
+        *good = *good && loaded;
+        if (status != TRI_OK || !*good)
+            continue;
+        tri_check_orientation(c);
+        status = tri_check_pair(c);
+        if (status == TRI_OK)
+            tri_check_note_vertices(c);
+        status = status == TRI_OK ? tri_check_keep_open(c) : status;
+        status = status == TRI_OK ? tri_check_shapes(c) : status;
+        if (status == TRI_OK)
+            tri_check_pairs(c);
+    }
+    return status;
+}
+
+/* What was said of pairs has no meaning where those are none. */
+static bool pairs_are_good(struct checker *c)
+{
+    bool edges = check_good(c, TRI_CHECK_EDGES);
+    if (!edges)
+        tri_check_unask(c, TRI_CHECK_NEIGHBORS);
+    if (edges && check_good(c, TRI_CHECK_ORIENTATION))
+        return true;
+    tri_check_unask(c, TRI_CHECK_LOCAL_DELAUNAY);
+    tri_check_unask(c, TRI_CHECK_ENCROACHMENT);
+    tri_check_unask(c, TRI_CHECK_REGIONS);
+    return false;
+}
+
+static enum tri_status judge_frame(struct checker *c)
+{
+    enum tri_status status = tri_check_find_twins(c);
+    if (status == TRI_OK)
+        status = tri_check_frame(c);
     if (status == TRI_OK)
         status = tri_check_subsegments(c);
     if (status == TRI_OK)
         status = tri_check_input(c);
     if (status == TRI_OK)
         status = tri_check_quality(c);
-    if (status != TRI_OK || !check_good(c, TRI_CHECK_ORIENTATION) || !check_good(c, TRI_CHECK_EDGES))
+    if (status != TRI_OK || !pairs_are_good(c))
         return status;
-    tri_check_delaunay(c);
-    status = tri_check_regions(c);
-    if (status == TRI_OK)
-        status = tri_check_stars(c);
-    if (status == TRI_OK)
-        status = tri_check_overlap(c);
+    tri_check_stars(c);
+    status = tri_check_overlap(c);
     if (status != TRI_OK || !check_good(c, TRI_CHECK_OVERLAP))
         return status;
     tri_check_answers(c);
     return c->options->convex ? tri_check_hull(c) : TRI_OK;
 }
 
+/* The checks, in the order in which they lean on each other. */
+static enum tri_status run(struct checker *c)
+{
+    bool good = true;
+    enum tri_status status = tri_check_survey(c);
+    if (status == TRI_OK)
+        status = tri_check_list_segments(c);
+    if (status != TRI_OK)
+        return status;
+    good = check_good(c, TRI_CHECK_ARRAYS);
+    status = look_at_parts(c, &good);
+    if (status != TRI_OK)
+        return status;
+    if (!good) {
+        struct tri_check_item arrays = c->report->item[TRI_CHECK_ARRAYS];
+        memset(c->report, 0, sizeof *c->report);
+        c->report->item[TRI_CHECK_ARRAYS] = arrays;
+        return TRI_OK;
+    }
+    status = tri_check_match(c);
+    return status == TRI_OK ? judge_frame(c) : status;
+}
+
 static void release(struct checker *c)
 {
-    for (int i = 0; i < 4; i++)
-        free(c->scaled[i]);
-    free(c->first);
-    free(c->entry);
-    free(c->link);
-    free(c->used);
-    free(c->turns);
-    free(c->on_boundary);
-    free(c->own_segments);
-    free(c->constrained);
-    free(c->fan_first);
-    free(c->fan);
-    free(c->twin);
-    free(c->is_along);
-    free(c->missing);
-    free(c->queries);
+    void *arrays[] = {c->scaled[0], c->scaled[1], c->scaled[2], c->scaled[3], c->state, c->boundary.at, c->own_points,
+                      c->own_vertex, c->sides, c->listed, c->own_segments, c->own_markers, c->border, c->fan_first,
+                      c->fan, c->found, c->twin, c->unused, c->unused_points, c->is_along, c->missing, c->queries};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+        free(arrays[i]);
+    tri_check_release_part(c);
+    tri_check_store_free(c->store);
+    tri_check_release_quality(c);
+}
+
+/* Bytes for each triangle of a part: corners twice (edges.c takes the place of the ones as they are read), links, half
+ * a vertex, and what else is given. */
+static double bytes_of_triangle(const struct tri_check_source *source)
+{
+    return 24 + 12 + 12 + 0.6 * (16 + 8 + 4 + 4) + (source->given >> TRI_CHECK_NEIGHBORS_GIVEN & 1) * 24 +
+           (source->given >> TRI_CHECK_ATTRIBUTES & 1) * 8;
+}
+
+/* As many triangles as the bound allows, at least a few. */
+static int64_t size_of_part(const struct tri_check_source *source)
+{
+    enum { LEAST = 16 };
+    int64_t most = INT32_MAX / 3 - 1;
+    if (source->memory > 0) {
+        double rest = source->memory * 0.75 - 1.25 * (double)source->n_points;
+        most = (int64_t)fmax(LEAST, fmin((double)most, rest / bytes_of_triangle(source)));
+    }
+    return source->n_triangles < most ? source->n_triangles : most;
+}
+
+enum tri_status tri_check_from(const struct tri_check_source *source, const struct tri_pslg *input,
+                               const struct tri_check_options *options, struct tri_check_report *report,
+                               struct tri_error *error)
+{
+    struct tri_error own = {0};
+    assert(source->n_points >= 0 && source->n_triangles >= 0 && source->n_segments >= 0);
+    if (source->n_triangles > INT64_MAX / 8 || source->n_segments > INT32_MAX / 2)
+        return tri_fail(error, TRI_TOO_LARGE, "", 0, "the mesh is too large to be checked");
+    memset(report, 0, sizeof *report);
+    struct checker c = {.source = source, .input = input, .options = options, .report = report, .error = &own,
+                        .n_points = source->n_points, .n_triangles = source->n_triangles};
+    c.part_triangles = size_of_part(source);
+    if (c.part_triangles == source->n_triangles && source->arrays != NULL)
+        c.whole = source->arrays;
+    c.part_triangles = c.part_triangles > 0 ? c.part_triangles : 1;
+    c.state = tri_check_zeros(c.n_points, 1);
+    enum tri_status status = c.state == NULL ? TRI_NO_MEMORY : tri_check_store_new(&c);
+    if (status == TRI_OK)
+        status = run(&c);
+    release(&c);
+    if (status == TRI_OK)
+        return TRI_OK;
+    if (own.text[0] != '\0')
+        return tri_fail(error, status, own.file, own.line, "%s", own.text);
+    return tri_fail(error, status, "", 0, status == TRI_NO_MEMORY ? "out of memory" : "the mesh is too large");
 }
 
 enum tri_status tri_check(const struct tri_check_mesh *mesh, const struct tri_pslg *input,
                           const struct tri_check_options *options, struct tri_check_report *report,
                           struct tri_error *error)
 {
-    assert(mesh->n_points >= 0 && mesh->n_triangles >= 0 && mesh->n_segments >= 0);
-    if (mesh->n_triangles > INT32_MAX / 3 || mesh->n_segments > INT32_MAX / 2) {
-        return tri_fail(error, TRI_TOO_LARGE, "", 0, "the mesh is too large to be checked");
-    }
-    memset(report, 0, sizeof *report);
-    struct checker c = {.mesh = mesh, .input = input, .options = options, .report = report};
-    c.n_half_edges = 3 * mesh->n_triangles;
-    enum tri_status status = tri_check_scale(&c);
-    if (status == TRI_OK)
-        status = run(&c);
-    release(&c);
-    if (status == TRI_OK)
-        return TRI_OK;
-    return tri_fail(error, status, "", 0, status == TRI_NO_MEMORY ? "out of memory" : "the mesh is too large");
+    struct tri_check_source source = tri_check_source_of(mesh);
+    return tri_check_from(&source, input, options, report, error);
 }

@@ -43,8 +43,8 @@
  * Coordinates that are very large or very small as a whole are multiplied by a power of two first; those below 2^-216
  * then count as 0, in the mesh as in the input.
  *
- * Cost: O(n + b log b) time for n triangles and b boundary edges; about 60 bytes a triangle beside the arrays given.
- * Measured: 15 million triangles in 2.2 s where the numbering is local, 24 s where it is random, on one core. */
+ * Cost: O(n + b log b) time for n triangles and b boundary edges, subsegments and input points; about 60 bytes a
+ * triangle beside the arrays given, or within a bound: see tri_check_source. */
 #ifndef TRIANGLE_CHECK_H
 #define TRIANGLE_CHECK_H
 
@@ -73,6 +73,33 @@ struct tri_check_mesh {
     const int32_t *point_markers;   /* [n_points] or NULL: not given */
     int32_t n_attributes;
     const double *attributes; /* [n_triangles][n_attributes], the last is the region's; or NULL: not given */
+};
+
+/* A mesh of any size, as arrays that are read in slices. */
+enum tri_check_array {
+    TRI_CHECK_POINTS,          /* double[2] */
+    TRI_CHECK_CORNERS,         /* int64_t[3] */
+    TRI_CHECK_NEIGHBORS_GIVEN, /* int64_t[3]; -1: none */
+    TRI_CHECK_ATTRIBUTES,      /* double: the last attribute of a triangle */
+    TRI_CHECK_POINT_MARKERS,   /* int32_t */
+    TRI_CHECK_SEGMENT_ENDS,    /* int64_t[2] */
+    TRI_CHECK_SEGMENT_MARKERS  /* int32_t */
+};
+
+struct tri_check_source {
+    int64_t n_points, n_triangles, n_segments;
+    unsigned given; /* 1 << array, of each that there is; points and corners always are */
+    /* Elements first .. first + n - 1 of the array into out. Called by one thread. */
+    enum tri_status (*read)(void *user, enum tri_check_array array, int64_t first, int64_t n, void *out,
+                            struct tri_error *error);
+    void *user;
+    const struct tri_check_mesh *arrays; /* the same in memory, or NULL */
+    /* Bytes that the trial may use on top of what is used already; 0: no bound. It takes a byte for each vertex, what
+     * subsegments, boundary edges and the input need, and shares out the rest; with too little it takes what it must.
+     * Half-edges that wait for their other side are parked in nameless files in the folder `scratch` (NULL: /tmp)
+     * where they are too many: few, if numbers are local; up to 3 for each triangle, 112 bytes each, if not. */
+    double memory;
+    const char *scratch;
 };
 
 enum tri_check_delaunay { TRI_CHECK_CONSTRAINED, TRI_CHECK_CONFORMING, TRI_CHECK_NOT_DELAUNAY };
@@ -158,10 +185,20 @@ struct tri_check_report {
 };
 
 /* Judges the mesh; the input (NULL: unknown) is compared where it is given. TRI_OK says that the judgement took place,
- * not how it came out: see tri_check_passed. TRI_NO_MEMORY, TRI_TOO_LARGE (3 * n_triangles must fit an int32_t). */
+ * not how it came out: see tri_check_passed. TRI_NO_MEMORY, TRI_TOO_LARGE (more than 2^30 subsegments or boundary
+ * edges). */
 enum tri_status tri_check(const struct tri_check_mesh *mesh, const struct tri_pslg *input,
                           const struct tri_check_options *options, struct tri_check_report *report,
                           struct tri_error *error);
+
+/* The same of a mesh of any size: of the arrays of a source. Whatever its memory, the report is the same. Also
+ * TRI_CANNOT_WRITE, and what source->read returns. */
+enum tri_status tri_check_from(const struct tri_check_source *source, const struct tri_pslg *input,
+                               const struct tri_check_options *options, struct tri_check_report *report,
+                               struct tri_error *error);
+
+/* Arrays in memory as a source. *mesh must live as long. */
+struct tri_check_source tri_check_source_of(const struct tri_check_mesh *mesh);
 
 /* No kind failed. */
 bool tri_check_passed(const struct tri_check_report *report);

@@ -1,4 +1,4 @@
-/* Edges: which half-edges are the two sides of one edge, and whether each has one other side at most.
+/* Edges of a part: which half-edges are the two sides of one edge.
  *
  * Half-edges are grouped by the lesser vertex of their edge (counting sort), each group sorted by the other vertex,
  * direction and name, in one number: other vertex << 33 | comes from the other << 32 | half-edge. What belongs to one
@@ -6,10 +6,11 @@
  * heap of triangles this may be. */
 #include <assert.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "triangle/check/internal.h"
+#include "triangle/check/store.h"
 
-enum { BAD = -2, SMALL_GROUP = 24 };
+enum { SMALL_GROUP = 24 };
 
 static int32_t lesser(int32_t a, int32_t b)
 {
@@ -22,30 +23,71 @@ static uint64_t key_of(int32_t a, int32_t b)
     return other << 33 | (uint64_t)(a > b) << 32;
 }
 
-static void group(struct checker *c)
+/* Triangle v a b, counter-clockwise, sweeps over the direction +x from v (stars.c). */
+static bool covers(const struct checker *c, int32_t v, int32_t a, int32_t b)
 {
-    int32_t n = c->mesh->n_points;
-#pragma omp parallel for schedule(static)
-    for (int32_t h = 0; h < c->n_half_edges; h++) {
-        int32_t v = lesser(check_org(c, h), check_dest(c, h));
-#pragma omp atomic
-        c->first[v + 1]++;
-#pragma omp atomic write
-        c->used[check_apex(c, h)] = 1;
+    double y = check_place(c, v).y;
+    return check_place(c, a).y <= y && y < check_place(c, b).y;
+}
+
+static void count_alone(struct check_part *p, const struct checker *c)
+{
+    for (int32_t h = 0; h < p->n_half_edges; h++) {
+        int32_t a = check_org(c, h), b = check_dest(c, h), v = check_apex(c, h);
+        p->entry_of[lesser(a, b) + 1]++;
+        p->turns[v] += covers(c, v, a, b);
+        p->used[v] = 1;
     }
-    for (int32_t i = 0; i < n; i++)
-        c->first[i + 1] += c->first[i];
-        /* While a group is filled its start moves to its end, which is the start of the next one: shift them back. */
+}
+
+/* With several threads an atomic operation is what counting costs. */
+static void count_together(struct check_part *p, const struct checker *c)
+{
 #pragma omp parallel for schedule(static)
-    for (int32_t h = 0; h < c->n_half_edges; h++) {
-        int32_t a = check_org(c, h), b = check_dest(c, h), at, *end = &c->first[lesser(a, b)];
+    for (int32_t h = 0; h < p->n_half_edges; h++) {
+        int32_t a = check_org(c, h), b = check_dest(c, h), v = check_apex(c, h), least = lesser(a, b);
+#pragma omp atomic
+        p->entry_of[least + 1]++;
+        if (covers(c, v, a, b)) {
+#pragma omp atomic
+            p->turns[v]++;
+        }
+#pragma omp atomic write
+        p->used[v] = 1;
+    }
+}
+
+static void fill_alone(struct check_part *p, const struct checker *c)
+{
+    for (int32_t h = 0; h < p->n_half_edges; h++) {
+        int32_t a = check_org(c, h), b = check_dest(c, h);
+        p->entry[p->entry_of[lesser(a, b)]++] = key_of(a, b) | (uint64_t)h;
+    }
+}
+
+static void fill_together(struct check_part *p, const struct checker *c)
+{
+#pragma omp parallel for schedule(static)
+    for (int32_t h = 0; h < p->n_half_edges; h++) {
+        int32_t a = check_org(c, h), b = check_dest(c, h), at, *end = &p->entry_of[lesser(a, b)];
 #pragma omp atomic capture
         at = (*end)++;
-        c->entry[at] = key_of(a, b) | (uint64_t)h;
+        p->entry[at] = key_of(a, b) | (uint64_t)h;
     }
-    for (int32_t i = n; i > 0; i--)
-        c->first[i] = c->first[i - 1];
-    c->first[0] = 0;
+}
+
+static void group(struct checker *c)
+{
+    struct check_part *p = &c->part;
+    int32_t n = p->n_points;
+    bool alone = tri_check_is_alone();
+    (alone ? count_alone : count_together)(p, c);
+    for (int32_t i = 0; i < n; i++)
+        p->entry_of[i + 1] += p->entry_of[i];
+    /* While a group is filled its start moves to its end, which is the start of the next one: shift them back. */
+    (alone ? fill_alone : fill_together)(p, c);
+    memmove(p->entry_of + 1, p->entry_of, (size_t)n * sizeof *p->entry_of);
+    p->entry_of[0] = 0;
 }
 
 static int compare_entries(const void *left, const void *right)
@@ -70,12 +112,12 @@ static void sort_group(uint64_t *entry, int32_t n)
 }
 
 /* First entry of the group that is not below the key. */
-static int32_t lower_bound(const struct checker *c, int32_t v, uint64_t key)
+static int32_t lower_bound(const struct check_part *p, int32_t v, uint64_t key)
 {
-    int32_t low = c->first[v], high = c->first[v + 1];
+    int32_t low = p->entry_of[v], high = p->entry_of[v + 1];
     while (low < high) {
         int32_t middle = low + (high - low) / 2;
-        if (c->entry[middle] < key)
+        if (p->entry[middle] < key)
             low = middle + 1;
         else
             high = middle;
@@ -85,108 +127,164 @@ static int32_t lower_bound(const struct checker *c, int32_t v, uint64_t key)
 
 struct check_edge tri_check_find_edge(const struct checker *c, int32_t a, int32_t b)
 {
+    const struct check_part *p = &c->part;
     int32_t v = lesser(a, b);
     uint64_t there = key_of(a, b), back = key_of(b, a), one = (uint64_t)1 << 32;
-    int32_t i = lower_bound(c, v, there), j = lower_bound(c, v, back);
-    struct check_edge e = {-1, -1, lower_bound(c, v, there + one) - i, lower_bound(c, v, back + one) - j};
+    int32_t i = lower_bound(p, v, there), j = lower_bound(p, v, back);
+    struct check_edge e = {-1, -1, lower_bound(p, v, there + one) - i, lower_bound(p, v, back + one) - j};
     if (e.n_there > 0)
-        e.there = (int32_t)(c->entry[i] & (one - 1));
+        e.there = (int32_t)(p->entry[i] & (one - 1));
     if (e.n_back > 0)
-        e.back = (int32_t)(c->entry[j] & (one - 1));
+        e.back = (int32_t)(p->entry[j] & (one - 1));
     return e;
 }
 
-/* Links the half-edges of one edge, which are entries i .. end - 1. */
-static void link_edge(struct checker *c, int32_t i, int32_t end)
+/* Links the half-edges of one edge, which are entries i .. end - 1, if they are its two sides. */
+static void link_edge(struct check_part *p, int32_t i, int32_t end)
 {
-    int32_t h = (int32_t)(c->entry[i] & 0xffffffffu), n = end - i;
-    bool two = n == 2 && (c->entry[i] ^ c->entry[i + 1]) >> 32 == 1;
-    if (n == 1) {
-        c->link[h] = -1;
-    } else if (two) {
-        int32_t g = (int32_t)(c->entry[i + 1] & 0xffffffffu);
-        c->link[h] = g;
-        c->link[g] = h;
+    int32_t h = (int32_t)(p->entry[i] & 0xffffffffu);
+    if (end - i == 2 && (p->entry[i] ^ p->entry[i + 1]) >> 32 == 1) {
+        int32_t g = (int32_t)(p->entry[i + 1] & 0xffffffffu);
+        p->link[h] = g;
+        p->link[g] = h;
+        return;
     }
-    for (; n > 1 && !two && i < end; i++)
-        c->link[c->entry[i] & 0xffffffffu] = BAD;
+    for (; i < end; i++)
+        p->link[p->entry[i] & 0xffffffffu] = -1;
 }
 
-static void link_group(struct checker *c, int32_t v)
+static void link_group(struct check_part *p, int32_t v)
 {
-    int32_t begin = c->first[v], end = c->first[v + 1];
-    sort_group(c->entry + begin, end - begin);
+    int32_t begin = p->entry_of[v], end = p->entry_of[v + 1];
+    sort_group(p->entry + begin, end - begin);
     for (int32_t i = begin, next; i < end; i = next) {
-        for (next = i + 1; next < end && c->entry[next] >> 33 == c->entry[i] >> 33; next++) {
+        for (next = i + 1; next < end && p->entry[next] >> 33 == p->entry[i] >> 33; next++) {
         }
-        link_edge(c, i, next);
+        link_edge(p, i, next);
     }
 }
 
-static bool is_bad(const struct checker *c, int32_t h)
+static void note_side(struct checker *c, struct check_side *side, int32_t h)
 {
-    return c->link[h] == BAD;
+    if (h < 0)
+        return;
+    c->part.constrained[h >> 3] |= (uint8_t)(1u << (h & 7));
+    int64_t half_edge = 3 * c->part.first + h;
+    if (side->half_edge < 0)
+        *side = (struct check_side){half_edge, check_attribute(c, h / 3), false};
+    side->more = side->more || side->half_edge != half_edge;
 }
 
-static void tell_bad(struct checker *c, int32_t h)
+/* Half-edges along listed subsegments. */
+static void constrain(struct checker *c)
 {
-    int32_t a = check_org(c, h), b = check_dest(c, h);
-    struct check_edge e = tri_check_find_edge(c, a, b);
-    tri_check_fault(c, TRI_CHECK_EDGES, "%ld triangles lie on the %s side of edge %ld-%ld of triangle %ld",
-                    (long)(e.n_there > 1 ? e.n_there : e.n_back), e.n_there > 1 ? "same" : "other", check_number(c, a),
-                    check_number(c, b), check_number(c, h / 3));
-}
-
-static int32_t neighbor(const struct checker *c, int32_t h)
-{
-    return c->link[h] < 0 ? -1 : c->link[h] / 3;
-}
-
-static bool is_other_neighbor(const struct checker *c, int32_t h)
-{
-    return c->mesh->neighbors[h] != neighbor(c, h);
-}
-
-static void tell_neighbor(struct checker *c, int32_t h)
-{
-    int32_t given = c->mesh->neighbors[h], expected = neighbor(c, h);
-    tri_check_fault(c, TRI_CHECK_NEIGHBORS, "triangle %ld: neighbor across edge %ld-%ld is given as %ld, but is %ld",
-                    check_number(c, h / 3), check_number(c, check_org(c, h)), check_number(c, check_dest(c, h)),
-                    given < 0 ? -1L : check_number(c, given), expected < 0 ? -1L : check_number(c, expected));
-}
-
-static void count(struct checker *c)
-{
-    int64_t n_boundary = 0, n_used = 0;
-#pragma omp parallel for schedule(static) reduction(+ : n_boundary)
-    for (int32_t h = 0; h < c->n_half_edges; h++) {
-        if (c->link[h] < 0)
-            c->link[h] = -1, n_boundary++;
+    memset(c->part.constrained, 0, (size_t)c->part.n_half_edges / 8 + 1);
+    for (int64_t s = 0; check_is_listed(c) && s < c->source->n_segments; s++) {
+        int64_t a = c->listed[2 * s], b = c->listed[2 * s + 1];
+        int32_t u = a < 0 ? -1 : tri_check_local(c, a), v = u < 0 ? -1 : tri_check_local(c, b);
+        if (v < 0)
+            continue;
+        struct check_edge e = tri_check_find_edge(c, u, v);
+        note_side(c, &c->sides[s][0], e.there);
+        note_side(c, &c->sides[s][1], e.back);
     }
-#pragma omp parallel for schedule(static) reduction(+ : n_used)
-    for (int32_t v = 0; v < c->mesh->n_points; v++)
-        n_used += check_is_used(c, v);
-    c->report->n_boundary_edges = n_boundary;
-    c->report->n_edges = ((int64_t)c->n_half_edges + n_boundary) / 2;
-    c->report->n_used_points = n_used;
 }
 
-enum tri_status tri_check_edges(struct checker *c)
+void tri_check_note_vertices(struct checker *c)
 {
-    int32_t n = c->mesh->n_points;
-    c->first = tri_check_zeros((int64_t)n + 1, sizeof *c->first);
-    c->entry = tri_check_array(c->n_half_edges, sizeof *c->entry);
-    c->link = tri_check_array(c->n_half_edges, sizeof *c->link);
-    c->used = tri_check_zeros(n, 1);
-    if (c->first == NULL || c->entry == NULL || c->link == NULL || c->used == NULL)
-        return TRI_NO_MEMORY;
+    const struct check_part *p = &c->part;
+#pragma omp parallel for schedule(static)
+    for (int32_t v = 0; v < p->n_points; v++) {
+        uint8_t *state = &c->state[check_global(c, v)];
+        int32_t turns = (*state & CHECK_TURNS) + p->turns[v];
+        if (p->used[v])
+            *state = (uint8_t)((*state & ~CHECK_TURNS) | CHECK_USED | (turns < CHECK_TURNS ? turns : CHECK_TURNS));
+    }
+}
+
+static enum tri_status make_room(struct check_part *p)
+{
+    free(p->entry_of);
+    free(p->turns);
+    free(p->used);
+    p->entry_of = tri_check_zeros((int64_t)p->n_points + 1, sizeof *p->entry_of);
+    p->turns = tri_check_zeros(p->n_points, sizeof *p->turns);
+    p->used = tri_check_zeros(p->n_points, 1);
+    return p->entry_of && p->turns && p->used ? TRI_OK : TRI_NO_MEMORY;
+}
+
+enum tri_status tri_check_pair(struct checker *c)
+{
+    struct check_part *p = &c->part;
+    enum tri_status status = make_room(p);
+    if (status != TRI_OK)
+        return status;
     group(c);
 #pragma omp parallel for schedule(dynamic, 4096)
-    for (int32_t v = 0; v < n; v++)
-        link_group(c, v);
-    tri_check_each(c, TRI_CHECK_EDGES, c->n_half_edges, is_bad, tell_bad);
-    count(c);
-    if (c->mesh->neighbors != NULL && check_good(c, TRI_CHECK_EDGES))
-        tri_check_each(c, TRI_CHECK_NEIGHBORS, c->n_half_edges, is_other_neighbor, tell_neighbor);
+    for (int32_t v = 0; v < p->n_points; v++)
+        link_group(p, v);
+    constrain(c);
     return TRI_OK;
+}
+
+static int64_t given_neighbor(const struct checker *c, int32_t h)
+{
+    const struct check_part *p = &c->part;
+    return p->own_neighbors != NULL ? p->own_neighbors[h] : p->neighbors != NULL ? p->neighbors[h] : -1;
+}
+
+struct check_open tri_check_open(const struct checker *c, int32_t h)
+{
+    int32_t a = check_org(c, h), b = check_dest(c, h), v = check_apex(c, h);
+    return (struct check_open){check_global(c, a), check_global(c, b), 3 * c->part.first + h, check_global(c, v),
+                               given_neighbor(c, h), check_attribute(c, h / 3),
+                               {check_place(c, a), check_place(c, b), check_place(c, v)}, check_is_constrained(c, h)};
+}
+
+enum tri_status tri_check_keep_open(struct checker *c)
+{
+    enum tri_status status = TRI_OK;
+    for (int32_t h = 0; h < c->part.n_half_edges && status == TRI_OK; h++) {
+        if (c->part.link[h] < 0)
+            status = tri_check_store_add(c, tri_check_open(c, h));
+    }
+    return status;
+}
+
+/* --- neighbours as they are given */
+
+static bool is_other_neighbor(const struct checker *c, int64_t i)
+{
+    int32_t h = (int32_t)i;
+    return c->part.link[h] >= 0 && given_neighbor(c, h) != c->part.first + c->part.link[h] / 3;
+}
+
+static void tell(struct checker *c, const struct check_open *e, int64_t expected)
+{
+    c->at = e->half_edge;
+    tri_check_fault(c, TRI_CHECK_NEIGHBORS, "triangle %ld: neighbor across edge %ld-%ld is given as %ld, but is %ld",
+                    check_number(c, e->half_edge / 3), check_number(c, e->from), check_number(c, e->to),
+                    e->neighbor < 0 ? -1L : check_number(c, e->neighbor),
+                    expected < 0 ? -1L : check_number(c, expected));
+    c->at = 0;
+}
+
+static void tell_neighbor(struct checker *c, int64_t h)
+{
+    struct check_open e = tri_check_open(c, (int32_t)h);
+    tell(c, &e, c->part.first + c->part.link[h] / 3);
+}
+
+void tri_check_neighbors(struct checker *c)
+{
+    if (check_is_given(c, TRI_CHECK_NEIGHBORS_GIVEN))
+        tri_check_each(c, TRI_CHECK_NEIGHBORS, 3 * c->part.first, c->part.n_half_edges, is_other_neighbor,
+                       tell_neighbor);
+}
+
+void tri_check_matched_neighbor(struct checker *c, const struct check_open *a, const struct check_open *b)
+{
+    int64_t expected = b != NULL ? b->half_edge / 3 : -1;
+    if (check_is_given(c, TRI_CHECK_NEIGHBORS_GIVEN) && a->neighbor != expected)
+        tell(c, a, expected);
 }

@@ -2,18 +2,21 @@
  *
  * Points that coincide are one vertex of the mesh; which of them carries the triangles is the mesher's choice. So each
  * input point has a `twin`: the used vertex at its place. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "triangle/check/chain.h"
 #include "triangle/check/internal.h"
 
-/* The points that the mesh must do justice to: those of the input, or where it is unknown, all of the mesh. */
+enum { SLICE = 1 << 14 };
+
+/* The points that the mesh must do justice to: those of the input, or where it is unknown, those of the mesh that no
+ * triangle uses. */
 struct reference {
     int32_t n;
     const double *points;
-    int32_t *table; /* [mask + 1] open addressing by coordinates: point numbers, -1: free */
+    int64_t *found; /* [n] used vertex of the mesh at the place of each, -1: none */
+    int32_t *table; /* [mask + 1] open addressing by coordinates: numbers of points, -1: free */
     uint32_t mask;
 };
 
@@ -31,8 +34,8 @@ static uint32_t hash(struct tri_point p)
     return (uint32_t)(h >> 32);
 }
 
-/* Triangle that holds a point at the place of p, or the free one where it belongs. */
-static uint32_t triangle_of(const struct reference *r, struct tri_point p)
+/* Where the table holds a point at the place of p, or the free place where it belongs. */
+static uint32_t slot_of(const struct reference *r, struct tri_point p)
 {
     uint32_t i = hash(p) & r->mask;
     while (r->table[i] >= 0 && !check_same_place(point_of(r, r->table[i]), p))
@@ -53,73 +56,157 @@ static enum tri_status make_table(struct reference *r, int32_t n)
     return TRI_OK;
 }
 
-/* Fills c->twin. Only points that are not used themselves need a search. */
-static enum tri_status find_twins(struct checker *c, struct reference *r)
+/* Calls look for all points of the mesh before `end`, slice by slice. */
+static enum tri_status each_slice(struct checker *c, struct reference *r, int64_t end,
+                                  void (*look)(struct checker *c, struct reference *r, int64_t first,
+                                               const double *points, int64_t n))
 {
-    c->twin = tri_check_array(r->n, sizeof *c->twin);
-    if (c->twin == NULL)
-        return TRI_NO_MEMORY;
-    int32_t n_searched = 0;
-    for (int32_t v = 0; v < r->n; v++) {
-        bool itself =
-            v < c->mesh->n_points && check_is_used(c, v) && check_same_place(check_point(c, v), point_of(r, v));
-        c->twin[v] = itself ? v : -1;
-        n_searched += !itself;
+    double *points = tri_check_array(SLICE, 2 * sizeof *points);
+    enum tri_status status = points == NULL ? TRI_NO_MEMORY : TRI_OK;
+    for (int64_t i = 0; i < end && status == TRI_OK; i += SLICE) {
+        int64_t n = end - i < SLICE ? end - i : SLICE;
+        status = tri_check_read(c, TRI_CHECK_POINTS, i, n, points);
+        if (status == TRI_OK)
+            look(c, r, i, points, n);
     }
-    if (n_searched == 0)
-        return TRI_OK;
-    enum tri_status status = make_table(r, n_searched);
-    if (status != TRI_OK)
-        return status;
-    for (int32_t v = 0; v < r->n; v++) {
-        uint32_t i = c->twin[v] < 0 ? triangle_of(r, point_of(r, v)) : 0;
-        if (c->twin[v] < 0 && r->table[i] < 0)
-            r->table[i] = v;
-    }
-    for (int32_t v = 0; v < c->mesh->n_points; v++) {
-        int32_t found = check_is_used(c, v) ? r->table[triangle_of(r, check_point(c, v))] : -1;
-        if (found >= 0 && c->twin[found] < 0)
-            c->twin[found] = v;
-    }
-    for (int32_t v = 0; v < r->n; v++) {
-        if (c->twin[v] < 0)
-            c->twin[v] = c->twin[r->table[triangle_of(r, point_of(r, v))]];
-    }
-    return TRI_OK;
+    free(points);
+    return status;
 }
 
-static void check_vertices(struct checker *c, const struct reference *r)
+/* Input points that are used themselves, under their number. */
+static void find_same(struct checker *c, struct reference *r, int64_t first, const double *points, int64_t n)
 {
-    if (c->input == NULL || c->options->renumbered)
-        return;
-    tri_check_begin(c, TRI_CHECK_INPUT_VERTICES);
-    if (c->mesh->n_points < r->n) {
-        tri_check_fault(c, TRI_CHECK_INPUT_VERTICES, "the mesh has %ld vertices, the input %ld",
-                        (long)c->mesh->n_points, (long)r->n);
+    for (int64_t i = 0; i < n; i++) {
+        int32_t v = (int32_t)(first + i);
+        struct tri_point p = {points[2 * i], points[2 * i + 1]};
+        if (check_is_used(c, v) && check_same_place(p, point_of(r, v)))
+            r->found[v] = v;
     }
-    for (int32_t v = 0; v < r->n && v < c->mesh->n_points; v++) {
-        struct tri_point p = point_of(r, v), q = check_point(c, v);
+}
+
+/* Used vertices at the places of points in the table; the first of each counts. */
+static void find_elsewhere(struct checker *c, struct reference *r, int64_t first, const double *points, int64_t n)
+{
+    for (int64_t i = 0; i < n; i++) {
+        if (!check_is_used(c, first + i))
+            continue;
+        int32_t v = r->table[slot_of(r, (struct tri_point){points[2 * i], points[2 * i + 1]})];
+        if (v >= 0 && r->found[v] < 0)
+            r->found[v] = first + i;
+    }
+}
+
+/* The others: only they need a search. */
+static enum tri_status search(struct checker *c, struct reference *r)
+{
+    int32_t n_searched = 0;
+    for (int32_t v = 0; v < r->n; v++)
+        n_searched += r->found[v] < 0;
+    enum tri_status status = n_searched == 0 ? TRI_OK : make_table(r, n_searched);
+    if (status != TRI_OK || n_searched == 0)
+        return status;
+    for (int32_t v = 0; v < r->n; v++) {
+        uint32_t i = r->found[v] < 0 ? slot_of(r, point_of(r, v)) : 0;
+        if (r->found[v] < 0 && r->table[i] < 0)
+            r->table[i] = v;
+    }
+    status = each_slice(c, r, c->n_points, find_elsewhere);
+    for (int32_t v = 0; v < r->n; v++) {
+        if (r->found[v] < 0)
+            r->found[v] = r->found[r->table[slot_of(r, point_of(r, v))]];
+    }
+    free(r->table);
+    return status;
+}
+
+/* Where the input is unknown. */
+static void take_unused(struct checker *c, struct reference *r, int64_t first, const double *points, int64_t n)
+{
+    for (int64_t i = 0; i < n; i++) {
+        if (check_is_used(c, first + i))
+            continue;
+        c->unused[r->n] = first + i;
+        memcpy(c->unused_points + 2 * (size_t)r->n++, points + 2 * i, 2 * sizeof *points);
+    }
+}
+
+static enum tri_status list_unused(struct checker *c, struct reference *r)
+{
+    int64_t n = c->n_points - c->report->n_used_points;
+    if (n > INT32_MAX / 2)
+        return TRI_TOO_LARGE;
+    c->unused = tri_check_array(n, sizeof *c->unused);
+    c->unused_points = tri_check_array(n, 2 * sizeof *c->unused_points);
+    if (c->unused == NULL || c->unused_points == NULL)
+        return TRI_NO_MEMORY;
+    enum tri_status status = n > 0 ? each_slice(c, r, c->n_points, take_unused) : TRI_OK;
+    c->n_unused = r->n;
+    r->points = c->unused_points;
+    return status;
+}
+
+enum tri_status tri_check_find_twins(struct checker *c)
+{
+    struct reference r = {0};
+    enum tri_status status = TRI_OK;
+    if (c->input == NULL)
+        status = list_unused(c, &r);
+    else
+        r = (struct reference){.n = c->input->n_points, .points = c->input->points};
+    c->found = r.found = tri_check_array(r.n, sizeof *r.found);
+    if (r.found == NULL)
+        return TRI_NO_MEMORY;
+    memset(r.found, -1, (size_t)r.n * sizeof *r.found);
+    if (status == TRI_OK && c->input != NULL)
+        status = each_slice(c, &r, r.n < c->n_points ? r.n : c->n_points, find_same);
+    return status == TRI_OK ? search(c, &r) : status;
+}
+
+static void compare(struct checker *c, struct reference *r, int64_t first, const double *points, int64_t n)
+{
+    for (int64_t i = 0; i < n; i++) {
+        struct tri_point p = point_of(r, (int32_t)(first + i)), q = {points[2 * i], points[2 * i + 1]};
         if (check_same_place(p, q))
             continue;
         tri_check_fault(c, TRI_CHECK_INPUT_VERTICES, "vertex %ld is at (%.17g, %.17g), in the input at (%.17g, %.17g)",
-                        check_number(c, v), check_given(c, q.x), check_given(c, q.y), check_given(c, p.x),
+                        check_number(c, first + i), check_given(c, q.x), check_given(c, q.y), check_given(c, p.x),
                         check_given(c, p.y));
     }
 }
 
-/* Points without twin: lost if they lie inside the mesh, or anywhere if that is to be the hull of all. */
-static enum tri_status ask_for_lost(struct checker *c, const struct reference *r)
+static enum tri_status check_vertices(struct checker *c)
 {
-    if (c->mesh->n_triangles == 0 || c->options->ignore_lost)
+    if (c->input == NULL || c->options->renumbered)
+        return TRI_OK;
+    struct reference r = {.n = c->input->n_points, .points = c->input->points};
+    tri_check_begin(c, TRI_CHECK_INPUT_VERTICES);
+    if (c->n_points < r.n) {
+        tri_check_fault(c, TRI_CHECK_INPUT_VERTICES, "the mesh has %ld vertices, the input %ld", (long)c->n_points,
+                        (long)r.n);
+    }
+    return each_slice(c, &r, r.n < c->n_points ? r.n : c->n_points, compare);
+}
+
+static int64_t number_of(const struct checker *c, int32_t i)
+{
+    return c->input != NULL ? i : c->unused[i];
+}
+
+/* Points without twin: lost if they lie inside the mesh, or anywhere if that is to be the hull of all. */
+static enum tri_status ask_for_lost(struct checker *c)
+{
+    if (c->n_triangles == 0 || c->options->ignore_lost)
         return TRI_OK;
     enum tri_status status = TRI_OK;
-    for (int32_t v = 0; v < r->n && status == TRI_OK; v++) {
-        if (c->twin[v] >= 0)
+    const double *points = c->input != NULL ? c->input->points : c->unused_points;
+    int32_t n = c->input != NULL ? c->input->n_points : c->n_unused;
+    for (int32_t v = 0; v < n && status == TRI_OK; v++) {
+        if (c->found[v] >= 0)
             continue;
         if (c->options->convex) {
-            tri_check_fault(c, TRI_CHECK_HULL, "no triangle uses vertex %ld", check_number(c, v));
+            tri_check_fault(c, TRI_CHECK_HULL, "no triangle uses vertex %ld", check_number(c, number_of(c, v)));
         }
-        struct tri_point p = point_of(r, v);
+        struct tri_point p = {points[2 * (size_t)v], points[2 * (size_t)v + 1]};
         status = tri_check_ask(c, p, TRI_CHECK_LOST_VERTICES, v, 0);
     }
     return status;
@@ -137,31 +224,26 @@ static enum tri_status ask_for_holes(struct checker *c)
     return status;
 }
 
-static void set_tolerance(struct checker *c)
+static enum tri_status ask_for_regions(struct checker *c)
 {
-    double largest = 0;
-    for (size_t i = 0; i < 2 * (size_t)c->mesh->n_points; i++)
-        largest = fmax(largest, fabs(c->mesh->points[i]));
-    c->tolerance = TRI_CHECK_ULPS * 0x1p-52 * largest;
+    enum tri_status status = TRI_OK;
+    for (int32_t k = 0; check_wants_regions(c) && k < c->input->n_regions && status == TRI_OK; k++) {
+        const double *r = c->input->regions + 4 * (size_t)k;
+        status = tri_check_ask(c, (struct tri_point){r[0], r[1]}, TRI_CHECK_REGIONS, k, c->tolerance);
+    }
+    return status;
 }
 
 enum tri_status tri_check_input(struct checker *c)
 {
-    set_tolerance(c);
-    struct reference r = {.n = c->mesh->n_points, .points = c->mesh->points};
-    if (c->input != NULL) {
-        r.n = c->input->n_points;
-        r.points = c->input->points;
-    }
-    enum tri_status status = find_twins(c, &r);
-    if (status == TRI_OK) {
-        check_vertices(c, &r);
-        status = ask_for_lost(c, &r);
-    }
-    free(r.table);
+    enum tri_status status = check_vertices(c);
+    if (status == TRI_OK)
+        status = ask_for_lost(c);
     if (status == TRI_OK)
         status = ask_for_holes(c);
-    if (status == TRI_OK && c->input != NULL && c->mesh->segments != NULL)
+    if (status == TRI_OK)
+        status = ask_for_regions(c);
+    if (status == TRI_OK && c->input != NULL && check_is_listed(c))
         status = tri_check_chains(c);
     if (status == TRI_OK && c->input != NULL)
         status = tri_check_border(c);
@@ -170,9 +252,10 @@ enum tri_status tri_check_input(struct checker *c)
 
 static void report_inside(struct checker *c, const struct check_query *query)
 {
-    long id = check_number(c, query->id);
+    bool lost = query->kind == TRI_CHECK_LOST_VERTICES;
+    long id = check_number(c, lost ? number_of(c, query->id) : query->id);
     struct tri_point p = {check_given(c, query->at.x), check_given(c, query->at.y)};
-    if (query->kind == TRI_CHECK_LOST_VERTICES) {
+    if (lost) {
         tri_check_fault(c, query->kind, "vertex %ld lies in the mesh's area, but no triangle uses it", id);
     } else if (query->kind == TRI_CHECK_HOLES) {
         tri_check_fault(c, query->kind, "hole %ld at (%.17g, %.17g) lies inside the mesh", id, p.x, p.y);
@@ -189,7 +272,7 @@ void tri_check_answers(struct checker *c)
         tri_check_begin(c, TRI_CHECK_LOST_VERTICES);
     if (c->input != NULL && !c->options->ignore_holes)
         tri_check_begin(c, TRI_CHECK_HOLES);
-    if (c->input != NULL && c->mesh->segments != NULL)
+    if (c->input != NULL && check_is_listed(c))
         tri_check_begin(c, TRI_CHECK_INPUT_SEGMENTS);
     for (int32_t i = 0; i < c->n_queries; i++) {
         const struct check_query *q = &c->queries[i], *before = i > 0 ? q - 1 : NULL;

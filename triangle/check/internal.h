@@ -1,7 +1,21 @@
 /* What the files of the judge share: the trial in progress. Private to them.
  *
- * A half-edge is named 3 * t + k: the edge of triangle t opposite its corner k, directed so that t lies on its left. A
- * corner has the same name. */
+ * THE WAY. The mesh is looked at part by part: as many triangles at a time, in their order, as the memory holds (all
+ * of them, where no bound is set). In a part vertices have numbers of its own. What triangles of one part say by
+ * themselves or as neighbours is judged there; half-edges whose other side is not in the part are kept (store.h),
+ * matched when all parts have been seen, and judged then. What is left are the boundary edges. These, the subsegments
+ * and the input's points are small against the mesh: the frame, in memory as a whole, on which all other checks work.
+ * Of vertices a byte is kept.
+ *   If the mesh is one part, that part is the caller's arrays, and the frame has its vertices: nothing is copied.
+ *
+ * THEOREM. No fault is missed over the cut into parts. Half-edges that have been paired cancel, in one part or across
+ * parts, so check.h's theorem holds of what stays unpaired. Only which kind of fault is told could depend on parts: of
+ * three half-edges on one edge two may have been paired in one part. Then the third is no lawful boundary edge, and a
+ * second pass (tri_check_match) looks for what else there is on the edges that seem to be the boundary. (Pairs in
+ * several parts that lie on one edge inside are not counted among the faults; their triangles' boundary is.)
+ *
+ * A half-edge of the mesh is named 3 * t + k, 64 bits wide: the edge of triangle t opposite its corner k, directed so
+ * that t lies on its left. A corner has the same name. In a part t counts from the part's first triangle. */
 #ifndef TRIANGLE_CHECK_INTERNAL_H
 #define TRIANGLE_CHECK_INTERNAL_H
 
@@ -17,7 +31,7 @@
 struct check_query {
     struct tri_point at;
     enum tri_check_kind kind; /* fault to report if it is inside */
-    int32_t id;               /* vertex, input segment or hole */
+    int32_t id;               /* lost vertex, input segment or hole */
     double tolerance;         /* nearer to an edge of the boundary it does not count as inside */
     bool inside;              /* the sweep's answer: it is where it should not be */
 };
@@ -27,46 +41,118 @@ struct check_piece {
     struct tri_point from, to;
 };
 
-/* The half-edges between two vertices a and b. */
+/* The half-edges of a part from one vertex to another, and back. */
 struct check_edge {
-    int32_t there, back;     /* the first from a to b, and from b to a; -1: none */
+    int32_t there, back;     /* the first; -1: none */
     int32_t n_there, n_back; /* how many there are */
 };
 
+/* What lies on one side of a subsegment. */
+struct check_side {
+    int64_t half_edge; /* the first; -1: none */
+    double attribute;  /* of its triangle */
+    bool more;         /* another part has one, too */
+};
+
+/* A half-edge whose other side is not in its part; a boundary edge, at last. */
+struct check_open {
+    int64_t from, to, half_edge, apex; /* apex: the vertex of its triangle that is not on it */
+    int64_t neighbor;                  /* triangle on the other side as it is given; -1: none, or nothing given */
+    double attribute;                  /* of its triangle */
+    struct tri_point at[3];            /* places of from, to, apex */
+    bool constrained;
+};
+
+struct check_opens {
+    int64_t n, room;
+    struct check_open *at;
+};
+
+/* Triangles in a row. */
+struct check_part {
+    int64_t first; /* triangle */
+    int32_t n_triangles, n_points, n_half_edges;
+    const int32_t *triangles;     /* [n_triangles][3] corners */
+    const double *points;         /* [n_points][2] */
+    const int64_t *vertex;        /* [n_points] their numbers in the mesh, ascending; NULL: the same */
+    const int64_t *neighbors;     /* [n_triangles][3] as given, or NULL .. */
+    const int32_t *own_neighbors; /* .. or those of the arrays, or NULL: not given */
+    const double *attributes;     /* [n_triangles][n_attributes], the last counts; NULL: not given, or not looked at */
+    int32_t n_attributes;
+
+    /* edges.c */
+    int32_t *entry_of;    /* [n_points + 1] into entry */
+    uint64_t *entry;      /* [n_half_edges] see there */
+    int32_t *link;        /* [n_half_edges] the same edge in the neighbour; -1: open */
+    uint8_t *constrained; /* [n_half_edges] bits */
+    int32_t *turns;       /* [n_points] see stars.c */
+    uint8_t *used;        /* [n_points] is it a corner? */
+
+    struct check_room *room; /* part.c */
+};
+
+enum { /* of each vertex of the mesh; the lower four bits count turns */
+    CHECK_TURNS = 15,
+    CHECK_USED = 16,     /* it is a corner */
+    CHECK_BOUNDARY = 32, /* of a boundary edge, an end */
+    CHECK_APEX = 64,     /* see apex.c */
+    CHECK_NEAR = 128     /* in a triangle with an apex */
+};
+
 struct checker {
-    const struct tri_check_mesh *mesh;
-    const struct tri_pslg *input; /* or NULL */
+    const struct tri_check_source *source;
+    const struct tri_check_mesh *whole; /* the mesh as arrays, where it is one part; else NULL */
+    const struct tri_pslg *input;       /* or NULL */
     const struct tri_check_options *options;
     struct tri_check_report *report;
-    int32_t n_half_edges; /* 3 * n_triangles */
+    struct tri_error *error;
+    int64_t n_points, n_triangles;
 
-    /* scale.c */
-    int exponent; /* the coordinates seen are the given ones times 2^exponent */
+    /* check.c: the fault told of each kind is that with the least key; `at` is the key of what is looked at now */
+    int64_t at, key[TRI_N_CHECKS];
+
+    /* survey.c */
+    int exponent;      /* the coordinates seen are the given ones times 2^exponent */
+    bool rounded;      /* and rounded */
+    double tolerance;  /* distance; see TRI_CHECK_ULPS */
     struct tri_check_mesh scaled_mesh;
     struct tri_pslg scaled_input;
     double *scaled[4]; /* their points, the input's, its hole points, its regions; NULL: not scaled */
 
-    /* edges.c */
-    int32_t *first;  /* [n_points + 1] into entry */
-    uint64_t *entry; /* [n_half_edges] see there */
-    int32_t *link;   /* [n_half_edges] the same edge in the neighbour; -1: boundary */
-    uint8_t *used;   /* [n_points] is it a corner? */
+    uint8_t *state; /* [n_points] */
 
-    /* stars.c */
-    int32_t *turns;       /* [n_points] */
-    uint8_t *on_boundary; /* [n_points] */
+    /* part.c, store.c */
+    int64_t part_triangles; /* in a part, at most */
+    struct check_part part;
+    struct check_store *store;
+    struct check_opens boundary; /* what is left at last: boundary edges, by half-edge */
 
-    /* segments.c; these are the listed subsegments, or where none are given the boundary edges */
+    /* quality.c */
+    struct check_quality *quality;
+
+    /* The frame: vertices */
+    int32_t n_frame;
+    const double *points;  /* [n_frame][2] */
+    const int64_t *vertex; /* [n_frame] their numbers in the mesh, ascending; NULL: the same */
+    double *own_points;    /* these two, if made here */
+    int64_t *own_vertex;
+    /* The frame: the listed subsegments, or where none are given the boundary edges */
     int32_t n_segments;
-    const int32_t *segments; /* [n_segments][2] */
-    int32_t *own_segments;   /* segments, if made here */
-    uint8_t *constrained;    /* [n_half_edges] bits */
-    int32_t *fan_first;      /* [n_points + 1] into fan */
+    const int32_t *segments; /* [n_segments][2] vertices of the frame; -1, -1 where an end is no vertex or they equal */
+    const int32_t *segment_markers;     /* [n_segments] or NULL: not given */
+    struct check_side (*sides)[2];      /* [n_segments] left of it, from its first end to the second, and right */
+    int64_t *listed;                    /* [n_segments][2] as they are given */
+    int32_t *own_segments, *own_markers;
+    int32_t (*border)[2];               /* [boundary.n] ends of the boundary edges, as vertices of the frame */
+    int32_t *fan_first;                 /* [n_frame + 1] into fan */
     int32_t *fan; /* [2 * n_segments] 2 * s + end: subsegments, grouped by vertex, which is their given end */
 
     /* input.c */
-    int32_t *twin;    /* [input->n_points] used vertex at the place of an input point, -1: none */
-    double tolerance; /* distance; see TRI_CHECK_ULPS */
+    int64_t *found;  /* [input->n_points] used vertex of the mesh at the place of an input point, -1: none */
+    int32_t *twin;   /* [input->n_points] the same in the frame */
+    int64_t *unused; /* vertices of the mesh that no triangle uses, where there is no input */
+    double *unused_points;
+    int32_t n_unused;
 
     /* chain.c */
     uint8_t *is_along; /* [n_segments] does the subsegment lie along an input segment? */
@@ -77,42 +163,71 @@ struct checker {
     int32_t n_queries, query_capacity;
 };
 
-void tri_check_arrays(struct checker *c);
-void tri_check_orientation(struct checker *c);            /* needs ARRAYS */
-enum tri_status tri_check_edges(struct checker *c);       /* needs ARRAYS: pairs the half-edges, compares neighbours */
-enum tri_status tri_check_stars(struct checker *c);       /* needs EDGES, ORIENTATION */
-enum tri_status tri_check_overlap(struct checker *c);     /* needs the same; answers the queries */
-enum tri_status tri_check_hull(struct checker *c);        /* needs OVERLAP */
-enum tri_status tri_check_subsegments(struct checker *c); /* needs EDGES; fills the fields above */
-void tri_check_delaunay(struct checker *c);               /* needs EDGES, ORIENTATION, subsegments */
-enum tri_status tri_check_input(struct checker *c);       /* needs ARRAYS, subsegments; adds queries */
-enum tri_status tri_check_regions(struct checker *c);     /* needs EDGES, subsegments; adds queries */
-enum tri_status tri_check_border(struct checker *c);      /* needs chains */
-enum tri_status tri_check_vertex_markers(struct checker *c); /* needs EDGES, subsegments, twins */
-void tri_check_answers(struct checker *c);                /* where overlap has found nothing: judges the answers */
-enum tri_status tri_check_quality(struct checker *c);     /* needs EDGES, subsegments */
+/* --- in the order of the trial */
 
-/* Where the mesh is out of the range of exact arithmetic, puts copies of mesh and input in its place whose coordinates
- * are multiplied by a power of two; nothing else sees the originals. */
-enum tri_status tri_check_scale(struct checker *c);
+/* Looks at all coordinates. Where they are out of the range of exact arithmetic, the mesh and the input are seen
+ * multiplied by a power of two from here on. */
+enum tri_status tri_check_survey(struct checker *c);
+enum tri_status tri_check_list_segments(struct checker *c); /* reads c->listed and markers */
+
+/* A part from triangle `first` on. Corners that are no vertices are faults of ARRAYS; then there is no part. */
+enum tri_status tri_check_load(struct checker *c, int64_t first, bool *good);
+void tri_check_release_part(struct checker *c);
+int32_t tri_check_local(const struct checker *c, int64_t v); /* number of vertex v in the part, -1: not there. O(1) */
+
+void tri_check_orientation(struct checker *c);      /* of the part */
+/* Pairs the half-edges of the part, and constrains them. */
+enum tri_status tri_check_pair(struct checker *c);
+void tri_check_note_vertices(struct checker *c); /* what pairing has seen of them, into c->state */
+enum tri_status tri_check_keep_open(struct checker *c); /* puts half-edges without other side into the store */
+void tri_check_pairs(struct checker *c); /* neighbours given, Delaunay, circles of segments, attributes: in the part */
+/* The same of two half-edges that have been matched across parts, or of one that has no other side (b is NULL). */
+void tri_check_matched(struct checker *c, const struct check_open *a, const struct check_open *b);
+enum tri_status tri_check_match(struct checker *c); /* when all parts have been seen: EDGES; fills boundary, counts */
+
+enum tri_status tri_check_find_twins(struct checker *c); /* fills found, or unused */
+enum tri_status tri_check_frame(struct checker *c);
+int32_t tri_check_in_frame(const struct checker *c, int64_t v); /* -1: not there, or v is -1. O(log n) */
+enum tri_status tri_check_subsegments(struct checker *c); /* fills the fan */
+enum tri_status tri_check_input(struct checker *c);       /* adds queries */
+enum tri_status tri_check_border(struct checker *c);      /* needs chains */
+enum tri_status tri_check_vertex_markers(struct checker *c); /* needs subsegments, twins */
+void tri_check_stars(struct checker *c);                  /* needs EDGES, ORIENTATION */
+enum tri_status tri_check_overlap(struct checker *c);     /* needs the same; answers the queries */
+void tri_check_answers(struct checker *c);                /* where overlap has found nothing: judges the answers */
+enum tri_status tri_check_hull(struct checker *c);        /* needs OVERLAP */
+
+enum tri_status tri_check_shapes(struct checker *c);  /* of the part */
+enum tri_status tri_check_quality(struct checker *c); /* needs subsegments; looks at parts again */
+void tri_check_release_quality(struct checker *c);
+
+/* --- tools */
+
+/* Elements first .. first + n - 1 of an array of the mesh, points as they are to be seen. */
+enum tri_status tri_check_read(struct checker *c, enum tri_check_array array, int64_t first, int64_t n, void *out);
 
 /* Notes that the kind has been looked at; it stays good until a fault is reported. */
 void tri_check_begin(struct checker *c, enum tri_check_kind kind);
-/* Counts a fault and keeps the text of the first one. */
+/* As if it had not been. */
+void tri_check_unask(struct checker *c, enum tri_check_kind kind);
+/* Counts a fault and keeps the text of the one with the least key, of the first one among equals. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif
 void tri_check_fault(struct checker *c, enum tri_check_kind kind, const char *format, ...);
 /* Looks at items 0 .. n - 1, on all cores: all that is_bad says so of are faults of this kind, which begins here; the
- * first of them is told. The same report whatever the number of threads. */
-void tri_check_each(struct checker *c, enum tri_check_kind kind, int32_t n,
-                    bool (*is_bad)(const struct checker *c, int32_t i), void (*tell)(struct checker *c, int32_t i));
+ * first of them is told, with the key `first` + its number. The same report whatever the number of threads. */
+void tri_check_each(struct checker *c, enum tri_check_kind kind, int64_t first, int64_t n,
+                    bool (*is_bad)(const struct checker *c, int64_t i), void (*tell)(struct checker *c, int64_t i));
 /* Asks the sweep whether the point, of any size, finite or not, lies inside the mesh. */
 enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_check_kind kind, int32_t id,
                               double tolerance);
 
-/* O(log n). */
+/* In the part. O(log n). */
 struct check_edge tri_check_find_edge(const struct checker *c, int32_t a, int32_t b);
+
+/* One thread only? Then counting needs no atomic operations. */
+bool tri_check_is_alone(void);
 
 /* n * size bytes, never a null pointer for n = 0. */
 void *tri_check_array(int64_t n, size_t size);
@@ -122,6 +237,25 @@ static inline bool check_good(const struct checker *c, enum tri_check_kind kind)
 {
     return c->report->item[kind].state == TRI_CHECK_OK;
 }
+
+static inline bool check_is_given(const struct checker *c, enum tri_check_array array)
+{
+    return c->source->given >> array & 1;
+}
+
+/* Is it known which segments there are? */
+static inline bool check_is_listed(const struct checker *c)
+{
+    return check_is_given(c, TRI_CHECK_SEGMENT_ENDS);
+}
+
+static inline bool check_wants_regions(const struct checker *c)
+{
+    return c->input != NULL && check_is_given(c, TRI_CHECK_ATTRIBUTES) && check_is_listed(c) &&
+           c->input->n_regions > 0 && c->options->border != TRI_CHECK_BORDER_ANY;
+}
+
+/* --- the part */
 
 static inline int32_t check_next(int32_t corner)
 {
@@ -133,59 +267,86 @@ static inline int32_t check_prev(int32_t corner)
 }
 static inline int32_t check_org(const struct checker *c, int32_t half_edge)
 {
-    return c->mesh->triangles[check_next(half_edge)];
+    return c->part.triangles[check_next(half_edge)];
 }
 static inline int32_t check_dest(const struct checker *c, int32_t half_edge)
 {
-    return c->mesh->triangles[check_prev(half_edge)];
+    return c->part.triangles[check_prev(half_edge)];
 }
 static inline int32_t check_apex(const struct checker *c, int32_t half_edge)
 {
-    return c->mesh->triangles[half_edge];
+    return c->part.triangles[half_edge];
 }
-
-static inline struct tri_point check_point(const struct checker *c, int32_t v)
+static inline struct tri_point check_place(const struct checker *c, int32_t v)
 {
-    const double *p = c->mesh->points + 2 * (size_t)v;
+    const double *p = c->part.points + 2 * (size_t)v;
     return (struct tri_point){p[0], p[1]};
+}
+static inline int64_t check_global(const struct checker *c, int32_t v)
+{
+    return c->part.vertex != NULL ? c->part.vertex[v] : v;
+}
+static inline bool check_is_constrained(const struct checker *c, int32_t half_edge)
+{
+    return c->part.constrained[half_edge >> 3] >> (half_edge & 7) & 1;
 }
 /* The last one of triangle t. */
 static inline double check_attribute(const struct checker *c, int32_t t)
 {
-    int32_t n = c->mesh->n_attributes;
-    return c->mesh->attributes[(size_t)n * (size_t)t + (size_t)n - 1];
+    int32_t n = c->part.n_attributes;
+    return c->part.attributes == NULL ? 0 : c->part.attributes[(size_t)n * (size_t)t + (size_t)n - 1];
 }
-static inline bool check_is_used(const struct checker *c, int32_t v)
+
+/* --- the frame */
+
+static inline struct tri_point check_point(const struct checker *c, int32_t v)
 {
-    return c->used[v] != 0;
+    const double *p = c->points + 2 * (size_t)v;
+    return (struct tri_point){p[0], p[1]};
+}
+static inline int64_t check_vertex(const struct checker *c, int32_t v)
+{
+    return c->vertex != NULL ? c->vertex[v] : v;
+}
+/* Are the ends of subsegment s two vertices? */
+static inline bool check_is_listed_well(const struct checker *c, int32_t s)
+{
+    return c->segments[2 * (size_t)s] >= 0;
+}
+
+/* --- names */
+
+static inline bool check_is_used(const struct checker *c, int64_t v)
+{
+    return (c->state[v] & CHECK_USED) != 0;
 }
 static inline bool check_same_place(struct tri_point p, struct tri_point q)
 {
     return p.x == q.x && p.y == q.y;
 }
-
-/* Are the ends of subsegment s two vertices? */
-static inline bool check_is_listed_well(const struct checker *c, int32_t s)
-{
-    int32_t a = c->segments[2 * (size_t)s], b = c->segments[2 * (size_t)s + 1], n = c->mesh->n_points;
-    return a >= 0 && a < n && b >= 0 && b < n && a != b;
-}
-
-static inline bool check_is_constrained(const struct checker *c, int32_t half_edge)
-{
-    return c->constrained[half_edge >> 3] >> (half_edge & 7) & 1;
-}
-
 /* A coordinate as it was given. */
 static inline double check_given(const struct checker *c, double x)
 {
     return ldexp(x, -c->exponent);
 }
-
-/* Number that the report's texts use for vertex or triangle i. */
-static inline long check_number(const struct checker *c, int32_t i)
+/* Number that the report's texts use for vertex or triangle i of the mesh .. */
+static inline long check_number(const struct checker *c, int64_t i)
 {
     return (long)i + c->options->base;
+}
+/* .. for vertex or triangle i of the part .. */
+static inline long check_part_vertex(const struct checker *c, int32_t v)
+{
+    return check_number(c, check_global(c, v));
+}
+static inline long check_part_triangle(const struct checker *c, int32_t t)
+{
+    return check_number(c, c->part.first + t);
+}
+/* .. for a vertex of the frame. */
+static inline long check_frame_vertex(const struct checker *c, int32_t v)
+{
+    return check_number(c, check_vertex(c, v));
 }
 
 #endif

@@ -26,7 +26,8 @@
 struct sweep_edge {
     struct tri_point left, right;
     int32_t vertex[2]; /* at its left and right end; -1: a place where missing pieces meet */
-    int32_t side[2];   /* half-edge whose triangle is below, above; -1: no mesh there */
+    int64_t side[2];   /* half-edge whose triangle is below, above; -1: no mesh there */
+    double attribute[2]; /* of these triangles */
 };
 
 enum { LEFT_END = 0, RIGHT_END = 1, BELOW = 0, ABOVE = 1 };
@@ -73,11 +74,17 @@ static bool is_meshed(const struct sweep *w, int32_t s, int side)
     return s >= 0 && w->edge[s].side[side] >= 0;
 }
 
-/* A half-edge there, that is no missing piece. */
-static int32_t half_edge_of(const struct sweep *w, int32_t s)
+/* A half-edge there, that is no missing piece, for the words: it goes from one vertex to another, beside a triangle. */
+struct named {
+    long from, to, triangle;
+};
+
+static struct named name(const struct sweep *w, int32_t s)
 {
-    const int32_t *h = w->edge[s].side;
-    return h[ABOVE] >= 0 ? h[ABOVE] : h[BELOW];
+    const struct sweep_edge *e = &w->edge[s];
+    int side = e->side[ABOVE] >= 0 ? ABOVE : BELOW, from = side == ABOVE ? LEFT_END : RIGHT_END;
+    return (struct named){check_frame_vertex(w->c, e->vertex[from]), check_frame_vertex(w->c, e->vertex[1 - from]),
+                          check_number(w->c, e->side[side] / 3)};
 }
 
 struct place {
@@ -103,10 +110,9 @@ static bool fault(struct sweep *w, const char *what, int32_t s, int32_t r)
     struct checker *c = w->c;
     if (w->again)
         return false;
-    int32_t h = half_edge_of(w, s), g = half_edge_of(w, r);
+    struct named n = name(w, s), m = name(w, r);
     tri_check_fault(c, TRI_CHECK_OVERLAP, "boundary edges %ld-%ld of triangle %ld and %ld-%ld of triangle %ld: %s",
-                    check_number(c, check_org(c, h)), check_number(c, check_dest(c, h)), check_number(c, h / 3),
-                    check_number(c, check_org(c, g)), check_number(c, check_dest(c, g)), check_number(c, g / 3), what);
+                    n.from, n.to, n.triangle, m.from, m.to, m.triangle, what);
     return false;
 }
 
@@ -249,7 +255,7 @@ static bool coincide(struct sweep *w, int32_t v, int32_t u)
     if (w->again)
         return false;
     tri_check_fault(w->c, TRI_CHECK_OVERLAP, "vertices %ld and %ld lie at the same place of the boundary",
-                    check_number(w->c, v), check_number(w->c, u));
+                    check_frame_vertex(w->c, v), check_frame_vertex(w->c, u));
     return false;
 }
 
@@ -282,34 +288,37 @@ static bool process(struct sweep *w, const struct event *event, int32_t n)
     return true;
 }
 
-/* The half-edges on the left and on the right of an edge from a to b, -1: no mesh there. */
-static void add_edge(struct sweep *w, struct tri_point a, struct tri_point b, int32_t u, int32_t v, int32_t left,
-                     int32_t right)
+/* What is on the left and on the right of an edge from a to b. */
+static void add_edge(struct sweep *w, struct tri_point a, struct tri_point b, int32_t u, int32_t v,
+                     struct check_side left, struct check_side right)
 {
     int32_t s = w->n_edges++;
     bool ascends = tri_compare_places(a, b) < 0; /* what is on the left is above then */
-    w->edge[s] = ascends ? (struct sweep_edge){a, b, {u, v}, {right, left}}
-                         : (struct sweep_edge){b, a, {v, u}, {left, right}};
+    struct check_side below = ascends ? right : left, above = ascends ? left : right;
+    w->edge[s] = (struct sweep_edge){ascends ? a : b, ascends ? b : a, {ascends ? u : v, ascends ? v : u},
+                                     {below.half_edge, above.half_edge}, {below.attribute, above.attribute}};
     w->event[w->n_events++] = (struct event){w->edge[s].left, 2 * s + LEFT_END};
     w->event[w->n_events++] = (struct event){w->edge[s].right, 2 * s + RIGHT_END};
 }
 
-static void add_half_edge(struct sweep *w, int32_t h)
+static void add_between(struct sweep *w, const int32_t *ends, struct check_side left, struct check_side right)
 {
-    const struct checker *c = w->c;
-    int32_t u = check_org(c, h), v = check_dest(c, h);
-    add_edge(w, check_point(c, u), check_point(c, v), u, v, h, c->link[h]);
+    add_edge(w, check_point(w->c, ends[0]), check_point(w->c, ends[1]), ends[0], ends[1], left, right);
 }
 
 static void collect(struct sweep *w, const struct check_pieces *missing)
 {
+    static const struct check_side none = {-1, 0, false};
     const struct checker *c = w->c;
-    for (int32_t h = 0; h < c->n_half_edges; h++) {
-        if (c->link[h] < 0 || (w->again && h < c->link[h] && check_is_constrained(c, h)))
-            add_half_edge(w, h);
+    for (int32_t i = 0; i < c->boundary.n; i++)
+        add_between(w, c->border[i],
+                    (struct check_side){c->boundary.at[i].half_edge, c->boundary.at[i].attribute, false}, none);
+    for (int32_t s = 0; w->again && s < c->n_segments; s++) {
+        if (c->sides[s][0].half_edge >= 0 && c->sides[s][1].half_edge >= 0)
+            add_between(w, c->segments + 2 * s, c->sides[s][0], c->sides[s][1]);
     }
     for (int32_t i = 0; i < missing->n; i++)
-        add_edge(w, missing->at[i].from, missing->at[i].to, -1, -1, -1, -1);
+        add_edge(w, missing->at[i].from, missing->at[i].to, -1, -1, none, none);
     for (int32_t i = 0; i < c->n_queries; i++)
         w->event[w->n_events++] = (struct event){c->queries[i].at, ~i};
     for (int32_t f = 0; f <= 2 * w->n_edges; f++) {
@@ -380,15 +389,15 @@ static void check_faces(struct sweep *w)
         int32_t s = f / 2, root = face_of(w, s, f % 2);
         if (w->emptied[root] || root == 2 * w->n_edges || is_meshed(w, s, f % 2) || !is_meshed(w, s, 1 - f % 2))
             continue;
-        int32_t h = half_edge_of(w, s);
+        struct named n = name(w, s);
         w->emptied[root] = 1;
         tri_check_fault(c, TRI_CHECK_FACES, "beside edge %ld-%ld of triangle %ld a face is empty without a hole point",
-                        check_number(c, check_org(c, h)), check_number(c, check_dest(c, h)), check_number(c, h / 3));
+                        n.from, n.to, n.triangle);
     }
 }
 
 /* Triangles of each face in the mesh have the attribute of the last region whose point is there; that they all have the
- * same is told apart (regions.c). */
+ * same is told apart (pairs.c). */
 static void check_regions(struct sweep *w)
 {
     struct checker *c = w->c;
@@ -396,8 +405,9 @@ static void check_regions(struct sweep *w)
         int32_t s = f / 2, root = face_of(w, s, f % 2);
         if (!is_meshed(w, s, f % 2) || w->vague[root])
             continue;
-        int32_t t = w->edge[s].side[f % 2] / 3, k = w->region[root];
-        double given = check_attribute(c, t), expected = k < 0 ? 0 : c->input->regions[4 * (size_t)k + 2];
+        int64_t t = w->edge[s].side[f % 2] / 3;
+        int32_t k = w->region[root];
+        double given = w->edge[s].attribute[f % 2], expected = k < 0 ? 0 : c->input->regions[4 * (size_t)k + 2];
         w->vague[root] = 1;
         if (given != expected)
             tri_check_fault(c, TRI_CHECK_REGIONS, "triangle %ld has attribute %.17g, expected %.17g",
@@ -416,7 +426,7 @@ static enum tri_status sweep(struct checker *c, const struct check_pieces *missi
 {
     struct sweep w = {.c = c, .again = again};
     enum tri_status status =
-        init(&w, c->report->n_boundary_edges + missing->n + (again ? (int64_t)c->n_segments : 0));
+        init(&w, c->boundary.n + missing->n + (again ? (int64_t)c->n_segments : 0));
     if (status == TRI_OK) {
         collect(&w, missing);
         *good = run(&w);

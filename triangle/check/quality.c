@@ -5,7 +5,8 @@
  * A bound counts as missed from a relative 1e-12 on.
  *
  * Triangles are looked at in blocks of a fixed size, what is found put together in their order: so sums are rounded in
- * the same way whatever the number of threads. */
+ * the same way whatever the number of threads, and wherever the mesh is cut into parts: a block that a part ends in
+ * goes on in the next. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -20,12 +21,13 @@ struct shape {
     double cosine2; /* of the largest angle, squared, with the sign of the cosine */
 };
 
+/* Of a triangle of the part. */
 static struct shape shape_of(const struct checker *c, int32_t t)
 {
     struct tri_point p[3];
     double d[3][2], l[3];
     for (int k = 0; k < 3; k++)
-        p[k] = check_point(c, c->mesh->triangles[3 * (size_t)t + (size_t)k]);
+        p[k] = check_place(c, c->part.triangles[3 * (size_t)t + (size_t)k]);
     for (int k = 0; k < 3; k++) { /* edge opposite corner k */
         struct tri_point a = p[(k + 1) % 3], b = p[(k + 2) % 3];
         d[k][0] = b.x - a.x;
@@ -44,7 +46,7 @@ static struct shape shape_of(const struct checker *c, int32_t t)
 /* Least or largest of something, and the first triangle that has it; -1: none yet. */
 struct extreme {
     double value;
-    int32_t at;
+    int64_t at;
 };
 
 struct sum { /* Neumaier 1974 */
@@ -54,19 +56,21 @@ struct sum { /* Neumaier 1974 */
 struct block {
     struct extreme sine2, cosine2, smallest, largest; /* as in struct shape; cosine2: the least, of the largest angle */
     struct sum area;
-    int32_t n_small, n_large, first_large; /* below the bound of angles, above that of areas */
+    int64_t n_small; /* below the bound of angles */
+    int64_t n_large; /* above that of areas */
 };
 
-struct quality {
-    struct checker *c;
+struct check_quality {
     double sine2; /* squared sine of the bound */
-    int32_t n_blocks;
-    struct block *block;
-    int32_t *small; /* triangles below the bound, ascending */
-    int32_t n_small;
+    int32_t n_blocks, room;
+    struct block *block; /* of the part */
+    struct block all;    /* of the parts before, but for .. */
+    struct block begun;  /* .. the block that the last of them ended in */
 };
 
-static void note(struct extreme *e, double value, int32_t t, bool larger)
+static const struct block empty = {.sine2 = {0, -1}, .cosine2 = {0, -1}, .smallest = {0, -1}, .largest = {0, -1}};
+
+static void note(struct extreme *e, double value, int64_t t, bool larger)
 {
     if (e->at < 0 || (larger ? value > e->value : value < e->value))
         *e = (struct extreme){value, t};
@@ -84,65 +88,84 @@ static double given_area(const struct checker *c, double area)
     return c->exponent == 0 ? area : ldexp(area, -2 * c->exponent);
 }
 
-static double area_bound(const struct checker *c, int32_t t)
+static double area_bound(const struct checker *c, int64_t t)
 {
     const struct tri_check_options *o = c->options;
     double bound = o->max_area > 0 ? o->max_area : INFINITY;
     return o->max_areas != NULL && o->max_areas[t] > 0 ? fmin(bound, o->max_areas[t]) : bound;
 }
 
-static bool is_small(const struct quality *q, const struct shape *s)
+static bool is_small(const struct check_quality *q, const struct shape *s)
 {
     return q->sine2 > 0 && !(s->sine2 >= q->sine2 * (1 - TRI_CHECK_SLACK));
 }
 
-static void note_shape(const struct quality *q, struct block *b, int32_t t)
+static bool is_large(const struct checker *c, int32_t t, double area)
 {
-    struct shape s = shape_of(q->c, t);
-    note(&b->sine2, s.sine2, t, false);
-    note(&b->cosine2, s.cosine2, t, false);
-    note(&b->smallest, s.area, t, false);
-    note(&b->largest, s.area, t, true);
+    return !(given_area(c, area) <= area_bound(c, c->part.first + t) * (1 + TRI_CHECK_SLACK));
+}
+
+static void note_shape(const struct checker *c, struct block *b, int32_t t)
+{
+    struct shape s = shape_of(c, t);
+    int64_t number = c->part.first + t;
+    note(&b->sine2, s.sine2, number, false);
+    note(&b->cosine2, s.cosine2, number, false);
+    note(&b->smallest, s.area, number, false);
+    note(&b->largest, s.area, number, true);
     add(&b->area, s.area);
-    b->n_small += is_small(q, &s);
-    if (!(given_area(q->c, s.area) <= area_bound(q->c, t) * (1 + TRI_CHECK_SLACK)) && b->n_large++ == 0)
-        b->first_large = t;
+    b->n_small += is_small(c->quality, &s);
+    b->n_large += is_large(c, t, s.area);
 }
 
-static int32_t end_of_block(const struct quality *q, int32_t i)
+/* First triangle of a block of the part, or the end of the part. */
+static int32_t begin_of_block(const struct checker *c, int32_t i)
 {
-    int32_t n = q->c->mesh->n_triangles;
-    return n - i * BLOCK < BLOCK ? n : (i + 1) * BLOCK;
+    int64_t begin = i == 0 ? 0 : (c->part.first / BLOCK + i) * BLOCK - c->part.first;
+    return begin < c->part.n_triangles ? (int32_t)begin : c->part.n_triangles;
 }
 
-static void look(struct quality *q)
+static void look(struct checker *c)
 {
-    static const struct extreme none = {0, -1};
+    struct check_quality *q = c->quality;
 #pragma omp parallel for schedule(dynamic)
     for (int32_t i = 0; i < q->n_blocks; i++) {
-        q->block[i] = (struct block){.sine2 = none, .cosine2 = none, .smallest = none, .largest = none};
-        for (int32_t t = i * BLOCK; t < end_of_block(q, i); t++)
-            note_shape(q, &q->block[i], t);
+        q->block[i] = i == 0 ? q->begun : empty;
+        for (int32_t t = begin_of_block(c, i); t < begin_of_block(c, i + 1); t++)
+            note_shape(c, &q->block[i], t);
     }
 }
 
-static void put_together(const struct quality *q, struct block *all)
+static void join(struct block *all, const struct block *b)
 {
-    static const struct extreme none = {0, -1};
-    *all = (struct block){.sine2 = none, .cosine2 = none, .smallest = none, .largest = none};
-    for (int32_t i = 0; i < q->n_blocks; i++) {
-        const struct block *b = &q->block[i];
-        note(&all->sine2, b->sine2.value, b->sine2.at, false);
-        note(&all->cosine2, b->cosine2.value, b->cosine2.at, false);
-        note(&all->smallest, b->smallest.value, b->smallest.at, false);
-        note(&all->largest, b->largest.value, b->largest.at, true);
-        add(&all->area, b->area.total);
-        all->area.rest += b->area.rest;
-        if (b->n_large > 0 && all->n_large == 0)
-            all->first_large = b->first_large;
-        all->n_large += b->n_large;
-        all->n_small += b->n_small;
-    }
+    if (b->sine2.at < 0)
+        return;
+    note(&all->sine2, b->sine2.value, b->sine2.at, false);
+    note(&all->cosine2, b->cosine2.value, b->cosine2.at, false);
+    note(&all->smallest, b->smallest.value, b->smallest.at, false);
+    note(&all->largest, b->largest.value, b->largest.at, true);
+    add(&all->area, b->area.total);
+    all->area.rest += b->area.rest;
+    all->n_large += b->n_large;
+    all->n_small += b->n_small;
+}
+
+static void put_together(struct checker *c)
+{
+    struct check_quality *q = c->quality;
+    int64_t end = c->part.first + c->part.n_triangles;
+    bool goes_on = end % BLOCK != 0 && end < c->n_triangles;
+    q->begun = goes_on ? q->block[q->n_blocks - 1] : empty;
+    for (int32_t i = 0; i < q->n_blocks - goes_on; i++)
+        join(&q->all, &q->block[i]);
+}
+
+static double squared_sine(double degrees)
+{
+    if (degrees <= 0)
+        return 0;
+    double sine = sin(fmin(degrees, 90) * TRI_CHECK_RADIANS);
+    return sine * sine;
 }
 
 static double degrees_of_sine2(double sine2)
@@ -167,82 +190,102 @@ static void summarize(struct checker *c, const struct block *all)
     r->largest_angle = acos(cosine) / TRI_CHECK_RADIANS;
 }
 
-static void judge_areas(struct checker *c, const struct block *all)
+/* Areas above their bound, in the part. */
+static bool is_too_large(const struct checker *c, int64_t t)
+{
+    return is_large(c, (int32_t)t, shape_of(c, (int32_t)t).area);
+}
+
+static void tell_large(struct checker *c, int64_t t)
+{
+    tri_check_fault(c, TRI_CHECK_AREAS, "triangle %ld has an area of %.17g, above the bound of %.17g",
+                    check_part_triangle(c, (int32_t)t), given_area(c, shape_of(c, (int32_t)t).area),
+                    area_bound(c, c->part.first + t));
+}
+
+static void judge_areas(struct checker *c, int64_t n_large)
 {
     if (!(c->options->max_area > 0) && c->options->max_areas == NULL)
         return;
     tri_check_begin(c, TRI_CHECK_AREAS);
-    if (all->n_large == 0)
-        return;
-    int32_t t = all->first_large;
-    tri_check_fault(c, TRI_CHECK_AREAS, "triangle %ld has an area of %.17g, above the bound of %.17g",
-                    check_number(c, t), given_area(c, shape_of(c, t).area), area_bound(c, t));
-    c->report->item[TRI_CHECK_AREAS].count = all->n_large;
+    if (n_large > 0)
+        tri_check_each(c, TRI_CHECK_AREAS, c->part.first, c->part.n_triangles, is_too_large, tell_large);
 }
 
-/* The triangles below the bound; few, as a rule. */
-static enum tri_status list_small(struct quality *q, int32_t n)
+enum tri_status tri_check_shapes(struct checker *c)
 {
-    q->small = tri_check_array(n, sizeof *q->small);
-    if (q->small == NULL)
-        return TRI_NO_MEMORY;
-    for (int32_t i = 0; i < q->n_blocks; i++) {
-        for (int32_t t = i * BLOCK; q->block[i].n_small > 0 && t < end_of_block(q, i); t++) {
-            struct shape s = shape_of(q->c, t);
-            if (is_small(q, &s))
-                q->small[q->n_small++] = t;
-        }
+    struct check_quality *q = c->quality;
+    if (q == NULL) {
+        c->quality = q = calloc(1, sizeof *q);
+        if (q == NULL)
+            return TRI_NO_MEMORY;
+        q->sine2 = squared_sine(c->options->min_angle);
+        q->all = q->begun = empty;
     }
+    int64_t first = c->part.first / BLOCK, end = (c->part.first + c->part.n_triangles + BLOCK - 1) / BLOCK;
+    q->n_blocks = (int32_t)(end - first);
+    if (q->n_blocks > q->room) {
+        free(q->block);
+        q->room = q->n_blocks;
+        q->block = tri_check_array(q->room, sizeof *q->block);
+        if (q->block == NULL)
+            return TRI_NO_MEMORY;
+    }
+    int64_t before = q->all.n_large + q->begun.n_large;
+    look(c);
+    put_together(c);
+    judge_areas(c, q->all.n_large + q->begun.n_large - before);
     return TRI_OK;
 }
 
-static void judge_small(struct checker *c, struct apexes *apexes, int32_t t)
+void tri_check_release_quality(struct checker *c)
 {
-    bool explained = tri_check_is_explained(apexes, t);
+    if (c->quality != NULL)
+        free(c->quality->block);
+    free(c->quality);
+}
+
+static void judge_small(struct checker *c, struct apexes *apexes, int32_t t, const struct shape *s)
+{
+    int64_t v[3];
+    for (int k = 0; k < 3; k++)
+        v[k] = check_global(c, c->part.triangles[3 * (size_t)t + (size_t)k]);
+    bool explained = tri_check_is_explained(apexes, v);
     c->report->n_small++;
     c->report->n_small_explained += explained;
     if (c->options->max_bad >= 0 ? c->report->n_small <= c->options->max_bad : explained)
         return;
-    tri_check_fault(c, TRI_CHECK_ANGLES, "triangle %ld has an angle of %.6g degrees", check_number(c, t),
-                    degrees_of_sine2(shape_of(c, t).sine2));
+    tri_check_fault(c, TRI_CHECK_ANGLES, "triangle %ld has an angle of %.6g degrees", check_part_triangle(c, t),
+                    degrees_of_sine2(s->sine2));
 }
 
-static enum tri_status judge_angles(struct quality *q, int32_t n_small)
+/* The triangles below the bound; few, as a rule. */
+static enum tri_status judge_angles(struct checker *c, struct apexes *apexes)
 {
-    struct apexes apexes;
-    enum tri_status status = tri_check_find_apexes(&apexes, q->c);
-    if (q->c->options->min_angle > 0)
-        tri_check_begin(q->c, TRI_CHECK_ANGLES);
-    if (status == TRI_OK)
-        status = list_small(q, n_small);
-    for (int32_t i = 0; status == TRI_OK && i < q->n_small; i++)
-        judge_small(q->c, &apexes, q->small[i]);
-    tri_check_free_apexes(&apexes);
-    free(q->small);
+    enum tri_status status = tri_check_mark_near(apexes);
+    bool good;
+    for (int64_t first = 0; first < c->n_triangles && status == TRI_OK; first += c->part_triangles) {
+        status = tri_check_load(c, first, &good);
+        for (int32_t t = 0; t < c->part.n_triangles && status == TRI_OK; t++) {
+            struct shape s = shape_of(c, t);
+            if (is_small(c->quality, &s))
+                judge_small(c, apexes, t, &s);
+        }
+    }
     return status;
-}
-
-static double squared_sine(double degrees)
-{
-    if (degrees <= 0)
-        return 0;
-    double sine = sin(fmin(degrees, 90) * TRI_CHECK_RADIANS);
-    return sine * sine;
 }
 
 enum tri_status tri_check_quality(struct checker *c)
 {
-    struct quality q = {.c = c, .sine2 = squared_sine(c->options->min_angle)};
-    struct block all;
-    q.n_blocks = c->mesh->n_triangles / BLOCK + (c->mesh->n_triangles % BLOCK > 0);
-    q.block = tri_check_array(q.n_blocks, sizeof *q.block);
-    if (q.block == NULL)
-        return TRI_NO_MEMORY;
-    look(&q);
-    put_together(&q, &all);
+    struct apexes apexes;
+    struct block all = c->quality->all;
+    join(&all, &c->quality->begun);
     summarize(c, &all);
-    judge_areas(c, &all);
-    enum tri_status status = judge_angles(&q, all.n_small);
-    free(q.block);
+    enum tri_status status = tri_check_find_apexes(&apexes, c);
+    if (c->options->min_angle > 0)
+        tri_check_begin(c, TRI_CHECK_ANGLES);
+    if (status == TRI_OK && all.n_small > 0)
+        status = judge_angles(c, &apexes);
+    tri_check_free_apexes(&apexes);
     return status;
 }

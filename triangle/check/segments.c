@@ -1,52 +1,241 @@
-/* Subsegments: which half-edges are constrained, and which subsegments meet at a vertex.
+/* Subsegments, and the frame: the vertices that they, the boundary and the input have.
  *
  * Where the mesh comes without a list, its boundary edges are the subsegments; then nothing can be wrong with them. */
-#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "triangle/check/internal.h"
 
-static enum tri_status take_boundary(struct checker *c)
+enum { NEAR_ENOUGH = 1 << 12, WINDOW = 1 << 14 }; /* vertices */
+
+enum tri_status tri_check_list_segments(struct checker *c)
 {
-    c->own_segments = tri_check_array(2 * c->report->n_boundary_edges, sizeof *c->own_segments);
-    if (c->own_segments == NULL)
+    int64_t n = c->source->n_segments;
+    if (!check_is_listed(c))
+        return TRI_OK;
+    c->listed = tri_check_array(2 * n, sizeof *c->listed);
+    c->sides = tri_check_array(n, sizeof *c->sides);
+    if (c->listed == NULL || c->sides == NULL)
         return TRI_NO_MEMORY;
-    if (c->report->n_boundary_edges > INT32_MAX / 2)
-        return TRI_TOO_LARGE;
-    for (int32_t h = 0; h < c->n_half_edges; h++) {
-        if (c->link[h] >= 0)
-            continue;
-        c->own_segments[2 * (size_t)c->n_segments] = check_org(c, h);
-        c->own_segments[2 * (size_t)c->n_segments + 1] = check_dest(c, h);
-        c->n_segments++;
+    enum tri_status status = tri_check_read(c, TRI_CHECK_SEGMENT_ENDS, 0, n, c->listed);
+    for (int64_t s = 0; s < n && status == TRI_OK; s++) {
+        int64_t *v = c->listed + 2 * s;
+        c->sides[s][0] = c->sides[s][1] = (struct check_side){-1, 0, false};
+        if (v[0] < 0 || v[0] >= c->n_points || v[1] < 0 || v[1] >= c->n_points || v[0] == v[1])
+            v[0] = v[1] = -1;
     }
+    if (status != TRI_OK || !check_is_given(c, TRI_CHECK_SEGMENT_MARKERS))
+        return status;
+    c->own_markers = tri_check_array(n, sizeof *c->own_markers);
+    c->segment_markers = c->own_markers;
+    return c->own_markers == NULL ? TRI_NO_MEMORY
+                                  : tri_check_read(c, TRI_CHECK_SEGMENT_MARKERS, 0, n, c->own_markers);
+}
+
+/* --- vertices of the frame */
+
+static int compare_numbers(const void *left, const void *right)
+{
+    int64_t a = *(const int64_t *)left, b = *(const int64_t *)right;
+    return (a > b) - (a < b);
+}
+
+static int64_t take_ends(int64_t *out, const int64_t *ends, int64_t n)
+{
+    int64_t k = 0;
+    for (int64_t i = 0; i < n; i++) {
+        if (ends[i] >= 0)
+            out[k++] = ends[i];
+    }
+    return k;
+}
+
+static enum tri_status list_vertices(struct checker *c)
+{
+    int64_t n_listed = check_is_listed(c) ? 2 * c->source->n_segments : 0;
+    int64_t n_input = c->input != NULL ? c->input->n_points : 0;
+    int64_t *v = tri_check_array(n_listed + n_input + 2 * c->boundary.n, sizeof *v), n;
+    c->own_vertex = v;
+    if (v == NULL)
+        return TRI_NO_MEMORY;
+    n = take_ends(v, c->listed, n_listed);
+    n += take_ends(v + n, c->found, n_input);
+    for (int64_t i = 0; i < c->boundary.n; i++) {
+        v[n++] = c->boundary.at[i].from;
+        v[n++] = c->boundary.at[i].to;
+    }
+    qsort(v, (size_t)n, sizeof *v, compare_numbers);
+    int64_t k = 0;
+    for (int64_t i = 0; i < n; i++) {
+        if (i == 0 || v[i] != v[i - 1])
+            v[k++] = v[i];
+    }
+    if (k > INT32_MAX / 2)
+        return TRI_TOO_LARGE;
+    c->n_frame = (int32_t)k;
+    c->vertex = v;
+    return TRI_OK;
+}
+
+/* Their places, in slices of the mesh's points that hold some. */
+static enum tri_status read_places(struct checker *c)
+{
+    enum tri_status status = TRI_OK;
+    double *window = tri_check_array(WINDOW, 2 * sizeof *window);
+    c->own_points = tri_check_array(c->n_frame, 2 * sizeof *c->own_points);
+    if (window == NULL || c->own_points == NULL)
+        status = TRI_NO_MEMORY;
+    for (int32_t i = 0, j; i < c->n_frame && status == TRI_OK; i = j) {
+        int64_t first = c->vertex[i];
+        for (j = i + 1; j < c->n_frame && c->vertex[j] - c->vertex[j - 1] < NEAR_ENOUGH &&
+                        c->vertex[j] - first < WINDOW; j++) {
+        }
+        status = tri_check_read(c, TRI_CHECK_POINTS, first, c->vertex[j - 1] + 1 - first, window);
+        for (int32_t k = i; k < j; k++)
+            memcpy(c->own_points + 2 * (size_t)k, window + 2 * (c->vertex[k] - first), 2 * sizeof *window);
+    }
+    free(window);
+    c->points = c->own_points;
+    return status;
+}
+
+/* Number in the frame of a vertex that is there, or -1. */
+int32_t tri_check_in_frame(const struct checker *c, int64_t v)
+{
+    if (v < 0 || c->vertex == NULL)
+        return (int32_t)v;
+    int32_t low = 0, high = c->n_frame;
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if (c->vertex[middle] < v)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < c->n_frame && c->vertex[low] == v ? low : -1;
+}
+
+/* Subsegments and boundary edges by vertices of the frame. */
+static enum tri_status translate(struct checker *c)
+{
+    bool listed = check_is_listed(c);
+    c->n_segments = (int32_t)(listed ? c->source->n_segments : c->boundary.n);
+    c->border = tri_check_array(c->boundary.n, sizeof *c->border);
+    c->own_segments = tri_check_array(2 * (int64_t)c->n_segments, sizeof *c->own_segments);
+    if (!listed)
+        c->sides = tri_check_array(c->n_segments, sizeof *c->sides);
+    c->twin = tri_check_array(c->input != NULL ? c->input->n_points : 0, sizeof *c->twin);
+    if (c->border == NULL || c->own_segments == NULL || c->sides == NULL || c->twin == NULL)
+        return TRI_NO_MEMORY;
+    for (int64_t i = 0; i < c->boundary.n; i++) {
+        c->border[i][0] = tri_check_in_frame(c, c->boundary.at[i].from);
+        c->border[i][1] = tri_check_in_frame(c, c->boundary.at[i].to);
+    }
+    for (int32_t s = 0; s < c->n_segments; s++) {
+        for (int k = 0; k < 2; k++)
+            c->own_segments[2 * s + k] = listed ? tri_check_in_frame(c, c->listed[2 * s + k]) : c->border[s][k];
+        if (!listed) {
+            c->sides[s][0] = (struct check_side){c->boundary.at[s].half_edge, 0, false};
+            c->sides[s][1] = (struct check_side){-1, 0, false};
+        }
+    }
+    for (int32_t i = 0; c->input != NULL && i < c->input->n_points; i++)
+        c->twin[i] = tri_check_in_frame(c, c->found[i]);
     c->segments = c->own_segments;
     return TRI_OK;
 }
 
-static void constrain(struct checker *c, int32_t s)
+enum tri_status tri_check_frame(struct checker *c)
 {
-    int32_t a = c->segments[2 * (size_t)s], b = c->segments[2 * (size_t)s + 1];
-    struct check_edge e = tri_check_find_edge(c, a, b);
-    int32_t h = e.there, g = e.back;
-    int32_t any = h >= 0 ? h : g;
-    if (c->mesh->segments == NULL) {
-        assert(any >= 0);
-    } else if (any < 0) {
-        tri_check_fault(c, TRI_CHECK_SUBSEGMENTS, "subsegment %ld (%ld-%ld) is not an edge of the mesh",
-                        check_number(c, s), check_number(c, a), check_number(c, b));
-    } else if (check_is_constrained(c, any)) {
-        tri_check_fault(c, TRI_CHECK_SUBSEGMENTS, "subsegment %ld (%ld-%ld) is listed twice", check_number(c, s),
-                        check_number(c, a), check_number(c, b));
+    enum tri_status status = TRI_OK;
+    if (c->whole != NULL) {
+        c->n_frame = c->whole->n_points;
+        c->points = c->whole->points;
+    } else {
+        status = list_vertices(c);
+        status = status == TRI_OK ? read_places(c) : status;
     }
-    if (h >= 0)
-        c->constrained[h >> 3] |= (uint8_t)(1u << (h & 7));
-    if (g >= 0)
-        c->constrained[g >> 3] |= (uint8_t)(1u << (g & 7));
+    return status == TRI_OK ? translate(c) : status;
+}
+
+/* --- subsegments are edges, listed once, and the boundary consists of them */
+
+static int64_t least_half_edge(const struct checker *c, int32_t s)
+{
+    int64_t there = c->sides[s][0].half_edge, back = c->sides[s][1].half_edge;
+    return there >= 0 && (back < 0 || there < back) ? there : back;
+}
+
+struct listing { /* an edge of the mesh, and the subsegment that lists it */
+    int64_t edge;
+    int32_t s;
+};
+
+static int compare_listings(const void *left, const void *right)
+{
+    const struct listing *a = left, *b = right;
+    if (a->edge != b->edge)
+        return a->edge < b->edge ? -1 : 1;
+    return (a->s > b->s) - (a->s < b->s);
+}
+
+/* twice[s]: an earlier subsegment lists the same edge. */
+static enum tri_status find_repeated(const struct checker *c, uint8_t *twice)
+{
+    struct listing *list = tri_check_array(c->n_segments, sizeof *list);
+    if (list == NULL)
+        return TRI_NO_MEMORY;
+    for (int32_t s = 0; s < c->n_segments; s++)
+        list[s] = (struct listing){check_is_listed_well(c, s) ? least_half_edge(c, s) : -1, s};
+    qsort(list, (size_t)c->n_segments, sizeof *list, compare_listings);
+    for (int32_t i = 1; i < c->n_segments; i++)
+        twice[list[i].s] = list[i].edge >= 0 && list[i].edge == list[i - 1].edge;
+    free(list);
+    return TRI_OK;
+}
+
+static void judge_listing(struct checker *c, int32_t s, bool twice)
+{
+    long number = check_number(c, s);
+    if (!check_is_listed_well(c, s)) {
+        tri_check_fault(c, TRI_CHECK_SUBSEGMENTS,
+                        "subsegment %ld has an end that is not a vertex, or two equal ends", number);
+        return;
+    }
+    long a = check_frame_vertex(c, c->segments[2 * s]), b = check_frame_vertex(c, c->segments[2 * s + 1]);
+    if (least_half_edge(c, s) < 0)
+        tri_check_fault(c, TRI_CHECK_SUBSEGMENTS, "subsegment %ld (%ld-%ld) is not an edge of the mesh", number, a, b);
+    else if (twice)
+        tri_check_fault(c, TRI_CHECK_SUBSEGMENTS, "subsegment %ld (%ld-%ld) is listed twice", number, a, b);
+}
+
+static void judge_boundary(struct checker *c)
+{
+    tri_check_begin(c, TRI_CHECK_BOUNDARY);
+    for (int64_t i = 0; i < c->boundary.n; i++) {
+        const struct check_open *e = &c->boundary.at[i];
+        if (!e->constrained)
+            tri_check_fault(c, TRI_CHECK_BOUNDARY, "boundary edge %ld-%ld of triangle %ld is not a subsegment",
+                            check_number(c, e->from), check_number(c, e->to), check_number(c, e->half_edge / 3));
+    }
+}
+
+static enum tri_status judge_listings(struct checker *c)
+{
+    uint8_t *twice = tri_check_zeros(c->n_segments, 1);
+    enum tri_status status = twice == NULL ? TRI_NO_MEMORY : find_repeated(c, twice);
+    tri_check_begin(c, TRI_CHECK_SUBSEGMENTS);
+    for (int32_t s = 0; s < c->n_segments && status == TRI_OK; s++)
+        judge_listing(c, s, twice[s]);
+    free(twice);
+    if (status == TRI_OK)
+        judge_boundary(c);
+    return status;
 }
 
 static enum tri_status group_by_vertex(struct checker *c)
 {
-    int32_t n = c->mesh->n_points;
+    int32_t n = c->n_frame;
     c->fan_first = tri_check_zeros((int64_t)n + 1, sizeof *c->fan_first);
     c->fan = tri_check_array(2 * (int64_t)c->n_segments, sizeof *c->fan);
     if (c->fan_first == NULL || c->fan == NULL)
@@ -57,51 +246,17 @@ static enum tri_status group_by_vertex(struct checker *c)
     }
     for (int32_t i = 0; i < n; i++)
         c->fan_first[i + 1] += c->fan_first[i];
-    for (int32_t i = 0; i < 2 * c->n_segments; i++) { /* as in group_corners */
+    for (int32_t i = 0; i < 2 * c->n_segments; i++) { /* as in edges.c */
         if (check_is_listed_well(c, i >> 1))
             c->fan[c->fan_first[c->segments[i]]++] = i;
     }
-    for (int32_t i = n; i > 0; i--)
-        c->fan_first[i] = c->fan_first[i - 1];
+    memmove(c->fan_first + 1, c->fan_first, (size_t)n * sizeof *c->fan_first);
     c->fan_first[0] = 0;
     return TRI_OK;
 }
 
-static bool is_unlisted(const struct checker *c, int32_t h)
-{
-    return c->link[h] < 0 && !check_is_constrained(c, h);
-}
-
-static void tell_unlisted(struct checker *c, int32_t h)
-{
-    tri_check_fault(c, TRI_CHECK_BOUNDARY, "boundary edge %ld-%ld of triangle %ld is not a subsegment",
-                    check_number(c, check_org(c, h)), check_number(c, check_dest(c, h)), check_number(c, h / 3));
-}
-
 enum tri_status tri_check_subsegments(struct checker *c)
 {
-    c->constrained = tri_check_zeros(c->n_half_edges / 8, 1);
-    if (c->constrained == NULL)
-        return TRI_NO_MEMORY;
-    c->segments = c->mesh->segments;
-    c->n_segments = c->segments != NULL ? c->mesh->n_segments : 0;
-    if (c->segments == NULL) {
-        enum tri_status status = take_boundary(c);
-        if (status != TRI_OK)
-            return status;
-    } else {
-        tri_check_begin(c, TRI_CHECK_SUBSEGMENTS);
-    }
-    for (int32_t s = 0; s < c->n_segments; s++) {
-        if (check_is_listed_well(c, s)) {
-            constrain(c, s);
-        } else {
-            tri_check_fault(c, TRI_CHECK_SUBSEGMENTS,
-                            "subsegment %ld has an end that is not a vertex, or two equal ends",
-                            check_number(c, s));
-        }
-    }
-    if (c->mesh->segments != NULL)
-        tri_check_each(c, TRI_CHECK_BOUNDARY, c->n_half_edges, is_unlisted, tell_unlisted);
-    return group_by_vertex(c);
+    enum tri_status status = check_is_listed(c) ? judge_listings(c) : TRI_OK;
+    return status == TRI_OK ? group_by_vertex(c) : status;
 }

@@ -14,11 +14,13 @@ enum { MOST_TRIALS = 1000 };
 
 struct markers {
     struct checker *c;
-    int32_t *own;         /* [n_points] marker of the input point at the vertex that has one, else 0 */
-    uint8_t *from_input;  /* [n_points] is there an input point? */
-    uint8_t *is_boundary; /* [n_points] */
+    int32_t *own;        /* [n_frame] marker of the input point at the vertex that has one, else 0 */
+    uint8_t *from_input; /* [n_frame] is there an input point? */
     int32_t n_trials;
+    int32_t at;          /* vertices of the frame before this one have been passed */
 };
+
+enum { SLICE = 1 << 14 };
 
 static void list_own(struct markers *m)
 {
@@ -29,10 +31,6 @@ static void list_own(struct markers *m)
             continue;
         m->from_input[v] = 1;
         m->own[v] = c->input->markers != NULL ? c->input->markers[i] : 0;
-    }
-    for (int32_t h = 0; h < c->n_half_edges; h++) {
-        if (c->link[h] < 0)
-            m->is_boundary[check_org(c, h)] = m->is_boundary[check_dest(c, h)] = 1;
     }
 }
 
@@ -48,8 +46,8 @@ static bool is_on(const struct checker *c, int32_t id, struct tri_point p)
     return fabs((p.x - a[0]) * y - (p.y - a[1]) * x) <= margin && along >= -margin && along <= length * length + margin;
 }
 
-/* Does an input segment with this marker pass the vertex? Unknown counts as yes. */
-static bool is_on_any(struct markers *m, int32_t v, int32_t marker)
+/* Does an input segment with this marker pass the place? Unknown counts as yes. */
+static bool is_on_any(struct markers *m, struct tri_point p, int32_t marker)
 {
     const struct tri_pslg *input = m->c->input;
     if (input->segment_markers == NULL)
@@ -57,62 +55,87 @@ static bool is_on_any(struct markers *m, int32_t v, int32_t marker)
     if (m->n_trials++ >= MOST_TRIALS)
         return true;
     for (int32_t id = 0; id < input->n_segments; id++) {
-        if (input->segment_markers[id] == marker && is_on(m->c, id, check_point(m->c, v)))
+        if (input->segment_markers[id] == marker && is_on(m->c, id, p))
             return true;
     }
     return false;
 }
 
-static bool may_be_zero(const struct markers *m, int32_t v)
+static bool may_be_zero(const struct markers *m, int32_t v, bool boundary)
 {
     const struct checker *c = m->c;
     int32_t n_zero = 0, n = c->fan_first[v + 1] - c->fan_first[v];
     for (int32_t i = c->fan_first[v]; i < c->fan_first[v + 1]; i++)
-        n_zero += c->mesh->segment_markers[c->fan[i] >> 1] == 0;
-    return !m->is_boundary[v] && (n_zero == n || (n_zero > 0 && !m->from_input[v]));
+        n_zero += c->segment_markers[c->fan[i] >> 1] == 0;
+    return !boundary && (n_zero == n || (n_zero > 0 && !m->from_input[v]));
 }
 
-static bool is_right(struct markers *m, int32_t v)
+/* A vertex of the frame. */
+static bool is_right(struct markers *m, int32_t v, int32_t marker)
 {
     const struct checker *c = m->c;
-    int32_t marker = c->mesh->point_markers[v];
+    bool boundary = (c->state[check_vertex(c, v)] & CHECK_BOUNDARY) != 0;
     if (m->own[v] != 0)
         return marker == m->own[v];
     if (marker == 0)
-        return may_be_zero(m, v);
+        return may_be_zero(m, v, boundary);
     for (int32_t i = c->fan_first[v]; i < c->fan_first[v + 1]; i++)
-        if (c->mesh->segment_markers[c->fan[i] >> 1] == marker)
+        if (c->segment_markers[c->fan[i] >> 1] == marker)
             return true;
-    return (marker == 1 && m->is_boundary[v]) || is_on_any(m, v, marker);
+    return (marker == 1 && boundary) || is_on_any(m, check_point(c, v), marker);
 }
 
-static void check_all(struct markers *m)
+/* A vertex of the mesh; they come in order, as those of the frame do. A vertex that is not in the frame is on no
+ * subsegment, none of the boundary and not of the input. */
+static enum tri_status check_one(struct markers *m, int64_t v, int32_t marker)
 {
     struct checker *c = m->c;
+    double place[2];
+    enum tri_status status = TRI_OK;
+    while (m->at < c->n_frame && check_vertex(c, m->at) < v)
+        m->at++;
+    bool right = marker == 0;
+    if (m->at < c->n_frame && check_vertex(c, m->at) == v) {
+        right = is_right(m, m->at, marker);
+    } else if (!right) {
+        status = tri_check_read(c, TRI_CHECK_POINTS, v, 1, place);
+        right = status == TRI_OK && is_on_any(m, (struct tri_point){place[0], place[1]}, marker);
+    }
+    if (!right)
+        tri_check_fault(c, TRI_CHECK_VERTEX_MARKERS, "vertex %ld has marker %ld, which no segment there has",
+                        check_number(c, v), (long)marker);
+    return status;
+}
+
+static enum tri_status check_all(struct markers *m)
+{
+    struct checker *c = m->c;
+    int32_t *slice = tri_check_array(SLICE, sizeof *slice);
+    enum tri_status status = slice == NULL ? TRI_NO_MEMORY : TRI_OK;
     list_own(m);
     tri_check_begin(c, TRI_CHECK_VERTEX_MARKERS);
-    for (int32_t v = 0; v < c->mesh->n_points; v++) {
-        if (!check_is_used(c, v) || is_right(m, v))
-            continue;
-        tri_check_fault(c, TRI_CHECK_VERTEX_MARKERS, "vertex %ld has marker %ld, which no segment there has",
-                        check_number(c, v), (long)c->mesh->point_markers[v]);
+    for (int64_t i = 0; i < c->n_points && status == TRI_OK; i += SLICE) {
+        int64_t n = c->n_points - i < SLICE ? c->n_points - i : SLICE;
+        status = tri_check_read(c, TRI_CHECK_POINT_MARKERS, i, n, slice);
+        for (int64_t v = i; v < i + n && status == TRI_OK; v++) {
+            if (check_is_used(c, v))
+                status = check_one(m, v, slice[v - i]);
+        }
     }
+    free(slice);
+    return status;
 }
 
 enum tri_status tri_check_vertex_markers(struct checker *c)
 {
-    if (c->input == NULL || c->mesh->point_markers == NULL || c->mesh->segment_markers == NULL)
+    if (c->input == NULL || !check_is_given(c, TRI_CHECK_POINT_MARKERS) ||
+        !check_is_given(c, TRI_CHECK_SEGMENT_MARKERS))
         return TRI_OK;
     struct markers m = {.c = c};
-    int32_t n = c->mesh->n_points;
-    m.own = tri_check_zeros(n, sizeof *m.own);
-    m.from_input = tri_check_zeros(n, 1);
-    m.is_boundary = tri_check_zeros(n, 1);
-    bool room = m.own && m.from_input && m.is_boundary;
-    if (room)
-        check_all(&m);
+    m.own = tri_check_zeros(c->n_frame, sizeof *m.own);
+    m.from_input = tri_check_zeros(c->n_frame, 1);
+    enum tri_status status = m.own != NULL && m.from_input != NULL ? check_all(&m) : TRI_NO_MEMORY;
     free(m.own);
     free(m.from_input);
-    free(m.is_boundary);
-    return room ? TRI_OK : TRI_NO_MEMORY;
+    return status;
 }

@@ -115,7 +115,7 @@ static enum tri_status open_arrays(struct tri_h5 *h5, struct tri_error *error)
         h5->rows[POINTS], h5->rows[TRIANGLES], h5->rows[SEGMENTS], about(h5, TRI_H5_ABOUT_INPUT_POINTS),
         h5->datasets[POINT_ATTRIBUTES] >= 0 ? h5->width[POINT_ATTRIBUTES] : 0,
         h5->datasets[TRIANGLE_ATTRIBUTES] >= 0 ? h5->width[TRIANGLE_ATTRIBUTES] : 0,
-        h5->datasets[POINT_MARKERS] >= 0, h5->datasets[SEGMENT_MARKERS] >= 0};
+        h5->datasets[POINT_MARKERS] >= 0, h5->datasets[SEGMENTS] >= 0, h5->datasets[SEGMENT_MARKERS] >= 0};
     return TRI_OK;
 }
 

@@ -18,7 +18,7 @@ struct tri_h5_counts {
     int64_t input_points;  /* the first so many were there before refinement; -1: not known */
     int32_t attributes;    /* of a point */
     int32_t columns;       /* attributes of a triangle */
-    bool point_markers, segment_markers; /* there are any */
+    bool point_markers, lists_segments, segment_markers; /* there are any */
 };
 
 /* Opens a file. TRI_CANNOT_READ: no such file, no HDF5 file, or no HDF5 in this build; TRI_BAD_INPUT: it holds no such

@@ -252,7 +252,7 @@ static void count_chunk(void *context, size_t i)
  * the next. */
 static void accumulate(struct tri_text *text)
 {
-    struct tri_text_chunk before = {0};
+    struct tri_text_chunk before = {.line = text->lines_before};
     for (size_t i = 0; i <= text->n_chunks; i++) {
         struct tri_text_chunk *const chunk = &text->chunks[i];
         const struct tri_text_chunk own = *chunk;
@@ -282,14 +282,16 @@ static enum tri_status check_nul(const struct tri_text *text, struct tri_error *
     for (size_t i = 0; i < text->n_chunks; i++)
         if (text->chunks[i].has_nul) {
             const char *const nul = memchr(text->data, 0, text->size);
-            return tri_fail(error, TRI_BAD_INPUT, text->name, line_of(text->data, nul),
+            return tri_fail(error, TRI_BAD_INPUT, text->name,
+                            (long)text->lines_before + line_of(text->data, nul),
                             "holds a NUL byte: this is not a text file");
         }
     return TRI_OK;
 }
 
-static enum tri_status make_index(struct tri_text *text, const struct tri_executor *executor, struct tri_error *error)
+enum tri_status tri_text_index(struct tri_text *text, const struct tri_executor *executor, struct tri_error *error)
 {
+    free(text->chunks);
     text->n_chunks = (text->size - 1) / text->chunk_bytes + 1;
     text->chunks = calloc(text->n_chunks + 1, sizeof *text->chunks);
     if (!text->chunks)
@@ -311,7 +313,7 @@ enum tri_status tri_text_load(struct tri_text *text, const char *path, size_t ch
         return status;
     if (text->size == 0 || text->data[text->size - 1] != '\n')
         text->data[text->size++] = '\n';
-    return make_index(text, executor, error);
+    return tri_text_index(text, executor, error);
 }
 
 void tri_text_free(struct tri_text *text)
@@ -325,7 +327,7 @@ void tri_text_free(struct tri_text *text)
 
 struct tri_cursor tri_cursor_begin(const struct tri_text *text)
 {
-    return (struct tri_cursor){text, text->data, 0, 0};
+    return (struct tri_cursor){text, text->data, text->lines_before, 0};
 }
 
 bool tri_cursor_next(struct tri_cursor *cursor, struct tri_fields *fields)

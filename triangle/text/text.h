@@ -38,6 +38,7 @@ struct tri_text {
     size_t chunk_bytes;
     size_t n_chunks;
     struct tri_text_chunk *chunks; /* [n_chunks + 1]; the last is the end of the text */
+    size_t lines_before; /* of a text that is a stretch of a file (window.h) */
 };
 
 /* Reads the file whole and indexes it. chunk_bytes > 0, or 0 for the default. A pipe is read to its end, up to 1 GiB.
@@ -48,6 +49,9 @@ enum tri_status tri_text_load(struct tri_text *text, const char *path, size_t ch
                               struct tri_error *error);
 
 void tri_text_free(struct tri_text *text);
+
+/* Indexes data[size], which end in a newline, anew. TRI_NO_MEMORY, TRI_STOPPED, TRI_BAD_INPUT. */
+enum tri_status tri_text_index(struct tri_text *text, const struct tri_executor *executor, struct tri_error *error);
 
 /* tri_fail with the system's words for error_number behind `what`. */
 enum tri_status tri_fail_system(struct tri_error *error, enum tri_status status, const char *file, const char *what,
@@ -156,7 +160,7 @@ size_t tri_cursor_remaining(const struct tri_cursor *cursor);
 struct tri_table {
     const char *noun; /* what a record describes, for errors: "vertex" */
     size_t n;
-    int32_t base;     /* number of the first, for errors */
+    int64_t base;     /* number of the first, for errors */
     /* Parses record i. Returns NULL, or what is wrong with it, to stand behind "vertex 4 ": a text that outlives the
      * call. Records are parsed in no particular order, so row may write only what belongs to record i. */
     const char *(*row)(void *user, size_t i, struct tri_fields *fields);

@@ -1,0 +1,317 @@
+/* Headers and tables, as in triangle/text/read.c, with numbers of 64 bits. */
+#include "drivers/judged_text.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "drivers/all_cores.h"
+#include "triangle/text/window.h"
+
+enum { STRETCH = 1 << 24, ROWS = 1 << 18, N_FIELDS = 4 };
+
+/* Rows of the stretch in hand: of one table, in the arrays that it has. */
+struct rows {
+    struct judged_text *text;
+    struct tri_window *window;
+    double *reals;    /* points, or attributes */
+    int64_t *numbers; /* corners, neighbours or ends */
+    int32_t *markers;
+    int64_t fields[N_FIELDS]; /* of the header */
+    int64_t largest;  /* corner so far */
+    enum tri_check_array array;
+};
+
+static enum tri_status read_header(struct rows *r, int n, const char *nouns, struct tri_error *error)
+{
+    struct tri_fields fields;
+    bool found;
+    enum tri_status status = tri_window_next(r->window, &fields, &found, error);
+    const char *name = r->window->text.name;
+    long line = (long)r->window->cursor.line;
+    if (!status && !found)
+        return tri_fail(error, TRI_BAD_INPUT, name, line, "unexpected end of file: the number of %s is missing", nouns);
+    for (int i = 0; i < n && !status; i++) {
+        int64_t value;
+        enum tri_field field = tri_fields_integer(&fields, &value);
+        if (field == TRI_FIELD_BAD || (i == 0 && field == TRI_FIELD_MISSING))
+            return tri_fail(error, TRI_BAD_INPUT, name, line, "field %d of the header of the %s is not a number", i + 1,
+                            nouns);
+        r->fields[i] = field == TRI_FIELD_GOOD ? value : r->fields[i];
+    }
+    if (!status && (r->fields[0] < 0 || r->fields[0] > INT64_MAX / 64))
+        return tri_fail(error, TRI_BAD_INPUT, name, line, "%lld %s cannot be", (long long)r->fields[0], nouns);
+    return status;
+}
+
+/* --- rows */
+
+static const char *parse_attributes(struct tri_fields *fields, int64_t n, double *last)
+{
+    for (int64_t i = 0; i < n; i++)
+        if (tri_fields_real(fields, last) == TRI_FIELD_BAD)
+            return "has an attribute that is not a finite number";
+    return NULL;
+}
+
+/* Markers beyond int32_t wrap, as they do in Triangle. */
+static const char *parse_marker(struct tri_fields *fields, int32_t *marker)
+{
+    int64_t value;
+    if (tri_fields_integer(fields, &value) == TRI_FIELD_BAD)
+        return "has a marker that is not a number";
+    uint32_t low = (uint32_t)((uint64_t)value & UINT32_MAX);
+    memcpy(marker, &low, sizeof low);
+    return NULL;
+}
+
+static const char *parse_vertex(void *user, size_t i, struct tri_fields *fields)
+{
+    struct rows *r = user;
+    double unused;
+    tri_fields_skip(fields); /* its number */
+    if (tri_fields_real(fields, &r->reals[2 * i]) != TRI_FIELD_GOOD)
+        return "has no x coordinate that is a finite number";
+    if (tri_fields_real(fields, &r->reals[2 * i + 1]) != TRI_FIELD_GOOD)
+        return "has no y coordinate that is a finite number";
+    const char *fault = parse_attributes(fields, r->fields[2], &unused);
+    return fault || r->fields[3] <= 0 ? fault : parse_marker(fields, &r->markers[i]);
+}
+
+/* n numbers that count from the base; beyond the vertices they stay so. */
+static bool parse_numbers(struct tri_fields *fields, size_t n, int64_t base, int64_t *out)
+{
+    bool good = true;
+    for (size_t k = 0; k < n && good; k++) {
+        good = tri_fields_integer(fields, &out[k]) == TRI_FIELD_GOOD;
+        out[k] = out[k] < 0 ? -1 : out[k] - base;
+    }
+    return good;
+}
+
+static const char *parse_element(void *user, size_t i, struct tri_fields *fields)
+{
+    struct rows *r = user;
+    int64_t *corner = r->numbers + 3 * i, extra;
+    tri_fields_skip(fields); /* its number */
+    if (!parse_numbers(fields, 3, r->text->base, corner))
+        return "has fewer than three corners that are numbers";
+    for (int k = 0; k < 3; k++)
+        if (corner[k] < 0 || corner[k] >= r->text->n_nodes)
+            return "has a corner that is not the number of a vertex";
+    for (int64_t k = 3; k < r->fields[1]; k++)
+        if (tri_fields_integer(fields, &extra) != TRI_FIELD_GOOD)
+            tri_fields_skip(fields);
+    return parse_attributes(fields, r->fields[2], &r->reals[i]);
+}
+
+static const char *parse_segment(void *user, size_t i, struct tri_fields *fields)
+{
+    struct rows *r = user;
+    tri_fields_skip(fields); /* its number */
+    if (!parse_numbers(fields, 2, r->text->base, r->numbers + 2 * i))
+        return "has no two endpoints that are numbers";
+    return r->fields[1] > 0 ? parse_marker(fields, &r->markers[i]) : NULL;
+}
+
+static const char *parse_neighbors(void *user, size_t i, struct tri_fields *fields)
+{
+    struct rows *r = user;
+    tri_fields_skip(fields); /* its number */
+    return parse_numbers(fields, 3, r->text->base, r->numbers + 3 * i) ? NULL : "lacks a neighbor";
+}
+
+/* --- tables */
+
+static enum tri_status append(struct rows *r, enum tri_check_array array, const void *rows, size_t n,
+                              struct tri_error *error)
+{
+    bool given = (r->text->given >> array & 1) != 0;
+    return given ? scratch_append(&r->text->array[array], rows, (int64_t)n, error) : TRI_OK;
+}
+
+static enum tri_status flush(void *user, size_t n, struct tri_error *error)
+{
+    struct rows *r = user;
+    bool points = r->array == TRI_CHECK_POINTS, corners = r->array == TRI_CHECK_CORNERS;
+    enum tri_status status = append(r, r->array, points ? (void *)r->reals : (void *)r->numbers, n, error);
+    for (size_t i = 0; corners && i < 3 * n; i++)
+        r->largest = r->numbers[i] > r->largest ? r->numbers[i] : r->largest;
+    if (!status && corners)
+        status = append(r, TRI_CHECK_ATTRIBUTES, r->reals, n, error);
+    if (!status && points)
+        status = append(r, TRI_CHECK_POINT_MARKERS, r->markers, n, error);
+    if (!status && r->array == TRI_CHECK_SEGMENT_ENDS)
+        status = append(r, TRI_CHECK_SEGMENT_MARKERS, r->markers, n, error);
+    return status;
+}
+
+static enum tri_status read_table(struct rows *r, enum tri_check_array array, const char *noun,
+                                  const char *(*row)(void *, size_t, struct tri_fields *), struct tri_error *error)
+{
+    struct tri_table table = {noun, (size_t)r->fields[0], r->text->base, row, r};
+    r->array = array;
+    return tri_window_table(r->window, &table, ROWS, flush, error);
+}
+
+/* Notes that the array is there, and opens its file. */
+static enum tri_status open_array(struct judged_text *t, enum tri_check_array array, size_t width, const char *folder,
+                                  struct tri_error *error)
+{
+    t->given |= 1u << array;
+    return scratch_open(&t->array[array], folder, width, error);
+}
+
+/* --- files */
+
+static enum tri_status detect_base(struct rows *r, struct tri_error *error)
+{
+    struct tri_fields fields;
+    bool found;
+    int64_t number;
+    enum tri_status status = tri_window_peek(r->window, &fields, &found, error);
+    bool good = !status && found && tri_fields_integer(&fields, &number) == TRI_FIELD_GOOD;
+    r->text->base = good && number == 0 ? 0 : 1;
+    return status;
+}
+
+/* The header has been read: count, dimension, attributes, markers. */
+static enum tri_status read_vertices(struct rows *r, const char *folder, struct tri_error *error)
+{
+    struct judged_text *t = r->text;
+    if (r->fields[1] != 2)
+        return tri_fail(error, TRI_BAD_INPUT, r->window->text.name, (long)r->window->cursor.line,
+                        "the vertices have %lld coordinates instead of 2", (long long)r->fields[1]);
+    t->n_points = t->n_nodes = r->fields[0];
+    enum tri_status status = detect_base(r, error);
+    if (!status)
+        status = open_array(t, TRI_CHECK_POINTS, 2 * sizeof(double), folder, error);
+    if (!status && r->fields[3] > 0)
+        status = open_array(t, TRI_CHECK_POINT_MARKERS, sizeof(int32_t), folder, error);
+    return status ? status : read_table(r, TRI_CHECK_POINTS, "vertex", parse_vertex, error);
+}
+
+static enum tri_status read_segments(struct rows *r, const char *folder, struct tri_error *error)
+{
+    r->fields[1] = 0;
+    enum tri_status status = read_header(r, 2, "segments", error);
+    if (!status)
+        status = open_array(r->text, TRI_CHECK_SEGMENT_ENDS, 2 * sizeof(int64_t), folder, error);
+    if (!status && r->fields[1] > 0)
+        status = open_array(r->text, TRI_CHECK_SEGMENT_MARKERS, sizeof(int32_t), folder, error);
+    return status ? status : read_table(r, TRI_CHECK_SEGMENT_ENDS, "segment", parse_segment, error);
+}
+
+static enum tri_status read_node(struct rows *r, const char *folder, struct tri_error *error)
+{
+    memcpy(r->fields, (int64_t[N_FIELDS]){0, 2, 0, 0}, sizeof r->fields);
+    enum tri_status status = read_header(r, N_FIELDS, "vertices", error);
+    return status ? status : read_vertices(r, folder, error);
+}
+
+static enum tri_status read_ele(struct rows *r, const char *folder, struct tri_error *error)
+{
+    struct judged_text *t = r->text;
+    memcpy(r->fields, (int64_t[N_FIELDS]){0, 3, 0, 0}, sizeof r->fields);
+    enum tri_status status = read_header(r, 3, "triangles", error);
+    if (!status && r->fields[1] < 3)
+        return tri_fail(error, TRI_BAD_INPUT, r->window->text.name, (long)r->window->cursor.line,
+                        "the triangles have %lld nodes; 3 or more are needed", (long long)r->fields[1]);
+    if (!status)
+        status = open_array(t, TRI_CHECK_CORNERS, 3 * sizeof(int64_t), folder, error);
+    if (!status && r->fields[2] > 0)
+        status = open_array(t, TRI_CHECK_ATTRIBUTES, sizeof(double), folder, error);
+    if (!status)
+        status = read_table(r, TRI_CHECK_CORNERS, "triangle", parse_element, error);
+    if (r->fields[1] > 3) /* nodes amid edges are made last */
+        t->n_points = r->largest + 1;
+    return status;
+}
+
+static enum tri_status read_neigh(struct rows *r, const char *folder, struct tri_error *error)
+{
+    struct judged_text *t = r->text;
+    enum tri_status status = read_header(r, 1, "triangles", error);
+    t->stale_neighbors = !status && r->fields[0] != t->array[TRI_CHECK_CORNERS].n; /* left there by an earlier run */
+    if (status || t->stale_neighbors)
+        return status;
+    status = open_array(t, TRI_CHECK_NEIGHBORS_GIVEN, 3 * sizeof(int64_t), folder, error);
+    return status ? status : read_table(r, TRI_CHECK_NEIGHBORS_GIVEN, "triangle", parse_neighbors, error);
+}
+
+/* Reads one file, if there is one. */
+static enum tri_status read_file(struct rows *r, const char *path, const char *folder,
+                                 enum tri_status (*take)(struct rows *r, const char *folder, struct tri_error *error),
+                                 struct tri_error *error)
+{
+    struct tri_window window;
+    if (path == NULL)
+        return TRI_OK;
+    enum tri_status status = tri_window_open(&window, path, STRETCH, &all_cores, error);
+    r->window = &window;
+    if (!status)
+        status = take(r, folder, error);
+    tri_window_free(&window);
+    return status;
+}
+
+/* A .poly file, up to its segments, with vertices of its own if it has some. */
+static enum tri_status read_poly(struct rows *r, const char *folder, struct tri_error *error)
+{
+    memcpy(r->fields, (int64_t[N_FIELDS]){0, 2, 0, 0}, sizeof r->fields);
+    enum tri_status status = read_header(r, N_FIELDS, "vertices", error);
+    if (!status && r->fields[0] > 0)
+        status = read_vertices(r, folder, error);
+    else if (!status && r->text->given == 0)
+        return TRI_OK; /* once more, when the .node file has been read */
+    return status ? status : read_segments(r, folder, error);
+}
+
+static enum tri_status read_all(struct rows *r, const struct judged_names *names, const char *folder,
+                                struct tri_error *error)
+{
+    enum tri_status status = read_file(r, names->poly, folder, read_poly, error);
+    if (!status && r->text->given == 0) {
+        status = read_file(r, names->node, folder, read_node, error);
+        status = status ? status : read_file(r, names->poly, folder, read_poly, error);
+    }
+    if (!status)
+        status = read_file(r, names->ele, folder, read_ele, error);
+    return status ? status : read_file(r, names->neigh, folder, read_neigh, error);
+}
+
+enum tri_status judged_text_read(struct judged_text *t, const struct judged_names *names, const char *folder,
+                                 struct tri_error *error)
+{
+    *t = (struct judged_text){.base = 1};
+    struct rows r = {.text = t, .largest = -1};
+    r.reals = malloc(2 * ROWS * sizeof *r.reals);
+    r.numbers = malloc(3 * ROWS * sizeof *r.numbers);
+    r.markers = malloc(ROWS * sizeof *r.markers);
+    enum tri_status status = r.reals && r.numbers && r.markers
+                                 ? read_all(&r, names, folder, error)
+                                 : tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
+    free(r.reals);
+    free(r.numbers);
+    free(r.markers);
+    return status;
+}
+
+void judged_text_close(struct judged_text *t)
+{
+    for (int k = 0; k <= TRI_CHECK_SEGMENT_MARKERS; k++)
+        scratch_close(&t->array[k]);
+}
+
+static enum tri_status read_slice(void *user, enum tri_check_array array, int64_t first, int64_t n, void *out,
+                                  struct tri_error *error)
+{
+    const struct judged_text *t = user;
+    return scratch_read(&t->array[array], first, n, out, error);
+}
+
+struct tri_check_source judged_text_source(struct judged_text *t)
+{
+    return (struct tri_check_source){.n_points = t->n_points, .n_triangles = t->array[TRI_CHECK_CORNERS].n,
+                                     .n_segments = t->array[TRI_CHECK_SEGMENT_ENDS].n, .given = t->given,
+                                     .read = read_slice, .user = t};
+}

@@ -1,0 +1,244 @@
+/* Parts: triangles in a row, and the vertices that are their corners.
+ *
+ *   1. The corners are read as they are, and the vertices that they name marked in a set of bits, one for each vertex
+ *      of the mesh.
+ *   2. Vertex v gets as its number in the part how many marked ones come before it: so the order of vertices stays.
+ *   3. Their coordinates are read in slices, of windows of the mesh in which any are marked. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "triangle/check/internal.h"
+
+enum { WINDOW = 1 << 10 }; /* words */
+
+/* What a part needs beside the caller's arrays; kept from one part to the next. */
+struct check_room {
+    int32_t *triangles;
+    int64_t *vertex, *neighbors;
+    double *points, *attributes, *window;
+    int64_t point_room;    /* vertices that there is room for */
+    int64_t first, last;   /* words of marked that may not be 0 */
+    uint64_t *marked;      /* [n_points / 64 + 1] */
+    int32_t *before;       /* [n_points / 64 + 1] marked vertices before each word; from first to last */
+};
+
+static int count_bits(uint64_t x)
+{
+    x -= x >> 1 & 0x5555555555555555u;
+    x = (x & 0x3333333333333333u) + (x >> 2 & 0x3333333333333333u);
+    return (int)(((x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fu) * 0x0101010101010101u >> 56);
+}
+
+static int32_t rank_of(const struct check_room *r, int64_t v)
+{
+    uint64_t below = ((uint64_t)1 << (v & 63)) - 1;
+    return r->before[v >> 6] + count_bits(r->marked[v >> 6] & below);
+}
+
+int32_t tri_check_local(const struct checker *c, int64_t v)
+{
+    if (c->whole != NULL)
+        return (int32_t)v;
+    const struct check_room *r = c->part.room;
+    return (r->marked[v >> 6] >> (v & 63) & 1) != 0 ? rank_of(r, v) : -1;
+}
+
+/* Arrays that every part needs. */
+static enum tri_status make_room(struct checker *c)
+{
+    struct check_part *p = &c->part;
+    int64_t n = c->whole != NULL ? c->n_triangles : c->part_triangles;
+    p->room = calloc(1, sizeof *p->room);
+    p->entry = tri_check_array(3 * n, sizeof *p->entry);
+    p->link = tri_check_array(3 * n, sizeof *p->link);
+    p->constrained = tri_check_array(3 * n / 8 + 1, 1);
+    if (p->room == NULL || p->entry == NULL || p->link == NULL || p->constrained == NULL)
+        return TRI_NO_MEMORY;
+    struct check_room *r = p->room;
+    r->first = 1;
+    if (c->whole != NULL)
+        return TRI_OK;
+    r->triangles = tri_check_array(3 * n, sizeof *r->triangles);
+    r->window = tri_check_array(64 * WINDOW, 2 * sizeof *r->window);
+    r->marked = tri_check_zeros(c->n_points / 64 + 1, sizeof *r->marked);
+    r->before = tri_check_array(c->n_points / 64 + 1, sizeof *r->before);
+    if (check_is_given(c, TRI_CHECK_NEIGHBORS_GIVEN))
+        r->neighbors = tri_check_array(3 * n, sizeof *r->neighbors);
+    if (check_wants_regions(c))
+        r->attributes = tri_check_array(n, sizeof *r->attributes);
+    bool room = r->triangles && r->window && r->marked && r->before &&
+                (r->neighbors || !check_is_given(c, TRI_CHECK_NEIGHBORS_GIVEN)) &&
+                (r->attributes || !check_wants_regions(c));
+    return room ? TRI_OK : TRI_NO_MEMORY;
+}
+
+void tri_check_release_part(struct checker *c)
+{
+    struct check_part *p = &c->part;
+    free(p->entry_of);
+    free(p->entry);
+    free(p->link);
+    free(p->constrained);
+    free(p->turns);
+    free(p->used);
+    if (p->room == NULL)
+        return;
+    void *arrays[] = {p->room->triangles, p->room->vertex, p->room->neighbors, p->room->points, p->room->attributes,
+                      p->room->window, p->room->marked, p->room->before};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+        free(arrays[i]);
+    free(p->room);
+}
+
+/* Corners that are vertices of the mesh? */
+static bool judge_corners(struct checker *c, const int64_t *corners, const int32_t *own)
+{
+    int64_t n = 3 * (int64_t)c->part.n_triangles, n_bad = 0, least = n;
+    int64_t before = c->report->item[TRI_CHECK_ARRAYS].count;
+#pragma omp parallel for schedule(static) reduction(+ : n_bad) reduction(min : least)
+    for (int64_t h = 0; h < n; h++) {
+        int64_t v = corners != NULL ? corners[h] : own[h];
+        if (v < 0 || v >= c->n_points) {
+            n_bad++;
+            least = h < least ? h : least;
+        }
+    }
+    if (n_bad == 0)
+        return true;
+    c->at = 3 * c->part.first + least;
+    tri_check_fault(c, TRI_CHECK_ARRAYS, "triangle %ld has corner %ld, which is not a vertex",
+                    check_part_triangle(c, (int32_t)(least / 3)),
+                    check_number(c, corners != NULL ? corners[least] : own[least]));
+    c->at = 0;
+    c->report->item[TRI_CHECK_ARRAYS].count = before + n_bad;
+    return false;
+}
+
+/* Step 1. */
+static void mark(struct check_room *r, const int64_t *corners, int64_t n)
+{
+    if (r->first <= r->last)
+        memset(r->marked + r->first, 0, (size_t)(r->last - r->first + 1) * sizeof *r->marked);
+    r->first = INT64_MAX;
+    r->last = -1;
+    for (int64_t i = 0; i < n; i++) {
+        int64_t word = corners[i] >> 6;
+        r->marked[word] |= (uint64_t)1 << (corners[i] & 63);
+        r->first = word < r->first ? word : r->first;
+        r->last = word > r->last ? word : r->last;
+    }
+}
+
+/* Step 2. */
+static enum tri_status number(struct checker *c, const int64_t *corners)
+{
+    struct check_room *r = c->part.room;
+    int64_t n = 0;
+    for (int64_t word = r->first; word <= r->last; word++) {
+        r->before[word] = (int32_t)n;
+        n += count_bits(r->marked[word]);
+    }
+    if (n > r->point_room) {
+        free(r->vertex);
+        free(r->points);
+        r->point_room = n + n / 16;
+        r->vertex = tri_check_array(r->point_room, sizeof *r->vertex);
+        r->points = tri_check_array(r->point_room, 2 * sizeof *r->points);
+        if (r->vertex == NULL || r->points == NULL)
+            return TRI_NO_MEMORY;
+    }
+    c->part.n_points = (int32_t)n;
+#pragma omp parallel for schedule(static)
+    for (int32_t h = 0; h < c->part.n_half_edges; h++)
+        r->triangles[h] = rank_of(r, corners[h]);
+    return TRI_OK;
+}
+
+/* Step 3, the words from w to end - 1. */
+static enum tri_status read_window(struct checker *c, int64_t w, int64_t end)
+{
+    struct check_room *r = c->part.room;
+    while (w < end && r->marked[w] == 0)
+        w++;
+    while (end > w && r->marked[end - 1] == 0)
+        end--;
+    int64_t last = 64 * end < c->n_points ? 64 * end : c->n_points;
+    enum tri_status status = w < end ? tri_check_read(c, TRI_CHECK_POINTS, 64 * w, last - 64 * w, r->window) : TRI_OK;
+    for (int64_t word = w; word < end && status == TRI_OK; word++) {
+        int32_t at = r->before[word];
+        uint64_t bits = r->marked[word];
+        for (int64_t v = 64 * word; bits != 0; v++, bits >>= 1) {
+            if ((bits & 1) == 0)
+                continue;
+            r->vertex[at] = v;
+            memcpy(r->points + 2 * (size_t)at++, r->window + 2 * (v - 64 * w), 2 * sizeof *r->points);
+        }
+    }
+    return status;
+}
+
+static enum tri_status read_points(struct checker *c)
+{
+    const struct check_room *r = c->part.room;
+    enum tri_status status = TRI_OK;
+    for (int64_t w = r->first; w <= r->last && status == TRI_OK; w += WINDOW)
+        status = read_window(c, w, r->last + 1 - w < WINDOW ? r->last + 1 : w + WINDOW);
+    return status;
+}
+
+static enum tri_status read_part(struct checker *c, bool *good)
+{
+    struct check_part *p = &c->part;
+    struct check_room *r = p->room;
+    int64_t *corners = (int64_t *)p->entry; /* not needed yet */
+    enum tri_status status = tri_check_read(c, TRI_CHECK_CORNERS, p->first, p->n_triangles, corners);
+    if (status != TRI_OK || !(*good = judge_corners(c, corners, NULL)) || !check_good(c, TRI_CHECK_ARRAYS))
+        return status;
+    mark(r, corners, p->n_half_edges);
+    status = number(c, corners);
+    if (status == TRI_OK)
+        status = read_points(c);
+    if (status == TRI_OK && r->neighbors != NULL)
+        status = tri_check_read(c, TRI_CHECK_NEIGHBORS_GIVEN, p->first, p->n_triangles, r->neighbors);
+    if (status == TRI_OK && r->attributes != NULL)
+        status = tri_check_read(c, TRI_CHECK_ATTRIBUTES, p->first, p->n_triangles, r->attributes);
+    p->triangles = r->triangles;
+    p->points = r->points;
+    p->vertex = r->vertex;
+    p->neighbors = r->neighbors;
+    p->attributes = r->attributes;
+    p->n_attributes = 1;
+    return status;
+}
+
+static bool take_arrays(struct checker *c)
+{
+    struct check_part *p = &c->part;
+    const struct tri_check_mesh *m = c->whole;
+    p->n_points = m->n_points;
+    p->triangles = m->triangles;
+    p->points = m->points;
+    p->own_neighbors = m->neighbors;
+    p->attributes = check_wants_regions(c) ? m->attributes : NULL;
+    p->n_attributes = m->n_attributes;
+    return judge_corners(c, NULL, p->triangles);
+}
+
+enum tri_status tri_check_load(struct checker *c, int64_t first, bool *good)
+{
+    struct check_part *p = &c->part;
+    *good = true;
+    if (c->whole != NULL && p->triangles != NULL)
+        return TRI_OK; /* it is there */
+    enum tri_status status = p->room == NULL ? make_room(c) : TRI_OK;
+    if (status != TRI_OK)
+        return status;
+    int64_t left = c->n_triangles - first;
+    p->first = first;
+    p->n_triangles = (int32_t)(left < c->part_triangles ? left : c->part_triangles);
+    p->n_half_edges = 3 * p->n_triangles;
+    if (c->whole == NULL)
+        return read_part(c, good);
+    *good = take_arrays(c);
+    return TRI_OK;
+}

@@ -1,0 +1,182 @@
+/* Half-edges in memory, or in files by a hash of their edge: all of one edge come into one file. */
+#include "triangle/check/store.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { FILE_BITS = 6, N_FILES = 1 << FILE_BITS, LEAST_ROOM = 256 };
+
+struct file {
+    int descriptor; /* -1: not there yet */
+    int64_t n;      /* half-edges in it */
+};
+
+struct check_store {
+    struct check_opens here;
+    int64_t most; /* to be in memory */
+    struct file file[N_FILES];
+};
+
+enum tri_status tri_check_store_new(struct checker *c)
+{
+    c->store = calloc(1, sizeof *c->store);
+    if (c->store == NULL)
+        return TRI_NO_MEMORY;
+    for (int k = 0; k < N_FILES; k++)
+        c->store->file[k].descriptor = -1;
+    c->store->most = INT64_MAX;
+    if (c->source->memory > 0)
+        c->store->most = LEAST_ROOM + (int64_t)(c->source->memory / 8 / sizeof(struct check_open));
+    return TRI_OK;
+}
+
+void tri_check_store_free(struct check_store *s)
+{
+    for (int k = 0; s != NULL && k < N_FILES; k++) {
+        if (s->file[k].descriptor >= 0)
+            (void)close(s->file[k].descriptor);
+    }
+    if (s != NULL)
+        free(s->here.at);
+    free(s);
+}
+
+enum tri_status tri_check_append(struct check_opens *o, const struct check_open *e)
+{
+    if (o->n == o->room) {
+        int64_t room = o->room + o->room / 2 + 64;
+        bool fits = (uint64_t)room < SIZE_MAX / sizeof *e;
+        struct check_open *at = fits ? realloc(o->at, (size_t)room * sizeof *at) : NULL;
+        if (at == NULL)
+            return TRI_NO_MEMORY;
+        o->at = at;
+        o->room = room;
+    }
+    o->at[o->n++] = *e;
+    return TRI_OK;
+}
+
+static int file_of(const struct check_open *e)
+{
+    uint64_t low = (uint64_t)(e->from < e->to ? e->from : e->to), high = (uint64_t)(e->from < e->to ? e->to : e->from);
+    uint64_t h = (low * 0x9e3779b97f4a7c15u ^ high) * 0xbf58476d1ce4e5b9u;
+    return (int)(h >> (64 - FILE_BITS));
+}
+
+static int compare_files(const void *a, const void *b)
+{
+    return file_of(a) - file_of(b);
+}
+
+static const char *folder_of(const struct checker *c)
+{
+    return c->source->scratch != NULL ? c->source->scratch : "/tmp";
+}
+
+static enum tri_status fail(struct checker *c)
+{
+    return tri_fail(c->error, TRI_CANNOT_WRITE, folder_of(c), 0, "cannot park half-edges there: %s", strerror(errno));
+}
+
+static bool open_file(const struct checker *c, struct file *file)
+{
+    char name[1024];
+    if (file->descriptor >= 0)
+        return true;
+    if (snprintf(name, sizeof name, "%s/trianglecheck-XXXXXX", folder_of(c)) >= (int)sizeof name) {
+        errno = ENAMETOOLONG;
+        return false;
+    }
+    file->descriptor = mkstemp(name);
+    if (file->descriptor >= 0)
+        (void)unlink(name); /* it goes with the process, however that ends */
+    return file->descriptor >= 0;
+}
+
+static bool write_all(int descriptor, const void *data, size_t n)
+{
+    for (size_t done = 0; done < n;) {
+        ssize_t put = write(descriptor, (const char *)data + done, n - done);
+        if (put < 0 && errno != EINTR)
+            return false;
+        done += put > 0 ? (size_t)put : 0;
+    }
+    return true;
+}
+
+static bool read_all(int descriptor, void *data, size_t n)
+{
+    for (size_t done = 0; done < n;) {
+        ssize_t got = pread(descriptor, (char *)data + done, n - done, (off_t)done);
+        if (got == 0 || (got < 0 && errno != EINTR))
+            return false;
+        done += got > 0 ? (size_t)got : 0;
+    }
+    return true;
+}
+
+/* All that is in memory goes to the files. */
+static enum tri_status park(struct checker *c)
+{
+    struct check_store *s = c->store;
+    struct check_open *at = s->here.at;
+    if (s->here.n > 1)
+        qsort(at, (size_t)s->here.n, sizeof *at, compare_files);
+    for (int64_t i = 0, j; i < s->here.n; i = j) {
+        struct file *file = &s->file[file_of(&at[i])];
+        for (j = i + 1; j < s->here.n && file_of(&at[j]) == file_of(&at[i]); j++) {
+        }
+        if (!open_file(c, file) || !write_all(file->descriptor, at + i, (size_t)(j - i) * sizeof *at))
+            return fail(c);
+        file->n += j - i;
+    }
+    s->here.n = 0;
+    return TRI_OK;
+}
+
+enum tri_status tri_check_store_add(struct checker *c, struct check_open e)
+{
+    enum tri_status status = c->store->here.n >= c->store->most ? park(c) : TRI_OK;
+    return status == TRI_OK ? tri_check_append(&c->store->here, &e) : status;
+}
+
+static enum tri_status fetch(struct checker *c, struct file *file)
+{
+    struct check_opens *here = &c->store->here;
+    if (file->n > here->room) {
+        free(here->at);
+        here->room = 0;
+        here->at = tri_check_array(file->n, sizeof *here->at);
+        if (here->at == NULL)
+            return TRI_NO_MEMORY;
+        here->room = file->n;
+    }
+    here->n = file->n;
+    if (!read_all(file->descriptor, here->at, (size_t)here->n * sizeof *here->at))
+        return tri_fail(c->error, TRI_CANNOT_READ, folder_of(c), 0, "cannot read what was parked there");
+    (void)close(file->descriptor);
+    *file = (struct file){-1, 0};
+    return TRI_OK;
+}
+
+enum tri_status tri_check_store_drain(struct checker *c, enum tri_status (*take)(struct checker *c,
+                                                                                 struct check_open *at, int64_t n))
+{
+    struct check_store *s = c->store;
+    bool parked = false;
+    for (int k = 0; k < N_FILES; k++)
+        parked = parked || s->file[k].n > 0;
+    enum tri_status status = parked ? park(c) : take(c, s->here.at, s->here.n);
+    for (int k = 0; k < N_FILES && status == TRI_OK; k++) {
+        if (s->file[k].n == 0)
+            continue;
+        status = fetch(c, &s->file[k]);
+        status = status == TRI_OK ? take(c, s->here.at, s->here.n) : status;
+    }
+    free(s->here.at);
+    s->here = (struct check_opens){0};
+    return status;
+}

@@ -1,0 +1,150 @@
+/* Coordinates of any size, in the range of the predicates: what is very large or very small as a whole is multiplied by
+ * a power of two, and what is below 2^-216 then counts as 0, in the mesh as in the input. The multiplication is exact
+ * otherwise, and changes no judgement but those on areas, which quality.c scales back. */
+#include <stdlib.h>
+
+#include "triangle/check/internal.h"
+
+enum { SLICE = 1 << 16 };
+
+struct survey {
+    bool exact, finite;
+    double largest;
+};
+
+static bool are_exact(const double *values, int64_t n)
+{
+    for (int64_t i = 0; i < n; i++) {
+        if (!tri_is_exact_coordinate(values[i]))
+            return false;
+    }
+    return true;
+}
+
+static void look(struct survey *s, const double *values, int64_t n)
+{
+    bool exact = s->exact, finite = s->finite;
+    double largest = s->largest;
+#pragma omp parallel for schedule(static) reduction(&& : exact, finite) reduction(max : largest)
+    for (int64_t i = 0; i < n; i++) {
+        exact = exact && tri_is_exact_coordinate(values[i]);
+        finite = finite && isfinite(values[i]);
+        largest = fmax(largest, fabs(values[i]));
+    }
+    *s = (struct survey){exact, finite, largest};
+}
+
+static bool is_out_of_range(const double *p)
+{
+    return !tri_is_exact_point((struct tri_point){p[0], p[1]});
+}
+
+static void judge(struct checker *c, int64_t first, const double *points, int64_t n)
+{
+    for (int64_t i = 0; i < n; i++) {
+        const double *p = points + 2 * i;
+        if (!is_out_of_range(p))
+            continue;
+        c->at = 3 * c->n_triangles + first + i; /* corners come first */
+        tri_check_fault(c, TRI_CHECK_ARRAYS, "vertex %ld at (%.17g, %.17g) is beyond the range of exact arithmetic",
+                        check_number(c, first + i), check_given(c, p[0]), check_given(c, p[1]));
+    }
+    c->at = 0;
+}
+
+/* All points, slice by slice: looked at, or judged (s is NULL). */
+static enum tri_status pass(struct checker *c, struct survey *s)
+{
+    if (c->whole != NULL && s != NULL) {
+        look(s, c->whole->points, 2 * c->n_points);
+        return TRI_OK;
+    }
+    double *points = tri_check_array(SLICE, 2 * sizeof *points);
+    enum tri_status status = points == NULL ? TRI_NO_MEMORY : TRI_OK;
+    for (int64_t i = 0; i < c->n_points && status == TRI_OK; i += SLICE) {
+        int64_t n = c->n_points - i < SLICE ? c->n_points - i : SLICE;
+        status = tri_check_read(c, TRI_CHECK_POINTS, i, n, points);
+        if (status == TRI_OK && s != NULL)
+            look(s, points, 2 * n);
+        else if (status == TRI_OK)
+            judge(c, i, points, n);
+    }
+    free(points);
+    return status;
+}
+
+/* 0 for coordinates of ordinary size, and where one is not finite; else the exponent that brings the largest to 1. */
+static int choose_exponent(const struct survey *s)
+{
+    double largest = s->largest;
+    return !s->finite || largest == 0 || (largest >= 0x1p-100 && largest <= 0x1p199) ? 0 : -ilogb(largest);
+}
+
+static double *scale(const double *values, int64_t n, int exponent)
+{
+    double *scaled = tri_check_array(n, sizeof *scaled);
+    for (int64_t i = 0; scaled != NULL && i < n; i++)
+        scaled[i] = tri_round_coordinate(ldexp(values[i], exponent));
+    return scaled;
+}
+
+/* Their points only. */
+static double *scale_regions(const struct tri_pslg *input, int exponent)
+{
+    double *scaled = scale(input->regions, 4 * (int64_t)input->n_regions, exponent);
+    for (size_t k = 0; scaled != NULL && k < (size_t)input->n_regions; k++) {
+        scaled[4 * k + 2] = input->regions[4 * k + 2];
+        scaled[4 * k + 3] = input->regions[4 * k + 3];
+    }
+    return scaled;
+}
+
+static enum tri_status scale_mesh(struct checker *c)
+{
+    if (c->whole == NULL)
+        return TRI_OK; /* slices are scaled on reading */
+    c->scaled[0] = scale(c->whole->points, 2 * c->n_points, c->exponent);
+    if (c->scaled[0] == NULL)
+        return TRI_NO_MEMORY;
+    c->scaled_mesh = *c->whole;
+    c->scaled_mesh.points = c->scaled[0];
+    c->whole = &c->scaled_mesh;
+    return TRI_OK;
+}
+
+static enum tri_status scale_input(struct checker *c)
+{
+    if (c->input == NULL)
+        return TRI_OK;
+    c->scaled[1] = scale(c->input->points, 2 * (int64_t)c->input->n_points, c->exponent);
+    c->scaled[2] = scale(c->input->holes, 2 * (int64_t)c->input->n_holes, c->exponent);
+    c->scaled[3] = scale_regions(c->input, c->exponent);
+    if (c->scaled[1] == NULL || c->scaled[2] == NULL || c->scaled[3] == NULL)
+        return TRI_NO_MEMORY;
+    c->scaled_input = *c->input;
+    c->scaled_input.points = c->scaled[1];
+    c->scaled_input.holes = c->scaled[2];
+    c->scaled_input.regions = c->scaled[3];
+    c->input = &c->scaled_input;
+    return TRI_OK;
+}
+
+enum tri_status tri_check_survey(struct checker *c)
+{
+    struct survey s = {true, true, 0};
+    tri_check_begin(c, TRI_CHECK_ARRAYS);
+    enum tri_status status = pass(c, &s);
+    if (status != TRI_OK)
+        return status;
+    if (!s.exact || (c->input != NULL && !are_exact(c->input->points, 2 * (int64_t)c->input->n_points))) {
+        c->exponent = choose_exponent(&s);
+        c->rounded = true;
+        status = scale_mesh(c);
+        if (status == TRI_OK)
+            status = scale_input(c);
+        if (status == TRI_OK)
+            status = pass(c, NULL);
+    }
+    c->tolerance = TRI_CHECK_ULPS * 0x1p-52 * ldexp(s.largest, c->exponent);
+    return status;
+}
