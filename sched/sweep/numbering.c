@@ -27,9 +27,9 @@ enum { ID_BITS = 29, FIRST_BITS = 2, KEY_SHIFT = ID_BITS + FIRST_BITS, STRAY_BIT
 
 enum {
     FEW = 24,        /* are sorted by insertion */
-    BATCH = 1 << 16, /* triangles that move at once, in a large mesh */
-    BATCHES = 64,    /* in a small one */
-    BATCH_SHARES = 16
+    BATCH = 1 << 18, /* triangles that move at once, in a large mesh: so many that threads wait for each other seldom */
+    BATCHES = 16,    /* in a small one */
+    BATCH_SHARES = 32
 };
 
 _Static_assert(INT64_C(1) << ID_BITS == TRI_MAX_TRIANGLES, "ids fill their bits");
@@ -61,7 +61,7 @@ struct numbering {
     int32_t n_tiles;
     int32_t *kept_tile; /* [n_kept] */
     struct deal vertices, triangles; /* new vertices; all triangles */
-    int32_t *order;    /* [n_vertices - n_kept] the new vertices, one after the other */
+    int32_t *order;    /* [n_vertices - n_kept] the new vertices, one after the other; then ends of fans */
     int32_t *rank;     /* [n_vertices - n_kept] first the tile, then the new number of vertex n_kept + i */
     int32_t n_new;
     int32_t *sub_rank; /* [n_subs] */
@@ -496,14 +496,23 @@ static void rename_to(const struct numbering *n, const struct tri_triangle *from
     to->state = 0;
 }
 
+/* Something stands here that is to go to a batch to come. */
+static bool stands_here(const struct move *m, int32_t t)
+{
+    int32_t place = m->n->place[t];
+    return place != TRI_NONE && (m->down ? place >> 2 < m->batch.first : place >> 2 >= m->batch.last);
+}
+
 /* A few are fetched before the first is looked at, so that the memory works on all of them at once. */
 static void gather_batch(void *context, size_t share)
 {
     enum { AT_ONCE = 32 };
-    const struct move *m = context;
+    struct move *m = context;
     const struct numbering *n = m->n;
     struct tri_range range = batch_share(m, share);
     struct tri_triangle from[AT_ONCE];
+    for (int32_t t = range.first; t < range.last; t++)
+        m->parked[share] += stands_here(m, t);
     for (int32_t first = range.first; first < range.last; first += AT_ONCE) {
         int32_t count = range.last - first < AT_ONCE ? range.last - first : AT_ONCE;
         const uint64_t *item = items_of(n) + first;
@@ -512,21 +521,6 @@ static void gather_batch(void *context, size_t share)
         for (int32_t i = 0; i < count; i++)
             rename_to(n, &from[i], first_of(item[i]), &n->buffer[first + i - m->batch.first]);
     }
-}
-
-/* Something stands here that is to go to a batch to come. */
-static bool stands_here(const struct move *m, int32_t t)
-{
-    int32_t place = m->n->place[t];
-    return place != TRI_NONE && (m->down ? place >> 2 < m->batch.first : place >> 2 >= m->batch.last);
-}
-
-static void count_parked(void *context, size_t share)
-{
-    struct move *m = context;
-    struct tri_range range = batch_share(m, share);
-    for (int32_t t = range.first; t < range.last; t++)
-        m->parked[share] += stands_here(m, t);
 }
 
 static void put_down(void *context, size_t share)
@@ -548,7 +542,6 @@ static void move_batch(struct move *m)
 {
     memset(m->parked, 0, sizeof m->parked);
     tri_execute(m->n->executor, BATCH_SHARES, gather_batch, m);
-    tri_execute(m->n->executor, BATCH_SHARES, count_parked, m);
     for (int share = 0; share < BATCH_SHARES; share++) {
         int32_t count = m->parked[share];
         m->parked[share] = m->n_parked;
@@ -632,6 +625,8 @@ static void renumber(struct numbering *n)
     rename_subs(n);
     rank_subs(n);
     rank_triangles(n);
+    free(n->order); /* before the buffer's pages are asked for */
+    n->order = NULL;
     move_triangles(n);
     move_subs(n);
     mesh->n_triangles = n->n_tri;
