@@ -228,8 +228,9 @@ static double *columns_of(const struct tri_mesh *mesh, int32_t n_columns)
 static enum tri_status hand_out(struct piece *p, struct tri_error *error)
 {
     double *columns = columns_of(p->mesh, p->grid->n_columns);
-    struct tri_stream stream = {p->grid->n_attributes, p->grid->n_columns, p->mesh->n_regions, columns,
-                                (double)p->grid->n_triangles};
+    struct tri_stream stream = {.n_attributes = p->grid->n_attributes, .n_columns = p->grid->n_columns,
+                                .n_regions = p->mesh->n_regions, .regions = columns,
+                                .estimate = (double)p->grid->n_triangles, .n_ranks = 1};
     enum tri_status status = TRI_OK;
     if (!columns || !reserve(p))
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to hand out a mesh");
