@@ -85,6 +85,7 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/output.c
     triangle/text/write.c
     triangle/text/layouts.c
+    triangle/text/stream.c
     triangle/text/grouping.c
     triangle/text/boundary.c
     triangle/text/vtu.c

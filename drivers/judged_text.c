@@ -7,7 +7,7 @@
 #include "drivers/all_cores.h"
 #include "triangle/text/window.h"
 
-enum { STRETCH = 1 << 24, ROWS = 1 << 18, N_FIELDS = 4 };
+enum { STRETCH = 1 << 22, ROWS = 1 << 17, N_FIELDS = 4 }; /* bytes of text; rows of them at most */
 
 /* Rows of the stretch in hand: of one table, in the arrays that it has. */
 struct rows {

@@ -64,3 +64,37 @@ for word in 0 -1 two; do
     "$bin/trianglecheck" --threads $word letter.1 >.out 2>.err
     check "--threads $word: exit code" test $? -eq 2
 done
+
+# --- one verdict with any memory, from text as from arrays: markers, neighbours, six nodes, a missing triangle
+part_by_part() { # part_by_part WORDS...: the verdict of trianglecheck WORDS
+    "$bin/trianglecheck" "$@" >whole 2>whole.err
+    found=$?
+    for memory in 1 100K 1%; do
+        "$bin/trianglecheck" "$@" --memory $memory --scratch . >parts 2>parts.err
+        check "trianglecheck $* --memory $memory: exit code" test $? -eq $found
+        check "trianglecheck $* --memory $memory: the same verdict" cmp whole parts
+        check "trianglecheck $* --memory $memory: the same words" cmp whole.err parts.err
+    done
+    check "nothing is left of scratch files" test -z "$(ls -d -- *-?????? 2>/dev/null)"
+}
+fresh section.poly letter.poly
+for switches in -pq30aA -pq30aAzo2n -pq30Dnj; do
+    run 0 $switches section
+    part_by_part section.1 --poly section.poly -q 30 --jettisoned
+    part_by_part section.1 --poly letter.poly -q 33 -a 1 --json
+done
+cp section.1.ele sound
+sed -n '1,11p' sound | sed '1s/^[0-9]*/10/' >section.1.ele
+part_by_part section.1 --poly section.poly
+sed '2s/[0-9]*$/99999/' sound >section.1.ele
+part_by_part section.1
+sed 5d sound >section.1.ele
+"$bin/trianglecheck" section.1 --memory 1 --scratch . >.out 2>.err
+check "exit code" test $? -eq 2
+complains "section\.1\.ele:[0-9]*: unexpected end of file"
+part_by_part nothing
+"$bin/trianglecheck" section.1 --memory 3X >.out 2>.err
+check "exit code" test $? -eq 2
+"$bin/trianglecheck" section.1 --memory 1 --scratch /nowhere >.out 2>.err
+check "exit code" test $? -eq 2
+complains "/nowhere: cannot make a scratch file there"

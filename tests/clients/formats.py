@@ -1,7 +1,8 @@
-"""Reads STEM.vtu, .msh, .2dm and .14 with readers of others, and compares them with STEM.node, .ele and .poly.
+"""Reads STEM.vtu, .msh, .2dm, .14 and .h5 with readers of others, and compares them with STEM.node, .ele and .poly.
 
-Usage: formats.py STEM ORDER      ORDER is 1 or 2 (with -o2, there is no .14)
+Usage: formats.py STEM ORDER      ORDER is 1 or 2 (with -o2, there is no .14 and no .h5)
 The files count from 1; vertices have one attribute, triangles one."""
+import os
 import sys
 
 import meshio
@@ -144,6 +145,49 @@ def by_words():
     assert not rest
 
 
+def by_h5py():
+    import h5py
+    with h5py.File(stem + ".h5") as f:
+        same("points", f["points"], points)
+        same("attributes", np.ravel(f["point_attributes"]), attributes)
+        same("markers", f["point_markers"], markers)
+        same("triangles", f["triangles"], triangles)
+        same("regions", np.ravel(f["triangle_attributes"]), regions)
+        same("segments", np.column_stack([f["segments"], f["segment_markers"]]), segments)
+        same("counts", [f["about"].attrs[k] for k in ("points", "triangles", "segments")],
+             [len(points), len(triangles), len(segments)])
+        same("bounds", f["about"].attrs["bounds"], [*points.min(0), *points.max(0)])
+
+
+def by_xdmf():
+    mesh = meshio.read(stem + ".xdmf")
+    same("points", mesh.points[:, :2], points)
+    same("triangles", mesh.get_cells_type("triangle"), triangles)
+    same("regions", np.ravel(mesh.get_cell_data("attributes", "triangle")), regions)
+    same("markers", mesh.point_data["marker"], markers)
+
+
+def by_vtkhdf():
+    from vtkmodules.vtkIOHDF import vtkHDFReader
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    reader = vtkHDFReader()
+    reader.SetFileName(stem + ".h5")
+    reader.Update()
+    grid = reader.GetOutputDataObject(0)
+    at = vtk_to_numpy(grid.GetPoints().GetData())
+    same("points", at[:, :2], points)
+    same("z", at[:, 2], 0 * at[:, 2])
+    n = len(triangles)
+    assert grid.GetNumberOfCells() == n + len(segments)
+    same("corners", vtk_to_numpy(grid.GetCells().GetConnectivityArray()),
+         np.concatenate([triangles.ravel(), segments[:, :2].ravel()]))
+    kinds = [grid.GetCellType(i) for i in range(grid.GetNumberOfCells())]
+    same("kinds", kinds, [5] * n + [3] * len(segments))
+    same("regions", vtk_to_numpy(grid.GetCellData().GetArray("attributes")).ravel()[:n], regions)
+    same("marker", vtk_to_numpy(grid.GetCellData().GetArray("marker")), [0] * n + segments[:, 2].tolist())
+    same("markers", vtk_to_numpy(grid.GetPointData().GetArray("marker")), markers)
+
+
 by_meshio(stem + ".vtu", "attributes")
 by_meshio(stem + ".msh", "attribute 0")
 by_vtk()
@@ -151,4 +195,8 @@ by_gmsh()
 by_py2dm()
 if order == 1:
     by_words()
+if os.path.exists(stem + ".h5"):
+    by_h5py()
+    by_xdmf()
+    by_vtkhdf()
 print("formats:", stem, len(points), "points,", len(triangles), "triangles: all readers agree")

@@ -1,11 +1,12 @@
 #!/bin/sh
-# The mesh in other programs' formats, opened by meshio, VTK, Gmsh and py2dm from PyPI. Where PyPI cannot be reached one
+# The mesh in other programs' formats, opened by meshio, VTK, Gmsh, h5py and py2dm from PyPI. Where PyPI cannot be reached one
 # line says so, and the exit code is 77.
-# Usage: run_formats.sh BIN_DIR WORK_DIR PYTHON
+# Usage: run_formats.sh BIN_DIR WORK_DIR PYTHON HDF5      HDF5 is 1 where the programs write .h5 files
 set -eu
 bin=$1
 work=$2
 python=$3
+hdf5=$4
 here=$(cd "$(dirname "$0")" && pwd)
 mkdir -p "$work"
 cd "$work"
@@ -14,12 +15,12 @@ skip() {
     echo "skipped: $1 ($(tail -n 1 pip.log))"
     exit 77
 }
-if [ ! -e fetched ]; then
+if [ ! -e fetched_with_h5py ]; then
     rm -rf venv
     "$python" -m venv venv >pip.log 2>&1 || skip "python has no venv (Debian: python3-venv)"
     venv/bin/python -m pip --disable-pip-version-check --no-input --retries 2 install meshio==5.3.5 vtk==9.7.2 \
-        gmsh==4.15.2 py2dm==0.2.2 >pip.log 2>&1 || skip "PyPI cannot be reached"
-    touch fetched
+        gmsh==4.15.2 py2dm==0.2.2 h5py==3.16.0 >pip.log 2>&1 || skip "PyPI cannot be reached"
+    touch fetched_with_h5py
 fi
 
 # A basin with a side open to the sea (marker 2), an island, two regions and a line between them without a marker.
@@ -54,6 +55,11 @@ cat >basin.poly <<END
 2 7.5 1 2 0.1
 END
 "$bin/ptriangle" -Qpq30aA --output a --output a.vtu --output a.msh --output a.2dm --output a.14 basin.poly
+rm -f a.h5
+if [ "$hdf5" = 1 ]; then
+    "$bin/ptriangle" -Qpq30aA --output a.h5 basin.poly
+    test -e a.h5
+fi
 "$bin/ptriangle" -Qpq30aAo2 --output b --output b.vtu --output b.msh --output b.2dm basin.poly
 venv/bin/python "$here/formats.py" a 1
 venv/bin/python "$here/formats.py" b 2

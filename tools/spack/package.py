@@ -15,12 +15,15 @@ class Ptriangle(CMakePackage):
     variant("shared", default=True, description="Shared libraries instead of static ones")
     variant("openmp", default=True, description="The parallel library and program")
     variant("pictures", default=False, description="meshplot, which draws meshes")
+    variant("hdf5", default=True, description="HDF5 files, for meshes of any size")
     variant("prefix", default=False, description="pt- before the names that Triangle has as well")
 
     depends_on("c", type="build")
     depends_on("cxx", type="build")
     depends_on("cmake@3.22:", type="build")
     depends_on("jansson")
+    depends_on("hdf5@1.10.3:~mpi", when="+hdf5")
+    depends_on("zlib-api", when="+hdf5")
     depends_on("cairo+svg+png", when="+pictures")
     conflicts("%gcc@:10", msg="std::from_chars for double came with GCC 11")
 

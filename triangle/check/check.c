@@ -100,12 +100,12 @@ void tri_check_each(struct checker *c, enum tri_check_kind kind, int64_t first, 
     c->report->item[kind].count = before + n_bad;
 }
 
-bool tri_check_is_alone(void)
+int32_t tri_check_threads(void)
 {
 #ifdef _OPENMP
-    return omp_get_max_threads() == 1;
+    return omp_get_max_threads();
 #else
-    return true;
+    return 1;
 #endif
 }
 

@@ -10,7 +10,7 @@
 
 #include "triangle/check/store.h"
 
-enum { SMALL_GROUP = 24 };
+enum { SMALL_GROUP = 24, MOST_RANGES = 4 };
 
 static int32_t lesser(int32_t a, int32_t b)
 {
@@ -30,62 +30,58 @@ static bool covers(const struct checker *c, int32_t v, int32_t a, int32_t b)
     return check_place(c, a).y <= y && y < check_place(c, b).y;
 }
 
-static void count_alone(struct check_part *p, const struct checker *c)
+/* Vertices that one thread counts for: it looks at all half-edges, but needs no atomic operations, which would cost
+ * more than looking. */
+struct range {
+    int32_t first, end;
+};
+
+static bool holds(struct range r, int32_t v)
 {
+    return v >= r.first && v < r.end;
+}
+
+static void count(const struct checker *c, struct range r)
+{
+    const struct check_part *p = &c->part;
     for (int32_t h = 0; h < p->n_half_edges; h++) {
         int32_t a = check_org(c, h), b = check_dest(c, h), v = check_apex(c, h);
-        p->entry_of[lesser(a, b) + 1]++;
-        p->turns[v] += covers(c, v, a, b);
-        p->used[v] = 1;
-    }
-}
-
-/* With several threads an atomic operation is what counting costs. */
-static void count_together(struct check_part *p, const struct checker *c)
-{
-#pragma omp parallel for schedule(static)
-    for (int32_t h = 0; h < p->n_half_edges; h++) {
-        int32_t a = check_org(c, h), b = check_dest(c, h), v = check_apex(c, h), least = lesser(a, b);
-#pragma omp atomic
-        p->entry_of[least + 1]++;
-        if (covers(c, v, a, b)) {
-#pragma omp atomic
-            p->turns[v]++;
+        if (holds(r, lesser(a, b)))
+            p->entry_of[lesser(a, b) + 1]++;
+        if (holds(r, v)) {
+            p->turns[v] += covers(c, v, a, b);
+            p->used[v] = 1;
         }
-#pragma omp atomic write
-        p->used[v] = 1;
     }
 }
 
-static void fill_alone(struct check_part *p, const struct checker *c)
+static void fill(const struct checker *c, struct range r)
 {
+    const struct check_part *p = &c->part;
     for (int32_t h = 0; h < p->n_half_edges; h++) {
         int32_t a = check_org(c, h), b = check_dest(c, h);
-        p->entry[p->entry_of[lesser(a, b)]++] = key_of(a, b) | (uint64_t)h;
+        if (holds(r, lesser(a, b)))
+            p->entry[p->entry_of[lesser(a, b)]++] = key_of(a, b) | (uint64_t)h;
     }
 }
 
-static void fill_together(struct check_part *p, const struct checker *c)
+static void each_range(const struct checker *c, void (*look)(const struct checker *c, struct range r))
 {
+    int32_t n = c->part.n_points, n_ranges = tri_check_threads() < MOST_RANGES ? tri_check_threads() : MOST_RANGES;
 #pragma omp parallel for schedule(static)
-    for (int32_t h = 0; h < p->n_half_edges; h++) {
-        int32_t a = check_org(c, h), b = check_dest(c, h), at, *end = &p->entry_of[lesser(a, b)];
-#pragma omp atomic capture
-        at = (*end)++;
-        p->entry[at] = key_of(a, b) | (uint64_t)h;
-    }
+    for (int32_t i = 0; i < n_ranges; i++)
+        look(c, (struct range){(int32_t)((int64_t)n * i / n_ranges), (int32_t)((int64_t)n * (i + 1) / n_ranges)});
 }
 
 static void group(struct checker *c)
 {
     struct check_part *p = &c->part;
     int32_t n = p->n_points;
-    bool alone = tri_check_is_alone();
-    (alone ? count_alone : count_together)(p, c);
+    each_range(c, count);
     for (int32_t i = 0; i < n; i++)
         p->entry_of[i + 1] += p->entry_of[i];
     /* While a group is filled its start moves to its end, which is the start of the next one: shift them back. */
-    (alone ? fill_alone : fill_together)(p, c);
+    each_range(c, fill);
     memmove(p->entry_of + 1, p->entry_of, (size_t)n * sizeof *p->entry_of);
     p->entry_of[0] = 0;
 }

@@ -226,8 +226,8 @@ enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_c
 /* In the part. O(log n). */
 struct check_edge tri_check_find_edge(const struct checker *c, int32_t a, int32_t b);
 
-/* One thread only? Then counting needs no atomic operations. */
-bool tri_check_is_alone(void);
+/* As many as OpenMP has; 1 without it. */
+int32_t tri_check_threads(void);
 
 /* n * size bytes, never a null pointer for n = 0. */
 void *tri_check_array(int64_t n, size_t size);

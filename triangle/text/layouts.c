@@ -46,11 +46,32 @@ static char *put_number(char *at, const struct tri_grid *grid, size_t i)
     return tri_print_integer(at, (int64_t)i + grid->base, 4);
 }
 
+typedef char *row_call(void *user, size_t i, char *at);
+
 static enum tri_status write_rows(struct tri_output *output, const struct tri_grid *grid, int64_t n,
-                                  size_t max_row_bytes, char *(*row)(void *, size_t, char *),
-                                  const struct tri_executor *executor, struct tri_error *error)
+                                  size_t max_row_bytes, row_call *row, const struct tri_executor *executor,
+                                  struct tri_error *error)
 {
     return tri_write_table(output, (size_t)n, max_row_bytes, row, (void *)grid, executor, error);
+}
+
+/* Rows that do not begin with the first. */
+struct part {
+    const struct tri_grid *grid;
+    int64_t first;
+    row_call *row;
+};
+
+static char *part_row(void *user, size_t i, char *at)
+{
+    const struct part *part = user;
+    return part->row((void *)part->grid, (size_t)part->first + i, at);
+}
+
+static enum tri_status write_part(struct tri_output *output, struct part part, int64_t n, size_t max_row_bytes,
+                                  const struct tri_executor *executor, struct tri_error *error)
+{
+    return tri_write_table(output, (size_t)n, max_row_bytes, part_row, &part, executor, error);
 }
 
 /* --- .node */
@@ -71,6 +92,12 @@ static char *node_row(void *user, size_t i, char *at)
     for (int32_t k = 0; k < grid->n_attributes; k++)
         at = put_real(at, 2, grid->attribute(grid->user, (int64_t)i, k));
     return put_end(put_marker(at, grid, 4, point.marker, 0));
+}
+
+enum tri_status tri_write_node_rows(struct tri_output *output, const struct tri_grid *grid, int64_t first, int64_t n,
+                                    const struct tri_executor *executor, struct tri_error *error)
+{
+    return write_part(output, (struct part){grid, first, node_row}, n, node_bytes(grid), executor, error);
 }
 
 enum tri_status tri_write_node(struct tri_output *output, const struct tri_grid *grid,
@@ -97,13 +124,23 @@ static char *ele_row(void *user, size_t i, char *at)
     return put_end(at);
 }
 
+static size_t ele_bytes(const struct tri_grid *grid)
+{
+    return (2 + (size_t)grid->n_nodes) * INTEGER_BYTES + (size_t)grid->n_columns * REAL_BYTES + 1;
+}
+
+enum tri_status tri_write_ele_rows(struct tri_output *output, const struct tri_grid *grid, int64_t first, int64_t n,
+                                   const struct tri_executor *executor, struct tri_error *error)
+{
+    return write_part(output, (struct part){grid, first, ele_row}, n, ele_bytes(grid), executor, error);
+}
+
 enum tri_status tri_write_ele(struct tri_output *output, const struct tri_grid *grid,
                               const struct tri_executor *executor, struct tri_error *error)
 {
     const int64_t counts[] = {grid->n_triangles, grid->n_nodes, grid->n_columns};
-    const size_t row_bytes = (2 + (size_t)grid->n_nodes) * INTEGER_BYTES + (size_t)grid->n_columns * REAL_BYTES + 1;
     enum tri_status status = tri_write_counts(output, counts, 3, error);
-    return status ? status : write_rows(output, grid, grid->n_triangles, row_bytes, ele_row, executor, error);
+    return status ? status : write_rows(output, grid, grid->n_triangles, ele_bytes(grid), ele_row, executor, error);
 }
 
 /* --- .poly: no vertices; segments, holes, regions */
@@ -119,12 +156,20 @@ static char *segment_row(void *user, size_t i, char *at)
     return put_end(put_marker(at, grid, 4, segment.marker, 4));
 }
 
+enum { SEGMENT_BYTES = 4 * INTEGER_BYTES + 1 };
+
+enum tri_status tri_write_segment_rows(struct tri_output *output, const struct tri_grid *grid, int64_t first,
+                                       int64_t n, const struct tri_executor *executor, struct tri_error *error)
+{
+    return write_part(output, (struct part){grid, first, segment_row}, n, SEGMENT_BYTES, executor, error);
+}
+
 static enum tri_status write_segments(struct tri_output *output, const struct tri_grid *grid,
                                       const struct tri_executor *executor, struct tri_error *error)
 {
     enum tri_status status = tri_write_counts(output, (int64_t[]){grid->n_segments, grid->has_markers}, 2, error);
     return status ? status
-                  : write_rows(output, grid, grid->n_segments, 4 * INTEGER_BYTES + 1, segment_row, executor, error);
+                  : write_rows(output, grid, grid->n_segments, SEGMENT_BYTES, segment_row, executor, error);
 }
 
 /* Holes or regions: so many reals in each row. */
@@ -151,17 +196,24 @@ static enum tri_status write_sites(struct tri_output *output, struct sites sites
     return status ? status : tri_write_table(output, (size_t)n, row_bytes, site_row, &sites, NULL, error);
 }
 
-enum tri_status tri_write_poly(struct tri_output *output, const struct tri_grid *grid,
-                               const struct tri_executor *executor, struct tri_error *error)
+enum tri_status tri_write_sites(struct tri_output *output, const struct tri_grid *grid,
+                                const struct tri_executor *executor, struct tri_error *error)
 {
     static const struct tri_pslg none;
     const struct tri_pslg *figure = grid->figure ? grid->figure : &none;
+    const struct sites holes = {grid->base, 2, figure->holes}, regions = {grid->base, 4, figure->regions};
+    enum tri_status status = write_sites(output, holes, figure->n_holes, error);
+    (void)executor;
+    return status || figure->n_regions == 0 ? status : write_sites(output, regions, figure->n_regions, error);
+}
+
+enum tri_status tri_write_poly(struct tri_output *output, const struct tri_grid *grid,
+                               const struct tri_executor *executor, struct tri_error *error)
+{
     const int64_t counts[] = {0, 2, grid->n_attributes, grid->has_markers};
     enum tri_status status = tri_write_counts(output, counts, 4, error);
     status = status ? status : write_segments(output, grid, executor, error);
-    const struct sites holes = {grid->base, 2, figure->holes}, regions = {grid->base, 4, figure->regions};
-    status = status ? status : write_sites(output, holes, figure->n_holes, error);
-    return status || figure->n_regions == 0 ? status : write_sites(output, regions, figure->n_regions, error);
+    return status ? status : tri_write_sites(output, grid, executor, error);
 }
 
 /* --- .edge, .v.edge, .neigh */

@@ -4,6 +4,7 @@
  * be replaced gets a second name, by which it can be put back. */
 #include "triangle/text/output.h"
 
+#include <assert.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -389,6 +390,49 @@ enum tri_status tri_output_write(struct tri_output *output, const char *data, si
 {
     const uint64_t place = tri_output_reserve(output, size);
     return tri_output_conclude(output, tri_output_write_at(output, place, data, size), error);
+}
+
+enum { SHIFT_BYTES = 1 << 20 };
+
+/* Moves n bytes, which fit in the buffer. */
+static int move_piece(const struct tri_output *output, uint64_t from, uint64_t to, size_t n, char *buffer)
+{
+    for (size_t done = 0; done < n;) {
+        const ssize_t got = pread(output->file, buffer + done, n - done, (off_t)(from + done));
+        if (got == 0 || (got < 0 && errno != EINTR))
+            return got == 0 ? EIO : errno;
+        done += got > 0 ? (size_t)got : 0;
+    }
+    return tri_output_write_at(output, to, buffer, n);
+}
+
+/* Forwards from the end, so that nothing is overwritten before it has been moved; backwards from the begin. */
+static int move_all(struct tri_output *output, uint64_t from, int64_t by, char *buffer)
+{
+    const uint64_t end = output->size;
+    int result = 0;
+    for (uint64_t done = 0; from + done < end && !result;) {
+        const uint64_t left = end - from - done;
+        const size_t n = left < SHIFT_BYTES ? (size_t)left : SHIFT_BYTES;
+        const uint64_t at = by > 0 ? end - done - n : from + done;
+        result = move_piece(output, at, at + (uint64_t)by, n, buffer);
+        done += n;
+    }
+    output->size = end + (uint64_t)by;
+    if (!result && by < 0 && ftruncate(output->file, (off_t)output->size) != 0)
+        result = errno;
+    return result;
+}
+
+enum tri_status tri_output_shift(struct tri_output *output, uint64_t from, int64_t by, struct tri_error *error)
+{
+    assert(tri_output_has_places(output) && from <= output->size && (by >= 0 || from >= (uint64_t)-by));
+    char *buffer = malloc(SHIFT_BYTES);
+    if (!buffer)
+        return tri_fail(error, TRI_NO_MEMORY, output->path, 0, "no memory to write the file");
+    const int result = by ? move_all(output, from, by, buffer) : 0;
+    free(buffer);
+    return tri_output_conclude(output, result, error);
 }
 
 /* Some file systems report only here that the data found no room. */

@@ -73,6 +73,10 @@ uint64_t tri_output_reserve(struct tri_output *output, size_t size);
 int tri_output_write_at(const struct tri_output *output, uint64_t place, const char *data, size_t size);
 enum tri_status tri_output_conclude(struct tri_output *output, int result, struct tri_error *error);
 
+/* Moves all bytes from a place on by `by`, forwards or, where by < 0, backwards over those before it; for files that
+ * have places. The bytes between are then to be written. */
+enum tri_status tri_output_shift(struct tri_output *output, uint64_t from, int64_t by, struct tri_error *error);
+
 /* Closes all files, so that nothing is left to do but to give them their names. */
 enum tri_status tri_outputs_close(struct tri_output_set *set, struct tri_error *error);
 

@@ -151,15 +151,20 @@ enum tri_status tri_write_table(struct tri_output *output, size_t n_rows, size_t
     return status;
 }
 
-enum tri_status tri_write_counts(struct tri_output *output, const int64_t *counts, int n, struct tri_error *error)
+_Static_assert(TRI_COUNTS_ROOM >= TRI_MOST_COUNTS * (TRI_INTEGER_CHARS + 2), "a header fits");
+
+char *tri_put_counts(char at[TRI_COUNTS_ROOM], const int64_t *counts, int n)
 {
-    enum { MAX_COUNTS = 8 };
-    assert(n >= 1 && n <= MAX_COUNTS);
-    char line[MAX_COUNTS * (TRI_INTEGER_CHARS + 2)], *at = line;
+    assert(n >= 1 && n <= TRI_MOST_COUNTS);
     for (int i = 0; i < n; i++)
         at = tri_print_integer(i ? put(at, "  ", 2) : at, counts[i], 0);
-    at = put(at, "\n", 1);
-    return tri_output_write(output, line, (size_t)(at - line), error);
+    return put(at, "\n", 1);
+}
+
+enum tri_status tri_write_counts(struct tri_output *output, const int64_t *counts, int n, struct tri_error *error)
+{
+    char line[TRI_COUNTS_ROOM];
+    return tri_output_write(output, line, (size_t)(tri_put_counts(line, counts, n) - line), error);
 }
 
 /* A word with a line break in it must not become a record of the file. */

@@ -1,0 +1,235 @@
+/* Text files of a stream of tiles are byte for byte those of the mesh in memory, whatever the estimate was. */
+#include "triangle/text/stream.h"
+
+#include <dirent.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+#include <cmocka.h>
+
+#include "tests/allocations.h"
+#include "tests/lattice_tiles.h"
+
+static const struct lattice SMALL = {5, 1, 2, 2, false, false}, PLAIN = {11, 3, 0, 0, true, true},
+                            LARGE = {230, 37, 1, 1, true, false};
+
+static double sites[] = {0.5, 0.5, 0.25, 0.125, 1, 2, 3, 4};
+static const struct tri_pslg FIGURE = {.n_holes = 2, .holes = sites, .n_regions = 1, .regions = sites + 4};
+static char *words[] = {"program", "-pq\n30"};
+
+/* --- the lattice as a grid */
+
+static void point(const void *user, int64_t i, struct tri_grid_point *point)
+{
+    lattice_point(user, i, point->at);
+    point->marker = lattice_point_marker(i);
+}
+
+static double attribute(const void *user, int64_t i, int32_t k)
+{
+    (void)user;
+    return lattice_attribute(i, k);
+}
+
+static void triangle(const void *user, int64_t i, int64_t nodes[6]) { lattice_corners(user, i, nodes); }
+
+static double column(const void *user, int64_t i, int32_t k) { return lattice_column(user, lattice_region(i), k); }
+
+static void segment(const void *user, int64_t i, struct tri_grid_edge *segment)
+{
+    lattice_ends(user, i, segment->ends);
+    segment->marker = lattice_segment_marker(i);
+}
+
+static struct tri_grid grid_of(const struct lattice *l, const struct tri_text_options *o)
+{
+    return (struct tri_grid){.user = l, .base = o->base, .has_markers = o->markers, .n_points = lattice_points(l),
+                             .n_triangles = lattice_triangles(l), .n_segments = lattice_segments(l),
+                             .n_attributes = l->n_attributes, .n_columns = l->n_columns, .n_nodes = 3,
+                             .figure = o->figure, .point = point, .attribute = attribute, .triangle = triangle,
+                             .column = column, .segment = segment};
+}
+
+/* --- files */
+
+static const char *names[] = {"x.node", "x.ele", "x.poly"};
+
+static enum tri_status open_all(struct tri_output_set *set, struct tri_text_options *o, struct tri_error *error)
+{
+    struct tri_output **files[] = {&o->node, &o->ele, &o->poly};
+    enum tri_status status = TRI_OK;
+    tri_outputs_begin(set);
+    for (int i = 0; i < 3 && !status; i++)
+        status = tri_output_open(set, names[i], files[i], error);
+    return status;
+}
+
+static void write_grid(const struct lattice *lattice, struct tri_text_options o)
+{
+    struct tri_output_set set;
+    const struct tri_grid grid = grid_of(lattice, &o);
+    assert_int_equal(open_all(&set, &o, NULL), TRI_OK);
+    assert_int_equal(tri_write_node(o.node, &grid, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_write_ele(o.ele, &grid, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_write_poly(o.poly, &grid, NULL, NULL), TRI_OK);
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(tri_write_comment(&set.outputs[i], o.argc, o.argv, NULL), TRI_OK);
+    assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+}
+
+/* A sink that is told of another estimate. */
+struct teller {
+    struct tri_sink to;
+    double estimate;
+};
+
+static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
+{
+    const struct teller *teller = user;
+    struct tri_stream other = *stream;
+    other.estimate = teller->estimate;
+    return teller->to.begin(teller->to.user, &other, error);
+}
+
+static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
+{
+    const struct teller *teller = user;
+    return teller->to.take(teller->to.user, tile, error);
+}
+
+static enum tri_status end(void *user, struct tri_error *error)
+{
+    const struct teller *teller = user;
+    return teller->to.end(teller->to.user, error);
+}
+
+static enum tri_status write_stream(const struct lattice *lattice, struct tri_text_options o, double estimate,
+                                    struct tri_error *error)
+{
+    struct tri_output_set set;
+    struct tri_text_stream *stream = NULL;
+    struct teller teller = {.estimate = estimate};
+    const struct tri_sink sink = {&teller, begin, take, end};
+    enum tri_status status = open_all(&set, &o, error);
+    status = status ? status : tri_text_stream_new(&stream, &o, &teller.to, error);
+    status = status ? status : lattice_hand_out(lattice, &sink, error);
+    tri_text_stream_free(stream);
+    status = status ? status : tri_outputs_commit(&set, error);
+    tri_outputs_abort(&set);
+    return status;
+}
+
+static char *bytes_of(const char *name)
+{
+    FILE *file = fopen(name, "rb");
+    assert_non_null(file);
+    assert_int_equal(fseek(file, 0, SEEK_END), 0);
+    const size_t n = (size_t)ftell(file);
+    rewind(file);
+    char *bytes = malloc(n + 1);
+    assert_int_equal(fread(bytes, 1, n, file), n);
+    bytes[n] = 0;
+    fclose(file);
+    return bytes;
+}
+
+static int n_files(void)
+{
+    int n = -2;
+    DIR *directory = opendir(".");
+    while (readdir(directory))
+        n++;
+    closedir(directory);
+    return n;
+}
+
+static int remove_files(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 3; i++)
+        remove(names[i]);
+    assert_int_equal(n_files(), 0);
+    return 0;
+}
+
+static void compare(const struct lattice *lattice, const struct tri_text_options *o, double estimate)
+{
+    char *wanted[3];
+    write_grid(lattice, *o);
+    for (int i = 0; i < 3; i++)
+        wanted[i] = bytes_of(names[i]);
+    assert_int_equal(write_stream(lattice, *o, estimate, NULL), TRI_OK);
+    for (int i = 0; i < 3; i++) {
+        char *found = bytes_of(names[i]);
+        assert_string_equal(found, wanted[i]);
+        free(found);
+        free(wanted[i]);
+    }
+}
+
+static void test_same_bytes(void **state)
+{
+    (void)state;
+    const struct lattice *all[] = {&SMALL, &PLAIN, &LARGE};
+    const double estimates[] = {0, 1, 35, 200, 5000, 1e5, 3e7, 1e300, -1};
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 9; k++) {
+            const struct tri_text_options options = {.base = k % 2, .markers = k % 3 > 0, .argc = 2, .argv = words,
+                                                     .figure = k % 5 ? &FIGURE : NULL};
+            compare(all[i], &options, estimates[k]);
+        }
+}
+
+static void test_full_disk(void **state)
+{
+    (void)state;
+    struct rlimit before, limit;
+    struct tri_error error;
+    const struct tri_text_options options = {.markers = true, .argc = 2, .argv = words};
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    for (rlim_t size = 0; size < 3000000; size = 2 * size + 7) {
+        limit = (struct rlimit){size, before.rlim_max};
+        assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+        enum tri_status status = write_stream(&LARGE, options, 1, &error);
+        assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+        assert_int_equal(status, TRI_CANNOT_WRITE);
+        assert_int_equal(n_files(), 0);
+    }
+}
+
+static void test_no_memory(void **state)
+{
+    (void)state;
+    const struct tri_text_options options = {.markers = true, .argc = 2, .argv = words};
+    enum tri_status status = TRI_NO_MEMORY;
+    const int64_t held = atomic_load(&support_held);
+    for (int64_t k = 1; status; k++) {
+        if (k > 8 && k < 16) /* the lattice's own */
+            continue;
+        atomic_store(&support_calls, 0);
+        atomic_store(&support_fail_at, k);
+        status = write_stream(&SMALL, options, 1e9, NULL);
+        atomic_store(&support_fail_at, INT64_MAX);
+        assert_int_equal(atomic_load(&support_held), held);
+        assert_true(status == TRI_OK || n_files() == 0);
+        assert_true(k < 200);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_teardown(test_same_bytes, remove_files),
+        cmocka_unit_test_teardown(test_full_disk, remove_files),
+        cmocka_unit_test_teardown(test_no_memory, remove_files),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

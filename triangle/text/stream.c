@@ -1,0 +1,181 @@
+/* A tile is shown to the layouts as a grid, of which they write the rows that the tile has. */
+#include "triangle/text/stream.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_COUNTS = 4 };
+
+/* A table whose first line waits for the number of its rows. */
+struct table {
+    struct tri_output *output; /* NULL: not wanted */
+    tri_write_rows_call *write;
+    uint64_t place;            /* of the first line */
+    size_t room;               /* kept for it */
+    int64_t counts[MOST_COUNTS]; /* of that line; the first is that of rows so far */
+    int n_counts;
+};
+
+struct tri_text_stream {
+    struct tri_text_options options;
+    struct tri_grid grid;
+    const struct tri_tile *tile;
+    double *columns;           /* [n_regions][n_columns] */
+    struct table points, triangles, segments;
+};
+
+/* --- the tile as a grid */
+
+static void point(const void *user, int64_t i, struct tri_grid_point *point)
+{
+    const struct tri_tile *tile = ((const struct tri_text_stream *)user)->tile;
+    const int64_t k = i - tile->first_vertex;
+    *point = (struct tri_grid_point){{tile->points[k][0], tile->points[k][1]}, tile->point_markers[k]};
+}
+
+static double attribute(const void *user, int64_t i, int32_t k)
+{
+    const struct tri_text_stream *s = user;
+    return s->tile->attributes[(i - s->tile->first_vertex) * s->grid.n_attributes + k];
+}
+
+static void triangle(const void *user, int64_t i, int64_t nodes[6])
+{
+    const struct tri_tile *tile = ((const struct tri_text_stream *)user)->tile;
+    memcpy(nodes, tile->corners[i - tile->first_triangle], sizeof *tile->corners);
+}
+
+static double column(const void *user, int64_t i, int32_t k)
+{
+    const struct tri_text_stream *s = user;
+    return s->columns[(int64_t)s->tile->regions[i - s->tile->first_triangle] * s->grid.n_columns + k];
+}
+
+static void segment(const void *user, int64_t i, struct tri_grid_edge *segment)
+{
+    const struct tri_tile *tile = ((const struct tri_text_stream *)user)->tile;
+    const int64_t k = i - tile->first_segment;
+    *segment = (struct tri_grid_edge){{tile->ends[k][0], tile->ends[k][1]}, tile->segment_markers[k], {0}};
+}
+
+/* --- tables */
+
+/* Room for the first line, if there are about so many rows. */
+static void keep_room(struct table *table, double rows)
+{
+    char line[TRI_COUNTS_ROOM];
+    if (!table->output)
+        return;
+    table->counts[0] = rows >= 0 && rows < 9e18 ? (int64_t)rows : 0;
+    table->room = (size_t)(tri_put_counts(line, table->counts, table->n_counts) - line);
+    table->place = tri_output_reserve(table->output, table->room);
+    table->counts[0] = 0;
+}
+
+static enum tri_status add_rows(const struct tri_text_stream *s, struct table *table, int64_t n,
+                                struct tri_error *error)
+{
+    const int64_t first = table->counts[0];
+    table->counts[0] += n;
+    return table->output ? table->write(table->output, &s->grid, first, n, NULL, error) : TRI_OK;
+}
+
+/* Puts the first line where it belongs. */
+static enum tri_status conclude_table(struct table *table, struct tri_error *error)
+{
+    char line[TRI_COUNTS_ROOM];
+    if (!table->output)
+        return TRI_OK;
+    const size_t n = (size_t)(tri_put_counts(line, table->counts, table->n_counts) - line);
+    enum tri_status status = tri_output_shift(table->output, table->place + table->room,
+                                              (int64_t)n - (int64_t)table->room, error);
+    if (status)
+        return status;
+    return tri_output_conclude(table->output, tri_output_write_at(table->output, table->place, line, n), error);
+}
+
+/* --- the sink */
+
+static enum tri_status copy_columns(struct tri_text_stream *s, const struct tri_stream *stream, struct tri_error *error)
+{
+    const size_t n = (size_t)stream->n_regions * (size_t)stream->n_columns;
+    s->columns = malloc((n + 1) * sizeof *s->columns);
+    if (!s->columns)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory for %d regions", (int)stream->n_regions);
+    if (n > 0)
+        memcpy(s->columns, stream->regions, n * sizeof *s->columns);
+    return TRI_OK;
+}
+
+static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
+{
+    struct tri_text_stream *s = user;
+    const struct tri_text_options *o = &s->options;
+    const int64_t markers = o->markers, attributes = stream->n_attributes;
+    s->grid = (struct tri_grid){.user = s, .base = o->base, .has_markers = o->markers,
+                                .n_attributes = stream->n_attributes, .n_columns = stream->n_columns, .n_nodes = 3,
+                                .figure = o->figure, .point = point, .attribute = attribute, .triangle = triangle,
+                                .column = column, .segment = segment};
+    s->points = (struct table){o->node, tri_write_node_rows, 0, 0, {0, 2, attributes, markers}, 4};
+    s->triangles = (struct table){o->ele, tri_write_ele_rows, 0, 0, {0, 3, stream->n_columns}, 3};
+    s->segments = (struct table){o->poly, tri_write_segment_rows, 0, 0, {0, markers}, 2};
+    keep_room(&s->points, stream->estimate / 2);
+    keep_room(&s->triangles, stream->estimate);
+    enum tri_status status = copy_columns(s, stream, error);
+    if (!status && o->poly)
+        status = tri_write_counts(o->poly, s->points.counts, 4, error); /* no points */
+    keep_room(&s->segments, sqrt(stream->estimate));
+    return status;
+}
+
+static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
+{
+    struct tri_text_stream *s = user;
+    s->tile = tile;
+    enum tri_status status = add_rows(s, &s->points, tile->n_vertices, error);
+    status = status ? status : add_rows(s, &s->triangles, tile->n_triangles, error);
+    return status ? status : add_rows(s, &s->segments, tile->n_segments, error);
+}
+
+static enum tri_status end(void *user, struct tri_error *error)
+{
+    struct tri_text_stream *s = user;
+    const struct tri_text_options *o = &s->options;
+    struct tri_output *files[] = {o->node, o->ele, o->poly};
+    enum tri_status status = conclude_table(&s->points, error);
+    status = status ? status : conclude_table(&s->triangles, error);
+    status = status ? status : conclude_table(&s->segments, error);
+    if (!status && o->poly)
+        status = tri_write_sites(o->poly, &s->grid, NULL, error);
+    for (int i = 0; i < 3 && o->argc > 0 && !status; i++)
+        status = files[i] ? tri_write_comment(files[i], o->argc, o->argv, error) : TRI_OK;
+    return status;
+}
+
+/* --- the stream */
+
+enum tri_status tri_text_stream_new(struct tri_text_stream **stream, const struct tri_text_options *options,
+                                    struct tri_sink *sink, struct tri_error *error)
+{
+    struct tri_output *files[] = {options->node, options->ele, options->poly};
+    *stream = NULL;
+    for (int i = 0; i < 3; i++)
+        if (files[i] && !tri_output_has_places(files[i]))
+            return tri_fail(error, TRI_CANNOT_WRITE, files[i]->path, 0,
+                            "a mesh that is not in memory cannot be written to a device or pipe");
+    *stream = malloc(sizeof **stream);
+    if (!*stream)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory to write files");
+    **stream = (struct tri_text_stream){.options = *options};
+    *sink = (struct tri_sink){*stream, begin, take, end};
+    return TRI_OK;
+}
+
+void tri_text_stream_free(struct tri_text_stream *stream)
+{
+    if (!stream)
+        return;
+    free(stream->columns);
+    free(stream);
+}

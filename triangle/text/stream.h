@@ -1,0 +1,39 @@
+/* A stream of tiles as .node, .ele and .poly: byte for byte the files of the same mesh in memory.
+ *
+ * The first line of a table says how many rows it has, which is known at the end. Room is kept for a number of as many
+ * digits as the stream's estimate lets expect; where it has more or fewer the rows are moved by that, once. */
+#ifndef TRIANGLE_TEXT_STREAM_H
+#define TRIANGLE_TEXT_STREAM_H
+
+#include "ptriangle/tiles.h"
+#include "triangle/text/write.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct tri_text_options {
+    struct tri_output *node, *ele, *poly; /* opened, the caller's, with places; NULL: not wanted */
+    int32_t base;                         /* 0 or 1: what files count from */
+    bool markers;                         /* they are written */
+    const struct tri_pslg *figure;        /* its holes and regions go into .poly; NULL: none */
+    int argc;                             /* the command line, for the comment at the end; 0: no comment */
+    char *const *argv;
+};
+
+struct tri_text_stream;
+
+/* *sink writes the files. After its end they are complete, and their owner commits them; after any failure, or where no
+ * end comes, he aborts them. What the options name outlives the stream. TRI_NO_MEMORY, and of the sink what is said in
+ * triangle/text/output.h; TRI_CANNOT_WRITE also for a device or pipe. */
+enum tri_status tri_text_stream_new(struct tri_text_stream **stream, const struct tri_text_options *options,
+                                    struct tri_sink *sink, struct tri_error *error);
+
+/* NULL is fine. */
+void tri_text_stream_free(struct tri_text_stream *stream);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
