@@ -625,7 +625,7 @@ static void renumber(struct numbering *n)
     rename_subs(n);
     rank_subs(n);
     rank_triangles(n);
-    free(n->order); /* before the buffer's pages are asked for */
+    tri_mesh_extra_free(n->mesh, n->order); /* before the buffer's pages are asked for */
     n->order = NULL;
     move_triangles(n);
     move_subs(n);
