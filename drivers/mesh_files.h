@@ -34,6 +34,9 @@ struct mesh_files {
                                             NULL: no -r */
 };
 
+/* Is the file with this suffix, ".node", among those that are written? */
+bool mesh_files_has(const struct mesh_files *files, const char *suffix);
+
 /* Looks whether all files, and further ones, could be created, so that nobody waits for a mesh that cannot be kept, and
  * whether each is a file of its own that nobody has read. Leaves nothing behind. Only the arguments, exports and
  * points_in_poly must be set. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */

@@ -17,6 +17,7 @@
 #include "drivers/run.h"
 #include "drivers/streams.h"
 #include "sched/schedule.h"
+#include "sched/sweep/queue.h"
 #include "sched/threads.h"
 #include "triangle/estimate.h"
 #include "triangle/text/write.h"
@@ -94,7 +95,8 @@ static enum tri_status refine_with(struct program *p, struct run *run, const str
     p->n_before = mesh->n_vertices;
     progress_begin(&p->progress, mesh->n_triangles, run->plan.triangles, p->threads);
     enum tri_status status = par_refine(mesh, quality, options, &p->schedule, error);
-    progress_end(&p->progress, options->sweep ? p->streams.triangles : mesh->n_triangles, p->schedule.seconds_number);
+    progress_end(&p->progress, options->sweep ? p->streams.triangles : mesh->n_triangles,
+                 options->sweep ? 0 : p->schedule.seconds_number);
     p->refined = true;
     return status;
 }
@@ -112,18 +114,32 @@ static void count_streamed(struct tri_counts *c, const struct tri_counts *before
     c->interior = c->subsegments - c->exterior;
 }
 
+/* Bytes of tiles that may wait for the disk. */
+static int64_t waiting_bytes(const struct run_plan *plan)
+{
+    return (int64_t)fmin(fmax(plan->memory / 32, 0x1p20), 0x1p26);
+}
+
 /* Refines, and writes what is finished meanwhile. */
 static enum tri_status sweep(struct program *p, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
                              const struct tri_refine_options *quality, struct tri_error *error)
 {
     struct par_options options = options_of(p, run);
     struct tri_counts before;
-    struct tri_sink sink = streams_sink(&p->streams);
-    options.sink = &sink;
+    const struct tri_sink streams = streams_sink(&p->streams);
+    struct par_queue queue;
     enum tri_status status = tri_count_mesh(&before, mesh, error);
     int64_t unused = mesh->n_vertices - before.vertices;
     status = status ? status : streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
-    status = status ? status : refine_with(p, run, &options, mesh, quality, error);
+    status = status ? status : streams_open_text(&p->streams, run, set, error);
+    if (!status && !par_queue_begin(&queue, &streams, waiting_bytes(&run->plan)))
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a queue of tiles");
+    if (!status) {
+        const struct tri_sink sink = par_queue_sink(&queue);
+        options.sink = &sink;
+        status = refine_with(p, run, &options, mesh, quality, error);
+        par_queue_free(&queue);
+    }
     streams_close(&p->streams);
     tri_mesh_free(mesh); /* what is left of it is no mesh */
     if (!status)
@@ -278,7 +294,7 @@ static enum tri_status name_streams(struct program *p, struct run_hooks *hooks, 
 static const char *whole_mesh(const struct long_options *o)
 {
     return o->blocks ? "--blocks" : o->by_block ? "--numbering blocks" : o->write_partial ? "--write-partial"
-           : o->n_exports > 0 || o->n_streams == 0 || o->output ? "files other than .h5" : NULL;
+           : o->n_exports > 0 ? o->exports[0] : NULL;
 }
 
 static struct run_hooks hooks_of(struct program *p)

@@ -51,6 +51,37 @@ enum tri_status streams_open(struct streams *streams, const struct file_names *n
     return status;
 }
 
+/* One of Triangle's files, if it is wanted. */
+static enum tri_status open_text(struct tri_output **output, const struct mesh_files *files, const char *suffix,
+                                 struct tri_output_set *set, struct tri_error *error)
+{
+    if (!mesh_files_has(files, suffix))
+        return TRI_OK;
+    char *path = joined(files->arguments->output, suffix);
+    if (!path)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
+    enum tri_status status = interrupt_open(set, path, output, error);
+    free(path);
+    return status;
+}
+
+enum tri_status streams_open_text(struct streams *streams, const struct run *run, struct tri_output_set *set,
+                                  struct tri_error *error)
+{
+    const struct arguments *a = run->arguments;
+    struct mesh_files files = {.arguments = a, .points_in_poly = run->points_in_poly,
+                               .exports_alone = run->hooks->exports_alone};
+    struct tri_text_options *o = &streams->text_options;
+    *o = (struct tri_text_options){.base = run->base, .markers = !a->switches.no_markers, .figure = &run->pslg,
+                                   .argc = a->argc, .argv = a->argv};
+    enum tri_status status = open_text(&o->node, &files, ".node", set, error);
+    status = status ? status : open_text(&o->ele, &files, ".ele", set, error);
+    status = status ? status : open_text(&o->poly, &files, ".poly", set, error);
+    if (status || !(o->node || o->ele || o->poly))
+        return status;
+    return tri_text_stream_new(&streams->text, o, &streams->text_sink, error);
+}
+
 void streams_close(struct streams *streams)
 {
     for (int i = 0; i < streams->n; i++) {
@@ -58,6 +89,8 @@ void streams_close(struct streams *streams)
         tri_h5_writer_free(s->writer);
         free(s->xdmf);
     }
+    tri_text_stream_free(streams->text);
+    streams->text = NULL;
     streams->n = 0;
 }
 
@@ -71,6 +104,26 @@ static enum tri_status begin_again(struct stream *s, struct tri_error *error)
     return status ? status : tri_h5_writer_new(&s->writer, &s->options, &s->sink, error);
 }
 
+static enum tri_status begin_text_again(struct streams *streams, struct tri_error *error)
+{
+    struct tri_output *const outputs[] = {streams->text_options.node, streams->text_options.ele,
+                                          streams->text_options.poly};
+    enum tri_status status = TRI_OK;
+    tri_text_stream_free(streams->text);
+    streams->text = NULL;
+    for (int i = 0; !status && i < 3; i++)
+        status = outputs[i] ? tri_output_restart(outputs[i], error) : TRI_OK;
+    return status ? status : tri_text_stream_new(&streams->text, &streams->text_options, &streams->text_sink, error);
+}
+
+static enum tri_status begin_text(struct streams *streams, const struct tri_stream *stream, struct tri_error *error)
+{
+    if (!streams->text)
+        return TRI_OK;
+    enum tri_status status = streams->begun ? begin_text_again(streams, error) : TRI_OK;
+    return status ? status : streams->text_sink.begin(streams->text_sink.user, stream, error);
+}
+
 static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
 {
     struct streams *streams = user;
@@ -80,6 +133,7 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
         status = streams->begun ? begin_again(s, error) : TRI_OK;
         status = status ? status : s->sink.begin(s->sink.user, stream, error);
     }
+    status = status ? status : begin_text(streams, stream, error);
     streams->begun = true;
     streams->vertices = streams->triangles = streams->segments = 0;
     return status;
@@ -93,6 +147,8 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
         struct stream *s = &streams->stream[i];
         status = s->sink.take(s->sink.user, tile, error);
     }
+    if (!status && streams->text)
+        status = streams->text_sink.take(streams->text_sink.user, tile, error);
     streams->vertices += tile->n_vertices;
     streams->triangles += tile->n_triangles;
     streams->segments += tile->n_segments;
@@ -107,6 +163,8 @@ static enum tri_status end(void *user, struct tri_error *error)
         struct stream *s = &streams->stream[i];
         status = s->sink.end(s->sink.user, error);
     }
+    if (!status && streams->text)
+        status = streams->text_sink.end(streams->text_sink.user, error);
     return status;
 }
 

@@ -7,6 +7,7 @@
 #include "drivers/run.h"
 #include "ptriangle/tiles.h"
 #include "triangle/hdf5/write.h"
+#include "triangle/text/stream.h"
 
 enum { STREAMS_MOST = 4 };
 
@@ -21,6 +22,9 @@ struct stream {
 struct streams {
     int n;
     struct stream stream[STREAMS_MOST];
+    struct tri_text_options text_options;
+    struct tri_text_stream *text; /* .node, .ele and .poly; NULL: none of them */
+    struct tri_sink text_sink;
     bool begun;
     int64_t vertices, triangles, segments; /* taken so far */
 };
@@ -37,9 +41,14 @@ static inline bool stream_is_wanted(const char *name)
 /* The name of the text beside a file of that name, malloc'ed; NULL: no memory. */
 char *stream_xdmf(const char *name);
 
-/* Opens these files in the guarded set (drivers/interrupt.h). To be closed in any case, before the set is committed. */
+/* Opens these HDF5 files in the guarded set (drivers/interrupt.h). To be closed in any case, before the set is
+ * committed. */
 enum tri_status streams_open(struct streams *streams, const struct file_names *names, bool markers,
                              struct tri_output_set *set, struct tri_error *error);
+
+/* And those of Triangle's files that the run asks for. */
+enum tri_status streams_open_text(struct streams *streams, const struct run *run, struct tri_output_set *set,
+                                  struct tri_error *error);
 void streams_close(struct streams *streams);
 
 /* Hands everything to all of them. If it is told of the beginning a second time, they begin again. */

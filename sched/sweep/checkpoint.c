@@ -284,8 +284,9 @@ static enum tri_status save(struct par_checkpoint *c, const struct par_state *st
     m.state_hash = to.hash;
     m.tiles_bytes = c->spool.length;
     m.triangles = tiles->n_triangles;
-    c->saved++;
-    return write_manifest(c, m, error);
+    enum tri_status status = write_manifest(c, m, error);
+    c->saved += !status;
+    return status;
 }
 
 /* --- going on */
@@ -404,11 +405,23 @@ enum tri_status par_checkpoint_border(struct par_checkpoint *c, struct par_state
     bool asked = tri_stop_is_asked(c->stop), failed = c->spool.failed != TRI_OK;
     if (!asked && !failed && tri_seconds() - c->last < c->seconds)
         return TRI_OK;
+    if (failed)
+        return par_checkpoint_last(c, state, tiles, odd, error);
     enum tri_status status = save(c, state, tiles, odd, error);
     c->last = tri_seconds();
-    if (failed && error)
+    return status || !asked ? status : tri_fail_stopped(error);
+}
+
+/* Whether the state could be saved or not, what the taker said is told. */
+enum tri_status par_checkpoint_last(struct par_checkpoint *c, const struct par_state *state,
+                                    const struct par_tiles *tiles, int32_t odd, struct tri_error *error)
+{
+    if (!c->spool.failed)
+        return TRI_OK;
+    (void)save(c, state, tiles, odd, NULL);
+    if (error)
         *error = c->spool.failure;
-    return failed ? c->spool.failed : status ? status : asked ? tri_fail_stopped(error) : TRI_OK;
+    return c->spool.failed;
 }
 
 enum tri_status par_checkpoint_end(struct par_checkpoint *c, struct par_state *state, bool forget,

@@ -78,6 +78,10 @@ enum tri_status par_checkpoint_begin(struct par_checkpoint *checkpoint, struct p
 enum tri_status par_checkpoint_border(struct par_checkpoint *checkpoint, struct par_state *state,
                                       const struct par_tiles *tiles, int32_t odd, struct tri_error *error);
 
+/* The same after the last tile, where nobody is stopped any more. */
+enum tri_status par_checkpoint_last(struct par_checkpoint *checkpoint, const struct par_state *state,
+                                    const struct par_tiles *tiles, int32_t odd, struct tri_error *error);
+
 /* The sweep has ended, in whatever way. forget: what it has done so far is worth nothing. TRI_CANNOT_WRITE. */
 enum tri_status par_checkpoint_end(struct par_checkpoint *checkpoint, struct par_state *state, bool forget,
                                    struct tri_error *error);

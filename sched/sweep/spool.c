@@ -285,7 +285,10 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
 static enum tri_status end(void *user, struct tri_error *error)
 {
     struct par_spool *spool = user;
-    return spool->to->end ? spool->to->end(spool->to->user, error) : TRI_OK;
+    (void)error;
+    if (!spool->failed && spool->to->end)
+        spool->failed = spool->to->end(spool->to->user, &spool->failure);
+    return TRI_OK;
 }
 
 struct tri_sink par_spool_sink(struct par_spool *spool) { return (struct tri_sink){spool, begin, take, end}; }

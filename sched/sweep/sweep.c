@@ -50,6 +50,15 @@ static enum tri_status refine_columns(struct par_state *state, const struct par_
     return status;
 }
 
+static enum tri_status end_tiles(struct par_state *state, struct par_tiles *tiles, int32_t odd,
+                                 struct tri_error *error)
+{
+    enum tri_status status = par_tiles_end(tiles, error);
+    if (status || !state->options->checkpoint)
+        return status;
+    return par_checkpoint_last(state->options->checkpoint, state, tiles, odd, error);
+}
+
 /* From column `odd` on, until something is left behind. */
 static enum tri_status sweep_columns(struct par_state *state, struct par_tiles *tiles, int32_t odd, bool *left,
                                      struct tri_error *error)
@@ -64,7 +73,7 @@ static enum tri_status sweep_columns(struct par_state *state, struct par_tiles *
         if (!status && !*left && checkpoint)
             status = par_checkpoint_border(checkpoint, state, tiles, odd + 2, error);
     }
-    return status;
+    return status || *left ? status : end_tiles(state, tiles, odd, error);
 }
 
 /* *odd: the column to begin with. */
@@ -86,8 +95,6 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
     int32_t odd;
     enum tri_status status = begin_sweep(state, &tiles, &odd, error);
     status = status ? status : sweep_columns(state, &tiles, odd, &left, error);
-    if (!status && !left)
-        status = par_tiles_end(&tiles, error);
     if (state->options->checkpoint) {
         enum tri_status ended = par_checkpoint_end(state->options->checkpoint, state, left, status ? NULL : error);
         status = status ? status : ended;

@@ -26,6 +26,22 @@ for case in "-pq30a0.002 letter" "-pq20Aaa0.01 section" "-pq25a0.004D letter" "-
         check "the same bytes, $threads threads" cmp whole.h5 swept.h5
     done
 done
+for case in "-pq30a0.002 letter" "-pcq20a0.01BN letter" "-pPq20Aaa0.01 section" "-zpq30Da0.01E letter"; do
+    rm -f whole* swept*
+    # shellcheck disable=SC2086
+    program 0 -Q $case --output whole --threads 2
+    # shellcheck disable=SC2086
+    PTRIANGLE_TEST_SWEEP=1 program 0 -Q $case --output swept --output swept.h5
+    for suffix in node ele poly; do
+        [ -e whole.$suffix ] || continue
+        for which in whole swept; do
+            grep -v '^#' $which.$suffix >.$which
+        done
+        check "the same .$suffix" cmp .whole .swept
+    done
+    rm -f swept.h5 swept.xdmf
+    check "the same files" test "$(echo whole.*)" = "$(echo swept.* | sed 's/swept/whole/g')"
+done
 PTRIANGLE_TEST_SWEEP=1 program 0 -pq30a0.002 letter --output swept.h5
 matches '^Sweeping: about 0\.[0-9]+ million triangles'
 sed -n '/^Statistics/,$p' .out >.expected
@@ -33,11 +49,13 @@ program 0 -pq30a0.002 letter --output whole.h5
 sed -n '/^Statistics/,$p' .out | cmp -s - .expected || fault "the counts of a swept mesh: $(diff .out .expected | head -n 4)"
 check "nothing is left" sh -c '! ls -A | grep -q "^\.tri-"'
 
+rm -f .whole .swept
+
 # --- what cannot be swept stays in memory, and what cannot stay there is refused
 fresh square.poly
 for words in "-e" "-n" "-v" "-o2" "-j" "--blocks b" "--write-partial" "--output square.vtu"; do
     # shellcheck disable=SC2086
-    program 1 -pqa square.poly --max-area 1e-9 --output x.h5 $words
+    program 1 -pqa square.poly --max-area 1e-9 --output x $words
     complains 'where it must be in memory as a whole, as for |less would do but for '
     wrote
 done
