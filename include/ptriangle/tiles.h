@@ -2,10 +2,10 @@
  * in memory as a whole.
  *
  * First come the vertices that there were before refinement, as one tile without triangles: the caller's points in the
- * caller's order, then crossings of segments; then the plane's tiles,
- * column by column, rows upwards. Numbers count from 0 and are 64 bits wide. They and their order depend on the figure
- * and the settings alone, and are those of the same mesh in memory: vertices, triangles and segments of a tile follow
- * on those of the tiles before it. A corner may have any number below that of the next tile's first vertex. */
+ * caller's order, then crossings of segments; then the plane's tiles, column by column, rows upwards. Numbers count
+ * from 0 and are 64 bits wide. They and their order depend on the figure and the settings alone, and are those of the
+ * same mesh in memory: vertices, triangles and segments of a tile follow on those of the tiles before it. A corner may
+ * have any number below that of the next tile's first vertex. */
 #ifndef PTRIANGLE_TILES_H
 #define PTRIANGLE_TILES_H
 
