@@ -328,7 +328,8 @@ static struct run_hooks hooks_of(struct program *p)
     const struct long_options *o = &p->options;
     bool goes_on = p->restart.wanted && par_checkpoint_has_state(&p->restart.checkpoint);
     struct run_hooks hooks = {.program = PROGRAM, .refine = refine, .estimate = estimate, .write = write_further,
-                              .swept_memory = swept_memory, .always_sweep = goes_on || p->launch.carrier || sweep_for_tests(),
+                              .swept_memory = swept_memory,
+                              .always_sweep = goes_on || p->launch.carrier || sweep_for_tests(),
                               .written_elsewhere = p->launch.rank > 0,
                               .whole_mesh = whole_mesh(o), .threads = p->threads, .user = p,
                               .limits = {.seconds = o->time_limit, .write_partial = o->write_partial,
