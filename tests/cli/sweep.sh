@@ -42,7 +42,9 @@ for case in "-pq30a0.002 letter" "-pcq20a0.01BN letter" "-pPq20Aaa0.01 section" 
     rm -f swept.h5 swept.xdmf
     check "the same files" test "$(echo whole.*)" = "$(echo swept.* | sed 's/swept/whole/g')"
 done
-PTRIANGLE_TEST_SWEEP=1 program 0 -pq30a0.002 letter --output swept.h5
+PTRIANGLE_TEST_SWEEP=1 program 0 -pq30a0.002 letter --output swept.h5 --report report.json
+check "the report tells the way" grep -q '"way": "swept"' report.json
+check "no shapes are told" grep -q '"smallest_angle": null' report.json
 matches '^Sweeping: about 0\.[0-9]+ million triangles'
 sed -n '/^Statistics/,$p' .out >.expected
 program 0 -pq30a0.002 letter --output whole.h5
