@@ -123,6 +123,8 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/sweep/stream.c
     sched/sweep/queue.c
     sched/sweep/numbering.c
+    sched/sweep/park.c
+    sched/sweep/sweep.c
     sched/worklist.c
     sched/phase.c
     sched/ranks/carrier.c

@@ -337,6 +337,13 @@ static bool report_block(const struct phase *p, const struct task *task)
     return true;
 }
 
+void par_tell(const struct par_state *state, int phase)
+{
+    const struct par_options *options = state->options;
+    if (options->progress)
+        options->progress(options->progress_user, state->round, phase, state->gone + state->mesh->n_triangles);
+}
+
 void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add)
 {
     sum->inserted_free += add->inserted_free;

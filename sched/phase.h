@@ -10,6 +10,12 @@
 #include "sched/partition.h"
 #include "sched/worklist.h"
 #include "sched/room.h"
+#include "sched/sweep/park.h"
+
+struct par_state;
+
+/* Tells of the phase that begins. */
+void par_tell(const struct par_state *state, int phase);
 
 void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add);
 
@@ -37,8 +43,11 @@ struct par_state {
     int32_t n_kept;          /* vertices there were before */
     bool may_number;         /* nothing is refined after this schedule */
     struct par_partition cells; /* of the last schedule of the whole mesh: the tiles by which it is numbered */
-    bool sweeping;           /* columns are handed out, and go, as they are finished */
     bool numbered;           /* and nothing was */
+    double estimate;         /* of the triangles of a mesh that does not fit in memory */
+    int64_t gone;            /* triangles that have been handed out, and are no more */
+    bool delivered;          /* all have */
+    struct par_park *park;   /* where the mesh lies; NULL: in memory */
 };
 
 /* Refines the blocks of one phase; takes from the worklist what they can take and puts back what they leave. only: the

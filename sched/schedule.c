@@ -10,6 +10,7 @@
 #include "triangle/clock.h"
 #include "sched/phase.h"
 #include "sched/ranks/ranks.h"
+#include "sched/sweep/sweep.h"
 #include "sched/theory.h"
 #include "sched/threads.h"
 #include "triangle/census.h"
@@ -57,13 +58,6 @@ static void run_in_parallel(void *self, size_t n_tasks, void (*task)(void *conte
 }
 
 struct tri_executor par_executor(int *threads) { return (struct tri_executor){run_in_parallel, threads}; }
-
-static void tell(const struct par_state *state, int phase)
-{
-    if (state->options->progress)
-        state->options->progress(state->options->progress_user, state->round, phase,
-                                 state->mesh->n_triangles);
-}
 
 /* Which bad triangles a graded pre-refinement takes: those with an edge longer than a share of the cell it lies in. In
  * the mesh's units, where squares neither overflow nor underflow. */
@@ -210,7 +204,7 @@ static enum tri_status refine_rest(struct par_state *state, const struct tri_ref
 static enum tri_status number_mesh(struct par_state *state, struct tri_error *error)
 {
     double began = tri_seconds();
-    tell(state, PAR_NUMBERING);
+    par_tell(state, PAR_NUMBERING);
     struct tri_executor executor = par_executor(&state->threads);
     enum tri_status status = par_number(state->mesh, &state->cells, state->n_kept, &executor, error);
     state->numbered = true;
@@ -244,64 +238,9 @@ static enum tri_status run_phases(struct par_state *state, const struct par_part
 {
     enum tri_status status = TRI_OK;
     for (int phase = 0; !status && phase < PAR_PHASES && state->worklist.n > 0; phase++) {
-        tell(state, phase + 1);
+        par_tell(state, phase + 1);
         status = par_phase(state, partition, phase, TRI_NONE, error);
     }
-    return status;
-}
-
-static struct par_tiles tiles_of(const struct par_state *state, const struct par_partition *partition,
-                                 const struct tri_executor *executor)
-{
-    return (struct par_tiles){.mesh = state->mesh, .partition = partition, .executor = executor,
-                              .n_kept = state->n_kept, .sink = state->options->sink,
-                              .figure = state->options->figure, .region_column = state->options->region_column};
-}
-
-/* Something that no block could do lies left of x, where every block has had its turn. */
-static bool is_left_behind(const struct par_state *state, double x)
-{
-    const struct tri_mesh *mesh = state->mesh;
-    for (int32_t i = 0; i < state->worklist.n; i++) {
-        const struct tri_triangle *t = &mesh->tri[state->worklist.item[i]];
-        if (tri_is_live(t) && mesh->xy[t->v[0]].x < x && mesh->xy[t->v[1]].x < x && mesh->xy[t->v[2]].x < x)
-            return true;
-    }
-    return false;
-}
-
-/* What is final goes: the tiles of a column, once the even column of blocks behind it is through. */
-static enum tri_status finish_column(struct par_state *state, struct par_tiles *tiles, int32_t column,
-                                     struct tri_error *error)
-{
-    double began = tri_seconds();
-    enum tri_status status = TRI_OK;
-    if (is_left_behind(state, par_fence(tiles->partition, column, 0).x_max))
-        status = tri_fail(error, TRI_TOO_LARGE, NULL, 0, "a sweep leaves bad triangles over: keep the mesh in memory");
-    status = status ? status : par_tiles_column(tiles, column, true, &state->spare, error);
-    state->report->seconds_number += tri_seconds() - began;
-    return status;
-}
-
-/* The same, from left to right: see phase.h, order of columns. */
-static enum tri_status sweep_columns(struct par_state *state, const struct par_partition *partition,
-                                     struct tri_error *error)
-{
-    enum tri_status status = TRI_OK;
-    struct tri_executor executor = par_executor(&state->threads);
-    struct par_tiles tiles = tiles_of(state, partition, &executor);
-    status = par_tiles_begin(&tiles, partition->estimate, error);
-    for (int32_t odd = 1; !status && odd <= partition->n_columns; odd += 2) {
-        for (int phase = 0; !status && phase < PAR_PHASES; phase++) {
-            int32_t column = phase < 2 ? odd : odd - 1;
-            if (column < partition->n_columns)
-                status = par_phase(state, partition, phase, column, error);
-        }
-        if (!status && odd > 2)
-            status = finish_column(state, &tiles, odd - 2, error);
-    }
-    status = status ? status : par_tiles_end(&tiles, error);
-    par_tiles_free(&tiles);
     return status;
 }
 
@@ -312,9 +251,9 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
     assert(par_cells(partition) >= 4);
     state->n_schedules++;
     for (state->round = 0; !status && state->round < MAX_ROUNDS; state->round++) {
-        status = state->sweeping ? sweep_columns(state, partition, error) : run_phases(state, partition, error);
+        status = run_phases(state, partition, error);
         state->report->rounds++;
-        if (state->worklist.n == 0 || !par_can_coarsen(partition) || state->sweeping)
+        if (state->worklist.n == 0 || !par_can_coarsen(partition))
             break;
         par_partition_coarsen(partition);
     }
@@ -326,8 +265,9 @@ static enum tri_status refine_on_ranks(struct par_state *state, const struct par
                                        struct tri_error *error)
 {
     struct tri_executor executor = par_executor(&state->threads);
-    struct par_tiles tiles = tiles_of(state, partition, &executor);
+    struct par_tiles tiles = par_tiles_of(state, partition, &executor);
     enum tri_status status = par_refine_on_ranks(state, partition, &tiles, error);
+    state->delivered = true;
     par_tiles_free(&tiles);
     return status;
 }
@@ -335,10 +275,16 @@ static enum tri_status refine_on_ranks(struct par_state *state, const struct par
 /* Measured: bytes a triangle at the peak, where all stay in memory and are numbered. */
 static const double BYTES_IN_MEMORY = 74;
 
-static bool must_sweep(const struct par_state *state, double triangles)
+/* The share of the triangles that one mesh may have up to which an estimate does not ask for more than it has. */
+static const double SURELY_ONE_MESH = 0.8;
+
+/* Would the whole mesh be too large for memory, or for one mesh? */
+static bool is_too_much(const struct par_state *state, double triangles)
 {
     const struct par_options *options = state->options;
-    return options->sweep || (options->memory > 0 && triangles * BYTES_IN_MEMORY > (double)options->memory);
+    return options->sink && !options->carrier &&
+           (options->sweep || triangles > SURELY_ONE_MESH * TRI_MAX_TRIANGLES ||
+            (options->memory > 0 && triangles * BYTES_IN_MEMORY > (double)options->memory));
 }
 
 static void note_size(struct par_state *state)
@@ -347,47 +293,137 @@ static void note_size(struct par_state *state)
     report->most_live = state->mesh->n_triangles > report->most_live ? state->mesh->n_triangles : report->most_live;
 }
 
+/* What a sweep that cannot go on has to be undone with. */
+struct before {
+    struct tri_mesh mesh;
+    struct par_worklist worklist;
+    struct par_report report;
+};
+
+static enum tri_status remember(const struct par_state *state, struct before *before, struct tri_error *error)
+{
+    *before = (struct before){.report = *state->report};
+    for (int32_t i = 0; i < state->worklist.n; i++)
+        if (!par_worklist_add(&before->worklist, state->worklist.item[i]))
+            return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a copy of the worklist");
+    return tri_mesh_copy(&before->mesh, state->mesh, error);
+}
+
+/* The mesh as it was, and the worklist. What the sink has taken it forgets when it is told of the beginning again. */
+static void go_back(struct par_state *state, struct before *before)
+{
+    struct par_worklist worklist = state->worklist;
+    struct par_report *report = state->report;
+    int64_t live = report->most_live;
+    tri_mesh_swap(state->mesh, &before->mesh);
+    state->worklist = before->worklist;
+    before->worklist = worklist;
+    state->key.n = 0;
+    state->gone = 0;
+    par_room_free(&state->spare);
+    before->report.blocks = report->blocks; /* it may have moved */
+    *report = before->report;
+    report->most_live = live;
+}
+
+/* *done: the mesh has been handed out, and is gone. Else everything is as before. */
+static enum tri_status try_to_sweep(struct par_state *state, const struct par_partition *partition, bool *done,
+                                    struct tri_error *error)
+{
+    struct before before;
+    enum tri_status status = remember(state, &before, error);
+    state->n_schedules++;
+    state->round = 0;
+    status = status ? status : par_sweep(state, partition, done, error);
+    note_size(state);
+    if (!status && !*done) {
+        go_back(state, &before);
+        state->n_schedules--;
+    }
+    free(before.worklist.item);
+    tri_mesh_drop(&before.mesh);
+    return status;
+}
+
+/* From here on the mesh lies in a file. */
+static enum tri_status park(struct par_state *state, struct tri_error *error)
+{
+    const struct par_options *options = state->options;
+    enum tri_status status = tri_refine_check(state->mesh, state->quality, error);
+    if (status)
+        return status;
+    if (!options->scratch)
+        return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
+                        "about %.1f GB are asked for and there are %.1f: a mesh like this needs a scratch directory",
+                        1e-9 * BYTES_IN_MEMORY * state->estimate, 1e-9 * (double)options->memory);
+    return par_park_open(&state->park, state->mesh, options->scratch, options->memory, error);
+}
+
+/* The whole mesh does not fit in memory: it is swept where nothing comes after this schedule and the sink can begin
+ * again; if that leaves something over, or cannot be, it is parked. */
+static enum tri_status leave_memory(struct par_state *state, const struct par_partition *partition,
+                                    struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    bool can_sweep = state->may_number && (state->options->sink->begin || !state->options->scratch);
+    state->estimate = partition->estimate;
+    if (can_sweep)
+        status = try_to_sweep(state, partition, &state->delivered, error);
+    state->report->way = state->delivered ? PAR_SWEPT : PAR_PARKED;
+    return status || state->delivered ? status : park(state, error);
+}
+
+/* What no block could do, and what blocks have left unused. */
+static enum tri_status finish_schedule(struct par_state *state, const struct tri_refine_options *quality, bool top,
+                                       enum tri_status status, struct tri_error *error)
+{
+    double last = tri_seconds();
+    if (!status && state->worklist.n > 0) { /* in the order of the worklist, which ids do not show in */
+        par_room_mark(&state->spare, state->mesh);
+        status = refine_rest(state, quality, false, error);
+    }
+    state->report->seconds_last += tri_seconds() - last;
+    enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number, error);
+    state->report->total.gated = state->report->total.fenced = 0; /* all of them have had their turn */
+    return status ? status : closed;
+}
+
+/* What is told of the first schedule of the whole mesh. */
+static enum tri_status report_schedule(struct par_state *state, const struct par_partition *partition,
+                                       struct tri_error *error)
+{
+    struct par_report *report = state->report;
+    if (report->partition.x)
+        return TRI_OK;
+    report->columns = partition->n_columns;
+    report->rows = partition->n_rows;
+    report->radius_measured = state->radius * state->mesh->unit;
+    report->prerefined = state->mesh->n_triangles;
+    return par_partition_copy(&report->partition, partition, error);
+}
+
 /* The phases of one level, on a mesh that has been pre-refined, and what is bad in it. */
 static enum tri_status run_schedule(struct par_state *state, const struct tri_refine_options *quality,
                                     struct par_partition *partition, bool top, struct tri_error *error)
 {
     struct par_report *report = state->report;
-    enum tri_status status = TRI_OK;
+    enum tri_status status = top ? report_schedule(state, partition, error) : TRI_OK;
     state->quality = quality;
-    if (top && !report->partition.x) {
-        report->columns = partition->n_columns;
-        report->rows = partition->n_rows;
-        status = par_partition_copy(&report->partition, partition, error);
-        report->radius_measured = state->radius * state->mesh->unit;
-        report->prerefined = state->mesh->n_triangles;
-    }
-    bool on_ranks = top && state->may_number && state->options->sink && state->options->carrier;
-    state->sweeping = on_ranks || (top && state->may_number && state->options->sink &&
-                                   must_sweep(state, partition->estimate));
-    if (!status && top && !state->options->by_block && !state->sweeping) {
+    if (!status && top && !state->options->by_block) {
         par_partition_free(&state->cells);
         status = par_partition_copy(&state->cells, partition, error);
     }
-    if (on_ranks)
-        return status ? status : refine_on_ranks(state, partition, error);
-    if (state->sweeping)
-        report->way = PAR_SWEPT;
-    status = status ? status : run_rounds(state, partition, error);
+    if (!status && top && state->may_number && state->options->sink && state->options->carrier)
+        status = refine_on_ranks(state, partition, error);
+    else if (!status && top && !state->park && is_too_much(state, partition->estimate))
+        status = leave_memory(state, partition, error);
+    if (status || state->delivered)
+        return status;
+    status = run_rounds(state, partition, error);
     note_size(state);
-    double last = tri_seconds();
     if (top)
         report->left_over += state->worklist.n;
-    if (state->sweeping)
-        return status;
-    if (!status && state->worklist.n > 0) { /* in the order of the worklist, which ids do not show in */
-        par_room_mark(&state->spare, state->mesh);
-        status = refine_rest(state, quality, false, error);
-    }
-    report->seconds_last += tri_seconds() - last;
-    enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number, error);
-    status = status ? status : closed;
-    report->total.gated = report->total.fenced = 0; /* all of them have had their turn */
-    return status;
+    return finish_schedule(state, quality, top, status, error);
 }
 
 static double cell_size(const struct par_state *state, double estimate)
@@ -409,7 +445,7 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
     if (status)
         return status;
     state->report->levels = level + 1 > state->report->levels ? level + 1 : state->report->levels;
-    tell(state, 0);
+    par_tell(state, 0);
     if (areas_decide(state, quality, estimate, cell)) {
         status = prerefine_uniform(state, quality, cell, level, error);
         began = tri_seconds();
@@ -491,13 +527,43 @@ static bool must_be_sequential(const struct tri_refine_options *quality, const s
            quality->deferred || (quality->unsuitable && !options->size_test_in_parallel);
 }
 
-/* All tiles of a mesh that is in memory. */
-static enum tri_status hand_out(struct par_state *state, struct tri_error *error)
+/* Refines by schedules: two where angles are dear, and a last call for what is beyond them. */
+static enum tri_status refine_by_schedule(struct par_state *state, const struct tri_refine_options *quality,
+                                          struct tri_error *error)
 {
-    struct par_tiles tiles = tiles_of(state, state->numbered ? &state->cells : NULL, NULL);
-    if (state->options->carrier)
-        return par_whole_on_ranks(state->options->carrier, &tiles, error);
-    return par_tiles_whole(&tiles, error);
+    struct tri_refine_options usual = *quality;
+    usual.min_angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
+    enum tri_status status = usual.min_angle > TRI_EASY_ANGLE ? refine_sizes_first(state, &usual, error) : TRI_OK;
+    state->may_number = !state->options->by_block && quality->min_angle <= TRI_USUAL_ANGLE;
+    status = status ? status : refine_level(state, &usual, 0, error);
+    double last = tri_seconds();
+    if (!status && quality->min_angle > TRI_USUAL_ANGLE)
+        status = refine_rest(state, quality, true, error);
+    state->report->seconds_last += tri_seconds() - last;
+    return status;
+}
+
+/* Numbers, and hands out, what has not gone yet. */
+static enum tri_status deliver(struct par_state *state, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    if (state->delivered)
+        return TRI_OK;
+    if (state->report->levels > 0 && !state->options->by_block && !state->numbered)
+        status = number_mesh(state, error);
+    return !status && state->options->sink ? par_hand_out(state, error) : status;
+}
+
+static void clean_up(struct par_state *state)
+{
+    state->report->parked = state->park ? par_park_bytes(state->park) : 0;
+    par_park_close(state->park, state->mesh);
+    if (state->report->way != PAR_IN_MEMORY)
+        tri_mesh_drop(state->mesh);
+    free(state->worklist.item);
+    free(state->key.item);
+    par_partition_free(&state->cells);
+    par_room_free(&state->spare);
 }
 
 enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
@@ -507,31 +573,17 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     *report = (struct par_report){.threads = par_threads(options->threads, false)};
     struct par_state state = {.mesh = mesh, .options = options, .threads = report->threads, .report = report,
                               .n_kept = mesh->n_vertices};
-    struct tri_refine_options usual = *quality;
-    enum tri_status status = tri_refine_check(mesh, quality, error);
+    bool sequential = must_be_sequential(quality, options);
+    bool can_sweep = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE;
+    enum tri_status status = can_sweep ? TRI_OK : tri_refine_check(mesh, quality, error);
     if (status)
         return status;
-    if (must_be_sequential(quality, options)) {
-        status = refine_rest(&state, quality, true, error);
+    status = sequential ? refine_rest(&state, quality, true, error) : refine_by_schedule(&state, quality, error);
+    if (sequential)
         report->seconds_last += tri_seconds() - began;
-    } else {
-        usual.min_angle = quality->min_angle < TRI_USUAL_ANGLE ? quality->min_angle : TRI_USUAL_ANGLE;
-        status = usual.min_angle > TRI_EASY_ANGLE ? refine_sizes_first(&state, &usual, error) : TRI_OK;
-        state.may_number = !options->by_block && quality->min_angle <= TRI_USUAL_ANGLE;
-        status = status ? status : refine_level(&state, &usual, 0, error);
-        double last = tri_seconds();
-        if (!status && quality->min_angle > TRI_USUAL_ANGLE)
-            status = refine_rest(&state, quality, true, error);
-        report->seconds_last += tri_seconds() - last;
-    }
-    if (!status && report->levels > 0 && !options->by_block && !state.numbered && !state.sweeping)
-        status = number_mesh(&state, error);
-    if (!status && options->sink && !state.sweeping)
-        status = hand_out(&state, error);
-    free(state.worklist.item);
-    free(state.key.item);
-    par_partition_free(&state.cells);
-    par_room_free(&state.spare);
+    status = status ? status : deliver(&state, error);
+    status = par_park_status(state.park, status, error);
+    clean_up(&state);
     report->seconds_total = tri_seconds() - began;
     return status;
 }

@@ -28,8 +28,9 @@ struct par_options {
     bool size_test_in_parallel; /* quality.unsuitable may be called by several threads at once; else, where there is a
                                    size test, the mesh is refined sequentially */
     bool by_block;           /* new vertices and triangles are numbered as blocks made them: quicker. Else what the
-                                schedule made is numbered by the mesh alone, along a curve (sched/sweep/numbering.h): a
-                                solver that goes through the triangles runs twice as fast then */
+                                schedule made is numbered tile by tile, along a curve (sched/sweep/numbering.h): a
+                                solver that goes through the triangles runs twice as fast then. By block, a sink gets
+                                the mesh as one tile, and it is never swept */
     const struct tri_sink *sink; /* takes the finished mesh, tile by tile (ptriangle/tiles.h); NULL: nobody */
     const struct tri_pslg *figure; /* the mesh's input: its points are handed out bit by bit as they came; NULL: as they
                                       are in the mesh, where what is smaller than 2^-216 units is 0 */

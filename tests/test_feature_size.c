@@ -86,13 +86,13 @@ static void check_bounds(const char *name, const struct tri_pslg *pslg, int32_t 
     static const double angles[] = {33, 34, 34.5, 36, 60};
     for (int conforming = 0; conforming < 2; conforming++) {
         int32_t usual = triangles_at(pslg, 25, conforming);
-        double limit = 16.0 * usual + 200;
+        double limit = 8.0 * usual + 150;
         for (int i = 0; i < 5 && usual <= most; i++) {
             int32_t n = triangles_at(pslg, angles[i], conforming);
             if (n > limit)
                 fail_msg("%s: %d triangles at %g degrees, %d at 25", name, (int)n, angles[i], (int)usual);
             if (angles[i] == 34)
-                limit = 3.0 * n + 4000;
+                limit = 2.5 * n + 3000;
         }
     }
 }

@@ -143,8 +143,8 @@ bool tri_bad_queue_pop(struct tri_bad_queue *queue, const struct tri_triangle *t
 int tri_bad_queue_median(const struct tri_bad_queue *queue)
 {
     int64_t all = 0, below = 0;
-    int bucket = 0; /* ends at the latest with the last entry */
-    for (int b = 0; b < TRI_BUCKETS; b++)
+    int bucket = TRI_URGENT_BUCKET + 1; /* ends at the latest with the last entry */
+    for (int b = bucket; b < TRI_BUCKETS; b++)
         all += queue->count[b];
     while (all > 0 && 2 * (below += queue->count[bucket]) < all)
         bucket++;

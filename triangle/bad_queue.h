@@ -1,6 +1,7 @@
 /* The triangles that wait to be refined.
  *
- * Two kinds. Those whose angle is bad wait in buckets by their shortest edge, shortest first: what grows out of the
+ * Two kinds. Those whose angle is bad wait in buckets, one for the urgent ones, which come first (refine.c says which),
+ * the others by their shortest edge, shortest first: what grows out of the
  * smallest features is settled before larger triangles are asked, and the mesh comes out smaller (docs/performance.md:
  * by a third at 33 degrees against worst angle first). Within a bucket (an eighth of an octave) first come, first
  * served. Those that are only too large wait first in, first out, which spreads sizes evenly, but in a window: when it
@@ -20,7 +21,7 @@
 
 #include "triangle/mesh.h"
 
-enum { TRI_BUCKETS = 512, TRI_WINDOW = 1 << 13, TRI_BATCH = 16 };
+enum { TRI_URGENT_BUCKET = 0, TRI_BUCKETS = 512, TRI_WINDOW = 1 << 13, TRI_BATCH = 16 };
 
 struct tri_entry {
     tri_triangle_id t;
@@ -66,7 +67,8 @@ static inline bool tri_bad_queue_push_size(struct tri_bad_queue *queue, struct t
     return true;
 }
 
-/* The bucket that holds the median of all entries in buckets; 0 where there is none. O(buckets). */
+/* The bucket that holds the median of the entries that are not urgent; the first such bucket where there is none.
+ * O(buckets). */
 int tri_bad_queue_median(const struct tri_bad_queue *queue);
 
 /* Takes the next entry from the buckets below `limit`. False where none waits there. */

@@ -88,9 +88,10 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, tri_triangle_id
         badness = TRI_BAD_SIZE;
     if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, triangle, shape))
         return shape->l[shape->shortest] < c->mesh->limits.shortest2 ? TRI_EXCUSE_PRECISION
-               : tri_is_narrow_gap(c->mesh, triangle, shape)      ? TRI_EXCUSE_NARROW_GAP
+               : tri_bridges_spike(c->mesh, triangle, shape)   ? TRI_EXCUSE_INPUT_ANGLE
+               : tri_is_narrow_gap(c->mesh, triangle, shape)   ? TRI_EXCUSE_NARROW_GAP
                : tri_crosses_angle(c->mesh, triangle, shape)   ? TRI_EXCUSE_INPUT_ANGLE
-                                                           : TRI_EXCUSE_LIMIT;
+                                                               : TRI_EXCUSE_LIMIT;
     if (report->hit_limit)
         return TRI_EXCUSE_LIMIT;
     if (c->options->protect > 0 && is_beside_protected(c, t))

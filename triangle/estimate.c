@@ -11,6 +11,9 @@
 
 enum { DEEPEST_CUT = 12, SURVEY = 1 << 17 };
 
+/* More than anybody will have, and no infinity: bounds may ask for any number. */
+static const double MOST_WORK = 1e15;
+
 /* Measured: mean area over bound. */
 static const double MEAN_OVER_BOUND = 0.655;
 
@@ -86,7 +89,7 @@ static double work_inside(const struct estimator *e, tri_region_id region, const
     double work = area_of(t) * density(e, region);
     if (e->options->unsuitable)
         work = fmax(work, size_work(e, t, DEEPEST_CUT));
-    return work < TRI_MAX_TRIANGLES ? work : TRI_MAX_TRIANGLES;
+    return work < MOST_WORK ? work : MOST_WORK;
 }
 
 static struct corners corners_of(const struct tri_mesh *mesh, tri_triangle_id t)
@@ -125,7 +128,7 @@ static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_op
         return 1;
     gap = fmin(gap, sqrt(longest2 / shape.l[shape.shortest]));
     double work = angle > 0 ? 17 / (40 - angle) * (octaves + 2 * gap) : 0;
-    return work < 1 ? 1 : work < TRI_MAX_TRIANGLES ? work : TRI_MAX_TRIANGLES;
+    return work < 1 ? 1 : work < MOST_WORK ? work : MOST_WORK;
 }
 
 /* A bad triangle becomes more than triangles do on average. */
@@ -165,8 +168,7 @@ double tri_sure_work(const struct tri_mesh *mesh, const struct tri_refine_option
     return sum;
 }
 
-/* As the bounds ask for, be it more than any mesh can hold. */
-static double whole_work(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options)
 {
     int32_t step = survey_step(mesh);
     double sum = tri_sure_work(mesh, options) - mesh->n_triangles;
@@ -174,12 +176,6 @@ static double whole_work(const struct tri_mesh *mesh, const struct tri_refine_op
         if (tri_is_live(&mesh->tri[t]))
             sum += step * angle_work(mesh, options, t);
     return sum;
-}
-
-double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options)
-{
-    double work = whole_work(mesh, options);
-    return work < TRI_MAX_TRIANGLES ? work : TRI_MAX_TRIANGLES;
 }
 
 /* Who is given the samples. */

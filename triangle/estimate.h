@@ -9,8 +9,8 @@ extern "C" {
 #endif
 
 /* Estimates the number of triangles that refinement will end with: for bounded areas from the areas, for a bounded
- * angle from the edges' lengths, for a size test by probing it with triangles that get smaller. O(triangles), and a
- * probe for each thousand triangles or so of those to come. */
+ * angle from the edges' lengths, for a size test by probing it with triangles that get smaller. It may be more than any
+ * mesh can hold. O(triangles), and a probe for each thousand triangles or so of those to come. */
 double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options);
 
 /* That part of it which is no guess: what there is, and what areas and the size test ask for. O(triangles). */

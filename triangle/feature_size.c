@@ -8,8 +8,9 @@
  *     radii are in the proofs of Shewchuk (2002);
  *   - for a split point: the same from all vertices around it, but no more than its distance from other features: from
  *     those that do not touch its segment, unless the space between is a gap too dear to fill (small_angle.h), and
- *     from segments that meet it at less than 60 degrees, and no less than about 1 / SHARP: in such a corner triangles
- *     are as small as it is narrow, though Ruppert's size would be the distance from the vertex where they meet;
+ *     from segments that meet it at less than 60 degrees, unless that is a spike, which is not filled: in such a corner
+ *     triangles are as small as it is narrow, though Ruppert's size would be the distance from the vertex where they
+ *     meet;
  *   - for a point inserted because of sizes: no more than its distance from its neighbours. A size that is asked for is
  *     a feature.
  * RULE. A triangle whose shortest edge ab is shorter than min(s(a), s(b)) / SHRINK is not refined for its angle.
@@ -25,7 +26,7 @@
  * points add is finite, too: a space between two segments is as wide as s there, so the integral over it is about its
  * length over its width, that is its cost (tri_filling_cost): no more than limits.dearest_gap for segments that do
  * not touch, which is chosen such that all such spaces together cost no more than the mesh can afford; and no more
- * than SHARP for each octave of distance from the vertex where two segments meet.
+ * than SHARP (small_angle.c) for each octave of distance from the vertex where two segments meet.
  *
  * SLOPE is about the grading of a mesh of 30 degrees. Without narrow corners as features one random figure in thirty
  * had triangles given up below 34 degrees, in and beside corners of a few degrees. SHRINK: where nothing runs away,
@@ -37,7 +38,7 @@
 #include "triangle/quality.h"
 #include "triangle/small_angle.h"
 
-static const double SLOPE = 0.5, SHRINK = 64, SHARP = 256;
+static const double SLOPE = 0.5, SHRINK = 64;
 
 /* Is the corner beside the edge opposite to it, not before its start or beyond its end? From squared lengths. */
 static bool is_beside(double edge, double left, double right) { return left <= right + edge && right <= left + edge; }
@@ -117,22 +118,14 @@ double tri_feature_inside(const struct tri_mesh *mesh, int32_t a, int32_t b, str
     return sized && near < inherited ? near : inherited;
 }
 
-/* Do the legs oa and ob make an angle of less than 60 degrees, and more than about 1 / SHARP? */
-static bool is_narrow_corner(struct tri_point o, struct tri_point a, struct tri_point b)
-{
-    double ax = a.x - o.x, ay = a.y - o.y, bx = b.x - o.x, by = b.y - o.y;
-    double dot = ax * bx + ay * by, sine = fabs(ax * by - ay * bx);
-    return dot > 0 && 3 * dot * dot > sine * sine && SHARP * sine > dot;
-}
-
 /* May a point on parent p have the size of its distance from parent q, at w? */
 static bool counts(const struct tri_mesh *mesh, int32_t p, int32_t q, struct tri_point at, struct tri_point w)
 {
-    const int32_t *a = mesh->parents[p].v, *b = mesh->parents[q].v;
-    for (int i = 0; i < 2; i++)
-        for (int k = 0; k < 2; k++)
-            if (a[i] == b[k])
-                return p != q && is_narrow_corner(mesh->xy[a[i]], mesh->xy[a[1 - i]], mesh->xy[b[1 - k]]);
+    if (p == q)
+        return false;
+    enum tri_corner corner = tri_corner_between(mesh, p, q);
+    if (corner != TRI_APART)
+        return corner == TRI_NARROW_CORNER;
     return tri_filling_cost(mesh, p, q, at, w) <= mesh->limits.dearest_gap;
 }
 

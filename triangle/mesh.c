@@ -1,7 +1,8 @@
 /* Storage of the mesh: growth, links, reordering, compaction, and the check of its invariants.
  *
- * Growth is by half, through realloc: for large arrays the C library moves pages rather than bytes, so that the peak
- * stays near what is used. The triangle array starts at a cache line, so that a triangle never straddles two. */
+ * Growth is by half: as a storage does it or through realloc, by which the C library moves pages of large arrays rather
+ * than bytes, so that the peak stays near what is used. The triangle array starts at a cache line, so that a triangle
+ * never straddles two. */
 #include "triangle/mesh.h"
 
 #include <assert.h>
@@ -60,6 +61,58 @@ static bool grow(void *array, int32_t capacity, size_t item)
     return true;
 }
 
+/* One of the arrays that grow with refinement. */
+struct array {
+    void *at;
+    size_t item; /* bytes */
+    int32_t n, capacity;
+};
+
+static struct array array_of(const struct tri_mesh *m, enum tri_array which)
+{
+    size_t attributes = (size_t)m->n_attributes * sizeof *m->attributes;
+    switch (which) {
+    case TRI_XY: return (struct array){m->xy, sizeof *m->xy, m->n_vertices, m->vertex_capacity};
+    case TRI_ON: return (struct array){m->on, sizeof *m->on, m->n_vertices, m->vertex_capacity};
+    case TRI_MARKERS:
+        return (struct array){m->vertex_markers, sizeof *m->vertex_markers, m->n_vertices, m->vertex_capacity};
+    case TRI_FEATURE: return (struct array){m->feature, sizeof *m->feature, m->n_vertices, m->vertex_capacity};
+    case TRI_ATTRIBUTES: return (struct array){m->attributes, attributes, m->n_vertices, m->vertex_capacity};
+    case TRI_TRIANGLES: return (struct array){m->tri, sizeof *m->tri, m->n_triangles, m->triangle_capacity};
+    default: return (struct array){m->sub, sizeof *m->sub, m->n_subs, m->sub_capacity};
+    }
+}
+
+static void set_array(struct tri_mesh *m, enum tri_array which, void *at)
+{
+    switch (which) {
+    case TRI_XY: m->xy = at; break;
+    case TRI_ON: m->on = at; break;
+    case TRI_MARKERS: m->vertex_markers = at; break;
+    case TRI_FEATURE: m->feature = at; break;
+    case TRI_ATTRIBUTES: m->attributes = at; break;
+    case TRI_TRIANGLES: m->tri = at; break;
+    default: m->sub = at;
+    }
+}
+
+static void *reserve(const struct tri_storage *storage, enum tri_array which, const struct array *a, int32_t capacity)
+{
+    size_t bytes = (size_t)capacity * a->item;
+    if (storage)
+        return storage->reserve(storage->user, which, bytes);
+    return which == TRI_TRIANGLES ? grow_aligned(a->at, (size_t)a->n * a->item, bytes) : realloc(a->at, bytes);
+}
+
+static bool grow_array(struct tri_mesh *mesh, enum tri_array which, int32_t capacity)
+{
+    struct array a = array_of(mesh, which);
+    void *fresh = a.item > 0 ? reserve(mesh->storage, which, &a, capacity) : NULL;
+    if (fresh)
+        set_array(mesh, which, fresh);
+    return fresh || a.item == 0;
+}
+
 static enum tri_status no_memory(struct tri_error *error, const char *what, int32_t count)
 {
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d %s", (int)count, what);
@@ -81,23 +134,99 @@ enum tri_status tri_mesh_init(struct tri_mesh *mesh, struct tri_error *error)
     return TRI_OK;
 }
 
+void *tri_mesh_extra(const struct tri_mesh *mesh, size_t bytes)
+{
+    return mesh->storage ? mesh->storage->extra(mesh->storage->user, bytes) : malloc(bytes);
+}
+
+void tri_mesh_extra_free(const struct tri_mesh *mesh, void *extra)
+{
+    if (!mesh->storage)
+        free(extra);
+}
+
+void tri_mesh_drop(struct tri_mesh *mesh)
+{
+    for (enum tri_array which = TRI_XY; which < TRI_ARRAYS; which++) {
+        void *at = array_of(mesh, which).at;
+        if (!mesh->storage)
+            free(which == TRI_TRIANGLES ? raw_of(at) : at);
+        set_array(mesh, which, NULL);
+    }
+    mesh->storage = NULL;
+    mesh->n_vertices = mesh->vertex_capacity = 0;
+    mesh->n_triangles = mesh->triangle_capacity = 0;
+    mesh->n_subs = mesh->sub_capacity = 0;
+}
+
 void tri_mesh_free(struct tri_mesh *mesh)
 {
-    free(mesh->xy);
-    free(mesh->on);
-    free(mesh->vertex_markers);
-    free(mesh->feature);
-    free(mesh->attributes);
+    tri_mesh_drop(mesh);
     free(mesh->origin);
     free(mesh->twin);
-    free(raw_of(mesh->tri));
-    free(mesh->sub);
     free(mesh->parents);
     free(mesh->incidence.start);
     free(mesh->incidence.parent);
     free(mesh->regions);
     free(mesh->columns);
     *mesh = (struct tri_mesh){0};
+}
+
+/* The counts and capacities of one mesh are those of another. */
+static void take_counts(struct tri_mesh *to, const struct tri_mesh *from)
+{
+    to->n_vertices = from->n_vertices;
+    to->vertex_capacity = from->vertex_capacity;
+    to->n_triangles = from->n_triangles;
+    to->triangle_capacity = from->triangle_capacity;
+    to->n_subs = from->n_subs;
+    to->sub_capacity = from->sub_capacity;
+}
+
+void tri_mesh_swap(struct tri_mesh *a, struct tri_mesh *b)
+{
+    const struct tri_mesh before = *a;
+    for (enum tri_array which = TRI_XY; which < TRI_ARRAYS; which++) {
+        set_array(a, which, array_of(b, which).at);
+        set_array(b, which, array_of(&before, which).at);
+    }
+    a->storage = b->storage;
+    b->storage = before.storage;
+    take_counts(a, b);
+    take_counts(b, &before);
+}
+
+/* *to, which is empty, receives the arrays of *from, in this storage. */
+static bool copy_arrays(struct tri_mesh *to, const struct tri_mesh *from, const struct tri_storage *storage)
+{
+    bool memory = true;
+    *to = (struct tri_mesh){.n_attributes = from->n_attributes, .storage = storage};
+    for (enum tri_array which = TRI_XY; memory && which < TRI_ARRAYS; which++) {
+        struct array a = array_of(from, which);
+        memory = a.capacity == 0 || grow_array(to, which, a.capacity);
+        if (memory && a.n > 0 && a.item > 0)
+            memcpy(array_of(to, which).at, a.at, (size_t)a.n * a.item);
+    }
+    if (memory)
+        take_counts(to, from);
+    else
+        tri_mesh_drop(to);
+    return memory;
+}
+
+enum tri_status tri_mesh_copy(struct tri_mesh *copy, const struct tri_mesh *mesh, struct tri_error *error)
+{
+    return copy_arrays(copy, mesh, NULL) ? TRI_OK : no_memory(error, "triangles of a copy", mesh->n_triangles);
+}
+
+enum tri_status tri_mesh_move(struct tri_mesh *mesh, const struct tri_storage *storage, struct tri_error *error)
+{
+    struct tri_mesh there;
+    if (!copy_arrays(&there, mesh, storage))
+        return no_memory(error, "triangles elsewhere", mesh->n_triangles);
+    tri_mesh_swap(mesh, &there);
+    tri_mesh_drop(&there);
+    return TRI_OK;
 }
 
 enum tri_status tri_mesh_reserve_vertices(struct tri_mesh *mesh, int32_t more, struct tri_error *error)
@@ -109,12 +238,9 @@ enum tri_status tri_mesh_reserve_vertices(struct tri_mesh *mesh, int32_t more, s
     int32_t capacity = next_capacity(mesh->vertex_capacity, need, TRI_MAX_VERTICES);
     if (!capacity)
         return too_large(error, "vertices");
-    size_t attributes = (size_t)mesh->n_attributes * sizeof *mesh->attributes;
-    if (!grow(&mesh->xy, capacity, sizeof *mesh->xy) || !grow(&mesh->on, capacity, sizeof *mesh->on) ||
-        !grow(&mesh->vertex_markers, capacity, sizeof *mesh->vertex_markers) ||
-        !grow(&mesh->feature, capacity, sizeof *mesh->feature) ||
-        (attributes && !grow(&mesh->attributes, capacity, attributes)))
-        return no_memory(error, "vertices", capacity);
+    for (enum tri_array which = TRI_XY; which <= TRI_ATTRIBUTES; which++)
+        if (!grow_array(mesh, which, capacity))
+            return no_memory(error, "vertices", capacity);
     mesh->vertex_capacity = capacity;
     return TRI_OK;
 }
@@ -128,11 +254,8 @@ enum tri_status tri_mesh_reserve_triangles(struct tri_mesh *mesh, int32_t more, 
     int32_t capacity = next_capacity(mesh->triangle_capacity, need, TRI_MAX_TRIANGLES);
     if (!capacity)
         return too_large(error, "triangles");
-    struct tri_triangle *fresh = grow_aligned(mesh->tri, (size_t)mesh->n_triangles * sizeof *fresh,
-                                              (size_t)capacity * sizeof *fresh);
-    if (!fresh)
+    if (!grow_array(mesh, TRI_TRIANGLES, capacity))
         return no_memory(error, "triangles", capacity);
-    mesh->tri = fresh;
     mesh->triangle_capacity = capacity;
     return TRI_OK;
 }
@@ -145,7 +268,7 @@ enum tri_status tri_mesh_reserve_subs(struct tri_mesh *mesh, int32_t more, struc
         int32_t capacity = next_capacity(mesh->sub_capacity, need, TRI_MAX_TRIANGLES);
         if (!capacity)
             return too_large(error, "subsegments");
-        if (!grow(&mesh->sub, capacity, sizeof *mesh->sub))
+        if (!grow_array(mesh, TRI_SUBS, capacity))
             return no_memory(error, "subsegments", capacity);
         mesh->sub_capacity = capacity;
     }

@@ -74,6 +74,17 @@ struct tri_region {
     double max_area; /* <= 0: none */
 };
 
+/* Where the arrays are that grow with refinement, if not in memory from malloc. reserve: the array has at least so many
+ * bytes afterwards, what is in it stays, pages are zero that have not been written to; NULL: there is no room. An array
+ * starts at a page. extra: so many bytes for what is larger than memory when the mesh is, until the storage goes. */
+enum tri_array { TRI_XY, TRI_ON, TRI_MARKERS, TRI_FEATURE, TRI_ATTRIBUTES, TRI_TRIANGLES, TRI_SUBS, TRI_ARRAYS };
+
+struct tri_storage {
+    void *(*reserve)(void *user, enum tri_array array, size_t bytes);
+    void *(*extra)(void *user, size_t bytes);
+    void *user;
+};
+
 struct tri_owners;
 
 struct tri_mesh {
@@ -108,6 +119,7 @@ struct tri_mesh {
 
     double unit;              /* a power of two: the caller's coordinates are xy * unit */
 
+    const struct tri_storage *storage; /* borrowed; NULL: malloc */
     const struct tri_stop *stop; /* whoever works on the mesh asks it whether to go on; borrowed; NULL: nobody */
 };
 
@@ -150,6 +162,18 @@ static inline struct tri_point tri_to_units(const struct tri_mesh *mesh, double 
 /* Makes an empty mesh; regions[0] exists. Frees everything and zeroes the struct. */
 enum tri_status tri_mesh_init(struct tri_mesh *mesh, struct tri_error *error);
 void tri_mesh_free(struct tri_mesh *mesh);
+
+/* Memory for something as large as the mesh, where the mesh is. NULL: there is none. */
+void *tri_mesh_extra(const struct tri_mesh *mesh, size_t bytes);
+void tri_mesh_extra_free(const struct tri_mesh *mesh, void *extra);
+
+/* The arrays that grow with refinement. Move: to a storage, which the mesh borrows from then on. Copy: *copy has
+ * another such mesh's, in memory from malloc, and nothing else. Swap: two meshes change theirs, and the counts of them.
+ * Drop: there are none any more. TRI_NO_MEMORY: the mesh is as before, *copy has nothing. */
+enum tri_status tri_mesh_move(struct tri_mesh *mesh, const struct tri_storage *storage, struct tri_error *error);
+enum tri_status tri_mesh_copy(struct tri_mesh *copy, const struct tri_mesh *mesh, struct tri_error *error);
+void tri_mesh_swap(struct tri_mesh *a, struct tri_mesh *b);
+void tri_mesh_drop(struct tri_mesh *mesh);
 
 /* Room for at least so many more items; amortised O(1) an item. Pointers into the arrays are stale afterwards. */
 enum tri_status tri_mesh_reserve_vertices(struct tri_mesh *mesh, int32_t more, struct tri_error *error);

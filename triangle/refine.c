@@ -5,6 +5,11 @@
  * triangle, if it still stands, is asked again. Nothing is changed before everything is known, so nothing is ever
  * undone.
  *
+ * ORDER. The walls of a cavity are all the subsegments that its point encroaches and sees only if none of them is
+ * encroached already (cavity.h): the corner that encroaches it may hide it, and the point would come to lie anywhere
+ * near it. So triangles with a corner that sees a subsegment of theirs under too wide an angle come before all others:
+ * their points lie behind it, and it is split. Then those with the shortest edges (bad_queue.h).
+ *
  * Angles may be given up; sizes are not: a triangle that is too large and cannot have that point gets another
  * (inside.c). For -D, subsegments whose diametral circle is not empty are split before anything else (disk.c).
  *
@@ -52,6 +57,7 @@ struct tri_refiner {
     struct tri_bad_queue queue;
     bool sized;       /* the triangle in hand asks for a point because of sizes, not of angles */
     int64_t beyond;   /* how many points more may be inserted for angles above TRI_USUAL_ANGLE */
+    int64_t back;     /* and, once that was too many, for BACK_ANGLE */
     enum step step;
     int limit;        /* buckets from here on wait for the second pass */
     int32_t next_listed, n_worklist;
@@ -87,16 +93,39 @@ struct tri_refine_options tri_refine_defaults(void)
 /* Four buckets an octave of the squared length, counted from the shortest edge that can be resolved. */
 static int bucket_of(const struct tri_refiner *r, double shortest)
 {
-    int exponent;
+    int exponent, first = TRI_URGENT_BUCKET + 1;
     double mantissa = frexp(shortest, &exponent);
-    int bucket = 4 * (exponent - r->least_exponent) + (int)(8 * mantissa) - 4;
-    return bucket < 0 ? 0 : bucket >= TRI_BUCKETS ? TRI_BUCKETS - 1 : bucket;
+    int bucket = first + 4 * (exponent - r->least_exponent) + (int)(8 * mantissa) - 4;
+    return bucket < first ? first : bucket >= TRI_BUCKETS ? TRI_BUCKETS - 1 : bucket;
+}
+
+/* Does a corner of the triangle see the subsegment opposite to it under too wide an angle? */
+static bool crowds_a_wall(const struct tri_refiner *r, const struct tri_triangle *t)
+{
+    for (int e = 0; e < 3; e++) {
+        if (t->n[e] >= 0)
+            continue;
+        struct tri_point p = r->mesh->xy[t->v[e]];
+        struct tri_relative a = tri_relative(&r->mesh->xy[t->v[tri_next[e]]], p);
+        struct tri_relative b = tri_relative(&r->mesh->xy[t->v[tri_prev[e]]], p);
+        double dot = a.x * b.x + a.y * b.y;
+        if (dot < 0 && dot * dot > r->criterion.bounds.lens_cos2 * a.l * b.l)
+            return true;
+    }
+    return false;
+}
+
+static bool push_angle(struct tri_refiner *r, tri_triangle_id triangle, double shortest)
+{
+    const struct tri_triangle *t = &r->mesh->tri[triangle];
+    int bucket = crowds_a_wall(r, t) ? TRI_URGENT_BUCKET : bucket_of(r, shortest);
+    return tri_bad_queue_push_angle(&r->queue, (struct tri_entry){triangle, t->state}, bucket);
 }
 
 static bool push(struct tri_refiner *r, int32_t triangle, enum tri_badness badness, double shortest)
 {
     struct tri_entry entry = {triangle, r->mesh->tri[triangle].state};
-    return badness == TRI_BAD_ANGLE ? tri_bad_queue_push_angle(&r->queue, entry, bucket_of(r, shortest))
+    return badness == TRI_BAD_ANGLE ? push_angle(r, triangle, shortest)
                                     : tri_bad_queue_push_size(&r->queue, entry, badness == TRI_BAD_SIZE);
 }
 
@@ -107,7 +136,7 @@ static bool judge_edge(struct tri_refiner *r, const struct tri_cavity_edge *edge
     assert(edge->triangle >= 0);
     double area2 = edge->area2, x = ra.x - rb.x, y = ra.y - rb.y, l = x * x + y * y;
     if (area2 * area2 < r->criterion.bounds.sin2 * tri_longer_product(ra.l, rb.l, l))
-        return push(r, edge->triangle, TRI_BAD_ANGLE, tri_lesser(ra.l, tri_lesser(rb.l, l)));
+        return push_angle(r, edge->triangle, tri_lesser(ra.l, tri_lesser(rb.l, l)));
     bool is_bad = area2 > area2_bound;
     if (r->options->unsuitable)
         is_bad = is_bad || tri_is_unsuitable(&r->criterion, r->mesh->tri[edge->triangle].v);
@@ -232,6 +261,25 @@ static enum outcome give_up(struct tri_refiner *r, enum tri_excuse excuse)
     return GIVEN_UP;
 }
 
+/* The cavity of the point that splits subsegment s at this fraction of it, the first of its places that has one:
+ * rounding may put a place outside the disk of a triangle beside s, or behind one of its edges. */
+static enum tri_search find_split(struct tri_refiner *r, tri_sub_id s, double fraction, int32_t *n_left)
+{
+    const struct tri_mesh *m = r->mesh;
+    const struct tri_subsegment *sub = &m->sub[s];
+    struct tri_point p;
+    if (!tri_can_split(m, m->xy[sub->v[0]], m->xy[sub->v[1]]))
+        return TRI_SEARCH_OUTSIDE;
+    for (int choice = 0; choice < TRI_SPLIT_PLACES; choice++) {
+        if (!tri_place_split(m, sub, fraction, choice, &p))
+            continue;
+        enum tri_search found = tri_cavity_search_split(&r->cavity, m, p, s, n_left);
+        if (found != TRI_SEARCH_OUTSIDE)
+            return found;
+    }
+    return TRI_SEARCH_OUTSIDE;
+}
+
 /* Splits subsegment s, at this fraction of it, for the sake of a triangle. */
 static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, int32_t triangle)
 {
@@ -240,10 +288,7 @@ static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, 
     int32_t n_left;
     if (tri_is_protected(r->options, &old))
         return refuse(r, TRI_EXCUSE_PROTECTED);
-    struct tri_point p;
-    if (!tri_can_split(m, m->xy[old.v[0]], m->xy[old.v[1]]) || !tri_place_split(m, &old, fraction, &p))
-        return refuse(r, TRI_EXCUSE_PRECISION);
-    enum tri_search found = tri_cavity_search_split(&r->cavity, m, p, s, &n_left);
+    enum tri_search found = find_split(r, s, fraction, &n_left);
     if (found == TRI_SEARCH_FENCED)
         return defer(r, triangle, &r->report->fenced);
     if (found == TRI_SEARCH_OUTSIDE)
@@ -382,12 +427,16 @@ static void lower_bound(struct tri_refiner *r, double degrees)
     r->criterion.bounds.lens_cos2 = degrees > 0 ? r->criterion.bounds.lens_cos2 : lens_cos2;
 }
 
-/* What the mesh can afford for a bound above the usual one has been spent. */
+/* A point for angles beyond the usual one: once what the mesh can afford has been spent, less is asked for. */
 static void count_point(struct tri_refiner *r)
 {
-    if (r->stage != BEYOND_STAGE || r->sized || --r->beyond != -1)
+    if (r->stage < BEYOND_STAGE || r->sized)
         return;
-    lower_bound(r, BACK_ANGLE);
+    bool still_beyond = r->beyond >= 0;
+    int64_t left = still_beyond ? --r->beyond : --r->back;
+    if (left != -1)
+        return;
+    lower_bound(r, still_beyond ? BACK_ANGLE : 0);
     r->report->hit_cap = true;
 }
 
@@ -580,8 +629,15 @@ static bool refine_worklist(struct tri_refiner *r)
  * (docs/performance.md: up to a sixth fewer triangles). Above TRI_USUAL_ANGLE refinement feeds on itself, until edges
  * are as short as feature_size.c allows. So the whole mesh is refined for the usual angle; then for more, as long as
  * that adds less than half as many points again; where it did not end so, what is left is mended for BACK_ANGLE (for
- * the usual angle it would take several times as many points). Within a fence there is only the usual stage. With a
- * worklist there is no easy one: what it makes bad for the next is not among them. */
+ * the usual angle it would take several times as many points), and given up where that is too dear, too. Within a
+ * fence there is only the usual stage. With a worklist there is no easy one: what it makes bad for the next is not
+ * among them.
+ *
+ * THEOREM (beyond the usual angle). Whatever the bound, for angles above TRI_USUAL_ANGLE no more than 600 + 3/4 n
+ * points are inserted, n being the triangles of the mesh at that angle. Proof: each is counted (count_point); after
+ * 200 + n / 4 of them no triangle is bad by more than BACK_ANGLE, after twice as many again none is bad by its angle.
+ * So without sizes and -D the mesh has at most 2.5 n + 1200 triangles. Each of these points may make a triangle too
+ * large for its bound, or crowd a subsegment under -D; what comes of that is finite by inside.c and disk.c. */
 static void begin_stages(struct tri_refiner *r)
 {
     double usual = fmin(r->options->min_angle, TRI_USUAL_ANGLE);
@@ -594,6 +650,7 @@ static void begin_stages(struct tri_refiner *r)
 static void go_beyond(struct tri_refiner *r)
 {
     r->beyond = 200 + r->mesh->n_triangles / 4;
+    r->back = 2 * r->beyond;
     lower_bound(r, r->options->min_angle);
     r->stage = BEYOND_STAGE;
 }
@@ -613,7 +670,8 @@ static void next_stage(struct tri_refiner *r)
         return;
     case BEYOND_STAGE:
         r->stage = LAST_STAGE;
-        if (r->report->hit_cap) {
+        if (r->report->hit_cap && r->back >= 0) {
+            r->beyond = -1;
             lower_bound(r, BACK_ANGLE);
             r->stage = BACK_STAGE;
         }

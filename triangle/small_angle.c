@@ -7,6 +7,9 @@
  *      vertex where they meet (concentric shells: Ruppert 1995), and a triangle whose shortest edge joins two of them
  *      on one circle stays (Miller, Pav & Walkington 2003): its length is dictated by the input angle, so nothing
  *      smaller is made because of it.
+ *      Between two segments that meet at less than 1 / SHARP no triangle can be good that is not SHARP times smaller
+ *      than its distance from the vertex where they meet, and those about that vertex never are. Such a spike is not
+ *      filled: a triangle whose shortest edge joins its sides stays, wherever their ends have put them.
  *   2. Two segments side by side, nearer to each other than rounding, or than anyone could want to fill: spikes of no
  *      width, slits, borders that were digitised twice. The theory holds, but asks for length / width triangles. Such a
  *      gap is filled only if the mesh can afford it (tri_choose_gaps); a triangle whose shortest edge bridges
@@ -24,6 +27,8 @@
 
 #include "triangle/feature_size.h"
 #include "triangle/predicates.h"
+
+static const double SHARP = 256;
 
 static bool is_acute(const struct tri_mesh *mesh, tri_vertex_id v) { return mesh->on[v] == TRI_VERTEX_ACUTE; }
 
@@ -65,6 +70,26 @@ static bool on_one_shell(const struct tri_mesh *mesh, tri_vertex_id u, tri_verte
         return false;
     double du = tri_distance2(mesh->xy[apex], mesh->xy[u]), dv = tri_distance2(mesh->xy[apex], mesh->xy[v]);
     return du < 1.002 * dv && dv < 1.002 * du && uv2 < 0.99 * du;
+}
+
+/* The angle between the legs oa and ob. */
+static enum tri_corner corner_at(struct tri_point o, struct tri_point a, struct tri_point b)
+{
+    double ax = a.x - o.x, ay = a.y - o.y, bx = b.x - o.x, by = b.y - o.y;
+    double dot = ax * bx + ay * by, sine = fabs(ax * by - ay * bx);
+    if (!(dot > 0 && 3 * dot * dot > sine * sine))
+        return TRI_WIDE_CORNER;
+    return SHARP * sine > dot ? TRI_NARROW_CORNER : TRI_SPIKE;
+}
+
+enum tri_corner tri_corner_between(const struct tri_mesh *mesh, tri_parent_id p, tri_parent_id q)
+{
+    const tri_vertex_id *a = mesh->parents[p].v, *b = mesh->parents[q].v;
+    for (int i = 0; p != q && i < 2; i++)
+        for (int k = 0; k < 2; k++)
+            if (a[i] == b[k])
+                return corner_at(mesh->xy[a[i]], mesh->xy[a[1 - i]], mesh->xy[b[1 - k]]);
+    return TRI_APART;
 }
 
 /* The parents that vertex v lies on: its own, or those that end there. */
@@ -178,14 +203,19 @@ static bool is_beside(const struct tri_mesh *mesh, const struct tri_parent *p, t
     return along >= 0 && along <= x * x + y * y;
 }
 
-/* The cost of filling the dearest space between two parents that the edge uv bridges and the triangle with apex w lies
- * in; 0 where uv does not bridge any. */
-static double gap_cost(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v, tri_vertex_id w)
+/* What an edge bridges: the cost of filling the dearest space, 0 where there is none; is there a spike among them? */
+struct gap {
+    double cost;
+    bool spike;
+};
+
+/* The spaces between two parents that the edge uv bridges and the triangle with apex w lies in. */
+static struct gap gap_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v, tri_vertex_id w)
 {
     int32_t nu, nv, beside[2][8];
     const tri_parent_id *pu = parents_beside(mesh, u, v, w, beside[0], &nu);
     const tri_parent_id *pv = parents_beside(mesh, v, u, w, beside[1], &nv);
-    double dearest = 0;
+    struct gap gap = {0, false};
     for (int32_t i = 0; i < nu; i++)
         for (int32_t k = 0; k < nv; k++) {
             const struct tri_parent *p = &mesh->parents[pu[i]], *q = &mesh->parents[pv[k]];
@@ -194,21 +224,33 @@ static double gap_cost(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_
             if (!is_beside(mesh, p, v) && !is_beside(mesh, q, u))
                 continue; /* one behind the other, as in a smooth curve */
             double cost = tri_filling_cost(mesh, pu[i], pv[k], mesh->xy[u], mesh->xy[v]);
-            dearest = cost > dearest ? cost : dearest;
+            gap.cost = cost > gap.cost ? cost : gap.cost;
+            gap.spike |= tri_corner_between(mesh, pu[i], pv[k]) == TRI_SPIKE;
         }
-    return dearest;
+    return gap;
+}
+
+static struct gap gap_at(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
+{
+    const tri_vertex_id *v = mesh->tri[triangle].v;
+    int k = shape->shortest;
+    return gap_between(mesh, v[tri_next[k]], v[tri_prev[k]], v[k]);
 }
 
 double tri_gap_cost(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
 {
-    const tri_vertex_id *v = mesh->tri[triangle].v;
-    int k = shape->shortest;
-    return gap_cost(mesh, v[tri_next[k]], v[tri_prev[k]], v[k]);
+    return gap_at(mesh, triangle, shape).cost;
+}
+
+bool tri_bridges_spike(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
+{
+    return gap_at(mesh, triangle, shape).spike;
 }
 
 bool tri_is_narrow_gap(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
 {
-    return tri_gap_cost(mesh, triangle, shape) > mesh->limits.dearest_gap;
+    struct gap gap = gap_at(mesh, triangle, shape);
+    return gap.spike || gap.cost > mesh->limits.dearest_gap;
 }
 
 bool tri_crosses_angle(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
@@ -231,7 +273,7 @@ bool tri_is_hopeless(const struct tri_mesh *mesh, tri_triangle_id triangle, cons
 static double cost_across(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v, tri_vertex_id a,
                           tri_vertex_id b)
 {
-    return fmax(gap_cost(mesh, u, v, a), gap_cost(mesh, u, v, b));
+    return fmax(gap_between(mesh, u, v, a).cost, gap_between(mesh, u, v, b).cost);
 }
 
 /* About so many points it takes to fill the space that a triangle of the input lies in. Where other vertices lie

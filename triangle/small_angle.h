@@ -12,6 +12,15 @@ double tri_split_fraction(const struct tri_mesh *mesh, const struct tri_subsegme
 /* Is the subsegment from a to b long enough to be split? */
 bool tri_can_split(const struct tri_mesh *mesh, struct tri_point a, struct tri_point b);
 
+/* How two parents meet. */
+enum tri_corner {
+    TRI_APART,         /* not at all, or they are the same */
+    TRI_WIDE_CORNER,   /* at 60 degrees or more */
+    TRI_NARROW_CORNER, /* at less */
+    TRI_SPIKE          /* at so little that the space between is not filled: a quarter of a degree */
+};
+enum tri_corner tri_corner_between(const struct tri_mesh *mesh, tri_parent_id p, tri_parent_id q);
+
 /* Does the shortest edge of the triangle join two segments that touch? */
 bool tri_crosses_angle(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape);
 
@@ -33,7 +42,10 @@ double tri_filling_cost(const struct tri_mesh *mesh, tri_parent_id first, tri_pa
  * bridges; 0 where it bridges none. */
 double tri_gap_cost(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape);
 
-/* Does the shortest edge of the triangle bridge a space between two parents that is too dear to fill? */
+/* Does the shortest edge of the triangle bridge a spike? */
+bool tri_bridges_spike(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape);
+
+/* Does the shortest edge of the triangle bridge a spike, or a space between two parents that is too dear to fill? */
 bool tri_is_narrow_gap(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape);
 
 /* Chooses which narrow spaces are filled, by their cost (mesh->limits): the parents at each vertex are listed.

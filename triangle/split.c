@@ -6,7 +6,8 @@
  *
  * 1. The place is that on the parent's line, rounded once, or, for the sake of 2, a neighbour of it or of the place on
  * the subsegment, not more than ASTRAY away from the line. So a chain keeps to its line however often it is split;
- * where it cannot it is not split.
+ * where it cannot it is not split. Which of these places is taken the cavity decides: the first from which all of it
+ * can be seen.
  * 2. THEOREM (boundary). Each parent on the boundary has an empty triangle of its own outside: its ends and its guard,
  * the centroid of the triangle of the constrained Delaunay triangulation that was carved there. If every split point
  * of a boundary subsegment lies on the inner side of it (or on it), or in the parent's own triangle, the boundary never
@@ -18,7 +19,6 @@
 
 #include <assert.h>
 
-#include "triangle/crossing.h"
 #include "triangle/predicates.h"
 
 /* Resolutions that a split point may lie off its parent's line. */
@@ -34,29 +34,24 @@ static bool keeps_to_itself(const struct tri_mesh *mesh, const struct tri_parent
     return tri_is_inside(a, b, guard, p) || tri_is_inside(b, a, guard, p);
 }
 
-/* Moves *p to a place at most one resolution away at which the subsegment may be split. */
-static bool find_place(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point *p)
+/* May the subsegment be split at p, as far as the boundary is concerned? */
+static bool is_allowed(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p)
 {
     bool left = s->side[0] != TRI_NONE, boundary = !left || s->side[1] == TRI_NONE;
-    struct tri_point from = mesh->xy[s->v[left ? 0 : 1]], to = mesh->xy[s->v[left ? 1 : 0]], at = *p;
-    for (int i = 0; i < TRI_PLACES; i++) {
-        *p = tri_place_beside(at, i);
-        if (!boundary || keeps_to_itself(mesh, &mesh->parents[s->parent], from, to, *p))
-            return true;
-    }
-    return false;
+    struct tri_point from = mesh->xy[s->v[left ? 0 : 1]], to = mesh->xy[s->v[left ? 1 : 0]];
+    return !boundary || keeps_to_itself(mesh, &mesh->parents[s->parent], from, to, p);
 }
 
-bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction,
+bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction, int choice,
                      struct tri_point *p)
 {
     assert(fraction > 0 && fraction < 1 && s->parent >= 0 && s->parent < mesh->n_parents);
+    assert(choice >= 0 && choice < TRI_SPLIT_PLACES);
     const struct tri_parent *parent = &mesh->parents[s->parent];
+    struct tri_point a = mesh->xy[parent->v[0]], b = mesh->xy[parent->v[1]];
     struct tri_point between = tri_point_between(mesh->xy[s->v[0]], mesh->xy[s->v[1]], fraction);
-    *p = tri_onto_line(mesh->xy[parent->v[0]], mesh->xy[parent->v[1]], between);
-    if (find_place(mesh, s, p))
-        return true;
-    *p = between; /* the subsegment itself lies inside by now */
-    return find_place(mesh, s, p) &&
-           tri_line_distance(mesh->xy[parent->v[0]], mesh->xy[parent->v[1]], *p) <= ASTRAY * tri_resolution(*p);
+    bool on_line = choice < TRI_PLACES; /* else on the subsegment, which lies inside by now */
+    struct tri_point exact = on_line ? tri_onto_line(a, b, between) : between;
+    *p = tri_place_beside(exact, choice % TRI_PLACES);
+    return is_allowed(mesh, s, *p) && (on_line || tri_line_distance(a, b, *p) <= ASTRAY * tri_resolution(*p));
 }

@@ -2,11 +2,14 @@
 #ifndef TRIANGLE_SPLIT_H
 #define TRIANGLE_SPLIT_H
 
-#include "triangle/mesh.h"
+#include "triangle/crossing.h"
 
-/* *p: the place at this fraction of the subsegment, on its parent's line up to one resolution (crossing.h). False where
- * there is no such place that keeps the boundary to itself, see split.c. */
-bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction,
+enum { TRI_SPLIT_PLACES = 2 * TRI_PLACES };
+
+/* *p: a place at this fraction of the subsegment, on its parent's line or its own up to about one resolution
+ * (crossing.h); choice: which one, the best are the first. False where that does not keep the boundary to itself, see
+ * split.c. */
+bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction, int choice,
                      struct tri_point *p);
 
 #endif

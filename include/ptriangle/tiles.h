@@ -2,10 +2,10 @@
  * in memory as a whole.
  *
  * First come the vertices that there were before refinement, as one tile without triangles: the caller's points in the
- * caller's order, then crossings of segments; then the plane's tiles,
- * column by column, rows upwards. Numbers count from 0 and are 64 bits wide. They and their order depend on the figure
- * and the settings alone, and are those of the same mesh in memory: vertices, triangles and segments of a tile follow
- * on those of the tiles before it. A corner may have any number below that of the next tile's first vertex. */
+ * caller's order, then crossings of segments; then the plane's tiles, column by column, rows upwards. Numbers count
+ * from 0 and are 64 bits wide. They and their order depend on the figure and the settings alone, and are those of the
+ * same mesh in memory: vertices, triangles and segments of a tile follow on those of the tiles before it. A corner may
+ * have any number below that of the next tile's first vertex. */
 #ifndef PTRIANGLE_TILES_H
 #define PTRIANGLE_TILES_H
 
@@ -42,8 +42,9 @@ struct tri_tile {
     const int32_t *segment_markers;   /* [n_segments] */
 };
 
-/* Who takes tiles: called by one thread, in order. What the pointers name is gone when a call returns. A status other
- * than TRI_OK ends the run with it. */
+/* Who takes tiles: called by one thread, in order. begin may be called again, before end: what has been taken is void
+ * then, and all tiles come anew; whoever has no begin never has to forget anything, but it may take longer. What the
+ * pointers name is gone when a call returns. A status other than TRI_OK ends the run with it. */
 struct tri_sink {
     void *user;
     enum tri_status (*begin)(void *user, const struct tri_stream *stream, struct tri_error *error); /* NULL: not told */

@@ -602,14 +602,14 @@ static enum tri_status allocate(struct numbering *n, struct tri_error *error)
     bool deals = reserve_deal(&n->vertices, mesh->n_vertices - n->n_kept, n->n_tiles);
     deals = reserve_deal(&n->triangles, mesh->n_triangles, n->n_tiles) && deals;
     n->kept_tile = malloc(((size_t)n->n_kept + 1) * sizeof *n->kept_tile);
-    n->order = malloc((vertices + 1) * sizeof *n->order);
-    n->rank = malloc((vertices + 1) * sizeof *n->rank);
-    n->sub_rank = malloc((subs + 1) * sizeof *n->sub_rank);
-    n->sub = malloc((subs + 1) * sizeof *n->sub);
-    n->place = malloc(((size_t)mesh->n_triangles + 1) * sizeof *n->place);
-    n->park = malloc((for_vertices > for_items ? for_vertices : for_items) + sizeof(struct tri_triangle));
+    n->order = tri_mesh_extra(mesh, (vertices + 1) * sizeof *n->order);
+    n->rank = tri_mesh_extra(mesh, (vertices + 1) * sizeof *n->rank);
+    n->sub_rank = tri_mesh_extra(mesh, (subs + 1) * sizeof *n->sub_rank);
+    n->sub = tri_mesh_extra(mesh, (subs + 1) * sizeof *n->sub);
+    n->place = tri_mesh_extra(mesh, ((size_t)mesh->n_triangles + 1) * sizeof *n->place);
+    n->park = tri_mesh_extra(mesh, (for_vertices > for_items ? for_vertices : for_items) + sizeof(struct tri_triangle));
     n->batch = mesh->n_triangles / BATCHES < BATCH ? mesh->n_triangles / BATCHES + 1 : BATCH;
-    n->buffer = malloc((size_t)n->batch * sizeof *n->buffer);
+    n->buffer = tri_mesh_extra(mesh, (size_t)n->batch * sizeof *n->buffer);
     if (deals && n->kept_tile && n->order && n->rank && n->sub_rank && n->sub && n->place && n->park &&
         n->buffer)
         return TRI_OK;
@@ -625,7 +625,7 @@ static void renumber(struct numbering *n)
     rename_subs(n);
     rank_subs(n);
     rank_triangles(n);
-    free(n->order); /* before the buffer's pages are asked for */
+    tri_mesh_extra_free(n->mesh, n->order); /* before the buffer's pages are asked for */
     n->order = NULL;
     move_triangles(n);
     move_subs(n);
@@ -642,13 +642,13 @@ static void free_numbering(struct numbering *n)
         free(deals[k]->start);
     }
     free(n->kept_tile);
-    free(n->order);
-    free(n->rank);
-    free(n->sub_rank);
-    free(n->sub);
-    free(n->place);
-    free(n->park);
-    free(n->buffer);
+    tri_mesh_extra_free(n->mesh, n->order);
+    tri_mesh_extra_free(n->mesh, n->rank);
+    tri_mesh_extra_free(n->mesh, n->sub_rank);
+    tri_mesh_extra_free(n->mesh, n->sub);
+    tri_mesh_extra_free(n->mesh, n->place);
+    tri_mesh_extra_free(n->mesh, n->park);
+    tri_mesh_extra_free(n->mesh, n->buffer);
 }
 
 enum tri_status par_number(struct tri_mesh *mesh, const struct par_partition *partition, int32_t n_kept,

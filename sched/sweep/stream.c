@@ -168,11 +168,16 @@ static enum tri_status hand_out_up_to(struct par_tiles *tiles, int32_t tile_id, 
     return status;
 }
 
+double par_tiles_expected(const struct par_tiles *tiles)
+{
+    return tiles->partition ? tiles->partition->estimate : tiles->mesh->n_triangles;
+}
+
 enum tri_status par_tiles_whole(struct par_tiles *tiles, struct tri_error *error)
 {
     const struct tri_mesh *mesh = tiles->mesh;
     int32_t n_tiles = tiles->partition ? par_blocks(tiles->partition) : 0;
-    enum tri_status status = par_tiles_begin(tiles, mesh->n_triangles, error);
+    enum tri_status status = par_tiles_begin(tiles, par_tiles_expected(tiles), error);
     for (int32_t tile = 0; !status && tile < n_tiles; tile++) {
         int32_t v = end_of(tiles, tile, (int32_t)tiles->n_vertices, mesh->n_vertices, tile_of_vertex);
         int32_t t = end_of(tiles, tile, (int32_t)tiles->n_triangles, mesh->n_triangles, tile_of_triangle);

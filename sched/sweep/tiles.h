@@ -38,6 +38,9 @@ struct par_tiles {
     struct par_worklist held;         /* numbered vertices that triangles beyond the last column still have */
 };
 
+/* Triangles to expect, to the order: the same, however the mesh is carried through. */
+double par_tiles_expected(const struct par_tiles *tiles);
+
 /* Tells the sink what is to come, about so many triangles, and hands out the vertices that there were before: the
  * caller's points by the caller's numbers. TRI_NO_MEMORY, or what the sink says. */
 enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct tri_error *error);

@@ -255,7 +255,7 @@ few 1000 -pq34.5 endless_q36_small
 few 5000 -pq36 endless_q36_small
 few 10000 -pq34 endless_q36_fan
 few 40000 -pq36 endless_q36_fan
-few 10000 -pq34 endless_q35_graded
+few 12000 -pq34 endless_q35_graded
 few 40000 -pq35 endless_q35_graded
 few 40000 -pq38 endless_q35_graded
 few 200000 -pq38AD slow_q41D_2369

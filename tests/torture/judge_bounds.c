@@ -56,6 +56,19 @@ static void judge_areas(const struct outcome *o, struct bounds *b, struct verdic
                     (long long)b->too_large, (int)b->worst_at, b->worst);
 }
 
+/* Where vertices ran away triangles are given up, beside small angles and dear spaces at any bound: there the checker
+ * finds the reason itself. Elsewhere only above an angle that theory promises, and few. */
+static int64_t may_run_away(const struct outcome *o, int64_t count, struct verdict *verdict)
+{
+    const double PROMISED = 25, FEW = 0.01;
+    if (o->options.quality.min_angle <= PROMISED)
+        return 0;
+    if (count > 20 + FEW * o->mesh.n_triangles)
+        judge_fault(verdict, "angle limit", "%lld of %d triangles given up at %g degrees", (long long)count,
+                    (int)o->mesh.n_triangles, o->options.quality.min_angle);
+    return count;
+}
+
 /* The counts that the programs print. A point for a triangle beside a flat one may see the flat one from behind, and is
  * not inserted then: where there are flat triangles, a few around each may be left. */
 enum { AROUND = 10 };
@@ -80,10 +93,8 @@ static void judge_angles(const struct outcome *o, const struct bounds *b, const 
         judge_fault(verdict, "angle protected", "%lld without Y", (long long)count[TRI_EXCUSE_PROTECTED]);
     if (o->switches.protect > 0 || o->options.quality.min_angle > TRI_USUAL_ANGLE)
         return;
-    if (count[TRI_EXCUSE_LIMIT] > 0)
-        judge_fault(verdict, "angle limit", "%lld triangles given up at %g degrees", (long long)count[TRI_EXCUSE_LIMIT],
-                    o->options.quality.min_angle);
     int64_t unexplained = report->n_small - report->n_small_explained, beside = AROUND * b->too_flat;
+    unexplained -= may_run_away(o, count[TRI_EXCUSE_LIMIT], verdict);
     int64_t flat = count[TRI_EXCUSE_PRECISION] < beside ? count[TRI_EXCUSE_PRECISION] : beside;
     if (unexplained > count[TRI_EXCUSE_NARROW_GAP] + flat)
         judge_fault(verdict, "angle",

@@ -1,0 +1,81 @@
+/* Columns in turn: refine, look for what is left behind, hand out. */
+#include "sched/sweep/sweep.h"
+
+#include "sched/ranks/ranks.h"
+#include "triangle/clock.h"
+
+struct par_tiles par_tiles_of(const struct par_state *state, const struct par_partition *partition,
+                              const struct tri_executor *executor)
+{
+    return (struct par_tiles){.mesh = state->mesh, .partition = partition, .executor = executor,
+                              .n_kept = state->n_kept, .sink = state->options->sink,
+                              .figure = state->options->figure, .region_column = state->options->region_column};
+}
+
+/* Something that no block could do lies left of x, where every block has had its turn. */
+static bool is_left_behind(const struct par_state *state, double x)
+{
+    const struct tri_mesh *mesh = state->mesh;
+    for (int32_t i = 0; i < state->worklist.n; i++) {
+        const struct tri_triangle *t = &mesh->tri[state->worklist.item[i]];
+        if (tri_is_live(t) && mesh->xy[t->v[0]].x < x && mesh->xy[t->v[1]].x < x && mesh->xy[t->v[2]].x < x)
+            return true;
+    }
+    return false;
+}
+
+/* What is final goes: the tiles of a column, once the even column of blocks behind it is through. */
+static enum tri_status finish_column(struct par_state *state, struct par_tiles *tiles, int32_t column, bool *left,
+                                     struct tri_error *error)
+{
+    double began = tri_seconds();
+    *left = is_left_behind(state, par_fence(tiles->partition, column, 0).x_max);
+    enum tri_status status = *left ? TRI_OK : par_tiles_column(tiles, column, true, &state->spare, error);
+    state->gone = tiles->n_triangles;
+    state->report->seconds_number += tri_seconds() - began;
+    return status;
+}
+
+/* The blocks of an odd column, and those of the even one behind it. */
+static enum tri_status refine_columns(struct par_state *state, const struct par_partition *partition, int32_t odd,
+                                      struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (int phase = 0; !status && phase < PAR_PHASES; phase++) {
+        int32_t column = phase < 2 ? odd : odd - 1;
+        par_tell(state, phase + 1);
+        if (column < partition->n_columns)
+            status = par_phase(state, partition, phase, column, error);
+    }
+    return status;
+}
+
+enum tri_status par_sweep(struct par_state *state, const struct par_partition *partition, bool *done,
+                          struct tri_error *error)
+{
+    struct tri_executor executor = par_executor(&state->threads);
+    struct par_tiles tiles = par_tiles_of(state, partition, &executor);
+    bool left = false;
+    enum tri_status status = par_tiles_begin(&tiles, partition->estimate, error);
+    for (int32_t odd = 1; !status && !left && odd <= partition->n_columns; odd += 2) {
+        status = refine_columns(state, partition, odd, error);
+        if (!status && odd > 2)
+            status = finish_column(state, &tiles, odd - 2, &left, error);
+    }
+    if (!status && !left)
+        status = par_tiles_end(&tiles, error);
+    *done = !status && !left;
+    state->report->rounds++;
+    state->report->deferred += state->report->total.fenced;
+    state->report->total.gated = state->report->total.fenced = 0; /* all of them have had their turn */
+    par_tiles_free(&tiles);
+    return status;
+}
+
+enum tri_status par_hand_out(struct par_state *state, struct tri_error *error)
+{
+    struct par_tiles tiles = par_tiles_of(state, state->numbered ? &state->cells : NULL, NULL);
+    if (state->options->carrier)
+        return par_whole_on_ranks(state->options->carrier, &tiles, error);
+    return par_tiles_whole(&tiles, error);
+}
