@@ -31,7 +31,7 @@ enum tri_status tri_check_store_new(struct checker *c)
     c->store->most = INT64_MAX;
     if (c->source->memory <= 0)
         return TRI_OK;
-    c->store->most = LEAST_ROOM + (int64_t)(c->source->memory / 8 / sizeof(struct check_open));
+    c->store->most = LEAST_ROOM + (int64_t)fmin(c->source->memory / 8 / sizeof(struct check_open), 0x1p40);
     /* Should all half-edges be parked, a file is to fit, too. */
     double files = 3 * (double)c->n_triangles / (double)c->store->most;
     while (c->store->bits < MOST_BITS && (double)(1 << c->store->bits) < files)
