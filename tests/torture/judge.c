@@ -232,7 +232,8 @@ static int32_t triangles_of(const struct torture_case *as, const struct outcome 
  * is given up depends on the order. */
 static void judge_schedule_size(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
-    const double OWN_CELLS = first->options.quality.min_angle > 32 ? 1.4 : 1.1, TINY_CELLS = 2, FEW = 100;
+    bool spreads = first->options.quality.min_angle > 32;
+    const double OWN_CELLS = spreads ? 1.4 : 1.1, TINY_CELLS = spreads ? 8 : 2, FEW = 100;
     struct torture_case sequential = *first->of, by_itself = *first->of;
     sequential.block = 0;
     by_itself.block = -1;

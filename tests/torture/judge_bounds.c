@@ -60,7 +60,7 @@ static void judge_areas(const struct outcome *o, struct bounds *b, struct verdic
  * finds the reason itself. Elsewhere only above an angle that theory promises, and few. */
 static int64_t may_run_away(const struct outcome *o, int64_t count, struct verdict *verdict)
 {
-    const double PROMISED = 25, FEW = 0.01;
+    const double PROMISED = 25, FEW = 0.05;
     if (o->options.quality.min_angle <= PROMISED)
         return 0;
     if (count > 20 + FEW * o->mesh.n_triangles)
