@@ -258,8 +258,8 @@ static void judge_amount(const struct outcome *first, const struct tri_pslg *psl
     struct outcome less = *first;
     double angle = first->options.quality.min_angle;
     bool beyond = angle > TRI_USUAL_ANGLE;
-    if (first->mesh.n_triangles < FEW || angle <= PROMISED)
-        return;
+    if (first->mesh.n_triangles < FEW || angle <= PROMISED || (!beyond && first->switches.protect > 0))
+        return; /* where segments must stay as they are theory promises nothing */
     enter(verdict, "meshing at a smaller angle");
     less.options.quality.min_angle = beyond ? TRI_USUAL_ANGLE : PROMISED;
     int32_t n = triangles_of(first->of, &less, pslg, verdict);
@@ -291,6 +291,9 @@ static void judge_again(const struct outcome *first, struct verdict *verdict)
     struct tri_reconstruct_options how = {.use_segments = true, .refine = true, .base = 1};
     enter(verdict, "rebuilding");
     o.options.quality.max_area /= 2;
+    /* The short edges that a bound beyond the usual one has left are features of the mesh: asked again it would go on. */
+    if (o.options.quality.min_angle > TRI_USUAL_ANGLE)
+        o.options.quality.min_angle = 30;
     o.options.quality.region_areas = true;
     enum tri_status status = tri_reconstruct(&o.mesh, &pslg, &elements, &how, &error);
     enter(verdict, "refining again");
