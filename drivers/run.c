@@ -146,6 +146,7 @@ static enum tri_status read_input(struct runner *r)
     const struct tri_switches *s = &r->run.arguments->switches;
     struct tri_read_options options = {.default_base = s->from_zero ? 0 : 1,
                                        .want_regions = tri_switches_use_regions(s),
+                                       .may_be_empty = s->mesh,
                                        .refining = s->mesh,
                                        .executor = r->run.hooks->executor,
                                        .stop = interrupt_stop(),
