@@ -130,6 +130,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/ranks/carrier.c
     sched/ranks/fragment.c
     sched/ranks/hand_out.c
+    sched/ranks/borders.c
     sched/ranks/ranks.c
     sched/ranks/relay.c
     sched/ranks/stream.c

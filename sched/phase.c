@@ -19,6 +19,7 @@ struct task {
     int32_t n_worklist;
     int32_t expected;       /* triangles, to the order */
     struct tri_fence fence, active; /* the second in the caller's coordinates */
+    struct tri_fence known;    /* what is here of the fence */
     bool has_margin;
     struct par_room room;
     struct par_view view;
@@ -194,7 +195,9 @@ static void set_up(struct phase *p, struct task *task)
     task->options = *state->quality;
     task->options.gate = state->options->margin ? is_active : NULL; /* else the fence says all */
     task->options.gate_user = &task->active;
-    task->options.fence = &task->fence;
+    task->known = state->known ? state->known[task->block] : task->fence;
+    task->options.fence = &task->known;
+    task->options.whole = state->known ? &task->fence : NULL;
     task->options.worklist = task->worklist;
     task->options.n_worklist = task->n_worklist;
     task->options.deferred = leave_triangle;
@@ -349,6 +352,7 @@ void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *a
     sum->inserted_free += add->inserted_free;
     sum->inserted_on_segments += add->inserted_on_segments;
     sum->gated += add->gated;
+    sum->short_of += add->short_of;
     sum->fenced += add->fenced;
     for (int k = 0; k < TRI_EXCUSES; k++)
         sum->given_up[k] += add->given_up[k];

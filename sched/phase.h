@@ -40,6 +40,8 @@ struct par_state {
     struct par_report *report;
     int32_t n_schedules;     /* begun so far; the last is the one that works */
     int round;
+    const struct tri_fence *known; /* [blocks] what is here of each block's box; NULL: all. Where a block would have had
+                                      to look further, report->total.short_of says so */
     int32_t n_kept;          /* vertices there were before */
     bool may_number;         /* nothing is refined after this schedule */
     struct par_partition cells; /* of the last schedule of the whole mesh: the tiles by which it is numbered */

@@ -494,6 +494,61 @@ static void test_threads(void **state)
     tri_mesh_delete(first);
 }
 
+struct taken {
+    int64_t n_points, n_triangles;
+    const struct tri_mesh *mesh; /* to compare with */
+};
+
+static enum tri_status begin_again(void *user, const struct tri_stream *stream, struct tri_error *error)
+{
+    struct taken *taken = user;
+    (void)error;
+    assert_int_equal(stream->n_attributes, 0);
+    taken->n_points = taken->n_triangles = 0;
+    return TRI_OK;
+}
+
+/* Tiles hold what the mesh has, in its order. */
+static enum tri_status compare(void *user, const struct tri_tile *tile, struct tri_error *error)
+{
+    struct taken *taken = user;
+    const struct tri_reals at = tri_mesh_points(taken->mesh);
+    const struct tri_ints corner = tri_mesh_triangles(taken->mesh);
+    (void)error;
+    assert_true(tile->first_vertex == taken->n_points && tile->first_triangle == taken->n_triangles);
+    for (int32_t i = 0; i < tile->n_vertices; i++)
+        assert_memory_equal(tile->points[i], at.at + (tile->first_vertex + i) * at.stride, sizeof tile->points[i]);
+    for (int32_t i = 0; i < 3 * tile->n_triangles; i++)
+        assert_true(tile->corners[i / 3][i % 3] ==
+                    corner.at[(tile->first_triangle + i / 3) * corner.stride + i % 3]);
+    taken->n_points += tile->n_vertices;
+    taken->n_triangles += tile->n_triangles;
+    return TRI_OK;
+}
+
+static void test_streams(void **state)
+{
+    (void)state;
+    static const double angles[] = {0, 30, 33};
+    static const int64_t memory[] = {0, 1000000};
+    const struct tri_figure figure = plate();
+    for (int i = 0; i < 6; i++) {
+        struct tri_settings settings = fine();
+        struct tri_mesh *mesh;
+        settings.min_angle = angles[i / 2];
+        settings.max_area = 1e-4;
+        assert_int_equal(par_mesh_new(&mesh, &figure, &settings, NULL), TRI_OK);
+        struct taken taken = {.mesh = mesh};
+        const struct tri_sink sink = {&taken, begin_again, compare, NULL};
+        assert_int_equal(par_mesh_stream(&figure, &settings, memory[i % 2], ".", &sink, NULL), TRI_OK);
+        assert_true(taken.n_points == tri_mesh_points(mesh).n && taken.n_triangles == tri_mesh_triangles(mesh).n);
+        tri_mesh_delete(mesh);
+    }
+    const struct tri_sink nobody = {0};
+    assert_int_equal(par_mesh_stream(&figure, NULL, 0, NULL, &nobody, NULL), TRI_BAD_INPUT);
+    assert_int_equal(par_mesh_stream(&figure, NULL, 0, NULL, NULL, NULL), TRI_BAD_INPUT);
+}
+
 static void test_every_allocation_may_fail(void **state)
 {
     (void)state;
@@ -554,6 +609,7 @@ int main(void)
         cmocka_unit_test(test_headers_of_other_versions),
         cmocka_unit_test(test_files),
         cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_streams),
         cmocka_unit_test(test_every_allocation_may_fail),
         cmocka_unit_test(test_version),
     };

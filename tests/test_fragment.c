@@ -149,6 +149,11 @@ static void test_a_coarse_piece_takes_the_fine_one_back(void **state)
     for (int32_t t = 0; t < n; t++)
         live += tri_is_live(&pair.coarse.tri[t]);
     assert_int_equal(live + spare, n);
+    const struct par_ranges *gone = &pair.to.spare.ranges[PAR_VERTICES]; /* those that only the fine one had */
+    int32_t vertices = pair.n_common;
+    for (int32_t i = 0; i < gone->n; i++)
+        vertices += gone->item[i].end - gone->item[i].next;
+    assert_true(gone->n > 0 && vertices == pair.coarse.n_vertices);
     tri_mesh_compact(&pair.coarse);
     assert_int_equal(tri_mesh_validate(&pair.coarse, NULL), TRI_OK);
     struct support_places after = support_places(&pair.coarse);

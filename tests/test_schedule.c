@@ -8,6 +8,7 @@
 
 #include <pthread.h>
 #include <stdatomic.h>
+#include <sys/resource.h>
 
 #include "sched/schedule.h"
 #include "sched/sweep/numbering.h"
@@ -487,6 +488,45 @@ static void test_a_stream_has_the_numbers_of_the_mesh(void **state)
             tri_mesh_free(&mesh);
             tri_pslg_free(&start.pslg);
         }
+}
+
+static enum tri_status refine_parked(const struct start *start, const char *scratch, struct tri_error *error)
+{
+    struct par_options options = small_blocks(256, 2);
+    struct par_report report;
+    struct stream stream = {0};
+    struct tri_mesh mesh = coarse_mesh(start);
+    const struct tri_sink sink = {&stream, begin_stream, take_tile, end_stream};
+    options.sink = &sink;
+    options.memory = 1000;
+    options.scratch = scratch;
+    enum tri_status status = par_refine(&mesh, &start->options.quality, &options, &report, error);
+    assert_int_equal(stream.n_ended, status == TRI_OK);
+    par_report_free(&report);
+    tri_mesh_free(&mesh);
+    free_stream(&stream);
+    return status;
+}
+
+/* Where a mesh cannot be parked there is an error, and no signal. */
+static void test_scratch_that_cannot_be_used(void **state)
+{
+    (void)state;
+    struct start start = {support_square(1, 100, 5), support_quality(33, 1e-4)};
+    struct rlimit before, limit;
+    struct tri_error error = {0};
+    assert_int_equal(refine_parked(&start, ".", &error), TRI_OK);
+    assert_int_equal(refine_parked(&start, NULL, &error), TRI_TOO_LARGE);
+    assert_int_equal(refine_parked(&start, "nowhere", &error), TRI_CANNOT_WRITE);
+    assert_string_equal(error.file, "nowhere");
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    limit = before;
+    limit.rlim_cur = 1 << 20;
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    enum tri_status status = refine_parked(&start, ".", &error);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    assert_int_equal(status, TRI_CANNOT_WRITE);
+    tri_pslg_free(&start.pslg);
 }
 
 /* Tiles that have been handed out give their memory to those that follow. */
@@ -984,6 +1024,57 @@ static bool fail_once(const struct start *start, const struct par_options *optio
     return failed;
 }
 
+static enum tri_status begin_nothing(void *user, const struct tri_stream *told, struct tri_error *error)
+{
+    (void)user, (void)told, (void)error;
+    return TRI_OK;
+}
+
+static enum tri_status take_nothing(void *user, const struct tri_tile *tile, struct tri_error *error)
+{
+    (void)user, (void)tile, (void)error;
+    return TRI_OK;
+}
+
+/* Whoever runs out of memory on the way to a sink says so, and all memory comes back. */
+static bool fail_streaming_once(const struct start *start, const struct par_options *options, int64_t k)
+{
+    struct par_report report;
+    const struct tri_sink sink = {NULL, begin_nothing, take_nothing, NULL};
+    struct par_options how = *options;
+    long long before = support_held;
+    struct tri_mesh mesh = coarse_mesh(start);
+    how.sink = &sink;
+    support_calls = 0;
+    support_fail_ever_after = false;
+    support_fail_at = k;
+    enum tri_status status = par_refine(&mesh, &start->options.quality, &how, &report, NULL);
+    bool failed = support_calls >= k;
+    support_fail_at = INT64_MAX;
+    assert_true(status == TRI_OK || (failed && status == TRI_NO_MEMORY));
+    par_report_free(&report);
+    tri_mesh_free(&mesh);
+    assert_int_equal(support_held, before);
+    return failed;
+}
+
+static void test_every_allocation_may_fail_on_the_way_to_a_sink(void **state)
+{
+    (void)state;
+    static const double angles[] = {20, 30, 33}; /* swept, begun again, parked */
+    for (int i = 0; i < 3; i++) {
+        struct start start = square(60, angles[i], i == 1 ? 0 : 4e-4);
+        struct par_options options = small_blocks(256, 1);
+        int64_t k = 1;
+        options.memory = 1000;
+        options.scratch = ".";
+        while (fail_streaming_once(&start, &options, k))
+            k += 11;
+        assert_true(k > 50);
+        tri_pslg_free(&start.pslg);
+    }
+}
+
 static void test_every_allocation_may_fail(void **state)
 {
     (void)state;
@@ -1005,12 +1096,14 @@ int main(void)
     const struct CMUnitTest tests[] = {
 #ifdef SUPPORT_WRAP
         cmocka_unit_test(test_every_allocation_may_fail),
+        cmocka_unit_test(test_every_allocation_may_fail_on_the_way_to_a_sink),
 #endif
         cmocka_unit_test(test_bounds_and_size_are_those_of_the_sequential_loop),
         cmocka_unit_test(test_any_number_of_threads_and_order_of_blocks_make_one_mesh),
         cmocka_unit_test(test_budgets_hand_out_the_same_tiles),
         cmocka_unit_test(test_a_stream_has_the_numbers_of_the_mesh),
         cmocka_unit_test(test_a_sweep_holds_few_columns),
+        cmocka_unit_test(test_scratch_that_cannot_be_used),
         cmocka_unit_test(test_room_moves_ids_alone),
         cmocka_unit_test(test_the_way_of_numbering_moves_ids_alone),
         cmocka_unit_test(test_nothing_is_deferred_with_the_margin),

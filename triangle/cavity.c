@@ -40,11 +40,16 @@ static bool grow(struct tri_cavity *c)
     return true;
 }
 
-static bool owns(const struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t)
+static bool owns(struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t)
 {
-    const tri_vertex_id *v = mesh->tri[t].v;
-    return !c->fence || (tri_fence_holds(c->fence, mesh->xy[v[0]]) && tri_fence_holds(c->fence, mesh->xy[v[1]]) &&
-                         tri_fence_holds(c->fence, mesh->xy[v[2]]));
+    for (int k = 0; c->fence && k < 3; k++) {
+        struct tri_point corner = mesh->xy[mesh->tri[t].v[k]];
+        if (!tri_fence_holds(c->fence, corner)) {
+            c->outside = corner;
+            return false;
+        }
+    }
+    return true;
 }
 
 /* Is p in the circumdisk of a, b, c? The determinant has been worked out; where the filter leaves that open, which is
@@ -77,8 +82,10 @@ static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh
             double det = ra.l * right + edge.rend.l * left - rapex.l * edge.area2;
             if (!in_circle(mesh, p, corners, ra.l, edge.rend.l, rapex.l, det))
                 break;
-            if (c->fence && !tri_fence_holds(c->fence, xy[apex]))
+            if (c->fence && !tri_fence_holds(c->fence, xy[apex])) {
+                c->outside = xy[apex];
                 return TRI_SEARCH_FENCED;
+            }
             if (n_tri == c->capacity && !grow(c))
                 return TRI_SEARCH_NO_MEMORY;
             assert(t->v[tri_next[e]] == edge.end && t->v[tri_prev[e]] == a);

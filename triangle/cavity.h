@@ -51,6 +51,7 @@ struct tri_pending { /* an edge behind which the search has not looked yet; it s
 struct tri_cavity {
     struct tri_point p;
     const struct tri_fence *fence; /* NULL: everything is owned */
+    struct tri_point outside;      /* after TRI_SEARCH_FENCED: the vertex that is not within it */
     int32_t n_tri, n_edges, n_wall, capacity;
     int32_t n_left_tri;   /* of a split: triangles left of the subsegment, which come first */
     tri_region_id region; /* of the triangle at which the search began */

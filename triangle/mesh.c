@@ -157,13 +157,15 @@ void tri_mesh_drop(struct tri_mesh *mesh)
     mesh->n_vertices = mesh->vertex_capacity = 0;
     mesh->n_triangles = mesh->triangle_capacity = 0;
     mesh->n_subs = mesh->sub_capacity = 0;
+    free(mesh->origin);
+    free(mesh->twin);
+    mesh->origin = mesh->twin = NULL;
+    mesh->n_input = 0;
 }
 
 void tri_mesh_free(struct tri_mesh *mesh)
 {
     tri_mesh_drop(mesh);
-    free(mesh->origin);
-    free(mesh->twin);
     free(mesh->parents);
     free(mesh->incidence.start);
     free(mesh->incidence.parent);

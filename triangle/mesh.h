@@ -169,7 +169,7 @@ void tri_mesh_extra_free(const struct tri_mesh *mesh, void *extra);
 
 /* The arrays that grow with refinement. Move: to a storage, which the mesh borrows from then on. Copy: *copy has
  * another such mesh's, in memory from malloc, and nothing else. Swap: two meshes change theirs, and the counts of them.
- * Drop: there are none any more. TRI_NO_MEMORY: the mesh is as before, *copy has nothing. */
+ * Drop: there are none any more, nor points of the input. TRI_NO_MEMORY: the mesh is as before, *copy has nothing. */
 enum tri_status tri_mesh_move(struct tri_mesh *mesh, const struct tri_storage *storage, struct tri_error *error);
 enum tri_status tri_mesh_copy(struct tri_mesh *copy, const struct tri_mesh *mesh, struct tri_error *error);
 void tri_mesh_swap(struct tri_mesh *a, struct tri_mesh *b);

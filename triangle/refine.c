@@ -250,6 +250,13 @@ static enum outcome defer(struct tri_refiner *r, tri_triangle_id triangle, int64
     return DEFERRED;
 }
 
+/* The fence does, since this place lies beyond it. */
+static enum outcome defer_fenced(struct tri_refiner *r, tri_triangle_id triangle, struct tri_point place)
+{
+    r->report->short_of += r->options->whole && tri_fence_holds(r->options->whole, place);
+    return defer(r, triangle, &r->report->fenced);
+}
+
 static enum outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
 {
     r->excuse = excuse;
@@ -292,7 +299,7 @@ static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, 
         return refuse(r, TRI_EXCUSE_PROTECTED);
     enum tri_search found = find_split(r, s, fraction, &n_left);
     if (found == TRI_SEARCH_FENCED)
-        return defer(r, triangle, &r->report->fenced);
+        return defer_fenced(r, triangle, r->cavity.outside);
     if (found == TRI_SEARCH_OUTSIDE)
         return refuse(r, TRI_EXCUSE_PRECISION);
     if (found == TRI_SEARCH_NO_MEMORY || make_room(r))
@@ -381,10 +388,10 @@ static enum outcome find_cavity(struct tri_refiner *r, int32_t triangle, struct 
             return defer(r, triangle, &r->report->gated);
     }
     if (r->options->fence && !tri_fence_holds(r->options->fence, p)) /* then its cavity reaches beyond, too */
-        return defer(r, triangle, &r->report->fenced);
+        return defer_fenced(r, triangle, p);
     switch (tri_cavity_search(&r->cavity, r->mesh, p, triangle)) {
     case TRI_SEARCH_FOUND: return DONE;
-    case TRI_SEARCH_FENCED: return defer(r, triangle, &r->report->fenced);
+    case TRI_SEARCH_FENCED: return defer_fenced(r, triangle, r->cavity.outside);
     case TRI_SEARCH_OUTSIDE: return refuse(r, TRI_EXCUSE_PRECISION);
     default: return FAILED;
     }

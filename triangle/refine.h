@@ -58,6 +58,8 @@ struct tri_refine_options {
     tri_gate *gate;        /* NULL: every bad triangle */
     void *gate_user;
     const struct tri_fence *fence; /* NULL: the whole mesh */
+    const struct tri_fence *whole; /* not NULL: the fence should be this one, of which it is a part: where that makes a
+                                      difference, the report says so */
     const tri_triangle_id *worklist; /* [n_worklist] looked at first; NULL: all. The loop looks at all it makes, too */
     int32_t n_worklist;
     tri_deferred *deferred; /* NULL: nobody */
@@ -89,6 +91,7 @@ enum tri_excuse { /* why a triangle is still bad */
 
 struct tri_refine_report {
     int64_t inserted_free, inserted_on_segments;
+    int64_t short_of;                 /* times the fence deferred a triangle, and the whole one might not have */
     int64_t gated, fenced;            /* triangles deferred: by the gate; since a cavity reached beyond the fence */
     int64_t given_up[TRI_EXCUSES];    /* bad triangles given up during the call, by reason; some vanish later */
     bool hit_limit;                   /* max_steiner stopped the call */

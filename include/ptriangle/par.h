@@ -10,7 +10,7 @@
 #ifndef PTRIANGLE_PAR_H
 #define PTRIANGLE_PAR_H
 
-#include "ptriangle/tri.h"
+#include "ptriangle/tiles.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -20,6 +20,22 @@ extern "C" {
 enum tri_status par_mesh_new(struct tri_mesh **mesh, const struct tri_figure *figure,
                              const struct tri_settings *settings, struct tri_error *error);
 enum tri_status par_mesh_refine(struct tri_mesh *mesh, const struct tri_settings *settings, struct tri_error *error);
+
+/* The mesh of par_mesh_new, handed to a sink tile by tile (ptriangle/tiles.h): points, triangles and segments with the
+ * same numbers and in the same order, whatever memory there is and however many threads.
+ *
+ * memory: bytes that the process may have resident, about; 0: no bound. A mesh that would need more, or be larger than
+ * one struct tri_mesh can be, is swept from left to right where min_angle is at most 31: tiles are handed out as they
+ * become final, and go; it may have any number of triangles. The figure's own triangulation, a few columns of tiles and
+ * what the sink holds are in memory then. Where that cannot be done (above 31 degrees, or where triangles are left over
+ * that are large against the tiles around them) the mesh, of at most 2^29 triangles, lies in a file in the directory
+ * scratch, some 60 to 80 bytes a triangle, which has no name and is gone with the process; without scratch (NULL) that
+ * is TRI_TOO_LARGE. A full disk is TRI_CANNOT_WRITE. Settings that make it one sequential refinement stay in memory.
+ *
+ * Figure, settings and sink are the caller's and only read. The calling thread calls the sink. Any status other than
+ * TRI_OK: what has been taken is worth nothing. */
+enum tri_status par_mesh_stream(const struct tri_figure *figure, const struct tri_settings *settings, int64_t memory,
+                                const char *scratch, const struct tri_sink *sink, struct tri_error *error);
 
 #ifdef __cplusplus
 }

@@ -86,6 +86,28 @@ static bool touches(const struct tri_mesh *mesh, const struct tri_triangle *t, c
                               tri_fence_holds(box, mesh->xy[t->v[2]]));
 }
 
+/* Which vertices lie in a box: one bit each, so that all of them stay in the cache while triangles are looked at. */
+struct inside {
+    uint64_t *word;
+};
+
+static bool inside_init(struct inside *inside, const struct tri_mesh *mesh, const struct tri_fence *box)
+{
+    inside->word = calloc((size_t)mesh->n_vertices / 64 + 1, sizeof *inside->word);
+    for (int32_t v = 0; inside->word && v < mesh->n_vertices; v++)
+        inside->word[v / 64] |= (uint64_t)tri_fence_holds(box, mesh->xy[v]) << v % 64;
+    return inside->word;
+}
+
+static inline uint64_t is_inside(const struct inside *inside, int32_t v) { return inside->word[v / 64] >> v % 64 & 1; }
+
+/* Has the triangle a corner in the box? */
+static inline bool reaches_in(const struct inside *inside, const struct tri_triangle *t)
+{
+    return tri_is_live(t) &&
+           (is_inside(inside, t->v[0]) | is_inside(inside, t->v[1]) | is_inside(inside, t->v[2])) != 0;
+}
+
 static enum tri_status no_memory(struct tri_error *error)
 {
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for what lies at the border of ranks");
@@ -124,6 +146,7 @@ struct cutting {
     const struct par_state *state;
     const struct tri_mesh *mesh;
     struct header header;
+    struct inside inside;
     int32_t *index;                  /* [n_vertices] in its list, + 1; 0: in none */
     struct par_worklist named, fresh; /* vertices */
     struct par_worklist triangles, subs; /* ids, the first ascending */
@@ -142,7 +165,7 @@ static bool add_vertex(struct cutting *c, int32_t v)
 static bool takes_sub(const struct cutting *c, int32_t t, const struct tri_subsegment *s)
 {
     int32_t left = s->side[0] == TRI_NONE ? TRI_NONE : tri_of(s->side[0]);
-    return left == t || left == TRI_NONE || !touches(c->mesh, &c->mesh->tri[left], &c->header.box);
+    return left == t || left == TRI_NONE || !reaches_in(&c->inside, &c->mesh->tri[left]);
 }
 
 static bool find_all(struct cutting *c)
@@ -151,7 +174,7 @@ static bool find_all(struct cutting *c)
     bool memory = true;
     for (int32_t t = 0; memory && t < mesh->n_triangles; t++) {
         const struct tri_triangle *triangle = &mesh->tri[t];
-        if (!touches(mesh, triangle, &c->header.box))
+        if (!reaches_in(&c->inside, triangle))
             continue;
         memory = par_worklist_add(&c->triangles, t);
         for (int k = 0; memory && k < 3; k++) {
@@ -260,8 +283,9 @@ enum tri_status par_fragment_cut(struct par_bytes *to, const struct par_state *s
     assert(state->key.n == state->worklist.n);
     par_room_mark(&state->spare, state->mesh);
     c.index = calloc((size_t)state->mesh->n_vertices + 1, sizeof *c.index);
-    bool done = c.index && find_all(&c) && write_all(&c, to);
+    bool done = c.index && inside_init(&c.inside, c.mesh, box) && find_all(&c) && write_all(&c, to);
     free(c.index);
+    free(c.inside.word);
     free(c.named.item);
     free(c.fresh.item);
     free(c.triangles.item);
@@ -324,13 +348,16 @@ struct pasting {
     struct tri_mesh *mesh;
     const struct header *header;
     struct parts parts;
+    struct inside inside;
     struct par_worklist doomed;      /* triangles that go, ascending */
     struct par_worklist doomed_subs; /* subsegments with nothing on either side once they have gone .. */
     int32_t n_subs_used;             /* .. of which so many numbers are in use again */
     struct par_worklist open_subs;   /* with a triangle on one side that stays */
     struct par_worklist rim;         /* edges of what stays that lead to what goes, or beyond */
     struct table edges;              /* to the code of an edge that has no partner yet, or to ~subsegment */
-    struct table places;             /* of the doomed triangles' vertices */
+    struct table places;             /* of the doomed triangles' vertices: to their ids, ~id: still there afterwards */
+    int32_t n_places;
+    struct par_worklist doomed_vertices; /* that are not */
     struct par_worklist entries;
     struct par_keys keys;
     int32_t *vertex;                 /* [n_named + n_fresh] ids here */
@@ -338,7 +365,20 @@ struct pasting {
 
 static bool is_doomed(const struct pasting *p, int32_t code)
 {
-    return code >= 0 && touches(p->mesh, &p->mesh->tri[tri_of(code)], &p->header->box);
+    return code >= 0 && reaches_in(&p->inside, &p->mesh->tri[tri_of(code)]);
+}
+
+/* A triangle goes: those beside it that stay are at the rim. */
+static bool doom(struct pasting *p, int32_t t)
+{
+    bool memory = par_worklist_add(&p->doomed, t);
+    for (int e = 0; memory && e < 3; e++) {
+        int32_t link = p->mesh->tri[t].n[e];
+        bool is_mutual = link >= 0 && p->mesh->tri[tri_of(link)].n[tri_edge(link)] == tri_code(t, e);
+        if (is_mutual && !is_doomed(p, link))
+            memory = par_worklist_add(&p->rim, link);
+    }
+    return memory;
 }
 
 static bool find_doomed(struct pasting *p)
@@ -347,11 +387,11 @@ static bool find_doomed(struct pasting *p)
     bool memory = true;
     for (int32_t t = 0; memory && t < mesh->n_triangles; t++) {
         const struct tri_triangle *triangle = &mesh->tri[t];
-        if (touches(mesh, triangle, &p->header->box))
-            memory = par_worklist_add(&p->doomed, t);
+        if (reaches_in(&p->inside, triangle))
+            memory = doom(p, t);
         else if (tri_is_live(triangle))
             for (int e = 0; memory && e < 3; e++)
-                if (triangle->n[e] == PAR_BEYOND || is_doomed(p, triangle->n[e]))
+                if (triangle->n[e] == PAR_BEYOND)
                     memory = par_worklist_add(&p->rim, tri_code(t, e));
     }
     for (int32_t s = 0; memory && s < mesh->n_subs; s++) {
@@ -368,20 +408,6 @@ static bool find_doomed(struct pasting *p)
     return memory;
 }
 
-static bool reserve_all(struct pasting *p)
-{
-    const struct header *h = p->header;
-    size_t edges = 3 * ((size_t)h->n_triangles + (size_t)p->rim.n) + (size_t)h->n_subs + (size_t)p->open_subs.n;
-    struct par_ranges *triangles = &p->state->spare.ranges[PAR_TRIANGLES], *subs = &p->state->spare.ranges[PAR_SUBS];
-    p->vertex = malloc(((size_t)h->n_named + (size_t)h->n_fresh + 1) * sizeof *p->vertex);
-    int32_t entries = p->state->worklist.n + h->n_entries;
-    return p->vertex && table_init(&p->edges, edges) && table_init(&p->places, 3 * (size_t)p->doomed.n) &&
-           tri_grow(&p->entries.item, &p->entries.capacity, entries, sizeof *p->entries.item) &&
-           tri_grow(&p->keys.item, &p->keys.capacity, entries, sizeof *p->keys.item) &&
-           par_ranges_reserve(triangles, triangles->n + triangles->dealt + p->doomed.n) &&
-           par_ranges_reserve(subs, subs->n + subs->dealt + p->doomed_subs.n);
-}
-
 /* Entries of triangles that stay, and those of the fragment as ~their places there, by their keys. */
 static void merge_entries(struct pasting *p)
 {
@@ -390,7 +416,7 @@ static void merge_entries(struct pasting *p)
     int32_t n = 0;
     for (int32_t i = 0, k = 0; i < own->n || k < p->header->n_entries;) {
         if (k == p->header->n_entries || (i < own->n && own_key[i] < key[k])) {
-            if (!touches(p->mesh, &p->mesh->tri[own->item[i]], &p->header->box)) {
+            if (!reaches_in(&p->inside, &p->mesh->tri[own->item[i]])) {
                 p->entries.item[n] = own->item[i];
                 p->keys.item[n++] = own_key[i];
             }
@@ -407,9 +433,9 @@ static int32_t find_place(const struct pasting *p, struct tri_point q, size_t *a
 {
     const struct table *places = &p->places;
     for (*at = mixed(place_key(q)) & places->mask; places->key[*at] != 0; *at = (*at + 1) & places->mask) {
-        struct tri_point here = p->mesh->xy[places->value[*at]];
-        if (here.x == q.x && here.y == q.y)
-            return places->value[*at];
+        int32_t v = places->value[*at];
+        if (v >= 0 && p->mesh->xy[v].x == q.x && p->mesh->xy[v].y == q.y)
+            return v;
     }
     return TRI_NONE;
 }
@@ -424,7 +450,32 @@ static void note_places(struct pasting *p)
                 continue;
             p->places.key[at] = place_key(p->mesh->xy[v]);
             p->places.value[at] = v;
+            p->n_places++;
         }
+}
+
+static bool reserve_ranges(struct par_room *spare, enum par_kind kind, int32_t more)
+{
+    struct par_ranges *ranges = &spare->ranges[kind];
+    return par_ranges_reserve(ranges, ranges->n + ranges->dealt + more);
+}
+
+static bool reserve_all(struct pasting *p)
+{
+    const struct header *h = p->header;
+    struct par_room *spare = &p->state->spare;
+    size_t edges = 3 * (size_t)h->n_triangles + (size_t)p->rim.n + (size_t)h->n_subs + (size_t)p->open_subs.n;
+    int32_t entries = p->state->worklist.n + h->n_entries;
+    if (!table_init(&p->edges, edges) || !table_init(&p->places, 3 * (size_t)p->doomed.n))
+        return false;
+    note_places(p);
+    p->vertex = malloc(((size_t)h->n_named + (size_t)h->n_fresh + 1) * sizeof *p->vertex);
+    return p->vertex && tri_grow(&p->entries.item, &p->entries.capacity, entries, sizeof *p->entries.item) &&
+           tri_grow(&p->keys.item, &p->keys.capacity, entries, sizeof *p->keys.item) &&
+           tri_grow(&p->doomed_vertices.item, &p->doomed_vertices.capacity, p->n_places,
+                    sizeof *p->doomed_vertices.item) &&
+           reserve_ranges(spare, PAR_VERTICES, p->n_places) && reserve_ranges(spare, PAR_TRIANGLES, p->doomed.n) &&
+           reserve_ranges(spare, PAR_SUBS, p->doomed_subs.n);
 }
 
 static int32_t append_vertex(struct pasting *p, int32_t i)
@@ -444,13 +495,27 @@ static int32_t append_vertex(struct pasting *p, int32_t i)
 static void paste_vertices(struct pasting *p)
 {
     size_t at;
-    note_places(p);
     for (int32_t i = 0; i < p->header->n_named; i++)
         p->vertex[i] = p->parts.named[i];
     for (int32_t i = 0; i < p->header->n_fresh; i++) {
         int32_t v = find_place(p, p->parts.xy[i], &at);
         p->vertex[p->header->n_named + i] = v == TRI_NONE ? append_vertex(p, i) : v;
+        if (v != TRI_NONE)
+            p->places.value[at] = ~v;
     }
+}
+
+/* Vertices in the box that the fragment does not know have gone with their triangles. */
+static void drop_vertices(struct pasting *p)
+{
+    struct par_worklist *doomed = &p->doomed_vertices;
+    for (size_t at = 0; at <= p->places.mask; at++)
+        if (p->places.key[at] != 0 && p->places.value[at] >= 0 && is_inside(&p->inside, p->places.value[at]))
+            doomed->item[doomed->n++] = p->places.value[at];
+    if (doomed->n > 1)
+        qsort(doomed->item, (size_t)doomed->n, sizeof *doomed->item, ascending);
+    for (int32_t i = 0; i < doomed->n; i++)
+        p->mesh->on[doomed->item[i]] = TRI_VERTEX_NONE;
 }
 
 static void cut_loose(struct pasting *p)
@@ -571,11 +636,13 @@ static void replace(struct pasting *p)
     int32_t n = p->header->n_triangles < p->doomed.n ? p->header->n_triangles : p->doomed.n;
     merge_entries(p);
     paste_vertices(p);
+    drop_vertices(p);
     cut_loose(p);
     note_rim(p);
     paste_subs(p);
     paste_triangles(p);
     give_back(&state->spare.ranges[PAR_TRIANGLES], p->doomed.item, n, p->doomed.n);
+    give_back(&state->spare.ranges[PAR_VERTICES], p->doomed_vertices.item, 0, p->doomed_vertices.n);
     give_back(&state->spare.ranges[PAR_SUBS], p->doomed_subs.item, p->n_subs_used, p->doomed_subs.n);
     free(state->worklist.item);
     free(state->key.item);
@@ -635,16 +702,17 @@ enum tri_status par_fragment_paste(struct par_state *state, int32_t n_common, co
     p.parts = parts_of(p.header, (char *)bytes);
     par_room_mark(&state->spare, state->mesh);
     enum tri_status status = reserve_mesh(state->mesh, p.header, error);
-    if (!status && !(find_doomed(&p) && reserve_all(&p)))
+    if (!status && !(inside_init(&p.inside, p.mesh, &p.header->box) && find_doomed(&p) && reserve_all(&p)))
         status = no_memory(error);
     if (!status)
         replace(&p);
     *used = p.header->bytes;
-    struct par_worklist *lists[] = {&p.doomed, &p.doomed_subs, &p.open_subs, &p.rim, &p.entries};
+    struct par_worklist *lists[] = {&p.doomed_vertices, &p.doomed, &p.doomed_subs, &p.open_subs, &p.rim, &p.entries};
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
         free(lists[i]->item);
     free(p.keys.item);
     free(p.vertex);
+    free(p.inside.word);
     table_free(&p.edges);
     table_free(&p.places);
     return status;

@@ -21,6 +21,8 @@ struct handing {
     int64_t *in_column;            /* [end - first] new vertices in each */
     bool *needed;                  /* [end - first] somebody asks for numbers in it */
     int32_t *told;                 /* [n_vertices] last rank that is told of this vertex, + 1 */
+    int32_t *tile;                 /* [n_vertices] of each */
+    struct par_worklist shared;    /* triangles with an own corner, and another left or right of the own columns */
 };
 
 static bool is_own(const struct handing *h, int32_t tile) { return tile >= h->first_tile && tile < h->end_tile; }
@@ -32,53 +34,58 @@ static int32_t column_of(const struct handing *h, int32_t tile)
 
 static int32_t last_tile(const struct handing *h, const int32_t *v, int n)
 {
-    int32_t last = h->tiles->tile[v[0]];
+    int32_t last = h->tile[v[0]];
     for (int k = 1; k < n; k++)
-        last = h->tiles->tile[v[k]] > last ? h->tiles->tile[v[k]] : last;
+        last = h->tile[v[k]] > last ? h->tile[v[k]] : last;
     return last;
 }
 
-static bool has_own(const struct handing *h, const struct tri_triangle *t)
+/* Corners of a triangle in the own tiles. */
+static int own_corners(const struct handing *h, const struct tri_triangle *t)
 {
-    return tri_is_live(t) && (is_own(h, h->tiles->tile[t->v[0]]) || is_own(h, h->tiles->tile[t->v[1]]) ||
-                              is_own(h, h->tiles->tile[t->v[2]]));
+    return is_own(h, h->tile[t->v[0]]) + is_own(h, h->tile[t->v[1]]) + is_own(h, h->tile[t->v[2]]);
 }
 
-/* Every vertex learns its tile; count[] receives new vertices, triangles and subsegments of the own tiles. */
-static void count_own(struct handing *h, int64_t count[3])
+/* Every vertex learns its tile; count[] receives new vertices, triangles and subsegments of the own tiles. False: no
+ * memory. */
+static bool count_own(struct handing *h, int64_t count[3])
 {
     const struct tri_mesh *mesh = h->mesh;
+    bool memory = true;
     for (int32_t v = 0; v < mesh->n_vertices; v++) {
         if (mesh->on[v] == TRI_VERTEX_NONE)
             continue;
         int32_t tile = par_block_at(h->tiles->partition, 0, mesh->xy[v]);
-        h->tiles->tile[v] = tile;
+        h->tile[v] = tile;
         if (v >= h->tiles->n_kept && is_own(h, tile)) {
             count[0]++;
             h->in_column[column_of(h, tile) - h->first]++;
         }
     }
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
-        count[1] += tri_is_live(&mesh->tri[t]) && is_own(h, last_tile(h, mesh->tri[t].v, 3));
+    for (int32_t t = 0; memory && t < mesh->n_triangles; t++) {
+        int own = tri_is_live(&mesh->tri[t]) ? own_corners(h, &mesh->tri[t]) : 0;
+        count[1] += own == 3 || (own > 0 && is_own(h, last_tile(h, mesh->tri[t].v, 3)));
+        if (own == 1 || own == 2)
+            memory = par_worklist_add(&h->shared, t);
+    }
     for (int32_t s = 0; s < mesh->n_subs; s++)
         count[2] += mesh->sub[s].v[0] != TRI_NONE && is_own(h, last_tile(h, mesh->sub[s].v, 2));
+    return memory;
 }
 
 /* Calls for each own new vertex of a triangle that rank p has, too, for the ranks p on the right. */
 static bool for_shared(struct handing *h, bool (*visit)(struct handing *h, int32_t v, int p))
 {
     bool memory = true;
-    for (int32_t t = 0; memory && t < h->mesh->n_triangles; t++) {
-        const struct tri_triangle *triangle = &h->mesh->tri[t];
-        if (!has_own(h, triangle))
-            continue;
+    for (int32_t s = 0; memory && s < h->shared.n; s++) {
+        const struct tri_triangle *triangle = &h->mesh->tri[h->shared.item[s]];
         for (int k = 0; memory && k < 3; k++) {
-            int32_t tile = h->tiles->tile[triangle->v[k]];
+            int32_t tile = h->tile[triangle->v[k]];
             if (tile < h->end_tile)
                 continue;
             int p = par_owner_of_column(h->ranks, column_of(h, tile));
             for (int i = 0; memory && i < 3; i++)
-                if (triangle->v[i] >= h->tiles->n_kept && is_own(h, h->tiles->tile[triangle->v[i]]))
+                if (triangle->v[i] >= h->tiles->n_kept && is_own(h, h->tile[triangle->v[i]]))
                     memory = visit(h, triangle->v[i], p);
         }
     }
@@ -88,7 +95,7 @@ static bool for_shared(struct handing *h, bool (*visit)(struct handing *h, int32
 static bool note_need(struct handing *h, int32_t v, int p)
 {
     (void)p;
-    h->needed[column_of(h, h->tiles->tile[v]) - h->first] = true;
+    h->needed[column_of(h, h->tile[v]) - h->first] = true;
     return true;
 }
 
@@ -106,19 +113,11 @@ static enum tri_status no_memory(struct tri_error *error)
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the numbers of a rank's vertices");
 }
 
-static void find_tiles(struct handing *h)
-{
-    for (int32_t v = 0; v < h->mesh->n_vertices; v++)
-        if (h->mesh->on[v] != TRI_VERTEX_NONE)
-            h->tiles->tile[v] = par_block_at(h->tiles->partition, 0, h->mesh->xy[v]);
-}
-
 /* So that columns from this tile on find their vertices: whose tile is known has had its turn. */
-static void forget_tiles(struct handing *h, int32_t first)
+static void show_tiles(struct handing *h, int32_t first)
 {
     for (int32_t v = 0; v < h->mesh->n_vertices; v++)
-        if (h->tiles->tile[v] >= first)
-            h->tiles->tile[v] = INT32_MAX;
+        h->tiles->tile[v] = h->tile[v] >= first ? INT32_MAX : h->tile[v];
 }
 
 /* Numbers what others ask for, ahead of its time. */
@@ -129,9 +128,8 @@ static enum tri_status number_needed(struct handing *h, int64_t base, struct tri
     for (int32_t i = 0; !status && i < h->end - h->first; i++) {
         int32_t column = 2 * (h->first + i) + 1;
         if (h->needed[i]) {
-            forget_tiles(h, column * h->tiles->partition->n_rows);
+            show_tiles(h, column * h->tiles->partition->n_rows);
             status = par_tiles_number(h->tiles, column, error);
-            find_tiles(h);
         }
         h->tiles->n_vertices += h->in_column[i];
     }
@@ -153,20 +151,16 @@ static void take_numbers(struct handing *h, struct par_bytes *told)
     if (n == 0)
         return;
     qsort(told->at, n, sizeof(struct numbered_place), compare_places);
-    for (int32_t t = 0; t < h->mesh->n_triangles; t++) {
-        const struct tri_triangle *triangle = &h->mesh->tri[t];
-        if (!has_own(h, triangle))
-            continue;
+    for (int32_t s = 0; s < h->shared.n; s++)
         for (int k = 0; k < 3; k++) {
-            int32_t v = triangle->v[k];
-            if (v < h->tiles->n_kept || h->tiles->tile[v] >= h->first_tile)
+            int32_t v = h->mesh->tri[h->shared.item[s]].v[k];
+            if (v < h->tiles->n_kept || h->tile[v] >= h->first_tile)
                 continue;
             const struct numbered_place *found =
                 bsearch(&h->mesh->xy[v], told->at, n, sizeof *found, compare_places);
             if (found)
                 h->tiles->number[v] = found->number;
         }
-    }
 }
 
 static enum tri_status exchange_numbers(struct handing *h, enum tri_status status, struct tri_error *error)
@@ -192,7 +186,7 @@ static enum tri_status number_borders(struct handing *h, int64_t base, struct tr
 static enum tri_status hand_out(struct handing *h, const int64_t base[3], struct tri_error *error)
 {
     struct par_tiles *tiles = h->tiles;
-    forget_tiles(h, h->first_tile);
+    show_tiles(h, h->first_tile);
     enum tri_status status = par_tiles_begin(tiles, tiles->partition->estimate, error);
     tiles->n_vertices = base[0];
     tiles->n_triangles = base[1];
@@ -211,8 +205,11 @@ static enum tri_status prepare(struct handing *h, struct tri_error *error)
     h->in_column = calloc(n, sizeof *h->in_column);
     h->needed = calloc(n, sizeof *h->needed);
     h->told = calloc((size_t)h->mesh->n_vertices + 1, sizeof *h->told);
-    bool memory = h->in_column && h->needed && h->told && par_tiles_reserve(h->tiles);
+    h->tile = malloc(((size_t)h->mesh->n_vertices + 1) * sizeof *h->tile);
+    bool memory = h->in_column && h->needed && h->told && h->tile && par_tiles_reserve(h->tiles);
     par_room_mark(&h->ranks->state->spare, h->ranks->state->mesh);
+    for (int32_t v = 0; memory && v < h->mesh->n_vertices; v++)
+        h->tile[v] = INT32_MAX;
     return memory ? TRI_OK : no_memory(error);
 }
 
@@ -274,8 +271,8 @@ enum tri_status par_hand_out_on_ranks(struct par_ranks *r, struct par_tiles *til
                         .end = r->start[rank + 1]};
     int64_t count[3] = {0}, base[3] = {0}, *first;
     status = status ? status : prepare(&h, error);
-    if (!status)
-        count_own(&h, count);
+    if (!status && !count_own(&h, count))
+        status = no_memory(error);
     status = share_numbers(r->carrier, tiles->n_kept, count, &first, status, error);
     if (!status)
         tell_shares(tiles, r->carrier, first);
@@ -289,5 +286,7 @@ enum tri_status par_hand_out_on_ranks(struct par_ranks *r, struct par_tiles *til
     free(h.in_column);
     free(h.needed);
     free(h.told);
+    free(h.tile);
+    free(h.shared.item);
     return par_agree(r->carrier, status, error);
 }

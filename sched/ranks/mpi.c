@@ -2,6 +2,8 @@
  * caller's. */
 #include "ptriangle/mpi.h"
 
+#include <time.h>
+
 #include "sched/ranks/stream.h"
 
 /* Counts of MPI are ints. */
@@ -12,16 +14,33 @@ struct messenger {
     int rank, n_ranks;
 };
 
+/* Waits without taking the processor from those who are waited for: ranks may be more than cores. */
+static bool wait_for(MPI_Request *request, int n)
+{
+    struct timespec pause = {0, 1000};
+    int done = 0;
+    MPI_Status states[2];
+    while (MPI_Testall(n, request, &done, states) == MPI_SUCCESS && !done) {
+        nanosleep(&pause, NULL);
+        pause.tv_nsec = pause.tv_nsec < 500000 ? 2 * pause.tv_nsec : pause.tv_nsec;
+    }
+    return done;
+}
+
 static bool gather(void *self, const int64_t *mine, int32_t n, int64_t *all)
 {
     const struct messenger *m = self;
-    return MPI_Allgather(mine, n, MPI_INT64_T, all, n, MPI_INT64_T, m->comm) == MPI_SUCCESS;
+    MPI_Request request;
+    return MPI_Iallgather(mine, n, MPI_INT64_T, all, n, MPI_INT64_T, m->comm, &request) == MPI_SUCCESS &&
+           wait_for(&request, 1);
 }
 
 static bool deal(void *self, const int64_t *to, int64_t *from)
 {
     const struct messenger *m = self;
-    return MPI_Alltoall(to, 1, MPI_INT64_T, from, 1, MPI_INT64_T, m->comm) == MPI_SUCCESS;
+    MPI_Request request;
+    return MPI_Ialltoall(to, 1, MPI_INT64_T, from, 1, MPI_INT64_T, m->comm, &request) == MPI_SUCCESS &&
+           wait_for(&request, 1);
 }
 
 static int piece_of(size_t n, size_t at)
@@ -37,12 +56,11 @@ static bool exchange(const struct messenger *m, const struct par_bytes *out, int
     bool good = true;
     for (size_t at = 0; good && (at < out->n || at < in->n); at += MOST_BYTES) {
         MPI_Request request[2] = {MPI_REQUEST_NULL, MPI_REQUEST_NULL};
-        MPI_Status states[2];
         if (at < in->n)
             good = MPI_Irecv(in->at + at, piece_of(in->n, at), MPI_BYTE, from, 0, m->comm, &request[0]) == MPI_SUCCESS;
         if (good && at < out->n)
             good = MPI_Isend(out->at + at, piece_of(out->n, at), MPI_BYTE, to, 0, m->comm, &request[1]) == MPI_SUCCESS;
-        good = good && MPI_Waitall(2, request, states) == MPI_SUCCESS;
+        good = good && wait_for(request, 2);
     }
     return good;
 }

@@ -51,7 +51,7 @@ static int32_t *share_columns(int32_t n_odd, const struct par_carrier *carrier)
 
 /* --- what moves */
 
-static enum tri_status cut(struct par_ranks *r, int to, const struct tri_fence *box, struct tri_error *error)
+enum tri_status par_ranks_cut(struct par_ranks *r, int to, const struct tri_fence *box, struct tri_error *error)
 {
     if (!(box->x_min < box->x_max && box->y_min < box->y_max))
         return TRI_OK;
@@ -59,7 +59,8 @@ static enum tri_status cut(struct par_ranks *r, int to, const struct tri_fence *
 }
 
 /* Sends what has been cut, and puts what has come in its place. */
-static enum tri_status swap(struct par_ranks *r, enum par_move move, enum tri_status status, struct tri_error *error)
+enum tri_status par_ranks_swap(struct par_ranks *r, enum par_move move, enum tri_status status,
+                               struct tri_error *error)
 {
     status = par_swap(r->carrier, move, r->out, r->in, status, error);
     for (int p = 0; p < r->carrier->n_ranks; p++) {
@@ -73,7 +74,7 @@ static enum tri_status swap(struct par_ranks *r, enum par_move move, enum tri_st
 
 /* --- the first round */
 
-static enum tri_status refine_column(struct par_ranks *r, int32_t column, struct tri_error *error)
+enum tri_status par_ranks_column(struct par_ranks *r, int32_t column, struct tri_error *error)
 {
     int first = column % 2 == 1 ? 0 : 2;
     enum tri_status status = par_phase(r->state, r->partition, first, column, error);
@@ -86,40 +87,13 @@ static enum tri_status refine_own(struct par_ranks *r, struct tri_error *error)
     int32_t first = r->start[r->carrier->rank], end = r->start[r->carrier->rank + 1];
     enum tri_status status = TRI_OK;
     for (int32_t i = first; !status && i < end; i++) {
-        status = refine_column(r, 2 * i + 1, error);
+        status = par_ranks_column(r, 2 * i + 1, error);
         if (!status && (i > first || i == 0))
-            status = refine_column(r, 2 * i, error);
+            status = par_ranks_column(r, 2 * i, error);
     }
     if (!status && first < end && end == r->n_odd)
-        status = refine_column(r, 2 * end, error);
+        status = par_ranks_column(r, 2 * end, error);
     return status;
-}
-
-/* Right half of even column 2 i: what the owner of odd column number i has of it. */
-static struct tri_fence right_half(const struct par_ranks *r, int32_t i)
-{
-    struct tri_fence half = par_fence(r->partition, 2 * i, 0);
-    half.x_min = par_fence(r->partition, 2 * i + 1, 0).x_min;
-    half.y_min = -HUGE_VAL;
-    half.y_max = HUGE_VAL;
-    return half;
-}
-
-static enum tri_status refine_borders(struct par_ranks *r, enum tri_status status, struct tri_error *error)
-{
-    int32_t first = r->start[r->carrier->rank], end = r->start[r->carrier->rank + 1];
-    bool has_left = first < end && first > 0, has_right = first < end && end < r->n_odd;
-    if (!status && has_left) {
-        const struct tri_fence half = right_half(r, first);
-        status = cut(r, par_owner_of_column(r, first - 1), &half, error);
-    }
-    status = swap(r, PAR_MOVE_STRIPS, status, error);
-    if (!status && has_right) {
-        const struct tri_fence half = right_half(r, end);
-        status = refine_column(r, 2 * end, error);
-        status = status ? status : cut(r, par_owner_of_column(r, end), &half, error);
-    }
-    return swap(r, PAR_MOVE_BACK, status, error);
 }
 
 /* --- later rounds, on rank 0 */
@@ -187,9 +161,9 @@ static enum tri_status move_boxes(struct par_ranks *r, const struct tri_fence *b
         for (int p = 1; !status && p < r->carrier->n_ranks; p++) {
             const struct tri_fence share = share_of(r, &box[i], p);
             if (back ? rank == 0 : rank == p)
-                status = cut(r, back ? p : 0, &share, error);
+                status = par_ranks_cut(r, back ? p : 0, &share, error);
         }
-    return swap(r, PAR_MOVE_LEFT_OVER, status, error);
+    return par_ranks_swap(r, PAR_MOVE_LEFT_OVER, status, error);
 }
 
 static void keep_own(struct par_ranks *r)
@@ -346,7 +320,7 @@ static enum tri_status refine_all(struct par_ranks *r, struct par_tiles *tiles, 
         keep_own(r);
         status = refine_own(r, error);
     }
-    status = refine_borders(r, status, error);
+    status = par_ranks_borders(r, status, error);
     if (!status)
         keep_own(r);
     status = refine_later(r, status, error);

@@ -45,6 +45,19 @@ struct tri_fence par_box_of(const struct par_ranks *ranks, int p);
 /* Who owns odd column number i. */
 int par_owner_of_column(const struct par_ranks *ranks, int32_t i);
 
+/* What the others will get: appends to out[to] what lies in the box. */
+enum tri_status par_ranks_cut(struct par_ranks *ranks, int to, const struct tri_fence *box, struct tri_error *error);
+
+/* Collective: sends all that, and puts what comes in its place. */
+enum tri_status par_ranks_swap(struct par_ranks *ranks, enum par_move move, enum tri_status status,
+                               struct tri_error *error);
+
+/* Both phases of a column. */
+enum tri_status par_ranks_column(struct par_ranks *ranks, int32_t column, struct tri_error *error);
+
+/* Collective: the even columns at the borders of ranks: borders.c. */
+enum tri_status par_ranks_borders(struct par_ranks *ranks, enum tri_status status, struct tri_error *error);
+
 /* Collective. Numbers the tiles, and hands them out: hand_out.c. */
 enum tri_status par_hand_out_on_ranks(struct par_ranks *ranks, struct par_tiles *tiles, enum tri_status status,
                                       struct tri_error *error);

@@ -11,7 +11,7 @@
 #include "triangle/radix.h"
 
 /* Free ids in runs shorter than this are forgotten; so many tiles are made at once. */
-enum { SHORTEST_RUN = 8, BATCH = 8, SHARES = TRI_MOST_SHARES };
+enum { SHORTEST_RUN = 8, BATCH = 4, SHARES = TRI_MOST_SHARES };
 
 /* What one share of the mesh has found, in the order of ids. */
 struct finds {
