@@ -124,6 +124,8 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/sweep/queue.c
     sched/sweep/numbering.c
     sched/sweep/park.c
+    sched/sweep/spool.c
+    sched/sweep/checkpoint.c
     sched/sweep/sweep.c
     sched/worklist.c
     sched/phase.c
@@ -192,6 +194,8 @@ set(PTRIANGLE_PARALLEL_SOURCES
     drivers/blocks_file.c
     drivers/long_options.c
     drivers/progress.c
+    drivers/streams.c
+    drivers/restart.c
     drivers/prediction.c)
 set(PTRIANGLE_REPORT_SOURCE drivers/report_json.c)
 set(PTRIANGLE_NO_REPORT_SOURCE drivers/report_none.c)

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "drivers/streams.h"
 #include "triangle/text/decimal.h"
 #include "triangle/text/formats.h"
 
@@ -17,9 +18,10 @@ const char long_options_help[] =
     "                     number of them is removed. Rings may lie in rings\n"
     "  --holes points     hole points tell (the default)\n"
     "  --output BASE      results are called BASE.node, BASE.ele, BASE.poly and so on\n"
-    "  --output FILE.vtu | FILE.msh | FILE.2dm | FILE.14 | FILE.grd\n"
-    "                     the mesh for VTK and ParaView, Gmsh, SMS or ADCIRC, in place of BASE.node and so on, or\n"
-    "                     beside them if --output BASE is given, too; up to 4 such files\n"
+    "  --output FILE.h5 | FILE.vtu | FILE.msh | FILE.2dm | FILE.14 | FILE.grd\n"
+    "                     the mesh as HDF5, with FILE.xdmf beside it, or for VTK and ParaView, Gmsh, SMS or ADCIRC,\n"
+    "                     in place of BASE.node and so on, or beside them if --output BASE is given, too; up to 4\n"
+    "                     such files\n"
     "  --report FILE      seconds, blocks, memory and mesh statistics, as JSON; -: on standard output, where\n"
     "                     with -Q nothing else is printed\n"
     "  --blocks FILE      block and phase of each triangle, a line each, for meshplot --blocks\n"
@@ -31,6 +33,12 @@ const char long_options_help[] =
     "                     the machine has. Default: what is left, by limits of batch systems too. A mesh that needs\n"
     "                     more is refused before it costs time\n"
     "  --scratch DIR      folder for what does not fit into memory. Default: TMPDIR, else that of the output\n"
+    "  --checkpoint DIR   a run that is swept (--memory) keeps in this folder what it needs to go on after it was\n"
+    "                     stopped or killed; it is emptied at the end. A mesh in memory keeps nothing: it starts over\n"
+    "  --every MINUTES    the time between two checkpoints (10), 0: after each column. A signal that ends the run,\n"
+    "                     --time-limit and a full disk take one, too\n"
+    "  --resume DIR       goes on from there, with the same input and switches, on any number of threads: the files\n"
+    "                     are those of a run that was never stopped. With --checkpoint DIR: or begins\n"
     "  --dry-run          estimate triangles, memory, disk and time; refine and write nothing\n"
     "  --time-limit T     stop after T seconds (also 90s, 10m, 2h), with exit code 124\n"
     "  --write-partial    a run that is stopped while it refines, by the limit or a signal, writes the valid\n"
@@ -41,8 +49,8 @@ const char long_options_help[] =
     "  --version, --help  name and version; this help\n";
 
 enum id {
-    THREADS, MAX_AREA, MIN_ANGLE, HOLES, OUTPUT, REPORT, BLOCKS, NUMBERING, MEMORY, SCRATCH, DRY_RUN, TIME_LIMIT,
-    WRITE_PARTIAL, PROGRESS, NO_PROGRESS, VERSION, HELP
+    THREADS, MAX_AREA, MIN_ANGLE, HOLES, OUTPUT, REPORT, BLOCKS, NUMBERING, MEMORY, SCRATCH, CHECKPOINT, EVERY,
+    RESUME, DRY_RUN, TIME_LIMIT, WRITE_PARTIAL, PROGRESS, NO_PROGRESS, VERSION, HELP
 };
 
 static const struct kind {
@@ -55,7 +63,8 @@ static const struct kind {
     {"numbering", NUMBERING, true}, {"progress", PROGRESS, false}, {"no-progress", NO_PROGRESS, false},
     {"dry-run", DRY_RUN, false},    {"time-limit", TIME_LIMIT, true}, {"write-partial", WRITE_PARTIAL, false},
     {"version", VERSION, false},    {"help", HELP, false},         {"holes", HOLES, true},
-    {"memory", MEMORY, true},       {"scratch", SCRATCH, true},
+    {"memory", MEMORY, true},       {"scratch", SCRATCH, true},    {"checkpoint", CHECKPOINT, true},
+    {"every", EVERY, true},         {"resume", RESUME, true},
 };
 
 static const struct kind *find_kind(const char *name, size_t length)
@@ -158,6 +167,16 @@ static enum tri_status take_time(struct long_options *options, const char *value
                     "--time-limit: \"%.40s\" is not a time such as 90, 90s, 10m or 2h, from 0.001 s to 1e9 s", value);
 }
 
+static enum tri_status take_every(struct long_options *options, const char *value, struct tri_error *error)
+{
+    double minutes;
+    if (!is_real(value, &minutes) || !(minutes >= 0 && minutes <= 1e6))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--every: \"%.40s\" is not a number of minutes", value);
+    options->every = minutes;
+    options->has_every = true;
+    return TRI_OK;
+}
+
 static bool ends_with(const char *end, char letter) { return end[0] == letter && (letter == 0 || end[1] == 0); }
 
 /* Bytes, a number with K, M, G or T behind it, or a share in per cent. */
@@ -194,16 +213,24 @@ static enum tri_status take_name(const char **name, const struct kind *kind, con
     return TRI_OK;
 }
 
+/* One more file of some kind. */
+static enum tri_status add_file(const char **names, int *n, const char *value, struct tri_error *error)
+{
+    if (*n == LONG_OPTIONS_MOST_EXPORTS)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--output: no more than %d files of other formats",
+                        LONG_OPTIONS_MOST_EXPORTS);
+    names[(*n)++] = value;
+    return TRI_OK;
+}
+
 static enum tri_status take_output(struct long_options *options, const struct kind *kind, const char *value,
                                    struct tri_error *error)
 {
-    if (!tri_format_of(value))
-        return take_name(&options->output, kind, value, error);
-    if (options->n_exports == LONG_OPTIONS_MOST_EXPORTS)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--output: no more than %d files of other formats",
-                        LONG_OPTIONS_MOST_EXPORTS);
-    options->exports[options->n_exports++] = value;
-    return TRI_OK;
+    if (stream_is_wanted(value))
+        return add_file(options->streams, &options->n_streams, value, error);
+    if (tri_format_of(value))
+        return add_file(options->exports, &options->n_exports, value, error);
+    return take_name(&options->output, kind, value, error);
 }
 
 static enum tri_status apply(struct long_options *options, struct tri_switches *switches, const struct kind *kind,
@@ -221,6 +248,9 @@ static enum tri_status apply(struct long_options *options, struct tri_switches *
     case TIME_LIMIT: return take_time(options, value, error);
     case MEMORY: return take_memory(options, value, error);
     case SCRATCH: return take_name(&options->scratch, kind, value, error);
+    case CHECKPOINT: return take_name(&options->checkpoint, kind, value, error);
+    case RESUME: return take_name(&options->resume, kind, value, error);
+    case EVERY: return take_every(options, value, error);
     case DRY_RUN: options->dry_run = true; break;
     case WRITE_PARTIAL: options->write_partial = true; break;
     case PROGRESS: options->progress = PROGRESS_YES; break;

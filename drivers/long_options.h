@@ -19,6 +19,8 @@ struct long_options {
     const char *output; /* BASE of --output; NULL: not given. Words are borrowed from argv */
     int n_exports;      /* files in other programs' formats */
     const char *exports[LONG_OPTIONS_MOST_EXPORTS]; /* [n_exports] FILE of --output, whose suffix names a format */
+    int n_streams;      /* the same for HDF5 */
+    const char *streams[LONG_OPTIONS_MOST_EXPORTS]; /* [n_streams] */
     const char *report; /* file; NULL: none */
     const char *blocks; /* file; NULL: none */
     enum long_options_progress progress;
@@ -27,6 +29,9 @@ struct long_options {
     double memory;      /* bytes that the process may take; 0: not given, or .. */
     double memory_share; /* .. this share of what the machine has, to 1; 0: not given */
     const char *scratch; /* directory; NULL: not given */
+    const char *checkpoint, *resume; /* directories; NULL: not given */
+    bool has_every;
+    double every;       /* minutes between checkpoints, if given */
     bool write_partial, dry_run;
     bool version, help;
 };

@@ -2,6 +2,7 @@
 #include "drivers/mesh_files.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "drivers/interrupt.h"
 #include "triangle/grid.h"
@@ -57,6 +58,14 @@ static const struct kind {
 };
 
 enum { N_KINDS = sizeof kinds / sizeof *kinds };
+
+bool mesh_files_has(const struct mesh_files *files, const char *suffix)
+{
+    for (int k = 0; k < N_KINDS; k++)
+        if (strcmp(kinds[k].suffix, suffix) == 0)
+            return plan_of(files, kinds[k].plan) == WRITTEN;
+    return false;
+}
 
 /* --- all together */
 

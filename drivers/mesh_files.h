@@ -10,7 +10,7 @@
 #include "triangle/pslg.h"
 #include "triangle/reconstruct.h"
 
-enum { MESH_FILES_MOST_NAMES = 4 };
+enum { MESH_FILES_MOST_NAMES = 16 };
 
 /* Names of files, borrowed. */
 struct file_names {
@@ -33,6 +33,9 @@ struct mesh_files {
     const bool *is_edge;                 /* [n_segments] -rp: the segments of the input that are not are written again;
                                             NULL: no -r */
 };
+
+/* Is the file with this suffix, ".node", among those that are written? */
+bool mesh_files_has(const struct mesh_files *files, const char *suffix);
 
 /* Looks whether all files, and further ones, could be created, so that nobody waits for a mesh that cannot be kept, and
  * whether each is a file of its own that nobody has read. Leaves nothing behind. Only the arguments, exports and

@@ -43,6 +43,8 @@ const char *plan_obstacle(const struct run *run)
         return "";
     if (!run->options.refine)
         return "no bounds";
+    if (run->n_loose > 0)
+        return "segments that are no edges of the mesh";
     if (hooks->whole_mesh)
         return hooks->whole_mesh;
     return by_switches(&run->arguments->switches);
@@ -137,7 +139,8 @@ enum tri_status plan_make(struct run_plan *plan, const struct run *run, const st
     bool look = fmax(e->more, e->least_more) > WORTH_A_LOOK || run->hooks->limits.memory > 0;
     double left = look ? plan_memory_left(run) : HUGE_VAL;
     const char *obstacle = plan_obstacle(run);
-    *plan = (struct run_plan){!fits(e, left) && !obstacle, resources_memory_used() + left};
+    bool sweep = run->hooks->always_sweep || !fits(e, left);
+    *plan = (struct run_plan){sweep && !obstacle, resources_memory_used() + left, e->triangles};
     enum tri_status status =
         plan->swept ? check_sweep(e, left, console, error) : check_memory(e, left, obstacle, console, error);
     status = status ? status : check_disk(run, e, console, error);

@@ -15,7 +15,8 @@ struct progress {
     const char *program;
     double began, told;   /* seconds of some clock: when refinement began, when the line was last written */
     int64_t first;        /* triangles when refinement began */
-    int round, phase;     /* last ones told; a log tells rounds alone */
+    double estimate;      /* of them at the end */
+    int round, phase;     /* last ones told */
     int width;            /* characters of the line on the terminal */
 };
 
@@ -26,9 +27,11 @@ struct progress progress_start(const char *program, enum long_options_progress w
 void progress_stage(struct progress *progress, const char *what);
 
 /* Refinement begins, goes on, ends. step has the shape of par_options.progress, user is the struct; it may be called
- * as often as wanted: a terminal sees each phase and at most ten lines a second beyond that, a log one line for each
- * round. numbering: seconds since begin that do not count. */
-void progress_begin(struct progress *progress, int64_t triangles, int threads);
+ * as often as wanted: a terminal sees at most ten lines a second, a log one line for each round, and one for each
+ * PROGRESS_LOG_SECONDS. estimate: triangles at the end; for percents and the time to go. numbering: seconds since begin
+ * that do not count. */
+enum { PROGRESS_LOG_SECONDS = 30 };
+void progress_begin(struct progress *progress, int64_t triangles, double estimate, int threads);
 void progress_step(void *user, int round, int phase, int64_t triangles);
 void progress_end(struct progress *progress, int64_t triangles, double numbering);
 

@@ -13,8 +13,11 @@
 #include "drivers/progress.h"
 #include "drivers/report_json.h"
 #include "drivers/resources.h"
+#include "drivers/restart.h"
 #include "drivers/run.h"
+#include "drivers/streams.h"
 #include "sched/schedule.h"
+#include "sched/sweep/queue.h"
 #include "sched/threads.h"
 #include "triangle/estimate.h"
 #include "triangle/text/write.h"
@@ -26,6 +29,12 @@ struct program {
     struct long_options options;
     int threads;
     struct progress progress;
+    struct restart restart;
+    char *scratch;             /* folder for what is parked */
+    struct file_names h5;      /* HDF5 files that are wanted */
+    char *xdmf[STREAMS_MOST];  /* [h5.n] names of the texts beside them */
+    struct streams streams;
+    int32_t n_before;          /* vertices there were before refinement */
     bool refined;              /* the schedule has run: its report is filled */
     struct par_report schedule;
 };
@@ -42,6 +51,16 @@ static double cell_for_tests(void)
 #endif
 }
 
+/* And sweep what would fit in memory. */
+static bool sweep_for_tests(void)
+{
+#ifdef PTRIANGLE_TESTS
+    return getenv("PTRIANGLE_TEST_SWEEP") != NULL;
+#else
+    return false;
+#endif
+}
+
 /* --- hooks */
 
 static void follow(void *user, int round, int phase, int64_t triangles)
@@ -51,25 +70,101 @@ static void follow(void *user, int round, int phase, int64_t triangles)
     progress_step(&p->progress, round, phase, triangles);
 }
 
-static enum tri_status refine(void *user, const struct run_plan *plan, struct tri_mesh *mesh,
-                              const struct tri_refine_options *quality, struct tri_refine_report *report,
-                              struct tri_error *error)
+static struct par_options options_of(struct program *p, const struct run *run)
 {
-    struct program *p = user;
-    (void)plan;
+    const struct tri_switches *s = &run->arguments->switches;
     struct par_options options = par_defaults();
     options.threads = p->threads;
     options.by_block = p->options.by_block;
     options.cell_triangles = cell_for_tests();
     options.progress = follow;
     options.progress_user = p;
-    progress_begin(&p->progress, mesh->n_triangles, p->threads);
-    enum tri_status status = par_refine(mesh, quality, &options, &p->schedule, error);
-    progress_end(&p->progress, mesh->n_triangles, p->schedule.seconds_number);
-    if (!status)
-        progress_stage(&p->progress, "writing");
-    *report = p->schedule.total;
+    options.figure = &run->pslg;
+    options.region_column = tri_switches_grid(s, &run->mesh, &run->pslg, &run->elements).regions;
+    options.sweep = run->plan.swept;
+    options.memory = run->plan.swept && run->plan.memory < HUGE_VAL ? (int64_t)run->plan.memory : 0;
+    options.scratch = p->scratch;
+    options.checkpoint = p->restart.wanted ? &p->restart.checkpoint : NULL;
+    return options;
+}
+
+static enum tri_status refine_with(struct program *p, struct run *run, const struct par_options *options,
+                                   struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                   struct tri_error *error)
+{
+    p->n_before = mesh->n_vertices;
+    progress_begin(&p->progress, mesh->n_triangles, run->plan.triangles, p->threads);
+    enum tri_status status = par_refine(mesh, quality, options, &p->schedule, error);
+    progress_end(&p->progress, options->sweep ? p->streams.triangles : mesh->n_triangles,
+                 options->sweep ? 0 : p->schedule.seconds_number);
     p->refined = true;
+    return status;
+}
+
+/* Refinement keeps the number of holes and pieces: vertices - edges + triangles stays what it was. Every edge on the
+ * boundary is a subsegment. */
+static void count_streamed(struct tri_counts *c, const struct tri_counts *before, int64_t unused,
+                           const struct streams *streams)
+{
+    c->vertices = streams->vertices - unused;
+    c->triangles = streams->triangles;
+    c->subsegments = streams->segments;
+    c->edges = c->vertices + c->triangles - (before->vertices - before->edges + before->triangles);
+    c->exterior = 2 * c->edges - 3 * c->triangles;
+    c->interior = c->subsegments - c->exterior;
+}
+
+/* Bytes of tiles that may wait for the disk. */
+static int64_t waiting_bytes(const struct run_plan *plan)
+{
+    return (int64_t)fmin(fmax(plan->memory / 32, 0x1p20), 0x1p26);
+}
+
+/* Refines, and writes what is finished meanwhile. */
+static enum tri_status sweep(struct program *p, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
+                             const struct tri_refine_options *quality, struct tri_error *error)
+{
+    struct par_options options = options_of(p, run);
+    struct tri_counts before;
+    const struct tri_sink streams = streams_sink(&p->streams);
+    struct par_queue queue;
+    enum tri_status status = tri_count_mesh(&before, mesh, error);
+    int64_t unused = mesh->n_vertices - before.vertices;
+    status = status ? status : streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
+    status = status ? status : streams_open_text(&p->streams, run, set, error);
+    if (!status && !par_queue_begin(&queue, &streams, waiting_bytes(&run->plan)))
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a queue of tiles");
+    if (!status) {
+        const struct tri_sink sink = par_queue_sink(&queue);
+        options.sink = &sink;
+        status = refine_with(p, run, &options, mesh, quality, error);
+        par_queue_free(&queue);
+    }
+    streams_close(&p->streams);
+    tri_mesh_free(mesh); /* what is left of it is no mesh */
+    if (!status)
+        count_streamed(&run->counts, &before, unused, &p->streams);
+    return status;
+}
+
+static enum tri_status refine(void *user, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
+                              const struct tri_refine_options *quality, struct tri_refine_report *report,
+                              struct tri_error *error)
+{
+    struct program *p = user;
+    enum tri_status status;
+    if (run->plan.swept) {
+        status = sweep(p, run, set, mesh, quality, error);
+    } else {
+        struct par_options options = options_of(p, run);
+        if (p->restart.wanted)
+            console_say(&(struct console){.program = PROGRAM, .quiet = run->arguments->switches.quiet},
+                        "The mesh stays in memory: there will be no checkpoint, and --resume starts over.\n");
+        status = refine_with(p, run, &options, mesh, quality, error);
+        if (!status)
+            progress_stage(&p->progress, "writing");
+    }
+    *report = p->schedule.total;
     return status;
 }
 
@@ -79,6 +174,29 @@ static double estimate(void *user, const struct tri_mesh *mesh, const struct tri
     return tri_estimate(mesh, quality);
 }
 
+/* Of a mesh that is in memory. */
+static enum tri_status write_streams(struct program *p, const struct run *run, struct tri_output_set *set,
+                                     struct tri_error *error)
+{
+    const struct tri_sink sink = streams_sink(&p->streams);
+    if (p->h5.n == 0)
+        return TRI_OK;
+    enum tri_status status = streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
+    int32_t n_before = p->refined ? p->n_before : run->mesh.n_vertices;
+    status = status ? status : streams_hand_out(run, n_before, &sink, error);
+    streams_close(&p->streams);
+    return status;
+}
+
+/* Measured: a sweep holds about three columns of cells, of up to so many triangles each. */
+static double swept_memory(void *user, double triangles)
+{
+    static const double BYTES = 290, SMALLEST_CELL = 8192, LARGEST_CELL = 131072, CELLS = 128;
+    double cell = fmin(fmax(triangles / CELLS, SMALLEST_CELL), LARGEST_CELL);
+    (void)user;
+    return BYTES * sqrt(triangles * cell);
+}
+
 static enum tri_status write_further(void *user, const struct run *run, struct tri_output_set *set,
                                      struct tri_error *error)
 {
@@ -86,8 +204,8 @@ static enum tri_status write_further(void *user, const struct run *run, struct t
     char text[96];
     snprintf(text, sizeof text, "done in %.2f s", run->total_seconds);
     progress_stage(&p->progress, text);
-    enum tri_status status = TRI_OK;
-    if (p->options.blocks)
+    enum tri_status status = run->plan.swept ? TRI_OK : write_streams(p, run, set, error);
+    if (!status && p->options.blocks)
         status = blocks_write(p->options.blocks, set, &p->schedule, &run->mesh, error);
     if (status || !p->options.report)
         return status;
@@ -137,6 +255,20 @@ static void add_further(struct file_names *names, const char *name)
         names->name[names->n++] = name;
 }
 
+/* --scratch, TMPDIR, or the folder of the output; malloc'ed. */
+static char *scratch_of(const struct long_options *options, const struct arguments *arguments)
+{
+    const char *asked = options->scratch ? options->scratch : getenv("TMPDIR");
+    const char *output = options->n_streams > 0 ? options->streams[0] : arguments->output;
+    const char *slash = output ? strrchr(output, '/') : NULL;
+    if (asked && *asked)
+        return joined(asked, "");
+    char *folder = joined(slash ? output : ".", "");
+    if (folder && slash)
+        folder[slash - output + 1] = 0;
+    return folder;
+}
+
 /* Bytes that the process may take; 0: whatever there is. */
 static double memory_of(const struct long_options *options)
 {
@@ -144,49 +276,109 @@ static double memory_of(const struct long_options *options)
     return options->memory_share > 0 ? options->memory_share * (total < HUGE_VAL ? total : 0) : options->memory;
 }
 
-static int run_program(struct program *p, const struct arguments *arguments)
+/* HDF5 files, and the texts beside them, are checked as all files are. */
+static enum tri_status name_streams(struct program *p, struct run_hooks *hooks, struct tri_error *error)
+{
+    for (int i = 0; i < p->options.n_streams; i++) {
+        p->xdmf[i] = stream_xdmf(p->options.streams[i]);
+        if (!p->xdmf[i])
+            return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
+        add_further(&p->h5, p->options.streams[i]);
+        add_further(&hooks->further, p->options.streams[i]);
+        add_further(&hooks->further, p->xdmf[i]);
+    }
+    return TRI_OK;
+}
+
+/* What of the long options asks for the whole mesh in memory. */
+static const char *whole_mesh(const struct long_options *o)
+{
+    return o->blocks ? "--blocks" : o->by_block ? "--numbering blocks" : o->write_partial ? "--write-partial"
+           : o->n_exports > 0 ? o->exports[0] : NULL;
+}
+
+static struct run_hooks hooks_of(struct program *p)
+{
+    const struct long_options *o = &p->options;
+    bool goes_on = p->restart.wanted && par_checkpoint_has_state(&p->restart.checkpoint);
+    struct run_hooks hooks = {.program = PROGRAM, .refine = refine, .estimate = estimate, .write = write_further,
+                              .swept_memory = swept_memory, .always_sweep = goes_on || sweep_for_tests(),
+                              .whole_mesh = whole_mesh(o), .threads = p->threads, .user = p,
+                              .limits = {.seconds = o->time_limit, .write_partial = o->write_partial,
+                                         .dry_run = o->dry_run, .memory = memory_of(o), .scratch = o->scratch,
+                                         .checkpoint = p->restart.wanted}};
+    for (int i = 0; i < o->n_exports; i++)
+        add_further(&hooks.exports, o->exports[i]);
+    hooks.exports_alone = o->n_exports + o->n_streams > 0 && !o->output;
+    add_further(&hooks.further, o->report && !report_is_printed(o->report) ? o->report : NULL);
+    add_further(&hooks.further, o->blocks);
+    return hooks;
+}
+
+static int run_program(struct program *p, const struct arguments *arguments, struct tri_error *error)
 {
     p->threads = par_threads(long_options_threads(&p->options), true);
     p->progress = progress_start(PROGRAM, p->options.progress, arguments->switches.quiet);
     const struct tri_executor executor = par_executor(&p->threads);
-    const struct long_options *o = &p->options;
-    struct run_hooks hooks = {.program = PROGRAM, .executor = &executor, .refine = refine, .estimate = estimate,
-                              .threads = p->threads, .write = write_further, .user = p,
-                              .limits = {o->time_limit, o->write_partial, o->dry_run, memory_of(o), o->scratch}};
-    for (int i = 0; i < o->n_exports; i++)
-        add_further(&hooks.exports, o->exports[i]);
-    hooks.exports_alone = o->n_exports > 0 && !o->output;
-    add_further(&hooks.further, o->report && !report_is_printed(o->report) ? o->report : NULL);
-    add_further(&hooks.further, o->blocks);
+    struct run_hooks hooks = hooks_of(p);
+    hooks.executor = &executor;
+    p->scratch = scratch_of(&p->options, arguments);
+    if (name_streams(p, &hooks, error)) {
+        console_error(&(struct console){.program = PROGRAM}, error);
+        return EXIT_FAILURE;
+    }
     if (arguments->file)
         progress_stage(&p->progress, "reading and triangulating");
     int code = run_arguments(arguments, &hooks);
     if (!arguments->file)
-        puts("  --threads N  --max-area X  --min-angle X  --output BASE|FILE.vtu|...  --report FILE  --blocks FILE"
+        puts("  --threads N  --max-area X  --min-angle X  --output BASE|FILE.h5|...  --report FILE  --blocks FILE"
              "  --numbering curve|blocks\n"
-             "  --dry-run  --time-limit T  --write-partial  --progress  --help");
+             "  --dry-run  --memory SIZE  --checkpoint DIR  --resume DIR  --time-limit T  --write-partial  --progress"
+             "  --help");
+    return code;
+}
+
+static void free_program(struct program *p)
+{
     par_report_free(&p->schedule);
+    free(p->scratch);
+    for (int i = 0; i < STREAMS_MOST; i++)
+        free(p->xdmf[i]);
+}
+
+/* Once the words have been taken. */
+static int carry_out(struct program *p, const struct arguments *arguments, struct tri_error *error)
+{
+    if (p->options.version) {
+        printf("%s %s\n", PROGRAM, PTRIANGLE_VERSION);
+        return EXIT_SUCCESS;
+    }
+    if (p->options.help || arguments->switches.help) {
+        help_full(PROGRAM, "on all cores", long_options_help);
+        return EXIT_SUCCESS;
+    }
+    if (arguments->file && restart_open(&p->restart, &p->options, error)) {
+        console_error(&(struct console){.program = PROGRAM}, error);
+        return EXIT_FAILURE;
+    }
+    int code = run_program(p, arguments, error);
+    restart_close(&p->restart, PROGRAM, arguments, code);
     return code;
 }
 
 int main(int argc, char **argv)
 {
-    struct program program = {0};
+    static struct program program;
     struct tri_error error = {0};
     const struct console console = {.program = PROGRAM};
     console_open();
     struct arguments arguments = arguments_begin(argc, argv);
-    int code = EXIT_SUCCESS;
-    if (take_words(&program, &arguments, &error)) {
+    int code = EXIT_FAILURE;
+    if (take_words(&program, &arguments, &error))
         console_error(&console, &error);
-        code = EXIT_FAILURE;
-    } else if (program.options.version) {
-        printf("%s %s\n", PROGRAM, PTRIANGLE_VERSION);
-    } else if (program.options.help || arguments.switches.help) {
-        help_full(PROGRAM, "on all cores", long_options_help);
-    } else {
-        code = run_program(&program, &arguments);
-    }
+    else
+        code = carry_out(&program, &arguments, &error);
+    free_program(&program);
     arguments_free(&arguments);
     return console_close(&console) ? code : EXIT_FAILURE;
 }

@@ -31,6 +31,7 @@ struct runner {
     struct names names;
     struct console_series input_warnings;
     double begin, mark; /* when the run and the stage began */
+    int32_t *twin;      /* [pslg.n_points] first one of the points at a place, where the mesh will be gone; else NULL */
     bool built;         /* there is a mesh: what stops now leaves one that is valid */
     struct tri_error *error;
 };
@@ -257,6 +258,35 @@ static enum tri_status leave(void *user, struct tri_mesh *mesh, const struct tri
     return TRI_OK;
 }
 
+/* Files of a mesh that is there are written, whoever asks for the end. */
+static void begin_outputs(const struct runner *r)
+{
+    interrupt_begin(&outputs);
+    if (r->run.hooks->limits.write_partial || r->run.hooks->limits.checkpoint)
+        outputs.stop = NULL;
+}
+
+/* What will be told of the input, though its vertices will be gone then. */
+static enum tri_status keep_twins(struct runner *r, const struct tri_mesh *mesh)
+{
+    const int32_t *origin = mesh->origin, n = mesh->n_input;
+    if (!mesh->twin)
+        return TRI_OK;
+    r->twin = malloc(((size_t)n + 1) * sizeof *r->twin);
+    if (!r->twin)
+        return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d points", (int)n);
+    for (int32_t v = 0; v < n; v++)
+        r->twin[origin ? origin[v] : v] = origin ? origin[mesh->twin[v]] : mesh->twin[v];
+    return TRI_OK;
+}
+
+/* Files are written while the mesh is refined. */
+static enum tri_status begin_sweep(struct runner *r, const struct tri_mesh *mesh)
+{
+    begin_outputs(r);
+    return keep_twins(r, mesh);
+}
+
 static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_refine_options *quality,
                               struct tri_refine_report *report, struct tri_error *error)
 {
@@ -267,9 +297,14 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
         return status;
     console_say(&r->console, "Adding vertices until the bounds are kept.\n");
     interrupt_stage("refining");
-    status = hooks->refine ? hooks->refine(hooks->user, &r->run.plan, mesh, quality, report, error)
-                           : tri_refine(mesh, quality, report, error);
-    return notice_stop(r, status);
+    status = r->run.plan.swept ? begin_sweep(r, mesh) : TRI_OK;
+    if (!status)
+        status = hooks->refine ? hooks->refine(hooks->user, &r->run, &outputs, mesh, quality, report, error)
+                               : tri_refine(mesh, quality, report, error);
+    status = notice_stop(r, status);
+    if (status && r->run.plan.swept)
+        interrupt_drop(&outputs);
+    return status;
 }
 
 /* The mesh, refined or, for an estimate, as it is before. */
@@ -292,6 +327,8 @@ static enum tri_status generate(struct runner *r, bool refined)
     options.is_edge = run->is_edge;
     options.base = run->base;
     enum tri_status status = tri_generate(&run->mesh, &run->pslg, &options, &run->report, r->error);
+    if (r->built) /* not the input's fault */
+        return notice_stop(r, status);
     if (status == TRI_BAD_INPUT && s->mesh)
         snprintf(r->error->file, sizeof r->error->file, "%s.ele", run->arguments->input);
     else if (status == TRI_BAD_INPUT)
@@ -305,10 +342,10 @@ static void tell_of_quality(struct runner *r)
     const struct tri_refine_report *report = &run->report.quality;
     if (!run->options.refine)
         return;
-    say_milliseconds(r, "Quality", run->seconds[RUN_QUALITY]);
+    say_milliseconds(r, run->plan.swept ? "Quality and output" : "Quality", run->seconds[RUN_QUALITY]);
     if (report->hit_limit && run->options.quality.conforming)
         console_warn(&r->console, "the limit of -S was reached before the mesh was conforming.\n");
-    if (!r->console.quiet) /* a pass over all triangles */
+    if (!r->console.quiet && !run->plan.swept) /* a pass over all triangles */
         summary_bounds(&r->console, &run->mesh, &run->options.quality, report, run->hooks->executor);
 }
 
@@ -320,7 +357,7 @@ static int64_t count_bad(const struct runner *r)
     enum { SOON_COUNTED = 1 << 22 };
     const struct run *run = &r->run;
     int64_t count[TRI_EXCUSES], sum = 0;
-    if (!run->options.refine || run->mesh.n_triangles > SOON_COUNTED)
+    if (!run->options.refine || run->plan.swept || run->mesh.n_triangles > SOON_COUNTED)
         return -1;
     tri_count_bad(&run->mesh, &run->options.quality, &run->report.quality, run->hooks->executor, count);
     for (int k = 0; k < TRI_EXCUSES; k++)
@@ -334,7 +371,8 @@ static void tell_of_stop(struct runner *r, bool partial)
     struct tri_error line = {.status = TRI_STOPPED};
     char far[160] = "";
     int64_t bad = r->built ? count_bad(r) : -1;
-    int length = r->built ? snprintf(far, sizeof far, ": %ld triangles", (long)r->run.mesh.n_triangles) : 0;
+    bool counted = r->built && !r->run.plan.swept;
+    int length = counted ? snprintf(far, sizeof far, ": %ld triangles", (long)r->run.mesh.n_triangles) : 0;
     if (bad >= 0)
         snprintf(far + length, sizeof far - (size_t)length, ", %" PRId64 " of them below the bounds", bad);
     tri_fail(&line, TRI_STOPPED, NULL, 0, "stopped by %s after %.1f s while %s%s; %s", interrupt_cause(),
@@ -360,7 +398,7 @@ static enum tri_status keep_partial(struct runner *r, enum tri_status status)
 /* What was odd about the input; said when the vertices have the numbers of the input again. */
 static void tell_of_input(const struct runner *r)
 {
-    summary_duplicates(&r->console, &r->run.mesh, &r->run.pslg);
+    summary_duplicates(&r->console, r->run.plan.swept ? r->twin : r->run.mesh.twin, &r->run.pslg);
     summary_segments(&r->console, &r->run.report.constrain);
 }
 
@@ -386,7 +424,7 @@ static enum tri_status tell(struct runner *r)
 {
     struct run *run = &r->run;
     const struct tri_switches *s = &run->arguments->switches;
-    enum tri_status status = tri_count_mesh(&run->counts, &run->mesh, r->error);
+    enum tri_status status = run->plan.swept ? TRI_OK : tri_count_mesh(&run->counts, &run->mesh, r->error);
     run->total_seconds = tri_seconds() - r->begin;
     if (status)
         return status;
@@ -402,7 +440,7 @@ static enum tri_status tell(struct runner *r)
 static enum tri_status write_all(struct runner *r, const struct mesh_files *files)
 {
     const struct run_hooks *hooks = r->run.hooks;
-    enum tri_status status = write_mesh(r, files);
+    enum tri_status status = r->run.plan.swept ? TRI_OK : write_mesh(r, files);
     status = status ? status : tell(r);
     if (!status && hooks->write)
         status = hooks->write(hooks->user, &r->run, &outputs, r->error);
@@ -413,9 +451,8 @@ static enum tri_status write_all(struct runner *r, const struct mesh_files *file
 static enum tri_status write_output(struct runner *r, const struct mesh_files *files)
 {
     interrupt_stage("writing");
-    interrupt_begin(&outputs);
-    if (r->run.hooks->limits.write_partial) /* a mesh that is there is written */
-        outputs.stop = NULL;
+    if (!r->run.plan.swept)
+        begin_outputs(r);
     enum tri_status status = write_all(r, files);
     if (!status)
         return interrupt_commit(&outputs, r->error);
@@ -451,7 +488,8 @@ static enum tri_status make_mesh(struct runner *r)
         return status;
     tell_of_quality(r);
     tell_of_input(r);
-    tri_mesh_compact(&run->mesh);
+    if (!run->plan.swept)
+        tri_mesh_compact(&run->mesh);
     return TRI_OK;
 }
 
@@ -493,7 +531,7 @@ static enum tri_status run_file(struct runner *r)
 {
     const struct run_limits *limits = &r->run.hooks->limits;
     r->begin = r->mark = tri_seconds();
-    if (!interrupt_start(r->run.hooks->program, limits->seconds, limits->write_partial))
+    if (!interrupt_start(r->run.hooks->program, limits->seconds, limits->write_partial || limits->checkpoint))
         return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "the system has no timer left");
     enum tri_status status = run_stages(r);
     if (status == TRI_STOPPED)
@@ -509,6 +547,7 @@ static void free_run(struct runner *r)
     tri_pslg_free(&r->run.pslg);
     tri_elements_free(&r->run.elements);
     free(r->run.is_edge);
+    free(r->twin);
     free_names(&r->names);
 }
 

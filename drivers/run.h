@@ -27,6 +27,7 @@ enum run_stage {
 struct run_plan {
     bool swept;    /* by columns, of which few are in memory at a time; else the whole mesh is */
     double memory; /* bytes of memory that the process may take; HUGE_VAL: not known */
+    double triangles; /* that are expected */
 };
 
 /* All about a run, as far as it got. */
@@ -55,14 +56,16 @@ struct run_limits {
     bool write_partial; /* a run that is stopped while it refines writes the valid mesh that it has */
     bool dry_run;       /* nothing is refined or written: an estimate is printed */
     double memory;      /* bytes that the process may take; 0: what there is */
+    bool checkpoint;    /* a run that is stopped while it is swept takes the time to keep its state */
     const char *scratch; /* directory for what does not fit there; NULL: that of the output */
 };
 
 struct run_hooks {
     const char *program;
     const struct tri_executor *executor; /* for reading and writing; NULL: one task after another */
-    /* Refines the mesh as tri_refine does, by the plan; NULL: tri_refine itself. */
-    enum tri_status (*refine)(void *user, const struct run_plan *plan, struct tri_mesh *mesh,
+    /* Refines the mesh as tri_refine does; NULL: tri_refine itself. Where run->plan.swept, also writes its files into
+     * the guarded set (drivers/interrupt.h), and counts it: run->counts. The mesh is gone then. */
+    enum tri_status (*refine)(void *user, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
                               const struct tri_refine_options *options, struct tri_refine_report *report,
                               struct tri_error *error);
     /* Triangles that the mesh will have, and the share of them by which that may be wrong; NULL: what areas ask for is
@@ -71,6 +74,7 @@ struct run_hooks {
     /* Bytes of memory that sweeping so many triangles takes, beyond what is taken now; refine follows run->plan then.
      * NULL: nothing is ever swept. */
     double (*swept_memory)(void *user, double triangles);
+    bool always_sweep;              /* for tests: also what would fit in memory */
     const char *whole_mesh;         /* what of the program's own options asks for a mesh in memory; NULL: nothing */
     int threads;                    /* to refine with, for estimates */
     struct file_names exports;      /* the mesh in other formats .. */

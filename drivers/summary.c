@@ -17,11 +17,11 @@ void summary_segments(const struct console *console, const struct tri_constrain_
                      report->bent);
 }
 
-void summary_duplicates(const struct console *console, const struct tri_mesh *mesh, const struct tri_pslg *pslg)
+void summary_duplicates(const struct console *console, const int32_t *twin, const struct tri_pslg *pslg)
 {
     struct console_series series = {0};
-    for (int32_t v = 0; mesh->twin && v < mesh->n_input; v++)
-        if (mesh->twin[v] != v && console_series_add(&series))
+    for (int32_t v = 0; twin && v < pslg->n_points; v++)
+        if (twin[v] != v && console_series_add(&series))
             console_warn(console, "duplicate vertex at (%.12g, %.12g) ignored.\n", pslg->points[2 * (size_t)v],
                          pslg->points[2 * (size_t)v + 1]);
     console_series_end(console, &series, "duplicate vertices ignored");

@@ -9,6 +9,7 @@
 #define SCHED_SCHEDULE_H
 
 #include "sched/partition.h"
+#include "sched/sweep/checkpoint.h"
 #include "sched/sweep/tiles.h"
 #include "triangle/executor.h"
 #include "triangle/generate.h"
@@ -41,6 +42,8 @@ struct par_options {
                                 a time, and *mesh is not a mesh afterwards, to be freed and no more. The tiles are the
                                 same for any bound. TRI_TOO_LARGE where that cannot be done */
     const char *scratch;     /* directory for what has to be parked then; NULL: nothing can be */
+    struct par_checkpoint *checkpoint; /* where the state of a sweep is kept, and taken from (sched/sweep/checkpoint.h);
+                                          NULL: nowhere */
     bool sweep;              /* for tests: whatever memory there is */
     struct par_carrier *carrier; /* not NULL: this is one of several ranks, which all make this call with the same mesh,
                                 bounds and cells, and each gets tiles of its own (sched/ranks/ranks.h), in the numbers

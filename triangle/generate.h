@@ -34,7 +34,7 @@ enum tri_stage {
     TRI_STAGE_DONE
 };
 
-/* Refines as tri_refine does. */
+/* Refines as tri_refine does; or hands the mesh out, and frees it. */
 typedef enum tri_status tri_refine_call(void *user, struct tri_mesh *mesh, const struct tri_refine_options *options,
                                         struct tri_refine_report *report, struct tri_error *error);
 

@@ -50,20 +50,55 @@ static enum tri_status refine_columns(struct par_state *state, const struct par_
     return status;
 }
 
+static enum tri_status end_tiles(struct par_state *state, struct par_tiles *tiles, int32_t odd,
+                                 struct tri_error *error)
+{
+    enum tri_status status = par_tiles_end(tiles, error);
+    if (status || !state->options->checkpoint)
+        return status;
+    return par_checkpoint_last(state->options->checkpoint, state, tiles, odd, error);
+}
+
+/* From column `odd` on, until something is left behind. */
+static enum tri_status sweep_columns(struct par_state *state, struct par_tiles *tiles, int32_t odd, bool *left,
+                                     struct tri_error *error)
+{
+    struct par_checkpoint *checkpoint = state->options->checkpoint;
+    enum tri_status status = TRI_OK;
+    for (; !status && !*left && odd <= tiles->partition->n_columns; odd += 2) {
+        status = refine_columns(state, tiles->partition, odd, error);
+        if (status || odd == 1)
+            continue;
+        status = finish_column(state, tiles, odd - 2, left, error);
+        if (!status && !*left && checkpoint)
+            status = par_checkpoint_border(checkpoint, state, tiles, odd + 2, error);
+    }
+    return status || *left ? status : end_tiles(state, tiles, odd, error);
+}
+
+/* *odd: the column to begin with. */
+static enum tri_status begin_sweep(struct par_state *state, struct par_tiles *tiles, int32_t *odd,
+                                   struct tri_error *error)
+{
+    *odd = 1;
+    if (state->options->checkpoint)
+        return par_checkpoint_begin(state->options->checkpoint, state, tiles, odd, error);
+    return par_tiles_begin(tiles, tiles->partition->estimate, error);
+}
+
 enum tri_status par_sweep(struct par_state *state, const struct par_partition *partition, bool *done,
                           struct tri_error *error)
 {
     struct tri_executor executor = par_executor(&state->threads);
     struct par_tiles tiles = par_tiles_of(state, partition, &executor);
     bool left = false;
-    enum tri_status status = par_tiles_begin(&tiles, partition->estimate, error);
-    for (int32_t odd = 1; !status && !left && odd <= partition->n_columns; odd += 2) {
-        status = refine_columns(state, partition, odd, error);
-        if (!status && odd > 2)
-            status = finish_column(state, &tiles, odd - 2, &left, error);
+    int32_t odd;
+    enum tri_status status = begin_sweep(state, &tiles, &odd, error);
+    status = status ? status : sweep_columns(state, &tiles, odd, &left, error);
+    if (state->options->checkpoint) {
+        enum tri_status ended = par_checkpoint_end(state->options->checkpoint, state, left, status ? NULL : error);
+        status = status ? status : ended;
     }
-    if (!status && !left)
-        status = par_tiles_end(&tiles, error);
     *done = !status && !left;
     state->report->rounds++;
     state->report->deferred += state->report->total.fenced;

@@ -144,16 +144,16 @@ if [ -x "$bin/ptriangle" ]; then
     matches '^  Disk: [0-9]+ MB'
     matches '^  Time: [0-9.e+-]+ s on [0-9]+ thread'
     wrote
-    mesher 1 ptriangle -pa0.0000001 letter --dry-run
+    mesher 1 ptriangle -pna0.0000001 letter --dry-run
     matches '^  Triangles: [0-9.e+]+ million$'
-    complains 'the area bounds ask for at least [0-9]+ million triangles, and a mesh holds 536 million'
+    complains 'triangles, and a mesh holds 536 million where it must be in memory as a whole, as for -n .neighbours.$'
     wrote
 
     # --- a bound on memory
     fresh square.poly
     for words in "" --dry-run; do
         # shellcheck disable=SC2086 # none or one
-        mesher 1 ptriangle -pqa0.00000003 square --memory 200M $words
+        mesher 1 ptriangle -pqna0.00000003 square --memory 200M $words
         complains 'the area bounds ask for at least [0-9.]+ million triangles, which take [0-9.]+ GB of memory; 0\.[0-9]+ GB are left'
         wrote
     done

@@ -332,6 +332,15 @@ enum tri_status tri_output_open(struct tri_output_set *set, const char *path, st
     return TRI_OK;
 }
 
+enum tri_status tri_output_restart(struct tri_output *output, struct tri_error *error)
+{
+    if (!tri_output_has_places(output) || ftruncate(output->file, 0) != 0)
+        return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "cannot be written a second time");
+    output->size = 0;
+    output->failed = false;
+    return TRI_OK;
+}
+
 /* --- writing and closing */
 
 enum { STOPPED = -1 };

@@ -57,6 +57,9 @@ void tri_outputs_begin(struct tri_output_set *set);
 enum tri_status tri_output_open(struct tri_output_set *set, const char *path, struct tri_output **output,
                                 struct tri_error *error);
 
+/* Nothing has been written yet, again: for a file, which has places. TRI_CANNOT_WRITE. */
+enum tri_status tri_output_restart(struct tri_output *output, struct tri_error *error);
+
 /* Appends bytes. */
 enum tri_status tri_output_write(struct tri_output *output, const char *data, size_t size, struct tri_error *error);
 

@@ -1,0 +1,22 @@
+/* --checkpoint and --resume: a long run that goes on after it was stopped or killed. */
+#ifndef DRIVERS_RESTART_H
+#define DRIVERS_RESTART_H
+
+#include "drivers/arguments.h"
+#include "drivers/long_options.h"
+#include "sched/sweep/checkpoint.h"
+
+struct restart {
+    bool wanted;
+    struct par_checkpoint checkpoint; /* open, if wanted */
+};
+
+/* Opens what the options ask for. --checkpoint begins anew, --resume goes on; both with the same directory: goes on if
+ * there is something to go on from. TRI_BAD_INPUT and others of par_checkpoint_open. */
+enum tri_status restart_open(struct restart *restart, const struct long_options *options, struct tri_error *error);
+
+/* The run is over. What is needed to go on stays after a stop, and after an error once there is a state; then a line on
+ * standard error says how. */
+void restart_close(struct restart *restart, const char *program, const struct arguments *arguments, int code);
+
+#endif

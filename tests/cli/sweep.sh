@@ -1,0 +1,167 @@
+# Meshes that are swept: the same files as out of memory, refusals, checkpoints.
+#
+# PTRIANGLE_TEST_SWEEP sweeps what would fit in memory, PTRIANGLE_TEST_BLOCK makes many columns of a small mesh. A
+# checkpoint after each column, and a time after which a run is stopped or killed: wherever that falls, what goes on ends
+# with the same bytes; so no test depends on speed.
+h5() { "$bin/ptriangle" --version >/dev/null && "$bin/ptriangle" -Qp letter --output .try.h5 >/dev/null 2>&1; }
+
+fresh letter.poly
+if ! h5; then
+    echo "cli sweep: a build without HDF5"
+    checks=1
+    return
+fi
+rm -f .try.*
+sum() { cksum <"$1"; }
+export PTRIANGLE_TEST_BLOCK=600
+
+# --- swept and in memory, by any number of threads
+fresh letter.poly section.poly
+for case in "-pq30a0.002 letter" "-pq20Aaa0.01 section" "-pq25a0.004D letter" "-pq33a0.005YY letter"; do
+    # shellcheck disable=SC2086 # several words
+    program 0 -Q $case --output whole.h5
+    for threads in 1 3; do
+        # shellcheck disable=SC2086
+        PTRIANGLE_TEST_SWEEP=1 program 0 -Q $case --output swept.h5 --threads $threads
+        check "the same bytes, $threads threads" cmp whole.h5 swept.h5
+    done
+done
+for case in "-pq30a0.002 letter" "-pcq20a0.01BN letter" "-pPq20Aaa0.01 section" "-zpq30Da0.01E letter"; do
+    rm -f whole* swept*
+    # shellcheck disable=SC2086
+    program 0 -Q $case --output whole --threads 2
+    # shellcheck disable=SC2086
+    PTRIANGLE_TEST_SWEEP=1 program 0 -Q $case --output swept --output swept.h5
+    for suffix in node ele poly; do
+        [ -e whole.$suffix ] || continue
+        for which in whole swept; do
+            grep -v '^#' $which.$suffix >.$which
+        done
+        check "the same .$suffix" cmp .whole .swept
+    done
+    rm -f swept.h5 swept.xdmf
+    check "the same files" test "$(echo whole.*)" = "$(echo swept.* | sed 's/swept/whole/g')"
+done
+PTRIANGLE_TEST_SWEEP=1 program 0 -pq30a0.002 letter --output swept.h5
+matches '^Sweeping: about 0\.[0-9]+ million triangles'
+sed -n '/^Statistics/,$p' .out >.expected
+program 0 -pq30a0.002 letter --output whole.h5
+sed -n '/^Statistics/,$p' .out | cmp -s - .expected || fault "the counts of a swept mesh: $(diff .out .expected | head -n 4)"
+check "nothing is left" sh -c '! ls -A | grep -q "^\.tri-"'
+
+rm -f .whole .swept
+
+# --- what cannot be swept stays in memory, and what cannot stay there is refused
+fresh square.poly
+for words in "-e" "-n" "-v" "-o2" "-j" "--blocks b" "--write-partial" "--output square.vtu"; do
+    # shellcheck disable=SC2086
+    program 1 -pqa square.poly --max-area 1e-9 --output x $words
+    complains 'where it must be in memory as a whole, as for |less would do but for '
+    wrote
+done
+program 0 -pqa square.poly --max-area 1e-9 --output x.h5 --memory 4G --dry-run
+matches '^  Way: swept'
+wrote
+
+# --- a checkpoint after each column; stopped, killed, and on again
+fresh letter.poly
+program 0 -Qpq30a0.002 letter --output whole.h5
+ls >.before
+export PTRIANGLE_TEST_SWEEP=1
+limit=0.05
+rounds=0
+what="ptriangle --checkpoint"
+until [ -e out.h5 ] || [ $rounds -ge 60 ]; do
+    rounds=$((rounds + 1))
+    limit=$(echo "$limit" | awk '{ print $1 * 1.4 }')
+    if [ $((rounds % 2)) -eq 0 ]; then
+        "$bin/ptriangle" -Qpq30a0.002 letter --output out.h5 --checkpoint state --resume state --every 0 \
+            --threads $((rounds % 3 + 1)) >.out 2>.err &
+        sleep "$limit"
+        kill -KILL $! 2>/dev/null
+        wait $! 2>/dev/null
+    else
+        "$bin/ptriangle" -Qpq30a0.002 letter --output out.h5 --checkpoint state --resume state --every 0 \
+            --time-limit "$limit" >.out 2>.err
+    fi
+    found=$?
+    case $found in
+    0 | 124 | 137) ;;
+    *) fault "exit code $found: $(head -n 1 .err)" && break ;;
+    esac
+done
+check "the same bytes" cmp whole.h5 out.h5
+wrote out.h5 out.xdmf
+
+# --- the line that goes on
+rm -f out.*
+ls >.before
+limit=0.02
+until [ -e state/state-0 ] || [ -e out.h5 ]; do
+    rm -rf state
+    limit=$(echo "$limit" | awk '{ print $1 * 1.3 }')
+    "$bin/ptriangle" -Qpq30a0.002 letter --output=out.h5 --checkpoint state --every 0 --time-limit "$limit" >.out 2>.err
+done
+if [ ! -e out.h5 ]; then
+    complains '^ptriangle: [0-9]+ triangles are kept; to go on: ptriangle -Qpq30a0.002 letter --output=out.h5 --every 0 --time-limit [0-9.]+ --resume state$'
+    cp -R state kept
+
+    # --- not with another input, other bounds, another directory, twice, or damaged
+    sed 's/^3 5 0\.75 /3 5 0.76 /' letter.poly >other.poly
+    ls >.before
+    program 1 -Qpq30a0.002 other --output out.h5 --resume state
+    complains '^state: is the checkpoint of another run: of another input, or with other switches$'
+    program 1 -Qpq30a0.0006 letter --output out.h5 --resume state
+    complains '^state: is the checkpoint of another run'
+    program 1 -Qpq30a0.002 letter --output out.h5 --checkpoint state
+    complains '^state: holds the checkpoint of a run already$'
+    program 1 -Qpq30a0.002 letter --output out.h5 --resume nowhere
+    complains '^nowhere: holds no checkpoint: '
+    program 1 -Qpq30a0.002 letter --output out.h5 --resume letter.poly
+    complains '^letter.poly: holds no checkpoint: '
+    program 1 -Qpq30a0.002 letter --output out.h5 --resume state --checkpoint other
+    complains 'two directories'
+    for file in manifest state-0 state-1 tiles; do
+        [ -e "state/$file" ] || continue
+        rm -rf state
+        cp -R kept state
+        printf 'x' | dd of="state/$file" bs=1 seek=40 conv=notrunc 2>/dev/null
+        "$bin/ptriangle" -Qpq30a0.002 letter --output out.h5 --resume state >.out 2>.err
+        found=$?
+        checks=$((checks + 1))
+        if [ $found -eq 0 ]; then # the state that does not count
+            check "the same bytes" cmp whole.h5 out.h5
+            rm -f out.*
+            continue
+        fi
+        complains '^state(/tiles)?: .*damaged'
+        check "one line" sh -c 'test "$(wc -l <.err)" -eq 1'
+        : >"state/$file"
+        program 1 -Qpq30a0.002 letter --output out.h5 --resume state
+        complains '^state(/tiles)?: .*damaged'
+    done
+    rm -rf state
+    cp -R kept state
+    ls >.before
+    program 0 -Qpq30a0.002 letter --output out.h5 --resume state
+    check "the same bytes" cmp whole.h5 out.h5
+    rm -f out.*
+fi
+
+# --- a mesh in memory keeps nothing, and starts over
+unset PTRIANGLE_TEST_SWEEP
+fresh letter.poly
+program 0 -pq30a0.002 letter --output out.h5 --checkpoint state
+says 'The mesh stays in memory: there will be no checkpoint, and --resume starts over.'
+wrote out.h5 out.xdmf
+fresh letter.poly
+"$bin/ptriangle" -Qpq30a0.00005 letter --output out.h5 --checkpoint state --time-limit 0.01 >.out 2>.err
+check "stopped" test $? -eq 124
+program 0 -Qpq30a0.002 letter --output out.h5 --resume state
+wrote out.h5 out.xdmf
+for words in "--every -1" "--every 5" "--checkpoint" "--resume="; do
+    # shellcheck disable=SC2086
+    program 1 -Qp letter $words
+    check "one line" sh -c 'test "$(wc -l <.err)" -eq 1'
+done
+unset PTRIANGLE_TEST_BLOCK

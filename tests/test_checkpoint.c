@@ -1,0 +1,291 @@
+/* Sweeps that are stopped at any time, or whose tiles nobody takes any more, and go on: the tiles are those of a
+ * sweep that was never stopped. Files that are damaged, byte by byte. */
+#include "support.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include "sched/schedule.h"
+
+static const char DIRECTORY[] = "state";
+
+/* A hash over all that is handed out, and when to fail. */
+struct taker {
+    uint64_t hash;
+    int64_t n, fail_at; /* tiles; the tile that is refused, -1: none */
+};
+
+static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
+{
+    struct taker *t = user;
+    (void)error;
+    t->n = 0;
+    t->hash = par_hash(0, stream->regions, (size_t)(stream->n_regions * stream->n_columns) * sizeof *stream->regions);
+    return TRI_OK;
+}
+
+static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
+{
+    struct taker *t = user;
+    size_t v = (size_t)tile->n_vertices, k = (size_t)tile->n_triangles, s = (size_t)tile->n_segments;
+    if (t->n++ == t->fail_at)
+        return tri_fail(error, TRI_CANNOT_WRITE, "out", 0, "no more");
+    t->hash = par_hash(t->hash, &tile->first_vertex, sizeof tile->first_vertex);
+    t->hash = par_hash(t->hash, tile->points, v * sizeof *tile->points);
+    t->hash = par_hash(t->hash, tile->point_markers, v * sizeof *tile->point_markers);
+    t->hash = par_hash(t->hash, tile->attributes, 2 * v * sizeof *tile->attributes);
+    t->hash = par_hash(t->hash, tile->corners, k * sizeof *tile->corners);
+    t->hash = par_hash(t->hash, tile->regions, k * sizeof *tile->regions);
+    t->hash = par_hash(t->hash, tile->ends, s * sizeof *tile->ends);
+    t->hash = par_hash(t->hash, tile->segment_markers, s * sizeof *tile->segment_markers);
+    return TRI_OK;
+}
+
+static enum tri_status end(void *user, struct tri_error *error)
+{
+    (void)user, (void)error;
+    return TRI_OK;
+}
+
+static struct tri_pslg figure(int32_t points)
+{
+    struct tri_pslg pslg = support_square(1, points, 5);
+    support_add_attributes(&pslg);
+    return pslg;
+}
+
+struct run {
+    struct taker taker;
+    const struct tri_stop *stop;
+    struct par_checkpoint *checkpoint;
+    int threads;
+    double max_area;
+    struct tri_error error;
+    int64_t given_up;
+};
+
+static enum tri_status refine(struct run *r, int32_t points)
+{
+    struct tri_pslg pslg = figure(points);
+    struct tri_options coarse = support_quality(0, 0), fine = support_quality(20, r->max_area);
+    struct tri_report made;
+    coarse.refine = false;
+    struct tri_mesh mesh = support_generate(&pslg, &coarse, &made);
+    struct tri_sink sink = {&r->taker, begin, take, end};
+    struct par_options options = par_defaults();
+    struct par_report report;
+    options.threads = r->threads;
+    options.cell_triangles = 500;
+    options.sweep = true;
+    options.sink = &sink;
+    options.checkpoint = r->checkpoint;
+    mesh.stop = r->stop;
+    enum tri_status status = par_refine(&mesh, &fine.quality, &options, &report, &r->error);
+    assert_true(status || report.way == PAR_SWEPT);
+    r->given_up = report.total.inserted_free;
+    par_report_free(&report);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+    return status;
+}
+
+enum { POINTS = 50 };
+static const double AREA = 3e-5;
+
+static struct run run_of(struct par_checkpoint *checkpoint)
+{
+    return (struct run){.taker = {.fail_at = -1}, .threads = 2, .max_area = AREA, .checkpoint = checkpoint};
+}
+
+static uint64_t whole(int64_t *tiles)
+{
+    struct run r = run_of(NULL);
+    assert_int_equal(refine(&r, POINTS), TRI_OK);
+    *tiles = r.taker.n;
+    return r.taker.hash;
+}
+
+static void open_it(struct par_checkpoint *c, bool resume)
+{
+    assert_int_equal(par_checkpoint_open(c, DIRECTORY, resume, 7, NULL), TRI_OK);
+    c->seconds = 1e9;
+}
+
+static void remove_all(void)
+{
+    struct par_checkpoint c = {.directory = DIRECTORY, .lock = -1};
+    par_checkpoint_close(&c, true);
+}
+
+/* The end is asked for once so many tiles have been taken. */
+struct patience {
+    const struct taker *taker;
+    int64_t tiles;
+};
+
+static bool is_over(void *user)
+{
+    const struct patience *p = user;
+    return p->taker->n >= p->tiles;
+}
+
+/* A few tiles more each time; the first time none. */
+static void test_stopped_at_any_time(void **state)
+{
+    (void)state;
+    int64_t tiles, kept = 0;
+    uint64_t wanted = whole(&tiles);
+    enum tri_status status = TRI_STOPPED;
+    int rounds = 0, grown = 0;
+    remove_all();
+    for (; status == TRI_STOPPED && rounds < 100; rounds++) {
+        struct par_checkpoint c;
+        open_it(&c, rounds > 0);
+        assert_int_equal(par_checkpoint_has_state(&c), kept > 0);
+        struct run r = run_of(&c);
+        const struct patience patience = {&r.taker, 4 * rounds};
+        const struct tri_stop stop = {is_over, (void *)&patience};
+        r.threads = rounds % 3 + 1;
+        r.stop = &stop;
+        status = refine(&r, POINTS);
+        assert_true(c.manifest.triangles >= kept);
+        grown += c.manifest.triangles > kept;
+        kept = c.manifest.triangles;
+        if (!status)
+            assert_true(r.taker.hash == wanted && r.taker.n == tiles);
+        par_checkpoint_close(&c, status == TRI_OK);
+    }
+    print_message("  %lld tiles in %d runs\n", (long long)tiles, rounds);
+    assert_int_equal(status, TRI_OK);
+    assert_true(grown >= 3);
+    assert_int_not_equal(access(DIRECTORY, F_OK), 0);
+}
+
+/* Whoever takes the tiles fails at any of them: what has been done is kept. */
+static void test_nobody_takes_tiles(void **state)
+{
+    (void)state;
+    int64_t tiles;
+    uint64_t wanted = whole(&tiles);
+    for (int64_t at = 1; at < tiles; at += tiles / 7) {
+        struct par_checkpoint c;
+        remove_all();
+        open_it(&c, false);
+        struct run r = run_of(&c);
+        r.taker.fail_at = at;
+        assert_int_equal(refine(&r, POINTS), TRI_CANNOT_WRITE);
+        assert_string_equal(r.error.text, "no more");
+        assert_true(par_checkpoint_has_state(&c) && c.saved == 1);
+        par_checkpoint_close(&c, false);
+        open_it(&c, true);
+        r = run_of(&c);
+        assert_int_equal(refine(&r, POINTS), TRI_OK);
+        assert_true(r.taker.hash == wanted);
+        par_checkpoint_close(&c, true);
+    }
+}
+
+/* A run that has a state on the disk, and is stopped. */
+static void leave_state(void)
+{
+    struct par_checkpoint c;
+    remove_all();
+    open_it(&c, false);
+    struct run r = run_of(&c);
+    r.taker.fail_at = 14;
+    assert_int_equal(refine(&r, POINTS), TRI_CANNOT_WRITE);
+    par_checkpoint_close(&c, false);
+}
+
+static void test_other_runs_are_refused(void **state)
+{
+    (void)state;
+    struct par_checkpoint c, second;
+    struct tri_error error;
+    leave_state();
+    assert_int_equal(par_checkpoint_open(&c, DIRECTORY, false, 7, &error), TRI_BAD_INPUT);
+    assert_int_equal(par_checkpoint_open(&c, DIRECTORY, true, 8, &error), TRI_BAD_INPUT);
+    assert_int_equal(par_checkpoint_open(&c, "nowhere", true, 7, &error), TRI_BAD_INPUT);
+    open_it(&c, true);
+    struct run r = run_of(&c);
+    assert_int_equal(refine(&r, POINTS + 1), TRI_BAD_INPUT);
+    r = run_of(&c);
+    r.max_area = 1.0001 * AREA;
+    assert_int_equal(refine(&r, POINTS), TRI_BAD_INPUT);
+    assert_non_null(strstr(r.error.text, "of another run"));
+    par_checkpoint_close(&c, true);
+    open_it(&c, false);
+    par_checkpoint_close(&c, false);
+    assert_int_equal(par_checkpoint_open(&second, DIRECTORY, true, 7, &error), TRI_OK); /* without a state */
+    assert_false(par_checkpoint_has_state(&second));
+    par_checkpoint_close(&second, true);
+}
+
+/* Flips a byte of a file, or flips it back. */
+static void flip(const char *name, long at)
+{
+    FILE *file = fopen(name, "r+b");
+    assert_non_null(file);
+    fseek(file, at, SEEK_SET);
+    int byte = fgetc(file);
+    fseek(file, at, SEEK_SET);
+    fputc(byte ^ 1, file);
+    fclose(file);
+}
+
+static long length_of(const char *name)
+{
+    FILE *file = fopen(name, "rb");
+    assert_non_null(file);
+    fseek(file, 0, SEEK_END);
+    long n = ftell(file);
+    fclose(file);
+    return n;
+}
+
+static void test_damage_is_found(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"state/manifest", "state/state-0", "state/tiles"};
+    leave_state();
+    for (int k = 0; k < 3; k++) {
+        long n = length_of(names[k]);
+        for (long at = 0; at < n; at += n < 100 ? 3 : n / 7) {
+            struct par_checkpoint c;
+            flip(names[k], at);
+            enum tri_status status = par_checkpoint_open(&c, DIRECTORY, true, 7, NULL);
+            if (!status) {
+                struct run r = run_of(&c);
+                status = refine(&r, POINTS);
+                par_checkpoint_close(&c, false);
+            }
+            assert_int_equal(status, TRI_BAD_INPUT);
+            flip(names[k], at);
+        }
+    }
+    for (int k = 0; k < 3; k++) { /* too short */
+        struct par_checkpoint c;
+        leave_state();
+        assert_int_equal(truncate(names[k], length_of(names[k]) / 2), 0);
+        enum tri_status status = par_checkpoint_open(&c, DIRECTORY, true, 7, NULL);
+        if (!status) {
+            struct run r = run_of(&c);
+            status = refine(&r, POINTS);
+            par_checkpoint_close(&c, false);
+        }
+        assert_int_equal(status, TRI_BAD_INPUT);
+    }
+    remove_all();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_stopped_at_any_time),
+        cmocka_unit_test(test_nobody_takes_tiles),
+        cmocka_unit_test(test_other_runs_are_refused),
+        cmocka_unit_test(test_damage_is_found),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
