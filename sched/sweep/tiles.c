@@ -128,7 +128,7 @@ static bool by_tile(const struct finds found[SHARES], int32_t n_rows, int32_t **
 
 bool par_tiles_reserve(struct par_tiles *tiles)
 {
-    int32_t before = tiles->capacity, now = tiles->mesh->n_vertices;
+    int32_t before = tiles->capacity, now = tiles->mesh->vertex_capacity;
     if (now <= before)
         return true;
     int64_t *number = realloc(tiles->number, (size_t)now * sizeof *number);
