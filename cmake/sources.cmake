@@ -169,6 +169,13 @@ set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
 
 # meshplot, built where cairo is found.
 set(PTRIANGLE_PLOT_SOURCES
+    drivers/all_cores.c
+    drivers/resources.c
+    drivers/scratch.c
+    drivers/judged_text.c
+    drivers/judged_h5.c
+    drivers/judged_files.c
+    drivers/plot_part.c
     drivers/plot_colour.c
     drivers/plot_shade.c
     drivers/plot_field.c

@@ -154,14 +154,25 @@ static double size_of(const char *path)
     return path != NULL && stat(path, &status) == 0 ? (double)status.st_size : 0;
 }
 
+bool judged_fits(const char *base, double memory)
+{
+    static const char *const suffixes[] = {".node", ".ele", ".poly", ".neigh"};
+    double bytes = 0;
+    for (int i = 0; i < 4; i++) {
+        char *path = with_suffix(base, suffixes[i]);
+        bytes += size_of(path);
+        free(path);
+    }
+    return bytes * TEXT_SHARE <= memory;
+}
+
 /* Into memory, if they and the judge fit. */
 static enum tri_status read_texts(struct judged_files *f, const struct judged_ask *ask,
                                   const struct judged_names *names, struct tri_error *error)
 {
-    double bytes = size_of(names->node) + size_of(names->ele) + size_of(names->poly) + size_of(names->neigh);
     f->listed = names->poly != NULL;
     enum tri_status status = TRI_OK;
-    if (bytes * TEXT_SHARE <= ask->memory) {
+    if (judged_fits(ask->base, ask->memory)) {
         status = read_arrays(f, names, error);
         f->source = take_arrays(f);
     } else {

@@ -39,6 +39,8 @@ struct judged_ask {
 
 /* Reads base.node or base.poly, base.ele and base.neigh, or opens base; and the input, a .poly or .node file. */
 enum tri_status judged_read(struct judged_files *files, const struct judged_ask *ask, struct tri_error *error);
+/* Would text files of that base, and what works on them, fit into so many bytes of memory? */
+bool judged_fits(const char *base, double memory);
 void judged_files_free(struct judged_files *files);
 
 /* Cuts the suffix off, if it is there. */

@@ -12,7 +12,9 @@
 
 #include <cairo-svg.h>
 
-#include "drivers/plot.h"
+#include "drivers/judged_files.h"
+#include "drivers/plot_part.h"
+#include "drivers/resources.h"
 #include "triangle/pslg.h"
 #include "triangle/text/read.h"
 #include "triangle/text/text.h"
@@ -25,12 +27,14 @@ static const char usage[] = "Usage: " PTRIANGLE_NAME " BASE -o FILE.png|FILE.svg
 static const char help[] = /* in the form that cmake/help.awk makes a manual page of */
     "\n"
     "Draws the mesh in BASE.node and BASE.ele, with the segments of BASE.poly where that exists. Without BASE.ele:\n"
-    "the points and segments alone.\n"
+    "the points and segments alone. Or the mesh in one HDF5 file, where BASE ends in .h5. Of a mesh that is larger\n"
+    "than the memory, or an HDF5 file, what lies in the window is drawn, if that is few enough, or densities.\n"
     "\n"
     "  -o, --output FILE        FILE.png or FILE.svg\n"
-    "  -c, --color quality|area|region|block|none\n"
+    "  -c, --color quality|area|region|block|none|density\n"
     "                           quality (default): the smallest angle of each triangle; region: the first\n"
-    "                           attribute in BASE.ele; block: see --blocks\n"
+    "                           attribute in BASE.ele; block: see --blocks; density: how many triangles there\n"
+    "                           are at each pixel, for a mesh of any size\n"
     "  -s, --size WIDTH         of the picture in pixels, 64 to 12000 (default 1200)\n"
     "  -w, --window X0,Y0,X1,Y1  the part to show (default: all)\n"
     "  -m, --mark X0,Y0,X1,Y1  a red frame around a part\n"
@@ -44,7 +48,7 @@ static const char help[] = /* in the form that cmake/help.awk makes a manual pag
     "\n"
     "Exit code: 0 drawn, 1 files that cannot be read or written, 2 wrong usage.\n";
 
-enum colouring { BY_QUALITY, BY_REGION, BY_AREA, BY_BLOCK, BY_NOTHING };
+enum colouring { BY_QUALITY, BY_REGION, BY_AREA, BY_BLOCK, BY_NOTHING, BY_DENSITY };
 
 struct settings {
     const char *base, *output, *blocks;
@@ -57,6 +61,8 @@ struct files {
     struct tri_pslg mesh; /* points and subsegments */
     struct tri_elements elements;
     int32_t *block_phase; /* [elements.n][2] or NULL */
+    struct plot_density density;
+    int64_t all_points, all_triangles; /* of the whole mesh, where that is but a part */
 };
 
 static int fail(int code, const char *format, ...)
@@ -96,7 +102,7 @@ static char *with_suffix(const char *stem, const char *suffix)
     return path;
 }
 
-static enum tri_status read_mesh(struct files *f, const char *stem, struct tri_error *error)
+static enum tri_status read_text(struct files *f, const char *stem, struct tri_error *error)
 {
     const struct tri_read_options options = {.default_base = 1};
     char *node = with_suffix(stem, ".node"), *ele = with_suffix(stem, ".ele"), *poly = with_suffix(stem, ".poly");
@@ -208,11 +214,56 @@ static struct plot_box whole(const struct plot_mesh *mesh)
     return (struct plot_box){box.x0 - margin, box.y0 - margin, box.x1 + margin, box.y1 + margin};
 }
 
+/* --- meshes of any size */
+
+static enum tri_status take_part(struct settings *s, struct files *f, const struct tri_check_source *source,
+                                 struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    if (s->colour == BY_BLOCK)
+        return tri_fail(error, TRI_BAD_INPUT, "", 0, "blocks are drawn of meshes in text files that fit into memory");
+    if (!s->has_window)
+        status = plot_part_box(source, &s->style.window, error);
+    s->has_window = true;
+    f->all_points = source->n_points;
+    f->all_triangles = source->n_triangles;
+    if (status != TRI_OK || s->colour != BY_DENSITY)
+        return status ? status : plot_part_take(source, &s->style.window, &f->mesh, &f->elements, error);
+    f->density.box = s->style.window;
+    plot_window_pixels(&s->style, &f->density.width, &f->density.height);
+    return plot_part_count(source, &f->density, &f->mesh, error);
+}
+
+static enum tri_status read_part(struct settings *s, struct files *f, double memory, struct tri_error *error)
+{
+    const char *folder = getenv("TMPDIR");
+    const struct judged_ask ask = {s->base, NULL, memory, folder != NULL && folder[0] != '\0' ? folder : "/tmp"};
+    struct judged_files judged = {0};
+    enum tri_status status = judged_read(&judged, &ask, error);
+    if (status == TRI_OK)
+        status = take_part(s, f, &judged.source, error);
+    judged_files_free(&judged);
+    return status;
+}
+
+static enum tri_status read_mesh(struct settings *s, struct files *f, struct tri_error *error)
+{
+    const double memory = 0.8 * resources_memory();
+    if (s->colour == BY_DENSITY || ends_with(s->base, ".h5") || !judged_fits(s->base, memory))
+        return read_part(s, f, memory, error);
+    enum tri_status status = read_text(f, s->base, error);
+    f->all_points = f->mesh.n_points;
+    f->all_triangles = f->elements.n;
+    return status;
+}
+
 /* --- drawing and writing */
 
 static enum tri_status shade(const struct settings *s, const struct files *f, const struct plot_mesh *mesh,
                              struct plot_shading *shading, struct tri_error *error)
 {
+    if (s->colour == BY_DENSITY)
+        return plot_shade_density(shading, &f->density, error);
     switch (mesh->n_triangles > 0 ? s->colour : BY_NOTHING) {
     case BY_QUALITY:
         return plot_shade_quality(shading, mesh, error);
@@ -284,7 +335,7 @@ static enum tri_status write_picture(const struct settings *s, const struct plot
 static enum tri_status plot(struct settings *s, struct files *f, struct tri_error *error)
 {
     struct plot_shading shading = {0};
-    enum tri_status status = read_mesh(f, s->base, error);
+    enum tri_status status = read_mesh(s, f, error);
     if (status == TRI_OK && s->colour == BY_BLOCK)
         status = read_blocks(f, s->blocks, error);
     if (status != TRI_OK)
@@ -297,6 +348,8 @@ static enum tri_status plot(struct settings *s, struct files *f, struct tri_erro
         .corners = f->elements.corners,
         .n_segments = f->mesh.n_segments,
         .segments = f->mesh.segments,
+        .all_points = f->all_points,
+        .all_triangles = f->all_triangles,
     };
     s->style.window = s->has_window ? scale_box(s->style.window, mesh.exponent) : whole(&mesh);
     s->style.mark = scale_box(s->style.mark, mesh.exponent);
@@ -351,7 +404,7 @@ static bool parse_edges(const char *text, enum plot_edges *value)
 
 static bool parse_colouring(const char *text, enum colouring *value)
 {
-    static const char *const words[] = {"quality", "region", "area", "block", "none", NULL};
+    static const char *const words[] = {"quality", "region", "area", "block", "none", "density", NULL};
     const int found = find_word(text, words);
     *value = found < 0 ? BY_QUALITY : (enum colouring)found;
     return found >= 0;
@@ -462,5 +515,6 @@ int main(int argc, char **argv)
     tri_pslg_free(&files.mesh);
     tri_elements_free(&files.elements);
     free(files.block_phase);
+    free(files.density.count);
     return code;
 }

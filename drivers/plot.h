@@ -40,6 +40,19 @@ struct plot_mesh {
     const int32_t *corners; /* [n_triangles][3] */
     int32_t n_segments;
     const int32_t *segments; /* [n_segments][2]; any of them may name points that do not exist */
+    int64_t all_points, all_triangles; /* of the mesh that this is a part of, for the texts */
+};
+
+struct plot_box {
+    double x0, y0, x1, y1; /* x0 < x1, y0 < y1 */
+};
+
+/* How many triangles there are at each pixel: what is drawn of a mesh with too many for anything else. */
+struct plot_density {
+    int width, height;   /* pixels */
+    struct plot_box box; /* what they cover, in the caller's coordinates */
+    int64_t *count;      /* [height][width] from the top */
+    int64_t n_triangles; /* sum of them */
 };
 
 /* --- shading */
@@ -63,7 +76,8 @@ struct plot_tick {
 };
 
 struct plot_shading {
-    uint16_t *shade; /* [n_triangles] index into shades */
+    uint16_t *shade; /* [n_triangles] index into shades; of each pixel if density is not NULL, n_shades: white */
+    const struct plot_density *density;
     int n_shades;
     struct plot_colour *shades;
     int64_t *count; /* [n_shades] triangles of that shade */
@@ -86,6 +100,8 @@ enum tri_status plot_shade_region(struct plot_shading *shading, const struct plo
 /* block_phase[n_triangles][2]; phase < 0: made outside the schedule. */
 enum tri_status plot_shade_block(struct plot_shading *shading, const struct plot_mesh *mesh, const int32_t *block_phase,
                                  struct tri_error *error);
+enum tri_status plot_shade_density(struct plot_shading *shading, const struct plot_density *density,
+                                   struct tri_error *error);
 void plot_shading_free(struct plot_shading *shading);
 
 /* --- drawing */
@@ -94,10 +110,6 @@ enum plot_edges {
     PLOT_EDGES_AUTO, /* edges fade as they get short, so that fine parts show their colour instead of black */
     PLOT_EDGES_ON,
     PLOT_EDGES_OFF
-};
-
-struct plot_box {
-    double x0, y0, x1, y1; /* x0 < x1, y0 < y1 */
 };
 
 struct plot_style {
@@ -115,6 +127,9 @@ struct plot_style {
 enum tri_status plot_field(cairo_t *cr, bool vector, const struct plot_mesh *mesh, const struct plot_shading *shading,
                            const struct plot_style *style, const struct plot_box *field, double pen,
                            struct tri_error *error);
+
+/* How many pixels the window takes in the picture. */
+void plot_window_pixels(const struct plot_style *style, int *width, int *height);
 
 /* Height in pixels of the picture of that style: that of the window, within reason, and the texts. */
 double plot_height(const struct plot_style *style, const struct plot_shading *shading);

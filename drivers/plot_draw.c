@@ -48,6 +48,15 @@ static struct layout lay_out(const struct plot_style *style)
     return l;
 }
 
+void plot_window_pixels(const struct plot_style *style, int *width, int *height)
+{
+    const struct plot_box field = lay_out(style).field, *window = &style->window;
+    const double x = window->x1 - window->x0, y = window->y1 - window->y0;
+    const double scale = fmin((field.x1 - field.x0) / x, (field.y1 - field.y0) / y);
+    *width = (int)fmax(1, floor(x * scale));
+    *height = (int)fmax(1, floor(y * scale));
+}
+
 double plot_height(const struct plot_style *style, const struct plot_shading *shading)
 {
     const struct layout l = lay_out(style);
@@ -128,8 +137,8 @@ static void draw_facts(cairo_t *cr, const struct plot_mesh *mesh, const struct p
                        double font)
 {
     char vertices[32], triangles[32], line[256];
-    print_grouped(vertices, mesh->n_points);
-    print_grouped(triangles, mesh->n_triangles);
+    print_grouped(vertices, mesh->all_points);
+    print_grouped(triangles, mesh->all_triangles);
     use_font(cr, 0.75 * font, false);
     if (s->legend == PLOT_LEGEND_NONE) {
         (void)snprintf(line, sizeof line, "%s triangles, %s vertices%s%s", triangles, vertices,

@@ -358,6 +358,41 @@ static void draw_mark(const struct canvas *c, const struct plot_box *mark, doubl
     cairo_stroke(c->cr);
 }
 
+static uint32_t packed(struct plot_colour colour)
+{
+    return (uint32_t)lrint(255 * colour.red) << 16 | (uint32_t)lrint(255 * colour.green) << 8 |
+           (uint32_t)lrint(255 * colour.blue);
+}
+
+/* Pixel for pixel, as an image. */
+static enum tri_status draw_density(const struct canvas *c, const struct plot_shading *s, const struct plot_box *window,
+                                    struct tri_error *error)
+{
+    const struct plot_density *d = s->density;
+    cairo_surface_t *image = cairo_image_surface_create(CAIRO_FORMAT_RGB24, d->width, d->height);
+    unsigned char *data = cairo_image_surface_get_data(image);
+    if (data == NULL)
+        return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
+    for (int y = 0; y < d->height; y++) {
+        uint32_t *row = (uint32_t *)(void *)(data + (size_t)y * (size_t)cairo_image_surface_get_stride(image));
+        for (int x = 0; x < d->width; x++) {
+            const int shade = s->shade[(size_t)y * (size_t)d->width + (size_t)x];
+            row[x] = shade < s->n_shades ? packed(s->shades[shade]) : 0xffffff;
+        }
+    }
+    cairo_surface_mark_dirty(image);
+    cairo_save(c->cr);
+    cairo_translate(c->cr, (window->x0 - c->x0) * c->scale, (c->y1 - window->y1) * c->scale);
+    cairo_scale(c->cr, (window->x1 - window->x0) * c->scale / d->width,
+                (window->y1 - window->y0) * c->scale / d->height);
+    cairo_set_source_surface(c->cr, image, 0, 0);
+    cairo_pattern_set_filter(cairo_get_source(c->cr), CAIRO_FILTER_NEAREST);
+    cairo_paint(c->cr);
+    cairo_restore(c->cr);
+    cairo_surface_destroy(image);
+    return TRI_OK;
+}
+
 enum tri_status plot_field(cairo_t *cr, bool vector, const struct plot_mesh *mesh, const struct plot_shading *shading,
                            const struct plot_style *style, const struct plot_box *field, double pen,
                            struct tri_error *error)
@@ -366,12 +401,14 @@ enum tri_status plot_field(cairo_t *cr, bool vector, const struct plot_mesh *mes
     cairo_save(cr);
     cairo_rectangle(cr, field->x0, field->y0, field->x1 - field->x0, field->y1 - field->y0);
     cairo_clip(cr);
-    enum tri_status status = draw_triangles(&c, vector, shading, error);
-    if (status == TRI_OK && style->edges != PLOT_EDGES_OFF)
+    const bool density = shading->density != NULL;
+    enum tri_status status = density ? draw_density(&c, shading, &style->window, error)
+                                     : draw_triangles(&c, vector, shading, error);
+    if (status == TRI_OK && !density && style->edges != PLOT_EDGES_OFF)
         status = draw_edges(&c, style, error);
     if (style->segments)
         draw_segments(&c, pen);
-    if (mesh->n_triangles == 0)
+    if (mesh->n_triangles == 0 && !density)
         draw_points(&c, 3 * pen);
     if (style->has_mark)
         draw_mark(&c, &style->mark, 2.2 * pen);

@@ -186,6 +186,31 @@ enum tri_status plot_shade_area(struct plot_shading *s, const struct plot_mesh *
     return TRI_OK;
 }
 
+/* --- density */
+
+enum tri_status plot_shade_density(struct plot_shading *s, const struct plot_density *d, struct tri_error *error)
+{
+    const struct plot_mesh pixels = {.n_triangles = d->width * d->height};
+    int64_t most = 1;
+    if (begin(s, &pixels, SCALE_SHADES, error) != TRI_OK)
+        return TRI_NO_MEMORY;
+    for (int32_t i = 0; i < pixels.n_triangles; i++)
+        most = d->count[i] > most ? d->count[i] : most;
+    const double high = fmax(log10((double)most), 1);
+    for (int32_t i = 0; i < pixels.n_triangles; i++) {
+        if (d->count[i] > 0)
+            set(s, i, level(log10((double)d->count[i]) / high));
+        else
+            s->shade[i] = SCALE_SHADES;
+    }
+    fill_scale(s);
+    s->density = d;
+    s->title = "triangles at each pixel";
+    add_log_ticks(s, 0, high);
+    (void)snprintf(s->fact, sizeof s->fact, "at most %lld at a pixel", (long long)most);
+    return TRI_OK;
+}
+
 /* --- regions */
 
 static int compare_reals(const void *a, const void *b)

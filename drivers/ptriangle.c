@@ -120,6 +120,17 @@ static int64_t waiting_bytes(const struct run_plan *plan)
     return (int64_t)fmin(fmax(plan->memory / 32, 0x1p20), 0x1p26);
 }
 
+/* A sweep that blocks left something of, or could not do at all. */
+static void tell_of_parking(const struct program *p, bool quiet)
+{
+    const struct console console = {.program = PROGRAM, .quiet = quiet};
+    if (p->schedule.way == PAR_PARKED)
+        console_say(&console, "The mesh could not be swept, and was parked: %.3g GB in %s.\n",
+                    1e-9 * (double)p->schedule.parked, p->scratch);
+    if (p->schedule.way != PAR_SWEPT && p->restart.wanted)
+        console_say(&console, "There was no checkpoint.\n");
+}
+
 /* Refines, and writes what is finished meanwhile. */
 static enum tri_status sweep(struct program *p, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
                              const struct tri_refine_options *quality, struct tri_error *error)
@@ -142,6 +153,7 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
     }
     streams_close(&p->streams);
     tri_mesh_free(mesh); /* what is left of it is no mesh */
+    tell_of_parking(p, run->arguments->switches.quiet);
     if (!status)
         count_streamed(&run->counts, &before, unused, &p->streams);
     return status;

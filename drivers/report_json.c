@@ -97,6 +97,8 @@ static json_t *refused_of(const struct tri_refine_report *r)
                      "precision", whole(r->given_up[TRI_EXCUSE_PRECISION]));
 }
 
+static const char *const way_names[] = {[PAR_IN_MEMORY] = "in memory", [PAR_SWEPT] = "swept", [PAR_PARKED] = "parked"};
+
 static json_t *schedule_of(const struct par_report *r)
 {
     json_t *inserted = json_pack("{s:o, s:o}", "free", whole(r->total.inserted_free), "on_segments",
@@ -107,6 +109,13 @@ static json_t *schedule_of(const struct par_report *r)
                   "inserted", inserted, "deferred", whole(r->deferred), "left_over", whole(r->left_over), "refused",
                   refused_of(&r->total), "pauses", whole(r->pauses), "radius_lemma7", real(r->radius_lemma7),
                   "radius_theory", real(r->radius_theory), "radius_measured", real(r->radius_measured));
+    json_t *way = json_pack("{s:s, s:o, s:o}", "way", way_names[r->way], "most_live_triangles", whole(r->most_live),
+                            "parked_bytes", whole(r->parked));
+    if (json_object_update(counts, way)) {
+        json_decref(counts);
+        counts = NULL;
+    }
+    json_decref(way);
     json_t *times =
         json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "seconds", parts_of(r), "overhead_percent",
                   real(prediction_overhead(r)), "numbering_percent", real(prediction_numbering(r)),
@@ -130,12 +139,21 @@ static json_t *histogram_of(const int64_t *count, int n)
     return list;
 }
 
+/* Of a mesh that is gone nothing is known but counts: null stands for all else. */
+static struct tri_shapes shapes_of(const struct run *run)
+{
+    struct tri_shapes shapes = {.smallest_area = NAN, .largest_area = NAN, .total_area = NAN, .shortest_edge = NAN,
+                                .longest_edge = NAN, .smallest_angle = NAN, .largest_angle = NAN};
+    if (!run->plan.swept)
+        tri_measure_shapes(&shapes, &run->mesh, run->hooks->executor);
+    return shapes;
+}
+
 static json_t *mesh_of(const struct run *run)
 {
     const struct tri_counts *c = &run->counts;
     const struct tri_refine_options *bounds = &run->options.quality;
-    struct tri_shapes shapes;
-    tri_measure_shapes(&shapes, &run->mesh, run->hooks->executor);
+    const struct tri_shapes shapes = shapes_of(run);
     double mean = c->triangles > 0 ? shapes.total_area / (double)c->triangles : 0;
     json_t *over = run->options.refine && bounds->max_area > 0 ? real(mean / bounds->max_area) : json_null();
     return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "vertices",
@@ -144,7 +162,7 @@ static json_t *mesh_of(const struct run *run)
                      real(shapes.largest_angle), "smallest_area", real(shapes.smallest_area), "largest_area",
                      real(shapes.largest_area), "mean_area", real(mean), "mean_area_over_bound", over, "shortest_edge",
                      real(shapes.shortest_edge), "longest_edge", real(shapes.longest_edge), "angles_by_ten_degrees",
-                     histogram_of(shapes.angles, TRI_ANGLE_BINS));
+                     run->plan.swept ? json_null() : histogram_of(shapes.angles, TRI_ANGLE_BINS));
 }
 
 /* --- all of it */

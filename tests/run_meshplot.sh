@@ -46,6 +46,9 @@ for colour in quality area region none; do
     draws -o "$colour.png" --color $colour --size 300
     draws -o "$colour.svg" --color $colour --edges off --segments off --legend off
 done
+draws -o density.png --color density --size 300
+draws -o density.svg --color density --size 300 --window 0,0,2,2
+grep -q '<image' density.svg || fault "a picture of densities holds no image"
 draws -o block.svg --color block --blocks blocks.txt --edges off --segments off --legend off
 for colour in quality area region block; do
     [ "$(fills $colour.svg)" -eq 2 ] || fault "$colour.svg has $(fills $colour.svg) colours instead of 2"

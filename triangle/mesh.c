@@ -349,6 +349,8 @@ static void gather_share(void *context, size_t share)
         char *to = g->scratch + (size_t)i * item;
         if (item == sizeof(int32_t)) /* lengths that the compiler knows */
             memcpy(to, from, sizeof(int32_t));
+        else if (item == sizeof(double))
+            memcpy(to, from, sizeof(double));
         else if (item == sizeof(struct tri_point))
             memcpy(to, from, sizeof(struct tri_point));
         else

@@ -62,27 +62,27 @@ struct numbering {
     int32_t *kept_tile; /* [n_kept] */
     struct deal vertices, triangles; /* new vertices; all triangles */
     int32_t *order;    /* [n_vertices - n_kept] the new vertices, one after the other; then ends of fans */
-    int32_t *rank;     /* [n_vertices - n_kept] first the tile, then the new number of vertex n_kept + i */
+    int32_t *rank;     /* [n_vertices] first the tile of a new vertex, then the new number of each */
     int32_t n_new;
     int32_t *sub_rank; /* [n_subs] */
     struct tri_subsegment *sub; /* [n_subs] */
     int32_t *place;    /* [n_triangles] first the second corner of a triangle, then where it goes; TRI_NONE: free */
     size_t n_items;    /* the larger of n_triangles and n_subs */
-    void *park;        /* [3 * n_items] items: as they lie, later in their new order; by tile; room to park */
+    void *park;        /* [3 * n_items] items: by tile, in the end in their new order; as they lie; room to park */
     struct tri_triangle *buffer; /* [batch] */
     int32_t batch;
     int32_t n_tri, n_subs;            /* live ones */
 };
 
-static uint64_t *items_of(const struct numbering *n) { return n->park; }
-static uint64_t *dealt_items(const struct numbering *n) { return items_of(n) + n->n_items; } /* tile by tile */
+static uint64_t *dealt_items(const struct numbering *n) { return n->park; } /* tile by tile, in the end sorted */
+static uint64_t *items_of(const struct numbering *n) { return dealt_items(n) + n->n_items; }
 
 /* Of items in their new order: the triangle has been parked, and the id is its place there. */
 enum { PARKED_BIT = 63 };
 
 static struct tri_triangle *parked_of(const struct numbering *n)
 {
-    return (struct tri_triangle *)(void *)dealt_items(n);
+    return (struct tri_triangle *)(void *)items_of(n);
 }
 
 static int bits_of(int32_t number)
@@ -156,9 +156,9 @@ static void count_vertices(void *context, size_t share)
     struct finder finder = {.fence = {1, 1, 0, 0}};
     for (int32_t i = range.first; i < range.last; i++) {
         int32_t v = n->n_kept + i;
-        n->rank[i] = TRI_NONE;
+        n->rank[v] = TRI_NONE;
         if (mesh->on[v] != TRI_VERTEX_NONE)
-            count[n->rank[i] = find_tile(&finder, n->partition, mesh->xy[v])]++;
+            count[n->rank[v] = find_tile(&finder, n->partition, mesh->xy[v])]++;
     }
 }
 
@@ -167,18 +167,18 @@ static void deal_vertices(void *context, size_t share)
     const struct numbering *n = context;
     struct tri_range range = share_of(&n->vertices, share);
     int32_t *at = n->vertices.at + share * (size_t)n->n_tiles;
-    for (int32_t i = range.first; i < range.last; i++)
-        if (n->rank[i] != TRI_NONE)
-            n->order[at[n->rank[i]]++] = n->n_kept + i;
+    for (int32_t v = n->n_kept + range.first; v < n->n_kept + range.last; v++)
+        if (n->rank[v] != TRI_NONE)
+            n->order[at[n->rank[v]]++] = v;
 }
 
 static void rank_tile(void *context, size_t tile)
 {
     const struct numbering *n = context;
     int32_t first = n->vertices.start[tile], end = n->vertices.start[tile + 1];
-    tri_hilbert_order_coarse(n->mesh->xy, n->order + first, end - first, items_of(n) + 2 * (size_t)first);
+    tri_hilbert_order_coarse(n->mesh->xy, n->order + first, end - first, (uint64_t *)n->park + 2 * (size_t)first);
     for (int32_t i = first; i < end; i++)
-        n->rank[n->order[i] - n->n_kept] = n->n_kept + i;
+        n->rank[n->order[i]] = n->n_kept + i;
 }
 
 static void find_kept(void *context, size_t share)
@@ -186,8 +186,10 @@ static void find_kept(void *context, size_t share)
     const struct numbering *n = context;
     struct tri_range range = tri_share(share, n->n_kept);
     struct finder finder = {.fence = {1, 1, 0, 0}};
-    for (int32_t v = range.first; v < range.last; v++)
+    for (int32_t v = range.first; v < range.last; v++) {
+        n->rank[v] = v;
         n->kept_tile[v] = find_tile(&finder, n->partition, n->mesh->xy[v]);
+    }
 }
 
 static void rank_vertices(struct numbering *n)
@@ -199,11 +201,6 @@ static void rank_vertices(struct numbering *n)
     tri_execute(n->executor, (size_t)n->n_tiles, rank_tile, n);
 }
 
-static int32_t renamed(const struct numbering *n, int32_t v)
-{
-    return v < n->n_kept ? v : n->rank[v - n->n_kept];
-}
-
 /* --- subsegments */
 
 static void rename_subs(struct numbering *n)
@@ -211,7 +208,7 @@ static void rename_subs(struct numbering *n)
     struct tri_mesh *mesh = n->mesh;
     for (int32_t s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2 && mesh->sub[s].v[k] != TRI_NONE; k++)
-            mesh->sub[s].v[k] = renamed(n, mesh->sub[s].v[k]);
+            mesh->sub[s].v[k] = n->rank[mesh->sub[s].v[k]];
 }
 
 static void sort_subs(const struct numbering *n, int32_t limit)
@@ -252,9 +249,9 @@ static void rank_subs(struct numbering *n)
 
 static int32_t place_of(int32_t number, int first) { return number << 2 | first; }
 
-static int32_t new_code(const struct numbering *n, int32_t code)
+static int32_t new_code(const int32_t *place_of_triangle, int32_t code)
 {
-    int32_t place = n->place[tri_of(code)];
+    int32_t place = place_of_triangle[tri_of(code)];
     int e = tri_edge(code) - (place & 3);
     return tri_code(place >> 2, e < 0 ? e + 3 : e);
 }
@@ -270,11 +267,9 @@ static int32_t tile_of_triangle(const struct numbering *n, const int32_t v[3])
     return last;
 }
 
-/* Of new vertices the one with the largest number is in the last tile. */
+/* Not if all vertices are new: of these the one with the largest number is in the last tile. */
 static bool is_stray(const struct numbering *n, const int32_t v[3], int first)
 {
-    if (v[0] >= n->n_kept && v[1] >= n->n_kept && v[2] >= n->n_kept)
-        return false;
     return tile_of_number(n, v[first]) != tile_of_triangle(n, v);
 }
 
@@ -284,50 +279,63 @@ static int32_t tile_of_item(const struct numbering *n, uint64_t item)
     if (!(item >> STRAY_BIT))
         return tile_of_number(n, key_of(item));
     for (int k = 0; k < 3; k++)
-        v[k] = renamed(n, n->mesh->tri[id_of(item)].v[k]);
+        v[k] = n->rank[n->mesh->tri[id_of(item)].v[k]];
     return tile_of_triangle(n, v);
 }
 
 /* The same for items that mostly are of the same tile as the last. */
 struct tile_range {
-    int32_t tile, first, end; /* numbers of its vertices: first .. end - 1 */
+    int32_t tile, first, count; /* numbers of its vertices */
 };
 
-static int32_t tile_after(const struct numbering *n, struct tile_range *last, uint64_t item)
+static inline int32_t tile_after(const struct numbering *n, struct tile_range *last, uint64_t item)
 {
-    int32_t key = key_of(item);
-    if (item >> STRAY_BIT || key < n->n_kept)
-        return tile_of_item(n, item);
-    if (key < last->first || key >= last->end) {
+    uint64_t place = (item >> KEY_SHIFT) - (uint64_t)last->first; /* huge for a stray or an earlier number */
+    if (place >= (uint64_t)last->count) {
+        int32_t tile = tile_of_item(n, item);
+        if (item >> STRAY_BIT || key_of(item) < n->n_kept)
+            return tile;
         const int32_t *start = n->vertices.start;
-        int32_t tile = tile_of_number(n, key);
-        *last = (struct tile_range){tile, n->n_kept + start[tile], n->n_kept + start[tile + 1]};
+        *last = (struct tile_range){tile, n->n_kept + start[tile], start[tile + 1] - start[tile]};
     }
     return last->tile;
 }
 
-static uint64_t key_triangle(const struct numbering *n, int32_t t)
+/* Without a branch, which could not be predicted. */
+static inline int32_t choose(bool yes, int32_t a, int32_t b) { return b ^ ((a ^ b) & -(int32_t)yes); }
+
+static inline uint64_t key_triangle(const struct numbering *n, const int32_t *rank, const int32_t *old, int32_t t)
 {
-    const int32_t *old = n->mesh->tri[t].v, v[3] = {renamed(n, old[0]), renamed(n, old[1]), renamed(n, old[2])};
-    int first = v[1] > v[0] ? 1 : 0;
-    first = v[2] > v[first] ? 2 : first;
-    n->place[t] = v[tri_next[first]];
-    return item_of(v[first], first, t) | (uint64_t)is_stray(n, v, first) << STRAY_BIT;
+    const int32_t v[3] = {rank[old[0]], rank[old[1]], rank[old[2]]};
+    bool turn = v[1] > v[0];
+    int32_t key = choose(turn, v[1], v[0]), less = choose(turn, v[0], v[1]), second = choose(turn, v[2], v[1]);
+    bool last = v[2] > key;
+    int32_t first = choose(last, 2, turn);
+    n->place[t] = choose(last, v[0], second);
+    uint64_t item = item_of(choose(last, v[2], key), first, t);
+    if ((less < n->n_kept || v[2] < n->n_kept) && is_stray(n, v, first))
+        item |= UINT64_C(1) << STRAY_BIT;
+    return item;
 }
 
 static void key_share(void *context, size_t share)
 {
     const struct numbering *n = context;
+    const struct tri_triangle *tri = n->mesh->tri;
+    const int32_t *rank = n->rank;
     struct tri_range range = share_of(&n->triangles, share);
     struct tile_range last = {0};
+    uint64_t *items = items_of(n);
     int32_t *count = n->triangles.at + share * (size_t)n->n_tiles;
     for (int32_t t = range.first; t < range.last; t++) {
-        items_of(n)[t] = FREE;
-        n->place[t] = TRI_NONE;
-        if (!tri_is_live(&n->mesh->tri[t]))
+        if (!tri_is_live(&tri[t])) {
+            items[t] = FREE;
+            n->place[t] = TRI_NONE;
             continue;
-        items_of(n)[t] = key_triangle(n, t);
-        count[tile_after(n, &last, items_of(n)[t])]++;
+        }
+        uint64_t item = key_triangle(n, rank, tri[t].v, t);
+        items[t] = item;
+        count[tile_after(n, &last, item)]++;
     }
 }
 
@@ -336,12 +344,12 @@ static void deal_triangles(void *context, size_t share)
     const struct numbering *n = context;
     struct tri_range range = share_of(&n->triangles, share);
     struct tile_range last = {0};
+    const uint64_t *items = items_of(n);
+    uint64_t *dealt = dealt_items(n);
     int32_t *at = n->triangles.at + share * (size_t)n->n_tiles;
-    for (int32_t t = range.first; t < range.last; t++) {
-        uint64_t item = items_of(n)[t];
-        if (item != FREE)
-            dealt_items(n)[at[tile_after(n, &last, item)]++] = item & ~(UINT64_C(1) << STRAY_BIT);
-    }
+    for (int32_t t = range.first; t < range.last; t++)
+        if (items[t] != FREE)
+            dealt[at[tile_after(n, &last, items[t])]++] = items[t] & ~(UINT64_C(1) << STRAY_BIT);
 }
 
 /* Items by key, those of one tile. */
@@ -383,7 +391,7 @@ static uint64_t by_second(const struct numbering *n, uint64_t item)
 }
 
 /* A tile that is being sorted. Most of its triangles start at one of its own new vertices: they are sorted by counting.
- * The others come before them. */
+ * The others come before them. Items go from one array to the other, and back. */
 struct sorting {
     uint64_t *item, *sorted;
     int32_t first, count;       /* of the triangles */
@@ -437,6 +445,37 @@ static void sort_others(const struct numbering *n, struct sorting *s)
     }
 }
 
+static uint64_t least(uint64_t a, uint64_t b) { return a < b ? a : b; }
+static uint64_t most(uint64_t a, uint64_t b) { return a < b ? b : a; }
+
+/* The first of four items in their order, without a branch that depends on it; all ones stand for the others. */
+static void sort_four(const uint64_t *item, int32_t count, uint64_t *to)
+{
+    uint64_t a = item[0] | -(uint64_t)(count < 1), b = item[1] | -(uint64_t)(count < 2);
+    uint64_t c = item[2] | -(uint64_t)(count < 3), d = item[3] | -(uint64_t)(count < 4);
+    uint64_t low = least(a, b), high = most(a, b), low_too = least(c, d), high_too = most(c, d);
+    uint64_t second = most(low, low_too), third = least(high, high_too);
+    to[0] = least(low, low_too);
+    to[1] = least(second, third);
+    to[2] = most(second, third);
+    to[3] = most(high, high_too);
+}
+
+/* Where four are written, fewer may be meant: the next fan overwrites the others. */
+static void sort_fans(struct sorting *s)
+{
+    memcpy(s->item, s->sorted, (size_t)s->n_others * sizeof *s->item);
+    for (int32_t i = 0, begin = s->n_others; i < s->n_own; begin = s->end[i++]) {
+        int32_t count = s->end[i] - begin;
+        if (count <= 4 && begin + 4 <= s->count) {
+            sort_four(s->sorted + begin, count, s->item + begin);
+            continue;
+        }
+        sort_fan(s->sorted + begin, s->item + begin, count);
+        memcpy(s->item + begin, s->sorted + begin, (size_t)count * sizeof *s->item);
+    }
+}
+
 static void place_tile(void *context, size_t tile)
 {
     const struct numbering *n = context;
@@ -447,11 +486,10 @@ static void place_tile(void *context, size_t tile)
     count_fans(&s);
     fill_fans(n, &s);
     sort_others(n, &s);
-    for (int32_t i = 0, begin = s.n_others; i < s.n_own; begin = s.end[i++])
-        sort_fan(s.sorted + begin, s.item, s.end[i] - begin);
+    sort_fans(&s);
     for (int32_t i = 0; i < s.count; i++) {
-        int32_t t = id_of(s.sorted[i]);
-        n->place[t] = place_of(first + i, first_of(s.sorted[i]));
+        int32_t t = id_of(s.item[i]);
+        n->place[t] = place_of(first + i, first_of(s.item[i]));
         down += first + i < t;
     }
     n->triangles.at[tile] = down;
@@ -486,14 +524,20 @@ static const struct tri_triangle *source_of(const struct numbering *n, uint64_t 
     return (item >> PARKED_BIT ? parked_of(n) : n->mesh->tri) + id_of(item);
 }
 
-static void rename_to(const struct numbering *n, const struct tri_triangle *from, int first, struct tri_triangle *to)
+static inline int32_t new_link(const int32_t *place, const int32_t *sub_rank, int32_t link)
 {
-    for (int k = 0, old = first; k < 3; k++, old = tri_next[old]) {
-        to->v[k] = renamed(n, from->v[old]);
-        to->n[k] = from->n[old] >= 0 ? new_code(n, from->n[old]) : ~n->sub_rank[~from->n[old]];
-    }
-    to->region = from->region;
-    to->state = 0;
+    return link >= 0 ? new_code(place, link) : ~sub_rank[~link];
+}
+
+static inline struct tri_triangle renamed(const struct numbering *n, const struct tri_triangle *t, int first)
+{
+    const int32_t *rank = n->rank, *place = n->place, *sub_rank = n->sub_rank;
+    int second = tri_next[first], third = tri_prev[first];
+    return (struct tri_triangle){{rank[t->v[first]], rank[t->v[second]], rank[t->v[third]]},
+                                 {new_link(place, sub_rank, t->n[first]), new_link(place, sub_rank, t->n[second]),
+                                  new_link(place, sub_rank, t->n[third])},
+                                 t->region,
+                                 0};
 }
 
 /* Something stands here that is to go to a batch to come. */
@@ -511,15 +555,16 @@ static void gather_batch(void *context, size_t share)
     const struct numbering *n = m->n;
     struct tri_range range = batch_share(m, share);
     struct tri_triangle from[AT_ONCE];
+    struct tri_triangle *to = n->buffer;
     for (int32_t t = range.first; t < range.last; t++)
         m->parked[share] += stands_here(m, t);
     for (int32_t first = range.first; first < range.last; first += AT_ONCE) {
         int32_t count = range.last - first < AT_ONCE ? range.last - first : AT_ONCE;
-        const uint64_t *item = items_of(n) + first;
+        const uint64_t *item = dealt_items(n) + first;
         for (int32_t i = 0; i < count; i++)
             from[i] = *source_of(n, item[i]);
         for (int32_t i = 0; i < count; i++)
-            rename_to(n, &from[i], first_of(item[i]), &n->buffer[first + i - m->batch.first]);
+            to[first - m->batch.first + i] = renamed(n, &from[i], first_of(item[i]));
     }
 }
 
@@ -532,7 +577,7 @@ static void put_down(void *context, size_t share)
     for (int32_t t = range.first; t < range.last; t++) {
         if (stands_here(m, t)) {
             parked_of(n)[parked] = n->mesh->tri[t];
-            items_of(n)[n->place[t] >> 2] = UINT64_C(1) << PARKED_BIT | item_of(0, n->place[t] & 3, parked++);
+            dealt_items(n)[n->place[t] >> 2] = UINT64_C(1) << PARKED_BIT | item_of(0, n->place[t] & 3, parked++);
         }
         n->mesh->tri[t] = n->buffer[t - m->batch.first];
     }
@@ -577,7 +622,7 @@ static void move_subs(struct numbering *n)
         *to = mesh->sub[s];
         for (int side = 0; side < 2; side++)
             if (to->side[side] != TRI_NONE)
-                to->side[side] = new_code(n, to->side[side]);
+                to->side[side] = new_code(n->place, to->side[side]);
     }
     if (n->n_subs > 0)
         memcpy(mesh->sub, n->sub, (size_t)n->n_subs * sizeof *n->sub);
@@ -603,7 +648,7 @@ static enum tri_status allocate(struct numbering *n, struct tri_error *error)
     deals = reserve_deal(&n->triangles, mesh->n_triangles, n->n_tiles) && deals;
     n->kept_tile = malloc(((size_t)n->n_kept + 1) * sizeof *n->kept_tile);
     n->order = tri_mesh_extra(mesh, (vertices + 1) * sizeof *n->order);
-    n->rank = tri_mesh_extra(mesh, (vertices + 1) * sizeof *n->rank);
+    n->rank = tri_mesh_extra(mesh, ((size_t)mesh->n_vertices + 1) * sizeof *n->rank);
     n->sub_rank = tri_mesh_extra(mesh, (subs + 1) * sizeof *n->sub_rank);
     n->sub = tri_mesh_extra(mesh, (subs + 1) * sizeof *n->sub);
     n->place = tri_mesh_extra(mesh, ((size_t)mesh->n_triangles + 1) * sizeof *n->place);

@@ -98,3 +98,10 @@ check "exit code" test $? -eq 2
 "$bin/trianglecheck" section.1 --memory 1 --scratch /nowhere >.out 2>.err
 check "exit code" test $? -eq 2
 complains "/nowhere: cannot make a scratch file there"
+
+# --- HDF5, where this build writes it
+fresh section.poly
+if "$bin/ptriangle" -pq30aAQ --output section.h5 section.poly >.out 2>&1 && [ -f section.h5 ]; then
+    judge section.h5 --poly section.poly -q 30
+    part_by_part section.h5 --poly section.poly -q 33
+fi

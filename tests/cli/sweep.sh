@@ -42,7 +42,9 @@ for case in "-pq30a0.002 letter" "-pcq20a0.01BN letter" "-pPq20Aaa0.01 section" 
     rm -f swept.h5 swept.xdmf
     check "the same files" test "$(echo whole.*)" = "$(echo swept.* | sed 's/swept/whole/g')"
 done
-PTRIANGLE_TEST_SWEEP=1 program 0 -pq30a0.002 letter --output swept.h5
+PTRIANGLE_TEST_SWEEP=1 program 0 -pq30a0.002 letter --output swept.h5 --report report.json
+check "the report tells the way" grep -q '"way": "swept"' report.json
+check "no shapes are told" grep -q '"smallest_angle": null' report.json
 matches '^Sweeping: about 0\.[0-9]+ million triangles'
 sed -n '/^Statistics/,$p' .out >.expected
 program 0 -pq30a0.002 letter --output whole.h5
@@ -91,6 +93,8 @@ until [ -e out.h5 ] || [ $rounds -ge 60 ]; do
     esac
 done
 check "the same bytes" cmp whole.h5 out.h5
+rm -rf state # a run may have been killed after its last rename
+find . -name '.tri-*' -delete
 wrote out.h5 out.xdmf
 
 # --- the line that goes on
@@ -146,6 +150,21 @@ if [ ! -e out.h5 ]; then
     program 0 -Qpq30a0.002 letter --output out.h5 --resume state
     check "the same bytes" cmp whole.h5 out.h5
     rm -f out.*
+fi
+
+# --- a file that cannot be written: what there is of the mesh is kept, and one line tells how to go on
+fresh letter.poly
+if [ -e /dev/full ] && (ulimit -f 600) 2>/dev/null; then
+    program 0 -Qpq30a0.002 letter --output whole.h5
+    what="ptriangle, a file too large"
+    (
+        ulimit -f 600 # more than the checkpoint's files, less than all
+        "$bin/ptriangle" -Qpq30a0.002 letter --output out --checkpoint state --every 0 >.out 2>.err
+    )
+    check "exit code" test $? -eq 1
+    complains 'cannot write'
+    check "no more than two lines" sh -c 'test "$(wc -l <.err)" -le 2'
+    check "no file" sh -c '! ls out* .tri-* 2>/dev/null'
 fi
 
 # --- a mesh in memory keeps nothing, and starts over

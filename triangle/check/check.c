@@ -298,24 +298,29 @@ static void release(struct checker *c)
     tri_check_release_quality(c);
 }
 
-/* Bytes for each triangle of a part: corners twice (edges.c takes the place of the ones as they are read), links, half
- * a vertex, and what else is given. */
-static double bytes_of_triangle(const struct tri_check_source *source)
+/* Bytes for each triangle of a part: corners twice (edges.c takes the place of the ones as they are read), links,
+ * vertices, and what else is given. */
+static double bytes_of_triangle(const struct tri_check_source *source, double vertices)
 {
-    return 24 + 12 + 12 + 0.6 * (16 + 8 + 4 + 4) + (source->given >> TRI_CHECK_NEIGHBORS_GIVEN & 1) * 24 +
-           (source->given >> TRI_CHECK_ATTRIBUTES & 1) * 8;
+    return 24 + 12 + 12 + 1.1 * vertices * (16 + 8 + 4 + 4 + 1) +
+           (source->given >> TRI_CHECK_NEIGHBORS_GIVEN & 1) * 24 + (source->given >> TRI_CHECK_ATTRIBUTES & 1) * 8;
 }
 
-/* As many triangles as the bound allows, at least a few. */
-static int64_t size_of_part(const struct tri_check_source *source)
+/* As many triangles as the bound allows, at least a few; all, where they are in memory. */
+static enum tri_status choose_part(struct checker *c)
 {
     enum { LEAST = 16 };
-    int64_t most = INT32_MAX / 3 - 1;
+    const struct tri_check_source *source = c->source;
+    double vertices = 1, most = INT32_MAX / 3 - 1;
+    enum tri_status status = source->memory > 0 ? tri_check_sample(c, &vertices) : TRI_OK;
     if (source->memory > 0) {
         double rest = source->memory * 0.75 - 1.25 * (double)source->n_points;
-        most = (int64_t)fmax(LEAST, fmin((double)most, rest / bytes_of_triangle(source)));
+        most = fmax(LEAST, fmin(most, rest / bytes_of_triangle(source, vertices)));
     }
-    return source->n_triangles < most ? source->n_triangles : most;
+    bool all = (double)c->n_triangles <= most;
+    c->part_triangles = all ? (c->n_triangles > 0 ? c->n_triangles : 1) : (int64_t)most;
+    c->whole = all ? source->arrays : NULL;
+    return status;
 }
 
 enum tri_status tri_check_from(const struct tri_check_source *source, const struct tri_pslg *input,
@@ -329,12 +334,10 @@ enum tri_status tri_check_from(const struct tri_check_source *source, const stru
     memset(report, 0, sizeof *report);
     struct checker c = {.source = source, .input = input, .options = options, .report = report, .error = &own,
                         .n_points = source->n_points, .n_triangles = source->n_triangles};
-    c.part_triangles = size_of_part(source);
-    if (c.part_triangles == source->n_triangles && source->arrays != NULL)
-        c.whole = source->arrays;
-    c.part_triangles = c.part_triangles > 0 ? c.part_triangles : 1;
     c.state = tri_check_zeros(c.n_points, 1);
-    enum tri_status status = c.state == NULL ? TRI_NO_MEMORY : tri_check_store_new(&c);
+    enum tri_status status = c.state == NULL ? TRI_NO_MEMORY : choose_part(&c);
+    if (status == TRI_OK)
+        status = tri_check_store_new(&c);
     if (status == TRI_OK)
         status = run(&c);
     release(&c);

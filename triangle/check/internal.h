@@ -170,6 +170,9 @@ struct checker {
 enum tri_status tri_check_survey(struct checker *c);
 enum tri_status tri_check_list_segments(struct checker *c); /* reads c->listed and markers */
 
+/* Vertices for each triangle, of some triangles in a row: about 0.5 where numbers are local, up to 3 if not. */
+enum tri_status tri_check_sample(struct checker *c, double *vertices);
+
 /* A part from triangle `first` on. Corners that are no vertices are faults of ARRAYS; then there is no part. */
 enum tri_status tri_check_load(struct checker *c, int64_t first, bool *good);
 void tri_check_release_part(struct checker *c);

@@ -135,6 +135,8 @@ static void count(struct checker *c)
 enum tri_status tri_check_match(struct checker *c)
 {
     tri_check_begin(c, TRI_CHECK_EDGES);
+    if (c->whole == NULL)
+        tri_check_release_part(c); /* room for the others; it comes back when asked for */
     enum tri_status status = tri_check_store_drain(c, match_all);
     if (status == TRI_OK && c->n_triangles > c->part_triangles && c->boundary.n > 0 && is_doubtful(c))
         status = match_again(c);

@@ -9,7 +9,10 @@
 
 #include "triangle/check/internal.h"
 
-enum { WINDOW = 1 << 10 }; /* words */
+enum {
+    WINDOW = 1 << 10, /* words */
+    SAMPLE = 1 << 14  /* triangles */
+};
 
 /* What a part needs beside the caller's arrays; kept from one part to the next. */
 struct check_room {
@@ -81,13 +84,16 @@ void tri_check_release_part(struct checker *c)
     free(p->constrained);
     free(p->turns);
     free(p->used);
-    if (p->room == NULL)
+    if (p->room == NULL) {
+        *p = (struct check_part){0};
         return;
+    }
     void *arrays[] = {p->room->triangles, p->room->vertex, p->room->neighbors, p->room->points, p->room->attributes,
                       p->room->window, p->room->marked, p->room->before};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         free(arrays[i]);
     free(p->room);
+    *p = (struct check_part){0};
 }
 
 /* Corners that are vertices of the mesh? */
@@ -112,6 +118,28 @@ static bool judge_corners(struct checker *c, const int64_t *corners, const int32
     c->at = 0;
     c->report->item[TRI_CHECK_ARRAYS].count = before + n_bad;
     return false;
+}
+
+static int compare_numbers(const void *left, const void *right)
+{
+    int64_t a = *(const int64_t *)left, b = *(const int64_t *)right;
+    return (a > b) - (a < b);
+}
+
+enum tri_status tri_check_sample(struct checker *c, double *vertices)
+{
+    int64_t n = c->n_triangles < SAMPLE ? c->n_triangles : SAMPLE, distinct = 0;
+    int64_t *corners = tri_check_array(3 * n, sizeof *corners);
+    if (corners == NULL)
+        return TRI_NO_MEMORY;
+    enum tri_status status = tri_check_read(c, TRI_CHECK_CORNERS, (c->n_triangles - n) / 2, n, corners);
+    if (status == TRI_OK)
+        qsort(corners, (size_t)(3 * n), sizeof *corners, compare_numbers);
+    for (int64_t i = 0; i < 3 * n && status == TRI_OK; i++)
+        distinct += i == 0 || corners[i] != corners[i - 1];
+    *vertices = n > 0 ? (double)distinct / (double)n : 1;
+    free(corners);
+    return status;
 }
 
 /* Step 1. */

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { FILE_BITS = 6, N_FILES = 1 << FILE_BITS, LEAST_ROOM = 256 };
+enum { MOST_BITS = 9, N_FILES = 1 << MOST_BITS, LEAST_ROOM = 256 };
 
 struct file {
     int descriptor; /* -1: not there yet */
@@ -17,6 +17,7 @@ struct file {
 struct check_store {
     struct check_opens here;
     int64_t most; /* to be in memory */
+    int bits;     /* of the hash that chooses a file */
     struct file file[N_FILES];
 };
 
@@ -28,8 +29,13 @@ enum tri_status tri_check_store_new(struct checker *c)
     for (int k = 0; k < N_FILES; k++)
         c->store->file[k].descriptor = -1;
     c->store->most = INT64_MAX;
-    if (c->source->memory > 0)
-        c->store->most = LEAST_ROOM + (int64_t)(c->source->memory / 8 / sizeof(struct check_open));
+    if (c->source->memory <= 0)
+        return TRI_OK;
+    c->store->most = LEAST_ROOM + (int64_t)fmin(c->source->memory / 8 / sizeof(struct check_open), 0x1p40);
+    /* Should all half-edges be parked, a file is to fit, too. */
+    double files = 3 * (double)c->n_triangles / (double)c->store->most;
+    while (c->store->bits < MOST_BITS && (double)(1 << c->store->bits) < files)
+        c->store->bits++;
     return TRI_OK;
 }
 
@@ -59,16 +65,21 @@ enum tri_status tri_check_append(struct check_opens *o, const struct check_open 
     return TRI_OK;
 }
 
-static int file_of(const struct check_open *e)
+static int hash(const struct check_open *e)
 {
     uint64_t low = (uint64_t)(e->from < e->to ? e->from : e->to), high = (uint64_t)(e->from < e->to ? e->to : e->from);
     uint64_t h = (low * 0x9e3779b97f4a7c15u ^ high) * 0xbf58476d1ce4e5b9u;
-    return (int)(h >> (64 - FILE_BITS));
+    return (int)(h >> (64 - MOST_BITS));
 }
 
-static int compare_files(const void *a, const void *b)
+static int compare_hashes(const void *a, const void *b)
 {
-    return file_of(a) - file_of(b);
+    return hash(a) - hash(b);
+}
+
+static int file_of(const struct check_store *s, const struct check_open *e)
+{
+    return hash(e) >> (MOST_BITS - s->bits);
 }
 
 static const char *folder_of(const struct checker *c)
@@ -124,10 +135,10 @@ static enum tri_status park(struct checker *c)
     struct check_store *s = c->store;
     struct check_open *at = s->here.at;
     if (s->here.n > 1)
-        qsort(at, (size_t)s->here.n, sizeof *at, compare_files);
+        qsort(at, (size_t)s->here.n, sizeof *at, compare_hashes);
     for (int64_t i = 0, j; i < s->here.n; i = j) {
-        struct file *file = &s->file[file_of(&at[i])];
-        for (j = i + 1; j < s->here.n && file_of(&at[j]) == file_of(&at[i]); j++) {
+        struct file *file = &s->file[file_of(s, &at[i])];
+        for (j = i + 1; j < s->here.n && file_of(s, &at[j]) == file_of(s, &at[i]); j++) {
         }
         if (!open_file(c, file) || !write_all(file->descriptor, at + i, (size_t)(j - i) * sizeof *at))
             return fail(c);

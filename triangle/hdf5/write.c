@@ -357,6 +357,7 @@ enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tr
         return tri_fail(error, TRI_NO_MEMORY, options->file->path, 0, "no memory to write the file");
     *w = (struct tri_h5_writer){.options = *options, .file = {.id = -1, .driver = -1},
                                 .bounds = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+    (void)H5dont_atexit(); /* at the end of the process HDF5 would print about files that could not be written */
     w->most_narrow = options->most_narrow > 0 ? options->most_narrow : (int64_t)INT32_MAX + 1;
     *sink = (struct tri_sink){w, begin, take, end};
     return TRI_OK;
