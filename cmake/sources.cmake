@@ -199,6 +199,7 @@ set(PTRIANGLE_RUN_PROGRAMS triangle ptriangle)
 # What the parallel program has beside that. Its report is written with jansson; without, the last file stands in.
 set(PTRIANGLE_PARALLEL_SOURCES
     drivers/blocks_file.c
+    drivers/launch.c
     drivers/long_options.c
     drivers/progress.c
     drivers/streams.c
@@ -206,3 +207,7 @@ set(PTRIANGLE_PARALLEL_SOURCES
     drivers/prediction.c)
 set(PTRIANGLE_REPORT_SOURCE drivers/report_json.c)
 set(PTRIANGLE_NO_REPORT_SOURCE drivers/report_none.c)
+
+# As one of several tasks it is a rank of an MPI, or refuses.
+set(PTRIANGLE_LAUNCH_SOURCE drivers/launch_mpi.c)
+set(PTRIANGLE_NO_LAUNCH_SOURCE drivers/launch_alone.c)

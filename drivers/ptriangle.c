@@ -9,6 +9,7 @@
 #include "drivers/console.h"
 #include "drivers/help.h"
 #include "drivers/interrupt.h"
+#include "drivers/launch.h"
 #include "drivers/long_options.h"
 #include "drivers/progress.h"
 #include "drivers/report_json.h"
@@ -16,6 +17,7 @@
 #include "drivers/restart.h"
 #include "drivers/run.h"
 #include "drivers/streams.h"
+#include "sched/ranks/relay.h"
 #include "sched/schedule.h"
 #include "sched/sweep/queue.h"
 #include "sched/threads.h"
@@ -37,6 +39,7 @@ struct program {
     int32_t n_before;          /* vertices there were before refinement */
     bool refined;              /* the schedule has run: its report is filled */
     struct par_report schedule;
+    struct launch launch;
 };
 
 /* Tests run the schedule on small inputs: a build with tests takes the triangles in a cell from the environment. */
@@ -120,6 +123,29 @@ static int64_t waiting_bytes(const struct run_plan *plan)
     return (int64_t)fmin(fmax(plan->memory / 32, 0x1p20), 0x1p26);
 }
 
+/* Refines into a sink; on several ranks into that of the first. */
+static enum tri_status refine_into(struct program *p, struct run *run, const struct tri_sink *sink,
+                                   struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                   struct tri_error *error)
+{
+    struct par_options options = options_of(p, run);
+    struct par_relay relay = {.carrier = p->launch.carrier, .to = sink};
+    const struct tri_sink relayed = par_relay_sink(&relay);
+    options.carrier = p->launch.carrier;
+    options.sink = options.carrier ? &relayed : sink;
+    enum tri_status status = refine_with(p, run, &options, mesh, quality, error);
+    return options.carrier ? par_relay_finish(&relay, status, error) : status;
+}
+
+/* A rank whose tiles are written by another one. */
+static enum tri_status help_others(struct program *p, struct run *run, struct tri_mesh *mesh,
+                                   const struct tri_refine_options *quality, struct tri_error *error)
+{
+    enum tri_status status = refine_into(p, run, NULL, mesh, quality, error);
+    tri_mesh_free(mesh);
+    return status;
+}
+
 /* A sweep that blocks left something of, or could not do at all. */
 static void tell_of_parking(const struct program *p, bool quiet)
 {
@@ -135,7 +161,6 @@ static void tell_of_parking(const struct program *p, bool quiet)
 static enum tri_status sweep(struct program *p, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
                              const struct tri_refine_options *quality, struct tri_error *error)
 {
-    struct par_options options = options_of(p, run);
     struct tri_counts before;
     const struct tri_sink streams = streams_sink(&p->streams);
     struct par_queue queue;
@@ -147,8 +172,7 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a queue of tiles");
     if (!status) {
         const struct tri_sink sink = par_queue_sink(&queue);
-        options.sink = &sink;
-        status = refine_with(p, run, &options, mesh, quality, error);
+        status = refine_into(p, run, &sink, mesh, quality, error);
         par_queue_free(&queue);
     }
     streams_close(&p->streams);
@@ -165,7 +189,9 @@ static enum tri_status refine(void *user, struct run *run, struct tri_output_set
 {
     struct program *p = user;
     enum tri_status status;
-    if (run->plan.swept) {
+    if (run->plan.swept && p->launch.rank > 0) {
+        status = help_others(p, run, mesh, quality, error);
+    } else if (run->plan.swept) {
         status = sweep(p, run, set, mesh, quality, error);
     } else {
         struct par_options options = options_of(p, run);
@@ -314,7 +340,9 @@ static struct run_hooks hooks_of(struct program *p)
     const struct long_options *o = &p->options;
     bool goes_on = p->restart.wanted && par_checkpoint_has_state(&p->restart.checkpoint);
     struct run_hooks hooks = {.program = PROGRAM, .refine = refine, .estimate = estimate, .write = write_further,
-                              .swept_memory = swept_memory, .always_sweep = goes_on || sweep_for_tests(),
+                              .swept_memory = swept_memory,
+                              .always_sweep = goes_on || p->launch.carrier || sweep_for_tests(),
+                              .written_elsewhere = p->launch.rank > 0,
                               .whole_mesh = whole_mesh(o), .threads = p->threads, .user = p,
                               .limits = {.seconds = o->time_limit, .write_partial = o->write_partial,
                                          .dry_run = o->dry_run, .memory = memory_of(o), .scratch = o->scratch,
@@ -373,6 +401,11 @@ static int carry_out(struct program *p, const struct arguments *arguments, struc
         console_error(&(struct console){.program = PROGRAM}, error);
         return EXIT_FAILURE;
     }
+    if (p->launch.carrier && p->restart.wanted) {
+        tri_fail(error, TRI_BAD_INPUT, NULL, 0, "several tasks keep no checkpoints");
+        console_error(&(struct console){.program = PROGRAM}, error);
+        return EXIT_FAILURE;
+    }
     int code = run_program(p, arguments, error);
     restart_close(&p->restart, PROGRAM, arguments, code);
     return code;
@@ -386,11 +419,13 @@ int main(int argc, char **argv)
     console_open();
     struct arguments arguments = arguments_begin(argc, argv);
     int code = EXIT_FAILURE;
-    if (take_words(&program, &arguments, &error))
+    bool joined = !launch_join(&program.launch, &error);
+    if (!joined || take_words(&program, &arguments, &error))
         console_error(&console, &error);
     else
         code = carry_out(&program, &arguments, &error);
     free_program(&program);
     arguments_free(&arguments);
-    return console_close(&console) ? code : EXIT_FAILURE;
+    code = console_close(&console) ? code : EXIT_FAILURE;
+    return joined ? launch_leave(&program.launch, code) : code;
 }

@@ -146,6 +146,7 @@ static enum tri_status read_input(struct runner *r)
     const struct tri_switches *s = &r->run.arguments->switches;
     struct tri_read_options options = {.default_base = s->from_zero ? 0 : 1,
                                        .want_regions = tri_switches_use_regions(s),
+                                       .may_be_empty = s->mesh,
                                        .refining = s->mesh,
                                        .executor = r->run.hooks->executor,
                                        .stop = interrupt_stop(),
@@ -283,7 +284,8 @@ static enum tri_status keep_twins(struct runner *r, const struct tri_mesh *mesh)
 /* Files are written while the mesh is refined. */
 static enum tri_status begin_sweep(struct runner *r, const struct tri_mesh *mesh)
 {
-    begin_outputs(r);
+    if (!r->run.hooks->written_elsewhere)
+        begin_outputs(r);
     return keep_twins(r, mesh);
 }
 
@@ -302,7 +304,7 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
         status = hooks->refine ? hooks->refine(hooks->user, &r->run, &outputs, mesh, quality, report, error)
                                : tri_refine(mesh, quality, report, error);
     status = notice_stop(r, status);
-    if (status && r->run.plan.swept)
+    if (status && r->run.plan.swept && !hooks->written_elsewhere)
         interrupt_drop(&outputs);
     return status;
 }
@@ -450,6 +452,8 @@ static enum tri_status write_all(struct runner *r, const struct mesh_files *file
 /* Whatever can fail comes before the commit, what is printed included. */
 static enum tri_status write_output(struct runner *r, const struct mesh_files *files)
 {
+    if (r->run.hooks->written_elsewhere)
+        return TRI_OK;
     interrupt_stage("writing");
     if (!r->run.plan.swept)
         begin_outputs(r);

@@ -74,7 +74,8 @@ struct run_hooks {
     /* Bytes of memory that sweeping so many triangles takes, beyond what is taken now; refine follows run->plan then.
      * NULL: nothing is ever swept. */
     double (*swept_memory)(void *user, double triangles);
-    bool always_sweep;              /* for tests: also what would fit in memory */
+    bool always_sweep;              /* on ranks, and for tests: also what would fit in memory */
+    bool written_elsewhere;         /* another rank writes all files */
     const char *whole_mesh;         /* what of the program's own options asks for a mesh in memory; NULL: nothing */
     int threads;                    /* to refine with, for estimates */
     struct file_names exports;      /* the mesh in other formats .. */

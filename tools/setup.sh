@@ -4,7 +4,7 @@
 #   build  C and C++ compiler, make, CMake          (what the programs need), and cairo (for meshplot), jansson (for
 #          ptriangle --report) and HDF5 (for .h5 files), which can be done without
 #   tests  and cmocka, GMP, pkg-config              (what tools/test.sh needs)
-#   ci     and clang with its OpenMP library, its fuzzer and clang-tidy, cppcheck, valgrind, gcovr, Python (what
+#   ci     and clang with its OpenMP library, its fuzzer and clang-tidy, cppcheck, valgrind, gcovr, MPI, Python (what
 #          .ci/run needs)
 #   ports  compilers for other processors and their emulator (what tools/ports.sh needs beside `build`)
 # Works as root or with sudo, asks nothing, and does not touch a machine that has everything.
@@ -89,6 +89,7 @@ list_missing() {
     need libgmp-dev links gmp.h gmp
     need pkg-config command -v pkg-config
     [ "$wanted" = tests ] && return
+    need "libopenmpi-dev openmpi-bin" command -v mpicc
     need clang command -v clang++
     need python3-venv python3 -c 'import ensurepip, venv'
     need libomp-dev openmp_with_clang

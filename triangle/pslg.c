@@ -27,11 +27,8 @@ static enum tri_status check_finite(const char *what, int32_t n, const double *v
     return TRI_OK;
 }
 
-enum tri_status tri_pslg_check(const struct tri_pslg *pslg, struct tri_error *error)
+enum tri_status tri_pslg_check_values(const struct tri_pslg *pslg, struct tri_error *error)
 {
-    if (pslg->n_points < 3)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "at least three vertices are needed, there are %d",
-                        (int)pslg->n_points);
     enum tri_status status = check_count("vertices", pslg->n_points, pslg->points, error);
     status = status ? status : check_count("attributes of a vertex", pslg->n_attributes, pslg->attributes, error);
     status = status ? status : check_count("segments", pslg->n_segments, pslg->segments, error);
@@ -40,6 +37,14 @@ enum tri_status tri_pslg_check(const struct tri_pslg *pslg, struct tri_error *er
     status = status ? status : check_finite("vertex", pslg->n_points, pslg->points, 2, error);
     status = status ? status : check_finite("hole", pslg->n_holes, pslg->holes, 2, error);
     return status ? status : check_finite("region", pslg->n_regions, pslg->regions, 4, error);
+}
+
+enum tri_status tri_pslg_check(const struct tri_pslg *pslg, struct tri_error *error)
+{
+    if (pslg->n_points < 3)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "at least three vertices are needed, there are %d",
+                        (int)pslg->n_points);
+    return tri_pslg_check_values(pslg, error);
 }
 
 bool tri_pslg_is_one_place(const struct tri_pslg *pslg)

@@ -35,6 +35,9 @@ struct tri_pslg {
  * TRI_BAD_INPUT; more than 2^28 of anything: TRI_TOO_LARGE. O(n). */
 enum tri_status tri_pslg_check(const struct tri_pslg *pslg, struct tri_error *error);
 
+/* The same, but any number of points will do: of a mesh nothing may be left. */
+enum tri_status tri_pslg_check_values(const struct tri_pslg *pslg, struct tri_error *error);
+
 /* Are there enough points, but all at one place? Triangle refuses those; tri_generate makes a mesh of no triangles, as
  * of collinear points. O(n). */
 bool tri_pslg_is_one_place(const struct tri_pslg *pslg);

@@ -546,7 +546,7 @@ enum tri_status tri_reconstruct(struct tri_mesh *mesh, const struct tri_pslg *ps
     struct matcher m = {.mesh = mesh, .pslg = pslg, .elements = elements, .options = options, .error = error};
     *mesh = (struct tri_mesh){0};
     m.n_segments = options->use_segments ? pslg->n_segments : 0;
-    enum tri_status status = tri_pslg_check(pslg, error);
+    enum tri_status status = elements->n > 0 ? tri_pslg_check(pslg, error) : tri_pslg_check_values(pslg, error);
     status = status ? status : check_elements(elements, error);
     status = status ? status : tri_mesh_init(mesh, error);
     mesh->stop = options->stop;

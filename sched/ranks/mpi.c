@@ -2,16 +2,18 @@
  * caller's. */
 #include "ptriangle/mpi.h"
 
+#include <stdlib.h>
 #include <time.h>
 
+#include "sched/ranks/mpi_carrier.h"
 #include "sched/ranks/stream.h"
 
 /* Counts of MPI are ints. */
 enum { MOST_BYTES = 1 << 30 };
 
 struct messenger {
+    struct par_carrier carrier; /* first: what others see */
     MPI_Comm comm;
-    int rank, n_ranks;
 };
 
 /* Waits without taking the processor from those who are waited for: ranks may be more than cores. */
@@ -71,8 +73,9 @@ static bool transfer(void *self, const struct par_bytes *out, const struct par_b
 {
     const struct messenger *m = self;
     bool good = true;
-    for (int k = 1; good && k < m->n_ranks; k++) {
-        int to = (m->rank + k) % m->n_ranks, from = (m->rank - k + m->n_ranks) % m->n_ranks;
+    int rank = m->carrier.rank, n = m->carrier.n_ranks;
+    for (int k = 1; good && k < n; k++) {
+        int to = (rank + k) % n, from = (rank - k + n) % n;
         good = exchange(m, &out[to], to, &in[from], from);
     }
     return good;
@@ -95,20 +98,36 @@ static void tell_traffic(const struct par_carrier *carrier, struct par_exchanges
     }
 }
 
+struct par_carrier *par_mpi_carrier_new(const void *comm)
+{
+    struct messenger *m = calloc(1, sizeof *m);
+    if (!m || MPI_Comm_dup(*(const MPI_Comm *)comm, &m->comm) != MPI_SUCCESS) {
+        free(m);
+        return NULL;
+    }
+    m->carrier = (struct par_carrier){.self = m, .gather = gather, .deal = deal, .transfer = transfer};
+    MPI_Comm_rank(m->comm, &m->carrier.rank);
+    MPI_Comm_size(m->comm, &m->carrier.n_ranks);
+    return &m->carrier;
+}
+
+void par_mpi_carrier_free(struct par_carrier *carrier)
+{
+    struct messenger *m = carrier->self;
+    MPI_Comm_free(&m->comm);
+    free(m);
+}
+
 enum tri_status par_stream_on(MPI_Comm comm, const struct tri_figure *figure, const struct tri_settings *settings,
                               const struct tri_sink *sink, struct par_exchanges *exchanges, struct tri_error *error)
 {
-    struct messenger messenger;
     if (!is_running())
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "MPI has not been initialised, or has ended");
-    if (MPI_Comm_dup(comm, &messenger.comm) != MPI_SUCCESS)
+    struct par_carrier *carrier = par_mpi_carrier_new(&comm);
+    if (!carrier)
         return tri_fail(error, TRI_INTERNAL, NULL, 0, "the communicator cannot be duplicated");
-    MPI_Comm_rank(messenger.comm, &messenger.rank);
-    MPI_Comm_size(messenger.comm, &messenger.n_ranks);
-    struct par_carrier carrier = {.rank = messenger.rank, .n_ranks = messenger.n_ranks, .self = &messenger,
-                                  .gather = gather, .deal = deal, .transfer = transfer};
-    enum tri_status status = par_stream_over(&carrier, figure, settings, sink, error);
-    tell_traffic(&carrier, exchanges);
-    MPI_Comm_free(&messenger.comm);
+    enum tri_status status = par_stream_over(carrier, figure, settings, sink, error);
+    tell_traffic(carrier, exchanges);
+    par_mpi_carrier_free(carrier);
     return status;
 }

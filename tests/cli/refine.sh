@@ -52,6 +52,17 @@ silent_on "!! !!"
 run 0 -rQ letter.1
 check "quiet" test ! -s .out
 
+# --- a mesh of which nothing is left
+fresh nasty/hole_eats_all.poly
+run 0 -pjQ hole_eats_all
+check "no vertex" test "$(records hole_eats_all.1.node | head -n 1)" = "0 2 0 1"
+for switches in -rpq30 -rpqDj -rqa.1; do
+    run 0 "$switches" hole_eats_all.1
+    check "no vertex" test "$(records hole_eats_all.2.node | head -n 1)" = "0 2 0 1"
+    check "no triangle" test "$(records hole_eats_all.2.ele | head -n 1)" = "0 3 0"
+    rm hole_eats_all.2.*
+done
+
 # --- iterations, each finer; implied -r
 fresh box_hole.poly
 cp box_hole.poly box.poly

@@ -232,7 +232,8 @@ static int32_t triangles_of(const struct torture_case *as, const struct outcome 
  * is given up depends on the order. */
 static void judge_schedule_size(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
-    const double OWN_CELLS = first->options.quality.min_angle > 32 ? 1.4 : 1.1, TINY_CELLS = 2, FEW = 100;
+    bool spreads = first->options.quality.min_angle > 32;
+    const double OWN_CELLS = spreads ? 1.4 : 1.1, TINY_CELLS = spreads ? 8 : 2, FEW = 100;
     struct torture_case sequential = *first->of, by_itself = *first->of;
     sequential.block = 0;
     by_itself.block = -1;
@@ -257,8 +258,8 @@ static void judge_amount(const struct outcome *first, const struct tri_pslg *psl
     struct outcome less = *first;
     double angle = first->options.quality.min_angle;
     bool beyond = angle > TRI_USUAL_ANGLE;
-    if (first->mesh.n_triangles < FEW || angle <= PROMISED)
-        return;
+    if (first->mesh.n_triangles < FEW || angle <= PROMISED || (!beyond && first->switches.protect > 0))
+        return; /* where segments must stay as they are theory promises nothing */
     enter(verdict, "meshing at a smaller angle");
     less.options.quality.min_angle = beyond ? TRI_USUAL_ANGLE : PROMISED;
     int32_t n = triangles_of(first->of, &less, pslg, verdict);
@@ -290,6 +291,9 @@ static void judge_again(const struct outcome *first, struct verdict *verdict)
     struct tri_reconstruct_options how = {.use_segments = true, .refine = true, .base = 1};
     enter(verdict, "rebuilding");
     o.options.quality.max_area /= 2;
+    /* The short edges that a bound beyond the usual one has left are features of the mesh: asked again it would go on. */
+    if (o.options.quality.min_angle > TRI_USUAL_ANGLE)
+        o.options.quality.min_angle = 30;
     o.options.quality.region_areas = true;
     enum tri_status status = tri_reconstruct(&o.mesh, &pslg, &elements, &how, &error);
     enter(verdict, "refining again");

@@ -57,10 +57,11 @@ static void judge_areas(const struct outcome *o, struct bounds *b, struct verdic
 }
 
 /* Where vertices ran away triangles are given up, beside small angles and dear spaces at any bound: there the checker
- * finds the reason itself. Elsewhere only above an angle that theory promises, and few. */
+ * finds the reason itself. Elsewhere only above an angle that theory promises, and few; with -D more, beside spaces too
+ * dear to fill, whose circles ask for edges that are no features. */
 static int64_t may_run_away(const struct outcome *o, int64_t count, struct verdict *verdict)
 {
-    const double PROMISED = 25, FEW = 0.01;
+    const double PROMISED = 25, FEW = o->options.quality.conforming ? 0.1 : 0.02;
     if (o->options.quality.min_angle <= PROMISED)
         return 0;
     if (count > 20 + FEW * o->mesh.n_triangles)

@@ -1,0 +1,58 @@
+/* What launchers tell their tasks by the environment. */
+#include "drivers/launch.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static long number_of(const char *name)
+{
+    const char *text = getenv(name);
+    return text ? strtol(text, NULL, 10) : -1;
+}
+
+/* OpenMPI, then MPICH and its kin, then a step of SLURM. */
+static const char *const sizes[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
+static const char *const ranks[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "SLURM_PROCID"};
+
+static int look(int *task)
+{
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
+        if (number_of(sizes[i]) > 1) {
+            *task = (int)number_of(ranks[i]);
+            return (int)number_of(sizes[i]);
+        }
+    *task = 0;
+    return 1;
+}
+
+static void fall_silent(void)
+{
+    if (!freopen("/dev/null", "w", stdout) || !freopen("/dev/null", "w", stderr))
+        _Exit(EXIT_FAILURE);
+}
+
+enum tri_status launch_join(struct launch *launch, struct tri_error *error)
+{
+    int task, tasks = look(&task);
+    *launch = (struct launch){0};
+    if (tasks == 1)
+        return TRI_OK;
+    if (task != 0)
+        fall_silent();
+    enum tri_status status = launch_ranks(launch, tasks, error);
+    if (!status && task == 0 && launch->rank != 0) /* a launcher counts as it likes */
+        fall_silent();
+    return status;
+}
+
+int launch_leave(struct launch *launch, int code)
+{
+    struct tri_error error = {0};
+    if (!launch->carrier)
+        return code;
+    if (code != EXIT_SUCCESS)
+        tri_fail(&error, TRI_BAD_INPUT, NULL, 0, "task %d has failed", launch->rank);
+    enum tri_status agreed = par_agree(launch->carrier, code == EXIT_SUCCESS ? TRI_OK : TRI_BAD_INPUT, &error);
+    launch_end(launch);
+    return code == EXIT_SUCCESS && agreed ? EXIT_FAILURE : code;
+}
