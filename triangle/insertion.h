@@ -14,6 +14,10 @@
  * owns, and corners of their neighbours: the same argument. New triangles have corners of the cavity and the new
  * vertex, so the block owns them: what it has owned it goes on owning, and what others own it never does.
  *
+ * Beside triangle/cavity.h this is a search of its own: here every edge has a neighbour and some have a corner at
+ * infinity, the block is a range of numbers, and nothing but links is wanted; there edges may be subsegments, which are
+ * told apart, the fence is a box, and regions and coordinates are kept for those who judge the fan.
+ *
  * A disk without a vertex inside is replaced by two triangles more than it had, whatever its place: so who inserts n
  * points knows beforehand how many triangles that takes, and nobody needs to be asked for room. */
 #ifndef TRIANGLE_INSERTION_H

@@ -125,6 +125,7 @@ static bool push_angle(struct tri_refiner *r, tri_triangle_id triangle, double s
 static bool push(struct tri_refiner *r, int32_t triangle, enum tri_badness badness, double shortest)
 {
     struct tri_entry entry = {triangle, r->mesh->tri[triangle].state};
+    assert(badness != TRI_GOOD && tri_is_live(&r->mesh->tri[triangle]));
     return badness == TRI_BAD_ANGLE ? push_angle(r, triangle, shortest)
                                     : tri_bad_queue_push_size(&r->queue, entry, badness == TRI_BAD_SIZE);
 }
@@ -293,6 +294,7 @@ static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, 
     struct tri_mesh *m = r->mesh;
     const struct tri_subsegment old = m->sub[s];
     int32_t n_left;
+    assert(s >= 0 && fraction > 0 && fraction < 1);
     if (tri_is_protected(r->options, &old))
         return refuse(r, TRI_EXCUSE_PROTECTED);
     enum tri_search found = find_split(r, s, fraction, &n_left);
@@ -330,6 +332,7 @@ static bool encroaches(const struct tri_refiner *r, int32_t i, bool *beyond)
 {
     const struct tri_cavity *c = &r->cavity;
     const struct tri_cavity_edge *edge = &c->edge[i], *next = edge + 1;
+    assert(i >= 0 && i < c->n_edges && edge->outer < 0); /* a wall */
     double cross = edge->area2, dot = edge->ra.x * next->ra.x + edge->ra.y * next->ra.y;
     *beyond = false;
     if (dot >= 0 && cross > 0)
@@ -450,6 +453,7 @@ static void count_point(struct tri_refiner *r)
 static bool at_limit(struct tri_refiner *r)
 {
     int64_t inserted = r->report->inserted_free + r->report->inserted_on_segments;
+    assert(r->options->max_steiner < 0 || inserted <= r->options->max_steiner);
     if (r->options->max_steiner < 0 || inserted < r->options->max_steiner)
         return false;
     return r->report->hit_limit = true;
@@ -598,6 +602,7 @@ static bool queue_chunk(struct tri_refiner *r)
         if ((r->options->conforming && !queue_beside(r, triangle)) || !queue_bad(r, triangle, false))
             return false;
     }
+    assert(r->next_listed <= r->n_worklist);
     r->limit = tri_bad_queue_median(&r->queue);
     return true;
 }
