@@ -1,9 +1,14 @@
 /* RULE. What is sure refuses, what is likely warns: areas ask for so many triangles beyond doubt, angles for about so
  * many. A mesh that fits stays in memory, which is quicker. */
+#define _DEFAULT_SOURCE /* access */
+
 #include "drivers/plan.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "drivers/resources.h"
 
@@ -117,6 +122,15 @@ static enum tri_status check_disk(const struct run *run, const struct estimate *
     return TRI_OK;
 }
 
+/* A folder that was asked for is tried before the work, which may take hours until it is needed. */
+static enum tri_status check_scratch(const char *folder, struct tri_error *error)
+{
+    if (folder && access(folder, W_OK | X_OK) != 0)
+        return tri_fail(error, TRI_CANNOT_WRITE, folder, 0, "cannot park a mesh in this directory: %s",
+                        strerror(errno));
+    return TRI_OK;
+}
+
 /* --- all together */
 
 static bool fits(const struct estimate *e, double left)
@@ -144,6 +158,8 @@ enum tri_status plan_make(struct run_plan *plan, const struct run *run, const st
     enum tri_status status =
         plan->swept ? check_sweep(e, left, console, error) : check_memory(e, left, obstacle, console, error);
     status = status ? status : check_disk(run, e, console, error);
+    if (!status && plan->swept)
+        status = check_scratch(run->hooks->limits.scratch, error);
     if (!status && plan->swept)
         say_sweep(console, e);
     return status;

@@ -65,6 +65,15 @@ program 0 -pqa square.poly --max-area 1e-9 --output x.h5 --memory 4G --dry-run
 matches '^  Way: swept'
 wrote
 
+# --- a folder for what is parked is tried before the work
+PTRIANGLE_TEST_SWEEP=1 program 1 -pq30a0.01 square.poly --output x.h5 --scratch nowhere
+complains 'nowhere: cannot park a mesh in this directory: No such file or directory'
+check "it comes before the work" sh -c '! grep -q "^Sweeping" .out'
+wrote
+program 0 -pq30a0.01 square.poly --output x.h5 --scratch nowhere
+wrote x.h5 x.xdmf
+rm -f x.h5 x.xdmf
+
 # --- a checkpoint after each column; stopped, killed, and on again
 fresh letter.poly
 program 0 -Qpq30a0.002 letter --output whole.h5
