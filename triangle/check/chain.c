@@ -322,11 +322,13 @@ static enum tri_status note_missing(struct checker *c, struct tri_point from, st
     return TRI_OK;
 }
 
-/* Step 3. Pieces as short as the tolerance are beneath notice. */
+/* Step 3. Pieces as short as the tolerance are beneath notice; pieces whose ends are not surely on the segment close no
+ * face (overlap.c). */
 static enum tri_status ask_about(struct chains *k, const struct line *l, struct tri_point begin, struct tri_point end)
 {
     double from = along(l, begin), to = along(l, end);
-    enum tri_status status = note_missing(k->c, begin, end);
+    bool sure = check_surely_meets(l->a, l->b, begin) && check_surely_meets(l->a, l->b, end);
+    enum tri_status status = sure ? note_missing(k->c, begin, end) : TRI_OK;
     if (to - from <= 4 * l->tolerance)
         return status;
     for (int i = 1; i <= 3 && status == TRI_OK; i++) {

@@ -327,6 +327,13 @@ static inline bool check_same_place(struct tri_point p, struct tri_point q)
 {
     return p.x == q.x && p.y == q.y;
 }
+/* Is p an end of the segment a-b, or exactly on its line? Between that and the tolerance nobody can say whether the
+ * segment meets it, or leaves a slit. */
+static inline bool check_surely_meets(struct tri_point a, struct tri_point b, struct tri_point p)
+{
+    return check_same_place(p, a) || check_same_place(p, b) || tri_orient2d(a, b, p) == 0;
+}
+
 /* A coordinate as it was given. */
 static inline double check_given(const struct checker *c, double x)
 {

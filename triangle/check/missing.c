@@ -1,7 +1,7 @@
 /* Missing pieces, cut where they meet.
  *
  *   1. In order of their left ends, each is compared with those that begin before it ends.
- *   2. An end of one that lies on the other within the tolerance cuts that there; where no end does, but the two cross
+ *   2. An end of one that surely lies on the other cuts that there; where no end does, but the two cross
  *      (exactly decided), both are cut at the rounded crossing.
  *   3. What lies between the cuts of a piece, in order, are the pieces wanted; of equal ones one is kept. */
 #include "triangle/check/missing.h"
@@ -71,13 +71,13 @@ static enum tri_status add_cut(struct cutting *k, int32_t i, struct tri_point p)
     return TRI_OK;
 }
 
-/* Between the ends of the piece, within the tolerance of its line? */
-static bool is_inside(const struct cutting *k, const struct check_piece *s, struct tri_point p)
+/* Between the ends of the piece, surely on it? */
+static bool is_inside(const struct check_piece *s, struct tri_point p)
 {
-    double x = s->to.x - s->from.x, y = s->to.y - s->from.y, length = sqrt(x * x + y * y);
+    double x = s->to.x - s->from.x, y = s->to.y - s->from.y;
     double along = (p.x - s->from.x) * x + (p.y - s->from.y) * y;
-    return along > 0 && along < length * length && !check_same_place(p, s->from) && !check_same_place(p, s->to) &&
-           fabs((p.x - s->from.x) * y - (p.y - s->from.y) * x) <= k->tolerance * length;
+    return along > 0 && along < x * x + y * y && !check_same_place(p, s->from) && !check_same_place(p, s->to) &&
+           check_surely_meets(s->from, s->to, p);
 }
 
 static bool separates(const struct check_piece *s, const struct check_piece *r)
@@ -101,7 +101,7 @@ static enum tri_status meet(struct cutting *k, int32_t i, int32_t j)
     int n = 0;
     enum tri_status status = TRI_OK;
     for (int end = 0; end < 4 && status == TRI_OK; end++) {
-        if (!is_inside(k, end < 2 ? s : r, ends[end]))
+        if (!is_inside(end < 2 ? s : r, ends[end]))
             continue;
         status = add_cut(k, end < 2 ? i : j, ends[end]);
         n++;
