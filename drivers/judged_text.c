@@ -250,6 +250,7 @@ static enum tri_status read_file(struct rows *r, const char *path, const char *f
     r->window = &window;
     if (!status)
         status = take(r, folder, error);
+    r->window = NULL;
     tri_window_free(&window);
     return status;
 }

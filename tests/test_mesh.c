@@ -76,6 +76,18 @@ static void test_points_are_taken_over(void **state)
 }
 
 /* All coordinates land where the exact predicates can carry them, by a power of two. */
+/* Of no points there need be no array. */
+static void test_no_points_with_attributes(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = {.n_attributes = 2};
+    struct tri_mesh mesh;
+    assert_int_equal(tri_mesh_init(&mesh, NULL), TRI_OK);
+    assert_int_equal(tri_mesh_take_points(&mesh, &pslg, NULL), TRI_OK);
+    assert_int_equal(mesh.n_vertices, 0);
+    tri_mesh_free(&mesh);
+}
+
 static void test_units_bring_coordinates_into_range(void **state)
 {
     (void)state;
@@ -247,6 +259,7 @@ int main(void)
         cmocka_unit_test(test_growth_keeps_content_and_alignment),
         cmocka_unit_test(test_too_large_is_refused),
         cmocka_unit_test(test_points_are_taken_over),
+        cmocka_unit_test(test_no_points_with_attributes),
         cmocka_unit_test(test_units_bring_coordinates_into_range),
         cmocka_unit_test(test_compaction_keeps_a_valid_mesh),
         cmocka_unit_test(test_compaction_of_nothing),

@@ -314,7 +314,7 @@ enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_psl
         mesh->vertex_markers[i] = pslg->markers ? pslg->markers[i] : 0;
         mesh->feature[i] = HUGE_VAL;
     }
-    if (attributes)
+    if (n > 0 && attributes > 0)
         memcpy(mesh->attributes, pslg->attributes, (size_t)n * (size_t)attributes * sizeof *mesh->attributes);
     mesh->n_vertices = mesh->n_input = n;
     return TRI_OK;
