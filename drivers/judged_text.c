@@ -53,17 +53,6 @@ static const char *parse_attributes(struct tri_fields *fields, int64_t n, double
     return NULL;
 }
 
-/* Markers beyond int32_t wrap, as they do in Triangle. */
-static const char *parse_marker(struct tri_fields *fields, int32_t *marker)
-{
-    int64_t value;
-    if (tri_fields_integer(fields, &value) == TRI_FIELD_BAD)
-        return "has a marker that is not a number";
-    uint32_t low = (uint32_t)((uint64_t)value & UINT32_MAX);
-    memcpy(marker, &low, sizeof low);
-    return NULL;
-}
-
 static const char *parse_vertex(void *user, size_t i, struct tri_fields *fields)
 {
     struct rows *r = user;
@@ -74,7 +63,7 @@ static const char *parse_vertex(void *user, size_t i, struct tri_fields *fields)
     if (tri_fields_real(fields, &r->reals[2 * i + 1]) != TRI_FIELD_GOOD)
         return "has no y coordinate that is a finite number";
     const char *fault = parse_attributes(fields, r->fields[2], &unused);
-    return fault || r->fields[3] <= 0 ? fault : parse_marker(fields, &r->markers[i]);
+    return fault || r->fields[3] <= 0 ? fault : tri_fields_marker(fields, &r->markers[i]);
 }
 
 /* n numbers that count from the base; beyond the vertices they stay so. */
@@ -110,7 +99,7 @@ static const char *parse_segment(void *user, size_t i, struct tri_fields *fields
     tri_fields_skip(fields); /* its number */
     if (!parse_numbers(fields, 2, r->text->base, r->numbers + 2 * i))
         return "has no two endpoints that are numbers";
-    return r->fields[1] > 0 ? parse_marker(fields, &r->markers[i]) : NULL;
+    return r->fields[1] > 0 ? tri_fields_marker(fields, &r->markers[i]) : NULL;
 }
 
 static const char *parse_neighbors(void *user, size_t i, struct tri_fields *fields)

@@ -133,17 +133,6 @@ static const char *parse_attributes(struct tri_fields *fields, double *attribute
     return NULL;
 }
 
-/* Markers beyond int32_t wrap, as they do in Triangle. */
-static const char *parse_marker(struct tri_fields *fields, int32_t *marker)
-{
-    int64_t value;
-    if (tri_fields_integer(fields, &value) == TRI_FIELD_BAD)
-        return "has a marker that is not a number";
-    const uint32_t low = (uint32_t)((uint64_t)value & UINT32_MAX);
-    memcpy(marker, &low, sizeof low);
-    return NULL;
-}
-
 static double *row_of(double *values, size_t i, int32_t n) { return values ? values + i * (size_t)n : NULL; }
 
 /* --- points */
@@ -155,7 +144,7 @@ static const char *parse_vertex(void *user, size_t i, struct tri_fields *fields)
     if (!fault)
         fault = parse_attributes(fields, row_of(out->attributes, i, out->n_attributes), out->n_attributes);
     if (!fault && out->markers)
-        fault = parse_marker(fields, &out->markers[i]);
+        fault = tri_fields_marker(fields, &out->markers[i]);
     return fault;
 }
 
@@ -262,7 +251,7 @@ static const char *parse_segment(void *user, size_t i, struct tri_fields *fields
             return "has an endpoint that is not the number of a vertex";
         rows->out->segments[2 * i + end] = index;
     }
-    return rows->out->segment_markers ? parse_marker(fields, &rows->out->segment_markers[i]) : NULL;
+    return rows->out->segment_markers ? tri_fields_marker(fields, &rows->out->segment_markers[i]) : NULL;
 }
 
 /* Why the segment will be skipped, or NULL. */

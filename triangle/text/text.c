@@ -452,3 +452,13 @@ enum tri_status tri_cursor_table(struct tri_cursor *cursor, const struct tri_tab
     free(parse.outcomes);
     return status;
 }
+
+const char *tri_fields_marker(struct tri_fields *fields, int32_t *marker)
+{
+    int64_t value;
+    if (tri_fields_integer(fields, &value) == TRI_FIELD_BAD)
+        return "has a marker that is not a number";
+    const uint32_t low = (uint32_t)((uint64_t)value & UINT32_MAX);
+    memcpy(marker, &low, sizeof low);
+    return NULL;
+}

@@ -139,6 +139,10 @@ static inline enum tri_field tri_fields_integer(struct tri_fields *fields, int64
     return TRI_FIELD_GOOD;
 }
 
+/* A marker; beyond int32_t it wraps, as in Triangle. NULL, or what is wrong with the field: words to follow the line's
+ * name. */
+const char *tri_fields_marker(struct tri_fields *fields, int32_t *marker);
+
 /* --- records in order */
 
 struct tri_cursor {
