@@ -2,18 +2,11 @@
  * shares of the columns; and one error on all of them, wherever it comes from. */
 #include "fake_ranks.h"
 #include "support.h"
+#include "trials.h"
 
 #include "sched/ranks/ranks.h"
 #include "sched/ranks/relay.h"
 #include "sched/schedule.h"
-#include "triangle/quality.h"
-
-struct trial {
-    const char *file;
-    double angle, target, block; /* target: triangles to the order, from which the area bound is drawn; 0: none */
-    bool conforming, regions;
-    int protect;
-};
 
 static const struct trial trials[] = {
     {"letter.poly", 30, 20000, 500, false, false, 0},
@@ -35,42 +28,6 @@ static const struct trial trials[] = {
 };
 
 enum { N_TRIALS = sizeof trials / sizeof *trials, MOST_RANKS = 9 };
-
-struct start {
-    struct tri_pslg pslg;
-    struct tri_options options;
-};
-
-static double total_area(const struct tri_mesh *mesh)
-{
-    double sum = 0;
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
-        sum += 0.5 * tri_shape_of(mesh->xy, mesh->tri[t].v).area2;
-    return sum * mesh->unit * mesh->unit;
-}
-
-static struct tri_mesh coarse_mesh(const struct start *start)
-{
-    struct tri_options options = start->options;
-    options.refine = false;
-    return support_generate(&start->pslg, &options, NULL);
-}
-
-static struct start start_of(const struct trial *trial)
-{
-    struct start start = {.options = support_quality(trial->angle, 0)};
-    if (!support_read(trial->file, &start.pslg))
-        fail_msg("cannot read %s", trial->file);
-    start.options.keep_hull = start.pslg.n_segments == 0;
-    start.options.spread_regions = start.options.quality.region_areas = trial->regions;
-    start.options.quality.conforming = trial->conforming;
-    start.options.quality.protect = trial->protect;
-    struct tri_mesh mesh = coarse_mesh(&start);
-    if (trial->target > 0)
-        start.options.quality.max_area = total_area(&mesh) / (0.65 * trial->target);
-    tri_mesh_free(&mesh);
-    return start;
-}
 
 /* --- what is handed out */
 
@@ -194,7 +151,8 @@ static struct par_options small_blocks(const struct trial *trial, int threads)
 
 static struct member new_member(const struct start *start, const struct par_options *options)
 {
-    return (struct member){.start = start, .options = *options, .mesh = coarse_mesh(start), .stream = new_stream(true)};
+    struct tri_mesh mesh = trials_coarse_mesh(start);
+    return (struct member){.start = start, .options = *options, .mesh = mesh, .stream = new_stream(true)};
 }
 
 /* Any shares, empty ones among them. */
@@ -262,7 +220,7 @@ static void test_ranks_hand_out_what_one_process_does(void **state)
     (void)state;
     struct support_random random = {7};
     for (int i = 0; i < N_TRIALS; i++) {
-        struct start start = start_of(&trials[i]);
+        struct start start = trials_start_of(&trials[i]);
         struct par_options options = small_blocks(&trials[i], 2);
         struct member alone = new_member(&start, &options), member[MOST_RANKS];
         refine_to(&alone);
@@ -294,7 +252,7 @@ static void test_an_error_of_one_is_an_error_of_all(void **state)
 {
     (void)state;
     for (int fails = 0; fails < 4; fails++) { /* 3: rank 0, of tiles that others have sent */
-        struct start start = start_of(&trials[1]);
+        struct start start = trials_start_of(&trials[1]);
         struct par_options options = small_blocks(&trials[1], 1);
         struct member member[3];
         run_ranks(member, &start, &options, 3, NULL, fails < 3 ? fails : 0, fails == 3);

@@ -13,16 +13,7 @@
 #include "sched/schedule.h"
 #include "sched/sweep/numbering.h"
 #include "tile_order.h"
-#include "triangle/quality.h"
-
-
-/* An input and bounds; `target` triangles to the order, from which the area bound is drawn (0: none). */
-struct trial {
-    const char *file;
-    double angle, target, block;
-    bool conforming, regions;
-    int protect;
-};
+#include "trials.h"
 
 /* The first twelve are run by every test that looks for differences; the rest are inputs of the unkind sort. */
 static const struct trial trials[] = {
@@ -58,47 +49,10 @@ static const struct trial trials[] = {
 
 enum { N_TRIALS = sizeof trials / sizeof *trials, N_USUAL = 12 };
 
-/* What a trial starts from: the constrained triangulation and the options of refinement. */
-struct start {
-    struct tri_pslg pslg;
-    struct tri_options options;
-};
-
-static double total_area(const struct tri_mesh *mesh)
-{
-    double sum = 0;
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
-        sum += 0.5 * tri_shape_of(mesh->xy, mesh->tri[t].v).area2;
-    return sum * mesh->unit * mesh->unit;
-}
-
-static struct tri_mesh coarse_mesh(const struct start *start)
-{
-    struct tri_options options = start->options;
-    options.refine = false;
-    return support_generate(&start->pslg, &options, NULL);
-}
-
-static struct start start_of(const struct trial *trial)
-{
-    struct start start = {.options = support_quality(trial->angle, 0)};
-    if (!support_read(trial->file, &start.pslg))
-        fail_msg("cannot read %s", trial->file);
-    start.options.keep_hull = start.pslg.n_segments == 0;
-    start.options.spread_regions = start.options.quality.region_areas = trial->regions;
-    start.options.quality.conforming = trial->conforming;
-    start.options.quality.protect = trial->protect;
-    struct tri_mesh mesh = coarse_mesh(&start);
-    if (trial->target > 0)
-        start.options.quality.max_area = total_area(&mesh) / (0.65 * trial->target);
-    tri_mesh_free(&mesh);
-    return start;
-}
-
 static struct tri_mesh refine(const struct start *start, const struct par_options *options, struct par_report *report)
 {
     struct tri_error error = {0};
-    struct tri_mesh mesh = coarse_mesh(start);
+    struct tri_mesh mesh = trials_coarse_mesh(start);
     if (par_refine(&mesh, &start->options.quality, options, report, &error) != TRI_OK)
         fail_msg("par_refine: %s", error.text);
     return mesh;
@@ -161,7 +115,7 @@ static void test_bounds_and_size_are_those_of_the_sequential_loop(void **state)
 {
     (void)state;
     for (int i = 0; i < N_TRIALS; i++) {
-        struct start start = start_of(&trials[i]);
+        struct start start = trials_start_of(&trials[i]);
         struct par_options options = small_blocks(trials[i].block, 2);
         struct par_report report;
         struct tri_mesh mesh = refine(&start, &options, &report);
@@ -193,7 +147,7 @@ static void test_any_number_of_threads_and_order_of_blocks_make_one_mesh(void **
         unsigned shuffle;
     } runs[] = {{3, 0}, {1, 1}, {8, 0}, {2, 4711}};
     for (int i = 0; i < N_TRIALS; i++) {
-        struct start start = start_of(&trials[i]);
+        struct start start = trials_start_of(&trials[i]);
         struct par_options options = small_blocks(trials[i].block, 1);
         struct par_report first_report, report;
         print_message("  %s\n", trials[i].file);
@@ -221,12 +175,12 @@ static void test_room_moves_ids_alone(void **state)
     (void)state;
     static const int32_t rooms[] = {1, 50, 333};
     for (int i = 0; i < N_USUAL; i++) {
-        struct start start = start_of(&trials[i]);
+        struct start start = trials_start_of(&trials[i]);
         struct par_options options = small_blocks(trials[i].block, 2);
         struct par_report report, tight;
         struct tri_mesh mesh = refine(&start, &options, &report);
         struct support_places places = support_places(&mesh);
-        struct tri_mesh coarse = coarse_mesh(&start);
+        struct tri_mesh coarse = trials_coarse_mesh(&start);
         int32_t n_kept = coarse.n_vertices;
         tri_mesh_free(&coarse);
         for (int k = 0; k < 3; k++) {
@@ -347,7 +301,7 @@ static enum tri_status refine_to(struct stream *stream, const struct start *star
                                  struct par_report *report, struct tri_mesh *mesh)
 {
     struct par_options options = *how;
-    *mesh = coarse_mesh(start);
+    *mesh = trials_coarse_mesh(start);
     *stream = (struct stream){0};
     const struct tri_sink sink = {stream, begin_stream, take_tile, end_stream};
     options.sink = &sink;
@@ -367,12 +321,12 @@ static void test_budgets_hand_out_the_same_tiles(void **state)
     (void)state;
     int n_ways[3] = {0}, begun_again = 0;
     for (int i = 0; i < N_TRIALS; i++) {
-        struct start start = start_of(&trials[i]);
+        struct start start = trials_start_of(&trials[i]);
         struct par_options options = small_blocks(trials[i].block, 2);
         struct par_report report, tight_report;
         struct tri_mesh mesh, tight;
         struct stream whole, parts;
-        mesh = coarse_mesh(&start);
+        mesh = trials_coarse_mesh(&start);
         int32_t n_kept = mesh.n_vertices;
         tri_mesh_free(&mesh);
         assert_int_equal(refine_to(&whole, &start, &options, &report, &mesh), TRI_OK);
@@ -467,7 +421,7 @@ static void test_a_stream_has_the_numbers_of_the_mesh(void **state)
     enum { SCHEDULE, SEQUENTIAL, BY_BLOCK, WAYS };
     for (int i = 0; i < N_USUAL; i++)
         for (int way = 0; way < WAYS; way++) {
-            struct start start = start_of(&trials[i]);
+            struct start start = trials_start_of(&trials[i]);
             struct whole_run run = {.start = &start, .options = small_blocks(trials[i].block, 2)};
             run.options.cell_triangles = way == SEQUENTIAL ? 1e9 : run.options.cell_triangles;
             run.options.by_block = way == BY_BLOCK;
@@ -495,7 +449,7 @@ static enum tri_status refine_parked(const struct start *start, const char *scra
     struct par_options options = small_blocks(256, 2);
     struct par_report report;
     struct stream stream = {0};
-    struct tri_mesh mesh = coarse_mesh(start);
+    struct tri_mesh mesh = trials_coarse_mesh(start);
     const struct tri_sink sink = {&stream, begin_stream, take_tile, end_stream};
     options.sink = &sink;
     options.memory = 1000;
@@ -770,10 +724,10 @@ static void test_protected_segments_stay_whole(void **state)
     (void)state;
     for (int protect = 1; protect <= 2; protect++) {
         struct trial trial = {"section.poly", 25, 20000, 400, false, true, protect};
-        struct start start = start_of(&trial);
+        struct start start = trials_start_of(&trial);
         struct par_options options = small_blocks(trial.block, 2);
         struct par_report report;
-        struct tri_mesh before = coarse_mesh(&start), mesh = refine(&start, &options, &report);
+        struct tri_mesh before = trials_coarse_mesh(&start), mesh = refine(&start, &options, &report);
         int32_t old_edge = 0, edge = 0;
         for (int32_t s = 0; s < before.n_subs; s++)
             old_edge += before.sub[s].side[0] == TRI_NONE || before.sub[s].side[1] == TRI_NONE;
@@ -808,7 +762,7 @@ static void test_any_unit_makes_the_same_mesh(void **state)
             other.options.quality.max_area = ldexp(start.options.quality.max_area, 2 * exponents[i]);
             for (int32_t k = 0; k < 2 * other.pslg.n_points; k++)
                 other.pslg.points[k] = ldexp(other.pslg.points[k], exponents[i]);
-            struct tri_mesh mesh = coarse_mesh(&other);
+            struct tri_mesh mesh = trials_coarse_mesh(&other);
             if (par_refine(&mesh, &other.options.quality, &options, &report, &error) != TRI_OK)
                 fail_msg("2^%d: %s", exponents[i], error.text);
             struct support_set a = support_triangles(&plain), b = support_triangles(&mesh);
@@ -832,7 +786,7 @@ static void test_small_and_empty_meshes(void **state)
     static const char *const names[] = {"nasty/hole_eats_all.poly", "nasty/collinear.poly", "square.poly"};
     for (int i = 0; i < 3; i++) {
         struct trial trial = {names[i], 20, 0, 1, false, false, 0};
-        struct start start = start_of(&trial);
+        struct start start = trials_start_of(&trial);
         struct par_options options = small_blocks(trial.block, 2);
         struct par_report report;
         struct tri_mesh mesh = refine(&start, &options, &report);
@@ -936,8 +890,8 @@ enum { CALLERS = 3 };
 static void start_callers(struct caller caller[CALLERS])
 {
     for (int i = 0; i < CALLERS; i++) {
-        caller[i] = (struct caller){.start = start_of(&trials[i]), .options = small_blocks(trials[i].block, 2)};
-        caller[i].mesh = coarse_mesh(&caller[i].start);
+        caller[i] = (struct caller){.start = trials_start_of(&trials[i]), .options = small_blocks(trials[i].block, 2)};
+        caller[i].mesh = trials_coarse_mesh(&caller[i].start);
     }
 }
 
@@ -1001,7 +955,7 @@ static bool fail_once(const struct start *start, const struct par_options *optio
     struct tri_error error = {0}, fault = {0};
     struct par_report report;
     long long before = support_held;
-    struct tri_mesh mesh = coarse_mesh(start);
+    struct tri_mesh mesh = trials_coarse_mesh(start);
     support_calls = 0;
     support_fail_ever_after = ever_after;
     support_fail_at = k;
@@ -1043,7 +997,7 @@ static bool fail_streaming_once(const struct start *start, const struct par_opti
     const struct tri_sink sink = {NULL, begin_nothing, take_nothing, NULL};
     struct par_options how = *options;
     long long before = support_held;
-    struct tri_mesh mesh = coarse_mesh(start);
+    struct tri_mesh mesh = trials_coarse_mesh(start);
     how.sink = &sink;
     support_calls = 0;
     support_fail_ever_after = false;
