@@ -55,12 +55,15 @@ ln -s pt-triangle.h prefix/include/triangle.h # the clients know it by this name
 libraries=$(dirname "$(find prefix -name libptriangle.so)")
 mkdir shared_clients
 use "$work/prefix" shared_clients
-for name in pt-triangle tritext tricheck ptriangle; do
+for name in pt-triangle tritext tricheck ptriangle ptriangle-mpi; do
+    [ "$name" != ptriangle-mpi ] || [ -e "$libraries/lib$name.so" ] || continue # where there is no MPI
     [ -e "$libraries/lib$name.so.0.1.0" ] || fail "no lib$name.so.0.1.0"
     readelf -d "$libraries/lib$name.so" | grep -q "SONAME.*\[lib$name\.so\.0\.1\]" || fail "soname of $name"
     nm -D --defined-only "$libraries/lib$name.so" | awk '{ print $3 }'
 done | sort -u >exported.txt
-sed -n 's/^ *\([a-z0-9_]*\);$/\1/p' "$root/cmake/exports.map" | sort >listed.txt
+[ -e "$libraries/libptriangle-mpi.so" ] || echo par_stream_on >>exported.txt
+sort -o exported.txt exported.txt
+sed -n 's/^ *\([a-z0-9_]*\);.*$/\1/p' "$root/cmake/exports.map" | sort >listed.txt
 diff listed.txt exported.txt || fail "what is exported is not what is listed"
 for name in $(sed -n 's/^ *\(\(tri\|par\)_[a-z0-9_]*\);$/\1/p' "$root/cmake/exports.map"); do
     grep -rqE "\b$name\(" prefix/include || fail "$name is exported, but in no public header"
