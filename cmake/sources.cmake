@@ -130,12 +130,15 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/worklist.c
     sched/phase.c
     sched/ranks/carrier.c
-    sched/ranks/fragment.c
+    sched/ranks/borrow.c
     sched/ranks/hand_out.c
-    sched/ranks/borders.c
+    sched/ranks/lend.c
+    sched/ranks/paste.c
     sched/ranks/ranks.c
     sched/ranks/relay.c
     sched/ranks/stream.c
+    sched/ranks/talk.c
+    sched/ranks/territory.c
     sched/schedule.c
     sched/triangulate.c
     sched/mesh.c)

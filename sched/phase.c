@@ -19,7 +19,6 @@ struct task {
     int32_t n_worklist;
     int32_t expected;       /* triangles, to the order */
     struct tri_fence fence, active; /* the second in the caller's coordinates */
-    struct tri_fence known;    /* what is here of the fence */
     bool has_margin;
     struct par_room room;
     struct par_view view;
@@ -27,7 +26,9 @@ struct task {
     struct tri_refine_report report;
     struct tri_refiner *refiner;
     struct par_worklist left;  /* what gate and fence left */
-    bool left_lost;         /* no memory for `left` */
+    struct par_worklist changed, asked; /* where others hold a part of the block: made by it, waited for */
+    bool lost;              /* no memory for one of these lists */
+    struct tri_part part;
     bool pausing;
     int pauses;             /* so far */
     enum tri_status status;
@@ -54,7 +55,22 @@ static void leave_triangle(void *user, int32_t triangle)
 {
     struct task *task = user;
     if (!par_worklist_add(&task->left, triangle))
-        task->left_lost = true;
+        task->lost = true;
+}
+
+static void note_changes(void *user, const tri_triangle_id *triangle, int32_t n)
+{
+    struct task *task = user;
+    for (int32_t i = 0; i < n; i++)
+        if (!par_worklist_add(&task->changed, triangle[i]))
+            task->lost = true;
+}
+
+static void ask_for(void *user, const tri_vertex_id edge[2])
+{
+    struct task *task = user;
+    if (!par_worklist_add(&task->asked, edge[0]) || !par_worklist_add(&task->asked, edge[1]))
+        task->lost = true;
 }
 
 /* The paper's test: is the new point in the cells that are active now? */
@@ -67,6 +83,8 @@ static bool is_active(void *user, const double p[2])
 static int32_t owner_now(const struct phase *p, int32_t t)
 {
     int32_t block = par_owner_of(p->partition, p->phase, p->state->mesh, t);
+    if (p->state->share)
+        return block == TRI_NONE || p->state->share->is_mine[block] ? block : TRI_NONE;
     bool mine = p->only == TRI_NONE || block == TRI_NONE || block / p->partition->n_rows == p->only;
     return mine ? block : TRI_NONE;
 }
@@ -195,9 +213,9 @@ static void set_up(struct phase *p, struct task *task)
     task->options = *state->quality;
     task->options.gate = state->options->margin ? is_active : NULL; /* else the fence says all */
     task->options.gate_user = &task->active;
-    task->known = state->known ? state->known[task->block] : task->fence;
-    task->options.fence = &task->known;
-    task->options.whole = state->known ? &task->fence : NULL;
+    task->options.fence = &task->fence;
+    task->part = (struct tri_part){note_changes, ask_for, task};
+    task->options.part = state->share && state->share->is_border[task->block] ? &task->part : NULL;
     task->options.worklist = task->worklist;
     task->options.n_worklist = task->n_worklist;
     task->options.deferred = leave_triangle;
@@ -223,7 +241,7 @@ static enum tri_status deal_room(struct phase *p, bool first, struct tri_error *
     enum tri_status status = TRI_OK;
     for (int32_t i = 0; !status && i < p->n_tasks; i++) {
         struct task *task = &p->tasks[i];
-        if (!task->pausing)
+        if (!task->pausing || task->asked.n > 0)
             continue;
         int32_t more = first ? task->expected : more_for(task);
         if (p->state->options->tight_room > 0)
@@ -232,6 +250,24 @@ static enum tri_status deal_room(struct phase *p, bool first, struct tri_error *
         p->state->report->pauses += !first;
         status = par_room_extend(&task->room, &p->state->spare, p->state->mesh, more, error);
     }
+    return status;
+}
+
+/* What tasks wait for, if that is not room, all at once. */
+static enum tri_status fetch_more(struct phase *p, struct tri_error *error)
+{
+    struct par_worklist asked = {0};
+    bool memory = true;
+    for (int32_t i = 0; i < p->n_tasks; i++) {
+        struct task *task = &p->tasks[i];
+        memory = memory && !task->lost;
+        for (int32_t k = 0; memory && k < task->asked.n; k++)
+            memory = par_worklist_add(&asked, task->asked.item[k]);
+    }
+    enum tri_status status = memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a phase");
+    if (!status && asked.n > 0)
+        status = p->state->share->more(p->state->share->user, &asked, error);
+    free(asked.item);
     return status;
 }
 
@@ -260,6 +296,7 @@ static void run_task(struct phase *p, struct task *task)
     assert(task->pausing);
     task->view.owners = (struct tri_owners){p->mark, task->block + 1};
     par_room_enter(&task->room, &task->view, p->state->mesh);
+    task->asked.n = 0;
     task->status = TRI_OK;
     if (!task->refiner)
         task->status = tri_refiner_new(&task->refiner, &task->view.mesh, &task->options, &task->report, &task->error);
@@ -352,7 +389,6 @@ void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *a
     sum->inserted_free += add->inserted_free;
     sum->inserted_on_segments += add->inserted_on_segments;
     sum->gated += add->gated;
-    sum->short_of += add->short_of;
     sum->fenced += add->fenced;
     for (int k = 0; k < TRI_EXCUSES; k++)
         sum->given_up[k] += add->given_up[k];
@@ -374,9 +410,16 @@ struct leftovers {
     struct par_keys key;
 };
 
-static uint64_t next_key(struct par_state *state, int32_t column)
+uint64_t par_key_of(const struct par_partition *partition, int round, int phase, int32_t block)
 {
-    return (uint64_t)state->round << 56 | (uint64_t)(column + 1) << 32 | state->n_left++;
+    int32_t column = block / partition->n_rows, row = block % partition->n_rows;
+    int32_t place = (2 * column + phase % 2) * partition->n_rows + row;
+    return (uint64_t)round << 56 | (uint64_t)(place + 1) << 32;
+}
+
+static uint64_t key_of_left(const struct phase *p, int32_t block, int32_t n)
+{
+    return par_key_of(p->partition, p->state->round, p->phase, block) | (uint32_t)n;
 }
 
 /* A triangle goes back once, however often it was left: one with three encroached walls would count threefold, and
@@ -388,11 +431,12 @@ static bool gather_left(const struct phase *p, struct leftovers *left)
     bool memory = par_triangle_set_of(&seen, &none, p->state->mesh->n_triangles);
     for (int32_t i = 0; i < p->n_tasks; i++) {
         const struct task *task = &p->tasks[i];
-        memory = memory && !task->left_lost;
+        int32_t before = left->item.n;
+        memory = memory && !task->lost;
         for (int32_t k = 0; memory && k < task->left.n; k++)
             memory = par_worklist_add_new(&left->item, &seen, task->left.item[k]);
         while (memory && left->key.n < left->item.n)
-            memory = add_key(&left->key, next_key(p->state, task->block / p->partition->n_rows));
+            memory = add_key(&left->key, key_of_left(p, task->block, left->key.n - before));
     }
     free(seen.word);
     return memory;
@@ -422,10 +466,19 @@ static bool merge_left(struct par_state *state, const struct leftovers *left)
     return memory;
 }
 
+static bool gather_changes(const struct phase *p)
+{
+    bool memory = true;
+    for (int32_t i = 0; i < p->n_tasks; i++)
+        for (int32_t k = 0; memory && k < p->tasks[i].changed.n; k++)
+            memory = par_worklist_add(&p->state->share->changed, p->tasks[i].changed.item[k]);
+    return memory;
+}
+
 static bool take_back(struct phase *p)
 {
     struct leftovers left = {{0}, {0}};
-    bool memory = gather_left(p, &left) && merge_left(p->state, &left);
+    bool memory = gather_left(p, &left) && merge_left(p->state, &left) && gather_changes(p);
     free(left.item.item);
     free(left.key.item);
     return memory;
@@ -446,6 +499,8 @@ static enum tri_status collect(struct phase *p, struct tri_error *error)
         memory = memory && report_block(p, task);
         par_room_return(&task->room, &p->state->spare);
         free(task->left.item);
+        free(task->changed.item);
+        free(task->asked.item);
         tri_refiner_free(task->refiner);
     }
     return status || memory ? status : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for bad triangles");
@@ -473,6 +528,7 @@ static enum tri_status run_phase(struct phase *p, struct tri_error *error)
             status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the owners of triangles");
         report->seconds_room += tri_seconds() - dealing;
         waiting = !status && run_tasks(p);
+        status = status ? status : fetch_more(p, error);
     }
     free(p->mark);
     p->mark = NULL;

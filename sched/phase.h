@@ -19,11 +19,22 @@ void par_tell(const struct par_state *state, int phase);
 
 void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add);
 
-/* Who left each triangle of a worklist, and when: round (8 bits), column of the block + 1 (24 bits), how many had been
- * left before (32 bits). Of those that no block has had, their places in the list. */
+/* Who left each triangle of a worklist, and when: round (8 bits), place of the block in the order of all, by column,
+ * phase and row, + 1 (24 bits), how many it had left before (32 bits). Of those that no block has had, their places in
+ * the list. So keys do not depend on who else was at work. */
 struct par_keys {
     uint64_t *item;
     int32_t n, capacity;
+};
+
+/* How ranks share the blocks of a phase (sched/ranks/ranks.h). */
+struct par_share {
+    const bool *is_mine;   /* [blocks] */
+    const bool *is_border; /* [blocks] others hold a part of it: what is not here of that is TRI_BEYOND */
+    struct par_worklist changed; /* triangles made by such blocks, some of them several times */
+    /* Brings what lies around these vertices, which blocks wait for. */
+    enum tri_status (*more)(void *user, const struct par_worklist *asked, struct tri_error *error);
+    void *user;
 };
 
 /* What the phases of a schedule hand on. */
@@ -34,14 +45,12 @@ struct par_state {
     int threads;
     struct par_worklist worklist;   /* triangles that may be bad, in canonical order; some may have gone since */
     struct par_keys key;     /* [worklist.n] ascending; n == 0: no block has had any */
-    uint32_t n_left;         /* by blocks so far */
     struct par_room spare;   /* unused ranges of the arrays */
     double radius;           /* largest circumradius in the worklist when it was last filled */
     struct par_report *report;
     int32_t n_schedules;     /* begun so far; the last is the one that works */
     int round;
-    const struct tri_fence *known; /* [blocks] what is here of each block's box; NULL: all. Where a block would have had
-                                      to look further, report->total.short_of says so */
+    struct par_share *share; /* NULL: all blocks are done here, with all that they may look at */
     int32_t n_kept;          /* vertices there were before */
     bool may_number;         /* nothing is refined after this schedule */
     struct par_partition cells; /* of the last schedule of the whole mesh: the tiles by which it is numbered */
@@ -51,6 +60,9 @@ struct par_state {
     bool delivered;          /* all have */
     struct par_park *park;   /* where the mesh lies; NULL: in memory */
 };
+
+/* The key of the first triangle that a block leaves in a phase of a round. */
+uint64_t par_key_of(const struct par_partition *partition, int round, int phase, int32_t block);
 
 /* Refines the blocks of one phase; takes from the worklist what they can take and puts back what they leave. only: the
  * column whose blocks have their turn, or TRI_NONE: all of them.

@@ -40,14 +40,11 @@ static bool grow(struct tri_cavity *c)
     return true;
 }
 
-static bool owns(struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t)
+static bool owns(const struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t)
 {
     for (int k = 0; c->fence && k < 3; k++) {
-        struct tri_point corner = mesh->xy[mesh->tri[t].v[k]];
-        if (!tri_fence_holds(c->fence, corner)) {
-            c->outside = corner;
+        if (!tri_fence_holds(c->fence, mesh->xy[mesh->tri[t].v[k]]))
             return false;
-        }
     }
     return true;
 }
@@ -60,6 +57,13 @@ static inline bool in_circle(const struct tri_mesh *mesh, struct tri_point p, co
     if (fabs(det) > DOUBT * (la * lb + (la + lb) * lc))
         return det > 0;
     return tri_in_circle_near(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]], p);
+}
+
+static enum tri_search stop_at(struct tri_cavity *c, tri_vertex_id a, tri_vertex_id b)
+{
+    c->beyond[0] = a;
+    c->beyond[1] = b;
+    return TRI_SEARCH_BEYOND;
 }
 
 /* Goes around the cavity, depth first and left first, so that edges come out in order: each edge that waits starts
@@ -82,10 +86,8 @@ static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh
             double det = ra.l * right + edge.rend.l * left - rapex.l * edge.area2;
             if (!in_circle(mesh, p, corners, ra.l, edge.rend.l, rapex.l, det))
                 break;
-            if (c->fence && !tri_fence_holds(c->fence, xy[apex])) {
-                c->outside = xy[apex];
+            if (c->fence && !tri_fence_holds(c->fence, xy[apex]))
                 return TRI_SEARCH_FENCED;
-            }
             if (n_tri == c->capacity && !grow(c))
                 return TRI_SEARCH_NO_MEMORY;
             assert(t->v[tri_next[e]] == edge.end && t->v[tri_prev[e]] == a);
@@ -95,8 +97,11 @@ static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh
             edge = (struct tri_pending){t->n[tri_next[e]], apex, t->region, rapex, left};
         }
         assert(n_edges < n_tri + 2 && n_pending <= n_tri + 1 && c->n_wall <= n_edges && a != edge.end);
-        if (edge.link < 0)
+        if (edge.link < 0) {
+            if (edge.link == TRI_BEYOND)
+                return stop_at(c, a, edge.end);
             c->wall[c->n_wall++] = n_edges;
+        }
         c->edge[n_edges++] = (struct tri_cavity_edge){edge.link, a, edge.region, TRI_NONE, ra, edge.area2};
         a = edge.end;
         ra = edge.rend;
@@ -233,6 +238,8 @@ enum tri_search tri_cavity_search_split(struct tri_cavity *c, const struct tri_m
         int32_t first = c->n_edges;
         if (sub->side[side] == TRI_NONE)
             continue;
+        if (sub->side[side] == TRI_BEYOND)
+            return stop_at(c, sub->v[0], sub->v[1]);
         tri_halfedge code = sub->side[side];
         assert(*tri_link_at(mesh, code) == ~s);
         enum tri_search found = explore_from(c, mesh, tri_of(code), tri_next[tri_edge(code)], 2);

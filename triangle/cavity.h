@@ -51,7 +51,7 @@ struct tri_pending { /* an edge behind which the search has not looked yet; it s
 struct tri_cavity {
     struct tri_point p;
     const struct tri_fence *fence; /* NULL: everything is owned */
-    struct tri_point outside;      /* after TRI_SEARCH_FENCED: the vertex that is not within it */
+    tri_vertex_id beyond[2];       /* after TRI_SEARCH_BEYOND: the ends of the edge behind which it lies */
     int32_t n_tri, n_edges, n_wall, capacity;
     int32_t n_left_tri;   /* of a split: triangles left of the subsegment, which come first */
     tri_region_id region; /* of the triangle at which the search began */
@@ -65,6 +65,7 @@ struct tri_cavity {
 enum tri_search {
     TRI_SEARCH_FOUND,
     TRI_SEARCH_FENCED,   /* a triangle of the cavity is not owned */
+    TRI_SEARCH_BEYOND,   /* a triangle that may be one of the cavity is not here (TRI_BEYOND) */
     TRI_SEARCH_OUTSIDE,  /* the point is not in the circumdisk of the start triangle, or coincides with a vertex */
     TRI_SEARCH_NO_MEMORY
 };

@@ -9,6 +9,9 @@
  * invariant buys: a search that must not cross constrained edges stops at a sign bit, loads nothing for it, and
  * unconstrained triangles pay nothing for constraints, markers and parents.
  *
+ * Where only a part of a mesh is here, what leads out of it is TRI_BEYOND. A search that meets that says so, and goes on
+ * once there is more.
+ *
  * Vertices are x, y pairs; attributes, markers and parents lie apart, since only new vertices touch them.
  *
  * Corners are ids below 2^28, triangles below 2^29 (4 * t + e is a non-negative int32_t). */
@@ -34,6 +37,7 @@ extern "C" {
 
 enum {
     TRI_NONE = -1,        /* no triangle on this side of a subsegment; no vertex; no parent */
+    TRI_BEYOND = INT32_MIN, /* a link, or a side of a subsegment, to a triangle in another address space: see below */
     TRI_MAX_VERTICES = 1 << 28,
     TRI_MAX_TRIANGLES = 1 << 29
 };

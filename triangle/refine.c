@@ -105,6 +105,7 @@ static bool crowds_a_wall(const struct tri_refiner *r, const struct tri_triangle
     for (int e = 0; e < 3; e++) {
         if (t->n[e] >= 0)
             continue;
+        assert(t->n[e] != TRI_BEYOND);
         struct tri_point p = r->mesh->xy[t->v[e]];
         struct tri_relative a = tri_relative(&r->mesh->xy[t->v[tri_next[e]]], p);
         struct tri_relative b = tri_relative(&r->mesh->xy[t->v[tri_prev[e]]], p);
@@ -225,6 +226,12 @@ static const int32_t *corners_around(const struct tri_refiner *r, struct tri_poi
     return r->mesh->tri[r->cavity.tri[0]].v;
 }
 
+static void tell_changes(const struct tri_refiner *r)
+{
+    if (r->options->part)
+        r->options->part->changed(r->options->part->user, r->cavity.tri, r->cavity.n_edges);
+}
+
 /* Inserts p, whose cavity has been found, for the sake of a triangle. */
 static enum outcome insert_free(struct tri_refiner *r, struct tri_point p, int32_t triangle,
                                 const struct tri_shape *shape)
@@ -238,6 +245,7 @@ static enum outcome insert_free(struct tri_refiner *r, struct tri_point p, int32
     if (r->mesh->n_attributes)
         tri_interpolate_triangle(r->mesh, corners_around(r, p), v);
     tri_cavity_fill(&r->cavity, r->mesh, v);
+    tell_changes(r);
     r->report->inserted_free++;
     return judge_fan(r) && queue_walls(r) ? DONE : FAILED;
 }
@@ -250,11 +258,19 @@ static enum outcome defer(struct tri_refiner *r, tri_triangle_id triangle, int64
     return DEFERRED;
 }
 
-/* The fence does, since this place lies beyond it. */
-static enum outcome defer_fenced(struct tri_refiner *r, tri_triangle_id triangle, struct tri_point place)
+/* The fence does. */
+static enum outcome defer_fenced(struct tri_refiner *r, tri_triangle_id triangle)
 {
-    r->report->short_of += r->options->whole && tri_fence_holds(r->options->whole, place);
     return defer(r, triangle, &r->report->fenced);
+}
+
+/* Nothing has been changed; the same is tried again when there is more of the mesh. */
+static enum outcome wait_for_more(struct tri_refiner *r, const tri_vertex_id edge[2])
+{
+    assert(r->options->part);
+    r->options->part->beyond(r->options->part->user, edge);
+    r->error->status = TRI_NO_ROOM;
+    return FAILED;
 }
 
 static enum outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
@@ -299,7 +315,9 @@ static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, 
         return refuse(r, TRI_EXCUSE_PROTECTED);
     enum tri_search found = find_split(r, s, fraction, &n_left);
     if (found == TRI_SEARCH_FENCED)
-        return defer_fenced(r, triangle, r->cavity.outside);
+        return defer_fenced(r, triangle);
+    if (found == TRI_SEARCH_BEYOND)
+        return wait_for_more(r, r->cavity.beyond);
     if (found == TRI_SEARCH_OUTSIDE)
         return refuse(r, TRI_EXCUSE_PRECISION);
     if (found == TRI_SEARCH_NO_MEMORY || make_room(r))
@@ -309,6 +327,7 @@ static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, 
     m->feature[v] = tri_feature_on_segment(m, &r->cavity, s, r->sized);
     tri_interpolate_edge(m, old.v[0], old.v[1], fraction, v);
     int32_t second = tri_cavity_fill_split(&r->cavity, m, v, s, n_left);
+    tell_changes(r);
     r->report->inserted_on_segments++;
     bool room = judge_fan(r) && queue_walls(r);
     if (room && r->options->conforming)
@@ -388,10 +407,11 @@ static enum outcome find_cavity(struct tri_refiner *r, int32_t triangle, struct 
             return defer(r, triangle, &r->report->gated);
     }
     if (r->options->fence && !tri_fence_holds(r->options->fence, p)) /* then its cavity reaches beyond, too */
-        return defer_fenced(r, triangle, p);
+        return defer_fenced(r, triangle);
     switch (tri_cavity_search(&r->cavity, r->mesh, p, triangle)) {
     case TRI_SEARCH_FOUND: return DONE;
-    case TRI_SEARCH_FENCED: return defer_fenced(r, triangle, r->cavity.outside);
+    case TRI_SEARCH_FENCED: return defer_fenced(r, triangle);
+    case TRI_SEARCH_BEYOND: return wait_for_more(r, r->cavity.beyond);
     case TRI_SEARCH_OUTSIDE: return refuse(r, TRI_EXCUSE_PRECISION);
     default: return FAILED;
     }
@@ -519,6 +539,8 @@ static bool split_encroached(struct tri_refiner *r)
             return false;
         int32_t s = r->encroached[r->n_encroached - 1];
         const struct tri_subsegment *sub = &r->mesh->sub[s];
+        if (sub->side[0] == TRI_BEYOND || sub->side[1] == TRI_BEYOND)
+            return wait_for_more(r, sub->v) != FAILED;
         int32_t beside = tri_of(sub->side[sub->side[0] == TRI_NONE]);
         assert(s >= 0 && tri_is_live(&r->mesh->tri[beside]));
         r->n_encroached--;

@@ -41,6 +41,14 @@ typedef void tri_deferred(void *user, tri_triangle_id triangle);
  * its counts and capacities to an unused range. TRI_NO_ROOM: not now. */
 typedef enum tri_status tri_more_room(void *user, struct tri_mesh *mesh, struct tri_error *error);
 
+/* Who works on a part of a mesh (TRI_BEYOND). changed: these triangles have just been made. beyond: the call returns
+ * TRI_NO_ROOM, since what lies behind an edge has to be known, and edge[] are its ends. */
+struct tri_part {
+    void (*changed)(void *user, const tri_triangle_id *triangle, int32_t n);
+    void (*beyond)(void *user, const tri_vertex_id edge[2]);
+    void *user;
+};
+
 struct tri_refine_options {
     double min_angle;      /* degrees; 0: no bound on angles; above 34 best effort; within a fence no more than 34 */
     double max_area;       /* <= 0: none */
@@ -58,14 +66,13 @@ struct tri_refine_options {
     tri_gate *gate;        /* NULL: every bad triangle */
     void *gate_user;
     const struct tri_fence *fence; /* NULL: the whole mesh */
-    const struct tri_fence *whole; /* not NULL: the fence should be this one, of which it is a part: where that makes a
-                                      difference, the report says so */
     const tri_triangle_id *worklist; /* [n_worklist] looked at first; NULL: all. The loop looks at all it makes, too */
     int32_t n_worklist;
     tri_deferred *deferred; /* NULL: nobody */
     void *deferred_user;
     tri_more_room *more_room; /* NULL: the mesh's arrays grow */
     void *more_room_user;
+    const struct tri_part *part; /* NULL: all of the mesh is here */
 };
 
 /* Is there any bound on sizes? */
@@ -91,7 +98,6 @@ enum tri_excuse { /* why a triangle is still bad */
 
 struct tri_refine_report {
     int64_t inserted_free, inserted_on_segments;
-    int64_t short_of;                 /* times the fence deferred a triangle, and the whole one might not have */
     int64_t gated, fenced;            /* triangles deferred: by the gate; since a cavity reached beyond the fence */
     int64_t given_up[TRI_EXCUSES];    /* bad triangles given up during the call, by reason; some vanish later */
     bool hit_limit;                   /* max_steiner stopped the call */
@@ -107,7 +113,8 @@ enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_option
                            struct tri_refine_report *report, struct tri_error *error);
 
 /* The same in pieces, for callers whose more_room may say TRI_NO_ROOM: run returns it with everything in order, and
- * goes on where it was when called again, as if there had been no pause. The mesh's pointers may change meanwhile. */
+ * goes on where it was when called again, as if there had been no pause. Meanwhile the mesh's pointers may change, and a
+ * part of a mesh may grow. */
 struct tri_refiner;
 enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *mesh,
                                 const struct tri_refine_options *options, struct tri_refine_report *report,

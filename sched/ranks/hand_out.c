@@ -16,13 +16,12 @@ struct handing {
     struct par_ranks *ranks;
     struct par_tiles *tiles;
     const struct tri_mesh *mesh;
-    int32_t first_tile, end_tile;  /* of the own columns */
-    int32_t first, end;            /* odd columns by number */
+    int32_t first_tile, end_tile;  /* the own tiles */
+    int32_t first, end;            /* the odd columns that have some of them, by number */
     int64_t *in_column;            /* [end - first] new vertices in each */
     bool *needed;                  /* [end - first] somebody asks for numbers in it */
     int32_t *told;                 /* [n_vertices] last rank that is told of this vertex, + 1 */
     int32_t *tile;                 /* [n_vertices] of each */
-    struct par_worklist shared;    /* triangles with an own corner, and another left or right of the own columns */
 };
 
 static bool is_own(const struct handing *h, int32_t tile) { return tile >= h->first_tile && tile < h->end_tile; }
@@ -46,12 +45,10 @@ static int own_corners(const struct handing *h, const struct tri_triangle *t)
     return is_own(h, h->tile[t->v[0]]) + is_own(h, h->tile[t->v[1]]) + is_own(h, h->tile[t->v[2]]);
 }
 
-/* Every vertex learns its tile; count[] receives new vertices, triangles and subsegments of the own tiles. False: no
- * memory. */
-static bool count_own(struct handing *h, int64_t count[3])
+/* Every vertex learns its tile; count[] receives new vertices, triangles and subsegments of the own tiles. */
+static void count_own(struct handing *h, int64_t count[3])
 {
     const struct tri_mesh *mesh = h->mesh;
-    bool memory = true;
     for (int32_t v = 0; v < mesh->n_vertices; v++) {
         if (mesh->on[v] == TRI_VERTEX_NONE)
             continue;
@@ -62,28 +59,37 @@ static bool count_own(struct handing *h, int64_t count[3])
             h->in_column[column_of(h, tile) - h->first]++;
         }
     }
-    for (int32_t t = 0; memory && t < mesh->n_triangles; t++) {
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
         int own = tri_is_live(&mesh->tri[t]) ? own_corners(h, &mesh->tri[t]) : 0;
         count[1] += own == 3 || (own > 0 && is_own(h, last_tile(h, mesh->tri[t].v, 3)));
-        if (own == 1 || own == 2)
-            memory = par_worklist_add(&h->shared, t);
     }
     for (int32_t s = 0; s < mesh->n_subs; s++)
         count[2] += mesh->sub[s].v[0] != TRI_NONE && is_own(h, last_tile(h, mesh->sub[s].v, 2));
-    return memory;
 }
 
-/* Calls for each own new vertex of a triangle that rank p has, too, for the ranks p on the right. */
+/* What others hand out later is not there, as far as the own tiles are concerned; nor are subsegments of theirs. */
+static void hide_others(struct handing *h, struct tri_mesh *mesh)
+{
+    for (int32_t v = 0; v < mesh->n_vertices; v++)
+        if (mesh->on[v] != TRI_VERTEX_NONE && h->tile[v] >= h->end_tile)
+            mesh->on[v] = TRI_VERTEX_NONE;
+    for (int32_t s = 0; s < mesh->n_subs; s++)
+        if (mesh->sub[s].v[0] != TRI_NONE && !is_own(h, last_tile(h, mesh->sub[s].v, 2)))
+            par_room_mark_sub(mesh, s);
+}
+
+/* Calls for each own new vertex of a triangle that rank p has, too, for the ranks p that come later. */
 static bool for_shared(struct handing *h, bool (*visit)(struct handing *h, int32_t v, int p))
 {
     bool memory = true;
-    for (int32_t s = 0; memory && s < h->shared.n; s++) {
-        const struct tri_triangle *triangle = &h->mesh->tri[h->shared.item[s]];
+    const struct par_worklist *straddlers = &h->ranks->straddlers;
+    for (int32_t s = 0; memory && s < straddlers->n; s++) {
+        const struct tri_triangle *triangle = &h->mesh->tri[straddlers->item[s]];
         for (int k = 0; memory && k < 3; k++) {
             int32_t tile = h->tile[triangle->v[k]];
             if (tile < h->end_tile)
                 continue;
-            int p = par_owner_of_column(h->ranks, column_of(h, tile));
+            int p = par_owner_at(&h->ranks->territory, h->mesh->xy[triangle->v[k]]);
             for (int i = 0; memory && i < 3; i++)
                 if (triangle->v[i] >= h->tiles->n_kept && is_own(h, h->tile[triangle->v[i]]))
                     memory = visit(h, triangle->v[i], p);
@@ -128,7 +134,8 @@ static enum tri_status number_needed(struct handing *h, int64_t base, struct tri
     for (int32_t i = 0; !status && i < h->end - h->first; i++) {
         int32_t column = 2 * (h->first + i) + 1;
         if (h->needed[i]) {
-            show_tiles(h, column * h->tiles->partition->n_rows);
+            int32_t first = column * h->tiles->partition->n_rows;
+            show_tiles(h, first > h->first_tile ? first : h->first_tile);
             status = par_tiles_number(h->tiles, column, error);
         }
         h->tiles->n_vertices += h->in_column[i];
@@ -144,16 +151,16 @@ static int compare_places(const void *left, const void *right)
     return (a->y > b->y) - (a->y < b->y);
 }
 
-/* The vertices of own triangles that lie on the left learn their numbers. */
+/* The vertices of own triangles that lie in earlier tiles of others learn their numbers. */
 static void take_numbers(struct handing *h, struct par_bytes *told)
 {
     size_t n = told->n / sizeof(struct numbered_place);
     if (n == 0)
         return;
     qsort(told->at, n, sizeof(struct numbered_place), compare_places);
-    for (int32_t s = 0; s < h->shared.n; s++)
+    for (int32_t s = 0; s < h->ranks->straddlers.n; s++)
         for (int k = 0; k < 3; k++) {
-            int32_t v = h->mesh->tri[h->shared.item[s]].v[k];
+            int32_t v = h->mesh->tri[h->ranks->straddlers.item[s]].v[k];
             if (v < h->tiles->n_kept || h->tile[v] >= h->first_tile)
                 continue;
             const struct numbered_place *found =
@@ -199,9 +206,9 @@ static enum tri_status hand_out(struct handing *h, const int64_t base[3], struct
 static enum tri_status prepare(struct handing *h, struct tri_error *error)
 {
     size_t n = (size_t)(h->end - h->first) + 1;
-    int32_t n_rows = h->tiles->partition->n_rows;
-    h->first_tile = (2 * h->first + 1) * n_rows;
-    h->end_tile = h->first < h->end ? 2 * h->end * n_rows : h->first_tile;
+    const struct par_territory *territory = &h->ranks->territory;
+    h->first_tile = par_first_block(territory, territory->rank);
+    h->end_tile = par_first_block(territory, territory->rank + 1);
     h->in_column = calloc(n, sizeof *h->in_column);
     h->needed = calloc(n, sizeof *h->needed);
     h->told = calloc((size_t)h->mesh->n_vertices + 1, sizeof *h->told);
@@ -267,12 +274,15 @@ enum tri_status par_hand_out_on_ranks(struct par_ranks *r, struct par_tiles *til
                                       struct tri_error *error)
 {
     int rank = r->carrier->rank;
-    struct handing h = {.ranks = r, .tiles = tiles, .mesh = r->state->mesh, .first = r->start[rank],
-                        .end = r->start[rank + 1]};
+    const int32_t *start = r->territory.start, n_rows = r->territory.n_rows;
+    struct handing h = {.ranks = r, .tiles = tiles, .mesh = r->state->mesh, .first = start[rank] / n_rows,
+                        .end = (start[rank + 1] + n_rows - 1) / n_rows};
     int64_t count[3] = {0}, base[3] = {0}, *first;
     status = status ? status : prepare(&h, error);
-    if (!status && !count_own(&h, count))
-        status = no_memory(error);
+    if (!status) {
+        count_own(&h, count);
+        hide_others(&h, r->state->mesh);
+    }
     status = share_numbers(r->carrier, tiles->n_kept, count, &first, status, error);
     if (!status)
         tell_shares(tiles, r->carrier, first);
@@ -287,6 +297,5 @@ enum tri_status par_hand_out_on_ranks(struct par_ranks *r, struct par_tiles *til
     free(h.needed);
     free(h.told);
     free(h.tile);
-    free(h.shared.item);
     return par_agree(r->carrier, status, error);
 }

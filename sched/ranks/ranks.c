@@ -1,255 +1,357 @@
-/* The steps of the schedule on ranks: columns, borders, later rounds. */
+/* The steps of the schedule on ranks: phases, rounds, the last call. */
 #include "sched/ranks/ranks.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "sched/ranks/fragment.h"
+#include "triangle/grow.h"
 
-/* --- who has what */
+/* --- who works where */
 
-static const struct tri_fence NOTHING = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
-
-struct tri_fence par_box_of(const struct par_ranks *r, int p)
+static int32_t blocks_of(const struct par_shift *shift)
 {
-    int32_t first = r->start[p], end = r->start[p + 1];
-    if (first == end)
-        return NOTHING;
-    return (struct tri_fence){par_fence(r->partition, 2 * first + 1, 0).x_min, -HUGE_VAL,
-                              par_fence(r->partition, 2 * end - 1, 0).x_max, HUGE_VAL};
+    return shift->partition ? par_blocks(shift->partition) : 1;
 }
 
-int par_owner_of_column(const struct par_ranks *r, int32_t i)
+static const struct tri_fence PLANE = {-HUGE_VAL, -HUGE_VAL, HUGE_VAL, HUGE_VAL};
+
+static struct tri_fence box_of(const struct par_shift *shift, int32_t block)
 {
-    int p = 0;
-    while (i >= r->start[p + 1])
-        p++;
-    return p;
+    const struct par_partition *p = shift->partition;
+    return p ? par_fence(p, block / p->n_rows, block % p->n_rows) : PLANE;
 }
 
-static double larger(double a, double b) { return a > b ? a : b; }
-static double smaller(double a, double b) { return a < b ? a : b; }
-
-/* What rank p owns of a box. */
-static struct tri_fence share_of(const struct par_ranks *r, const struct tri_fence *box, int p)
+static bool has_its_turn(const struct par_shift *shift, int32_t block)
 {
-    const struct tri_fence own = par_box_of(r, p);
-    return (struct tri_fence){larger(box->x_min, own.x_min), larger(box->y_min, own.y_min),
-                              smaller(box->x_max, own.x_max), smaller(box->y_max, own.y_max)};
+    const struct par_partition *p = shift->partition;
+    return !p || (block / p->n_rows % 2 == 1 - shift->phase / 2 && block % p->n_rows % 2 == 1 - shift->phase % 2);
 }
 
-/* Contiguous, as many as fit: columns hold equal shares of the estimated work. */
-static int32_t *share_columns(int32_t n_odd, const struct par_carrier *carrier)
+static bool init_shift(struct par_ranks *r)
 {
-    int n = carrier->n_ranks;
-    int32_t *start = malloc(((size_t)n + 1) * sizeof *start);
-    for (int p = 0; start && p <= n; p++)
-        start[p] = carrier->share ? (int32_t)(carrier->share[p] * n_odd) : (int32_t)((int64_t)p * n_odd / n);
-    return start;
+    struct par_shift *s = &r->shift;
+    size_t n = (size_t)blocks_of(s);
+    s->worker = malloc(n * sizeof *s->worker);
+    s->is_mine = calloc(n, sizeof *s->is_mine);
+    s->is_border = calloc(n, sizeof *s->is_border);
+    s->is_held = calloc(n, sizeof *s->is_held);
+    s->block_of = malloc(((size_t)r->state->worklist.n + 1) * sizeof *s->block_of);
+    return s->worker && s->is_mine && s->is_border && s->is_held && s->block_of;
+}
+
+static void free_shift(struct par_shift *s)
+{
+    free(s->worker);
+    free(s->is_mine);
+    free(s->is_border);
+    free(s->is_held);
+    free(s->block_of);
+    *s = (struct par_shift){0};
+}
+
+/* Blocks over the tiles of several ranks; returns whether there are any. */
+static bool find_borders(struct par_ranks *r)
+{
+    struct par_shift *s = &r->shift;
+    bool any = false;
+    for (int32_t b = 0; b < blocks_of(s); b++) {
+        int first, last;
+        const struct tri_fence box = box_of(s, b);
+        s->worker[b] = -1;
+        if (has_its_turn(s, b) && par_owners_in(&r->territory, &box, &first, &last) && first < last)
+            s->worker[b] = first;
+        any = any || s->worker[b] >= 0;
+    }
+    return any;
+}
+
+/* One bit for each block at a border that has something to do. */
+static void find_work(struct par_ranks *r, int64_t *word)
+{
+    const struct par_state *state = r->state;
+    struct par_shift *s = &r->shift;
+    for (int32_t i = 0; i < state->worklist.n; i++) {
+        tri_triangle_id t = state->worklist.item[i];
+        assert(tri_is_live(&state->mesh->tri[t]));
+        int32_t b = s->partition ? par_owner_of(s->partition, s->phase, state->mesh, t) : 0;
+        s->block_of[i] = b;
+        if (b != TRI_NONE && s->worker[b] >= 0)
+            word[b / 64] |= (int64_t)((uint64_t)1 << b % 64);
+    }
+}
+
+static bool is_in(const int64_t *word, int32_t b) { return (uint64_t)word[b / 64] >> b % 64 & 1; }
+
+static void assign(struct par_ranks *r, const int64_t *word)
+{
+    struct par_shift *s = &r->shift;
+    int rank = r->carrier->rank;
+    for (int32_t b = 0; b < blocks_of(s); b++) {
+        const struct tri_fence box = box_of(s, b);
+        s->worker[b] = s->worker[b] >= 0 && is_in(word, b) ? s->worker[b] : -1;
+        s->is_mine[b] = s->worker[b] < 0 || s->worker[b] == rank;
+        s->is_border[b] = s->worker[b] == rank;
+        s->is_held[b] = s->worker[b] >= 0 && s->worker[b] != rank && par_has_part(&r->territory, &box, rank);
+    }
+}
+
+/* *any: somebody has to ask somebody else. Collective. */
+static enum tri_status share_blocks(struct par_ranks *r, bool *any, struct tri_error *error)
+{
+    size_t n_words = (size_t)blocks_of(&r->shift) / 64 + 1, n_ranks = (size_t)r->carrier->n_ranks;
+    int64_t *mine = calloc(n_words, sizeof *mine), *all = calloc(n_ranks * n_words, sizeof *all);
+    enum tri_status status = mine && all && init_shift(r) ? TRI_OK : par_ranks_no_memory(error);
+    bool borders = !status && find_borders(r);
+    if (!status)
+        find_work(r, mine);
+    *any = false;
+    if (status || borders)
+        status = par_gather(r->carrier, mine, (int32_t)n_words, all, status, error);
+    for (size_t i = 0; !status && i < n_ranks * n_words; i++) {
+        mine[i % n_words] |= all[i];
+        *any = *any || all[i] != 0;
+    }
+    if (!status)
+        assign(r, mine);
+    free(mine);
+    free(all);
+    return status;
 }
 
 /* --- what moves */
 
-enum tri_status par_ranks_cut(struct par_ranks *r, int to, const struct tri_fence *box, struct tri_error *error)
+static enum tri_status swap(struct par_ranks *r, enum par_move move, enum tri_status status, struct tri_error *error)
 {
-    if (!(box->x_min < box->x_max && box->y_min < box->y_max))
-        return TRI_OK;
-    return par_fragment_cut(&r->out[to], r->state, r->n_common, box, error);
+    return par_swap(r->carrier, r->state->round > 0 || !r->shift.partition ? PAR_MOVE_LEFT_OVER : move, r->out, r->in,
+                    status, error);
 }
 
-/* Sends what has been cut, and puts what has come in its place. */
-enum tri_status par_ranks_swap(struct par_ranks *r, enum par_move move, enum tri_status status,
-                               struct tri_error *error)
+static void free_in(struct par_ranks *r)
 {
-    status = par_swap(r->carrier, move, r->out, r->in, status, error);
     for (int p = 0; p < r->carrier->n_ranks; p++) {
-        for (size_t at = 0, used = 0; !status && at < r->in[p].n; at += used)
-            status = par_fragment_paste(r->state, r->n_common, r->in[p].at + at, r->in[p].n - at, &used, error);
         free(r->in[p].at);
         r->in[p] = (struct par_bytes){0};
     }
+}
+
+static enum tri_status lend(struct par_ranks *r, struct tri_error *error)
+{
+    enum tri_status status = par_index_straddlers(r) ? TRI_OK : par_ranks_no_memory(error);
+    status = status ? status : par_lend(r, error);
+    status = swap(r, PAR_MOVE_STRIPS, status, error);
+    status = status ? status : par_borrow(r, error);
+    free_in(r);
     return status;
 }
 
-/* --- the first round */
-
-enum tri_status par_ranks_column(struct par_ranks *r, int32_t column, struct tri_error *error)
+/* *any: somebody has asked for more, and has got it. Collective. */
+static enum tri_status lend_more(struct par_ranks *r, const struct par_worklist *asked, bool *any,
+                                 enum tri_status status, struct tri_error *error)
 {
-    int first = column % 2 == 1 ? 0 : 2;
-    enum tri_status status = par_phase(r->state, r->partition, first, column, error);
-    return status ? status : par_phase(r->state, r->partition, first + 1, column, error);
+    int64_t n = asked->n, sum;
+    status = par_sum(r->carrier, &n, 1, &sum, status, error);
+    *any = !status && sum > 0;
+    if (!*any)
+        return status;
+    status = par_ask(r, asked, error);
+    status = swap(r, PAR_MOVE_STRIPS, status, error);
+    status = status ? status : par_lend_more(r, error);
+    free_in(r);
+    status = swap(r, PAR_MOVE_STRIPS, status, error);
+    bool came = n == 0;
+    for (int p = 0; p < r->carrier->n_ranks; p++)
+        came = came || r->in[p].n > 0;
+    if (!status && !came)
+        status = tri_fail(error, TRI_INTERNAL, NULL, 0, "nobody knows what lies beyond an edge");
+    status = status ? status : par_borrow(r, error);
+    free_in(r);
+    return status;
 }
 
-/* The own columns, and the even ones between them; where there is no other rank beyond, those at the rim, too. */
-static enum tri_status refine_own(struct par_ranks *r, struct tri_error *error)
+/* What blocks at borders wait for, as struct par_share has it. */
+static enum tri_status fetch(void *user, const struct par_worklist *asked, struct tri_error *error)
 {
-    int32_t first = r->start[r->carrier->rank], end = r->start[r->carrier->rank + 1];
-    enum tri_status status = TRI_OK;
-    for (int32_t i = first; !status && i < end; i++) {
-        status = par_ranks_column(r, 2 * i + 1, error);
-        if (!status && (i > first || i == 0))
-            status = par_ranks_column(r, 2 * i, error);
+    bool any;
+    return lend_more(user, asked, &any, TRI_OK, error);
+}
+
+/* Until nobody asks for more. Collective. */
+static enum tri_status serve(struct par_ranks *r, enum tri_status status, struct tri_error *error)
+{
+    static const struct par_worklist nothing;
+    bool any = true;
+    while (any)
+        status = lend_more(r, &nothing, &any, status, error);
+    return status;
+}
+
+static enum tri_status give_back(struct par_ranks *r, struct par_worklist *changed, enum tri_status status,
+                                 struct tri_error *error)
+{
+    status = status ? status : par_give_back(r, changed, error);
+    status = swap(r, PAR_MOVE_BACK, status, error);
+    status = status ? status : par_take_back(r, error);
+    free_in(r);
+    for (int p = 0; p < r->carrier->n_ranks; p++) {
+        par_talk_free(&r->lent[p]);
+        par_talk_free(&r->borrowed[p]);
     }
-    if (!status && first < end && end == r->n_odd)
-        status = par_ranks_column(r, 2 * end, error);
     return status;
 }
 
-/* --- later rounds, on rank 0 */
-
-static int ascending(const void *left, const void *right)
-{
-    const int32_t *a = left, *b = right;
-    return (*a > *b) - (*a < *b);
-}
-
-/* A list of 32-bit numbers in ascending order, each once. */
-static void sort_unique(struct par_bytes *list)
-{
-    int32_t *item = (int32_t *)(void *)list->at;
-    size_t n = list->n / sizeof *item, kept = 0;
-    if (n > 0)
-        qsort(item, n, sizeof *item, ascending);
-    for (size_t i = 0; i < n; i++)
-        if (i == 0 || item[i] != item[kept - 1])
-            item[kept++] = item[i];
-    list->n = kept * sizeof *item;
-}
-
-static enum tri_status no_memory(struct tri_error *error)
-{
-    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for what is left over");
-}
-
-/* The blocks of a phase that have something to do, of all ranks: *blocks receives them. */
-static enum tri_status find_blocks(struct par_ranks *r, const struct par_partition *partition, int phase,
-                                   struct par_bytes *blocks, struct tri_error *error)
-{
-    const struct par_state *state = r->state;
-    int n_ranks = r->carrier->n_ranks;
-    bool memory = true;
-    for (int32_t i = 0; memory && i < state->worklist.n; i++) {
-        int32_t block = par_owner_of(partition, phase, state->mesh, state->worklist.item[i]);
-        memory = block == TRI_NONE || par_bytes_add(&r->out[0], &block, sizeof block);
-    }
-    sort_unique(&r->out[0]);
-    enum tri_status status = par_swap(r->carrier, PAR_MOVE_LEFT_OVER, r->out, r->in, memory ? TRI_OK : no_memory(error),
-                                      error);
-    for (int p = 0; p < n_ranks; p++) {
-        memory = memory && par_bytes_add(blocks, r->in[p].at, r->in[p].n);
-        free(r->in[p].at);
-        r->in[p] = (struct par_bytes){0};
-    }
-    sort_unique(blocks);
-    for (int p = 0; memory && r->carrier->rank == 0 && p < n_ranks; p++)
-        memory = par_bytes_add(&r->out[p], blocks->at, blocks->n);
-    status = status ? status : memory ? TRI_OK : no_memory(error);
-    status = par_swap(r->carrier, PAR_MOVE_LEFT_OVER, r->out, r->in, status, error);
-    free(blocks->at);
-    *blocks = r->in[0];
-    r->in[0] = (struct par_bytes){0};
-    return status;
-}
-
-/* Rank 0 gets what others hold in the boxes, or (back) gives it back to them. */
-static enum tri_status move_boxes(struct par_ranks *r, const struct tri_fence *box, size_t n, bool back,
-                                  enum tri_status status, struct tri_error *error)
-{
-    int rank = r->carrier->rank;
-    for (size_t i = 0; !status && i < n; i++)
-        for (int p = 1; !status && p < r->carrier->n_ranks; p++) {
-            const struct tri_fence share = share_of(r, &box[i], p);
-            if (back ? rank == 0 : rank == p)
-                status = par_ranks_cut(r, back ? p : 0, &share, error);
-        }
-    return par_ranks_swap(r, PAR_MOVE_LEFT_OVER, status, error);
-}
-
-static void keep_own(struct par_ranks *r)
-{
-    const struct tri_fence own = par_box_of(r, r->carrier->rank);
-    par_worklist_keep(r->state, &own);
-}
-
-static enum tri_status refine_blocks(struct par_ranks *r, const struct par_partition *partition, int phase,
-                                     const struct par_bytes *blocks, struct tri_error *error)
-{
-    const int32_t *block = (const int32_t *)(const void *)blocks->at;
-    size_t n = blocks->n / sizeof *block;
-    struct tri_fence *box = malloc((n + 1) * sizeof *box);
-    enum tri_status status = box ? TRI_OK : no_memory(error);
-    for (size_t i = 0; box && i < n; i++)
-        box[i] = par_fence(partition, block[i] / partition->n_rows, block[i] % partition->n_rows);
-    status = move_boxes(r, box, box ? n : 0, false, status, error);
-    if (!status && r->carrier->rank == 0)
-        status = par_phase(r->state, partition, phase, TRI_NONE, error);
-    status = move_boxes(r, box, status ? 0 : n, true, status, error);
-    free(box);
-    keep_own(r);
-    return status;
-}
+/* --- phases */
 
 static enum tri_status refine_phase(struct par_ranks *r, const struct par_partition *partition, int phase,
                                     struct tri_error *error)
 {
-    struct par_bytes blocks = {0};
-    enum tri_status status = find_blocks(r, partition, phase, &blocks, error);
-    if (!status && blocks.n > 0)
-        status = refine_blocks(r, partition, phase, &blocks, error);
-    free(blocks.at);
+    struct par_state *state = r->state;
+    bool any;
+    r->shift = (struct par_shift){.partition = partition, .phase = phase};
+    enum tri_status status = share_blocks(r, &any, error);
+    struct par_share share = {.is_mine = r->shift.is_mine, .is_border = r->shift.is_border, .more = fetch, .user = r};
+    if (!status && any)
+        status = lend(r, error);
+    par_tell(state, phase + 1);
+    state->share = &share;
+    if (!status)
+        status = par_phase(state, partition, phase, TRI_NONE, error);
+    state->share = NULL;
+    if (any) {
+        status = serve(r, status, error);
+        status = give_back(r, &share.changed, status, error);
+    }
+    free(share.changed.item);
+    free_shift(&r->shift);
     return status;
 }
 
-/* The rest without fences, as one call. */
-static enum tri_status refine_rest(struct par_ranks *r, struct tri_error *error)
-{
-    const struct tri_fence plane = {-HUGE_VAL, -HUGE_VAL, HUGE_VAL, HUGE_VAL};
-    struct par_state *state = r->state;
-    enum tri_status status = move_boxes(r, &plane, 1, false, TRI_OK, error);
-    if (!status && r->carrier->rank == 0) {
-        struct tri_refine_options options = *state->quality;
-        struct tri_refine_report report;
-        options.worklist = state->worklist.item;
-        options.n_worklist = state->worklist.n;
-        par_room_mark(&state->spare, state->mesh);
-        status = tri_refine(state->mesh, &options, &report, error);
-        par_add_up(&state->report->total, &report);
-        state->worklist.n = state->key.n = 0;
-    }
-    return move_boxes(r, &plane, 1, true, status, error);
-}
-
+/* How many entries all ranks have. Who shares one counts it, too. Collective. */
 static enum tri_status count_rest(struct par_ranks *r, int64_t *left, enum tri_status status, struct tri_error *error)
 {
     int64_t mine = r->state->worklist.n;
     return par_sum(r->carrier, &mine, 1, left, status, error);
 }
 
-static enum tri_status refine_later(struct par_ranks *r, enum tri_status status, struct tri_error *error)
+static enum tri_status refine_round(struct par_ranks *r, const struct par_partition *partition, int64_t *left,
+                                    struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    r->state->report->rounds++;
+    for (int phase = 0; !status && phase < PAR_PHASES; phase++)
+        status = refine_phase(r, partition, phase, error);
+    return count_rest(r, left, status, error);
+}
+
+/* --- the last call */
+
+struct last_call {
+    struct par_ranks *ranks;
+    struct par_worklist changed, asked;
+    bool lost;
+};
+
+static void note_changes(void *user, const tri_triangle_id *triangle, int32_t n)
+{
+    struct last_call *call = user;
+    for (int32_t i = 0; i < n; i++)
+        call->lost = !par_worklist_add(&call->changed, triangle[i]) || call->lost;
+}
+
+static void ask_for(void *user, const tri_vertex_id edge[2])
+{
+    struct last_call *call = user;
+    for (int k = 0; k < 2; k++)
+        call->lost = !par_worklist_add(&call->asked, edge[k]) || call->lost;
+}
+
+/* Goes on whenever there is more of the mesh. */
+static enum tri_status run_last_call(struct last_call *call, struct tri_refiner *refiner, struct tri_error *error)
+{
+    enum tri_status status = TRI_NO_ROOM;
+    while (status == TRI_NO_ROOM) {
+        call->asked.n = 0;
+        status = tri_refiner_run(refiner, error);
+        if (call->lost)
+            status = par_ranks_no_memory(error);
+        if (status == TRI_NO_ROOM) {
+            enum tri_status fetched = fetch(call->ranks, &call->asked, error);
+            status = fetched ? fetched : status;
+        }
+    }
+    return status;
+}
+
+/* One call without fences, as of one process, for what the worklist holds. */
+static enum tri_status call_last(struct last_call *call, struct tri_error *error)
+{
+    struct par_state *state = call->ranks->state;
+    struct tri_refine_options options = *state->quality;
+    const struct tri_part part = {note_changes, ask_for, call};
+    struct tri_refine_report report = {0};
+    struct tri_refiner *refiner = NULL;
+    options.worklist = state->worklist.item;
+    options.n_worklist = state->worklist.n;
+    options.part = &part;
+    enum tri_status status = tri_refiner_new(&refiner, state->mesh, &options, &report, error);
+    status = status ? status : run_last_call(call, refiner, error);
+    tri_refiner_free(refiner);
+    par_add_up(&state->report->total, &report);
+    return status;
+}
+
+/* By the first rank that owns anything. */
+static enum tri_status refine_rest(struct par_ranks *r, struct tri_error *error)
+{
+    struct last_call call = {.ranks = r};
+    bool any;
+    r->shift = (struct par_shift){0};
+    enum tri_status status = share_blocks(r, &any, error);
+    if (!status && any)
+        status = lend(r, error);
+    if (!status && r->state->worklist.n > 0)
+        status = call_last(&call, error);
+    r->state->worklist.n = r->state->key.n = 0;
+    if (any) {
+        status = serve(r, status, error);
+        status = give_back(r, &call.changed, status, error);
+    }
+    free(call.changed.item);
+    free(call.asked.item);
+    free_shift(&r->shift);
+    return status;
+}
+
+static enum tri_status refine_later(struct par_ranks *r, int64_t left, struct tri_error *error)
 {
     struct par_partition partition;
-    int64_t left = 0;
-    status = count_rest(r, &left, status, error);
-    if (status || left == 0)
-        return status;
-    status = par_partition_copy(&partition, r->partition, error);
+    enum tri_status status = par_partition_copy(&partition, r->territory.partition, error);
     r->state->report->left_over += left;
-    while (left > 0 && par_can_coarsen(&partition)) {
+    while (!status && left > 0 && par_can_coarsen(&partition)) {
         par_partition_coarsen(&partition);
         r->state->round++;
-        r->state->report->rounds++;
-        for (int phase = 0; !status && phase < PAR_PHASES; phase++)
-            status = refine_phase(r, &partition, phase, error);
-        status = count_rest(r, &left, status, error);
-        if (status)
-            break;
+        status = refine_round(r, &partition, &left, error);
     }
     par_partition_free(&partition);
     return status || left == 0 ? status : refine_rest(r, error);
 }
 
 /* --- all together */
+
+/* Writes out the keys of a worklist that no block has had. False: no memory. */
+static bool tell_keys(struct par_state *state)
+{
+    struct par_keys *key = &state->key;
+    if (key->n == state->worklist.n)
+        return true;
+    assert(key->n == 0);
+    if (!tri_grow(&key->item, &key->capacity, state->worklist.n, sizeof *key->item))
+        return false;
+    for (; key->n < state->worklist.n; key->n++)
+        key->item[key->n] = (uint64_t)key->n;
+    return true;
+}
+
 
 /* What all ranks have done since, everywhere. */
 static enum tri_status add_up(struct par_ranks *r, const struct tri_refine_report *before, enum tri_status status,
@@ -287,7 +389,7 @@ static uint64_t mix(uint64_t hash, uint64_t word)
 static int64_t fingerprint(const struct par_ranks *r)
 {
     const struct tri_mesh *mesh = r->state->mesh;
-    uint64_t hash = mix(mix((uint64_t)r->partition->n_columns, (uint64_t)r->partition->n_rows),
+    uint64_t hash = mix(mix((uint64_t)r->territory.partition->n_columns, (uint64_t)r->territory.partition->n_rows),
                         (uint64_t)r->state->worklist.n), bits[2];
     for (int32_t v = 0; v < mesh->n_vertices; v++) {
         memcpy(bits, &mesh->xy[v], sizeof bits);
@@ -302,7 +404,7 @@ static int64_t fingerprint(const struct par_ranks *r)
 static enum tri_status compare_meshes(struct par_ranks *r, enum tri_status status, struct tri_error *error)
 {
     int64_t mine = fingerprint(r), *all = malloc((size_t)r->carrier->n_ranks * sizeof *all);
-    status = par_gather(r->carrier, &mine, 1, all, status ? status : all ? TRI_OK : no_memory(error), error);
+    status = par_gather(r->carrier, &mine, 1, all, status ? status : all ? TRI_OK : par_ranks_no_memory(error), error);
     for (int p = 0; !status && p < r->carrier->n_ranks; p++)
         if (all[p] != all[0])
             status = tri_fail(error, TRI_BAD_INPUT, NULL, 0,
@@ -311,48 +413,62 @@ static enum tri_status compare_meshes(struct par_ranks *r, enum tri_status statu
     return status;
 }
 
+/* Collective, from an agreement to another. */
 static enum tri_status refine_all(struct par_ranks *r, struct par_tiles *tiles, enum tri_status status,
                                   struct tri_error *error)
 {
     const struct tri_refine_report before = r->state->report->total;
+    int64_t left = 0;
     status = compare_meshes(r, status, error);
-    if (!status) {
-        keep_own(r);
-        status = refine_own(r, error);
-    }
-    status = par_ranks_borders(r, status, error);
-    if (!status)
-        keep_own(r);
-    status = refine_later(r, status, error);
+    status = status ? status : par_keep_own(r, error);
+    status = par_agree(r->carrier, status, error);
+    status = status ? status : refine_round(r, r->territory.partition, &left, error);
+    if (!status && left > 0)
+        status = refine_later(r, left, error);
     status = add_up(r, &before, status, error);
     return par_hand_out_on_ranks(r, tiles, status, error);
+}
+
+static bool init(struct par_ranks *r, const struct par_partition *partition)
+{
+    size_t n = (size_t)r->carrier->n_ranks;
+    r->lent = calloc(n, sizeof *r->lent);
+    r->borrowed = calloc(n, sizeof *r->borrowed);
+    r->out = calloc(n, sizeof *r->out);
+    r->in = calloc(n, sizeof *r->in);
+    return par_territory_init(&r->territory, partition, r->carrier) && r->lent && r->borrowed && r->out && r->in &&
+           tell_keys(r->state);
+}
+
+static void clean_up(struct par_ranks *r)
+{
+    for (int p = 0; p < r->carrier->n_ranks; p++) {
+        if (r->out)
+            free(r->out[p].at);
+        if (r->in)
+            free(r->in[p].at);
+    }
+    par_territory_free(&r->territory);
+    free(r->straddlers.item);
+    free(r->places.id);
+    free(r->triangles.id);
+    free(r->lent);
+    free(r->borrowed);
+    free(r->out);
+    free(r->in);
 }
 
 enum tri_status par_refine_on_ranks(struct par_state *state, const struct par_partition *partition,
                                     struct par_tiles *tiles, struct tri_error *error)
 {
     struct par_carrier *carrier = state->options->carrier;
-    size_t n = (size_t)carrier->n_ranks;
-    struct par_ranks r = {.state = state, .carrier = carrier, .partition = partition,
-                          .n_odd = (partition->n_columns - 1) / 2, .n_common = state->mesh->n_vertices};
-    r.start = share_columns(r.n_odd, carrier);
-    r.out = calloc(n, sizeof *r.out);
-    r.in = calloc(n, sizeof *r.in);
+    struct par_ranks r = {.state = state, .carrier = carrier, .n_common = state->mesh->n_vertices};
     state->round = 0;
     state->n_schedules++;
-    state->report->rounds++;
-    bool memory = r.start && r.out && r.in && par_keys_tell(state);
-    enum tri_status status = memory ? TRI_OK : no_memory(error);
-    if (!memory)
-        status = par_agree(carrier, status, error);
-    else
-        status = refine_all(&r, tiles, status, error);
-    for (size_t p = 0; memory && p < n; p++) {
-        free(r.out[p].at);
-        free(r.in[p].at);
-    }
-    free(r.out);
-    free(r.in);
-    free(r.start);
+    bool memory = init(&r, partition);
+    enum tri_status status = par_agree(carrier, memory ? TRI_OK : par_ranks_no_memory(error), error);
+    if (!status)
+        status = refine_all(&r, tiles, TRI_OK, error);
+    clean_up(&r);
     return status;
 }

@@ -1,34 +1,63 @@
 /* The schedule's last level on several ranks, each in an address space of its own: the same mesh, tile for tile, as
  * one process makes.
  *
- * Every rank has made the coarse mesh, and owns some odd columns of blocks that lie side by side: these are its
- * tiles.
+ * Every rank has made the coarse mesh, and owns some tiles (territory.h).
  *
- * INVARIANT. Between steps a rank's mesh holds the true triangles with a corner in its columns, and the worklist's
- * entries among them; what else is in its arrays is coarse, or old, and never looked at.
+ * INVARIANT. Between phases a rank's mesh is the triangles of the true one that have a corner in its tiles, and no
+ * others; links to others are TRI_BEYOND. Its worklist is the true one's entries among them. Triangles that have corners
+ * of other ranks, too (straddlers), are in the mesh of each of these.
  *
- * A block may be refined wherever the invariant is brought about for its box: blocks change triangles inside their
- * box alone, and read those that share an edge with one, which have two corners there. So before a block over the
- * columns of several ranks has its turn, the others send what they hold in its box (fragment.h) to the one who does
- * it, and get that back afterwards. Blocks of odd columns, and of even ones between two columns of one rank, ask for
- * nothing. An even column on the border of two ranks is done by the left one. Blocks of later rounds, which are
- * larger and have work only where something is left over, are all done by rank 0, phase by phase; boxes without work
- * stay where they are. By the theorem on the order of columns (phase.h) the mesh is that of one process: worklists
- * are kept in the order of their keys, which do not depend on who left what. */
+ * A block that lies in the tiles of one rank asks for nothing: all triangles that it may change are here, and so are
+ * those that share an edge with one of them. A block over the tiles of several ranks (at a border) is done by the one
+ * that owns the first of these tiles. The others lend it what it needs: its entries of the worklist, some rings of
+ * triangles around them, and all straddlers. Behind these lies the unknown; where a cavity may reach there, the block
+ * pauses, and gets more rings (refine.h, struct tri_part). So how much is lent decides nothing but the time it takes.
+ * When the phase is over the others are told which triangles have gone and which have come, and the borrowed ones are
+ * dropped.
+ *
+ * THEOREM. The mesh is that of one process. For blocks of a phase commute (phase.h), a block sees all that it would see
+ * in one process, with every triangle turned as there, and finds its share of the worklist in the same order, that of
+ * keys, which do not depend on who left what.
+ *
+ * WHAT MOVES. Rings and what they become: in proportion to the seams between blocks of several ranks, not to the mesh.
+ * That holds for later rounds and the last call, too, which is a block like others, with all of the plane as its box: it
+ * borrows the surroundings of what is left over, and the straddlers. */
 #ifndef SCHED_RANKS_RANKS_H
 #define SCHED_RANKS_RANKS_H
 
 #include "sched/phase.h"
 #include "sched/ranks/carrier.h"
+#include "sched/ranks/talk.h"
+#include "sched/ranks/territory.h"
 #include "sched/sweep/tiles.h"
+
+/* Who does the blocks of the phase at hand. */
+struct par_shift {
+    const struct par_partition *partition; /* NULL: there is one block, the plane */
+    int phase;
+    int *worker;     /* [blocks] of blocks at a border that have work; else -1 */
+    bool *is_mine;   /* [blocks] as struct par_share has it */
+    bool *is_border; /* [blocks] this rank works on it, and others hold a part */
+    bool *is_held;   /* [blocks] another rank works on it, and this one holds a part */
+    int32_t *block_of; /* [worklist.n] of each entry; TRI_NONE: none of this phase takes it */
+};
+
+/* Ids by what they stand for, open addressing: vertices by their places, or triangles by their corners. */
+struct par_index {
+    int32_t *id;
+    int32_t n, capacity;
+};
 
 struct par_ranks {
     struct par_state *state;
     struct par_carrier *carrier;
-    const struct par_partition *partition;
-    int32_t n_odd;     /* odd columns: number i is column 2 i + 1 */
-    int32_t *start;    /* [n_ranks + 1] rank p owns odd columns start[p] .. start[p + 1] - 1 */
+    struct par_territory territory;
+    struct par_worklist straddlers;
     int32_t n_common;  /* vertices that all ranks have by the same numbers */
+    struct par_shift shift;
+    struct par_talk *lent, *borrowed; /* [n_ranks] */
+    struct par_index places, triangles; /* of the straddlers and of what is borrowed */
+    int32_t rings;     /* to lend when more is asked for */
     struct par_bytes *out, *in; /* [n_ranks] */
 };
 
@@ -39,26 +68,66 @@ struct par_ranks {
 enum tri_status par_refine_on_ranks(struct par_state *state, const struct par_partition *partition,
                                     struct par_tiles *tiles, struct tri_error *error);
 
-/* The box of what rank p owns; nothing lies in that of a rank without columns. */
-struct tri_fence par_box_of(const struct par_ranks *ranks, int p);
+/* --- lend.c: what others work on. Every one fills or reads what is exchanged next; no memory: TRI_NO_MEMORY. */
 
-/* Who owns odd column number i. */
-int par_owner_of_column(const struct par_ranks *ranks, int32_t i);
+/* out[w]: what rank w has to know for its blocks. Their entries leave the worklist. */
+enum tri_status par_lend(struct par_ranks *ranks, struct tri_error *error);
 
-/* What the others will get: appends to out[to] what lies in the box. */
-enum tri_status par_ranks_cut(struct par_ranks *ranks, int to, const struct tri_fence *box, struct tri_error *error);
+/* in[w]: vertices around which rank w has to know more; out[w]: that. */
+enum tri_status par_lend_more(struct par_ranks *ranks, struct tri_error *error);
 
-/* Collective: sends all that, and puts what comes in its place. */
-enum tri_status par_ranks_swap(struct par_ranks *ranks, enum par_move move, enum tri_status status,
-                               struct tri_error *error);
+/* in[w]: what has become of it. */
+enum tri_status par_take_back(struct par_ranks *ranks, struct tri_error *error);
 
-/* Both phases of a column. */
-enum tri_status par_ranks_column(struct par_ranks *ranks, int32_t column, struct tri_error *error);
+/* --- borrow.c: what this rank works on */
 
-/* Collective: the even columns at the borders of ranks: borders.c. */
-enum tri_status par_ranks_borders(struct par_ranks *ranks, enum tri_status status, struct tri_error *error);
+/* in[h]: what rank h lends. */
+enum tri_status par_borrow(struct par_ranks *ranks, struct tri_error *error);
 
-/* Collective. Numbers the tiles, and hands them out: hand_out.c. */
+/* out[h]: of rank h's vertices those around which more has to be known. */
+enum tri_status par_ask(struct par_ranks *ranks, const struct par_worklist *vertices, struct tri_error *error);
+
+/* out[h]: what has become of it, given the triangles made. It is dropped here. */
+enum tri_status par_give_back(struct par_ranks *ranks, struct par_worklist *changed, struct tri_error *error);
+
+/* Drops all triangles without an own corner: the first thing to do. */
+enum tri_status par_keep_own(struct par_ranks *ranks, struct tri_error *error);
+
+/* --- paste.c: what both have in common */
+
+/* All that a message tells of is put into the mesh, and counted in the talk. is_borrowed: some of it may be here
+ * already, and more of it may come from others. */
+enum tri_status par_paste(struct par_ranks *ranks, struct par_talk *talk, const struct par_message *message,
+                          bool is_borrowed, struct tri_error *error);
+
+/* The straddlers, and nothing else. False: no memory. */
+bool par_index_straddlers(struct par_ranks *ranks);
+
+/* A message's entries join the worklist. False: no memory. */
+bool par_merge_entries(struct par_state *state, const struct par_message *message, const struct par_talk *talk);
+
+/* A triangle goes, a subsegment that has no triangle any more, a vertex: what leads to it leads beyond. */
+bool par_remove_triangle(struct par_state *state, tri_triangle_id t);
+bool par_remove_sub(struct par_state *state, tri_sub_id s);
+bool par_release(struct par_state *state, enum par_kind kind, int32_t id);
+
+static inline bool par_is_lone(const struct tri_subsegment *s) { return s->side[0] < 0 && s->side[1] < 0; }
+
+/* The worklist without the entries for which keep[] is false. */
+void par_worklist_keep(struct par_state *state, const bool *keep);
+
+/* Has the triangle a corner that is this rank's own, or one that is another's? */
+bool par_has_own(const struct par_ranks *ranks, tri_triangle_id t);
+bool par_has_foreign(const struct par_ranks *ranks, tri_triangle_id t);
+
+/* The block of the phase at hand that holds a place. */
+int32_t par_block_here(const struct par_ranks *ranks, struct tri_point q);
+
+enum tri_status par_ranks_no_memory(struct tri_error *error);
+
+/* --- hand_out.c */
+
+/* Collective. Numbers the tiles, and hands them out. */
 enum tri_status par_hand_out_on_ranks(struct par_ranks *ranks, struct par_tiles *tiles, enum tri_status status,
                                       struct tri_error *error);
 

@@ -14,7 +14,7 @@
 #include "triangle/clock.h"
 #include "triangle/grow.h"
 
-static const uint64_t MANIFEST = UINT64_C(0x316863697274706b), STATE = UINT64_C(0x3165746174736974); /* versions, too */
+static const uint64_t MANIFEST = UINT64_C(0x316863697274706b), STATE = UINT64_C(0x3265746174736974); /* versions, too */
 
 static const char *const state_name[2] = {"state-0", "state-1"};
 static const char manifest_name[] = "manifest", fresh_name[] = "manifest-new", tiles_name[] = "tiles";
@@ -199,7 +199,7 @@ static uint64_t run_of(const struct par_state *state, const struct par_partition
 
 struct head {
     uint64_t word;
-    int64_t odd, n_left, round;
+    int64_t odd, round;
     int64_t n_vertices, n_triangles, n_subs, n_worklist, n_keys, n_held, n_spare[PAR_KINDS];
     int64_t tiles_vertices, tiles_triangles, tiles_segments;
     int64_t pauses, most_live, deferred, left_over;
@@ -229,7 +229,7 @@ static struct head head_of(const struct par_state *state, const struct par_tiles
 {
     const struct tri_mesh *m = state->mesh;
     const struct par_report *r = state->report;
-    struct head h = {.word = STATE, .odd = odd, .n_left = state->n_left, .round = state->round,
+    struct head h = {.word = STATE, .odd = odd, .round = state->round,
                      .n_vertices = m->n_vertices, .n_triangles = m->n_triangles, .n_subs = m->n_subs,
                      .n_worklist = state->worklist.n, .n_keys = state->key.n, .n_held = tiles->held.n,
                      .tiles_vertices = tiles->n_vertices, .tiles_triangles = tiles->n_triangles,
@@ -332,7 +332,6 @@ static void set_counts(const struct head *h, struct par_state *state, struct par
     state->mesh->n_subs = (int32_t)h->n_subs;
     state->worklist.n = (int32_t)h->n_worklist;
     state->key.n = (int32_t)h->n_keys;
-    state->n_left = (uint32_t)h->n_left;
     state->round = (int)h->round;
     state->radius = h->radius;
     tiles->held.n = (int32_t)h->n_held;

@@ -1,0 +1,282 @@
+/* What is borrowed, and what becomes of it. */
+#include <assert.h>
+#include <stdlib.h>
+
+#include "sched/ranks/ranks.h"
+
+static enum tri_status borrow_from(struct par_ranks *r, int h, struct tri_error *error)
+{
+    struct par_message message;
+    struct par_talk *talk = &r->borrowed[h];
+    enum tri_status status = par_message_read(&message, talk, r->state->mesh, r->n_common, &r->in[h], error);
+    status = status ? status : par_paste(r, talk, &message, true, error);
+    if (!status && !par_merge_entries(r->state, &message, talk))
+        status = par_ranks_no_memory(error);
+    par_message_free(&message);
+    return status;
+}
+
+enum tri_status par_borrow(struct par_ranks *r, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    for (int h = 0; !status && h < r->carrier->n_ranks; h++)
+        if (r->in[h].n > 0)
+            status = borrow_from(r, h, error);
+    return status;
+}
+
+enum tri_status par_ask(struct par_ranks *r, const struct par_worklist *vertices, struct tri_error *error)
+{
+    for (int32_t i = 0; i < vertices->n; i++) {
+        int h = par_owner_at(&r->territory, r->state->mesh->xy[vertices->item[i]]);
+        int32_t number = h == r->territory.rank ? 0 : par_map_get(&r->borrowed[h].vertex_at, vertices->item[i]);
+        if (number == TRI_NONE)
+            return tri_fail(error, TRI_INTERNAL, NULL, 0, "nobody knows what lies beyond an edge");
+        if (h != r->territory.rank && !par_bytes_add(&r->out[h], &number, sizeof number))
+            return par_ranks_no_memory(error);
+    }
+    return TRI_OK;
+}
+
+/* --- giving back */
+
+static int ascending(const void *left, const void *right)
+{
+    const int32_t *a = left, *b = right;
+    return (*a > *b) - (*a < *b);
+}
+
+static void sort_unique(struct par_worklist *list)
+{
+    int32_t kept = 0;
+    if (list->n > 0)
+        qsort(list->item, (size_t)list->n, sizeof *list->item, ascending);
+    for (int32_t i = 0; i < list->n; i++)
+        if (i == 0 || list->item[i] != list->item[kept - 1])
+            list->item[kept++] = list->item[i];
+    list->n = kept;
+}
+
+static bool is_in(const struct par_triangle_set *set, tri_triangle_id t) { return set->word[t / 64] >> t % 64 & 1; }
+
+/* Triangles that were made anew, and subsegments that were split, are no longer what was told. */
+static bool note_gone(const struct par_ranks *r, struct par_talk *talk, const struct par_triangle_set *changed,
+                      struct par_message *message)
+{
+    const struct tri_mesh *mesh = r->state->mesh;
+    bool memory = true;
+    for (int32_t i = 0; memory && i < talk->triangle.n; i++)
+        if (is_in(changed, talk->triangle.item[i])) {
+            memory = par_worklist_add(&message->gone, i);
+            talk->triangle.item[i] = TRI_NONE;
+        }
+    for (int32_t i = 0; memory && i < talk->sub.n; i++)
+        if (mesh->sub[talk->sub.item[i]].v[1] != talk->sub_end.item[i]) {
+            memory = par_worklist_add(&message->gone_subs, i);
+            talk->sub.item[i] = TRI_NONE;
+        }
+    return memory;
+}
+
+/* The other ranks that own corners of a triangle, each once; returns how many. */
+static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3])
+{
+    const struct tri_mesh *mesh = r->state->mesh;
+    int n = 0;
+    for (int k = 0; k < 3; k++) {
+        struct tri_point q = mesh->xy[mesh->tri[t].v[k]];
+        int p = par_is_own(&r->territory, q) ? r->territory.rank : par_owner_at(&r->territory, q);
+        bool is_told = p == r->territory.rank;
+        for (int i = 0; i < n; i++)
+            is_told = is_told || owner[i] == p;
+        if (!is_told)
+            owner[n++] = p;
+    }
+    return n;
+}
+
+static bool add_new(struct par_ranks *r, const struct par_worklist *changed)
+{
+    bool memory = true;
+    for (int32_t i = 0; memory && i < changed->n; i++) {
+        int owner[3], n = owners_of(r, changed->item[i], owner);
+        for (int k = 0; memory && k < n; k++)
+            memory = par_talk_add_triangle(&r->borrowed[owner[k]], changed->item[i]);
+    }
+    return memory;
+}
+
+/* Was this left by a block at a border, in this phase? */
+static bool is_of_border(const struct par_ranks *r, uint64_t key)
+{
+    const struct par_partition *p = r->shift.partition;
+    int32_t place = (int32_t)(key >> 32 & 0xffffff) - 1;
+    if (!p || place < 0)
+        return false;
+    int32_t block = place / p->n_rows / 2 * p->n_rows + place % p->n_rows;
+    return par_key_of(p, r->state->round, r->shift.phase, block) == (key & ~(uint64_t)UINT32_MAX) &&
+           r->shift.is_border[block];
+}
+
+/* What such a block left goes to all who own a corner of it. */
+static bool give_entries(struct par_ranks *r, struct par_message *message)
+{
+    struct par_state *state = r->state;
+    bool memory = true, *keep = malloc((size_t)state->worklist.n + 1);
+    for (int32_t i = 0; keep && i < state->worklist.n; i++) {
+        tri_triangle_id t = state->worklist.item[i];
+        keep[i] = par_has_own(r, t);
+        if (!is_of_border(r, state->key.item[i]))
+            continue;
+        int owner[3], n = owners_of(r, t, owner);
+        for (int k = 0; k < n; k++)
+            memory = memory && par_message_add_entry(&message[owner[k]], state->key.item[i],
+                                                     par_talk_number(&r->borrowed[owner[k]], t));
+    }
+    if (keep)
+        par_worklist_keep(state, keep);
+    memory = memory && keep;
+    free(keep);
+    return memory;
+}
+
+static bool write_to(struct par_ranks *r, int h, struct par_message *message, int32_t first)
+{
+    struct par_talk *talk = &r->borrowed[h];
+    if (message->gone.n + message->gone_subs.n + message->n_entries == 0 && talk->triangle.n == first)
+        return true;
+    return par_message_tell(message, talk, r->state->mesh, r->n_common, first) &&
+           par_message_write(message, talk, r->state->mesh->n_attributes, &r->out[h]);
+}
+
+static bool give_all(struct par_ranks *r, struct par_worklist *changed, const struct par_triangle_set *set,
+                     struct par_message *message, int32_t *first)
+{
+    bool memory = true;
+    for (int h = 0; memory && h < r->carrier->n_ranks; h++) {
+        memory = note_gone(r, &r->borrowed[h], set, &message[h]);
+        first[h] = r->borrowed[h].triangle.n;
+    }
+    memory = memory && add_new(r, changed) && give_entries(r, message);
+    for (int h = 0; memory && h < r->carrier->n_ranks; h++)
+        memory = write_to(r, h, &message[h], first[h]);
+    return memory;
+}
+
+/* --- dropping */
+
+static void mark(uint64_t *word, int32_t v, bool on)
+{
+    uint64_t bit = (uint64_t)1 << v % 64;
+    word[v / 64] = on ? word[v / 64] | bit : word[v / 64] & ~bit;
+}
+
+/* The vertices of what goes go with it, unless a straddler has them. */
+static bool remove_vertices(struct par_ranks *r, uint64_t *word)
+{
+    struct tri_mesh *mesh = r->state->mesh;
+    bool memory = true;
+    for (int32_t i = 0; i < r->straddlers.n; i++)
+        for (int k = 0; k < 3; k++)
+            mark(word, mesh->tri[r->straddlers.item[i]].v[k], false);
+    for (int32_t w = 0; memory && w <= mesh->n_vertices / 64; w++)
+        for (int bit = 0; memory && word[w] != 0 && bit < 64; bit++)
+            if (word[w] >> bit & 1) {
+                mesh->on[64 * w + bit] = TRI_VERTEX_NONE;
+                memory = par_release(r->state, PAR_VERTICES, 64 * w + bit);
+            }
+    return memory;
+}
+
+static bool remove_one(struct par_ranks *r, tri_triangle_id t, uint64_t *word)
+{
+    struct tri_mesh *mesh = r->state->mesh;
+    const struct tri_triangle old = mesh->tri[t];
+    bool memory = par_remove_triangle(r->state, t);
+    for (int k = 0; memory && k < 3; k++) {
+        if (old.v[k] >= r->n_common)
+            mark(word, old.v[k], true);
+        if (old.n[k] < 0 && old.n[k] != TRI_BEYOND && par_is_lone(&mesh->sub[~old.n[k]]))
+            memory = par_remove_sub(r->state, ~old.n[k]);
+    }
+    return memory;
+}
+
+/* Of these triangles those without an own corner go, those with some of them are straddlers. */
+static bool sort_out(struct par_ranks *r, const struct par_worklist *triangles, uint64_t *word, bool adds)
+{
+    bool memory = true;
+    for (int32_t i = 0; memory && i < triangles->n; i++) {
+        tri_triangle_id t = triangles->item[i];
+        if (t == TRI_NONE || !tri_is_live(&r->state->mesh->tri[t]))
+            continue;
+        if (!par_has_own(r, t))
+            memory = remove_one(r, t, word);
+        else if (adds && par_has_foreign(r, t))
+            memory = par_worklist_add(&r->straddlers, t);
+    }
+    return memory;
+}
+
+static void forget_changed(struct par_ranks *r, const struct par_triangle_set *changed)
+{
+    int32_t kept = 0;
+    for (int32_t i = 0; i < r->straddlers.n; i++)
+        if (!is_in(changed, r->straddlers.item[i]))
+            r->straddlers.item[kept++] = r->straddlers.item[i];
+    r->straddlers.n = kept;
+}
+
+static bool drop_all(struct par_ranks *r, const struct par_worklist *changed, const struct par_triangle_set *set)
+{
+    uint64_t *word = calloc((size_t)r->state->mesh->n_vertices / 64 + 1, sizeof *word);
+    bool memory = word;
+    forget_changed(r, set);
+    memory = memory && sort_out(r, changed, word, true);
+    for (int h = 0; memory && h < r->carrier->n_ranks; h++)
+        memory = sort_out(r, &r->borrowed[h].triangle, word, false);
+    memory = memory && remove_vertices(r, word);
+    free(word);
+    return memory;
+}
+
+enum tri_status par_give_back(struct par_ranks *r, struct par_worklist *changed, struct tri_error *error)
+{
+    size_t n = (size_t)r->carrier->n_ranks;
+    struct par_message *message = calloc(n, sizeof *message);
+    int32_t *first = calloc(n, sizeof *first);
+    struct par_triangle_set set;
+    sort_unique(changed);
+    bool memory = par_triangle_set_of(&set, changed, r->state->mesh->n_triangles) && message && first &&
+                  give_all(r, changed, &set, message, first) && drop_all(r, changed, &set);
+    for (size_t h = 0; message && h < n; h++)
+        par_message_free(&message[h]);
+    free(message);
+    free(first);
+    free(set.word);
+    return memory ? TRI_OK : par_ranks_no_memory(error);
+}
+
+static bool keep_own_entries(struct par_ranks *r)
+{
+    bool *keep = malloc((size_t)r->state->worklist.n + 1);
+    for (int32_t i = 0; keep && i < r->state->worklist.n; i++)
+        keep[i] = par_has_own(r, r->state->worklist.item[i]);
+    if (keep)
+        par_worklist_keep(r->state, keep);
+    free(keep);
+    return keep;
+}
+
+enum tri_status par_keep_own(struct par_ranks *r, struct tri_error *error)
+{
+    struct par_worklist all = {0};
+    uint64_t *word = calloc((size_t)r->state->mesh->n_vertices / 64 + 1, sizeof *word);
+    bool memory = word && keep_own_entries(r);
+    for (tri_triangle_id t = 0; memory && t < r->state->mesh->n_triangles; t++)
+        memory = par_worklist_add(&all, t);
+    memory = memory && sort_out(r, &all, word, true); /* all vertices stay: all ranks have them */
+    free(all.item);
+    free(word);
+    return memory ? TRI_OK : par_ranks_no_memory(error);
+}

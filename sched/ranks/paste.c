@@ -1,0 +1,409 @@
+/* Triangles, subsegments and vertices come and go. What comes gets ids that are unused, else new ones. */
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sched/ranks/ranks.h"
+#include "triangle/grow.h"
+
+enum tri_status par_ranks_no_memory(struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for what lies at the border of ranks");
+}
+
+bool par_has_own(const struct par_ranks *r, tri_triangle_id t)
+{
+    const tri_vertex_id *v = r->state->mesh->tri[t].v;
+    const struct tri_point *xy = r->state->mesh->xy;
+    return par_is_own(&r->territory, xy[v[0]]) || par_is_own(&r->territory, xy[v[1]]) ||
+           par_is_own(&r->territory, xy[v[2]]);
+}
+
+bool par_has_foreign(const struct par_ranks *r, tri_triangle_id t)
+{
+    const tri_vertex_id *v = r->state->mesh->tri[t].v;
+    const struct tri_point *xy = r->state->mesh->xy;
+    return !par_is_own(&r->territory, xy[v[0]]) || !par_is_own(&r->territory, xy[v[1]]) ||
+           !par_is_own(&r->territory, xy[v[2]]);
+}
+
+int32_t par_block_here(const struct par_ranks *r, struct tri_point q)
+{
+    return r->shift.partition ? par_block_at(r->shift.partition, r->shift.phase, q) : 0;
+}
+
+/* --- the worklist */
+
+void par_worklist_keep(struct par_state *state, const bool *keep)
+{
+    int32_t kept = 0;
+    assert(state->key.n == state->worklist.n);
+    for (int32_t i = 0; i < state->worklist.n; i++)
+        if (keep[i]) {
+            state->key.item[kept] = state->key.item[i];
+            state->worklist.item[kept++] = state->worklist.item[i];
+        }
+    state->worklist.n = state->key.n = kept;
+}
+
+/* From behind, in place. Who is on both sides is the same, told by several ranks. */
+bool par_merge_entries(struct par_state *state, const struct par_message *m, const struct par_talk *talk)
+{
+    int32_t n = state->worklist.n, all = n + m->n_entries, kept = 0;
+    assert(state->key.n == n);
+    if (!tri_grow(&state->worklist.item, &state->worklist.capacity, all, sizeof *state->worklist.item) ||
+        !tri_grow(&state->key.item, &state->key.capacity, all, sizeof *state->key.item))
+        return false;
+    int32_t *item = state->worklist.item;
+    uint64_t *key = state->key.item;
+    for (int32_t at = all, i = n, k = m->n_entries; at > 0;) {
+        bool own = k == 0 || (i > 0 && key[i - 1] > m->entry[k - 1].key);
+        at--;
+        key[at] = own ? key[i - 1] : m->entry[k - 1].key;
+        item[at] = own ? item[i - 1] : talk->triangle.item[m->entry[k - 1].triangle];
+        i -= own;
+        k -= !own;
+    }
+    for (int32_t i = 0; i < all; i++)
+        if (i == 0 || key[i] != key[kept - 1]) {
+            key[kept] = key[i];
+            item[kept++] = item[i];
+        }
+    state->worklist.n = state->key.n = kept;
+    return true;
+}
+
+/* --- ids */
+
+static int32_t *count_of(struct tri_mesh *mesh, enum par_kind kind)
+{
+    return kind == PAR_VERTICES ? &mesh->n_vertices : kind == PAR_TRIANGLES ? &mesh->n_triangles : &mesh->n_subs;
+}
+
+static int32_t take_id(struct par_state *state, enum par_kind kind)
+{
+    struct par_ranges *spare = &state->spare.ranges[kind];
+    if (spare->n > 0) {
+        struct par_range *last = &spare->item[spare->n - 1];
+        spare->n -= last->next + 1 == last->end;
+        return last->next++;
+    }
+    return (*count_of(state->mesh, kind))++;
+}
+
+bool par_release(struct par_state *state, enum par_kind kind, int32_t id)
+{
+    struct par_ranges *spare = &state->spare.ranges[kind];
+    if (spare->n > 0 && spare->item[spare->n - 1].end == id && spare->item[spare->n - 1].next < id) {
+        spare->item[spare->n - 1].end++;
+        return true;
+    }
+    if (!par_ranges_reserve(spare, spare->n + spare->dealt + 1))
+        return false;
+    spare->item[spare->n++] = (struct par_range){id, id + 1};
+    return true;
+}
+
+bool par_remove_triangle(struct par_state *state, tri_triangle_id t)
+{
+    struct tri_mesh *mesh = state->mesh;
+    struct tri_triangle *triangle = &mesh->tri[t];
+    assert(tri_is_live(triangle));
+    for (int e = 0; e < 3; e++) {
+        int32_t link = triangle->n[e];
+        if (link >= 0 && *tri_link_at(mesh, link) == tri_code(t, e))
+            *tri_link_at(mesh, link) = TRI_BEYOND;
+        for (int side = 0; link < 0 && link != TRI_BEYOND && side < 2; side++)
+            if (mesh->sub[~link].side[side] == tri_code(t, e))
+                mesh->sub[~link].side[side] = TRI_BEYOND;
+    }
+    triangle->v[0] = TRI_NONE;
+    return par_release(state, PAR_TRIANGLES, t);
+}
+
+bool par_remove_sub(struct par_state *state, tri_sub_id s)
+{
+    par_room_mark_sub(state->mesh, s);
+    return par_release(state, PAR_SUBS, s);
+}
+
+/* --- what is known */
+
+static uint32_t mixed(uint64_t word)
+{
+    word = (word ^ word >> 31) * 0x9e3779b97f4a7c15ull;
+    return (uint32_t)(word >> 32);
+}
+
+static uint32_t hash_of_place(struct tri_point q)
+{
+    uint64_t bits[2];
+    memcpy(bits, &q, sizeof bits);
+    return mixed(bits[0] * 0x2545f4914f6cdd1dull + bits[1]);
+}
+
+static uint32_t hash_of_corners(const tri_vertex_id v[3])
+{
+    return mixed(((uint64_t)(uint32_t)v[0] << 32 | (uint32_t)v[1]) * 0x2545f4914f6cdd1dull + (uint32_t)v[2]);
+}
+
+/* The place where the one that is sought is, or may be put. */
+static int32_t *at_place(const struct par_index *index, const struct tri_mesh *mesh, struct tri_point q)
+{
+    uint32_t mask = (uint32_t)index->capacity - 1, at = hash_of_place(q) & mask;
+    for (; index->id[at] != TRI_NONE; at = (at + 1) & mask) {
+        const struct tri_point *xy = &mesh->xy[index->id[at]];
+        if (xy->x == q.x && xy->y == q.y)
+            break;
+    }
+    return &index->id[at];
+}
+
+static int32_t *at_corners(const struct par_index *index, const struct tri_mesh *mesh, const tri_vertex_id v[3])
+{
+    uint32_t mask = (uint32_t)index->capacity - 1, at = hash_of_corners(v) & mask;
+    while (index->id[at] != TRI_NONE && memcmp(mesh->tri[index->id[at]].v, v, 3 * sizeof *v) != 0)
+        at = (at + 1) & mask;
+    return &index->id[at];
+}
+
+/* Room for so many more. */
+static bool reserve_index(struct par_index *index, const struct tri_mesh *mesh, int32_t more, bool is_of_places)
+{
+    struct par_index larger = {.n = index->n, .capacity = 1024};
+    if (index->n > (1 << 28) - more)
+        return false;
+    if (2 * (index->n + more) < index->capacity)
+        return true;
+    while (larger.capacity <= 2 * (index->n + more))
+        larger.capacity *= 2;
+    larger.id = malloc((size_t)larger.capacity * sizeof *larger.id);
+    if (!larger.id)
+        return false;
+    for (int32_t i = 0; i < larger.capacity; i++)
+        larger.id[i] = TRI_NONE;
+    for (int32_t i = 0; i < index->capacity; i++) {
+        int32_t id = index->id[i];
+        if (id != TRI_NONE)
+            *(is_of_places ? at_place(&larger, mesh, mesh->xy[id]) : at_corners(&larger, mesh, mesh->tri[id].v)) = id;
+    }
+    free(index->id);
+    *index = larger;
+    return true;
+}
+
+static void note(struct par_index *index, int32_t *at, int32_t id)
+{
+    index->n += *at == TRI_NONE;
+    *at = id;
+}
+
+bool par_index_straddlers(struct par_ranks *r)
+{
+    const struct tri_mesh *mesh = r->state->mesh;
+    free(r->places.id);
+    free(r->triangles.id);
+    r->places = r->triangles = (struct par_index){0};
+    if (!reserve_index(&r->places, mesh, 3 * r->straddlers.n, true) ||
+        !reserve_index(&r->triangles, mesh, r->straddlers.n, false))
+        return false;
+    for (int32_t i = 0; i < r->straddlers.n; i++) {
+        const tri_vertex_id *v = mesh->tri[r->straddlers.item[i]].v;
+        note(&r->triangles, at_corners(&r->triangles, mesh, v), r->straddlers.item[i]);
+        for (int k = 0; k < 3; k++)
+            if (v[k] >= r->n_common)
+                note(&r->places, at_place(&r->places, mesh, mesh->xy[v[k]]), v[k]);
+    }
+    return true;
+}
+
+/* --- paste */
+
+struct pasting {
+    struct par_ranks *ranks;
+    struct tri_mesh *mesh;
+    struct par_talk *talk;
+    const struct par_message *message;
+    bool is_borrowed;
+    int32_t first_vertex, first_triangle, first_sub; /* numbers of the first new ones */
+    bool *is_new;     /* [n_vertices] was not here */
+    int32_t *sub;     /* [n_new_subs] ids */
+};
+
+static int32_t append_vertex(struct pasting *p, int32_t i)
+{
+    struct tri_mesh *mesh = p->mesh;
+    const struct par_told_vertex *told = &p->message->vertex[i];
+    size_t n = (size_t)mesh->n_attributes;
+    int32_t v = take_id(p->ranks->state, PAR_VERTICES);
+    mesh->xy[v] = told->xy;
+    mesh->feature[v] = told->feature;
+    mesh->on[v] = told->on;
+    mesh->vertex_markers[v] = told->marker;
+    if (n > 0)
+        memcpy(mesh->attributes + (size_t)v * n, p->message->attribute + (size_t)i * n, n * sizeof *mesh->attributes);
+    p->is_new[i] = true;
+    return v;
+}
+
+static bool paste_vertices(struct pasting *p)
+{
+    bool memory = true;
+    for (int32_t i = 0; memory && i < p->message->n_vertices; i++) {
+        const struct par_told_vertex *told = &p->message->vertex[i];
+        int32_t v = told->common;
+        if (v == TRI_NONE) {
+            int32_t *at = at_place(&p->ranks->places, p->mesh, told->xy);
+            v = *at != TRI_NONE ? *at : append_vertex(p, i);
+            note(&p->ranks->places, at, v);
+        }
+        memory = par_talk_add_vertex(p->talk, v);
+    }
+    return memory;
+}
+
+/* A triangle with a corner that was not here was not here. */
+static bool may_be_here(const struct pasting *p, const struct par_told_triangle *told)
+{
+    bool may = p->is_borrowed;
+    for (int k = 0; k < 3; k++)
+        may = may && (told->v[k] < p->first_vertex || !p->is_new[told->v[k] - p->first_vertex]);
+    return may;
+}
+
+static int32_t paste_triangle(struct pasting *p, const struct par_told_triangle *told)
+{
+    const int32_t *id = p->talk->vertex.item, v[3] = {id[told->v[0]], id[told->v[1]], id[told->v[2]]};
+    int32_t t = may_be_here(p, told) ? *at_corners(&p->ranks->triangles, p->mesh, v) : TRI_NONE;
+    if (t != TRI_NONE)
+        return t;
+    t = take_id(p->ranks->state, PAR_TRIANGLES);
+    p->mesh->tri[t] = (struct tri_triangle){{v[0], v[1], v[2]}, {TRI_BEYOND, TRI_BEYOND, TRI_BEYOND}, told->region, 0};
+    if (p->is_borrowed)
+        note(&p->ranks->triangles, at_corners(&p->ranks->triangles, p->mesh, v), t);
+    return t;
+}
+
+static bool paste_triangles(struct pasting *p)
+{
+    bool memory = true;
+    for (int32_t i = 0; memory && i < p->message->n_triangles; i++)
+        memory = par_talk_add_triangle(p->talk, paste_triangle(p, &p->message->triangle[i]));
+    return memory;
+}
+
+/* The edge of a triangle that runs from `from` to `to`; -1: none does. */
+static int edge_between(const struct tri_triangle *t, tri_vertex_id from, tri_vertex_id to)
+{
+    for (int e = 0; e < 3; e++)
+        if (t->v[tri_next[e]] == from && t->v[tri_prev[e]] == to)
+            return e;
+    return -1;
+}
+
+static bool link(struct tri_mesh *mesh, tri_triangle_id t, int e, tri_triangle_id other)
+{
+    struct tri_triangle *a = &mesh->tri[t], *b = other == TRI_NONE ? NULL : &mesh->tri[other];
+    int f = b ? edge_between(b, a->v[tri_prev[e]], a->v[tri_next[e]]) : -1;
+    if (f < 0)
+        return false;
+    if (a->n[e] == TRI_BEYOND) {
+        a->n[e] = tri_code(other, f);
+        b->n[f] = tri_code(t, e);
+    }
+    return a->n[e] == tri_code(other, f) && b->n[f] == tri_code(t, e);
+}
+
+static bool paste_links(struct pasting *p)
+{
+    const int32_t *id = p->talk->triangle.item;
+    bool good = true;
+    for (int32_t i = 0; good && i < p->message->n_triangles; i++)
+        for (int e = 0; good && e < 3; e++) {
+            int32_t next = p->message->triangle[i].next[e];
+            good = next == TRI_NONE || link(p->mesh, id[p->first_triangle + i], e, id[next]);
+        }
+    return good;
+}
+
+/* Of the new subsegments those that are here already, beside a triangle that was. */
+static void find_subs(struct pasting *p)
+{
+    for (int32_t i = 0; i < p->message->n_new_subs; i++)
+        p->sub[i] = TRI_NONE;
+    for (int32_t i = 0; i < p->message->n_sides; i++) {
+        const struct par_told_side *s = &p->message->side[i];
+        tri_triangle_id t = p->talk->triangle.item[s->triangle];
+        int32_t here = t == TRI_NONE ? TRI_BEYOND : p->mesh->tri[t].n[s->edge];
+        if (s->sub >= p->first_sub && here < 0 && here != TRI_BEYOND)
+            p->sub[s->sub - p->first_sub] = ~here;
+    }
+}
+
+static tri_sub_id append_sub(struct pasting *p, const struct par_told_side *told)
+{
+    const tri_vertex_id *v = p->mesh->tri[p->talk->triangle.item[told->triangle]].v;
+    tri_vertex_id from = v[tri_next[told->edge]], to = v[tri_prev[told->edge]];
+    tri_sub_id s = take_id(p->ranks->state, PAR_SUBS);
+    struct tri_subsegment *sub = &p->mesh->sub[s];
+    *sub = (struct tri_subsegment){{told->side == 0 ? from : to, told->side == 0 ? to : from},
+                                   {TRI_BEYOND, TRI_BEYOND}, told->marker, told->parent};
+    if (told->is_boundary)
+        sub->side[1 - told->side] = TRI_NONE;
+    return s;
+}
+
+static bool paste_subs(struct pasting *p)
+{
+    bool good = true;
+    find_subs(p);
+    for (int32_t i = 0; good && i < p->message->n_sides; i++) {
+        const struct par_told_side *told = &p->message->side[i];
+        tri_triangle_id t = p->talk->triangle.item[told->triangle];
+        if (t == TRI_NONE)
+            return false;
+        if (told->sub == p->talk->sub.n) {
+            int32_t *s = &p->sub[told->sub - p->first_sub];
+            *s = *s == TRI_NONE ? append_sub(p, told) : *s;
+            good = par_talk_add_sub(p->talk, p->mesh, *s);
+        }
+        tri_sub_id s = good ? p->talk->sub.item[told->sub] : TRI_NONE;
+        if (s == TRI_NONE)
+            return false;
+        p->mesh->sub[s].side[told->side] = tri_code(t, told->edge);
+        p->mesh->tri[t].n[told->edge] = ~s;
+    }
+    return good;
+}
+
+static bool reserve(struct pasting *p, struct tri_error *error)
+{
+    const struct par_message *m = p->message;
+    p->is_new = calloc((size_t)m->n_vertices + 1, sizeof *p->is_new);
+    p->sub = malloc(((size_t)m->n_new_subs + 1) * sizeof *p->sub);
+    return p->is_new && p->sub && !tri_mesh_reserve_vertices(p->mesh, m->n_vertices, error) &&
+           !tri_mesh_reserve_triangles(p->mesh, m->n_triangles, error) &&
+           !tri_mesh_reserve_subs(p->mesh, m->n_new_subs, error) &&
+           reserve_index(&p->ranks->places, p->mesh, m->n_vertices, true) &&
+           reserve_index(&p->ranks->triangles, p->mesh, p->is_borrowed ? m->n_triangles : 0, false);
+}
+
+enum tri_status par_paste(struct par_ranks *r, struct par_talk *talk, const struct par_message *message,
+                          bool is_borrowed, struct tri_error *error)
+{
+    struct pasting p = {r, r->state->mesh, talk, message, is_borrowed, talk->vertex.n, talk->triangle.n, talk->sub.n,
+                        NULL, NULL};
+    struct tri_error own = {0};
+    enum tri_status status = TRI_OK;
+    error = error ? error : &own;
+    error->status = TRI_OK;
+    if (!reserve(&p, error))
+        status = error->status ? error->status : par_ranks_no_memory(error);
+    if (!status && !(paste_vertices(&p) && paste_triangles(&p)))
+        status = par_ranks_no_memory(error);
+    if (!status && !(paste_links(&p) && paste_subs(&p)))
+        status = tri_fail(error, TRI_INTERNAL, NULL, 0, "what came from another rank does not fit");
+    free(p.is_new);
+    free(p.sub);
+    return status;
+}

@@ -1,0 +1,494 @@
+/* Numbers, and messages as bytes: whole numbers seven bits at a time, the least first. */
+#include "sched/ranks/talk.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "triangle/grow.h"
+
+/* --- maps */
+
+static uint32_t slot_of(const struct par_map *map, int32_t key)
+{
+    uint32_t mask = (uint32_t)map->capacity - 1, at = (uint32_t)key * 0x9e3779b9u;
+    at = (at ^ at >> 15) & mask;
+    while (map->key[at] != TRI_NONE && map->key[at] != key)
+        at = (at + 1) & mask;
+    return at;
+}
+
+static bool grow_map(struct par_map *map)
+{
+    struct par_map larger = {.capacity = map->capacity ? 2 * map->capacity : 256, .n = map->n};
+    size_t n = (size_t)larger.capacity;
+    if (larger.capacity > 1 << 29)
+        return false;
+    larger.key = malloc(n * sizeof *larger.key);
+    larger.value = malloc(n * sizeof *larger.value);
+    if (!larger.key || !larger.value) {
+        par_map_free(&larger);
+        return false;
+    }
+    for (size_t i = 0; i < n; i++)
+        larger.key[i] = TRI_NONE;
+    for (int32_t i = 0; i < map->capacity; i++)
+        if (map->key[i] != TRI_NONE) {
+            uint32_t at = slot_of(&larger, map->key[i]);
+            larger.key[at] = map->key[i];
+            larger.value[at] = map->value[i];
+        }
+    par_map_free(map);
+    *map = larger;
+    return true;
+}
+
+bool par_map_put(struct par_map *map, int32_t key, int32_t value)
+{
+    assert(key >= 0);
+    if (2 * (map->n + 1) > map->capacity && !grow_map(map))
+        return false;
+    uint32_t at = slot_of(map, key);
+    map->n += map->key[at] == TRI_NONE;
+    map->key[at] = key;
+    map->value[at] = value;
+    return true;
+}
+
+int32_t par_map_get(const struct par_map *map, int32_t key)
+{
+    uint32_t at = map->n > 0 ? slot_of(map, key) : 0;
+    return map->n > 0 && map->key[at] == key ? map->value[at] : TRI_NONE;
+}
+
+void par_map_free(struct par_map *map)
+{
+    free(map->key);
+    free(map->value);
+    *map = (struct par_map){0};
+}
+
+/* --- numbers */
+
+bool par_talk_add_vertex(struct par_talk *talk, tri_vertex_id v)
+{
+    return par_map_put(&talk->vertex_at, v, talk->vertex.n) && par_worklist_add(&talk->vertex, v);
+}
+
+bool par_talk_add_triangle(struct par_talk *talk, tri_triangle_id t)
+{
+    return par_map_put(&talk->triangle_at, t, talk->triangle.n) && par_worklist_add(&talk->triangle, t);
+}
+
+bool par_talk_add_sub(struct par_talk *talk, const struct tri_mesh *mesh, tri_sub_id s)
+{
+    return par_map_put(&talk->sub_at, s, talk->sub.n) && par_worklist_add(&talk->sub, s) &&
+           par_worklist_add(&talk->sub_end, mesh->sub[s].v[1]);
+}
+
+static int32_t number_of(const struct par_map *map, const struct par_worklist *list, int32_t id)
+{
+    int32_t number = par_map_get(map, id);
+    return number != TRI_NONE && list->item[number] == id ? number : TRI_NONE;
+}
+
+int32_t par_talk_number(const struct par_talk *talk, tri_triangle_id t)
+{
+    return number_of(&talk->triangle_at, &talk->triangle, t);
+}
+
+void par_talk_free(struct par_talk *talk)
+{
+    free(talk->vertex.item);
+    free(talk->triangle.item);
+    free(talk->sub.item);
+    free(talk->sub_end.item);
+    par_map_free(&talk->vertex_at);
+    par_map_free(&talk->triangle_at);
+    par_map_free(&talk->sub_at);
+    par_map_free(&talk->surrounded);
+    *talk = (struct par_talk){0};
+}
+
+/* --- what is told */
+
+void par_message_free(struct par_message *m)
+{
+    free(m->gone.item);
+    free(m->gone_subs.item);
+    free(m->vertex);
+    free(m->attribute);
+    free(m->triangle);
+    free(m->side);
+    free(m->entry);
+    *m = (struct par_message){0};
+}
+
+static bool tell_vertex(struct par_message *m, struct par_talk *talk, const struct tri_mesh *mesh, int32_t n_common,
+                        tri_vertex_id v)
+{
+    int32_t n = mesh->n_attributes, at = m->n_vertices * n;
+    if (!tri_grow(&m->vertex, &m->vertex_capacity, m->n_vertices + 1, sizeof *m->vertex) ||
+        !tri_grow(&m->attribute, &m->attribute_capacity, at + n, sizeof *m->attribute) ||
+        !par_talk_add_vertex(talk, v))
+        return false;
+    m->vertex[m->n_vertices++] = (struct par_told_vertex){v < n_common ? v : TRI_NONE, mesh->xy[v], mesh->feature[v],
+                                                          mesh->on[v], mesh->vertex_markers[v]};
+    if (n > 0)
+        memcpy(m->attribute + at, mesh->attributes + (size_t)v * (size_t)n, (size_t)n * sizeof *m->attribute);
+    return true;
+}
+
+static bool tell_side(struct par_message *m, struct par_talk *talk, const struct tri_mesh *mesh, tri_triangle_id t,
+                      int e)
+{
+    tri_sub_id s = ~mesh->tri[t].n[e];
+    const struct tri_subsegment *sub = &mesh->sub[s];
+    int side = sub->side[1] == tri_code(t, e);
+    int32_t number = number_of(&talk->sub_at, &talk->sub, s);
+    assert(sub->side[side] == tri_code(t, e));
+    if (number == TRI_NONE) {
+        number = talk->sub.n;
+        m->n_new_subs++;
+        if (!par_talk_add_sub(talk, mesh, s))
+            return false;
+    }
+    if (!tri_grow(&m->side, &m->side_capacity, m->n_sides + 1, sizeof *m->side))
+        return false;
+    m->side[m->n_sides++] = (struct par_told_side){par_talk_number(talk, t), e, side, number, sub->marker,
+                                                   sub->parent, sub->side[1 - side] == TRI_NONE};
+    return true;
+}
+
+static bool tell_triangle(struct par_message *m, struct par_talk *talk, const struct tri_mesh *mesh, int32_t n_common,
+                          tri_triangle_id t)
+{
+    const struct tri_triangle *triangle = &mesh->tri[t];
+    struct par_told_triangle told = {.region = triangle->region};
+    int32_t own = par_talk_number(talk, t);
+    for (int k = 0; k < 3; k++) {
+        if (par_map_get(&talk->vertex_at, triangle->v[k]) == TRI_NONE &&
+            !tell_vertex(m, talk, mesh, n_common, triangle->v[k]))
+            return false;
+        told.v[k] = par_map_get(&talk->vertex_at, triangle->v[k]);
+        int32_t link = triangle->n[k], next = link >= 0 ? par_talk_number(talk, tri_of(link)) : TRI_NONE;
+        told.next[k] = next < own ? next : TRI_NONE;
+        if (link < 0 && link != TRI_BEYOND && !tell_side(m, talk, mesh, t, k))
+            return false;
+    }
+    m->triangle[m->n_triangles++] = told;
+    return true;
+}
+
+bool par_message_tell(struct par_message *m, struct par_talk *talk, const struct tri_mesh *mesh, int32_t n_common,
+                      int32_t first)
+{
+    bool memory = tri_grow(&m->triangle, &m->triangle_capacity, talk->triangle.n - first, sizeof *m->triangle);
+    assert(m->n_triangles == 0);
+    for (int32_t i = first; memory && i < talk->triangle.n; i++)
+        memory = tell_triangle(m, talk, mesh, n_common, talk->triangle.item[i]);
+    return memory;
+}
+
+bool par_message_add_entry(struct par_message *m, uint64_t key, int32_t triangle)
+{
+    if (!tri_grow(&m->entry, &m->entry_capacity, m->n_entries + 1, sizeof *m->entry))
+        return false;
+    m->entry[m->n_entries++] = (struct par_told_entry){key, triangle};
+    return true;
+}
+
+/* --- writing */
+
+struct writer {
+    struct par_bytes *to;
+    bool lost;
+};
+
+static void put(struct writer *w, uint64_t n)
+{
+    unsigned char byte[10];
+    int k = 0;
+    for (; n >= 128; n >>= 7)
+        byte[k++] = (unsigned char)(n & 127) | 128;
+    byte[k++] = (unsigned char)n;
+    w->lost = w->lost || !par_bytes_add(w->to, byte, (size_t)k);
+}
+
+static void put_signed(struct writer *w, int64_t n) { put(w, n < 0 ? 2 * ~(uint64_t)n + 1 : 2 * (uint64_t)n); }
+
+static void put_bytes(struct writer *w, const void *item, size_t n)
+{
+    w->lost = w->lost || !par_bytes_add(w->to, item, n);
+}
+
+static void put_ascending(struct writer *w, const struct par_worklist *list)
+{
+    for (int32_t i = 0, last = 0; i < list->n; last = list->item[i++])
+        put(w, (uint64_t)(list->item[i] - last));
+}
+
+enum { COMMON, FREE, OTHER };
+
+static void put_vertex(struct writer *w, const struct par_told_vertex *v, const double *attribute, int32_t n)
+{
+    bool is_free = v->on == TRI_VERTEX_FREE && v->marker == 0;
+    put(w, v->common != TRI_NONE ? COMMON : is_free ? FREE : OTHER);
+    if (v->common != TRI_NONE) {
+        put(w, (uint64_t)v->common);
+        return;
+    }
+    if (!is_free) {
+        put_signed(w, v->on);
+        put_signed(w, v->marker);
+    }
+    put_bytes(w, &v->xy, sizeof v->xy);
+    put_bytes(w, &v->feature, sizeof v->feature);
+    put_bytes(w, attribute, (size_t)n * sizeof *attribute);
+}
+
+static void put_triangles(struct writer *w, const struct par_message *m, const struct par_talk *talk)
+{
+    int32_t top = talk->vertex.n - m->n_vertices, first = talk->triangle.n - m->n_triangles, region = 0;
+    for (int32_t i = 0; i < m->n_triangles; i++) {
+        const struct par_told_triangle *t = &m->triangle[i];
+        for (int k = 0; k < 3; k++) {
+            uint64_t back = (uint64_t)(top - t->v[k]);
+            assert(t->v[k] <= top);
+            top += t->v[k] == top;
+            put(w, k == 0 ? 2 * back + (t->region != region) : back);
+        }
+        if (t->region != region)
+            put(w, (uint64_t)(region = t->region));
+        for (int k = 0; k < 3; k++)
+            put(w, t->next[k] == TRI_NONE ? 0 : (uint64_t)(first + i - t->next[k]));
+    }
+}
+
+static void put_sides(struct writer *w, const struct par_message *m, const struct par_talk *talk)
+{
+    int32_t top = talk->sub.n - m->n_new_subs, last = 0;
+    for (int32_t i = 0; i < m->n_sides; i++) {
+        const struct par_told_side *s = &m->side[i];
+        put_signed(w, s->triangle - last);
+        put(w, (uint64_t)(s->edge << 2 | s->side << 1 | s->is_boundary));
+        put(w, (uint64_t)(top - s->sub));
+        if (s->sub == top) {
+            put_signed(w, s->marker);
+            put(w, (uint64_t)s->parent);
+            top++;
+        }
+        last = s->triangle;
+    }
+}
+
+static void put_entries(struct writer *w, const struct par_message *m)
+{
+    uint64_t key = 0;
+    int32_t last = 0;
+    for (int32_t i = 0; i < m->n_entries; i++) {
+        assert(m->entry[i].key >= key);
+        put(w, m->entry[i].key - key);
+        put_signed(w, m->entry[i].triangle - last);
+        key = m->entry[i].key;
+        last = m->entry[i].triangle;
+    }
+}
+
+bool par_message_write(const struct par_message *m, const struct par_talk *talk, int32_t n_attributes,
+                       struct par_bytes *to)
+{
+    struct writer w = {to, false};
+    const int32_t count[7] = {m->gone.n, m->gone_subs.n, m->n_vertices, m->n_triangles, m->n_sides, m->n_new_subs,
+                              m->n_entries};
+    for (int k = 0; k < 7; k++)
+        put(&w, (uint64_t)count[k]);
+    put_ascending(&w, &m->gone);
+    put_ascending(&w, &m->gone_subs);
+    for (int32_t i = 0; i < m->n_vertices; i++)
+        put_vertex(&w, &m->vertex[i], m->attribute + (size_t)i * (size_t)n_attributes, n_attributes);
+    put_triangles(&w, m, talk);
+    put_sides(&w, m, talk);
+    put_entries(&w, m);
+    return !w.lost;
+}
+
+/* --- reading */
+
+struct reader {
+    const unsigned char *at, *end;
+    bool bad;
+};
+
+static uint64_t get(struct reader *r)
+{
+    uint64_t n = 0;
+    for (int shift = 0; shift < 64 && r->at < r->end; shift += 7) {
+        unsigned char byte = *r->at++;
+        n |= (uint64_t)(byte & 127) << shift;
+        if (byte < 128)
+            return n;
+    }
+    r->bad = true;
+    return 0;
+}
+
+/* A number from 0 to end - 1. */
+static int32_t get_below(struct reader *r, int64_t end)
+{
+    uint64_t n = get(r);
+    r->bad = r->bad || end <= 0 || n >= (uint64_t)end;
+    return r->bad ? 0 : (int32_t)n;
+}
+
+static int64_t get_signed(struct reader *r)
+{
+    uint64_t n = get(r);
+    return n % 2 ? ~(int64_t)(n / 2) : (int64_t)(n / 2);
+}
+
+/* A number from 0 to end - 1, told as its difference from another. */
+static int32_t get_near(struct reader *r, int32_t from, int32_t end)
+{
+    int64_t n = get_signed(r);
+    r->bad = r->bad || n < -(int64_t)from || n >= (int64_t)end - from;
+    return r->bad ? 0 : (int32_t)(from + n);
+}
+
+static int32_t get_int(struct reader *r) { return (int32_t)get_signed(r); }
+
+static void get_bytes(struct reader *r, void *item, size_t n)
+{
+    r->bad = r->bad || (size_t)(r->end - r->at) < n;
+    if (r->bad || n == 0)
+        return;
+    memcpy(item, r->at, n);
+    r->at += n;
+}
+
+static void get_ascending(struct reader *r, struct par_worklist *list, int32_t n, int32_t end)
+{
+    for (int32_t last = 0; list->n < n; last = list->item[list->n++])
+        list->item[list->n] = last + get_below(r, (int64_t)end - last);
+}
+
+static void get_vertex(struct reader *r, struct par_told_vertex *v, double *attribute, int32_t n, int32_t n_common)
+{
+    int32_t kind = get_below(r, OTHER + 1);
+    *v = (struct par_told_vertex){.common = TRI_NONE, .on = TRI_VERTEX_FREE};
+    if (kind == COMMON) {
+        v->common = get_below(r, n_common);
+        return;
+    }
+    if (kind == OTHER) {
+        v->on = get_int(r);
+        v->marker = get_int(r);
+    }
+    get_bytes(r, &v->xy, sizeof v->xy);
+    get_bytes(r, &v->feature, sizeof v->feature);
+    get_bytes(r, attribute, (size_t)n * sizeof *attribute);
+}
+
+static void get_triangles(struct reader *r, struct par_message *m, const struct par_talk *talk, int32_t n_regions)
+{
+    int32_t top = talk->vertex.n, end = talk->vertex.n + m->n_vertices, region = 0;
+    for (int32_t i = 0; i < m->n_triangles; i++) {
+        struct par_told_triangle *t = &m->triangle[i];
+        bool changes = false;
+        for (int k = 0; k < 3; k++) {
+            int32_t back = get_below(r, 2 * ((int64_t)top + 1));
+            changes = k == 0 ? back % 2 : changes;
+            t->v[k] = top - (k == 0 ? back / 2 : back);
+            r->bad = r->bad || t->v[k] < 0 || t->v[k] >= end;
+            top += t->v[k] == top;
+        }
+        t->region = region = changes ? get_below(r, n_regions) : region;
+        for (int k = 0; k < 3; k++) {
+            int32_t back = get_below(r, (int64_t)talk->triangle.n + i + 1);
+            t->next[k] = back == 0 ? TRI_NONE : talk->triangle.n + i - back;
+        }
+    }
+}
+
+static void get_sides(struct reader *r, struct par_message *m, const struct par_talk *talk, int32_t n_parents)
+{
+    int32_t top = talk->sub.n, end = talk->sub.n + m->n_new_subs, triangles = talk->triangle.n + m->n_triangles;
+    int32_t last = 0;
+    for (int32_t i = 0; i < m->n_sides; i++) {
+        struct par_told_side *s = &m->side[i];
+        s->triangle = last = get_near(r, last, triangles);
+        int32_t flags = get_below(r, 3 << 2);
+        s->edge = flags >> 2;
+        s->side = flags >> 1 & 1;
+        s->is_boundary = flags & 1;
+        s->sub = top - get_below(r, (int64_t)top + 1);
+        s->marker = s->parent = 0;
+        if (s->sub < top)
+            continue;
+        s->marker = get_int(r);
+        s->parent = get_below(r, n_parents);
+        r->bad = r->bad || top++ >= end;
+    }
+    r->bad = r->bad || top != end;
+}
+
+static void get_entries(struct reader *r, struct par_message *m, int32_t triangles)
+{
+    uint64_t key = 0;
+    int32_t last = 0;
+    for (int32_t i = 0; i < m->n_entries; i++) {
+        key += get(r);
+        m->entry[i] = (struct par_told_entry){key, last = get_near(r, last, triangles)};
+    }
+}
+
+static bool reserve(struct par_message *m, const int32_t count[7], int32_t n_attributes)
+{
+    m->n_vertices = count[2];
+    m->n_triangles = count[3];
+    m->n_sides = count[4];
+    m->n_new_subs = count[5];
+    m->n_entries = count[6];
+    return tri_grow(&m->gone.item, &m->gone.capacity, count[0], sizeof *m->gone.item) &&
+           tri_grow(&m->gone_subs.item, &m->gone_subs.capacity, count[1], sizeof *m->gone_subs.item) &&
+           tri_grow(&m->vertex, &m->vertex_capacity, count[2], sizeof *m->vertex) &&
+           tri_grow(&m->attribute, &m->attribute_capacity, count[2] * n_attributes, sizeof *m->attribute) &&
+           tri_grow(&m->triangle, &m->triangle_capacity, count[3], sizeof *m->triangle) &&
+           tri_grow(&m->side, &m->side_capacity, count[4], sizeof *m->side) &&
+           tri_grow(&m->entry, &m->entry_capacity, count[6], sizeof *m->entry);
+}
+
+/* Are all old triangles and subsegments that are named still there? */
+static bool are_there(const struct par_message *m, const struct par_talk *talk)
+{
+    bool good = true;
+    for (int32_t i = 0; i < m->gone.n; i++)
+        good = good && talk->triangle.item[m->gone.item[i]] != TRI_NONE;
+    for (int32_t i = 0; i < m->gone_subs.n; i++)
+        good = good && talk->sub.item[m->gone_subs.item[i]] != TRI_NONE;
+    return good;
+}
+
+enum tri_status par_message_read(struct par_message *m, const struct par_talk *talk, const struct tri_mesh *mesh,
+                                 int32_t n_common, const struct par_bytes *from, struct tri_error *error)
+{
+    struct reader r = {(const unsigned char *)from->at, (const unsigned char *)from->at + from->n, false};
+    int32_t count[7], n = mesh->n_attributes;
+    *m = (struct par_message){0};
+    for (int k = 0; k < 7; k++)
+        count[k] = get_below(&r, (int64_t)from->n); /* each takes a byte at least */
+    if (!r.bad && !reserve(m, count, n))
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for what lies at the border of ranks");
+    if (!r.bad) {
+        get_ascending(&r, &m->gone, count[0], talk->triangle.n);
+        get_ascending(&r, &m->gone_subs, count[1], talk->sub.n);
+        for (int32_t i = 0; i < m->n_vertices; i++)
+            get_vertex(&r, &m->vertex[i], m->attribute + (size_t)i * (size_t)n, n, n_common);
+        get_triangles(&r, m, talk, mesh->n_regions);
+        get_sides(&r, m, talk, mesh->n_parents);
+        get_entries(&r, m, talk->triangle.n + m->n_triangles);
+    }
+    if (r.bad || r.at != r.end || !are_there(m, talk))
+        return tri_fail(error, TRI_INTERNAL, NULL, 0, "what came from another rank is no part of a mesh");
+    return TRI_OK;
+}

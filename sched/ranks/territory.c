@@ -1,0 +1,116 @@
+/* From places and boxes to tiles, and from tiles to ranks. */
+#include "sched/ranks/territory.h"
+
+#include <stdlib.h>
+
+static struct tri_fence box_of_tile(const struct par_territory *t, int32_t column, int32_t row)
+{
+    return par_fence(t->partition, 2 * column + 1, 2 * row + 1);
+}
+
+static void find_whole_columns(struct par_territory *t)
+{
+    int32_t first = (t->start[t->rank] + t->n_rows - 1) / t->n_rows, end = t->start[t->rank + 1] / t->n_rows;
+    t->whole_min = t->whole_max = 0;
+    if (first < end) {
+        t->whole_min = box_of_tile(t, first, 0).x_min;
+        t->whole_max = box_of_tile(t, end - 1, 0).x_max;
+    }
+}
+
+bool par_territory_init(struct par_territory *t, const struct par_partition *partition,
+                        const struct par_carrier *carrier)
+{
+    int n = carrier->n_ranks;
+    *t = (struct par_territory){.partition = partition, .rank = carrier->rank, .n_ranks = n,
+                                .n_columns = (partition->n_columns - 1) / 2, .n_rows = (partition->n_rows - 1) / 2};
+    int64_t tiles = (int64_t)t->n_columns * t->n_rows;
+    t->start = malloc(((size_t)n + 1) * sizeof *t->start);
+    if (!t->start)
+        return false;
+    for (int p = 0; p <= n; p++)
+        t->start[p] = carrier->share ? (int32_t)(carrier->share[p] * (double)tiles) : (int32_t)(p * tiles / n);
+    find_whole_columns(t);
+    return true;
+}
+
+void par_territory_free(struct par_territory *t)
+{
+    free(t->start);
+    t->start = NULL;
+}
+
+int par_owner_of_tile(const struct par_territory *t, int32_t tile)
+{
+    int low = 0, high = t->n_ranks; /* start[low] <= tile < start[high] */
+    while (high - low > 1) {
+        int mid = low + (high - low) / 2;
+        if (t->start[mid] <= tile)
+            low = mid;
+        else
+            high = mid;
+    }
+    return low;
+}
+
+int par_owner_at(const struct par_territory *t, struct tri_point q)
+{
+    int32_t block = par_block_at(t->partition, 0, q), n_rows = t->partition->n_rows;
+    return par_owner_of_tile(t, block / n_rows / 2 * t->n_rows + block % n_rows / 2);
+}
+
+/* The rows of tiles in a column that a box meets: *first to *end - 1. */
+static void rows_in(const struct par_territory *t, const struct tri_fence *box, int32_t column, int32_t *first,
+                    int32_t *end)
+{
+    for (*first = 0; *first < t->n_rows && !(box_of_tile(t, column, *first).y_max > box->y_min);)
+        ++*first;
+    for (*end = *first; *end < t->n_rows && box_of_tile(t, column, *end).y_min < box->y_max;)
+        ++*end;
+}
+
+static bool meets_column(const struct par_territory *t, const struct tri_fence *box, int32_t column)
+{
+    const struct tri_fence tile = box_of_tile(t, column, 0);
+    return tile.x_min < tile.x_max && tile.x_max > box->x_min && tile.x_min < box->x_max;
+}
+
+static bool is_empty(const struct tri_fence *box) { return !(box->x_min < box->x_max && box->y_min < box->y_max); }
+
+bool par_owners_in(const struct par_territory *t, const struct tri_fence *box, int *first, int *last)
+{
+    *first = *last = -1;
+    for (int32_t c = 0; !is_empty(box) && c < t->n_columns; c++) {
+        int32_t row, end;
+        if (!meets_column(t, box, c))
+            continue;
+        rows_in(t, box, c, &row, &end);
+        if (row == end)
+            continue;
+        *first = *first >= 0 ? *first : par_owner_of_tile(t, c * t->n_rows + row);
+        *last = par_owner_of_tile(t, c * t->n_rows + end - 1);
+    }
+    return *first >= 0;
+}
+
+bool par_has_part(const struct par_territory *t, const struct tri_fence *box, int rank)
+{
+    int32_t begin = t->start[rank] / t->n_rows, last = (t->start[rank + 1] - 1) / t->n_rows;
+    if (is_empty(box) || t->start[rank] == t->start[rank + 1])
+        return false;
+    for (int32_t c = begin; c <= last; c++) {
+        int32_t row, end;
+        if (!meets_column(t, box, c))
+            continue;
+        rows_in(t, box, c, &row, &end);
+        if (row < end && c * t->n_rows + row < t->start[rank + 1] && c * t->n_rows + end > t->start[rank])
+            return true;
+    }
+    return false;
+}
+
+int32_t par_first_block(const struct par_territory *t, int rank)
+{
+    int32_t column = t->start[rank] / t->n_rows, row = t->start[rank] % t->n_rows;
+    return (2 * column + 1) * t->partition->n_rows + 2 * row + 1;
+}

@@ -1,0 +1,47 @@
+/* Who owns which tiles.
+ *
+ * Tiles, the boxes of the first phase, are counted column by column, rows upwards: the order in which they are handed
+ * out. Every rank owns as many as every other, one behind the other; they are of about equal work. So what a rank owns
+ * is a part of a column, some whole ones, and a part of another. Some ranks own nothing where there are more ranks than
+ * tiles. */
+#ifndef SCHED_RANKS_TERRITORY_H
+#define SCHED_RANKS_TERRITORY_H
+
+#include "sched/partition.h"
+#include "sched/ranks/carrier.h"
+
+struct par_territory {
+    const struct par_partition *partition; /* of the first round */
+    int rank, n_ranks;
+    int32_t n_columns, n_rows; /* of tiles: number column * n_rows + row is block (2 column + 1, 2 row + 1) */
+    int32_t *start;            /* [n_ranks + 1] rank p owns tiles start[p] .. start[p + 1] - 1 */
+    double whole_min, whole_max; /* the own whole columns are those from .. to .. */
+};
+
+/* False: no memory. */
+bool par_territory_init(struct par_territory *territory, const struct par_partition *partition,
+                        const struct par_carrier *carrier);
+void par_territory_free(struct par_territory *territory);
+
+int par_owner_of_tile(const struct par_territory *territory, int32_t tile);
+
+/* Who owns a place? O(log tiles). */
+int par_owner_at(const struct par_territory *territory, struct tri_point q);
+
+/* Is it the own rank? */
+static inline bool par_is_own(const struct par_territory *territory, struct tri_point q)
+{
+    return (q.x >= territory->whole_min && q.x < territory->whole_max) ||
+           par_owner_at(territory, q) == territory->rank;
+}
+
+/* The first and the last rank that own a part of a box. False: nobody does, it is empty. O(columns). */
+bool par_owners_in(const struct par_territory *territory, const struct tri_fence *box, int *first, int *last);
+
+/* Does this rank own a part of the box? */
+bool par_has_part(const struct par_territory *territory, const struct tri_fence *box, int rank);
+
+/* The first block of a rank's tiles, as column * n_rows + row of blocks. */
+int32_t par_first_block(const struct par_territory *territory, int rank);
+
+#endif
