@@ -220,8 +220,8 @@ static json_t *report_of(const struct run *run, const struct par_report *schedul
     return json_pack("{s:s, s:s, s:o, s:s?, s:i, s:o, s:o, s:o, s:o, s:o, s:o}", "program", run->hooks->program,
                      "version", PTRIANGLE_VERSION, "command", command_of(run->arguments), "stopped", run->stopped,
                      "threads", threads, "peak_memory_bytes", whole(memory), "bounds", bounds, "seconds",
-                     stages_of(run, schedule), "mesh", mesh_of(run), "schedule",
-                     schedule ? schedule_of(schedule) : json_null(), "ranks", ranks_of(ranks));
+                     stages_of(run, schedule), "mesh", mesh_of(run), "ranks", ranks_of(ranks), "schedule",
+                     schedule ? schedule_of(schedule) : json_null());
 }
 
 enum tri_status report_check(struct tri_error *error)
