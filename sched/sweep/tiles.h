@@ -48,8 +48,8 @@ enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct
 
 /* Numbers, and hands out, the tiles of an odd column. Every triangle whose corners lie in it and before it must be
  * final, and columns before it have had their turn. What has been handed out is gone from the mesh, its ids are added
- * to *spare, and links of triangles beyond the column to it lead nowhere. O(what is in memory). TRI_NO_MEMORY, or what the
- * sink says. */
+ * to *spare, and links of triangles beyond the column to it lead nowhere. O(what is in memory). TRI_NO_MEMORY, or what
+ * the sink says. */
 enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, struct par_room *spare,
                                  struct tri_error *error);
 
