@@ -40,21 +40,15 @@ enum tri_status par_ask(struct par_ranks *r, const struct par_worklist *vertices
 
 /* --- giving back */
 
-static int ascending(const void *left, const void *right)
+/* A list becomes that of the set made of it: each once, in ascending order. */
+static void list_set(struct par_worklist *list, const struct par_triangle_set *set, int32_t n_triangles)
 {
-    const int32_t *a = left, *b = right;
-    return (*a > *b) - (*a < *b);
-}
-
-static void sort_unique(struct par_worklist *list)
-{
-    int32_t kept = 0;
-    if (list->n > 0)
-        qsort(list->item, (size_t)list->n, sizeof *list->item, ascending);
-    for (int32_t i = 0; i < list->n; i++)
-        if (i == 0 || list->item[i] != list->item[kept - 1])
-            list->item[kept++] = list->item[i];
-    list->n = kept;
+    int32_t n = 0;
+    for (int32_t w = 0; w <= (n_triangles - 1) / 64; w++)
+        for (int bit = 0; set->word[w] >> bit != 0 && bit < 64; bit++)
+            if (set->word[w] >> bit & 1)
+                list->item[n++] = 64 * w + bit;
+    list->n = n;
 }
 
 static bool is_in(const struct par_triangle_set *set, tri_triangle_id t) { return set->word[t / 64] >> t % 64 & 1; }
@@ -78,15 +72,17 @@ static bool note_gone(const struct par_ranks *r, struct par_talk *talk, const st
     return memory;
 }
 
-/* The other ranks that own corners of a triangle, each once; returns how many. */
+/* The other ranks that own corners of a triangle, each once; returns how many. The first is looked for at owner[0]. */
 static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3])
 {
     const struct tri_mesh *mesh = r->state->mesh;
-    int n = 0;
+    int n = 0, guess = owner[0];
     for (int k = 0; k < 3; k++) {
         struct tri_point q = mesh->xy[mesh->tri[t].v[k]];
-        int p = par_is_own(&r->territory, q) ? r->territory.rank : par_owner_at(&r->territory, q);
-        bool is_told = p == r->territory.rank;
+        if (par_is_own(&r->territory, q))
+            continue;
+        int p = par_owns(&r->territory, guess, q) ? guess : par_owner_at(&r->territory, q);
+        bool is_told = false;
         for (int i = 0; i < n; i++)
             is_told = is_told || owner[i] == p;
         if (!is_told)
@@ -98,8 +94,9 @@ static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3])
 static bool add_new(struct par_ranks *r, const struct par_worklist *changed)
 {
     bool memory = true;
+    int owner[3] = {0};
     for (int32_t i = 0; memory && i < changed->n; i++) {
-        int owner[3], n = owners_of(r, changed->item[i], owner);
+        int n = owners_of(r, changed->item[i], owner);
         for (int k = 0; memory && k < n; k++)
             memory = par_talk_add_triangle(&r->borrowed[owner[k]], changed->item[i]);
     }
@@ -123,12 +120,13 @@ static bool give_entries(struct par_ranks *r, struct par_message *message)
 {
     struct par_state *state = r->state;
     bool memory = true, *keep = malloc((size_t)state->worklist.n + 1);
+    int owner[3] = {0};
     for (int32_t i = 0; keep && i < state->worklist.n; i++) {
         tri_triangle_id t = state->worklist.item[i];
         keep[i] = par_has_own(r, t);
         if (!is_of_border(r, state->key.item[i]))
             continue;
-        int owner[3], n = owners_of(r, t, owner);
+        int n = owners_of(r, t, owner);
         for (int k = 0; k < n; k++)
             memory = memory && par_message_add_entry(&message[owner[k]], state->key.item[i],
                                                      par_talk_number(&r->borrowed[owner[k]], t));
@@ -246,9 +244,10 @@ enum tri_status par_give_back(struct par_ranks *r, struct par_worklist *changed,
     struct par_message *message = calloc(n, sizeof *message);
     int32_t *first = calloc(n, sizeof *first);
     struct par_triangle_set set;
-    sort_unique(changed);
-    bool memory = par_triangle_set_of(&set, changed, r->state->mesh->n_triangles) && message && first &&
-                  give_all(r, changed, &set, message, first) && drop_all(r, changed, &set);
+    bool memory = par_triangle_set_of(&set, changed, r->state->mesh->n_triangles) && message && first;
+    if (memory)
+        list_set(changed, &set, r->state->mesh->n_triangles);
+    memory = memory && give_all(r, changed, &set, message, first) && drop_all(r, changed, &set);
     for (size_t h = 0; message && h < n; h++)
         par_message_free(&message[h]);
     free(message);

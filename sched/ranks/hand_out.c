@@ -1,5 +1,5 @@
-/* Tiles of a mesh that lies on several ranks. Each counts what it will number, so that all know where they begin; tells
- * the ranks on the right the numbers of those vertices of its own that their triangles have, found again by their
+/* Tiles of a mesh that lies on several ranks. Each counts what it will number, so that all know where they begin; numbers
+ * the vertices of its tiles; tells later ranks the numbers of those that their triangles have, too, found again by their
  * places; and hands out its own tiles, as one process would. */
 #include "sched/ranks/ranks.h"
 
@@ -15,132 +15,116 @@ struct numbered_place {
 struct handing {
     struct par_ranks *ranks;
     struct par_tiles *tiles;
-    const struct tri_mesh *mesh;
-    int32_t first_tile, end_tile;  /* the own tiles */
-    int32_t first, end;            /* the odd columns that have some of them, by number */
-    int64_t *in_column;            /* [end - first] new vertices in each */
-    bool *needed;                  /* [end - first] somebody asks for numbers in it */
-    int32_t *told;                 /* [n_vertices] last rank that is told of this vertex, + 1 */
-    int32_t *tile;                 /* [n_vertices] of each */
+    struct tri_mesh *mesh;
+    int32_t first_tile, end_tile;  /* the own tiles, as blocks */
+    int32_t first, end;            /* the columns of tiles that have some of them */
+    struct par_column **column;    /* [end - first] */
+    struct par_map *told;          /* [n_ranks] vertices that a rank has been told of */
 };
+
+static int32_t tile_of(const struct handing *h, int32_t v)
+{
+    return par_block_at(h->tiles->partition, 0, h->mesh->xy[v]);
+}
 
 static bool is_own(const struct handing *h, int32_t tile) { return tile >= h->first_tile && tile < h->end_tile; }
 
-static int32_t column_of(const struct handing *h, int32_t tile)
-{
-    return (tile / h->tiles->partition->n_rows - 1) / 2;
-}
-
 static int32_t last_tile(const struct handing *h, const int32_t *v, int n)
 {
-    int32_t last = h->tile[v[0]];
-    for (int k = 1; k < n; k++)
-        last = h->tile[v[k]] > last ? h->tile[v[k]] : last;
+    int32_t last = tile_of(h, v[0]);
+    for (int k = 1; k < n; k++) {
+        int32_t tile = tile_of(h, v[k]);
+        last = tile > last ? tile : last;
+    }
     return last;
 }
 
-/* Corners of a triangle in the own tiles. */
-static int own_corners(const struct handing *h, const struct tri_triangle *t)
+/* --- counting */
+
+static int64_t unused(const struct par_ranges *ranges)
 {
-    return is_own(h, h->tile[t->v[0]]) + is_own(h, h->tile[t->v[1]]) + is_own(h, h->tile[t->v[2]]);
+    int64_t n = 0;
+    for (int32_t i = 0; i < ranges->n; i++)
+        n += ranges->item[i].end - ranges->item[i].next;
+    return n;
 }
 
-/* Every vertex learns its tile; count[] receives new vertices, triangles and subsegments of the own tiles. */
-static void count_own(struct handing *h, int64_t count[3])
+/* All triangles but the straddlers that belong to later tiles. */
+static int64_t count_triangles(const struct handing *h)
 {
-    const struct tri_mesh *mesh = h->mesh;
-    for (int32_t v = 0; v < mesh->n_vertices; v++) {
-        if (mesh->on[v] == TRI_VERTEX_NONE)
-            continue;
-        int32_t tile = par_block_at(h->tiles->partition, 0, mesh->xy[v]);
-        h->tile[v] = tile;
-        if (v >= h->tiles->n_kept && is_own(h, tile)) {
-            count[0]++;
-            h->in_column[column_of(h, tile) - h->first]++;
-        }
-    }
-    for (int32_t t = 0; t < mesh->n_triangles; t++) {
-        int own = tri_is_live(&mesh->tri[t]) ? own_corners(h, &mesh->tri[t]) : 0;
-        count[1] += own == 3 || (own > 0 && is_own(h, last_tile(h, mesh->tri[t].v, 3)));
-    }
-    for (int32_t s = 0; s < mesh->n_subs; s++)
-        count[2] += mesh->sub[s].v[0] != TRI_NONE && is_own(h, last_tile(h, mesh->sub[s].v, 2));
+    const struct par_ranks *r = h->ranks;
+    int64_t n = h->mesh->n_triangles - unused(&r->state->spare.ranges[PAR_TRIANGLES]);
+    for (int32_t i = 0; i < r->straddlers.n; i++)
+        n -= !is_own(h, last_tile(h, h->mesh->tri[r->straddlers.item[i]].v, 3));
+    return n;
 }
 
-/* What others hand out later is not there, as far as the own tiles are concerned; nor are subsegments of theirs. */
-static void hide_others(struct handing *h, struct tri_mesh *mesh)
+/* What belongs to tiles of others is not there, as far as the own ones are concerned; returns how many new vertices
+ * there are. */
+static int64_t count_vertices(struct handing *h)
 {
-    for (int32_t v = 0; v < mesh->n_vertices; v++)
-        if (mesh->on[v] != TRI_VERTEX_NONE && h->tile[v] >= h->end_tile)
+    struct tri_mesh *mesh = h->mesh;
+    struct par_tiles *tiles = h->tiles;
+    int64_t n = 0;
+    for (int32_t v = 0; v < tiles->n_kept; v++)
+        if (tiles->kept_tile[v] >= h->end_tile)
+            tiles->kept_tile[v] = INT32_MAX;
+    for (int32_t v = tiles->n_kept; v < mesh->n_vertices; v++) {
+        if (mesh->on[v] != TRI_VERTEX_NONE && !par_is_own(&h->ranks->territory, mesh->xy[v]))
             mesh->on[v] = TRI_VERTEX_NONE;
-    for (int32_t s = 0; s < mesh->n_subs; s++)
-        if (mesh->sub[s].v[0] != TRI_NONE && !is_own(h, last_tile(h, mesh->sub[s].v, 2)))
-            par_room_mark_sub(mesh, s);
-}
-
-/* Calls for each own new vertex of a triangle that rank p has, too, for the ranks p that come later. */
-static bool for_shared(struct handing *h, bool (*visit)(struct handing *h, int32_t v, int p))
-{
-    bool memory = true;
-    const struct par_worklist *straddlers = &h->ranks->straddlers;
-    for (int32_t s = 0; memory && s < straddlers->n; s++) {
-        const struct tri_triangle *triangle = &h->mesh->tri[straddlers->item[s]];
-        for (int k = 0; memory && k < 3; k++) {
-            int32_t tile = h->tile[triangle->v[k]];
-            if (tile < h->end_tile)
-                continue;
-            int p = par_owner_at(&h->ranks->territory, h->mesh->xy[triangle->v[k]]);
-            for (int i = 0; memory && i < 3; i++)
-                if (triangle->v[i] >= h->tiles->n_kept && is_own(h, h->tile[triangle->v[i]]))
-                    memory = visit(h, triangle->v[i], p);
-        }
+        n += mesh->on[v] != TRI_VERTEX_NONE;
     }
-    return memory;
+    return n;
 }
 
-static bool note_need(struct handing *h, int32_t v, int p)
+static int64_t count_subs(struct handing *h)
 {
-    (void)p;
-    h->needed[column_of(h, h->tile[v]) - h->first] = true;
-    return true;
+    int64_t n = 0;
+    for (int32_t s = 0; s < h->mesh->n_subs; s++) {
+        const int32_t *v = h->mesh->sub[s].v;
+        if (v[0] != TRI_NONE && !is_own(h, last_tile(h, v, 2)))
+            par_room_mark_sub(h->mesh, s);
+        n += v[0] != TRI_NONE;
+    }
+    return n;
 }
+
+/* --- numbers for others */
 
 static bool tell_number(struct handing *h, int32_t v, int p)
 {
     const struct numbered_place place = {h->mesh->xy[v], h->tiles->number[v]};
-    if (h->told[v] == p + 1)
+    if (par_map_get(&h->told[p], v) != TRI_NONE)
         return true;
-    h->told[v] = p + 1;
-    return par_bytes_add(&h->ranks->out[p], &place, sizeof place);
+    return par_map_put(&h->told[p], v, 0) && par_bytes_add(&h->ranks->out[p], &place, sizeof place);
+}
+
+/* Of a straddler's own new vertices to a rank that has it, too, and comes later. */
+static bool tell_numbers(struct handing *h, const int32_t v[3], int p)
+{
+    bool memory = true;
+    for (int k = 0; k < 3; k++)
+        if (v[k] >= h->tiles->n_kept && is_own(h, tile_of(h, v[k])))
+            memory = memory && tell_number(h, v[k], p);
+    return memory;
+}
+
+static bool tell_all(struct handing *h)
+{
+    const struct par_ranks *r = h->ranks;
+    bool memory = true;
+    for (int32_t i = 0; memory && i < r->straddlers.n; i++) {
+        const int32_t *v = h->mesh->tri[r->straddlers.item[i]].v;
+        for (int k = 0; memory && k < 3; k++)
+            if (tile_of(h, v[k]) >= h->end_tile)
+                memory = tell_numbers(h, v, par_owner_at(&r->territory, h->mesh->xy[v[k]]));
+    }
+    return memory;
 }
 
 static enum tri_status no_memory(struct tri_error *error)
 {
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the numbers of a rank's vertices");
-}
-
-/* So that columns from this tile on find their vertices: whose tile is known has had its turn. */
-static void show_tiles(struct handing *h, int32_t first)
-{
-    for (int32_t v = 0; v < h->mesh->n_vertices; v++)
-        h->tiles->tile[v] = h->tile[v] >= first ? INT32_MAX : h->tile[v];
-}
-
-/* Numbers what others ask for, ahead of its time. */
-static enum tri_status number_needed(struct handing *h, int64_t base, struct tri_error *error)
-{
-    enum tri_status status = TRI_OK;
-    h->tiles->n_vertices = base;
-    for (int32_t i = 0; !status && i < h->end - h->first; i++) {
-        int32_t column = 2 * (h->first + i) + 1;
-        if (h->needed[i]) {
-            int32_t first = column * h->tiles->partition->n_rows;
-            show_tiles(h, first > h->first_tile ? first : h->first_tile);
-            status = par_tiles_number(h->tiles, column, error);
-        }
-        h->tiles->n_vertices += h->in_column[i];
-    }
-    return status;
 }
 
 static int compare_places(const void *left, const void *right)
@@ -154,14 +138,15 @@ static int compare_places(const void *left, const void *right)
 /* The vertices of own triangles that lie in earlier tiles of others learn their numbers. */
 static void take_numbers(struct handing *h, struct par_bytes *told)
 {
+    const struct par_worklist *straddlers = &h->ranks->straddlers;
     size_t n = told->n / sizeof(struct numbered_place);
     if (n == 0)
         return;
     qsort(told->at, n, sizeof(struct numbered_place), compare_places);
-    for (int32_t s = 0; s < h->ranks->straddlers.n; s++)
+    for (int32_t i = 0; i < straddlers->n; i++)
         for (int k = 0; k < 3; k++) {
-            int32_t v = h->mesh->tri[h->ranks->straddlers.item[s]].v[k];
-            if (v < h->tiles->n_kept || h->tile[v] >= h->first_tile)
+            int32_t v = h->mesh->tri[straddlers->item[i]].v[k];
+            if (v < h->tiles->n_kept || h->mesh->on[v] != TRI_VERTEX_NONE)
                 continue;
             const struct numbered_place *found =
                 bsearch(&h->mesh->xy[v], told->at, n, sizeof *found, compare_places);
@@ -173,6 +158,8 @@ static void take_numbers(struct handing *h, struct par_bytes *told)
 static enum tri_status exchange_numbers(struct handing *h, enum tri_status status, struct tri_error *error)
 {
     struct par_ranks *r = h->ranks;
+    if (!status && !tell_all(h))
+        status = no_memory(error);
     status = par_swap(r->carrier, PAR_MOVE_NUMBERS, r->out, r->in, status, error);
     for (int p = 0; p < r->carrier->n_ranks; p++) {
         if (!status)
@@ -183,41 +170,59 @@ static enum tri_status exchange_numbers(struct handing *h, enum tri_status statu
     return status;
 }
 
-static enum tri_status number_borders(struct handing *h, int64_t base, struct tri_error *error)
+/* --- handing out */
+
+static enum tri_status number_columns(struct handing *h, const int64_t base[3], struct tri_error *error)
 {
-    for_shared(h, note_need);
-    enum tri_status status = number_needed(h, base, error);
-    return status || for_shared(h, tell_number) ? status : no_memory(error);
+    enum tri_status status = TRI_OK;
+    h->tiles->n_vertices = base[0];
+    for (int32_t i = h->first; !status && i < h->end; i++)
+        status = par_tiles_number(h->tiles, 2 * i + 1, &h->column[i - h->first], error);
+    return status;
 }
 
 static enum tri_status hand_out(struct handing *h, const int64_t base[3], struct tri_error *error)
 {
     struct par_tiles *tiles = h->tiles;
-    show_tiles(h, h->first_tile);
     enum tri_status status = par_tiles_begin(tiles, tiles->partition->estimate, error);
-    tiles->n_vertices = base[0];
     tiles->n_triangles = base[1];
     tiles->n_segments = base[2];
-    for (int32_t i = h->first; !status && i < h->end; i++)
-        status = par_tiles_column(tiles, 2 * i + 1, false, &h->ranks->state->spare, error);
+    for (int32_t i = h->first; !status && i < h->end; i++) {
+        status = par_tiles_hand_out(h->column[i - h->first], &h->ranks->state->spare, error);
+        par_column_free(h->column[i - h->first]);
+        h->column[i - h->first] = NULL;
+    }
     return status ? status : par_tiles_end(tiles, error);
 }
 
-static enum tri_status prepare(struct handing *h, struct tri_error *error)
+static enum tri_status prepare(struct handing *h, int64_t count[3], struct tri_error *error)
 {
-    size_t n = (size_t)(h->end - h->first) + 1;
     const struct par_territory *territory = &h->ranks->territory;
-    h->first_tile = par_first_block(territory, territory->rank);
-    h->end_tile = par_first_block(territory, territory->rank + 1);
-    h->in_column = calloc(n, sizeof *h->in_column);
-    h->needed = calloc(n, sizeof *h->needed);
-    h->told = calloc((size_t)h->mesh->n_vertices + 1, sizeof *h->told);
-    h->tile = malloc(((size_t)h->mesh->n_vertices + 1) * sizeof *h->tile);
-    bool memory = h->in_column && h->needed && h->told && h->tile && par_tiles_reserve(h->tiles);
-    par_room_mark(&h->ranks->state->spare, h->ranks->state->mesh);
-    for (int32_t v = 0; memory && v < h->mesh->n_vertices; v++)
-        h->tile[v] = INT32_MAX;
-    return memory ? TRI_OK : no_memory(error);
+    int rank = territory->rank;
+    h->first = territory->start[rank] / territory->n_rows;
+    h->end = territory->start[rank] < territory->start[rank + 1]
+                 ? (territory->start[rank + 1] - 1) / territory->n_rows + 1 : h->first;
+    h->first_tile = par_first_block(territory, rank);
+    h->end_tile = par_first_block(territory, rank + 1);
+    h->column = calloc((size_t)(h->end - h->first) + 1, sizeof(struct par_column *));
+    h->told = calloc((size_t)territory->n_ranks, sizeof *h->told);
+    par_room_mark(&h->ranks->state->spare, h->mesh);
+    if (!h->column || !h->told || !par_tiles_reserve(h->tiles))
+        return no_memory(error);
+    count[0] = count_vertices(h);
+    count[1] = count_triangles(h);
+    count[2] = count_subs(h);
+    return TRI_OK;
+}
+
+static void clean_up(struct handing *h)
+{
+    for (int32_t i = h->first; h->column && i < h->end; i++)
+        par_column_free(h->column[i - h->first]);
+    for (int p = 0; h->told && p < h->ranks->carrier->n_ranks; p++)
+        par_map_free(&h->told[p]);
+    free(h->column);
+    free(h->told);
 }
 
 /* Where each rank's numbers begin: *first receives three lists of n_ranks + 1. Collective. */
@@ -274,28 +279,19 @@ enum tri_status par_hand_out_on_ranks(struct par_ranks *r, struct par_tiles *til
                                       struct tri_error *error)
 {
     int rank = r->carrier->rank;
-    const int32_t *start = r->territory.start, n_rows = r->territory.n_rows;
-    struct handing h = {.ranks = r, .tiles = tiles, .mesh = r->state->mesh, .first = start[rank] / n_rows,
-                        .end = (start[rank + 1] + n_rows - 1) / n_rows};
+    struct handing h = {.ranks = r, .tiles = tiles, .mesh = r->state->mesh};
     int64_t count[3] = {0}, base[3] = {0}, *first;
-    status = status ? status : prepare(&h, error);
-    if (!status) {
-        count_own(&h, count);
-        hide_others(&h, r->state->mesh);
-    }
+    status = status ? status : prepare(&h, count, error);
     status = share_numbers(r->carrier, tiles->n_kept, count, &first, status, error);
     if (!status)
         tell_shares(tiles, r->carrier, first);
     for (int k = 0; !status && k < 3; k++)
         base[k] = tiles->first[k][rank] + (k == 0 && rank == 0 ? tiles->n_kept : 0);
-    status = status ? status : number_borders(&h, base[0], error);
+    status = status ? status : number_columns(&h, base, error);
     status = exchange_numbers(&h, status, error);
     if (!status)
         status = hand_out(&h, base, error);
+    clean_up(&h);
     free(first);
-    free(h.in_column);
-    free(h.needed);
-    free(h.told);
-    free(h.tile);
     return par_agree(r->carrier, status, error);
 }

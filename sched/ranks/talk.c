@@ -9,62 +9,31 @@
 
 /* --- maps */
 
-static uint32_t slot_of(const struct par_map *map, int32_t key)
-{
-    uint32_t mask = (uint32_t)map->capacity - 1, at = (uint32_t)key * 0x9e3779b9u;
-    at = (at ^ at >> 15) & mask;
-    while (map->key[at] != TRI_NONE && map->key[at] != key)
-        at = (at + 1) & mask;
-    return at;
-}
-
-static bool grow_map(struct par_map *map)
-{
-    struct par_map larger = {.capacity = map->capacity ? 2 * map->capacity : 256, .n = map->n};
-    size_t n = (size_t)larger.capacity;
-    if (larger.capacity > 1 << 29)
-        return false;
-    larger.key = malloc(n * sizeof *larger.key);
-    larger.value = malloc(n * sizeof *larger.value);
-    if (!larger.key || !larger.value) {
-        par_map_free(&larger);
-        return false;
-    }
-    for (size_t i = 0; i < n; i++)
-        larger.key[i] = TRI_NONE;
-    for (int32_t i = 0; i < map->capacity; i++)
-        if (map->key[i] != TRI_NONE) {
-            uint32_t at = slot_of(&larger, map->key[i]);
-            larger.key[at] = map->key[i];
-            larger.value[at] = map->value[i];
-        }
-    par_map_free(map);
-    *map = larger;
-    return true;
-}
-
 bool par_map_put(struct par_map *map, int32_t key, int32_t value)
 {
+    int32_t page = key / PAR_PAGE;
     assert(key >= 0);
-    if (2 * (map->n + 1) > map->capacity && !grow_map(map))
-        return false;
-    uint32_t at = slot_of(map, key);
-    map->n += map->key[at] == TRI_NONE;
-    map->key[at] = key;
-    map->value[at] = value;
-    return true;
-}
-
-int32_t par_map_get(const struct par_map *map, int32_t key)
-{
-    uint32_t at = map->n > 0 ? slot_of(map, key) : 0;
-    return map->n > 0 && map->key[at] == key ? map->value[at] : TRI_NONE;
+    if (page >= map->n) {
+        if (!tri_grow(&map->page, &map->capacity, page + 1, sizeof *map->page))
+            return false;
+        while (map->n <= page)
+            map->page[map->n++] = NULL;
+    }
+    if (!map->page[page]) {
+        map->page[page] = malloc(PAR_PAGE * sizeof **map->page);
+        for (int32_t i = 0; map->page[page] && i < PAR_PAGE; i++)
+            map->page[page][i] = TRI_NONE;
+    }
+    if (map->page[page])
+        map->page[page][key % PAR_PAGE] = value;
+    return map->page[page];
 }
 
 void par_map_free(struct par_map *map)
 {
-    free(map->key);
-    free(map->value);
+    for (int32_t i = 0; i < map->n; i++)
+        free(map->page[i]);
+    free(map->page);
     *map = (struct par_map){0};
 }
 

@@ -11,15 +11,23 @@
 #include "sched/worklist.h"
 #include "triangle/mesh.h"
 
-/* From numbers >= 0 to numbers >= 0. */
+/* From ids to numbers. What lies at a border has ids that lie together: so there are pages where there are any. */
+enum { PAR_PAGE = 1024 };
+
 struct par_map {
-    int32_t *key, *value;
-    int32_t n, capacity; /* a power of two, or 0 */
+    int32_t **page;
+    int32_t n, capacity;
 };
 
 bool par_map_put(struct par_map *map, int32_t key, int32_t value); /* false: no memory */
-int32_t par_map_get(const struct par_map *map, int32_t key);       /* TRI_NONE: it is not there */
 void par_map_free(struct par_map *map);
+
+/* TRI_NONE: it is not there. */
+static inline int32_t par_map_get(const struct par_map *map, int32_t key)
+{
+    const int32_t *page = key / PAR_PAGE < map->n ? map->page[key / PAR_PAGE] : NULL;
+    return page ? page[key % PAR_PAGE] : TRI_NONE;
+}
 
 /* One side of a talk. */
 struct par_talk {

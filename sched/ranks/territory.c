@@ -8,13 +8,17 @@ static struct tri_fence box_of_tile(const struct par_territory *t, int32_t colum
     return par_fence(t->partition, 2 * column + 1, 2 * row + 1);
 }
 
-static void find_whole_columns(struct par_territory *t)
+/* The boxes of a rank: of its tiles in the first column that has some, in whole columns, and in the last one. */
+static void find_boxes(struct par_territory *t, int rank)
 {
-    int32_t first = (t->start[t->rank] + t->n_rows - 1) / t->n_rows, end = t->start[t->rank + 1] / t->n_rows;
-    t->whole_min = t->whole_max = 0;
-    if (first < end) {
-        t->whole_min = box_of_tile(t, first, 0).x_min;
-        t->whole_max = box_of_tile(t, end - 1, 0).x_max;
+    int32_t n = t->n_rows, start = t->start[rank], end = t->start[rank + 1], first = start / n, last = (end - 1) / n;
+    struct tri_fence *box = t->boxes[rank].item;
+    box[0] = box[1] = box[2] = (struct tri_fence){HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    for (int32_t column = first; start < end && column <= last; column++) {
+        int32_t bottom = column == first ? start % n : 0, top = column == last ? (end - 1) % n : n - 1;
+        const struct tri_fence low = box_of_tile(t, column, bottom), high = box_of_tile(t, column, top);
+        struct tri_fence *b = column == first ? &box[0] : column == last ? &box[2] : &box[1];
+        *b = (struct tri_fence){low.x_min < b->x_min ? low.x_min : b->x_min, low.y_min, high.x_max, high.y_max};
     }
 }
 
@@ -26,18 +30,22 @@ bool par_territory_init(struct par_territory *t, const struct par_partition *par
                                 .n_columns = (partition->n_columns - 1) / 2, .n_rows = (partition->n_rows - 1) / 2};
     int64_t tiles = (int64_t)t->n_columns * t->n_rows;
     t->start = malloc(((size_t)n + 1) * sizeof *t->start);
-    if (!t->start)
+    t->boxes = malloc((size_t)n * sizeof *t->boxes);
+    if (!t->start || !t->boxes)
         return false;
     for (int p = 0; p <= n; p++)
         t->start[p] = carrier->share ? (int32_t)(carrier->share[p] * (double)tiles) : (int32_t)(p * tiles / n);
-    find_whole_columns(t);
+    for (int p = 0; p < n; p++)
+        find_boxes(t, p);
     return true;
 }
 
 void par_territory_free(struct par_territory *t)
 {
     free(t->start);
+    free(t->boxes);
     t->start = NULL;
+    t->boxes = NULL;
 }
 
 int par_owner_of_tile(const struct par_territory *t, int32_t tile)

@@ -15,7 +15,9 @@ struct par_territory {
     int rank, n_ranks;
     int32_t n_columns, n_rows; /* of tiles: number column * n_rows + row is block (2 column + 1, 2 row + 1) */
     int32_t *start;            /* [n_ranks + 1] rank p owns tiles start[p] .. start[p + 1] - 1 */
-    double whole_min, whole_max; /* the own whole columns are those from .. to .. */
+    struct par_boxes {
+        struct tri_fence item[3];
+    } *boxes;                  /* [n_ranks] what each owns */
 };
 
 /* False: no memory. */
@@ -28,11 +30,16 @@ int par_owner_of_tile(const struct par_territory *territory, int32_t tile);
 /* Who owns a place? O(log tiles). */
 int par_owner_at(const struct par_territory *territory, struct tri_point q);
 
-/* Is it the own rank? */
+/* Is it this one? */
+static inline bool par_owns(const struct par_territory *territory, int rank, struct tri_point q)
+{
+    const struct tri_fence *box = territory->boxes[rank].item;
+    return tri_fence_holds(&box[1], q) || tri_fence_holds(&box[0], q) || tri_fence_holds(&box[2], q);
+}
+
 static inline bool par_is_own(const struct par_territory *territory, struct tri_point q)
 {
-    return (q.x >= territory->whole_min && q.x < territory->whole_max) ||
-           par_owner_at(territory, q) == territory->rank;
+    return par_owns(territory, territory->rank, q);
 }
 
 /* The first and the last rank that own a part of a box. False: nobody does, it is empty. O(columns). */
