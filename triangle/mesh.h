@@ -9,8 +9,8 @@
  * invariant buys: a search that must not cross constrained edges stops at a sign bit, loads nothing for it, and
  * unconstrained triangles pay nothing for constraints, markers and parents.
  *
- * Where only a part of a mesh is here, what leads out of it is TRI_BEYOND. A search that meets that says so, and goes on
- * once there is more.
+ * Where only a part of a mesh is here, what leads out of it is TRI_BEYOND. A search that meets that says so, and is
+ * repeated once there is more.
  *
  * Vertices are x, y pairs; attributes, markers and parents lie apart, since only new vertices touch them.
  *

@@ -113,8 +113,8 @@ enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_option
                            struct tri_refine_report *report, struct tri_error *error);
 
 /* The same in pieces, for callers whose more_room may say TRI_NO_ROOM: run returns it with everything in order, and
- * goes on where it was when called again, as if there had been no pause. Meanwhile the mesh's pointers may change, and a
- * part of a mesh may grow. */
+ * goes on where it was when called again, as if there had been no pause. Meanwhile the mesh's pointers may change, and
+ * a part of a mesh may grow. */
 struct tri_refiner;
 enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *mesh,
                                 const struct tri_refine_options *options, struct tri_refine_report *report,

@@ -45,7 +45,7 @@ static void list_set(struct par_worklist *list, const struct par_triangle_set *s
 {
     int32_t n = 0;
     for (int32_t w = 0; w <= (n_triangles - 1) / 64; w++)
-        for (int bit = 0; set->word[w] >> bit != 0 && bit < 64; bit++)
+        for (int bit = 0; set->word[w] != 0 && bit < 64; bit++)
             if (set->word[w] >> bit & 1)
                 list->item[n++] = 64 * w + bit;
     list->n = n;

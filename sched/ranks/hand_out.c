@@ -1,6 +1,6 @@
-/* Tiles of a mesh that lies on several ranks. Each counts what it will number, so that all know where they begin; numbers
- * the vertices of its tiles; tells later ranks the numbers of those that their triangles have, too, found again by their
- * places; and hands out its own tiles, as one process would. */
+/* Tiles of a mesh that lies on several ranks. Each counts what it will number, so that all know where they begin;
+ * numbers the vertices of its tiles; tells later ranks the numbers of those that their triangles have, too, found again
+ * by their places; and hands out its own tiles, as one process would. */
 #include "sched/ranks/ranks.h"
 
 #include <assert.h>

@@ -169,6 +169,19 @@ bool par_message_add_entry(struct par_message *m, uint64_t key, int32_t triangle
 
 /* --- writing */
 
+/* Of what stands before it at the end of a message. */
+static uint64_t hash_of(const char *bytes, size_t n)
+{
+    uint64_t hash = n, word;
+    for (size_t i = 0; i < n; i += sizeof word) {
+        word = 0;
+        memcpy(&word, bytes + i, n - i < sizeof word ? n - i : sizeof word);
+        hash = (hash ^ word) * 0x9e3779b97f4a7c15ull;
+        hash ^= hash >> 29;
+    }
+    return hash;
+}
+
 struct writer {
     struct par_bytes *to;
     bool lost;
@@ -268,6 +281,7 @@ bool par_message_write(const struct par_message *m, const struct par_talk *talk,
                        struct par_bytes *to)
 {
     struct writer w = {to, false};
+    size_t begin = to->n;
     const int32_t count[7] = {m->gone.n, m->gone_subs.n, m->n_vertices, m->n_triangles, m->n_sides, m->n_new_subs,
                               m->n_entries};
     for (int k = 0; k < 7; k++)
@@ -279,6 +293,8 @@ bool par_message_write(const struct par_message *m, const struct par_talk *talk,
     put_triangles(&w, m, talk);
     put_sides(&w, m, talk);
     put_entries(&w, m);
+    uint64_t hash = w.lost ? 0 : hash_of(to->at + begin, to->n - begin);
+    put_bytes(&w, &hash, sizeof hash);
     return !w.lost;
 }
 
@@ -438,13 +454,25 @@ static bool are_there(const struct par_message *m, const struct par_talk *talk)
     return good;
 }
 
+static void begin(struct reader *r, const struct par_bytes *from)
+{
+    uint64_t hash;
+    size_t n = from->n < sizeof hash ? 0 : from->n - sizeof hash;
+    r->at = (const unsigned char *)from->at;
+    r->end = r->at + n;
+    if (n > 0)
+        memcpy(&hash, from->at + n, sizeof hash);
+    r->bad = n == 0 || hash != hash_of(from->at, n);
+}
+
 enum tri_status par_message_read(struct par_message *m, const struct par_talk *talk, const struct tri_mesh *mesh,
                                  int32_t n_common, const struct par_bytes *from, struct tri_error *error)
 {
-    struct reader r = {(const unsigned char *)from->at, (const unsigned char *)from->at + from->n, false};
-    int32_t count[7], n = mesh->n_attributes;
+    struct reader r = {0};
+    int32_t count[7] = {0}, n = mesh->n_attributes;
     *m = (struct par_message){0};
-    for (int k = 0; k < 7; k++)
+    begin(&r, from);
+    for (int k = 0; !r.bad && k < 7; k++)
         count[k] = get_below(&r, (int64_t)from->n); /* each takes a byte at least */
     if (!r.bad && !reserve(m, count, n))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for what lies at the border of ranks");
