@@ -16,7 +16,7 @@ struct par_ahead {
     int32_t n_odd;
 };
 
-/* Of the state's worklist, which no block has had; the state is as before. False: no memory. To be freed in any case. */
+/* Of the worklist, which no block has had; the state is as before. False: no memory. To be freed in any case. */
 bool par_ahead_make(struct par_ahead *ahead, const struct par_state *state, const struct par_partition *partition);
 void par_ahead_free(struct par_ahead *ahead);
 
