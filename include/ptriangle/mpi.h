@@ -15,7 +15,7 @@ extern "C" {
 #endif
 
 enum { /* why something moves */
-    PAR_EXCHANGE_BORDERS,   /* strips at the borders of ranks, to the rank on the left .. */
+    PAR_EXCHANGE_BORDERS,   /* what blocks at the borders of ranks borrow .. */
     PAR_EXCHANGE_BACK,      /* .. and back */
     PAR_EXCHANGE_LEFT_OVER, /* what lies in boxes where small blocks have left something over, to rank 0 and back */
     PAR_EXCHANGE_NUMBERS,   /* numbers of vertices at borders */
