@@ -17,7 +17,7 @@ extern "C" {
 enum { /* why something moves */
     PAR_EXCHANGE_BORDERS,   /* what blocks at the borders of ranks borrow .. */
     PAR_EXCHANGE_BACK,      /* .. and back */
-    PAR_EXCHANGE_LEFT_OVER, /* what lies in boxes where small blocks have left something over, to rank 0 and back */
+    PAR_EXCHANGE_LEFT_OVER, /* both, for what small blocks have left over */
     PAR_EXCHANGE_NUMBERS,   /* numbers of vertices at borders */
     PAR_EXCHANGE_TILES,     /* tiles that another rank takes; 0 here */
     PAR_EXCHANGE_INPUT,     /* the input that one rank has read; 0 here */

@@ -1,4 +1,4 @@
-/* What is lent: rings of triangles around vertices, as far as these are the own ones in the boxes of another's blocks. */
+/* What is lent: rings of triangles around vertices, as far as these are own ones in the boxes of another's blocks. */
 #include <assert.h>
 #include <stdlib.h>
 

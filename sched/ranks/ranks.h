@@ -4,8 +4,8 @@
  * Every rank has made the coarse mesh, and owns some tiles (territory.h).
  *
  * INVARIANT. Between phases a rank's mesh is the triangles of the true one that have a corner in its tiles, and no
- * others; links to others are TRI_BEYOND. Its worklist is the true one's entries among them. Triangles that have corners
- * of other ranks, too (straddlers), are in the mesh of each of these.
+ * others; links to others are TRI_BEYOND. Its worklist is the true one's entries among them. Triangles that have
+ * corners of other ranks, too (straddlers), are in the mesh of each of these.
  *
  * A block that lies in the tiles of one rank asks for nothing: all triangles that it may change are here, and so are
  * those that share an edge with one of them. A block over the tiles of several ranks (at a border) is done by the one
@@ -20,8 +20,8 @@
  * keys, which do not depend on who left what.
  *
  * WHAT MOVES. Rings and what they become: in proportion to the seams between blocks of several ranks, not to the mesh.
- * That holds for later rounds and the last call, too, which is a block like others, with all of the plane as its box: it
- * borrows the surroundings of what is left over, and the straddlers. */
+ * That holds for later rounds and the last call, too, which is a block like others, with all of the plane as its box:
+ * it borrows the surroundings of what is left over, and the straddlers. */
 #ifndef SCHED_RANKS_RANKS_H
 #define SCHED_RANKS_RANKS_H
 
