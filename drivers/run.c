@@ -487,7 +487,6 @@ static enum tri_status check_files(const struct runner *r, const struct mesh_fil
 
 static enum tri_status make_mesh(struct runner *r)
 {
-    struct run *run = &r->run;
     enum tri_status status = keep_partial(r, generate(r, true));
     end_stage(r, RUN_QUALITY);
     if (status)
