@@ -548,27 +548,23 @@ static bool stands_here(const struct move *m, int32_t t)
     return place != TRI_NONE && (m->down ? place >> 2 < m->batch.first : place >> 2 >= m->batch.last);
 }
 
-/* A few are fetched before the first is looked at, so that the memory works on all of them at once. */
+/* Those that come soon are fetched already, so that the memory works on many at once. */
 static void gather_batch(void *context, size_t share)
 {
-    enum { AT_ONCE = 32 };
+    enum { AHEAD = 32 };
     struct move *m = context;
     const struct numbering *n = m->n;
     struct tri_range range = batch_share(m, share);
-    struct tri_triangle from[AT_ONCE];
-    struct tri_triangle *to = n->buffer;
+    struct tri_triangle *to = n->buffer - m->batch.first;
+    const uint64_t *item = dealt_items(n);
     int32_t parked = 0;
-    for (int32_t t = range.first; t < range.last; t++)
+    for (int32_t t = range.first; t < range.last; t++) {
         parked += stands_here(m, t);
-    m->parked[share] = parked;
-    for (int32_t first = range.first; first < range.last; first += AT_ONCE) {
-        int32_t count = range.last - first < AT_ONCE ? range.last - first : AT_ONCE;
-        const uint64_t *item = dealt_items(n) + first;
-        for (int32_t i = 0; i < count; i++)
-            from[i] = *source_of(n, item[i]);
-        for (int32_t i = 0; i < count; i++)
-            to[first - m->batch.first + i] = renamed(n, &from[i], first_of(item[i]));
+        if (t + AHEAD < range.last)
+            __builtin_prefetch(source_of(n, item[t + AHEAD]));
+        to[t] = renamed(n, source_of(n, item[t]), first_of(item[t]));
     }
+    m->parked[share] = parked;
 }
 
 static void put_down(void *context, size_t share)
