@@ -298,7 +298,8 @@ static inline int32_t tile_after(const struct numbering *n, struct tile_range *l
     return last->tile;
 }
 
-/* Is the triangle's tile another than that of its first corner? A new vertex with a smaller number is in no later one. */
+/* Is the triangle's tile another than that of its first corner? A new vertex with a smaller number is in no later
+ * one. */
 static bool is_stray(const struct numbering *n, const struct tile_range *last, const int32_t v[3], uint64_t item)
 {
     int32_t number = key_of(item);
