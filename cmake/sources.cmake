@@ -165,6 +165,7 @@ set(PTRIANGLE_JUDGE_SOURCES
     drivers/judged_files.c
     drivers/verdict.c)
 set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed
+set(PTRIANGLE_PETSC_EXAMPLES poisson) # likewise, where PETSc is found
 set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
 
 # meshplot, built where cairo is found.
@@ -202,6 +203,8 @@ set(PTRIANGLE_PARALLEL_SOURCES
     drivers/launch.c
     drivers/long_options.c
     drivers/progress.c
+    drivers/rank_report.c
+    drivers/shared_input.c
     drivers/streams.c
     drivers/restart.c
     drivers/prediction.c)

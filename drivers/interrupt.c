@@ -94,7 +94,7 @@ const char *interrupt_cause(void)
     for (int i = 0; i < N_ENDS; i++)
         if (ends[i].number == number)
             return ends[i].name;
-    return "the time limit";
+    return number == NOBODY ? "another task" : "the time limit";
 }
 
 int interrupt_code(void)

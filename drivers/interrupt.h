@@ -34,7 +34,7 @@ void interrupt_told(void);
 /* The exit code for whoever was stopped: 128 + number of the signal, or INTERRUPT_TIME_UP; 0: nobody has asked. */
 int interrupt_code(void);
 
-/* What has asked: "SIGTERM", "the time limit". */
+/* What has asked: "SIGTERM", "the time limit"; "another task", where nobody has asked this one. */
 const char *interrupt_cause(void);
 
 /* Begins an empty set and guards it; it lives as long as the program. */

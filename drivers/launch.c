@@ -45,14 +45,13 @@ enum tri_status launch_join(struct launch *launch, struct tri_error *error)
     return status;
 }
 
-int launch_leave(struct launch *launch, int code)
+int launch_leave(struct launch *launch, int code, struct tri_error *error)
 {
-    struct tri_error error = {0};
     if (!launch->carrier)
         return code;
-    if (code != EXIT_SUCCESS)
-        tri_fail(&error, TRI_BAD_INPUT, NULL, 0, "task %d has failed", launch->rank);
-    enum tri_status agreed = par_agree(launch->carrier, code == EXIT_SUCCESS ? TRI_OK : TRI_BAD_INPUT, &error);
+    if (code != EXIT_SUCCESS && !error->status)
+        tri_fail(error, TRI_INTERNAL, NULL, 0, "task %d has failed", launch->rank);
+    enum tri_status agreed = par_agree(launch->carrier, code == EXIT_SUCCESS ? TRI_OK : error->status, error);
     launch_end(launch);
     return code == EXIT_SUCCESS && agreed ? EXIT_FAILURE : code;
 }

@@ -14,8 +14,9 @@ struct launch {
  * there are several, and they cannot find together. */
 enum tri_status launch_join(struct launch *launch, struct tri_error *error);
 
-/* The last thing that is done: the tasks agree on the exit code, which is returned. */
-int launch_leave(struct launch *launch, int code);
+/* The last thing that is done: the tasks agree on the exit code, which is returned. error: why this one has failed,
+ * where that is known. */
+int launch_leave(struct launch *launch, int code, struct tri_error *error);
 
 /* By whether there is MPI: how tasks become ranks, and cease to be. */
 enum tri_status launch_ranks(struct launch *launch, int tasks, struct tri_error *error);

@@ -12,10 +12,12 @@
 #include "drivers/launch.h"
 #include "drivers/long_options.h"
 #include "drivers/progress.h"
+#include "drivers/rank_report.h"
 #include "drivers/report_json.h"
 #include "drivers/resources.h"
 #include "drivers/restart.h"
 #include "drivers/run.h"
+#include "drivers/shared_input.h"
 #include "drivers/streams.h"
 #include "sched/ranks/relay.h"
 #include "sched/schedule.h"
@@ -40,6 +42,7 @@ struct program {
     bool refined;              /* the schedule has run: its report is filled */
     struct par_report schedule;
     struct launch launch;
+    struct rank_report ranks;
 };
 
 /* Tests run the schedule on small inputs: a build with tests takes the triangles in a cell from the environment. */
@@ -202,6 +205,8 @@ static enum tri_status refine(void *user, struct run *run, struct tri_output_set
         if (!status)
             progress_stage(&p->progress, "writing");
     }
+    if (p->launch.carrier)
+        status = rank_report_gather(&p->ranks, p->launch.carrier, &p->schedule, status, error);
     *report = p->schedule.total;
     return status;
 }
@@ -210,6 +215,18 @@ static double estimate(void *user, const struct tri_mesh *mesh, const struct tri
 {
     (void)user;
     return tri_estimate(mesh, quality);
+}
+
+static enum tri_status share(void *user, struct run *run, enum tri_status status, struct tri_error *error)
+{
+    const struct program *p = user;
+    return shared_input(p->launch.carrier, run, status, error);
+}
+
+static enum tri_status agree(void *user, enum tri_status status, struct tri_error *error)
+{
+    const struct program *p = user;
+    return par_agree(p->launch.carrier, status, error);
 }
 
 /* Of a mesh that is in memory. */
@@ -247,7 +264,8 @@ static enum tri_status write_further(void *user, const struct run *run, struct t
         status = blocks_write(p->options.blocks, set, &p->schedule, &run->mesh, error);
     if (status || !p->options.report)
         return status;
-    return report_write(p->options.report, set, run, p->refined ? &p->schedule : NULL, p->threads, error);
+    return report_write(p->options.report, set, run, p->refined ? &p->schedule : NULL, &p->ranks, p->threads,
+                        error);
 }
 
 /* --- arguments */
@@ -343,6 +361,7 @@ static struct run_hooks hooks_of(struct program *p)
                               .swept_memory = swept_memory,
                               .always_sweep = goes_on || p->launch.carrier || sweep_for_tests(),
                               .written_elsewhere = p->launch.rank > 0,
+                              .share = p->launch.carrier ? share : NULL, .agree = p->launch.carrier ? agree : NULL,
                               .whole_mesh = whole_mesh(o), .threads = p->threads, .user = p,
                               .limits = {.seconds = o->time_limit, .write_partial = o->write_partial,
                                          .dry_run = o->dry_run, .memory = memory_of(o), .scratch = o->scratch,
@@ -382,6 +401,7 @@ static void free_program(struct program *p)
 {
     par_report_free(&p->schedule);
     free(p->scratch);
+    free(p->ranks.number);
     for (int i = 0; i < STREAMS_MOST; i++)
         free(p->xdmf[i]);
 }
@@ -397,12 +417,11 @@ static int carry_out(struct program *p, const struct arguments *arguments, struc
         help_full(PROGRAM, "on all cores", long_options_help);
         return EXIT_SUCCESS;
     }
-    if (arguments->file && restart_open(&p->restart, &p->options, error)) {
-        console_error(&(struct console){.program = PROGRAM}, error);
-        return EXIT_FAILURE;
-    }
-    if (p->launch.carrier && p->restart.wanted) {
+    if (p->launch.carrier && (p->options.checkpoint || p->options.resume))
         tri_fail(error, TRI_BAD_INPUT, NULL, 0, "several tasks keep no checkpoints");
+    else if (arguments->file)
+        restart_open(&p->restart, &p->options, error);
+    if (error->status) {
         console_error(&(struct console){.program = PROGRAM}, error);
         return EXIT_FAILURE;
     }
@@ -427,5 +446,5 @@ int main(int argc, char **argv)
     free_program(&program);
     arguments_free(&arguments);
     code = console_close(&console) ? code : EXIT_FAILURE;
-    return joined ? launch_leave(&program.launch, code) : code;
+    return joined ? launch_leave(&program.launch, code, &error) : code;
 }

@@ -9,10 +9,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 
 #include "drivers/interrupt.h"
 #include "drivers/prediction.h"
+#include "drivers/resources.h"
 #include "triangle/text/write.h"
 
 /* JSON has no infinity and no NaN: null stands for them. */
@@ -165,31 +165,63 @@ static json_t *mesh_of(const struct run *run)
                      run->plan.swept ? json_null() : histogram_of(shapes.angles, TRI_ANGLE_BINS));
 }
 
-/* --- all of it */
+/* --- ranks */
 
-/* ru_maxrss counts units of 1024 bytes, but bytes where Darwin is the system. */
-static int64_t peak_memory(void)
+static const char *const move_names[] = {
+    [PAR_MOVE_STRIPS] = "borders", [PAR_MOVE_BACK] = "back",   [PAR_MOVE_LEFT_OVER] = "left_over",
+    [PAR_MOVE_NUMBERS] = "numbers", [PAR_MOVE_TILES] = "tiles", [PAR_MOVE_INPUT] = "input",
+};
+
+static json_t *moves_of(const int64_t *number)
 {
-    struct rusage usage;
-    if (getrusage(RUSAGE_SELF, &usage))
-        return 0;
-#ifdef __APPLE__
-    return (int64_t)usage.ru_maxrss;
-#else
-    return (int64_t)usage.ru_maxrss * 1024;
-#endif
+    json_t *moves = json_object();
+    for (int k = 0; k < PAR_MOVES; k++)
+        if (json_object_set_new(moves, move_names[k], whole(number[k]))) {
+            json_decref(moves);
+            return NULL;
+        }
+    return moves;
 }
 
-static json_t *report_of(const struct run *run, const struct par_report *schedule, int threads)
+static json_t *rank_of(const int64_t *number)
 {
-    int64_t memory = peak_memory(); /* before the report needs some */
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "threads", whole(number[RANK_THREADS]),
+                     "peak_memory_bytes", whole(number[RANK_PEAK_MEMORY]), "processor_seconds",
+                     real(1e-9 * (double)number[RANK_NS_PROCESSOR]), "block_seconds",
+                     real(1e-9 * (double)number[RANK_NS_BLOCKS]), "waiting_seconds",
+                     real(1e-9 * (double)number[RANK_NS_WAITING]), "moving_seconds",
+                     real(1e-9 * (double)number[RANK_NS_MOVING]), "bytes", moves_of(number + RANK_BYTES), "messages",
+                     moves_of(number + RANK_MESSAGES));
+}
+
+/* One object a rank; null: there is one process. */
+static json_t *ranks_of(const struct rank_report *report)
+{
+    if (report->n_ranks == 0)
+        return json_null();
+    json_t *ranks = json_array();
+    for (int p = 0; p < report->n_ranks; p++)
+        if (json_array_append_new(ranks, rank_of(report->number[p]))) {
+            json_decref(ranks);
+            return NULL;
+        }
+    return ranks;
+}
+
+/* --- all of it */
+
+static json_t *report_of(const struct run *run, const struct par_report *schedule, const struct rank_report *ranks,
+                         int threads)
+{
+    int64_t memory = resources_memory_peak(); /* before the report needs some */
     const struct tri_refine_options *q = &run->options.quality;
     json_t *bounds = json_pack("{s:o, s:o}", "min_angle", q->min_angle > 0 ? real(q->min_angle) : json_null(),
                                "max_area", q->max_area > 0 ? real(q->max_area) : json_null());
-    return json_pack("{s:s, s:s, s:o, s:s?, s:i, s:o, s:o, s:o, s:o, s:o}", "program", run->hooks->program, "version",
-                     PTRIANGLE_VERSION, "command", command_of(run->arguments), "stopped", run->stopped, "threads",
-                     threads, "peak_memory_bytes", whole(memory), "bounds", bounds, "seconds", stages_of(run, schedule),
-                     "mesh", mesh_of(run), "schedule", schedule ? schedule_of(schedule) : json_null());
+    return json_pack("{s:s, s:s, s:o, s:s?, s:i, s:o, s:o, s:o, s:o, s:o, s:o}", "program", run->hooks->program,
+                     "version", PTRIANGLE_VERSION, "command", command_of(run->arguments), "stopped", run->stopped,
+                     "threads", threads, "peak_memory_bytes", whole(memory), "bounds", bounds, "seconds",
+                     stages_of(run, schedule), "mesh", mesh_of(run), "ranks", ranks_of(ranks), "schedule",
+                     schedule ? schedule_of(schedule) : json_null());
 }
 
 enum tri_status report_check(struct tri_error *error)
@@ -212,9 +244,10 @@ static enum tri_status write_text(const char *path, struct tri_output_set *set, 
 }
 
 enum tri_status report_write(const char *path, struct tri_output_set *set, const struct run *run,
-                             const struct par_report *schedule, int threads, struct tri_error *error)
+                             const struct par_report *schedule, const struct rank_report *ranks, int threads,
+                             struct tri_error *error)
 {
-    json_t *report = report_of(run, schedule, threads);
+    json_t *report = report_of(run, schedule, ranks, threads);
     char *text = report ? json_dumps(report, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) : NULL;
     enum tri_status status = text ? write_text(path, set, text, error)
                                   : tri_fail(error, TRI_NO_MEMORY, path, 0, "out of memory for the report");

@@ -2,6 +2,7 @@
 #ifndef DRIVERS_REPORT_JSON_H
 #define DRIVERS_REPORT_JSON_H
 
+#include "drivers/rank_report.h"
 #include "drivers/run.h"
 #include "sched/schedule.h"
 #include "triangle/text/output.h"
@@ -12,9 +13,10 @@ static inline bool report_is_printed(const char *path) { return path[0] == '-' &
 /* TRI_BAD_INPUT: this program was built without reports. */
 enum tri_status report_check(struct tri_error *error);
 
-/* Writes it into the guarded set (drivers/interrupt.h). schedule: NULL, or what refined the mesh. Takes a pass or
- * two over all triangles. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
+/* Writes it into the guarded set (drivers/interrupt.h). schedule: NULL, or what refined the mesh; of several ranks that
+ * of the first. Takes a pass or two over all triangles. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
 enum tri_status report_write(const char *path, struct tri_output_set *set, const struct run *run,
-                             const struct par_report *schedule, int threads, struct tri_error *error);
+                             const struct par_report *schedule, const struct rank_report *ranks, int threads,
+                             struct tri_error *error);
 
 #endif

@@ -9,12 +9,14 @@ static enum tri_status refuse(struct tri_error *error)
 enum tri_status report_check(struct tri_error *error) { return refuse(error); }
 
 enum tri_status report_write(const char *path, struct tri_output_set *set, const struct run *run,
-                             const struct par_report *schedule, int threads, struct tri_error *error)
+                             const struct par_report *schedule, const struct rank_report *ranks, int threads,
+                             struct tri_error *error)
 {
     (void)path;
     (void)set;
     (void)run;
     (void)schedule;
+    (void)ranks;
     (void)threads;
     return refuse(error);
 }

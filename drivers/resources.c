@@ -130,6 +130,28 @@ double resources_memory_total(void) { return least_of(ALL); }
 
 double resources_memory_used(void) { return 1024 * fmax(find_number("/proc/self/status", "VmRSS:"), 0); }
 
+/* ru_maxrss counts units of 1024 bytes, but bytes where Darwin is the system. */
+int64_t resources_memory_peak(void)
+{
+    struct rusage usage;
+    if (getrusage(RUSAGE_SELF, &usage))
+        return 0;
+#ifdef __APPLE__
+    return (int64_t)usage.ru_maxrss;
+#else
+    return (int64_t)usage.ru_maxrss * 1024;
+#endif
+}
+
+double resources_processor_seconds(void)
+{
+    struct rusage usage;
+    if (getrusage(RUSAGE_SELF, &usage))
+        return 0;
+    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+}
+
 double resources_disk(const char *path)
 {
     char directory[PATH_BYTES];

@@ -152,13 +152,23 @@ static enum tri_status read_input(struct runner *r)
                                        .stop = interrupt_stop(),
                                        .warn = warn_of_input,
                                        .warn_user = r};
-    interrupt_stage("reading");
     enum tri_status status = read_pslg(r, &r->names, &options);
     if (!status && s->mesh)
         status = read_mesh(r, &r->names, &options);
     console_series_end(&r->console, &r->input_warnings, "of this kind");
     if (status)
         add_hint(r);
+    return status;
+}
+
+/* Of several ranks one reads. */
+static enum tri_status get_input(struct runner *r)
+{
+    const struct run_hooks *hooks = r->run.hooks;
+    interrupt_stage("reading");
+    enum tri_status status = hooks->written_elsewhere ? TRI_OK : read_input(r);
+    if (hooks->share)
+        status = hooks->share(hooks->user, &r->run, status, r->error);
     end_stage(r, RUN_READ);
     return status;
 }
@@ -449,15 +459,22 @@ static enum tri_status write_all(struct runner *r, const struct mesh_files *file
     return status ? status : console_flush(r->error);
 }
 
-/* Whatever can fail comes before the commit, what is printed included. */
+/* One word for all ranks. */
+static enum tri_status agree(struct runner *r, enum tri_status status)
+{
+    const struct run_hooks *hooks = r->run.hooks;
+    return hooks->agree ? hooks->agree(hooks->user, status, r->error) : status;
+}
+
+/* Whatever can fail comes before the commit, what is printed included, and what others do. */
 static enum tri_status write_output(struct runner *r, const struct mesh_files *files)
 {
     if (r->run.hooks->written_elsewhere)
-        return TRI_OK;
+        return agree(r, TRI_OK);
     interrupt_stage("writing");
     if (!r->run.plan.swept)
         begin_outputs(r);
-    enum tri_status status = write_all(r, files);
+    enum tri_status status = agree(r, write_all(r, files));
     if (!status)
         return interrupt_commit(&outputs, r->error);
     interrupt_drop(&outputs);
@@ -515,7 +532,7 @@ static enum tri_status run_stages(struct runner *r)
     struct run *run = &r->run;
     enum tri_status status = check_switches(r);
     status = status ? status : make_names(&r->names, run->arguments->input, r->error);
-    status = status ? status : read_input(r);
+    status = status ? status : get_input(r);
     if (status)
         return status;
     struct mesh_files files = {.arguments = run->arguments, .console = &r->console,
@@ -525,7 +542,7 @@ static enum tri_status run_stages(struct runner *r)
                                .exports_alone = run->hooks->exports_alone};
     if (run->hooks->limits.dry_run)
         return print_estimate(r);
-    status = check_files(r, &files);
+    status = run->hooks->written_elsewhere ? TRI_OK : check_files(r, &files);
     status = status ? status : make_mesh(r);
     files.is_edge = run->is_edge;
     return status ? status : write_output(r, &files);
@@ -538,6 +555,8 @@ static enum tri_status run_file(struct runner *r)
     if (!interrupt_start(r->run.hooks->program, limits->seconds, limits->write_partial || limits->checkpoint))
         return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "the system has no timer left");
     enum tri_status status = run_stages(r);
+    if (status)
+        status = agree(r, status);
     if (status == TRI_STOPPED)
         tell_of_stop(r, false);
     else if (status)
@@ -569,7 +588,7 @@ int run_arguments(const struct arguments *arguments, const struct run_hooks *hoo
     else
         status = run_file(&r);
     free_run(&r);
-    if (status == TRI_STOPPED || (!status && r.run.stopped))
+    if (interrupt_code() != 0 && (status == TRI_STOPPED || (!status && r.run.stopped)))
         return interrupt_code();
     return console_close(&r.console) && !status ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -75,7 +75,12 @@ struct run_hooks {
      * NULL: nothing is ever swept. */
     double (*swept_memory)(void *user, double triangles);
     bool always_sweep;              /* on ranks, and for tests: also what would fit in memory */
-    bool written_elsewhere;         /* another rank writes all files */
+    bool written_elsewhere;         /* another rank reads and writes all files */
+    /* Several ranks, which call these together. share: after the first has read the input; all have it then. agree:
+     * before anything gets its name, and by whoever fails, at whatever call the others are. Both return the same status
+     * on all, with the same error. NULL: there is one. */
+    enum tri_status (*share)(void *user, struct run *run, enum tri_status status, struct tri_error *error);
+    enum tri_status (*agree)(void *user, enum tri_status status, struct tri_error *error);
     const char *whole_mesh;         /* what of the program's own options asks for a mesh in memory; NULL: nothing */
     int threads;                    /* to refine with, for estimates */
     struct file_names exports;      /* the mesh in other formats .. */

@@ -53,6 +53,19 @@ static bool transfer(void *self, const struct par_bytes *out, const struct par_b
     return fits;
 }
 
+static bool spread(void *self, void *bytes, size_t n)
+{
+    const struct fake_rank *rank = self;
+    struct fake_world *world = rank->world;
+    if (rank->self == 0)
+        world->spread = bytes;
+    wait_for_all(world);
+    if (rank->self > 0 && n > 0)
+        memcpy(bytes, world->spread, n);
+    wait_for_all(world);
+    return true;
+}
+
 void fake_world_init(struct fake_world *world, int n_ranks)
 {
     size_t n = (size_t)n_ranks;
@@ -77,7 +90,7 @@ void fake_world_free(struct fake_world *world)
 struct par_carrier fake_carrier(struct fake_world *world, int rank)
 {
     return (struct par_carrier){.rank = rank, .n_ranks = world->n_ranks, .self = &world->rank[rank],
-                                .gather = gather, .deal = deal, .transfer = transfer};
+                                .gather = gather, .deal = deal, .transfer = transfer, .spread = spread};
 }
 
 void fake_run(struct fake_world *world, void *(*work)(void *user), void *user, size_t size)

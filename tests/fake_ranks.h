@@ -11,6 +11,7 @@ struct fake_world {
     pthread_barrier_t barrier;
     const int64_t **numbers;       /* [n_ranks] what each shows the others now */
     const struct par_bytes **out;
+    const void *spread;
     struct fake_rank *rank;
 };
 

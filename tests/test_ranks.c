@@ -266,9 +266,50 @@ static void test_an_error_of_one_is_an_error_of_all(void **state)
     }
 }
 
+/* --- what the first rank has */
+
+struct listener {
+    struct par_carrier carrier;
+    char text[8];
+    bool fails;
+    enum tri_status status;
+};
+
+static void *listen(void *user)
+{
+    struct listener *l = user;
+    struct tri_error error = {0};
+    enum tri_status own = l->fails ? tri_fail(&error, TRI_NO_MEMORY, NULL, 0, "no room") : TRI_OK;
+    l->status = par_spread(&l->carrier, PAR_MOVE_INPUT, l->text, sizeof l->text, own, &error);
+    l->status = par_spread(&l->carrier, PAR_MOVE_INPUT, NULL, 0, l->status, &error);
+    return NULL;
+}
+
+static void test_all_get_what_the_first_has(void **state)
+{
+    (void)state;
+    for (int fails = -1; fails < 3; fails++) {
+        struct fake_world world;
+        struct listener l[3];
+        fake_world_init(&world, 3);
+        for (int p = 0; p < 3; p++) {
+            l[p] = (struct listener){.carrier = fake_carrier(&world, p), .fails = p == fails};
+            strcpy(l[p].text, p == 0 ? "said" : "unsaid");
+        }
+        fake_run(&world, listen, l, sizeof *l);
+        fake_world_free(&world);
+        for (int p = 0; p < 3; p++) {
+            assert_int_equal(l[p].status, fails < 0 ? TRI_OK : TRI_NO_MEMORY);
+            assert_string_equal(l[p].text, p == 0 || fails < 0 ? "said" : "unsaid");
+            assert_int_equal(l[p].carrier.traffic[PAR_MOVE_INPUT].bytes, p == 0 && fails < 0 ? 16 : 0);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_all_get_what_the_first_has),
         cmocka_unit_test(test_ranks_hand_out_what_one_process_does),
         cmocka_unit_test(test_an_error_of_one_is_an_error_of_all),
     };

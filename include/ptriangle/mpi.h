@@ -20,6 +20,7 @@ enum { /* why something moves */
     PAR_EXCHANGE_LEFT_OVER, /* what lies in boxes where small blocks have left something over, to rank 0 and back */
     PAR_EXCHANGE_NUMBERS,   /* numbers of vertices at borders */
     PAR_EXCHANGE_TILES,     /* tiles that another rank takes; 0 here */
+    PAR_EXCHANGE_INPUT,     /* the input that one rank has read; 0 here */
     PAR_EXCHANGES
 };
 
@@ -42,6 +43,21 @@ struct par_exchanges { /* sent by this rank */
  * nobody asks. */
 enum tri_status par_stream_on(MPI_Comm comm, const struct tri_figure *figure, const struct tri_settings *settings,
                               const struct tri_sink *sink, struct par_exchanges *exchanges, struct tri_error *error);
+
+/* The rank that owns a vertex (triangle, segment), by a list first[n_ranks + 1] of struct tri_stream; -1: nobody, there
+ * is none of that number. O(log n_ranks). */
+static inline int32_t par_rank_of(const int64_t *first, int32_t n_ranks, int64_t number)
+{
+    int32_t low = 0, high = n_ranks;
+    while (high - low > 1) {
+        int32_t middle = low + (high - low) / 2;
+        if (first[middle] <= number)
+            low = middle;
+        else
+            high = middle;
+    }
+    return first[low] <= number && number < first[low + 1] ? low : -1;
+}
 
 #ifdef __cplusplus
 }

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "triangle/clock.h"
+
 bool par_bytes_reserve(struct par_bytes *bytes, size_t more)
 {
     if (bytes->n + more <= bytes->capacity)
@@ -40,11 +42,20 @@ static enum tri_status no_memory(struct tri_error *error)
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for what ranks exchange");
 }
 
+/* Whoever comes first waits here for the last. */
+static bool ask_all(struct par_carrier *carrier, const int64_t *mine, int32_t n, int64_t *all)
+{
+    double began = tri_seconds();
+    bool good = carrier->gather(carrier->self, mine, n, all);
+    carrier->seconds_waiting += tri_seconds() - began;
+    return good;
+}
+
 /* The lowest rank's that has an error, or -1. `all` has room for a number of each rank. */
 static int first_to_fail(struct par_carrier *carrier, enum tri_status status, int64_t *all)
 {
     int64_t mine = status;
-    if (!carrier->gather(carrier->self, &mine, 1, all))
+    if (!ask_all(carrier, &mine, 1, all))
         return -2;
     for (int p = 0; p < carrier->n_ranks; p++)
         if (all[p] != TRI_OK)
@@ -60,7 +71,7 @@ static enum tri_status share_error(struct par_carrier *carrier, int from, struct
     struct tri_error own = {0};
     error = error ? error : &own;
     memcpy(mine, error, sizeof *error);
-    if (all && carrier->gather(carrier->self, mine, WORDS, all))
+    if (all && ask_all(carrier, mine, WORDS, all))
         memcpy(error, all + (size_t)from * WORDS, sizeof *error);
     free(all);
     return error->status;
@@ -130,8 +141,10 @@ enum tri_status par_swap(struct par_carrier *carrier, enum par_move move, struct
 {
     status = par_agree(carrier, status, error);
     status = status ? status : prepare(carrier, out, in, error);
+    double began = tri_seconds();
     if (!status && !carrier->transfer(carrier->self, out, in))
         status = out_of_touch(carrier, error);
+    carrier->seconds_moving += tri_seconds() - began;
     count(carrier, move, out);
     in[carrier->rank] = out[carrier->rank];
     out[carrier->rank] = (struct par_bytes){0};
@@ -139,11 +152,26 @@ enum tri_status par_swap(struct par_carrier *carrier, enum par_move move, struct
     return status;
 }
 
+enum tri_status par_spread(struct par_carrier *carrier, enum par_move move, void *bytes, size_t n,
+                           enum tri_status status, struct tri_error *error)
+{
+    status = par_agree(carrier, status, error);
+    double began = tri_seconds();
+    if (!status && !carrier->spread(carrier->self, bytes, n))
+        status = out_of_touch(carrier, error);
+    carrier->seconds_moving += tri_seconds() - began;
+    if (!status && carrier->rank == 0 && n > 0) {
+        carrier->traffic[move].bytes += (int64_t)n * (carrier->n_ranks - 1);
+        carrier->traffic[move].messages += carrier->n_ranks - 1;
+    }
+    return status;
+}
+
 enum tri_status par_gather(struct par_carrier *carrier, const int64_t *mine, int32_t n, int64_t *all,
                            enum tri_status status, struct tri_error *error)
 {
     status = par_agree(carrier, status, error);
-    if (!status && !carrier->gather(carrier->self, mine, n, all))
+    if (!status && !ask_all(carrier, mine, n, all))
         status = out_of_touch(carrier, error);
     return status;
 }

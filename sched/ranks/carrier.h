@@ -19,7 +19,15 @@ struct par_bytes {
 };
 
 /* What moves for what reason. */
-enum par_move { PAR_MOVE_STRIPS, PAR_MOVE_BACK, PAR_MOVE_LEFT_OVER, PAR_MOVE_NUMBERS, PAR_MOVE_TILES, PAR_MOVES };
+enum par_move {
+    PAR_MOVE_STRIPS,
+    PAR_MOVE_BACK,
+    PAR_MOVE_LEFT_OVER,
+    PAR_MOVE_NUMBERS,
+    PAR_MOVE_TILES,
+    PAR_MOVE_INPUT,
+    PAR_MOVES
+};
 
 struct par_traffic {
     int64_t bytes, messages; /* sent by this rank */
@@ -35,11 +43,15 @@ struct par_carrier {
     /* Sends out[p] to rank p and fills in[p].n bytes at in[p].at from there, for all p but the own rank where n > 0.
      * Returns when everything has gone and come. False: the network has failed, which nobody may survive. */
     bool (*transfer)(void *self, const struct par_bytes *out, const struct par_bytes *in);
+    /* Collective: the n bytes of all become those of rank 0. */
+    bool (*spread)(void *self, void *bytes, size_t n);
     const double *share;     /* for tests: [n_ranks + 1] ascending from 0 to 1: rank p owns the part share[p] to
                                 share[p + 1] of the odd columns; NULL: equal parts */
     bool ended;              /* the ranks have agreed on an error: nothing is sent any more */
     enum tri_status status;  /* that error */
     struct par_traffic traffic[PAR_MOVES];
+    double seconds_waiting;  /* for each other, in agreements */
+    double seconds_moving;   /* what is sent and comes, once all are ready for it */
 };
 
 bool par_bytes_reserve(struct par_bytes *bytes, size_t more);
@@ -53,6 +65,11 @@ enum tri_status par_agree(struct par_carrier *carrier, enum tri_status status, s
  * rank is in[rank] afterwards. Frees `out` in any case; `in` is the caller's to free, in any case. */
 enum tri_status par_swap(struct par_carrier *carrier, enum par_move move, struct par_bytes *out, struct par_bytes *in,
                          enum tri_status status, struct tri_error *error);
+
+/* Collective: an agreement, then the n bytes of all, as many on each, become those of rank 0, which counts them as sent
+ * to each. */
+enum tri_status par_spread(struct par_carrier *carrier, enum par_move move, void *bytes, size_t n,
+                           enum tri_status status, struct tri_error *error);
 
 /* Collective: an agreement, then all[n_ranks][n] receives everybody's n numbers. */
 enum tri_status par_gather(struct par_carrier *carrier, const int64_t *mine, int32_t n, int64_t *all,

@@ -81,6 +81,18 @@ static bool transfer(void *self, const struct par_bytes *out, const struct par_b
     return good;
 }
 
+static bool spread(void *self, void *bytes, size_t n)
+{
+    const struct messenger *m = self;
+    bool good = true;
+    for (size_t at = 0; good && at < n; at += MOST_BYTES) {
+        MPI_Request request;
+        good = MPI_Ibcast((char *)bytes + at, piece_of(n, at), MPI_BYTE, 0, m->comm, &request) == MPI_SUCCESS &&
+               wait_for(&request, 1);
+    }
+    return good;
+}
+
 static bool is_running(void)
 {
     int begun = 0, ended = 0;
@@ -98,14 +110,29 @@ static void tell_traffic(const struct par_carrier *carrier, struct par_exchanges
     }
 }
 
+/* Collective: has everybody got memory? Who has none must not leave the others waiting. */
+static bool have_all(MPI_Comm comm, const void *memory)
+{
+    int mine = memory != NULL, all = 0;
+    return MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, comm) == MPI_SUCCESS && all;
+}
+
 struct par_carrier *par_mpi_carrier_new(const void *comm)
 {
     struct messenger *m = calloc(1, sizeof *m);
-    if (!m || MPI_Comm_dup(*(const MPI_Comm *)comm, &m->comm) != MPI_SUCCESS) {
+    MPI_Comm copy;
+    if (MPI_Comm_dup(*(const MPI_Comm *)comm, &copy) != MPI_SUCCESS) {
         free(m);
         return NULL;
     }
-    m->carrier = (struct par_carrier){.self = m, .gather = gather, .deal = deal, .transfer = transfer};
+    if (!have_all(copy, m)) {
+        MPI_Comm_free(&copy);
+        free(m);
+        return NULL;
+    }
+    m->comm = copy;
+    m->carrier = (struct par_carrier){.self = m, .gather = gather, .deal = deal, .transfer = transfer,
+                                      .spread = spread};
     MPI_Comm_rank(m->comm, &m->carrier.rank);
     MPI_Comm_size(m->comm, &m->carrier.n_ranks);
     return &m->carrier;

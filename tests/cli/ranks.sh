@@ -18,6 +18,22 @@ ranks() {
     [ "$found" -eq "$code" ] || fault "exit code $found instead of $code: $(head -n 3 .out)"
 }
 
+# with_second DO CODE WORDS...: two ranks, of which the second does something first; CODE any: 0 or 1
+with_second() {
+    second=$1
+    code=$2
+    shift 2
+    what="two ranks, the second after $second: $*"
+    checks=$((checks + 1))
+    timeout 100 "$MPIEXEC" -n 2 sh -c '[ "${OMPI_COMM_WORLD_RANK:-$PMI_RANK}" -eq 0 ] || eval "$0"; exec "$@"' "$second" \
+        "$bin/ptriangle" "$@" >.out 2>.err
+    found=$?
+    case $code:$found in
+    any:[01] | "$code:$code") ;;
+    *) fault "exit code $found instead of $code: $(head -n 3 .out .err)" ;;
+    esac
+}
+
 # --- tasks that are not of this MPI
 fresh letter.poly
 what="tasks of a launcher that is none"
@@ -32,7 +48,7 @@ fi
 
 # --- the same bytes
 fresh letter.poly section.poly
-for case in "-pq30a0.002 letter" "-pq28aA section" "-pq33a0.01 letter" "-pq30a0.01e section" "-p letter"; do
+for case in "-pq30a0.002 letter" "-pq33a0.01 letter" "-p letter"; do
     file=${case##* }
     # shellcheck disable=SC2086 # several words
     program 0 -Q $case
@@ -46,7 +62,55 @@ for case in "-pq30a0.002 letter" "-pq28aA section" "-pq33a0.01 letter" "-pq30a0.
     rm -rf one "$file".1.*
 done
 
+# --- one task reads and writes: the others see neither the input nor the folder
+fresh section.poly
+same_but_for_comments() { # A B
+    grep -v '^#' "$1" >.one
+    grep -v '^#' "$2" >.two
+    cmp .one .two
+}
+program 0 -Qpq10aA section
+for case in "-pq28aA section.poly" "-rpq20a0.01e section.1"; do
+    # shellcheck disable=SC2086 # several words
+    program 0 -Q $case --output one
+    # shellcheck disable=SC2086
+    with_second 'cd /' 0 -Q $case --output two
+    for file in one.*; do
+        check "the same but for the command: $case, $file" same_but_for_comments "$file" "two${file#one}"
+    done
+    rm -f one.* two.*
+done
+
+# --- what moved, by reason and rank
+ranks 0 3 -Qpq30a0.001 section.poly --output one.h5 --report report.json
+for word in '"borders": [1-9]' '"tiles": [1-9]' '"input": [1-9]'; do
+    check "the report has no $word" grep -q "$word" report.json
+done
+check "three ranks" test "$(grep -c '"waiting_seconds"' report.json)" -eq 3
+program 0 -Qpq30a0.01 section.poly --output one.h5 --report report.json
+check "one process has no ranks" grep -q '"ranks": null' report.json
+
+# --- memory that runs out in one task, wherever: one line, no file; or all files
+fresh letter.poly
+program 0 -Qpq30a0.01 letter --output one
+if [ -n "${PTRIANGLE_SHIM:-}" ]; then
+    short="export LD_PRELOAD=$PTRIANGLE_SHIM PTRIANGLE_FAIL_OWN=1"
+    with_second "$short PTRIANGLE_COUNT=.count" 0 -Qpq30a0.01 letter --output two
+    for k in $(awk -v most="${PTRIANGLE_SHORT_RUNS:-4}" '{ for (i = 0; i < most; i++) print 1 + int(i * $1 / most) }' .count)
+    do
+        rm -f two.*
+        with_second "$short PTRIANGLE_FAIL_AT=$k" any -Qpq30a0.01 letter --output two
+        if [ "$found" -eq 0 ]; then
+            check "allocation $k: the same bytes" same_but_for_comments one.node two.node
+        else
+            check "allocation $k: one line: $(head -n 3 .err)" test "$(grep -c '^ptriangle: .*memory' .err)" -eq 1
+            check "allocation $k: no file" sh -c '! ls two.* .tri-* 2>/dev/null'
+        fi
+    done
+fi
+
 # --- one error, no file
+fresh letter.poly
 ranks 1 3 -Qpq30a0.01 absent.poly
 check "one line" test "$(grep -c 'absent.poly: cannot open' .err)" -eq 1
 ranks 1 2 -Qpq30a0.002 letter.poly --output "$PWD/absent/letter"

@@ -57,14 +57,19 @@ static int64_t count_wrong(const struct part *part, const struct tri_mesh *mesh)
 {
     struct tri_reals points = tri_mesh_points(mesh);
     struct tri_ints triangles = tri_mesh_triangles(mesh);
-    int64_t wrong = 0;
+    int64_t wrong = par_rank_of(part->owners, part->n_ranks, -1) != -1 ||
+                    par_rank_of(part->owners, part->n_ranks, part->owners[part->n_ranks]) != -1;
     for (int64_t i = 0; i < part->n_points; i++) {
         const double *point = points.at + (part->first_point + i) * points.stride;
         wrong += memcmp(part->points[i], point, sizeof part->points[i]) != 0;
     }
     for (int64_t i = 0; i < part->n_triangles; i++)
-        for (int k = 0; k < 3; k++)
-            wrong += part->triangles[i][k] != triangles.at[(part->first_triangle + i) * triangles.stride + k];
+        for (int k = 0; k < 3; k++) {
+            int64_t corner = part->triangles[i][k];
+            int32_t owner = par_rank_of(part->owners, part->n_ranks, corner);
+            wrong += corner != triangles.at[(part->first_triangle + i) * triangles.stride + k];
+            wrong += owner < 0 || corner < part->owners[owner] || corner >= part->owners[owner + 1];
+        }
     return wrong;
 }
 
