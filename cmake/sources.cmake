@@ -119,6 +119,8 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/partition.c
     sched/room.c
     sched/sweep/tile_copy.c
+    sched/sweep/finds.c
+    sched/sweep/tile_fill.c
     sched/sweep/tiles.c
     sched/sweep/stream.c
     sched/sweep/queue.c

@@ -8,7 +8,8 @@ struct par_tiles par_tiles_of(const struct par_state *state, const struct par_pa
 {
     return (struct par_tiles){.mesh = state->mesh, .partition = partition, .executor = &state->executor,
                               .n_kept = state->n_kept, .sink = state->options->sink,
-                              .figure = state->options->figure, .region_column = state->options->region_column};
+                              .figure = state->options->figure, .region_column = state->options->region_column,
+                              .n_jobs = 2 * state->threads};
 }
 
 /* Something that no block could do lies left of x, where every block has had its turn. */
@@ -29,7 +30,7 @@ static enum tri_status finish_column(struct par_state *state, struct par_tiles *
 {
     double began = tri_seconds();
     *left = is_left_behind(state, par_fence(tiles->partition, column, 0).x_max);
-    enum tri_status status = *left ? TRI_OK : par_tiles_column(tiles, column, true, &state->spare, error);
+    enum tri_status status = *left ? TRI_OK : par_tiles_column(tiles, column, &state->spare, error);
     state->gone = tiles->n_triangles;
     state->report->seconds_number += tri_seconds() - began;
     return status;
