@@ -13,6 +13,7 @@
 #include "triangle/executor.h"
 #include "triangle/fence.h"
 #include "triangle/mesh.h"
+#include "triangle/owners.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -66,6 +67,8 @@ struct tri_refine_options {
     tri_gate *gate;        /* NULL: every bad triangle */
     void *gate_user;
     const struct tri_fence *fence; /* NULL: the whole mesh */
+    const struct tri_owners *owners; /* for asserts in debug builds that calls with disjoint fences change different
+                                        triangles; NULL: none */
     const tri_triangle_id *worklist; /* [n_worklist] looked at first; NULL: all. The loop looks at all it makes, too */
     int32_t n_worklist;
     tri_deferred *deferred; /* NULL: nobody */

@@ -102,8 +102,8 @@ static inline bool is_later(const struct par_column *c, int64_t number)
 }
 
 /* The row of the last tile among those of some vertices, of which new ones are told apart by their numbers. */
-static int32_t last_row(const struct par_column *c, struct row_of_numbers *hint, const int32_t *v, const int64_t *number,
-                        int n)
+static int32_t last_row(const struct par_column *c, struct row_of_numbers *hint, const int32_t *v,
+                        const int64_t *number, int n)
 {
     const struct par_tiles *tiles = c->tiles;
     int64_t last = NO_NUMBER;

@@ -57,8 +57,8 @@ enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, struct
 bool par_tiles_reserve(struct par_tiles *tiles);
 
 /* The same in two steps, in each of which columns come from left to right. Number: its vertices, from
- * tiles->n_vertices on; ids that are free have been marked (par_room_mark), and *column is to be freed in any case. Hand
- * out: by then all corners of its triangles have their numbers, or are vertices of later tiles. */
+ * tiles->n_vertices on; ids that are free have been marked (par_room_mark), and *column is to be freed in any case.
+ * Hand out: by then all corners of its triangles have their numbers, or are vertices of later tiles. */
 struct par_column;
 enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t number, struct par_column **column,
                                  struct tri_error *error);
