@@ -155,7 +155,10 @@ static bool give_all(struct par_ranks *r, struct par_worklist *changed, const st
         memory = note_gone(r, &r->borrowed[h], set, &message[h]);
         first[h] = r->borrowed[h].triangle.n;
     }
-    memory = memory && add_new(r, changed) && give_entries(r, message);
+    memory = memory && add_new(r, changed);
+    for (int h = 0; memory && h < r->carrier->n_ranks; h++)
+        memory = par_talk_sort(&r->borrowed[h], r->state->mesh, first[h]);
+    memory = memory && give_entries(r, message);
     for (int h = 0; memory && h < r->carrier->n_ranks; h++)
         memory = write_to(r, h, &message[h], first[h]);
     return memory;

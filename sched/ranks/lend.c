@@ -5,7 +5,7 @@
 #include "sched/ranks/ranks.h"
 
 /* Rings around what a block begins with; a new point seldom changes more than some triangles around a bad one. */
-enum { RINGS = 4 };
+enum { RINGS = 3 };
 
 /* The rank that works in a box at a place, this one holding a part; -1: none. */
 static int worker_at(const struct par_ranks *r, struct tri_point q)
@@ -145,6 +145,14 @@ static bool lend_entries(struct par_ranks *r, struct par_message *message)
     return memory;
 }
 
+static bool sort_told(struct par_ranks *r, const int32_t *first)
+{
+    bool memory = true;
+    for (int w = 0; memory && w < r->carrier->n_ranks; w++)
+        memory = par_talk_sort(&r->lent[w], r->state->mesh, first[w]);
+    return memory;
+}
+
 static bool write_messages(struct par_ranks *r, struct par_message *message, const int32_t *first)
 {
     const struct tri_mesh *mesh = r->state->mesh;
@@ -169,8 +177,8 @@ enum tri_status par_lend(struct par_ranks *r, struct tri_error *error)
     struct par_message *message = calloc(n, sizeof *message);
     int32_t *first = calloc(n, sizeof *first);
     r->rings = RINGS;
-    bool memory = message && first && tell_straddlers(r) && tell_surroundings(r) && lend_entries(r, message) &&
-                  write_messages(r, message, first);
+    bool memory = message && first && tell_straddlers(r) && tell_surroundings(r) && sort_told(r, first) &&
+                  lend_entries(r, message) && write_messages(r, message, first);
     free_messages(message, r->carrier->n_ranks);
     free(first);
     return memory ? TRI_OK : par_ranks_no_memory(error);
@@ -221,7 +229,7 @@ enum tri_status par_lend_more(struct par_ranks *r, struct tri_error *error)
         memory = bad || begin_ring(r, w, &ring);
         memory = tell_rings(r, w, &ring, memory ? r->rings : 0) && memory;
     }
-    memory = memory && write_messages(r, message, first);
+    memory = memory && sort_told(r, first) && write_messages(r, message, first);
     free_messages(message, r->carrier->n_ranks);
     free(first);
     if (bad)

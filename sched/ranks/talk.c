@@ -66,6 +66,36 @@ int32_t par_talk_number(const struct par_talk *talk, tri_triangle_id t)
     return number_of(&talk->triangle_at, &talk->triangle, t);
 }
 
+/* Deep before wide: who comes next lies beside the last one that had anybody beside it. */
+bool par_talk_sort(struct par_talk *talk, const struct tri_mesh *mesh, int32_t first)
+{
+    struct par_worklist stack = {0}, sorted = {0};
+    int32_t n = talk->triangle.n;
+    bool memory = true;
+    for (int32_t i = first; memory && i < n; i++) {
+        memory = par_worklist_add(&stack, talk->triangle.item[i]);
+        while (memory && stack.n > 0) {
+            tri_triangle_id t = stack.item[--stack.n];
+            int32_t number = par_talk_number(talk, t);
+            if (number < first)
+                continue;
+            talk->triangle.item[number] = TRI_NONE; /* has had its turn */
+            memory = par_worklist_add(&sorted, t);
+            for (int e = 0; memory && e < 3; e++)
+                if (mesh->tri[t].n[e] >= 0)
+                    memory = par_worklist_add(&stack, tri_of(mesh->tri[t].n[e]));
+        }
+        while (i + 1 < n && talk->triangle.item[i + 1] == TRI_NONE)
+            i++;
+    }
+    talk->triangle.n = first;
+    for (int32_t i = 0; memory && i < sorted.n; i++)
+        memory = par_talk_add_triangle(talk, sorted.item[i]);
+    free(stack.item);
+    free(sorted.item);
+    return memory;
+}
+
 void par_talk_free(struct par_talk *talk)
 {
     free(talk->vertex.item);
@@ -229,22 +259,66 @@ static void put_vertex(struct writer *w, const struct par_told_vertex *v, const 
     put_bytes(w, attribute, (size_t)n * sizeof *attribute);
 }
 
+/* The byte at the beginning of a triangle: which edges lead to triangles that have been told; is the corner opposite to
+ * its parent, the first of them that is in this message, new; is the region another one; which is the parent's edge; is
+ * the first of them the parent, and the triangle before this one. */
+enum { NEW_APEX = 8, OTHER_REGION = 16, PARENT_EDGE = 32, LAST_IS_PARENT = 128 };
+
+/* The first edge that leads to a triangle of the same message, which begins with number `first`; 3: none does. */
+static int parent_of(const struct par_told_triangle *t, int32_t first)
+{
+    int e = 0;
+    while (e < 3 && (t->next[e] == TRI_NONE || t->next[e] < first))
+        e++;
+    return e;
+}
+
+/* The edge of a triangle that runs from `from` to `to`, by numbers; -1: none does. */
+static int edge_of(const struct par_told_triangle *t, int32_t from, int32_t to)
+{
+    for (int e = 0; e < 3; e++)
+        if (t->v[tri_next[e]] == from && t->v[tri_prev[e]] == to)
+            return e;
+    return -1;
+}
+
+static void put_links(struct writer *w, const struct par_told_triangle *t, int32_t number, bool last_is_parent)
+{
+    for (int e = 0; e < 3; e++)
+        if (t->next[e] != TRI_NONE && !(last_is_parent && t->next[e] == number - 1))
+            put(w, (uint64_t)(number - 1 - t->next[e]));
+}
+
+static void put_triangle(struct writer *w, const struct par_message *m, int32_t first, int32_t i, int32_t *top,
+                         int32_t *region)
+{
+    const struct par_told_triangle *t = &m->triangle[i];
+    int parent = parent_of(t, first), flags = t->region != *region ? OTHER_REGION : 0;
+    for (int e = 0; e < 3; e++)
+        flags |= (t->next[e] != TRI_NONE) << e;
+    if (parent < 3) {
+        const struct par_told_triangle *other = &m->triangle[t->next[parent] - first];
+        flags |= edge_of(other, t->v[tri_prev[parent]], t->v[tri_next[parent]]) * PARENT_EDGE;
+        flags |= t->v[parent] == *top ? NEW_APEX : 0;
+        bool is_first = (flags & ((1 << parent) - 1)) == 0;
+        flags |= is_first && t->next[parent] == first + i - 1 ? LAST_IS_PARENT : 0;
+    }
+    put_bytes(w, &(unsigned char){(unsigned char)flags}, 1);
+    put_links(w, t, first + i, flags & LAST_IS_PARENT);
+    for (int k = 0; k < 3; k++) {
+        if (parent == 3 || (k == parent && !(flags & NEW_APEX)))
+            put(w, (uint64_t)(*top - t->v[k]));
+        *top += t->v[k] == *top;
+    }
+    if (t->region != *region)
+        put(w, (uint64_t)(*region = t->region));
+}
+
 static void put_triangles(struct writer *w, const struct par_message *m, const struct par_talk *talk)
 {
     int32_t top = talk->vertex.n - m->n_vertices, first = talk->triangle.n - m->n_triangles, region = 0;
-    for (int32_t i = 0; i < m->n_triangles; i++) {
-        const struct par_told_triangle *t = &m->triangle[i];
-        for (int k = 0; k < 3; k++) {
-            uint64_t back = (uint64_t)(top - t->v[k]);
-            assert(t->v[k] <= top);
-            top += t->v[k] == top;
-            put(w, k == 0 ? 2 * back + (t->region != region) : back);
-        }
-        if (t->region != region)
-            put(w, (uint64_t)(region = t->region));
-        for (int k = 0; k < 3; k++)
-            put(w, t->next[k] == TRI_NONE ? 0 : (uint64_t)(first + i - t->next[k]));
-    }
+    for (int32_t i = 0; i < m->n_triangles; i++)
+        put_triangle(w, m, first, i, &top, &region);
 }
 
 static void put_sides(struct writer *w, const struct par_message *m, const struct par_talk *talk)
@@ -374,25 +448,54 @@ static void get_vertex(struct reader *r, struct par_told_vertex *v, double *attr
     get_bytes(r, attribute, (size_t)n * sizeof *attribute);
 }
 
+static void get_links(struct reader *r, struct par_told_triangle *t, int32_t number, int flags)
+{
+    bool last_is_parent = flags & LAST_IS_PARENT;
+    for (int e = 0; e < 3; e++) {
+        t->next[e] = TRI_NONE;
+        if (!(flags >> e & 1))
+            continue;
+        t->next[e] = last_is_parent ? number - 1 : number - 1 - get_below(r, number);
+        last_is_parent = false;
+    }
+}
+
+static void get_triangle(struct reader *r, struct par_message *m, int32_t first, int32_t i, int32_t *top,
+                         int32_t n_regions)
+{
+    struct par_told_triangle *t = &m->triangle[i];
+    unsigned char byte = 0;
+    get_bytes(r, &byte, 1);
+    int flags = byte;
+    r->bad = r->bad || (i == 0 && flags & LAST_IS_PARENT);
+    if (r->bad)
+        return;
+    get_links(r, t, first + i, flags);
+    int parent = parent_of(t, first), edge = flags / PARENT_EDGE % 4;
+    r->bad = r->bad || edge == 3;
+    if (r->bad)
+        return;
+    if (parent < 3) {
+        const struct par_told_triangle *other = &m->triangle[t->next[parent] - first];
+        t->v[tri_prev[parent]] = other->v[tri_next[edge]];
+        t->v[tri_next[parent]] = other->v[tri_prev[edge]];
+    }
+    for (int k = 0; k < 3; k++) {
+        if (parent == 3 || (k == parent && !(flags & NEW_APEX)))
+            t->v[k] = *top - get_below(r, (int64_t)*top + 1);
+        else if (k == parent)
+            t->v[k] = *top;
+        *top += t->v[k] == *top;
+    }
+    t->region = flags & OTHER_REGION ? get_below(r, n_regions) : i > 0 ? m->triangle[i - 1].region : 0;
+}
+
 static void get_triangles(struct reader *r, struct par_message *m, const struct par_talk *talk, int32_t n_regions)
 {
-    int32_t top = talk->vertex.n, end = talk->vertex.n + m->n_vertices, region = 0;
-    for (int32_t i = 0; i < m->n_triangles; i++) {
-        struct par_told_triangle *t = &m->triangle[i];
-        bool changes = false;
-        for (int k = 0; k < 3; k++) {
-            int32_t back = get_below(r, 2 * ((int64_t)top + 1));
-            changes = k == 0 ? back % 2 : changes;
-            t->v[k] = top - (k == 0 ? back / 2 : back);
-            r->bad = r->bad || t->v[k] < 0 || t->v[k] >= end;
-            top += t->v[k] == top;
-        }
-        t->region = region = changes ? get_below(r, n_regions) : region;
-        for (int k = 0; k < 3; k++) {
-            int32_t back = get_below(r, (int64_t)talk->triangle.n + i + 1);
-            t->next[k] = back == 0 ? TRI_NONE : talk->triangle.n + i - back;
-        }
-    }
+    int32_t top = talk->vertex.n;
+    for (int32_t i = 0; !r->bad && i < m->n_triangles; i++)
+        get_triangle(r, m, talk->triangle.n, i, &top, n_regions);
+    r->bad = r->bad || top != talk->vertex.n + m->n_vertices;
 }
 
 static void get_sides(struct reader *r, struct par_message *m, const struct par_talk *talk, int32_t n_parents)

@@ -2,8 +2,9 @@
  * subsegments of which one has told the other since the talk began. Nothing is told twice.
  *
  * A message is read as a whole and looked through before anything is done. Numbers in it are told as differences, which
- * are small since what lies side by side in the plane is told one after the other; a new vertex takes 25 bytes and a
- * triangle about 8. A vertex that all ranks have had from the start goes by its number there. */
+ * are small since what lies side by side in the plane is told one after the other, and of a triangle beside one that has
+ * been told two corners are known: a new vertex takes 25 bytes and a triangle about 3. A vertex that all ranks have had
+ * from the start goes by its number there. */
 #ifndef SCHED_RANKS_TALK_H
 #define SCHED_RANKS_TALK_H
 
@@ -45,6 +46,9 @@ bool par_talk_add_sub(struct par_talk *talk, const struct tri_mesh *mesh, tri_su
 int32_t par_talk_number(const struct par_talk *talk, tri_triangle_id t);
 
 void par_talk_free(struct par_talk *talk);
+
+/* Numbers the triangles from `first` on anew, so that most lie beside the one before. False: no memory. */
+bool par_talk_sort(struct par_talk *talk, const struct tri_mesh *mesh, int32_t first);
 
 /* --- messages */
 
