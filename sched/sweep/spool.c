@@ -208,7 +208,7 @@ static enum tri_status hand_out(const struct par_spool *spool, const struct head
         p.n += padded(bytes[k]);
     }
     int64_t *corners = numbers(at[3], 3 * t, end), *ends = numbers(at[5], 2 * s, end);
-    tile.points = at[0];
+    tile.points = (const double(*)[2])at[0];
     tile.point_markers = at[1];
     tile.attributes = at[2];
     tile.corners = (const int64_t(*)[3])corners;
