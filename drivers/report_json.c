@@ -108,7 +108,8 @@ static json_t *replays_of(const struct par_report *r)
 {
     static const struct {
         int ranks, times;
-    } rows[] = {{1, 1}, {2, 1}, {4, 1}, {9, 1}, {16, 1}, {64, 1}, {121, 1}, {1024, 1}, {4, 2}, {9, 3}, {121, 11}, {1024, 32}};
+    } rows[] = {{1, 1}, {2, 1},  {4, 1},  {9, 1},  {16, 1},    {64, 1},
+                {4, 2}, {9, 3}, {16, 4}, {64, 8}, {121, 11}, {1024, 32}};
     json_t *list = json_array();
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         json_array_append_new(list, replay_of(r, rows[i].ranks, rows[i].times));
