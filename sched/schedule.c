@@ -116,12 +116,14 @@ static struct tri_refine_options coarse_bounds(const struct tri_refine_options *
 
 /* Is the input coarse against the mesh to come, so that areas say where its triangles will be? Else features do. Each
  * level has at most a quarter of the triangles of the one above. */
-static bool areas_decide(const struct par_state *state, const struct tri_refine_options *quality, double estimate,
+static bool areas_decide(struct par_state *state, const struct tri_refine_options *quality, double estimate,
                          double cell)
 {
     struct tri_refine_options coarse = coarse_bounds(quality, cell);
+    struct tri_executor executor = par_executor(&state->threads);
+    double sure;
     return tri_has_sizes(quality) &&
-           tri_estimate(state->mesh, &coarse) < estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
+           tri_estimate(state->mesh, &coarse, &executor, &sure) < estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
 }
 
 static enum tri_status prerefine_uniform(struct par_state *state, const struct tri_refine_options *quality,
@@ -349,7 +351,8 @@ static enum tri_status try_to_sweep(struct par_state *state, const struct par_pa
 static enum tri_status park(struct par_state *state, struct tri_error *error)
 {
     const struct par_options *options = state->options;
-    enum tri_status status = tri_refine_check(state->mesh, state->quality, error);
+    struct tri_executor executor = par_executor(&state->threads);
+    enum tri_status status = tri_refine_check(state->mesh, state->quality, &executor, error);
     if (status)
         return status;
     if (!options->scratch)
@@ -439,8 +442,9 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
                                       double estimate, double cell, struct tri_error *error)
 {
     struct par_partition partition;
+    struct tri_executor executor = par_executor(&state->threads);
     double began = tri_seconds();
-    enum tri_status status = par_partition_make(&partition, state->mesh, quality, estimate, cell, error);
+    enum tri_status status = par_partition_make(&partition, state->mesh, quality, estimate, cell, &executor, error);
     state->report->seconds_partition += tri_seconds() - began;
     if (status)
         return status;
@@ -460,9 +464,10 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
     return status;
 }
 
-static double estimate_of(struct par_state *state, const struct tri_refine_options *quality)
+static double estimate_of(struct par_state *state, const struct tri_refine_options *quality, double *sure)
 {
-    double began = tri_seconds(), estimate = tri_estimate(state->mesh, quality);
+    struct tri_executor executor = par_executor(&state->threads);
+    double began = tri_seconds(), estimate = tri_estimate(state->mesh, quality, &executor, sure);
     state->report->seconds_partition += tri_seconds() - began;
     return estimate;
 }
@@ -490,14 +495,14 @@ static enum tri_status refine_a_little(struct par_state *state, const struct tri
 static enum tri_status refine_level(struct par_state *state, const struct tri_refine_options *quality, int level,
                                     struct tri_error *error)
 {
-    double estimate = estimate_of(state, quality), cell = cell_size(state, estimate);
+    double sure, estimate = estimate_of(state, quality, &sure), cell = cell_size(state, estimate);
     double large = cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS);
-    if (estimate >= large && tri_sure_work(state->mesh, quality) < large) {
+    if (estimate >= large && sure < large) {
         bool done;
         enum tri_status status = refine_a_little(state, quality, large * A_LITTLE, &done, error);
         if (status || done)
             return status;
-        estimate = estimate_of(state, quality);
+        estimate = estimate_of(state, quality, &sure);
         cell = cell_size(state, estimate);
     }
     if (estimate >= cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS))
@@ -575,7 +580,8 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
                               .n_kept = mesh->n_vertices};
     bool sequential = must_be_sequential(quality, options);
     bool can_sweep = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE;
-    enum tri_status status = can_sweep ? TRI_OK : tri_refine_check(mesh, quality, error);
+    struct tri_executor executor = par_executor(&state.threads);
+    enum tri_status status = can_sweep ? TRI_OK : tri_refine_check(mesh, quality, &executor, error);
     if (status)
         return status;
     status = sequential ? refine_rest(&state, quality, true, error) : refine_by_schedule(&state, quality, error);
