@@ -53,7 +53,8 @@ static struct par_partition cut(const struct tri_mesh *mesh, const struct tri_re
 {
     struct par_partition partition;
     struct tri_error error;
-    assert_int_equal(par_partition_make(&partition, mesh, quality, support_estimate(mesh, quality), cell, NULL, &error), TRI_OK);
+    assert_int_equal(par_partition_make(&partition, mesh, quality,
+                                        support_estimate(mesh, quality), cell, NULL, &error), TRI_OK);
     return partition;
 }
 
