@@ -31,7 +31,7 @@ struct par_state {
     struct tri_mesh *mesh;
     const struct tri_refine_options *quality;
     const struct par_options *options;
-    int threads;
+    struct tri_executor executor;
     struct par_worklist worklist;   /* triangles that may be bad, in canonical order; some may have gone since */
     struct par_keys key;     /* [worklist.n] ascending; n == 0: no block has had any */
     uint32_t n_left;         /* by blocks so far */
