@@ -105,14 +105,12 @@ static struct tri_refine_options coarse_bounds(const struct tri_refine_options *
 
 /* Is the input coarse against the mesh to come, so that areas say where its triangles will be? Else features do. Each
  * level has at most a quarter of the triangles of the one above. */
-static bool areas_decide(struct par_state *state, const struct tri_refine_options *quality, double estimate,
+static bool areas_decide(const struct par_state *state, const struct tri_refine_options *quality, double estimate,
                          double cell)
 {
     struct tri_refine_options coarse = coarse_bounds(quality, cell);
-    struct tri_executor executor = par_executor(&state->threads);
-    double sure;
-    return tri_has_sizes(quality) &&
-           tri_estimate(state->mesh, &coarse, &executor, &sure) < estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
+    double sure, most = estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
+    return tri_has_sizes(quality) && tri_estimate(state->mesh, &coarse, &state->executor, &sure) < most;
 }
 
 static enum tri_status prerefine_uniform(struct par_state *state, const struct tri_refine_options *quality,
@@ -337,8 +335,7 @@ static enum tri_status try_to_sweep(struct par_state *state, const struct par_pa
 static enum tri_status park(struct par_state *state, struct tri_error *error)
 {
     const struct par_options *options = state->options;
-    struct tri_executor executor = par_executor(&state->threads);
-    enum tri_status status = tri_refine_check(state->mesh, state->quality, &executor, error);
+    enum tri_status status = tri_refine_check(state->mesh, state->quality, &state->executor, error);
     if (status)
         return status;
     if (!options->scratch)
@@ -428,9 +425,9 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
                                       double estimate, double cell, struct tri_error *error)
 {
     struct par_partition partition;
-    struct tri_executor executor = par_executor(&state->threads);
     double began = tri_seconds();
-    enum tri_status status = par_partition_make(&partition, state->mesh, quality, estimate, cell, &executor, error);
+    enum tri_status status = par_partition_make(&partition, state->mesh, quality, estimate, cell, &state->executor,
+                                                error);
     state->report->seconds_partition += tri_seconds() - began;
     if (status)
         return status;
@@ -452,8 +449,7 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
 
 static double estimate_of(struct par_state *state, const struct tri_refine_options *quality, double *sure)
 {
-    struct tri_executor executor = par_executor(&state->threads);
-    double began = tri_seconds(), estimate = tri_estimate(state->mesh, quality, &executor, sure);
+    double began = tri_seconds(), estimate = tri_estimate(state->mesh, quality, &state->executor, sure);
     state->report->seconds_partition += tri_seconds() - began;
     return estimate;
 }
@@ -567,8 +563,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
                               .n_kept = mesh->n_vertices};
     bool sequential = must_be_sequential(quality, options);
     bool can_sweep = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE;
-    struct tri_executor executor = par_executor(&state.threads);
-    enum tri_status status = can_sweep ? TRI_OK : tri_refine_check(mesh, quality, &executor, error);
+    enum tri_status status = can_sweep ? TRI_OK : tri_refine_check(mesh, quality, &state.executor, error);
     if (status)
         return status;
     status = sequential ? refine_rest(&state, quality, true, error) : refine_by_schedule(&state, quality, error);
