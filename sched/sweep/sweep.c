@@ -30,7 +30,9 @@ static enum tri_status finish_column(struct par_state *state, struct par_tiles *
 {
     double began = tri_seconds();
     *left = is_left_behind(state, par_fence(tiles->partition, column, 0).x_max);
-    enum tri_status status = *left ? TRI_OK : par_tiles_column(tiles, column, true, &state->spare, error);
+    enum tri_status status = *left ? TRI_OK : par_park_expect(state->park, state->mesh, par_tiles_bytes(tiles), error);
+    if (!status && !*left)
+        status = par_tiles_column(tiles, column, true, &state->spare, error);
     state->gone = tiles->n_triangles;
     state->report->seconds_number += tri_seconds() - began;
     return status;
@@ -89,7 +91,7 @@ static enum tri_status begin_sweep(struct par_state *state, struct par_tiles *ti
 enum tri_status par_sweep(struct par_state *state, const struct par_partition *partition, bool *done,
                           struct tri_error *error)
 {
-    struct tri_executor executor = par_executor(&state->threads);
+    struct tri_executor executor = par_executor_of(state);
     struct par_tiles tiles = par_tiles_of(state, partition, &executor);
     bool left = false;
     int32_t odd;

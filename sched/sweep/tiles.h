@@ -52,6 +52,12 @@ enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct
 enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, bool let_go, struct par_room *spare,
                                  struct tri_error *error);
 
+/* What par_tiles_column takes beside the mesh, to the order. */
+static inline size_t par_tiles_bytes(const struct par_tiles *tiles)
+{
+    return 40 * (size_t)tiles->mesh->n_triangles;
+}
+
 /* Room for what each vertex has here; nothing is known yet of those that come later. False: no memory. */
 bool par_tiles_reserve(struct par_tiles *tiles);
 
