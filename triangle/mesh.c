@@ -1,8 +1,8 @@
 /* Storage of the mesh: growth, links, reordering, compaction, and the check of its invariants.
  *
- * Growth is by half, by less where memory is bounded: as a storage does it or through realloc, by which the C library moves pages of large arrays rather
- * than bytes, so that the peak stays near what is used. The triangle array starts at a cache line, so that a triangle
- * never straddles two. */
+ * Growth is by half, by less where memory is bounded: as a storage does it or through realloc, by which the C library
+ * moves pages of large arrays rather than bytes, so that the peak stays near what is used. The triangle array starts at
+ * a cache line, so that a triangle never straddles two. */
 #include "triangle/mesh.h"
 
 #include <assert.h>

@@ -75,9 +75,9 @@ struct tri_region {
 };
 
 /* Where the arrays are that grow with refinement, if not in memory from malloc. reserve: the array has at least so many
- * bytes afterwards, what is in it stays; NULL: there is no room. An array starts at a page. fill: its first bytes become
- * these, of which no more than a little is in memory then; false: there is no room. extra: so many bytes for what is
- * larger than memory when the mesh is, until they are freed. */
+ * bytes afterwards, what is in it stays; NULL: there is no room. An array starts at a page. fill: its first bytes
+ * become these, of which no more than a little is in memory then; false: there is no room. extra: so many bytes for
+ * what is larger than memory when the mesh is, until they are freed. */
 enum tri_array { TRI_XY, TRI_ON, TRI_MARKERS, TRI_FEATURE, TRI_ATTRIBUTES, TRI_TRIANGLES, TRI_SUBS, TRI_ARRAYS };
 
 struct tri_storage {
@@ -90,8 +90,8 @@ struct tri_storage {
 
 struct tri_mesh;
 
-/* Who watches over the memory that these arrays take. allows: may they take so many bytes? Else they leave, to a storage
- * (tri_mesh_move); or it is an error. */
+/* Who watches over the memory that these arrays take. allows: may they take so many bytes? Else they leave, to a
+ * storage (tri_mesh_move); or it is an error. */
 struct tri_bound {
     bool (*allows)(void *user, const struct tri_mesh *mesh, size_t bytes);
     enum tri_status (*leave)(void *user, struct tri_mesh *mesh, struct tri_error *error);

@@ -29,8 +29,8 @@
 
 enum { EXTRAS = 12, SHEETS = TRI_ARRAYS + EXTRAS, GRAIN = 1 << 18, LOOK_NANOSECONDS = 1000000 };
 
-/* Shares of the bound: for what grows between two growths of the arrays; and, where the arrays are in files, of what all
- * else leaves of it, for pages of theirs before they are unmapped. */
+/* Shares of the bound: for what grows between two growths of the arrays; and, where the arrays are in files, of what
+ * all else leaves of it, for pages of theirs before they are unmapped. */
 static const double TO_COME = 0.1, TOUCHED = 0.3;
 
 /* One array in its file. */
