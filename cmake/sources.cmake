@@ -119,6 +119,8 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/partition.c
     sched/room.c
     sched/sweep/tile_copy.c
+    sched/sweep/finds.c
+    sched/sweep/tile_fill.c
     sched/sweep/tiles.c
     sched/sweep/stream.c
     sched/sweep/queue.c
@@ -126,6 +128,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/sweep/park.c
     sched/sweep/spool.c
     sched/sweep/checkpoint.c
+    sched/sweep/ahead.c
     sched/sweep/sweep.c
     sched/worklist.c
     sched/phase.c

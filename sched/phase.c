@@ -403,29 +403,38 @@ static uint64_t key_of(const struct par_state *state, int32_t i)
     return state->key.n > 0 ? state->key.item[i] : (uint64_t)i;
 }
 
-/* The worklist and what was left, which no phase has had since, by their keys. */
-static bool merge_left(struct par_state *state, const struct leftovers *left)
+bool par_merge_worklist(struct par_state *state, const int32_t *item, const uint64_t *key, int32_t n)
 {
+    struct par_worklist *list = &state->worklist;
     struct leftovers merged = {{0}, {0}};
-    bool memory = true;
-    for (int32_t i = 0, k = 0; memory && (i < state->worklist.n || k < left->item.n);) {
-        bool old = k == left->item.n || (i < state->worklist.n && key_of(state, i) < left->key.item[k]);
-        memory = par_worklist_add(&merged.item, old ? state->worklist.item[i] : left->item.item[k]) &&
-                 add_key(&merged.key, old ? key_of(state, i) : left->key.item[k]);
+    int32_t sum = list->n + n, k = 0;
+    merged.item.item = malloc(((size_t)sum + 1) * sizeof *merged.item.item);
+    merged.key.item = malloc(((size_t)sum + 1) * sizeof *merged.key.item);
+    if (!merged.item.item || !merged.key.item) {
+        free(merged.item.item);
+        free(merged.key.item);
+        return false;
+    }
+    for (int32_t i = 0, at = 0; at < sum; at++) {
+        bool old = k == n || (i < list->n && key_of(state, i) < key[k]);
+        merged.item.item[at] = old ? list->item[i] : item[k];
+        merged.key.item[at] = old ? key_of(state, i) : key[k];
         i += old;
         k += !old;
     }
+    merged.item.n = merged.item.capacity = merged.key.n = merged.key.capacity = sum;
     free(state->worklist.item);
     free(state->key.item);
     state->worklist = merged.item;
     state->key = merged.key;
-    return memory;
+    return true;
 }
 
 static bool take_back(struct phase *p)
 {
     struct leftovers left = {{0}, {0}};
-    bool memory = gather_left(p, &left) && merge_left(p->state, &left);
+    bool memory = gather_left(p, &left) &&
+                  par_merge_worklist(p->state, left.item.item, left.key.item, left.item.n);
     free(left.item.item);
     free(left.key.item);
     return memory;

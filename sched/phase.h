@@ -68,4 +68,8 @@ struct par_state {
 enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int phase, int32_t only,
                           struct tri_error *error);
 
+/* Adds triangles to the worklist, by their keys, which ascend and are not there yet. False: no memory, and the worklist
+ * is as before. */
+bool par_merge_worklist(struct par_state *state, const int32_t *item, const uint64_t *key, int32_t n);
+
 #endif

@@ -3,6 +3,7 @@
  *
  *   PTRIANGLE_FAIL_AT=K     the K-th call fails, counted from 1
  *   PTRIANGLE_FAIL_AFTER=1  so do all behind it
+ *   PTRIANGLE_FAIL_KILL=1   instead the process is killed
  *   PTRIANGLE_FAIL_OWN=1    only calls of the program itself are counted, not those of libraries
  *   PTRIANGLE_COUNT=FILE    receives the number of calls when the program ends
  *
@@ -12,6 +13,7 @@
 #include <dlfcn.h>
 #include <errno.h>
 #include <limits.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -26,7 +28,7 @@ void *__libc_memalign(size_t alignment, size_t bytes);
 
 static atomic_long calls;
 static long fail_at = LONG_MAX;
-static bool fail_after, own;
+static bool fail_after, own, kills;
 static atomic_bool begun;
 
 __attribute__((constructor)) static void begin(void)
@@ -35,6 +37,7 @@ __attribute__((constructor)) static void begin(void)
     fail_at = at ? atol(at) : LONG_MAX;
     fail_after = after && *after == '1';
     own = getenv("PTRIANGLE_FAIL_OWN");
+    kills = getenv("PTRIANGLE_FAIL_KILL");
     begun = true;
 }
 
@@ -67,6 +70,8 @@ static bool must_fail(const void *caller)
         return false;
     long call = ++calls;
     bool fails = fail_after ? call >= fail_at : call == fail_at;
+    if (fails && kills)
+        raise(SIGKILL);
     if (fails)
         errno = ENOMEM;
     return fails;

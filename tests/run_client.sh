@@ -2,6 +2,7 @@
 # Installs a build into a scratch prefix, moves the prefix, and builds and runs tests/client/ against it: as a C project
 # through find_package, and by hand through pkg-config.
 # A client of Triangle's interface is linked to the sequential and to the parallel library, and must print the same.
+# MPIEXEC, MPI_C_COMPILER: launcher and compiler of the MPI of the build; empty: it has none.
 # Usage: run_client.sh BUILD_DIR WORK_DIR CMAKE C_COMPILER
 set -eu
 build=$1
@@ -18,7 +19,7 @@ mv "$work/staged" "$work/prefix"
 
 echo "== find_package"
 "$cmake" -S "$client" -B "$work/cmake" -DCMAKE_C_COMPILER="$cc" -DCMAKE_PREFIX_PATH="$work/prefix" \
-    -DCMAKE_BUILD_TYPE=Release
+    -DCMAKE_BUILD_TYPE=Release ${MPI_C_COMPILER:+"-DMPI_C_COMPILER=$MPI_C_COMPILER"}
 "$cmake" --build "$work/cmake"
 "$work/cmake/client" "$square"
 
@@ -66,9 +67,9 @@ if [ -x "$work/cmake/dropin_parallel" ]; then
 fi
 
 echo "== ranks"
-if [ -x "$work/cmake/ranks" ] && command -v mpirun >/dev/null; then
+if [ -n "${MPIEXEC:-}" ]; then
     OMP_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 \
-        timeout 100 mpirun -n 2 "$work/cmake/ranks" "$square" 30 0.00002
+        timeout 100 "$MPIEXEC" -n 2 "$work/cmake/ranks" "$square" 30 0.00002
 fi
 
 echo "== executables"

@@ -88,12 +88,51 @@ static void test_crossings_do_not_drift(void **state)
     assert_true(crossings > 500);
 }
 
+/* Does the subsegment leave a slit of no width beside a vertex that is as good as on it, and on its segment? */
+static bool has_slit(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_subsegment *s, int side)
+{
+    int32_t segment = mesh->parents[s->parent].segment;
+    if (segment == TRI_NONE || s->side[side] == TRI_NONE)
+        return false;
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], q = mesh->xy[tri_apex(mesh, s->side[side])];
+    struct tri_point from = mesh->xy[pslg->segments[2 * segment]], to = mesh->xy[pslg->segments[2 * segment + 1]];
+    double x = b.x - a.x, y = b.y - a.y, length = sqrt(x * x + y * y), resolution = tri_resolution(q);
+    double foot = (x * (q.x - a.x) + y * (q.y - a.y)) / length;
+    return tri_line_distance(a, b, q) <= 0.5 * resolution && fmin(foot, length - foot) > 0.5 * resolution &&
+           tri_line_distance(from, to, q) <= 3 * fmax(tri_resolution(from), tri_resolution(to));
+}
+
+/* Who meets a segment up to rounding shuts the face there: an edge runs through the vertex. */
+static void expect_no_slits(int family, uint64_t seed)
+{
+    struct tri_constrain_report report;
+    struct tri_pslg pslg = tangles_make(family, seed);
+    struct tri_mesh mesh = support_constrained(&pslg, &report);
+    for (int32_t s = 0; s < mesh.n_subs; s++)
+        for (int side = 0; side < 2; side++)
+            if (has_slit(&mesh, &pslg, &mesh.sub[s], side))
+                fail_msg("%s, seed %d: subsegment %d-%d passes vertex %d within rounding", tangles_name(family),
+                         (int)seed, (int)mesh.sub[s].v[0], (int)mesh.sub[s].v[1],
+                         (int)tri_apex(&mesh, mesh.sub[s].side[side]));
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+static void test_no_slits(void **state)
+{
+    (void)state;
+    for (int family = 0; family < tangles_families(); family++)
+        for (uint64_t seed = 0; seed < TANGLES; seed++)
+            expect_no_slits(family, seed);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_with_hull),
         cmocka_unit_test(test_carved),
         cmocka_unit_test(test_refined),
+        cmocka_unit_test(test_no_slits),
         cmocka_unit_test(test_crossings_do_not_drift),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

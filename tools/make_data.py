@@ -923,6 +923,8 @@ FOUND = [
          "hands the markers to bent segments, too", ()),
     Case("regress/marker_precincts.poly", None, "borders of precincts that nearly coincide",
          "hands the markers to bent segments, too", ()),
+    Case("regress/slit.poly", None, "a wall between two rooms that ends an ulp below the roof",
+         "the hole in one room leaves the other: a segment that is an edge already runs through it, too", ()),
     Case("regress/hole_on_segment.poly", None, "a hole point on a segment",
          "-pcq24a0.26: removes one side; rounded split points may leave the point an ulp inside the other", ()),
     Case("regress/endless_q36_small.poly", None, "five points, two of them close together",

@@ -89,7 +89,8 @@ list_missing() {
     need libgmp-dev links gmp.h gmp
     need pkg-config command -v pkg-config
     [ "$wanted" = tests ] && return
-    need "libopenmpi-dev openmpi-bin" command -v mpicc
+    need "libopenmpi-dev openmpi-bin" command -v mpicc.openmpi
+    need "libmpich-dev mpich" command -v mpicc.mpich
     need clang command -v clang++
     need python3-venv python3 -c 'import ensurepip, venv'
     need libomp-dev openmp_with_clang

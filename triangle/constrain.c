@@ -5,11 +5,15 @@
  *   1. A vertex on the piece ends it.
  *   2. A vertex within NEAR of the piece (in resolutions, crossing.h; and within BESIDE of the segment's own line) is
  *      on it for all that coordinates tell: the piece runs through it. Of several the nearest is taken, so the triangle
- *      that the piece sweeps over holds none of the others.
+ *      that the piece sweeps over holds none of the others. Looked at are the corners of the triangles that the piece
+ *      crosses; so rule 4.
  *   3. Where the piece crosses a subsegment, both get a vertex in common: one that is within APART of the crossing,
  *      else a new one, the rounded crossing of the two input segments (of the pieces, where bends have moved the
  *      crossing away from that). The subsegment is taken up, and its two parts and those of the piece are laid by the
  *      same rules.
+ *   4. When all are laid, a subsegment with an apex of its triangles beside it, as rule 2 has it, is taken up and runs
+ *      through that: it was an edge before it was laid, or the apex came later. Else a face would open there through a
+ *      slit of no width.
  * So a piece that becomes a subsegment meets no vertex and no subsegment; no two chains cross, and whoever shares a
  * chain shares its subsegments. No vertex ever moves.
  * Distance: a chain is made of vertices of the input within BESIDE resolutions of the segment's line, of rounded
@@ -18,6 +22,7 @@
  * Termination: a piece is replaced by two shorter ones (rules 1, 2), or a new vertex appears, farther than APART from
  * its neighbours (rule 3), or the subsegment in the way is bent round a vertex that it was too near to (rule 3, shared
  * vertex). That this ends soon is experience, not proved: a bound on the number of pieces makes it an error otherwise.
+ * Rule 4 replaces a subsegment by two shorter ones, edges of the same triangle, of which there are finitely many.
  *
  * INVARIANT: between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v]
  * is a live triangle at v (TRI_NONE for points that are in no triangle). The mesh fills the convex hull.
@@ -319,12 +324,14 @@ static int32_t find_place(const struct layer *l, int32_t near, struct tri_point 
     return TRI_NONE;
 }
 
-/* Takes subsegment s up to be laid anew through a vertex that is not known yet (see finish_parts). */
+/* Takes subsegment s up to be laid anew through a vertex that is not known yet (see finish_parts). On the hull the edge
+ * stays, with nothing along it. */
 static bool take_apart(struct layer *l, int32_t s)
 {
     const struct tri_subsegment old = l->mesh->sub[s];
     struct tri_course course = l->course[s];
-    return take_up(l, s) && push_piece(l, old.v[0], old.v[1], course);
+    l->course[s] = NOBODY;
+    return (tri_is_boundary(&old) || take_up(l, s)) && push_piece(l, old.v[0], old.v[1], course);
 }
 
 /* Cuts the last n - first pieces of the stack at vertex v. */
@@ -550,14 +557,11 @@ static enum tri_status lay_piece(struct layer *l, struct tri_piece piece)
     return push_piece(l, met.end, piece.to, piece.course) ? TRI_OK : no_memory(l);
 }
 
-static enum tri_status lay_segment(struct layer *l, const struct tri_piece *segment)
+/* Lays what is on the stack. */
+static enum tri_status lay_pieces(struct layer *l)
 {
     /* Five pieces for each subsegment crossed and two for each vertex are usual. */
     int64_t bound = 1000 + 50 * ((int64_t)l->mesh->n_subs + l->mesh->n_vertices);
-    l->n_pieces = 0;
-    l->segment = segment->course.first;
-    if (!push_piece(l, segment->from, segment->to, segment->course))
-        return no_memory(l);
     for (int64_t n = 0; l->n_pieces > 0; n++) {
         if (tri_stop_is_due(l->mesh->stop, &l->step))
             return tri_fail_stopped(l->error);
@@ -567,6 +571,55 @@ static enum tri_status lay_segment(struct layer *l, const struct tri_piece *segm
         enum tri_status status = lay_piece(l, next);
         if (status)
             return status;
+    }
+    return TRI_OK;
+}
+
+static enum tri_status lay_segment(struct layer *l, const struct tri_piece *segment)
+{
+    l->n_pieces = 0;
+    l->segment = segment->course.first;
+    return push_piece(l, segment->from, segment->to, segment->course) ? lay_pieces(l) : no_memory(l);
+}
+
+/* Rule 4: the nearer apex beside subsegment s; TRI_NONE if there is none. */
+static int32_t find_beside(const struct layer *l, int32_t s)
+{
+    const struct tri_mesh *mesh = l->mesh;
+    const struct tri_subsegment *sub = &mesh->sub[s];
+    struct meeting met = {TRI_NONE, TRI_NONE, TRI_NONE, 0};
+    struct tri_piece piece = {sub->v[0], sub->v[1], l->course[s]};
+    for (int side = 0; side < 2 && piece.course.first != TRI_NONE; side++) {
+        if (sub->side[side] == TRI_NONE)
+            continue;
+        int32_t v = tri_apex(mesh, sub->side[side]);
+        struct tri_relative a = tri_relative(&mesh->xy[piece.from], mesh->xy[v]);
+        struct tri_relative b = tri_relative(&mesh->xy[piece.to], mesh->xy[v]);
+        consider(l, &piece, v, tri_cross(a, b), &met);
+    }
+    return met.beside;
+}
+
+static enum tri_status lead_through(struct layer *l, int32_t s, int32_t v)
+{
+    l->n_pieces = 0;
+    l->segment = l->course[s].first;
+    l->report->bent++;
+    return take_apart(l, s) && finish_parts(l, 0, v) ? lay_pieces(l) : no_memory(l);
+}
+
+static enum tri_status close_slits(struct layer *l)
+{
+    for (bool again = true; again;) {
+        again = false;
+        for (int32_t s = 0; s < l->mesh->n_subs;) {
+            int32_t v = find_beside(l, s);
+            enum tri_status status = v == TRI_NONE ? TRI_OK : lead_through(l, s, v);
+            if (status)
+                return status;
+            again = again || v != TRI_NONE;
+            s += v == TRI_NONE;
+        }
     }
     return TRI_OK;
 }
@@ -607,7 +660,7 @@ static enum tri_status lay_all(struct layer *l)
     for (int32_t k = 0; !status && k < n; k++)
         status = lay_segment(l, &piece[k]);
     free(piece);
-    return status;
+    return status ? status : close_slits(l);
 }
 
 static enum tri_status find_corners(struct layer *l)

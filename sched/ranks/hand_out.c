@@ -113,11 +113,12 @@ static enum tri_status no_memory(struct tri_error *error)
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the numbers of a rank's vertices");
 }
 
-/* So that columns from this tile on find their vertices: whose tile is known has had its turn. */
-static void show_tiles(struct handing *h, int32_t first)
+/* Own vertices get their numbers once more, when their column has its turn. */
+static void forget_numbers(struct handing *h)
 {
-    for (int32_t v = 0; v < h->mesh->n_vertices; v++)
-        h->tiles->tile[v] = h->tile[v] >= first ? INT32_MAX : h->tile[v];
+    for (int32_t v = h->tiles->n_kept; v < h->mesh->n_vertices; v++)
+        if (is_own(h, h->tile[v]))
+            par_tiles_forget(h->tiles, v);
 }
 
 /* Numbers what others ask for, ahead of its time. */
@@ -127,10 +128,8 @@ static enum tri_status number_needed(struct handing *h, int64_t base, struct tri
     h->tiles->n_vertices = base;
     for (int32_t i = 0; !status && i < h->end - h->first; i++) {
         int32_t column = 2 * (h->first + i) + 1;
-        if (h->needed[i]) {
-            show_tiles(h, column * h->tiles->partition->n_rows);
+        if (h->needed[i])
             status = par_tiles_number(h->tiles, column, error);
-        }
         h->tiles->n_vertices += h->in_column[i];
     }
     return status;
@@ -186,13 +185,13 @@ static enum tri_status number_borders(struct handing *h, int64_t base, struct tr
 static enum tri_status hand_out(struct handing *h, const int64_t base[3], struct tri_error *error)
 {
     struct par_tiles *tiles = h->tiles;
-    show_tiles(h, h->first_tile);
+    forget_numbers(h);
     enum tri_status status = par_tiles_begin(tiles, tiles->partition->estimate, error);
     tiles->n_vertices = base[0];
     tiles->n_triangles = base[1];
     tiles->n_segments = base[2];
     for (int32_t i = h->first; !status && i < h->end; i++)
-        status = par_tiles_column(tiles, 2 * i + 1, false, &h->ranks->state->spare, error);
+        status = par_tiles_column(tiles, 2 * i + 1, &h->ranks->state->spare, error);
     return status ? status : par_tiles_end(tiles, error);
 }
 

@@ -14,7 +14,7 @@
 #include "triangle/clock.h"
 #include "triangle/grow.h"
 
-static const uint64_t MANIFEST = UINT64_C(0x316863697274706b), STATE = UINT64_C(0x3165746174736974); /* versions, too */
+static const uint64_t MANIFEST = UINT64_C(0x316863697274706b), STATE = UINT64_C(0x3265746174736974); /* versions, too */
 
 static const char *const state_name[2] = {"state-0", "state-1"};
 static const char manifest_name[] = "manifest", fresh_name[] = "manifest-new", tiles_name[] = "tiles";
@@ -252,7 +252,6 @@ static void carry_arrays(struct carrier *c, const struct head *h, struct par_sta
     carry(c, m->feature, v * sizeof *m->feature);
     carry(c, m->attributes, v * (size_t)m->n_attributes * sizeof *m->attributes);
     carry(c, tiles->number, v * sizeof *tiles->number);
-    carry(c, tiles->tile, v * sizeof *tiles->tile);
     carry(c, m->tri, (size_t)h->n_triangles * sizeof *m->tri);
     carry(c, m->sub, (size_t)h->n_subs * sizeof *m->sub);
     carry(c, state->worklist.item, (size_t)h->n_worklist * sizeof *state->worklist.item);

@@ -44,7 +44,7 @@ static bool copy_kept(const struct par_tiles *tiles, struct par_tile_copy *copy)
 
 static enum tri_status hand_out_kept(struct par_tiles *tiles, struct tri_error *error)
 {
-    struct par_tile_copy copy;
+    struct par_tile_copy copy = {0};
     struct tri_tile tile = {.column = -1, .row = -1, .n_vertices = tiles->n_kept};
     bool memory = copy_kept(tiles, &copy);
     par_tile_copy_show(&copy, &tile);
@@ -147,7 +147,7 @@ static enum tri_status hand_out_up_to(struct par_tiles *tiles, int32_t tile_id, 
                                       int32_t sub, struct tri_error *error)
 {
     int32_t n_rows = tiles->partition ? tiles->partition->n_rows : 1;
-    struct par_tile_copy copy;
+    struct par_tile_copy copy = {0};
     struct tri_tile tile = {.column = tile_id / n_rows, .row = tile_id % n_rows, .first_vertex = tiles->n_vertices,
                             .first_triangle = tiles->n_triangles, .first_segment = tiles->n_segments,
                             .n_vertices = vertex - (int32_t)tiles->n_vertices,

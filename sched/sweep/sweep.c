@@ -2,6 +2,7 @@
 #include "sched/sweep/sweep.h"
 
 #include "sched/ranks/ranks.h"
+#include "sched/sweep/ahead.h"
 #include "triangle/clock.h"
 
 struct par_tiles par_tiles_of(const struct par_state *state, const struct par_partition *partition,
@@ -9,7 +10,8 @@ struct par_tiles par_tiles_of(const struct par_state *state, const struct par_pa
 {
     return (struct par_tiles){.mesh = state->mesh, .partition = partition, .executor = executor,
                               .n_kept = state->n_kept, .sink = state->options->sink,
-                              .figure = state->options->figure, .region_column = state->options->region_column};
+                              .figure = state->options->figure, .region_column = state->options->region_column,
+                              .n_jobs = 2 * state->threads};
 }
 
 /* Something that no block could do lies left of x, where every block has had its turn. */
@@ -32,7 +34,7 @@ static enum tri_status finish_column(struct par_state *state, struct par_tiles *
     *left = is_left_behind(state, par_fence(tiles->partition, column, 0).x_max);
     enum tri_status status = *left ? TRI_OK : par_park_expect(state->park, state->mesh, par_tiles_bytes(tiles), error);
     if (!status && !*left)
-        status = par_tiles_column(tiles, column, true, &state->spare, error);
+        status = par_tiles_column(tiles, column, &state->spare, error);
     state->gone = tiles->n_triangles;
     state->report->seconds_number += tri_seconds() - began;
     return status;
@@ -61,14 +63,20 @@ static enum tri_status end_tiles(struct par_state *state, struct par_tiles *tile
     return par_checkpoint_last(state->options->checkpoint, state, tiles, odd, error);
 }
 
+static enum tri_status no_memory(struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the worklists of a sweep");
+}
+
 /* From column `odd` on, until something is left behind. */
-static enum tri_status sweep_columns(struct par_state *state, struct par_tiles *tiles, int32_t odd, bool *left,
-                                     struct tri_error *error)
+static enum tri_status sweep_columns(struct par_state *state, struct par_tiles *tiles, const struct par_ahead *ahead,
+                                     int32_t odd, bool *left, struct tri_error *error)
 {
     struct par_checkpoint *checkpoint = state->options->checkpoint;
     enum tri_status status = TRI_OK;
     for (; !status && !*left && odd <= tiles->partition->n_columns; odd += 2) {
-        status = refine_columns(state, tiles->partition, odd, error);
+        status = par_ahead_give(ahead, state, odd) ? TRI_OK : no_memory(error);
+        status = status ? status : refine_columns(state, tiles->partition, odd, error);
         if (status || odd == 1)
             continue;
         status = finish_column(state, tiles, odd - 2, left, error);
@@ -78,14 +86,21 @@ static enum tri_status sweep_columns(struct par_state *state, struct par_tiles *
     return status || *left ? status : end_tiles(state, tiles, odd, error);
 }
 
-/* *odd: the column to begin with. */
-static enum tri_status begin_sweep(struct par_state *state, struct par_tiles *tiles, int32_t *odd,
-                                   struct tri_error *error)
+/* *odd: the column to begin with, for which the worklist is as that of the sweep then. */
+static enum tri_status begin_sweep(struct par_state *state, struct par_tiles *tiles, struct par_ahead *ahead,
+                                   int32_t *odd, struct tri_error *error)
 {
+    enum tri_status status = TRI_OK;
     *odd = 1;
-    if (state->options->checkpoint)
-        return par_checkpoint_begin(state->options->checkpoint, state, tiles, odd, error);
-    return par_tiles_begin(tiles, tiles->partition->estimate, error);
+    if (!par_ahead_make(ahead, state, tiles->partition))
+        status = no_memory(error);
+    else if (state->options->checkpoint)
+        status = par_checkpoint_begin(state->options->checkpoint, state, tiles, odd, error);
+    else
+        status = par_tiles_begin(tiles, tiles->partition->estimate, error);
+    if (*odd == 1)
+        state->worklist.n = 0;
+    return status;
 }
 
 enum tri_status par_sweep(struct par_state *state, const struct par_partition *partition, bool *done,
@@ -93,10 +108,12 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
 {
     struct tri_executor executor = par_executor_of(state);
     struct par_tiles tiles = par_tiles_of(state, partition, &executor);
+    struct par_ahead ahead;
     bool left = false;
     int32_t odd;
-    enum tri_status status = begin_sweep(state, &tiles, &odd, error);
-    status = status ? status : sweep_columns(state, &tiles, odd, &left, error);
+    enum tri_status status = begin_sweep(state, &tiles, &ahead, &odd, error);
+    status = status ? status : sweep_columns(state, &tiles, &ahead, odd, &left, error);
+    par_ahead_free(&ahead);
     if (state->options->checkpoint) {
         enum tri_status ended = par_checkpoint_end(state->options->checkpoint, state, left, status ? NULL : error);
         status = status ? status : ended;

@@ -9,9 +9,10 @@ struct par_tile_copy {
     double (*points)[2], *attributes;
     int32_t *point_markers, *regions, *segment_markers;
     int64_t (*corners)[3], (*ends)[2];
+    int32_t room[3]; /* for so many vertices, triangles, subsegments */
 };
 
-/* Room for so many; what was there is freed by par_tile_copy_free in any case. False: no memory. */
+/* Room for so many; what was there goes. The first time all is 0. To be freed in any case. False: no memory. */
 bool par_tile_copy_reserve(struct par_tile_copy *copy, const struct tri_mesh *mesh, int32_t n_vertices,
                            int32_t n_triangles, int32_t n_segments);
 void par_tile_copy_free(struct par_tile_copy *copy);

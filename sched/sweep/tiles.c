@@ -1,91 +1,162 @@
-/* One column of tiles at a time: find what is in it, number, hand out, let go; in shares or tile by tile, in parallel.
- * Only `take` is called by one thread. */
+/* One column of tiles at a time: find its vertices and number them, find its triangles and subsegments, whose corners
+ * have their numbers then, hand out, let go; in shares or tile by tile, in parallel. Only `take` is called by one
+ * thread.
+ *
+ * What is found of something is kept where nobody else looks any more: in place of its number a vertex has that of its
+ * row, as long as it waits; the record of a final triangle becomes what is handed out of it, so that the numbers of its
+ * corners, which lie scattered, are fetched once. */
 #include "sched/sweep/tiles.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "sched/sweep/tile_copy.h"
+#include "sched/sweep/finds.h"
+#include "sched/sweep/tile_fill.h"
 #include "triangle/hilbert.h"
-#include "triangle/radix.h"
 
-/* Free ids in runs shorter than this are forgotten; so many tiles are made at once. */
-enum { SHORTEST_RUN = 8, BATCH = 4, SHARES = TRI_MOST_SHARES };
+/* In place of a row: the column's turn has been, or is to come. */
+enum { EARLIER = -1, LATER = -2 };
 
-/* What one share of the mesh has found, in the order of ids. */
-struct finds {
-    int32_t *item, *tile;
-    int32_t n, capacity;
-};
+/* In place of a number: there is none; and what a vertex of row r has that waits for one: FIRST_ROW - r. */
+enum { NO_NUMBER = -1, FIRST_ROW = -2 };
 
 struct column {
     struct par_tiles *tiles;
     int32_t column;
     int32_t first_tile;
-    double end;                     /* all triangles left of it are final */
-    struct finds vertices[SHARES], triangles[SHARES]; /* of this column */
-    struct finds subs[SHARES];
-    struct finds straddling[SHARES]; /* triangles that reach beyond it */
-    bool no_memory[SHARES];
-    int32_t *vertex, *triangle, *sub;     /* ids by tile */
-    int32_t *vertex_start, *triangle_start, *sub_start; /* [n_rows + 1] */
-    int32_t n_vertices, n_triangles, n_subs;
+    double begin, end;              /* all triangles left of the end are final */
+    struct par_finds vertices, triangles, subs;
+    struct par_worklist straddling[PAR_FIND_SHARES]; /* triangles that reach beyond it, with a numbered corner */
+    bool no_memory[PAR_FIND_SHARES];
 };
 
-static bool add(struct finds *f, int32_t item, int32_t tile)
+/* --- what belongs to the column */
+
+/* The tile of places that mostly lie in the same one as the last. */
+struct place_finder {
+    struct tri_fence fence;
+    int32_t tile;
+};
+
+static const struct place_finder LOST = {.fence = {1, 1, 0, 0}};
+
+static int32_t find_tile(struct place_finder *f, const struct par_partition *p, struct tri_point q)
 {
-    if (f->n == f->capacity) {
-        int32_t capacity = f->capacity ? 2 * f->capacity : 1024;
-        int32_t *fresh = realloc(f->item, (size_t)capacity * sizeof *fresh);
-        f->item = fresh ? fresh : f->item;
-        int32_t *tiles = fresh ? realloc(f->tile, (size_t)capacity * sizeof *tiles) : NULL;
-        f->tile = tiles ? tiles : f->tile;
-        if (!tiles)
-            return false;
-        f->capacity = capacity;
+    if (!tri_fence_holds(&f->fence, q)) {
+        f->tile = par_block_at(p, 0, q);
+        f->fence = par_fence(p, f->tile / p->n_rows, f->tile % p->n_rows);
     }
-    f->item[f->n] = item;
-    f->tile[f->n++] = tile;
-    return true;
+    return f->tile;
 }
 
-/* Vertices from `first` on learn their tiles, if that is in this column or before. */
+/* Vertices that have no number. */
 static void find_vertices(void *context, size_t share)
 {
     struct column *c = context;
     struct par_tiles *tiles = c->tiles;
     const struct tri_mesh *mesh = tiles->mesh;
-    struct tri_range range = tri_share_of(share, SHARES, mesh->n_vertices);
-    for (int32_t v = range.first; v < range.last; v++) {
-        if (tiles->tile[v] != INT32_MAX || mesh->on[v] == TRI_VERTEX_NONE || !(mesh->xy[v].x < c->end))
+    struct tri_range range = par_finds_share(share, mesh->n_vertices);
+    struct place_finder place = LOST;
+    struct par_finder finder = par_finder_of(&c->vertices, share);
+    for (int32_t v = range.first < tiles->n_kept ? tiles->n_kept : range.first; v < range.last; v++) {
+        if (tiles->number[v] != NO_NUMBER || mesh->on[v] == TRI_VERTEX_NONE || !(mesh->xy[v].x < c->end) ||
+            mesh->xy[v].x < c->begin)
             continue;
-        tiles->tile[v] = par_block_at(tiles->partition, 0, mesh->xy[v]);
-        if (v >= tiles->n_kept && !add(&c->vertices[share], v, tiles->tile[v] - c->first_tile))
-            c->no_memory[share] = true;
+        int32_t row = find_tile(&place, tiles->partition, mesh->xy[v]) - c->first_tile;
+        tiles->number[v] = FIRST_ROW - row;
+        par_find(&finder, v, row);
     }
+    c->no_memory[share] = !par_finder_end(&finder);
+}
+
+/* The row of numbers that mostly are of the same one as the last. */
+struct row_of_numbers {
+    int64_t first;
+    int32_t count, row;
+};
+
+static int32_t find_row(const struct column *c, struct row_of_numbers *last, int64_t number)
+{
+    if ((uint64_t)(number - last->first) < (uint64_t)last->count)
+        return last->row;
+    const int32_t *start = c->vertices.start;
+    int32_t place = (int32_t)(number - c->tiles->n_vertices), low = 0, high = c->vertices.n_rows;
+    assert(place >= 0 && place < c->vertices.n);
+    while (high - low > 1) { /* start[low] <= place < start[high] */
+        int32_t middle = low + (high - low) / 2;
+        if (start[middle] <= place)
+            low = middle;
+        else
+            high = middle;
+    }
+    *last = (struct row_of_numbers){c->tiles->n_vertices + start[low], start[low + 1] - start[low], low};
+    return low;
+}
+
+/* The row of the last tile among those of some vertices, of which new ones are told apart by their numbers. */
+static int32_t last_row(const struct column *c, struct row_of_numbers *hint, const int32_t *v, const int64_t *number,
+                        int n)
+{
+    const struct par_tiles *tiles = c->tiles;
+    int64_t last = NO_NUMBER;
+    int32_t row = EARLIER;
+    for (int k = 0; k < n; k++) {
+        if (number[k] < 0)
+            return LATER;
+        if (v[k] >= tiles->n_kept) {
+            last = number[k] > last ? number[k] : last;
+            continue;
+        }
+        int32_t of_kept = tiles->kept_tile[v[k]] - c->first_tile;
+        if (of_kept >= c->vertices.n_rows)
+            return LATER;
+        row = of_kept > row ? of_kept : row;
+    }
+    int32_t of_new = last >= tiles->n_vertices ? find_row(c, hint, last) : EARLIER;
+    return of_new > row ? of_new : row;
+}
+
+/* A triangle that somebody refers to later. */
+static bool has_number(const struct par_tiles *tiles, const int32_t v[3], const int64_t number[3])
+{
+    for (int k = 0; k < 3; k++)
+        if (v[k] >= tiles->n_kept && number[k] >= 0)
+            return true;
+    return false;
 }
 
 static void find_triangles(void *context, size_t share)
 {
     struct column *c = context;
     const struct tri_mesh *mesh = c->tiles->mesh;
-    const int32_t *tile = c->tiles->tile;
-    struct tri_range range = tri_share_of(share, SHARES, mesh->n_triangles);
+    const int64_t *numbers = c->tiles->number;
+    struct tri_range range = par_finds_share(share, mesh->n_triangles);
+    struct row_of_numbers hint = {0};
+    struct par_finder finder = par_finder_of(&c->triangles, share);
+    bool memory = true;
     for (int32_t t = range.first; t < range.last; t++) {
         const int32_t *v = mesh->tri[t].v;
         if (v[0] == TRI_NONE)
             continue;
-        int32_t a = tile[v[0]], b = tile[v[1]], d = tile[v[2]];
-        int32_t low = a < b ? a : b, high = a < b ? b : a;
-        low = d < low ? d : low;
-        high = d > high ? d : high;
-        if (low == INT32_MAX || high < c->first_tile)
-            continue;
-        bool final = high != INT32_MAX;
-        if (!add(final ? &c->triangles[share] : &c->straddling[share], t, final ? high - c->first_tile : 0))
-            c->no_memory[share] = true;
+        const int64_t number[3] = {numbers[v[0]], numbers[v[1]], numbers[v[2]]};
+        int32_t row = last_row(c, &hint, v, number, 3);
+        if (row >= 0) {
+            par_final_make(&mesh->tri[t], number, row);
+            par_find(&finder, t, row);
+        } else if (row == LATER && has_number(c->tiles, v, number)) {
+            memory = par_worklist_add(&c->straddling[share], t) && memory;
+        }
     }
+    c->no_memory[share] = !par_finder_end(&finder) || !memory || c->no_memory[share];
+}
+
+static int32_t row_of_sub(const struct column *c, int32_t s)
+{
+    struct row_of_numbers hint = {0};
+    const int32_t *v = c->tiles->mesh->sub[s].v;
+    const int64_t number[2] = {c->tiles->number[v[0]], c->tiles->number[v[1]]};
+    return last_row(c, &hint, v, number, 2);
 }
 
 /* What is right of the column is met again later. */
@@ -93,318 +164,170 @@ static void find_subs(void *context, size_t share)
 {
     struct column *c = context;
     const struct tri_mesh *mesh = c->tiles->mesh;
-    struct tri_range range = tri_share_of(share, SHARES, mesh->n_subs);
+    struct tri_range range = par_finds_share(share, mesh->n_subs);
+    struct par_finder finder = par_finder_of(&c->subs, share);
     for (int32_t s = range.first; s < range.last; s++) {
-        const int32_t *v = mesh->sub[s].v;
-        if (v[0] == TRI_NONE)
-            continue;
-        int32_t a = c->tiles->tile[v[0]], b = c->tiles->tile[v[1]], high = a > b ? a : b;
-        if (high >= c->first_tile && high != INT32_MAX && !add(&c->subs[share], s, high - c->first_tile))
-            c->no_memory[share] = true;
+        int32_t row = mesh->sub[s].v[0] == TRI_NONE ? EARLIER : row_of_sub(c, s);
+        if (row >= 0)
+            par_find(&finder, s, row);
     }
+    c->no_memory[share] = !par_finder_end(&finder) || c->no_memory[share];
 }
 
-/* Finds of all shares by tile: a stable counting sort. */
-static bool by_tile(const struct finds found[SHARES], int32_t n_rows, int32_t **item, int32_t **start, int32_t *n)
+static int32_t row_of_vertex(const void *context, int32_t v)
 {
-    int32_t sum = 0;
-    for (int s = 0; s < SHARES; s++)
-        sum += found[s].n;
-    *n = sum;
-    *item = malloc(((size_t)sum + 1) * sizeof **item);
-    *start = calloc((size_t)n_rows + 2, sizeof **start);
-    if (!*item || !*start)
-        return false;
-    for (int s = 0; s < SHARES; s++)
-        for (int32_t i = 0; i < found[s].n; i++)
-            (*start)[found[s].tile[i] + 2]++;
-    for (int32_t r = 0; r < n_rows; r++)
-        (*start)[r + 2] += (*start)[r + 1];
-    for (int s = 0; s < SHARES; s++)
-        for (int32_t i = 0; i < found[s].n; i++)
-            (*item)[(*start)[found[s].tile[i] + 1]++] = found[s].item[i];
-    return true;
+    const struct column *c = context;
+    return (int32_t)(FIRST_ROW - c->tiles->number[v]);
+}
+
+static int32_t row_of_final(const void *context, int32_t t)
+{
+    const struct column *c = context;
+    return par_final_row(&c->tiles->mesh->tri[t]);
+}
+
+static int32_t row_of_found_sub(const void *context, int32_t s) { return row_of_sub(context, s); }
+
+static bool memory_has_lasted(const struct column *c)
+{
+    bool memory = true;
+    for (int s = 0; s < PAR_FIND_SHARES; s++)
+        memory = memory && !c->no_memory[s];
+    return memory;
+}
+
+/* --- what each vertex has here */
+
+static void place_kept(void *context, size_t share)
+{
+    struct par_tiles *tiles = context;
+    struct tri_range range = tri_share(share, tiles->n_kept);
+    struct place_finder place = LOST;
+    for (int32_t v = range.first; v < range.last; v++)
+        tiles->kept_tile[v] = find_tile(&place, tiles->partition, tiles->mesh->xy[v]);
+}
+
+static bool know_kept(struct par_tiles *tiles)
+{
+    if (tiles->kept_tile)
+        return true;
+    tiles->kept_tile = malloc(((size_t)tiles->n_kept + 1) * sizeof *tiles->kept_tile);
+    if (tiles->kept_tile)
+        tri_execute(tiles->executor, tri_shares(tiles->n_kept), place_kept, tiles);
+    return tiles->kept_tile;
 }
 
 bool par_tiles_reserve(struct par_tiles *tiles)
 {
     int32_t before = tiles->capacity, now = tiles->mesh->vertex_capacity;
+    if (!know_kept(tiles))
+        return false;
     if (now <= before)
         return true;
     int64_t *number = realloc(tiles->number, (size_t)now * sizeof *number);
-    tiles->number = number ? number : tiles->number;
-    int32_t *tile = realloc(tiles->tile, (size_t)now * sizeof *tile);
-    tiles->tile = tile ? tile : tiles->tile;
-    if (!number || !tile)
+    if (!number)
         return false;
-    for (int32_t v = before; v < now; v++) {
-        number[v] = v < tiles->n_kept ? v : -1;
-        tile[v] = INT32_MAX;
-    }
+    for (int32_t v = before; v < now; v++)
+        number[v] = v < tiles->n_kept ? v : NO_NUMBER;
+    tiles->number = number;
     tiles->capacity = now;
     return true;
 }
 
-static bool find_all(struct column *c)
+void par_tiles_forget(struct par_tiles *tiles, int32_t v)
 {
-    const struct tri_executor *executor = c->tiles->executor;
-    int32_t n_rows = c->tiles->partition->n_rows;
-    bool memory = par_tiles_reserve(c->tiles);
-    if (memory) {
-        tri_execute(executor, SHARES, find_vertices, c);
-        tri_execute(executor, SHARES, find_triangles, c);
-        tri_execute(executor, SHARES, find_subs, c);
-    }
-    for (int s = 0; s < SHARES; s++)
-        memory = memory && !c->no_memory[s];
-    return memory && by_tile(c->vertices, n_rows, &c->vertex, &c->vertex_start, &c->n_vertices) &&
-           by_tile(c->triangles, n_rows, &c->triangle, &c->triangle_start, &c->n_triangles) &&
-           by_tile(c->subs, n_rows, &c->sub, &c->sub_start, &c->n_subs);
+    assert(v >= tiles->n_kept);
+    tiles->number[v] = NO_NUMBER;
 }
 
-/* A tile being numbered, and what is handed out of it. */
-struct job {
+/* --- tile by tile, some rows at once */
+
+struct batch {
     struct column *column;
-    int32_t row;
-    struct tri_tile tile;
-    struct par_tile_copy copy;
-    bool no_memory;
+    int32_t first;
 };
 
 static struct tri_tile tile_of(const struct column *c, int32_t r)
 {
     const struct par_tiles *tiles = c->tiles;
-    int32_t v = c->vertex_start[r], t = c->triangle_start[r], s = c->sub_start[r];
+    int32_t v = c->vertices.start[r], t = c->triangles.start[r], s = c->subs.start[r];
     return (struct tri_tile){.column = c->column, .row = r, .first_vertex = tiles->n_vertices + v,
                              .first_triangle = tiles->n_triangles + t, .first_segment = tiles->n_segments + s,
-                             .n_vertices = c->vertex_start[r + 1] - v, .n_triangles = c->triangle_start[r + 1] - t,
-                             .n_segments = c->sub_start[r + 1] - s};
+                             .n_vertices = c->vertices.start[r + 1] - v, .n_triangles = c->triangles.start[r + 1] - t,
+                             .n_segments = c->subs.start[r + 1] - s};
 }
 
-static void *array(int32_t n, size_t item) { return malloc(((size_t)n + 1) * item); }
-
-/* Vertices get their numbers and are copied out. */
 static void number_tile(void *context, size_t index)
 {
-    struct job *job = (struct job *)context + index;
-    struct column *c = job->column;
-    const struct tri_mesh *mesh = c->tiles->mesh;
-    struct tri_tile *tile = &job->tile;
-    *tile = tile_of(c, job->row);
-    int32_t n = tile->n_vertices, *order = c->vertex + c->vertex_start[job->row];
-    uint64_t *scratch = array(2 * n, sizeof *scratch);
-    bool memory = par_tile_copy_reserve(&job->copy, mesh, n, tile->n_triangles, tile->n_segments) && scratch;
-    par_tile_copy_show(&job->copy, tile);
-    if (memory) {
-        tri_hilbert_order_coarse(mesh->xy, order, n, scratch);
-        for (int32_t i = 0; i < n; i++) {
-            c->tiles->number[order[i]] = tile->first_vertex + i;
-            par_tile_copy_vertex(&job->copy, mesh, order[i], i);
-        }
-    }
-    job->no_memory = !memory;
-    free(scratch);
-}
-
-/* A triangle's corners by number, the largest first. */
-static void corners_of(const struct column *c, int32_t t, int64_t corner[3])
-{
-    const int32_t *v = c->tiles->mesh->tri[t].v;
-    const int64_t number[3] = {c->tiles->number[v[0]], c->tiles->number[v[1]], c->tiles->number[v[2]]};
-    int first = number[1] > number[0] ? 1 : 0;
-    first = number[2] > number[first] ? 2 : first;
-    for (int k = 0; k < 3; k++, first = tri_next[first])
-        corner[k] = number[first];
-    assert(corner[0] >= 0 && corner[1] >= 0 && corner[2] >= 0);
-}
-
-struct numbered {
-    int64_t corner[3];
-    int32_t triangle;
-};
-
-static int compare_corners(const void *left, const void *right)
-{
-    const struct numbered *a = left, *b = right;
-    int k = a->corner[0] == b->corner[0];
-    return (a->corner[k] > b->corner[k]) - (a->corner[k] < b->corner[k]);
-}
-
-enum { INDEX_BITS = 32 };
-
-/* Triangles of a tile with their largest corners as keys, sorted: those numbered in this column, after all others,
- * which are few and have key 0. */
-static void sort_keys(const struct column *c, const int32_t *triangle, int32_t n, uint64_t *item)
-{
-    int bits = 2;
-    for (int32_t i = 0; i < n; i++) {
-        int64_t corner[3];
-        corners_of(c, triangle[i], corner);
-        int64_t key = corner[0] - c->tiles->n_vertices + 1;
-        item[i] = (uint64_t)(key > 0 ? key : 0) << INDEX_BITS | (uint32_t)i;
-    }
-    while (c->n_vertices >> (bits - 1))
-        bits++;
-    if (n > 0)
-        tri_radix_sort(item, item + n, n, INDEX_BITS, INDEX_BITS + bits, NULL);
-}
-
-/* The triangles of one key in their order. Two mostly. */
-static void sort_fan(const struct column *c, const int32_t *triangle, const uint64_t *item, int32_t n,
-                     struct numbered *fan)
-{
-    for (int32_t i = 0; i < n; i++) {
-        fan[i].triangle = triangle[(uint32_t)item[i]];
-        corners_of(c, fan[i].triangle, fan[i].corner);
-    }
-    if (n == 2 && compare_corners(&fan[1], &fan[0]) < 0) {
-        struct numbered swap = fan[0];
-        fan[0] = fan[1];
-        fan[1] = swap;
-    }
-    if (n > 2)
-        qsort(fan, (size_t)n, sizeof *fan, compare_corners);
-}
-
-static bool sort_tile(struct job *job, const int32_t *triangle, int32_t n)
-{
-    const struct column *c = job->column;
-    uint64_t *item = malloc((2 * (size_t)n + 1) * sizeof *item);
-    struct numbered *fan = malloc(((size_t)n + 1) * sizeof *fan);
-    bool memory = item && fan;
-    if (memory)
-        sort_keys(c, triangle, n, item);
-    for (int32_t first = 0, end; memory && first < n; first = end) {
-        for (end = first + 1; end < n && item[end] >> INDEX_BITS == item[first] >> INDEX_BITS;)
-            end++;
-        sort_fan(c, triangle, item + first, end - first, fan);
-        for (int32_t i = first; i < end; i++) {
-            for (int k = 0; k < 3; k++)
-                job->copy.corners[i][k] = par_shown(c->tiles->mesh, fan[i - first].corner[k]);
-            job->copy.regions[i] = c->tiles->mesh->tri[fan[i - first].triangle].region;
-        }
-    }
-    free(item);
-    free(fan);
-    return memory;
-}
-
-struct numbered_sub {
-    int64_t end[2];
-    int32_t sub, parent;
-};
-
-static int compare_subs(const void *left, const void *right)
-{
-    const struct numbered_sub *a = left, *b = right;
-    if (a->parent != b->parent)
-        return a->parent < b->parent ? -1 : 1;
-    return (a->end[0] > b->end[0]) - (a->end[0] < b->end[0]);
-}
-
-static bool sort_subs(struct job *job, const int32_t *sub, int32_t n)
-{
-    const struct column *c = job->column;
-    const struct tri_mesh *mesh = c->tiles->mesh;
-    struct numbered_sub *item = array(n, sizeof *item);
-    for (int32_t i = 0; item && i < n; i++) {
-        const struct tri_subsegment *s = &mesh->sub[sub[i]];
-        item[i] = (struct numbered_sub){{c->tiles->number[s->v[0]], c->tiles->number[s->v[1]]}, sub[i], s->parent};
-    }
-    if (item && n > 1)
-        qsort(item, (size_t)n, sizeof *item, compare_subs);
-    for (int32_t i = 0; item && i < n; i++) {
-        for (int k = 0; k < 2; k++)
-            job->copy.ends[i][k] = par_shown(mesh, item[i].end[k]);
-        job->copy.segment_markers[i] = mesh->sub[item[i].sub].marker;
-    }
-    bool memory = item;
-    free(item);
-    return memory;
+    const struct batch *batch = context;
+    struct column *c = batch->column;
+    struct par_tile_job *job = &c->tiles->job[index];
+    int32_t row = batch->first + (int32_t)index, first = c->vertices.start[row];
+    int32_t n = c->vertices.start[row + 1] - first, *order = c->vertices.item + first;
+    job->no_memory = !par_tile_job_reserve(job, 2 * (int64_t)n);
+    if (job->no_memory)
+        return;
+    tri_hilbert_order_coarse(c->tiles->mesh->xy, order, n, job->scratch);
+    for (int32_t i = 0; i < n; i++)
+        c->tiles->number[order[i]] = c->tiles->n_vertices + first + i;
 }
 
 static void fill_tile(void *context, size_t index)
 {
-    struct job *job = (struct job *)context + index;
-    const struct column *c = job->column;
-    job->no_memory = !sort_tile(job, c->triangle + c->triangle_start[job->row], job->tile.n_triangles) ||
-                     !sort_subs(job, c->sub + c->sub_start[job->row], job->tile.n_segments);
+    const struct batch *batch = context;
+    const struct column *c = batch->column;
+    int32_t row = batch->first + (int32_t)index;
+    struct par_tile_job *job = &c->tiles->job[index];
+    job->tile = tile_of(c, row);
+    job->no_memory = !par_tile_fill(job, c->tiles->mesh, c->tiles->number, c->vertices.item + c->vertices.start[row],
+                                    c->triangles.item + c->triangles.start[row], c->subs.item + c->subs.start[row]);
 }
 
 static bool is_empty(const struct tri_tile *t) { return t->n_vertices + t->n_triangles + t->n_segments == 0; }
 
-/* Some rows at once: all are numbered, before any of their triangles is looked at, since a triangle may have corners in
- * the row below. */
-static enum tri_status hand_out(struct column *c, int32_t first, int32_t end, struct tri_error *error)
+static enum tri_status take_batch(const struct column *c, int32_t n, struct tri_error *error)
 {
-    struct job job[BATCH];
-    size_t n = (size_t)(end - first);
+    const struct tri_sink *sink = c->tiles->sink;
     enum tri_status status = TRI_OK;
-    bool memory = true;
-    for (size_t i = 0; i < n; i++)
-        job[i] = (struct job){.column = c, .row = first + (int32_t)i};
-    tri_execute(c->tiles->executor, n, number_tile, job);
-    for (size_t i = 0; i < n; i++)
-        memory = memory && !job[i].no_memory;
-    if (memory)
-        tri_execute(c->tiles->executor, n, fill_tile, job);
-    for (size_t i = 0; i < n; i++)
-        memory = memory && !job[i].no_memory;
-    if (!memory)
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the tiles of a column");
-    for (size_t i = 0; i < n; i++) {
-        if (!status && !is_empty(&job[i].tile))
-            status = c->tiles->sink->take(c->tiles->sink->user, &job[i].tile, error);
-        par_tile_copy_free(&job[i].copy);
+    for (int32_t i = 0; !status && i < n; i++)
+        if (!is_empty(&c->tiles->job[i].tile))
+            status = sink->take(sink->user, &c->tiles->job[i].tile, error);
+    return status;
+}
+
+static enum tri_status no_memory(struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a column of tiles");
+}
+
+/* Does this with all rows; and hands them out, if that is what it is for. */
+static enum tri_status for_rows(struct column *c, void (*task)(void *context, size_t index), bool take,
+                                struct tri_error *error)
+{
+    int32_t n_rows = c->vertices.n_rows, at_once = c->tiles->n_jobs;
+    enum tri_status status = TRI_OK;
+    for (int32_t row = 0; !status && row < n_rows; row += at_once) {
+        struct batch batch = {c, row};
+        int32_t n = n_rows - row < at_once ? n_rows - row : at_once;
+        bool memory = true;
+        tri_execute(c->tiles->executor, (size_t)n, task, &batch);
+        for (int32_t i = 0; i < n; i++)
+            memory = memory && !c->tiles->job[i].no_memory;
+        status = !memory ? no_memory(error) : take ? take_batch(c, n, error) : TRI_OK;
     }
     return status;
 }
 
+static bool reserve_jobs(struct par_tiles *tiles)
+{
+    if (tiles->n_jobs < 1)
+        tiles->n_jobs = 1;
+    if (!tiles->job)
+        tiles->job = calloc((size_t)tiles->n_jobs, sizeof *tiles->job);
+    return tiles->job;
+}
+
 /* --- what has been handed out goes */
-
-static bool add_run(struct par_ranges *to, int32_t first, int32_t end)
-{
-    if (end - first < SHORTEST_RUN)
-        return true;
-    if (!par_ranges_reserve(to, to->n + to->dealt + 1))
-        return false;
-    to->item[to->n++] = (struct par_range){first, end};
-    return true;
-}
-
-/* A list of ids, ascending, as ranges. */
-static bool add_runs(struct par_ranges *to, const int32_t *item, int32_t n)
-{
-    bool memory = true;
-    for (int32_t first = 0, end; memory && first < n; first = end) {
-        for (end = first + 1; end < n && item[end] == item[end - 1] + 1;)
-            end++;
-        memory = add_run(to, item[first], item[end - 1] + 1);
-    }
-    return memory;
-}
-
-static bool let_triangles_go(struct column *c, struct par_room *spare)
-{
-    bool memory = true;
-    for (int s = 0; s < SHARES; s++) {
-        for (int32_t i = 0; i < c->triangles[s].n; i++)
-            c->tiles->mesh->tri[c->triangles[s].item[i]].v[0] = TRI_NONE;
-        memory = memory && add_runs(&spare->ranges[PAR_TRIANGLES], c->triangles[s].item, c->triangles[s].n);
-    }
-    return memory;
-}
-
-static bool let_subs_go(struct column *c, struct par_room *spare)
-{
-    bool memory = true;
-    for (int s = 0; s < SHARES; s++) {
-        for (int32_t i = 0; i < c->subs[s].n; i++)
-            par_room_mark_sub(c->tiles->mesh, c->subs[s].item[i]);
-        memory = memory && add_runs(&spare->ranges[PAR_SUBS], c->subs[s].item, c->subs[s].n);
-    }
-    return memory;
-}
 
 static int ascending(const void *left, const void *right)
 {
@@ -412,145 +335,180 @@ static int ascending(const void *left, const void *right)
     return (*a > *b) - (*a < *b);
 }
 
-/* Corners of triangles that stay. */
+/* Numbered corners of triangles that stay. */
 static bool corners_that_stay(const struct column *c, struct par_worklist *stay)
 {
-    int32_t n = 0;
-    for (int s = 0; s < SHARES; s++)
-        n += 3 * c->straddling[s].n;
-    stay->item = malloc(((size_t)n + 1) * sizeof *stay->item);
-    stay->n = 0;
-    if (!stay->item)
-        return false;
-    for (int s = 0; s < SHARES; s++)
+    const struct par_tiles *tiles = c->tiles;
+    bool memory = true;
+    *stay = (struct par_worklist){0};
+    for (int s = 0; s < PAR_FIND_SHARES; s++)
         for (int32_t i = 0; i < c->straddling[s].n; i++)
             for (int k = 0; k < 3; k++) {
-                int32_t v = c->tiles->mesh->tri[c->straddling[s].item[i]].v[k];
-                if (v >= c->tiles->n_kept && c->tiles->number[v] >= 0)
-                    stay->item[stay->n++] = v;
+                int32_t v = tiles->mesh->tri[c->straddling[s].item[i]].v[k];
+                if (v >= tiles->n_kept && tiles->number[v] >= 0)
+                    memory = memory && par_worklist_add(stay, v);
             }
-    qsort(stay->item, (size_t)stay->n, sizeof *stay->item, ascending);
+    if (stay->n > 0)
+        qsort(stay->item, (size_t)stay->n, sizeof *stay->item, ascending);
     int32_t kept = 0;
     for (int32_t i = 0; i < stay->n; i++)
         if (i == 0 || stay->item[i] != stay->item[kept - 1])
             stay->item[kept++] = stay->item[i];
     stay->n = kept;
-    return true;
-}
-
-static void let_vertex_go(struct column *c, int32_t v)
-{
-    c->tiles->mesh->on[v] = TRI_VERTEX_NONE;
-    c->tiles->number[v] = -1;
-    c->tiles->tile[v] = INT32_MAX;
-}
-
-/* Of a list, ascending, those that do not stay; in place. */
-static int32_t leaving(int32_t *item, int32_t n, const struct par_worklist *stay)
-{
-    int32_t left = 0;
-    for (int32_t i = 0, k = 0; i < n; i++) {
-        while (k < stay->n && stay->item[k] < item[i])
-            k++;
-        if (k == stay->n || stay->item[k] != item[i])
-            item[left++] = item[i];
-    }
-    return left;
-}
-
-static bool let_vertices_go(struct column *c, struct par_room *spare)
-{
-    struct par_worklist stay;
-    bool memory = corners_that_stay(c, &stay);
-    for (int s = 0; s <= SHARES && memory; s++) {
-        int32_t *item = s < SHARES ? c->vertices[s].item : c->tiles->held.item;
-        int32_t n = leaving(item, s < SHARES ? c->vertices[s].n : c->tiles->held.n, &stay);
-        for (int32_t i = 0; i < n; i++)
-            let_vertex_go(c, item[i]);
-        memory = add_runs(&spare->ranges[PAR_VERTICES], item, n);
-    }
-    free(c->tiles->held.item);
-    c->tiles->held = stay;
     return memory;
 }
 
-static void free_column(struct column *c)
+/* The first item of a list, ascending, that is not less than this. */
+static int32_t first_from(const struct par_worklist *list, int32_t item)
 {
-    for (int s = 0; s < SHARES; s++) {
-        struct finds *all[4] = {&c->vertices[s], &c->triangles[s], &c->subs[s], &c->straddling[s]};
-        for (int k = 0; k < 4; k++) {
-            free(all[k]->item);
-            free(all[k]->tile);
-        }
+    int32_t low = 0, high = list->n;
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if (list->item[middle] < item)
+            low = middle + 1;
+        else
+            high = middle;
     }
-    free(c->vertex);
-    free(c->triangle);
-    free(c->sub);
-    free(c->vertex_start);
-    free(c->triangle_start);
-    free(c->sub_start);
+    return low;
+}
+
+/* Of a list of vertices, ascending, those that do not stay go; they are left in it. */
+static void let_vertices_go(struct par_tiles *tiles, const struct par_worklist *stay, struct par_worklist *list)
+{
+    int32_t left = 0, k = list->n > 0 ? first_from(stay, list->item[0]) : 0;
+    for (int32_t i = 0; i < list->n; i++) {
+        int32_t v = list->item[i];
+        while (k < stay->n && stay->item[k] < v)
+            k++;
+        if (k < stay->n && stay->item[k] == v)
+            continue;
+        tiles->mesh->on[v] = TRI_VERTEX_NONE;
+        tiles->number[v] = NO_NUMBER;
+        list->item[left++] = v;
+    }
+    list->n = left;
+}
+
+struct leaving {
+    struct column *column;
+    const struct par_worklist *stay;
+};
+
+/* What a share has found, triangles having gone when they were handed out. */
+static void leave(void *context, size_t share)
+{
+    const struct leaving *l = context;
+    struct column *c = l->column;
+    struct par_worklist *subs = &c->subs.found[share];
+    let_vertices_go(c->tiles, l->stay, &c->vertices.found[share]);
+    for (int32_t i = 0; i < subs->n; i++)
+        par_room_mark_sub(c->tiles->mesh, subs->item[i]);
+    par_finds_to_runs(&c->vertices.found[share]);
+    par_finds_to_runs(&c->triangles.found[share]);
+    par_finds_to_runs(subs);
+}
+
+static bool let_go(struct column *c, struct par_room *spare)
+{
+    struct par_worklist stay, *held = &c->tiles->held;
+    if (!corners_that_stay(c, &stay)) {
+        free(stay.item);
+        return false;
+    }
+    struct leaving leaving = {c, &stay};
+    tri_execute(c->tiles->executor, PAR_FIND_SHARES, leave, &leaving);
+    let_vertices_go(c->tiles, &stay, held);
+    par_finds_to_runs(held);
+    bool memory = par_finds_add_runs(held, &spare->ranges[PAR_VERTICES]) &&
+                  par_finds_give(&c->vertices, &spare->ranges[PAR_VERTICES]) &&
+                  par_finds_give(&c->triangles, &spare->ranges[PAR_TRIANGLES]) &&
+                  par_finds_give(&c->subs, &spare->ranges[PAR_SUBS]);
+    free(held->item);
+    *held = stay;
+    return memory;
 }
 
 /* --- a column */
 
+static bool begin_column(struct column *c, struct par_tiles *tiles, int32_t column)
+{
+    const struct tri_fence fence = par_fence(tiles->partition, column, 0);
+    assert(column % 2 == 1 && column < tiles->partition->n_columns);
+    *c = (struct column){.tiles = tiles, .column = column, .first_tile = column * tiles->partition->n_rows,
+                         .begin = fence.x_min, .end = fence.x_max};
+    int32_t n_rows = tiles->partition->n_rows;
+    return par_finds_begin(&c->vertices, n_rows) && par_finds_begin(&c->triangles, n_rows) &&
+           par_finds_begin(&c->subs, n_rows) && par_tiles_reserve(tiles) && reserve_jobs(tiles);
+}
+
+static enum tri_status number_column(struct column *c, struct tri_error *error)
+{
+    const struct tri_executor *executor = c->tiles->executor;
+    tri_execute(executor, PAR_FIND_SHARES, find_vertices, c);
+    if (!memory_has_lasted(c) || !par_finds_deal(&c->vertices, row_of_vertex, c, executor))
+        return no_memory(error);
+    return for_rows(c, number_tile, false, error);
+}
+
+static enum tri_status hand_out_column(struct column *c, struct tri_error *error)
+{
+    const struct tri_executor *executor = c->tiles->executor;
+    tri_execute(executor, PAR_FIND_SHARES, find_triangles, c);
+    tri_execute(executor, PAR_FIND_SHARES, find_subs, c);
+    if (!memory_has_lasted(c) || !par_finds_deal(&c->triangles, row_of_final, c, executor) ||
+        !par_finds_deal(&c->subs, row_of_found_sub, c, executor))
+        return no_memory(error);
+    return for_rows(c, fill_tile, true, error);
+}
+
+static void free_column(struct column *c)
+{
+    par_finds_free(&c->vertices);
+    par_finds_free(&c->triangles);
+    par_finds_free(&c->subs);
+    for (int s = 0; s < PAR_FIND_SHARES; s++)
+        free(c->straddling[s].item);
+    free(c);
+}
+
 enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct tri_error *error)
 {
     struct column *c = calloc(1, sizeof *c);
-    bool memory = c && par_tiles_reserve(tiles);
-    if (memory) {
-        *c = (struct column){.tiles = tiles, .column = column, .first_tile = column * tiles->partition->n_rows,
-                             .end = par_fence(tiles->partition, column, 0).x_max};
-        memory = find_all(c);
-    }
-    for (int32_t row = 0; memory && row < tiles->partition->n_rows; row++) {
-        struct job job = {.column = c, .row = row};
-        number_tile(&job, 0);
-        memory = !job.no_memory;
-        par_tile_copy_free(&job.copy);
-    }
-    for (int32_t v = 0; memory && v < tiles->mesh->n_vertices; v++)
-        tiles->tile[v] = tiles->tile[v] >= c->first_tile ? INT32_MAX : tiles->tile[v];
-    if (c)
-        free_column(c);
-    free(c);
-    return memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the numbers of a column");
+    if (!c)
+        return no_memory(error);
+    enum tri_status status = begin_column(c, tiles, column) ? number_column(c, error) : no_memory(error);
+    free_column(c);
+    return status;
 }
 
-enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, bool let_go, struct par_room *spare,
+enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, struct par_room *spare,
                                  struct tri_error *error)
 {
     struct column *c = calloc(1, sizeof *c);
-    enum tri_status status = TRI_OK;
     if (!c)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a column of tiles");
-    assert(column % 2 == 1 && column < tiles->partition->n_columns);
-    c->tiles = tiles;
-    c->column = column;
-    c->first_tile = column * tiles->partition->n_rows;
-    c->end = par_fence(tiles->partition, column, 0).x_max;
+        return no_memory(error);
     par_room_mark(spare, tiles->mesh);
-    if (!find_all(c))
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a column of tiles");
-    for (int32_t row = 0; !status && row < tiles->partition->n_rows; row += BATCH) {
-        int32_t end = row + BATCH < tiles->partition->n_rows ? row + BATCH : tiles->partition->n_rows;
-        status = hand_out(c, row, end, error);
-    }
-    if (!status && let_go && !(let_triangles_go(c, spare) && let_vertices_go(c, spare) && let_subs_go(c, spare)))
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the ranges of a column");
-    tiles->n_vertices += c->n_vertices;
-    tiles->n_triangles += c->n_triangles;
-    tiles->n_segments += c->n_subs;
+    enum tri_status status = begin_column(c, tiles, column) ? number_column(c, error) : no_memory(error);
+    status = status ? status : hand_out_column(c, error);
+    if (!status && !let_go(c, spare))
+        status = no_memory(error);
+    tiles->n_vertices += c->vertices.n;
+    tiles->n_triangles += c->triangles.n;
+    tiles->n_segments += c->subs.n;
     free_column(c);
-    free(c);
     return status;
 }
 
 void par_tiles_free(struct par_tiles *tiles)
 {
+    for (int32_t i = 0; tiles->job && i < tiles->n_jobs; i++)
+        par_tile_job_free(&tiles->job[i]);
+    free(tiles->job);
     free(tiles->number);
-    free(tiles->tile);
+    free(tiles->kept_tile);
     free(tiles->held.item);
+    tiles->job = NULL;
     tiles->number = NULL;
-    tiles->tile = NULL;
+    tiles->kept_tile = NULL;
     tiles->held = (struct par_worklist){0};
 }

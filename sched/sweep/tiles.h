@@ -31,11 +31,12 @@ struct par_tiles {
     int32_t n_ranks, rank;        /* see struct tri_stream; 0: one */
     const int64_t *first[3];
     int64_t *number;              /* [capacity] of each vertex; -1: none yet */
-    int32_t *tile;                /* [capacity] column * n_rows + row of each vertex; INT32_MAX: right of what has been
-                                     handed out, or not there */
+    int32_t *kept_tile;           /* [n_kept] column * n_rows + row of those that keep theirs */
     int32_t capacity;
     int64_t n_vertices, n_triangles, n_segments; /* handed out so far */
     struct par_worklist held;         /* numbered vertices that triangles beyond the last column still have */
+    int32_t n_jobs;               /* tiles that are made at once; 0: one */
+    struct par_tile_job *job;     /* [n_jobs] */
 };
 
 /* Triangles to expect, to the order: the same, however the mesh is carried through. */
@@ -46,10 +47,10 @@ double par_tiles_expected(const struct par_tiles *tiles);
 enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct tri_error *error);
 
 /* Numbers, and hands out, the tiles of an odd column. Every triangle whose corners lie in it and before it must be
- * final, and columns before it have had their turn. let_go: what has been handed out is gone from the mesh, its ids are
- * added to *spare, and links of triangles beyond the column to it lead nowhere. O(what is in memory). TRI_NO_MEMORY, or
- * what the sink says. */
-enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, bool let_go, struct par_room *spare,
+ * final, and columns before it have had their turn. What has been handed out is gone from the mesh, its ids are added
+ * to *spare, and links of triangles beyond the column to it lead nowhere. O(what is in memory). TRI_NO_MEMORY, or what
+ * the sink says. */
+enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, struct par_room *spare,
                                  struct tri_error *error);
 
 /* What par_tiles_column takes beside the mesh, to the order. */
@@ -61,8 +62,12 @@ static inline size_t par_tiles_bytes(const struct par_tiles *tiles)
 /* Room for what each vertex has here; nothing is known yet of those that come later. False: no memory. */
 bool par_tiles_reserve(struct par_tiles *tiles);
 
-/* Numbers the vertices of an odd column from tiles->n_vertices on, and nothing else: it has its turn later. */
+/* Numbers the vertices of an odd column from tiles->n_vertices on, and nothing else. Before it has its turn they must
+ * be forgotten. */
 enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct tri_error *error);
+
+/* A vertex has no number any more. */
+void par_tiles_forget(struct par_tiles *tiles, int32_t v);
 
 /* Tells the sink that all columns have had their turn. */
 enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error);

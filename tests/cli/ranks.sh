@@ -1,4 +1,5 @@
-# ptriangle as several tasks of a launcher: the same files as one process writes, by the first task; errors in one voice.
+# ptriangle as several tasks of a launcher: the same files as one process writes, by the first task; errors in one
+# voice.
 # MPIEXEC is the launcher of the MPI that the program was built for; empty: it was built without.
 # shellcheck disable=SC2154 # bin is of run.sh
 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
@@ -18,21 +19,28 @@ ranks() {
     [ "$found" -eq "$code" ] || fault "exit code $found instead of $code: $(head -n 3 .out)"
 }
 
-# with_second DO CODE WORDS...: two ranks, of which the second does something first; CODE any: 0 or 1
-with_second() {
-    second=$1
-    code=$2
-    shift 2
-    what="two ranks, the second after $second: $*"
+# with_one RANK DO CODE WORDS...: two ranks, of which one does something first; CODE any: 0, or a failure that is no
+# hang
+with_one() {
+    one=$1
+    first=$2
+    code=$3
+    shift 3
+    what="two ranks, rank $one after $first: $*"
     checks=$((checks + 1))
-    timeout 100 "$MPIEXEC" -n 2 sh -c '[ "${OMPI_COMM_WORLD_RANK:-$PMI_RANK}" -eq 0 ] || eval "$0"; exec "$@"' "$second" \
+    RANK=$one DO=$first timeout 100 "$MPIEXEC" -n 2 sh -c \
+        '[ "${OMPI_COMM_WORLD_RANK:-$PMI_RANK}" -ne "$RANK" ] || eval "$DO"; exec "$0" "$@"' \
         "$bin/ptriangle" "$@" >.out 2>.err
     found=$?
     case $code:$found in
-    any:[01] | "$code:$code") ;;
+    any:124) fault "it hangs" ;;
+    any:* | "$code:$code") ;;
     *) fault "exit code $found instead of $code: $(head -n 3 .out .err)" ;;
     esac
 }
+
+# spread N: so many numbers, evenly, up to that of the file .count
+spread() { awk -v most="$1" '{ for (i = 0; i < most; i++) print 1 + int(i * $1 / most) }' .count; }
 
 # --- tasks that are not of this MPI
 fresh letter.poly
@@ -56,8 +64,8 @@ for case in "-pq30a0.002 letter" "-pq33a0.01 letter" "-p letter"; do
     mv "$file".1.* one/
     # shellcheck disable=SC2086
     ranks 0 3 -Q $case
-    for name in one/*; do
-        check "the same bytes: $case, $name" cmp "$name" "${name#one/}"
+    for made in one/*; do
+        check "the same bytes: $case, $made" cmp "$made" "${made#one/}"
     done
     rm -rf one "$file".1.*
 done
@@ -74,7 +82,7 @@ for case in "-pq28aA section.poly" "-rpq20a0.01e section.1"; do
     # shellcheck disable=SC2086 # several words
     program 0 -Q $case --output one
     # shellcheck disable=SC2086
-    with_second 'cd /' 0 -Q $case --output two
+    with_one 1 'cd /' 0 -Q $case --output two
     for file in one.*; do
         check "the same but for the command: $case, $file" same_but_for_comments "$file" "two${file#one}"
     done
@@ -90,23 +98,39 @@ check "three ranks" test "$(grep -c '"waiting_seconds"' report.json)" -eq 3
 program 0 -Qpq30a0.01 section.poly --output one.h5 --report report.json
 check "one process has no ranks" grep -q '"ranks": null' report.json
 
-# --- memory that runs out in one task, wherever: one line, no file; or all files
+# --- memory that runs out in one task, wherever: exit code 1, one line, no file; or all files
 fresh letter.poly
 program 0 -Qpq30a0.01 letter --output one
 if [ -n "${PTRIANGLE_SHIM:-}" ]; then
-    short="export LD_PRELOAD=$PTRIANGLE_SHIM PTRIANGLE_FAIL_OWN=1"
-    with_second "$short PTRIANGLE_COUNT=.count" 0 -Qpq30a0.01 letter --output two
-    for k in $(awk -v most="${PTRIANGLE_SHORT_RUNS:-4}" '{ for (i = 0; i < most; i++) print 1 + int(i * $1 / most) }' .count)
-    do
+    shim="export LD_PRELOAD=$PTRIANGLE_SHIM PTRIANGLE_FAIL_OWN=1"
+    with_one 1 "$shim PTRIANGLE_COUNT=.count" 0 -Qpq30a0.01 letter --output two
+    for k in $(spread "${PTRIANGLE_SHORT_RUNS:-2}"); do
         rm -f two.*
-        with_second "$short PTRIANGLE_FAIL_AT=$k" any -Qpq30a0.01 letter --output two
+        with_one 1 "$shim PTRIANGLE_FAIL_AT=$k" any -Qpq30a0.01 letter --output two
         if [ "$found" -eq 0 ]; then
             check "allocation $k: the same bytes" same_but_for_comments one.node two.node
         else
+            check "allocation $k: exit code $found" test "$found" -eq 1
             check "allocation $k: one line: $(head -n 3 .err)" test "$(grep -c '^ptriangle: .*memory' .err)" -eq 1
             check "allocation $k: no file" sh -c '! ls two.* .tri-* 2>/dev/null'
         fi
     done
+
+    # --- one task is killed there: all end, and nothing has got its name
+    for k in $(spread "${PTRIANGLE_SHORT_RUNS:-2}"); do
+        rm -f two.*
+        with_one $((k % 2)) "$shim PTRIANGLE_FAIL_KILL=1 PTRIANGLE_FAIL_AT=$k" any -Qpq30a0.01 letter --output two
+        check "killed at allocation $k: a failure" test "$found" -ne 0
+        check "killed at allocation $k: no file" sh -c '! ls two.* 2>/dev/null'
+    done
+    ranks 0 2 -Qpq30a0.01 letter --output two
+    tries=0 # a task may outlive its launcher by a second, and removes its files itself then
+    while ls .tri-* >/dev/null 2>&1 && [ $tries -lt 100 ]; do
+        tries=$((tries + 1))
+        sleep 0.1
+    done
+    check "what killed tasks have left is gone" sh -c '! ls .tri-* 2>/dev/null'
+    check "the same bytes afterwards" same_but_for_comments one.node two.node
 fi
 
 # --- one error, no file

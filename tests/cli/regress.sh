@@ -232,6 +232,9 @@ everywhere same_place -pq32D
 everywhere marker_bend -pc
 everywhere marker_precincts -pc
 everywhere hole_on_segment -pcq24a0.26
+everywhere slit -p -pq20
+run 0 -p slit
+counts 4 2 5 4 0 4
 
 # --- angles that cannot be: it ends, and says so
 fresh letter.poly

@@ -1,0 +1,101 @@
+/* Lists become rows by counting, share by share, and runs in place. */
+#include "sched/sweep/finds.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+/* Free ids in runs shorter than this are forgotten; a run takes the room of two ids. */
+enum { SHORTEST_RUN = 8 };
+
+bool par_finds_begin(struct par_finds *finds, int32_t n_rows)
+{
+    *finds = (struct par_finds){.n_rows = n_rows};
+    finds->count = calloc((size_t)PAR_FIND_SHARES * (size_t)n_rows, sizeof *finds->count);
+    finds->start = malloc(((size_t)n_rows + 1) * sizeof *finds->start);
+    return finds->count && finds->start;
+}
+
+void par_finds_free(struct par_finds *finds)
+{
+    for (int s = 0; s < PAR_FIND_SHARES; s++)
+        free(finds->found[s].item);
+    free(finds->count);
+    free(finds->item);
+    free(finds->start);
+}
+
+/* Counts become places: row by row, in each share by share. */
+static void add_up(struct par_finds *finds)
+{
+    int32_t sum = 0;
+    for (int32_t row = 0; row < finds->n_rows; row++) {
+        finds->start[row] = sum;
+        for (size_t share = 0; share < PAR_FIND_SHARES; share++) {
+            int32_t *at = &finds->count[share * (size_t)finds->n_rows + (size_t)row], count = *at;
+            *at = sum;
+            sum += count;
+        }
+    }
+    finds->start[finds->n_rows] = finds->n = sum;
+}
+
+struct dealing {
+    struct par_finds *finds;
+    int32_t (*row_of)(const void *context, int32_t item);
+    const void *context;
+};
+
+static void deal_share(void *context, size_t share)
+{
+    const struct dealing *d = context;
+    const struct par_worklist *found = &d->finds->found[share];
+    int32_t *at = d->finds->count + share * (size_t)d->finds->n_rows;
+    int32_t *to = d->finds->item;
+    for (int32_t i = 0; i < found->n; i++)
+        to[at[d->row_of(d->context, found->item[i])]++] = found->item[i];
+}
+
+bool par_finds_deal(struct par_finds *finds, int32_t (*row_of)(const void *context, int32_t item), const void *context,
+                    const struct tri_executor *executor)
+{
+    struct dealing dealing = {finds, row_of, context};
+    add_up(finds);
+    finds->item = malloc(((size_t)finds->n + 1) * sizeof *finds->item);
+    if (finds->item)
+        tri_execute(executor, PAR_FIND_SHARES, deal_share, &dealing);
+    return finds->item;
+}
+
+void par_finds_to_runs(struct par_worklist *list)
+{
+    int32_t n = 0;
+    for (int32_t i = 0, first = 0; i < list->n; i++) {
+        if (i + 1 < list->n && list->item[i + 1] == list->item[i] + 1)
+            continue;
+        if (i + 1 - first >= SHORTEST_RUN) {
+            int32_t begin = list->item[first], end = list->item[i] + 1;
+            assert(n + 2 <= i + 1);
+            list->item[n++] = begin;
+            list->item[n++] = end;
+        }
+        first = i + 1;
+    }
+    list->n = n;
+}
+
+bool par_finds_add_runs(const struct par_worklist *runs, struct par_ranges *to)
+{
+    if (!par_ranges_reserve(to, to->n + to->dealt + runs->n / 2))
+        return false;
+    for (int32_t i = 0; i < runs->n; i += 2)
+        to->item[to->n++] = (struct par_range){runs->item[i], runs->item[i + 1]};
+    return true;
+}
+
+bool par_finds_give(const struct par_finds *finds, struct par_ranges *to)
+{
+    bool memory = true;
+    for (int s = 0; memory && s < PAR_FIND_SHARES; s++)
+        memory = par_finds_add_runs(&finds->found[s], to);
+    return memory;
+}

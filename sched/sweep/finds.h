@@ -1,0 +1,85 @@
+/* What shares of the mesh find of one kind in a column of tiles: lists of ids, ascending, that are dealt to the tiles
+ * and in the end become ranges of free ids. */
+#ifndef SCHED_SWEEP_FINDS_H
+#define SCHED_SWEEP_FINDS_H
+
+#include "sched/room.h"
+#include "sched/worklist.h"
+#include "triangle/executor.h"
+
+enum { PAR_FIND_SHARES = TRI_MOST_SHARES };
+
+struct par_finds {
+    struct par_worklist found[PAR_FIND_SHARES]; /* by each share, in the order of ids */
+    int32_t n_rows;
+    int32_t *count; /* [shares][n_rows] of what a share has found in a row; then where the next one goes */
+    int32_t *item;  /* [n] row by row, each in the order of ids */
+    int32_t *start; /* [n_rows + 1] */
+    int32_t n;
+};
+
+/* False: no memory. To be freed in any case. */
+bool par_finds_begin(struct par_finds *finds, int32_t n_rows);
+void par_finds_free(struct par_finds *finds);
+
+/* The ids that a share looks at. */
+static inline struct tri_range par_finds_share(size_t share, int32_t n)
+{
+    return tri_share_of(share, PAR_FIND_SHARES, n);
+}
+
+/* One share at work, by itself: what it finds the others see at the end, so that no cache line goes to and fro. */
+struct par_finder {
+    struct par_finds *finds;
+    size_t share;
+    struct par_worklist list;
+    int32_t row, n; /* the last ones found are of this row */
+    bool no_memory;
+};
+
+static inline struct par_finder par_finder_of(struct par_finds *finds, size_t share)
+{
+    return (struct par_finder){.finds = finds, .share = share};
+}
+
+static inline void par_finder_count(struct par_finder *f)
+{
+    f->finds->count[f->share * (size_t)f->finds->n_rows + (size_t)f->row] += f->n;
+    f->n = 0;
+}
+
+static inline void par_find(struct par_finder *f, int32_t item, int32_t row)
+{
+    if (row != f->row) {
+        par_finder_count(f);
+        f->row = row;
+    }
+    f->n++;
+    if (f->list.n < f->list.capacity)
+        f->list.item[f->list.n++] = item;
+    else if (!par_worklist_add(&f->list, item))
+        f->no_memory = true;
+}
+
+/* False: no memory. */
+static inline bool par_finder_end(struct par_finder *f)
+{
+    par_finder_count(f);
+    f->finds->found[f->share] = f->list;
+    return !f->no_memory;
+}
+
+/* Deals what has been found to the rows, which row_of tells. False: no memory. */
+bool par_finds_deal(struct par_finds *finds, int32_t (*row_of)(const void *context, int32_t item), const void *context,
+                    const struct tri_executor *executor);
+
+/* Replaces a list of ids, ascending, by its runs, first and end of each; short ones are left out. */
+void par_finds_to_runs(struct par_worklist *list);
+
+/* Adds runs to ranges; false: no memory. */
+bool par_finds_add_runs(const struct par_worklist *runs, struct par_ranges *to);
+
+/* The same with those of all shares. */
+bool par_finds_give(const struct par_finds *finds, struct par_ranges *to);
+
+#endif
