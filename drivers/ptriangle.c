@@ -169,7 +169,7 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
     struct tri_counts before;
     const struct tri_sink streams = streams_sink(&p->streams);
     struct par_queue queue;
-    enum tri_status status = tri_count_mesh(&before, mesh, error);
+    enum tri_status status = tri_count_mesh(&before, mesh, NULL, error);
     int64_t unused = mesh->n_vertices - before.vertices;
     status = status ? status : streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
     status = status ? status : streams_open_text(&p->streams, run, set, error);

@@ -5,8 +5,8 @@
 #include <float.h>
 #include <stdlib.h>
 
-#include "triangle/clock.h"
 #include "sched/theory.h"
+#include "triangle/clock.h"
 #include "triangle/estimate.h"
 #include "triangle/grow.h"
 
@@ -22,7 +22,8 @@ struct task {
     struct tri_fence known;    /* what is here of the fence */
     bool has_margin;
     struct par_room room;
-    struct par_view view;
+    struct tri_mesh view;
+    struct tri_owners owners;
     struct tri_refine_options options;
     struct tri_refine_report report;
     struct tri_refiner *refiner;
@@ -71,17 +72,20 @@ static int32_t owner_now(const struct phase *p, int32_t t)
     return mine ? block : TRI_NONE;
 }
 
-static void assign_blocks(struct phase *p)
+static void assign_share(void *context, size_t share)
 {
+    const struct phase *p = context;
     const struct tri_mesh *mesh = p->state->mesh;
-    const struct par_worklist *worklist = &p->state->worklist;
-#pragma omp parallel for num_threads(p->state->threads) schedule(static)
-    for (int32_t i = 0; i < worklist->n; i++) {
-        int32_t t = worklist->item[i];
+    const struct tri_range range = tri_share_of(share, TRI_MOST_SHARES, p->state->worklist.n);
+    for (int32_t i = range.first; i < range.last; i++) {
+        int32_t t = p->state->worklist.item[i];
         p->block_of[i] = tri_is_live(&mesh->tri[t]) ? owner_now(p, t) : GONE;
         p->work[i] = p->block_of[i] >= 0 ? tri_work_of(mesh, p->state->quality, t) : 0;
     }
 }
+
+/* In as many shares as there can be: each entry takes a while. */
+static void assign_blocks(struct phase *p) { tri_execute(&p->state->executor, TRI_MOST_SHARES, assign_share, p); }
 
 /* Triangles that a worklist with so much work will become in this phase, to the order: a little less than they do
  * become, since a pause costs less than gaps do. Measured: the rest is left at the seams. */
@@ -258,11 +262,12 @@ static void run_task(struct phase *p, struct task *task)
 {
     double began = tri_seconds();
     assert(task->pausing);
-    task->view.owners = (struct tri_owners){p->mark, task->block + 1};
+    task->owners = (struct tri_owners){p->mark, task->block + 1};
+    task->options.owners = p->mark ? &task->owners : NULL;
     par_room_enter(&task->room, &task->view, p->state->mesh);
     task->status = TRI_OK;
     if (!task->refiner)
-        task->status = tri_refiner_new(&task->refiner, &task->view.mesh, &task->options, &task->report, &task->error);
+        task->status = tri_refiner_new(&task->refiner, &task->view, &task->options, &task->report, &task->error);
     if (!task->status)
         task->status = tri_refiner_run(task->refiner, &task->error);
     par_room_leave(&task->room, &task->view);
@@ -274,17 +279,20 @@ static void run_task(struct phase *p, struct task *task)
     task->seconds += tri_seconds() - began;
 }
 
+static void run_next(void *context, size_t index)
+{
+    struct phase *p = context;
+    struct task *task = &p->tasks[p->order[index]];
+    if (task->pausing)
+        run_task(p, task);
+}
+
 /* Runs every task that is not done; returns whether any waits for room. */
 static bool run_tasks(struct phase *p)
 {
     double began = tri_seconds();
     bool waiting = false;
-#pragma omp parallel for num_threads(p->state->threads) schedule(dynamic, 1)
-    for (int32_t i = 0; i < p->n_tasks; i++) {
-        struct task *task = &p->tasks[p->order[i]];
-        if (task->pausing)
-            run_task(p, task);
-    }
+    tri_execute(&p->state->executor, (size_t)p->n_tasks, run_next, p);
     for (int32_t i = 0; i < p->n_tasks; i++)
         waiting |= p->tasks[i].pausing;
     double seconds = tri_seconds() - began;

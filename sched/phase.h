@@ -14,10 +14,6 @@
 
 struct par_state;
 
-/* An executor of the state's threads; tasks look at the memory that is taken before they begin. It lives as long as the
- * state. */
-struct tri_executor par_executor_of(struct par_state *state);
-
 /* Tells of the phase that begins. */
 void par_tell(const struct par_state *state, int phase);
 
@@ -35,7 +31,7 @@ struct par_state {
     struct tri_mesh *mesh;
     const struct tri_refine_options *quality;
     const struct par_options *options;
-    int threads;
+    struct tri_executor executor;
     struct par_worklist worklist;   /* triangles that may be bad, in canonical order; some may have gone since */
     struct par_keys key;     /* [worklist.n] ascending; n == 0: no block has had any */
     uint32_t n_left;         /* by blocks so far */

@@ -43,55 +43,54 @@ static struct par_range *current_of(struct par_room *room, enum par_kind kind)
     return room->current[kind] < ranges->n ? &ranges->item[room->current[kind]] : NULL;
 }
 
-/* Shows a view's mesh the current range of a kind. */
-static void enter(struct par_room *room, struct tri_mesh *mesh, enum par_kind kind)
+/* Shows a view the current range of a kind. */
+static void enter(struct par_room *room, struct tri_mesh *view, enum par_kind kind)
 {
     const struct par_range *range = current_of(room, kind);
-    struct counts counts = counts_of(mesh, kind);
+    struct counts counts = counts_of(view, kind);
     assert(!range || (0 <= range->next && range->next <= range->end));
     *counts.used = range ? range->next : 0;
     *counts.capacity = range ? range->end : 0;
 }
 
-static void leave(struct par_room *room, struct tri_mesh *mesh, enum par_kind kind)
+static void leave(struct par_room *room, struct tri_mesh *view, enum par_kind kind)
 {
     struct par_range *range = current_of(room, kind);
-    struct counts counts = counts_of(mesh, kind);
+    struct counts counts = counts_of(view, kind);
     if (!range)
         return;
     assert(range->next <= *counts.used && *counts.used <= range->end && *counts.capacity == range->end);
     range->next = *counts.used;
 }
 
-enum tri_status par_more_room(void *user, struct tri_mesh *mesh, struct tri_error *error)
+enum tri_status par_more_room(void *user, struct tri_mesh *view, struct tri_error *error)
 {
     struct par_room *room = user;
     for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++) {
-        const struct counts counts = counts_of(mesh, kind);
+        const struct counts counts = counts_of(view, kind);
         assert(*counts.used <= *counts.capacity);
         while (*counts.capacity - *counts.used < one_insertion[kind]) {
-            leave(room, mesh, kind);
+            leave(room, view, kind);
             if (room->current[kind] + 1 >= room->ranges[kind].n)
                 return tri_fail(error, TRI_NO_ROOM, NULL, 0, "the block's room is full");
             room->current[kind]++;
-            enter(room, mesh, kind);
+            enter(room, view, kind);
         }
     }
     return TRI_OK;
 }
 
-void par_room_enter(struct par_room *room, struct par_view *view, const struct tri_mesh *shared)
+void par_room_enter(struct par_room *room, struct tri_mesh *view, const struct tri_mesh *shared)
 {
-    view->mesh = *shared;
-    view->mesh.owners = view->owners.mark ? &view->owners : NULL;
+    *view = *shared;
     for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++)
-        enter(room, &view->mesh, kind);
+        enter(room, view, kind);
 }
 
-void par_room_leave(struct par_room *room, struct par_view *view)
+void par_room_leave(struct par_room *room, struct tri_mesh *view)
 {
     for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++)
-        leave(room, &view->mesh, kind);
+        leave(room, view, kind);
 }
 
 /* Room in both lists for one more range in a block's hands: to take it now, and to give it back later. */
@@ -295,8 +294,24 @@ static int32_t *forwarding_at(const struct tri_mesh *mesh, int32_t v, int32_t ke
     return &mesh->vertex_markers[v];
 }
 
+/* Corners that have moved: of vertices that lay at `kept` or above. */
+struct renaming {
+    const struct tri_mesh *mesh;
+    int32_t kept;
+};
+
+static void rename_corners(void *context, size_t share)
+{
+    const struct renaming *r = context;
+    const struct tri_range range = tri_share(share, r->mesh->n_triangles);
+    for (int32_t t = range.first; t < range.last; t++)
+        for (int k = 0; k < 3; k++)
+            if (r->mesh->tri[t].v[k] >= r->kept)
+                r->mesh->tri[t].v[k] = *forwarding_at(r->mesh, r->mesh->tri[t].v[k], r->kept);
+}
+
 /* Moves vertices into gaps. */
-static void close_vertices(struct par_ranges *gaps, struct tri_mesh *mesh, int threads)
+static void close_vertices(struct par_ranges *gaps, struct tri_mesh *mesh, const struct tri_executor *executor)
 {
     struct closing c = closing_of(gaps, mesh->n_vertices);
     int32_t hole, item;
@@ -305,12 +320,8 @@ static void close_vertices(struct par_ranges *gaps, struct tri_mesh *mesh, int t
         *forwarding_at(mesh, item, c.last + 1) = hole;
     }
     int32_t kept = c.last + 1;
-    (void)threads; /* without OpenMP */
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
-        for (int k = 0; k < 3; k++)
-            if (mesh->tri[t].v[k] >= kept)
-                mesh->tri[t].v[k] = *forwarding_at(mesh, mesh->tri[t].v[k], kept);
+    struct renaming renaming = {mesh, kept};
+    tri_execute(executor, tri_shares(mesh->n_triangles), rename_corners, &renaming);
     for (int32_t s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2; k++)
             if (mesh->sub[s].v[k] >= kept)
@@ -318,10 +329,10 @@ static void close_vertices(struct par_ranges *gaps, struct tri_mesh *mesh, int t
     mesh->n_vertices = kept;
 }
 
-void par_room_close(struct par_room *spare, struct tri_mesh *shared, int threads)
+void par_room_close(struct par_room *spare, struct tri_mesh *shared, const struct tri_executor *executor)
 {
     close_triangles(&spare->ranges[PAR_TRIANGLES], shared);
     close_subs(&spare->ranges[PAR_SUBS], shared);
-    close_vertices(&spare->ranges[PAR_VERTICES], shared, threads);
+    close_vertices(&spare->ranges[PAR_VERTICES], shared, executor);
     par_room_free(spare);
 }

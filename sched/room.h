@@ -10,7 +10,6 @@
 #define SCHED_ROOM_H
 
 #include "triangle/mesh.h"
-#include "triangle/owners.h"
 
 enum par_kind { PAR_VERTICES, PAR_TRIANGLES, PAR_SUBS, PAR_KINDS };
 
@@ -24,30 +23,24 @@ struct par_ranges {
     int32_t dealt; /* of spare: ranges that blocks have and will return; there is always room for them here */
 };
 
-/* What one block works on: the shared arrays, with counts and capacities that are those of its room's current
- * ranges. */
-struct par_view {
-    struct tri_mesh mesh;
-    struct tri_owners owners; /* owners.mark: NULL where nobody asks */
-};
-
 /* Room for `need` ranges in all; amortised O(1) a range. False: no memory. */
 bool par_ranges_reserve(struct par_ranges *ranges, int32_t need);
 
-/* What one block has. The current range of each kind lives in the view while the block runs. */
+/* What one block has. The current range of each kind lives in its view while it runs. */
 struct par_room {
     struct par_ranges ranges[PAR_KINDS];
     int32_t current[PAR_KINDS];
 };
 
-/* A tri_more_room: user is the struct par_room that belongs to the view whose mesh this is. */
-enum tri_status par_more_room(void *user, struct tri_mesh *mesh, struct tri_error *error);
+/* A tri_more_room: user is the struct par_room that belongs to this view. */
+enum tri_status par_more_room(void *user, struct tri_mesh *view, struct tri_error *error);
 
-/* Points the view at the shared arrays, which may have moved, and at the room's current ranges. */
-void par_room_enter(struct par_room *room, struct par_view *view, const struct tri_mesh *shared);
+/* Makes *view, what a block works on: the shared arrays, which may have moved, with counts and capacities that are
+ * those of the room's current ranges. */
+void par_room_enter(struct par_room *room, struct tri_mesh *view, const struct tri_mesh *shared);
 
 /* Remembers in the room how far the view's ranges have been used. */
-void par_room_leave(struct par_room *room, struct par_view *view);
+void par_room_leave(struct par_room *room, struct tri_mesh *view);
 
 /* Sees to it that the room has at least `triangles` unused triangles, and vertices and subsegments to match: from
  * `spare` first, else from the end of the shared arrays, which grow. TRI_NO_MEMORY, TRI_TOO_LARGE: what it got so
@@ -67,7 +60,7 @@ void par_room_mark_sub(struct tri_mesh *shared, tri_sub_id s);
 /* Closes the gaps that `spare` lists in the shared arrays with the last items there; afterwards every vertex and
  * triangle below the mesh's counts is used, as before the first phase. O(gaps), and one parallel pass over the
  * triangles. Frees spare. Cannot fail. */
-void par_room_close(struct par_room *spare, struct tri_mesh *shared, int threads);
+void par_room_close(struct par_room *spare, struct tri_mesh *shared, const struct tri_executor *executor);
 
 void par_room_free(struct par_room *room);
 

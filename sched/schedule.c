@@ -7,15 +7,15 @@
 #include <assert.h>
 #include <stdlib.h>
 
-#include "triangle/clock.h"
 #include "sched/phase.h"
 #include "sched/ranks/ranks.h"
+#include "sched/sweep/numbering.h"
 #include "sched/sweep/sweep.h"
 #include "sched/theory.h"
 #include "sched/threads.h"
 #include "triangle/census.h"
+#include "triangle/clock.h"
 #include "triangle/estimate.h"
-#include "sched/sweep/numbering.h"
 
 /* Cells hold one in CELLS of the final triangles, within limits: small ones keep many threads busy, large ones make
  * fewer seams. Coarse triangles a cell has after pre-refinement: enough for seams to be narrow, few enough for
@@ -47,31 +47,6 @@ int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mes
     *phase = -1;
     return TRI_NONE;
 }
-
-static void run_in_parallel(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
-{
-    int threads = par_threads_wanted(*(int *)self);
-    threads = n_tasks < (size_t)threads ? (int)n_tasks : threads;
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
-    for (size_t i = 0; i < n_tasks; i++)
-        task(context, i);
-}
-
-struct tri_executor par_executor(int *threads) { return (struct tri_executor){run_in_parallel, threads}; }
-
-static void run_watched(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
-{
-    const struct par_state *state = self;
-    int threads = par_threads_wanted(state->threads);
-    threads = n_tasks < (size_t)threads ? (int)n_tasks : threads;
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
-    for (size_t i = 0; i < n_tasks; i++) {
-        par_park_look(state->park);
-        task(context, i);
-    }
-}
-
-struct tri_executor par_executor_of(struct par_state *state) { return (struct tri_executor){run_watched, state}; }
 
 /* Which bad triangles a graded pre-refinement takes: those with an edge longer than a share of the cell it lies in. In
  * the mesh's units, where squares neither overflow nor underflow. */
@@ -142,7 +117,8 @@ static enum tri_status prerefine_uniform(struct par_state *state, const struct t
                                          double cell, int level, struct tri_error *error)
 {
     struct tri_refine_options coarse = coarse_bounds(quality, cell);
-    if (level == 0 && coarse.min_angle > 0 && quality->max_area > 0) {
+    bool is_told = level == 0 && !state->report->partition.x; /* of the first schedule, see report_schedule */
+    if (is_told && coarse.min_angle > 0 && quality->max_area > 0) {
         double area = quality->max_area * coarse.area_scale;
         state->report->radius_lemma7 = par_radius_lemma7(area, par_rho(coarse.min_angle));
         state->report->radius_theory = par_radius_tight(area, coarse.min_angle);
@@ -153,9 +129,8 @@ static enum tri_status prerefine_uniform(struct par_state *state, const struct t
 static enum tri_status fill_worklist(struct par_state *state, const struct tri_refine_options *quality, bool known,
                                  struct tri_error *error)
 {
-    struct tri_executor executor = par_executor_of(state);
     state->key.n = 0;
-    return par_worklist_fill(&state->worklist, state->mesh, quality, known, &executor, &state->radius, error);
+    return par_worklist_fill(&state->worklist, state->mesh, quality, known, &state->executor, &state->radius, error);
 }
 
 /* Pre-refinement where the input is already fine in places: the same refinement for bad triangles alone that have an
@@ -173,12 +148,11 @@ static enum tri_status prerefine_graded(struct par_state *state, const struct tr
     coarse.urgent_user = &test;
     coarse.max_steiner = (int64_t)(partition->estimate / 400);
     struct par_worklist long_ones;
-    struct tri_executor executor = par_executor_of(state);
     double began = tri_seconds();
     enum tri_status status = fill_worklist(state, quality, false, error);
     if (status)
         return status;
-    if (!par_worklist_filter(&state->worklist, state->mesh, &coarse, &executor, &long_ones))
+    if (!par_worklist_filter(&state->worklist, state->mesh, &coarse, &state->executor, &long_ones))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)state->worklist.n);
     assert(long_ones.n <= state->worklist.n);
     coarse.worklist = long_ones.item;
@@ -219,9 +193,8 @@ static enum tri_status number_mesh(struct par_state *state, struct tri_error *er
 {
     double began = tri_seconds();
     par_tell(state, PAR_NUMBERING);
-    struct tri_executor executor = par_executor_of(state);
     enum tri_status status = par_park_expect(state->park, state->mesh, par_number_bytes(state->mesh), error);
-    status = status ? status : par_number(state->mesh, &state->cells, state->n_kept, &executor, error);
+    status = status ? status : par_number(state->mesh, &state->cells, state->n_kept, &state->executor, error);
     state->numbered = true;
     state->report->seconds_number += tri_seconds() - began;
     return status;
@@ -242,7 +215,7 @@ static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, st
         }
         began = tri_seconds();
     }
-    par_room_close(&state->spare, state->mesh, state->threads);
+    par_room_close(&state->spare, state->mesh, &state->executor);
     assert(tri_mesh_is_sound(state->mesh));
     state->report->seconds_merge += tri_seconds() - began;
     return status;
@@ -279,8 +252,7 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
 static enum tri_status refine_on_ranks(struct par_state *state, const struct par_partition *partition,
                                        struct tri_error *error)
 {
-    struct tri_executor executor = par_executor_of(state);
-    struct par_tiles tiles = par_tiles_of(state, partition, &executor);
+    struct par_tiles tiles = par_tiles_of(state, partition);
     enum tri_status status = par_refine_on_ranks(state, partition, &tiles, error);
     state->delivered = true;
     par_tiles_free(&tiles);
@@ -602,7 +574,8 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
 {
     double began = tri_seconds();
     *report = (struct par_report){.threads = par_threads(options->threads, false)};
-    struct par_state state = {.mesh = mesh, .options = options, .threads = report->threads, .report = report,
+    struct par_state state = {.mesh = mesh, .options = options, .report = report,
+                              .executor = par_executor(&report->threads),
                               .n_kept = mesh->n_vertices};
     bool sequential = must_be_sequential(quality, options);
     bool can_sweep = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE;
@@ -611,6 +584,8 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
         status = par_park_open(&state.park, mesh, options->sink ? options->scratch : NULL, options->memory, error);
     if (status)
         return status;
+    if (state.park)
+        state.executor = par_park_executor(state.park, state.executor);
     status = refine_and_deliver(&state, quality, sequential, error);
     status = par_park_status(state.park, status, error);
     clean_up(&state);

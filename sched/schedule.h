@@ -118,9 +118,6 @@ int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mes
 
 void par_report_free(struct par_report *report);
 
-/* An executor that runs tasks on this many threads (<= 0: what OpenMP would use); it lives as long as *threads. */
-struct tri_executor par_executor(int *threads);
-
 #ifdef __cplusplus
 }
 #endif

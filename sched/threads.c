@@ -43,7 +43,8 @@ static int try_threads(int n)
     return made;
 }
 
-int par_threads_wanted(int asked)
+/* Whatever the system gives. */
+static int threads_wanted(int asked)
 {
     if (is_forked())
         return 1;
@@ -53,14 +54,14 @@ int par_threads_wanted(int asked)
 
 int par_threads(int asked, bool wary)
 {
-    int threads = par_threads_wanted(asked);
+    int threads = threads_wanted(asked);
     if (threads <= 1 || (!wary && threads <= omp_get_num_procs()))
         return threads;
     int made = try_threads(threads - 1);
     return made == threads - 1 ? threads : made / 2 + 1; /* others, and memory, need some of what there is */
 }
 #else
-int par_threads_wanted(int asked)
+static int threads_wanted(int asked)
 {
     (void)asked;
     return 1;
@@ -72,3 +73,14 @@ int par_threads(int asked, bool wary)
     return 1;
 }
 #endif
+
+static void run_in_parallel(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
+{
+    int threads = threads_wanted(*(int *)self);
+    threads = n_tasks < (size_t)threads ? (int)n_tasks : threads;
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
+    for (size_t i = 0; i < n_tasks; i++)
+        task(context, i);
+}
+
+struct tri_executor par_executor(int *threads) { return (struct tri_executor){run_in_parallel, threads}; }

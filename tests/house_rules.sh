@@ -72,6 +72,11 @@ refuse '#[[:space:]]*pragma[[:space:]]+omp|<(omp|pthread|threads)\.h>' 'knows th
     triangle/*.[ch] triangle/api/*.[ch] triangle/text/*.[ch] triangle/hdf5/*.[ch] triangle/dropin/*.[ch] \
     triangle/*/*.cpp # the judge has loops on all cores
 
+# One file of sched/ runs anything in parallel: all else there hands tasks to an executor.
+others=$(ls sched/*.[ch] sched/*/*.[ch] | grep -vx sched/threads.c | tr '\n' ' ')
+# shellcheck disable=SC2086 # one word a file
+refuse '#[[:space:]]*pragma[[:space:]]+omp|<omp\.h>' 'does not leave threads to sched/threads.c' $others
+
 # One file knows MPI, so that all else can be compiled, and tried, without.
 others=$(ls triangle/*.[ch] triangle/*/*.[ch] sched/*.[ch] sched/*/*.[ch] | grep -vx sched/ranks/mpi.c | tr '\n' ' ')
 # shellcheck disable=SC2086 # one word a file

@@ -4,6 +4,7 @@
 
 #include "sched/phase.h"
 #include "sched/theory.h"
+#include "sched/threads.h"
 #include "triangle/estimate.h"
 #include "triangle/quality.h"
 
@@ -159,8 +160,9 @@ static int64_t run_phase(struct tri_mesh *mesh, const struct tri_refine_options 
 {
     struct tri_error error = {0};
     struct par_report report = {0};
-    struct par_state state = {.mesh = mesh, .quality = quality, .options = options, .threads = options->threads,
-                              .report = &report};
+    int threads = options->threads;
+    struct par_state state = {.mesh = mesh, .quality = quality, .options = options,
+                              .executor = par_executor(&threads), .report = &report};
     int32_t n_old = mesh->n_triangles;
     struct tri_triangle *old = malloc((size_t)n_old * sizeof *old);
     assert_non_null(old);
@@ -172,7 +174,7 @@ static int64_t run_phase(struct tri_mesh *mesh, const struct tri_refine_options 
     assert_changes_are_owned(mesh, old, n_old, p, phase);
     assert_worklist_holds_all_that_is_bad(mesh, quality, &state.worklist, &report.total);
     *pauses += report.pauses;
-    par_room_close(&state.spare, mesh, options->threads);
+    par_room_close(&state.spare, mesh, &state.executor);
     assert_int_equal(tri_mesh_validate(mesh, &error), TRI_OK);
     int64_t inserted = report.total.inserted_free + report.total.inserted_on_segments;
     for (int32_t i = 0; i < report.n_blocks; i++)
@@ -232,7 +234,8 @@ static void test_four_phases_in_turn(void **state)
         struct tri_mesh mesh = start_of(&trials[i], &quality);
         struct par_partition partition = cut(&mesh, &quality, trials[i].block);
         struct par_state phases = {
-            .mesh = &mesh, .quality = &quality, .options = &options, .threads = 2, .report = &report};
+            .mesh = &mesh, .quality = &quality, .options = &options, .executor = par_executor(&options.threads),
+            .report = &report};
         phases.worklist = bad_triangles(&mesh, &quality);
         for (int phase = 0; phase < PAR_PHASES; phase++) {
             assert_int_equal(par_phase(&phases, &partition, phase, TRI_NONE, NULL), TRI_OK);
@@ -242,7 +245,7 @@ static void test_four_phases_in_turn(void **state)
         print_message("  %-16s %d left of %lld inserted\n", trials[i].file ? trials[i].file : "square",
                       (int)phases.worklist.n, (long long)report.total.inserted_free);
         assert_true(phases.worklist.n < report.total.inserted_free / 4);
-        par_room_close(&phases.spare, &mesh, 2);
+        par_room_close(&phases.spare, &mesh, &phases.executor);
         assert_int_equal(tri_mesh_validate(&mesh, NULL), TRI_OK);
         support_assert_cdt(&mesh, false);
         par_report_free(&report);
@@ -273,13 +276,14 @@ static void test_margin_keeps_cavities_inside(void **state)
             struct par_options options = {.threads = 2, .margin = margin};
             struct par_report report = {0};
             struct tri_mesh mesh = support_generate(&pslg, &fine, NULL);
-            struct par_state lone = {.mesh = &mesh, .quality = &quality, .options = &options, .threads = 2,
-                                      .report = &report, .radius = sqrt(largest2)};
+            struct par_state lone = {.mesh = &mesh, .quality = &quality, .options = &options,
+                                      .executor = par_executor(&options.threads), .report = &report,
+                                      .radius = sqrt(largest2)};
             lone.worklist = bad_triangles(&mesh, &quality);
             assert_int_equal(par_phase(&lone, &partition, phase, TRI_NONE, NULL), TRI_OK);
             assert_true(report.total.inserted_free > 1000);
             assert_true(margin ? report.total.fenced == 0 : report.total.fenced > 0);
-            par_room_close(&lone.spare, &mesh, 2);
+            par_room_close(&lone.spare, &mesh, &lone.executor);
             par_report_free(&report);
             free(lone.worklist.item);
             free(lone.key.item);

@@ -1,18 +1,8 @@
 /* Bounds, shapes and placement against elementary geometry in long double. */
 #include "support.h"
-#include "triangle/degrees.h"
 #include "triangle/quality.h"
 
 static const double RADIANS = 0.017453292519943295769;
-
-static void test_cosine(void **state)
-{
-    (void)state;
-    for (double degrees = 0; degrees <= 180; degrees += 0.0625)
-        assert_true(fabs(tri_cos_degrees(degrees) - (double)cosl((long double)degrees * 0.017453292519943295769237L)) <=
-                    1e-15);
-    assert_true(tri_cos_degrees(0) == 1);
-}
 
 static void test_bounds(void **state)
 {
@@ -152,7 +142,6 @@ static void test_off_centre_keeps_the_bound(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cosine),
         cmocka_unit_test(test_bounds),
         cmocka_unit_test(test_shape_and_angle_test),
         cmocka_unit_test(test_longer_product_takes_the_two_longer),

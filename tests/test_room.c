@@ -4,6 +4,7 @@
 
 #include "sched/room.h"
 #include "sched/sweep/numbering.h"
+#include "sched/threads.h"
 
 enum { ROOMS = 6, NOBODY = -1, SPARE = -2, USED = -3 };
 
@@ -74,25 +75,24 @@ static void table_free(struct table *table)
 static bool use_room(struct table *table, struct par_room *room, const struct tri_mesh *shared, int32_t who, int32_t n,
                      struct support_random *random)
 {
-    struct par_view view = {0};
+    struct tri_mesh view = {0};
     bool enough = true;
     par_room_enter(room, &view, shared);
     for (int32_t i = 0; i < n && enough; i++) {
-        struct tri_mesh *mesh = &view.mesh;
-        bool need = mesh->vertex_capacity - mesh->n_vertices < 1 || mesh->triangle_capacity - mesh->n_triangles < 2 ||
-                    mesh->sub_capacity - mesh->n_subs < 1;
-        enum tri_status status = need ? par_more_room(room, &view.mesh, NULL) : TRI_OK;
+        bool need = view.vertex_capacity - view.n_vertices < 1 || view.triangle_capacity - view.n_triangles < 2 ||
+                    view.sub_capacity - view.n_subs < 1;
+        enum tri_status status = need ? par_more_room(room, &view, NULL) : TRI_OK;
         assert_true(status == TRI_OK || status == TRI_NO_ROOM);
         enough = status == TRI_OK;
         if (!enough)
             break;
         int32_t taken[4][2] = {
-            {PAR_VERTICES, view.mesh.n_vertices++}, {PAR_TRIANGLES, view.mesh.n_triangles++},
-            {PAR_TRIANGLES, view.mesh.n_triangles++}};
+            {PAR_VERTICES, view.n_vertices++}, {PAR_TRIANGLES, view.n_triangles++},
+            {PAR_TRIANGLES, view.n_triangles++}};
         int n_taken = 3;
         if (support_below(random, 4) == 0) {
             taken[3][0] = PAR_SUBS;
-            taken[3][1] = view.mesh.n_subs++;
+            taken[3][1] = view.n_subs++;
             n_taken = 4;
         }
         for (int k = 0; k < n_taken; k++) {
@@ -172,7 +172,7 @@ static struct tri_mesh mesh_with_attributes(void)
 /* Refines some more on a view, until it is done, or its limit is reached, or it has no more room. */
 static int64_t refine_in_room(struct tri_mesh *shared, struct par_room *room, int64_t limit, double max_area)
 {
-    struct par_view view = {0};
+    struct tri_mesh view = {0};
     struct tri_refine_options options = tri_refine_defaults();
     struct tri_refine_report report;
     int32_t n = shared->n_triangles, *worklist = malloc((size_t)n * sizeof *worklist);
@@ -187,7 +187,7 @@ static int64_t refine_in_room(struct tri_mesh *shared, struct par_room *room, in
         if (tri_is_live(&shared->tri[i]))
             worklist[options.n_worklist++] = i;
     par_room_enter(room, &view, shared);
-    enum tri_status status = tri_refine(&view.mesh, &options, &report, NULL);
+    enum tri_status status = tri_refine(&view, &options, &report, NULL);
     assert_true(status == TRI_OK || status == TRI_NO_ROOM);
     par_room_leave(room, &view);
     free(worklist);
@@ -249,7 +249,9 @@ static void test_closing_keeps_the_mesh(void **state)
         struct support_places places = support_places(&mesh);
         assert_true(vertices > mesh.n_input || seed > 0);
         if (seed % 2) {
-            par_room_close(&spare, &mesh, 1 + (int)(seed % 3));
+            int threads = 1 + (int)(seed % 3);
+            struct tri_executor executor = par_executor(&threads);
+            par_room_close(&spare, &mesh, &executor);
         } else {
             /* leaves out what is marked */
             struct par_partition tiles;
@@ -273,14 +275,14 @@ static void test_closing_extremes(void **state)
     struct par_room room = {0}, spare = {0};
     struct support_places places = support_places(&mesh);
     int32_t vertices = mesh.n_vertices, subs = mesh.n_subs;
-    par_room_close(&spare, &mesh, 2); /* no gaps at all */
+    par_room_close(&spare, &mesh, NULL); /* no gaps at all */
     assert_closed(&mesh, &places, vertices);
     for (int i = 0; i < 5; i++) {
         assert_int_equal(par_room_extend(&room, &spare, &mesh, 1000, NULL), TRI_OK);
         par_room_return(&room, &spare);
     }
     assert_true(mesh.n_triangles >= 1000 && mesh.n_triangles < 3000); /* what is given back is dealt again */
-    par_room_close(&spare, &mesh, 2);
+    par_room_close(&spare, &mesh, NULL);
     assert_closed(&mesh, &places, vertices);
     assert_int_equal(mesh.n_subs, subs);
     support_places_free(&places);

@@ -12,6 +12,7 @@
 
 #include "sched/schedule.h"
 #include "sched/sweep/numbering.h"
+#include "sched/threads.h"
 #include "tile_order.h"
 #include "trials.h"
 

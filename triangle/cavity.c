@@ -4,7 +4,6 @@
 #include <assert.h>
 #include <stdlib.h>
 
-#include "triangle/owners.h"
 #include "triangle/predicates.h"
 
 /* |error of the determinant| <= (10 + 96 u) u * permanent, u = 2^-53 (Shewchuk 1997, section 4.4). The permanent, the
@@ -262,11 +261,11 @@ static void take_numbers(struct tri_cavity *c, struct tri_mesh *mesh)
 }
 
 #ifndef NDEBUG
-/* Every triangle of the cavity belongs to whoever works on this view, and to nobody else. */
-static bool claim(const struct tri_cavity *c, const struct tri_mesh *mesh)
+/* Every triangle of the cavity belongs to whoever changes it now, and to nobody else. */
+static bool claim(const struct tri_cavity *c)
 {
     for (int32_t i = 0; i < c->n_tri; i++)
-        if (!tri_owners_claim(mesh->owners, c->tri[i]))
+        if (!tri_owners_claim(c->owners, c->tri[i]))
             return false;
     return true;
 }
@@ -327,7 +326,7 @@ void tri_cavity_fill(struct tri_cavity *c, struct tri_mesh *mesh, tri_vertex_id 
 {
     assert(c->n_tri >= 1 && c->n_edges == c->n_tri + 2); /* Euler: a disk without a vertex inside */
     assert(v >= 0 && v < mesh->n_vertices && mesh->xy[v].x == c->p.x && mesh->xy[v].y == c->p.y);
-    assert(claim(c, mesh));
+    assert(claim(c));
     if (c->mixed)
         place_regions(c, mesh, 0, c->n_edges, 0, c->n_tri);
     take_numbers(c, mesh);
@@ -343,7 +342,7 @@ tri_sub_id tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, tr
     assert(n_left >= 0 && n_left <= c->n_edges && (n_left == 0) == (old.side[0] == TRI_NONE));
     assert(c->n_edges == c->n_tri + (tri_is_boundary(&old) ? 1 : 2)); /* Euler: a disk on each side */
     assert(v >= 0 && v < mesh->n_vertices && v != old.v[0] && v != old.v[1]);
-    assert(claim(c, mesh));
+    assert(claim(c));
     if (c->mixed) {
         place_regions(c, mesh, 0, n_left, 0, c->n_left_tri);
         place_regions(c, mesh, n_left, c->n_edges, c->n_left_tri, c->n_tri);

@@ -22,6 +22,7 @@
 
 #include "triangle/fence.h"
 #include "triangle/mesh.h"
+#include "triangle/owners.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -51,6 +52,7 @@ struct tri_pending { /* an edge behind which the search has not looked yet; it s
 struct tri_cavity {
     struct tri_point p;
     const struct tri_fence *fence; /* NULL: everything is owned */
+    const struct tri_owners *owners; /* for asserts in debug builds; NULL: none */
     struct tri_point outside;      /* after TRI_SEARCH_FENCED: the vertex that is not within it */
     int32_t n_tri, n_edges, n_wall, capacity;
     int32_t n_left_tri;   /* of a split: triangles left of the subsegment, which come first */

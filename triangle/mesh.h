@@ -98,13 +98,12 @@ struct tri_bound {
     void *user;
 };
 
-struct tri_owners;
-
 struct tri_mesh {
     struct tri_point *xy;     /* [n_vertices] */
     int32_t *on;              /* [n_vertices] kind or parent, see tri_vertex_kind */
     int32_t *vertex_markers;  /* [n_vertices] */
-    double *feature;          /* [n_vertices] size of the features around, once refinement has begun (feature_size.h) */
+    double *feature;          /* [n_vertices] size of the features around, once refinement has begun (feature_size.h):
+                                 what each new vertex inherits, and takes along wherever it goes */
     double *attributes;       /* [n_vertices][n_attributes] */
     int32_t n_attributes;
     int32_t n_vertices, vertex_capacity;
@@ -119,16 +118,16 @@ struct tri_mesh {
     int32_t n_subs, sub_capacity;
     struct tri_parent *parents; /* [n_parents] */
     int32_t n_parents, parent_capacity;
-    struct tri_incidence incidence; /* parents at each vertex of the input, see groundwork.h */
-    struct tri_limits limits;       /* of refinement, see there */
+    /* What refinement has to know of the input (groundwork.h): found once, asked by every call on this mesh, and true
+     * as long as its parents are. */
+    struct tri_incidence incidence; /* parents at each vertex of the input */
+    struct tri_limits limits;
 
     struct tri_region *regions; /* [n_regions] regions[0] is "no region": attribute 0, no bound */
     int32_t n_regions;
     double *columns;          /* [n_regions][n_columns] attributes of the triangles in a region, where the mesh was made
                                  from triangles that had some; else NULL, and n_columns is 0 */
     int32_t n_columns;
-
-    const struct tri_owners *owners; /* for asserts in debug builds (owners.h); borrowed; NULL: none */
 
     double unit;              /* a power of two: the caller's coordinates are xy * unit */
 

@@ -1,5 +1,5 @@
 /* Proof at run time that calls which work on one mesh at once change different triangles: each marks what it changes.
- * For asserts in debug builds; where a mesh has no owners, everything is everybody's. */
+ * For asserts in debug builds; a call without owners changes what it likes. */
 #ifndef TRIANGLE_OWNERS_H
 #define TRIANGLE_OWNERS_H
 
@@ -9,10 +9,10 @@
 
 #include "triangle/ids.h"
 
-/* One for each view of a mesh; they share the marks. */
+/* One for each call; they share the marks. */
 struct tri_owners {
     int32_t *mark; /* [triangles] who changed a triangle since the marks were cleared; 0: nobody */
-    int32_t self;  /* > 0: who works on this view */
+    int32_t self;  /* > 0: who makes this call */
 };
 
 /* False: somebody else has changed the triangle. */

@@ -724,6 +724,7 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
     begin_stages(r);
     frexp(mesh->limits.shortest2, &r->least_exponent);
     r->cavity.fence = options->fence;
+    r->cavity.owners = options->owners;
     return TRI_OK;
 }
 

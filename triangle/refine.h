@@ -13,6 +13,7 @@
 #include "triangle/executor.h"
 #include "triangle/fence.h"
 #include "triangle/mesh.h"
+#include "triangle/owners.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -60,6 +61,8 @@ struct tri_refine_options {
     const struct tri_fence *fence; /* NULL: the whole mesh */
     const struct tri_fence *whole; /* not NULL: the fence should be this one, of which it is a part: where that makes a
                                       difference, the report says so */
+    const struct tri_owners *owners; /* for asserts in debug builds that calls with disjoint fences change different
+                                        triangles; NULL: none */
     const tri_triangle_id *worklist; /* [n_worklist] looked at first; NULL: all. The loop looks at all it makes, too */
     int32_t n_worklist;
     tri_deferred *deferred; /* NULL: nobody */

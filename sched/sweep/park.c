@@ -52,6 +52,7 @@ struct par_park {
     pthread_mutex_t lock;
     const struct tri_stop *outer; /* the mesh's own */
     struct tri_stop stop;
+    struct tri_executor inner;
     pthread_t watch;
     bool watched;
     atomic_bool away, over;     /* arrays are in files; the watch ends */
@@ -246,9 +247,9 @@ static void unmap_pages(struct par_park *park)
     pthread_mutex_unlock(&park->lock);
 }
 
-void par_park_look(struct par_park *park)
+static void look(struct par_park *park)
 {
-    if (!park || !atomic_load_explicit(&park->away, memory_order_relaxed))
+    if (!atomic_load_explicit(&park->away, memory_order_relaxed))
         return;
     const struct resident now = resident();
     const double ours = now.files - park->files, left = park->memory - (now.all - ours);
@@ -260,8 +261,34 @@ void par_park_look(struct par_park *park)
 static bool is_asked(void *user)
 {
     struct par_park *park = user;
-    par_park_look(park);
+    look(park);
     return tri_stop_is_asked(park->outer);
+}
+
+struct looking {
+    struct par_park *park;
+    void (*task)(void *context, size_t index);
+    void *context;
+};
+
+static void look_and_do(void *context, size_t index)
+{
+    const struct looking *l = context;
+    look(l->park);
+    l->task(l->context, index);
+}
+
+static void run_looking(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
+{
+    struct par_park *park = self;
+    struct looking l = {park, task, context};
+    tri_execute(&park->inner, n_tasks, look_and_do, &l);
+}
+
+struct tri_executor par_park_executor(struct par_park *park, struct tri_executor inner)
+{
+    park->inner = inner;
+    return (struct tri_executor){run_looking, park};
 }
 
 /* For work that does not look itself. */
@@ -270,7 +297,7 @@ static void *watch(void *user)
     struct par_park *park = user;
     const struct timespec pause = {0, LOOK_NANOSECONDS};
     while (!atomic_load(&park->over)) {
-        par_park_look(park);
+        look(park);
         nanosleep(&pause, NULL);
     }
     return NULL;

@@ -25,9 +25,9 @@ enum tri_status par_park_open(struct par_park **park, struct tri_mesh *mesh, con
  * arrays move. TRI_CANNOT_WRITE, TRI_NO_MEMORY. NULL: nothing happens. */
 enum tri_status par_park_expect(struct par_park *park, struct tri_mesh *mesh, size_t bytes, struct tri_error *error);
 
-/* To be called by whoever is about to touch a good deal of the mesh, by any thread: lets go what has been touched before,
- * if that is too much. NULL: nothing happens. */
-void par_park_look(struct par_park *park);
+/* The same threads; before each task what has been touched of the mesh is let go, if that is too much. Lives as long as
+ * the park and what `inner` names. */
+struct tri_executor par_park_executor(struct par_park *park, struct tri_executor inner);
 
 /* Why there was no room: instead of the status, TRI_NO_MEMORY, that the mesh gave it. Any other status stays. */
 enum tri_status par_park_status(const struct par_park *park, enum tri_status status, struct tri_error *error);

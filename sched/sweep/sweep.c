@@ -5,13 +5,12 @@
 #include "sched/sweep/ahead.h"
 #include "triangle/clock.h"
 
-struct par_tiles par_tiles_of(const struct par_state *state, const struct par_partition *partition,
-                              const struct tri_executor *executor)
+struct par_tiles par_tiles_of(const struct par_state *state, const struct par_partition *partition)
 {
-    return (struct par_tiles){.mesh = state->mesh, .partition = partition, .executor = executor,
+    return (struct par_tiles){.mesh = state->mesh, .partition = partition, .executor = &state->executor,
                               .n_kept = state->n_kept, .sink = state->options->sink,
                               .figure = state->options->figure, .region_column = state->options->region_column,
-                              .n_jobs = 2 * state->threads};
+                              .n_jobs = 2 * state->report->threads};
 }
 
 /* Something that no block could do lies left of x, where every block has had its turn. */
@@ -106,8 +105,7 @@ static enum tri_status begin_sweep(struct par_state *state, struct par_tiles *ti
 enum tri_status par_sweep(struct par_state *state, const struct par_partition *partition, bool *done,
                           struct tri_error *error)
 {
-    struct tri_executor executor = par_executor_of(state);
-    struct par_tiles tiles = par_tiles_of(state, partition, &executor);
+    struct par_tiles tiles = par_tiles_of(state, partition);
     struct par_ahead ahead;
     bool left = false;
     int32_t odd;
@@ -128,7 +126,7 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
 
 enum tri_status par_hand_out(struct par_state *state, struct tri_error *error)
 {
-    struct par_tiles tiles = par_tiles_of(state, state->numbered ? &state->cells : NULL, NULL);
+    struct par_tiles tiles = par_tiles_of(state, state->numbered ? &state->cells : NULL);
     if (state->options->carrier)
         return par_whole_on_ranks(state->options->carrier, &tiles, error);
     return par_tiles_whole(&tiles, error);

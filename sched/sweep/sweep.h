@@ -11,8 +11,7 @@
 #include "sched/sweep/tiles.h"
 
 /* The tiles of a state's mesh, none of them handed out yet. */
-struct par_tiles par_tiles_of(const struct par_state *state, const struct par_partition *partition,
-                              const struct tri_executor *executor);
+struct par_tiles par_tiles_of(const struct par_state *state, const struct par_partition *partition);
 
 /* *done: all of the mesh has been handed out. False: blocks leave something over, which further rounds would have to
  * do, with all that is around: the sweep has been given up, and neither mesh nor worklist is of any use. */

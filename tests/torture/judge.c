@@ -2,6 +2,7 @@
 #include "tests/torture/judge.h"
 
 #include "sched/schedule.h"
+#include "sched/threads.h"
 #include "triangle/quality.h"
 #include "triangle/reconstruct.h"
 

@@ -1,0 +1,128 @@
+/* Estimates against what refinement makes, and against themselves. */
+#include "support.h"
+#include "triangle/estimate.h"
+
+/* A square of side 1 with some points in it, not refined yet. */
+static struct tri_mesh coarse_square(int32_t n)
+{
+    struct tri_pslg pslg = support_square(1, n, 3);
+    struct tri_options options = tri_defaults();
+    options.use_segments = true;
+    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+    tri_pslg_free(&pslg);
+    return mesh;
+}
+
+static int wants_smaller(void *user, const double a[2], const double b[2], const double c[2], double area)
+{
+    const double *bound = user;
+    (void)a, (void)b, (void)c;
+    return area > *bound;
+}
+
+/* What is promised of bounds on areas: to a few per cent. */
+static void test_areas(void **state)
+{
+    (void)state;
+    for (double area = 1e-2; area > 2e-5; area /= 4) {
+        struct tri_mesh mesh = coarse_square(0);
+        struct tri_refine_options quality = support_quality(20, area).quality;
+        struct tri_refine_report report;
+        double estimate = tri_estimate(&mesh, &quality), sure = tri_sure_work(&mesh, &quality);
+        assert_true(sure > mesh.n_triangles && sure < estimate + mesh.n_triangles);
+        assert_int_equal(tri_refine(&mesh, &quality, &report, NULL), TRI_OK);
+        assert_true(estimate > 0.8 * mesh.n_triangles && estimate < 1.25 * mesh.n_triangles);
+        tri_mesh_free(&mesh);
+    }
+}
+
+/* A size test that asks for the same as an area bound is probed for about as much. */
+static void test_size_test_is_probed(void **state)
+{
+    (void)state;
+    struct tri_mesh mesh = coarse_square(8);
+    struct tri_refine_options areas = support_quality(20, 1e-4).quality, probed = support_quality(20, 0).quality;
+    double bound = 1e-4;
+    probed.unsuitable = wants_smaller;
+    probed.unsuitable_user = &bound;
+    double one = tri_sure_work(&mesh, &areas), other = tri_sure_work(&mesh, &probed);
+    assert_true(other > one / 4 && other < one * 4);
+    bound = HUGE_VAL; /* asks for nothing */
+    assert_true(tri_sure_work(&mesh, &probed) == mesh.n_triangles);
+    bound = -1; /* is never content: no test of size */
+    assert_true(tri_sure_work(&mesh, &probed) == mesh.n_triangles);
+    tri_mesh_free(&mesh);
+}
+
+/* A triangle's share; what is free has none. */
+static void test_shares(void **state)
+{
+    (void)state;
+    struct tri_mesh mesh = coarse_square(30);
+    struct tri_refine_options quality = support_quality(25, 1e-3).quality;
+    double sum = 0;
+    for (int32_t t = 0; t < mesh.n_triangles; t++) {
+        double work = tri_work_of(&mesh, &quality, t);
+        assert_true(work >= 1);
+        sum += work;
+    }
+    double all = tri_estimate(&mesh, &quality);
+    assert_true(sum >= all && sum < 1.3 * all); /* each is taken for a bad one here */
+    int32_t v = mesh.tri[0].v[0];
+    mesh.tri[0].v[0] = TRI_NONE;
+    assert_true(tri_work_of(&mesh, &quality, 0) == 0);
+    assert_true(tri_estimate(&mesh, &quality) < all);
+    mesh.tri[0].v[0] = v;
+    tri_mesh_free(&mesh);
+}
+
+struct samples {
+    double work, most;
+    int32_t n, room; /* so many may come */
+    bool inside;
+};
+
+static bool take(void *user, struct tri_point q, double work)
+{
+    struct samples *s = user;
+    if (s->n == s->room)
+        return false;
+    s->n++;
+    s->work += work;
+    s->most = fmax(s->most, work);
+    s->inside = s->inside && q.x > 0 && q.x < 1 && q.y > 0 && q.y < 1;
+    return true;
+}
+
+/* All work but what was too little for a last sample; smaller pieces are more; who cannot take one ends it. */
+static void test_samples(void **state)
+{
+    (void)state;
+    struct tri_mesh mesh = coarse_square(30);
+    struct tri_refine_options quality = support_quality(25, 1e-4).quality;
+    double all = tri_estimate(&mesh, &quality);
+    int32_t before = 0;
+    for (double grain = 2000; grain > 10; grain /= 5) {
+        struct samples s = {.room = INT32_MAX, .inside = true};
+        assert_true(tri_sample_work(&mesh, &quality, grain, take, &s));
+        assert_true(s.inside && s.n > before);
+        assert_true(s.work <= all * (1 + 1e-9) && s.work > all - 2 * grain);
+        assert_true(s.most < 2 * grain);
+        before = s.n;
+    }
+    struct samples few = {.room = 3, .inside = true};
+    assert_false(tri_sample_work(&mesh, &quality, 10, take, &few));
+    assert_int_equal(few.n, 3);
+    tri_mesh_free(&mesh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_areas),
+        cmocka_unit_test(test_size_test_is_probed),
+        cmocka_unit_test(test_shares),
+        cmocka_unit_test(test_samples),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
