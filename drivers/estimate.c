@@ -10,9 +10,9 @@
 /* Measured: bytes a triangle at the peak, at least and with one refinement loop or the schedule and its numbering; time
  * of the numbering against that of refining; triangles against the least number that area bounds ask for. */
 static const double LEAST_BYTES = 44, LOOP_BYTES = 52, SCHEDULE_BYTES = 74, NUMBERING = 0.55, AREA_FACTOR = 1.14;
-/* Measured, of a mesh that is handed out as it is made: bytes of buffers and libraries; for pages of files on their way,
- * a thread; and, for each root of (triangles * triangles in a cell), of the columns' mesh, on disk with room to grow, of
- * what numbers and hands them out, and of the state of a checkpoint, of which there are two. */
+/* Measured, of a mesh that is handed out as it is made: bytes of buffers and libraries; for pages of files on their
+ * way, a thread; and, for each root of (triangles * triangles in a cell), of the columns' mesh, on disk with room to
+ * grow, of what numbers and hands them out, and of the state of a checkpoint, of which there are two. */
 static const double BUFFERS = 1.5e7, PAGES = 4.8e7, COLUMNS_MESH = 290, COLUMNS_WORK = 115, COLUMNS_STATE = 520;
 /* The same a triangle, of a mesh that stays as a whole; and of the tiles in a checkpoint. */
 static const double PARKED_WORK = 6, PARKED_BYTES = 90, TILES_BYTES = 26;

@@ -76,7 +76,8 @@ static enum tri_status fail_memory(const struct needs *n, bool sure, double need
                                    struct tri_error *error)
 {
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                    "the %sbounds ask for %s %.3g million triangles, which take %.3g GB of memory; %.3g GB are left%s%s",
+                    "the %sbounds ask for %s %.3g million triangles, which take %.3g GB of memory; %.3g GB are left"
+                    "%s%s",
                     sure ? "area " : "", sure ? "at least" : "about", millions(n->triangles), 1e-9 * needed,
                     1e-9 * left, *obstacle ? "; less would do but for " : "", obstacle);
 }
@@ -153,8 +154,8 @@ static enum tri_status check_disk(const struct run *run, const struct estimate *
     const struct disk_place *place = sum_of(sure) > WORTH_A_LOOK ? disk_too_small(sure, &needed) : NULL;
     if (place)
         return tri_fail(error, TRI_CANNOT_WRITE, place->path, 0,
-                        "the area bounds ask for at least %.3g million triangles; %s and what else comes onto that disk "
-                        "take %.3g GB, and %.3g GB are left there", millions(e->least.triangles), place->what,
+                        "the area bounds ask for at least %.3g million triangles; %s and what else comes onto that "
+                        "disk take %.3g GB, and %.3g GB are left there", millions(e->least.triangles), place->what,
                         1e-9 * needed, 1e-9 * disk_left(place));
     place = sum_of(likely) > WORTH_A_LOOK ? disk_too_small(likely, &needed) : NULL;
     if (place)

@@ -6,8 +6,8 @@
  * call that grows the mesh, not a signal. Files are as long as their arrays, and have no name once they are open:
  * nothing is left of them, however the process ends. From then on whoever works on the mesh, and one more thread, look
  * at how much the process has in memory, and unmap all pages of the files when that is too much; who touches one finds
- * it again. The system writes pages to disk and drops them as it needs memory. So the less work jumps about in the mesh,
- * the quicker it is. */
+ * it again. The system writes pages to disk and drops them as it needs memory. So the less work jumps about in the
+ * mesh, the quicker it is. */
 #ifndef SCHED_SWEEP_PARK_H
 #define SCHED_SWEEP_PARK_H
 
@@ -22,8 +22,8 @@ struct par_park;
 enum tri_status par_park_open(struct par_park **park, struct tri_mesh *mesh, const char *folder, int64_t memory,
                               struct tri_error *error);
 
-/* Beside the arrays so many bytes will be needed, which the storage of the mesh may be asked for: if they do not fit, the
- * arrays move. TRI_CANNOT_WRITE, TRI_NO_MEMORY. NULL: nothing happens. */
+/* Beside the arrays so many bytes will be needed, which the storage of the mesh may be asked for: if they do not fit,
+ * the arrays move. TRI_CANNOT_WRITE, TRI_NO_MEMORY. NULL: nothing happens. */
 enum tri_status par_park_expect(struct par_park *park, struct tri_mesh *mesh, size_t bytes, struct tri_error *error);
 
 /* The same threads; before each task what has been touched of the mesh is let go, if that is too much. Lives as long as

@@ -73,8 +73,8 @@ void par_tiles_forget(struct par_tiles *tiles, int32_t v);
 enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error);
 
 /* Hands out, from begin to end, a mesh in memory that has no free numbers: as it is, its tiles those of the partition
- * that it was numbered by, if it was (sched/sweep/numbering.h); else in pieces, all vertices first. Instead of all calls
- * above. */
+ * that it was numbered by, if it was (sched/sweep/numbering.h); else in pieces, all vertices first. Instead of all
+ * calls above. */
 enum tri_status par_tiles_whole(struct par_tiles *tiles, struct tri_error *error);
 
 void par_tiles_free(struct par_tiles *tiles);
