@@ -34,7 +34,7 @@ const char long_options_help[] =
     "                     within, by files where a mesh does not fit, or refuses before it costs time\n"
     "  --scratch DIR      folder for what does not fit into memory. Default: TMPDIR, else that of the output\n"
     "  --checkpoint DIR   a run that is swept (--memory) keeps in this folder what it needs to go on after it was\n"
-    "                     stopped or killed; it is emptied at the end. A mesh in memory keeps nothing: it starts anew;\n"
+    "                     stopped or killed; it is emptied at the end. A mesh in memory keeps nothing: it restarts;\n"
     "                     one that is neither there nor swept (above 31 degrees, -S) is refused\n"
     "  --every MINUTES    the time between two checkpoints (10), 0: after each column. A signal that ends the run,\n"
     "                     --time-limit and a full disk take one, too\n"
