@@ -25,8 +25,8 @@ enum tri_status par_mesh_refine(struct tri_mesh *mesh, const struct tri_settings
  * same numbers and in the same order, whatever memory there is and however many threads.
  *
  * memory: bytes that the process may have resident; 0: no bound. A mesh that would need more, or be larger than one
- * struct tri_mesh can be, is swept from left to right where min_angle is at most 31: tiles are handed out as they become
- * final, and go; it may have any number of triangles. The figure's own triangulation, a few columns of tiles and what
+ * struct tri_mesh can be, is swept from left to right where min_angle is at most 31: tiles are handed out as they
+ * become final, and go; it may have any number of triangles. The figure's own triangulation, a few columns of tiles and what
  * the sink holds are in memory then. Where that cannot be done (above 31 degrees, settings that make it one sequential
  * refinement, or where triangles are left over that are large against the tiles around them) the mesh, of at most 2^29
  * triangles, is there as a whole. What of this does not fit in memory lies in files in the directory scratch, up to 90
