@@ -24,19 +24,19 @@ static const double TEXT_BYTES = 6.5e8, USUAL_SECONDS = 1.25e-7;
 /* --- triangles */
 
 /* What area bounds alone ask for, and what there is already. */
-static double triangles_by_area(const struct run *run)
+static double triangles_by_area(const struct run *run, double demand)
 {
-    return AREA_FACTOR * tri_area_demand(&run->mesh, &run->options.quality) + run->mesh.n_triangles;
+    return AREA_FACTOR * demand + run->mesh.n_triangles;
 }
 
-static double triangles_of(const struct run *run)
+static double triangles_of(const struct run *run, double demand)
 {
     const struct tri_refine_options *quality = &run->options.quality;
     const struct run_hooks *hooks = run->hooks;
     double now = run->mesh.n_triangles;
     if (!run->options.refine)
         return now;
-    double by_area = triangles_by_area(run);
+    double by_area = triangles_by_area(run, demand);
     double triangles = hooks->estimate ? hooks->estimate(hooks->user, &run->mesh, quality) : by_area;
     triangles = fmax(triangles, by_area < TRI_MAX_TRIANGLES ? 0 : by_area); /* estimates may end at what a mesh holds */
     return quality->max_steiner < 0 ? triangles : fmin(triangles, now + 2 * (double)quality->max_steiner);
@@ -146,15 +146,17 @@ static struct needs needs_of(const struct run *run, double grown, double bytes, 
 struct estimate estimate_make(const struct run *run, bool with_seconds)
 {
     const struct tri_refine_options *quality = &run->options.quality;
-    const bool sweeps = is_swept(run), sure = run->options.refine && quality->max_steiner < 0;
-    const double now = run->mesh.n_triangles, triangles = triangles_of(run), grown = fmax(triangles - now, 0);
+    const double demand = run->options.refine ? tri_area_demand(&run->mesh, quality, run->hooks->executor) : 0;
+    const double now = run->mesh.n_triangles, triangles = triangles_of(run, demand), grown = fmax(triangles - now, 0);
+    const bool sweeps = is_swept(run);
     struct estimate e = {.sweeps = sweeps, .vertices = run->mesh.n_vertices + grown / 2};
     e.likely = needs_of(run, grown, bytes_a_triangle(run), sweeps);
     e.likely.triangles = triangles;
     e.likely.files = disk_of(run, e.vertices, triangles);
-    if (sure && tri_area_demand(&run->mesh, quality) > 0)
-        e.least = needs_of(run, tri_area_demand(&run->mesh, quality), LEAST_BYTES, sweeps);
-    e.least.files = e.least.triangles > 0 ? disk_of(run, 0.5 * e.least.triangles, e.least.triangles) : 0;
+    if (demand > 0 && quality->max_steiner < 0) {
+        e.least = needs_of(run, demand, LEAST_BYTES, sweeps);
+        e.least.files = disk_of(run, 0.5 * demand, demand);
+    }
     e.seconds = with_seconds ? seconds_of(run, triangles, e.likely.files) : 0;
     return e;
 }

@@ -109,8 +109,8 @@ static bool areas_decide(const struct par_state *state, const struct tri_refine_
                          double cell)
 {
     struct tri_refine_options coarse = coarse_bounds(quality, cell);
-    return tri_has_sizes(quality) &&
-           tri_estimate(state->mesh, &coarse) < estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
+    double sure, most = estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
+    return tri_has_sizes(quality) && tri_estimate(state->mesh, &coarse, &state->executor, &sure) < most;
 }
 
 static enum tri_status prerefine_uniform(struct par_state *state, const struct tri_refine_options *quality,
@@ -351,7 +351,7 @@ static enum tri_status leave_memory(struct par_state *state, const struct par_pa
         return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
                         "about %.1f GB are asked for and there are %.1f: a mesh like this needs a scratch directory",
                         1e-9 * BYTES_IN_MEMORY * partition->estimate, 1e-9 * (double)options->memory);
-    return tri_refine_check(state->mesh, state->quality, error);
+    return tri_refine_check(state->mesh, state->quality, &state->executor, error);
 }
 
 /* What no block could do, and what blocks have left unused. */
@@ -421,7 +421,8 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
 {
     struct par_partition partition;
     double began = tri_seconds();
-    enum tri_status status = par_partition_make(&partition, state->mesh, quality, estimate, cell, error);
+    enum tri_status status = par_partition_make(&partition, state->mesh, quality, estimate, cell, &state->executor,
+                                                error);
     state->report->seconds_partition += tri_seconds() - began;
     if (status)
         return status;
@@ -441,9 +442,9 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
     return status;
 }
 
-static double estimate_of(struct par_state *state, const struct tri_refine_options *quality)
+static double estimate_of(struct par_state *state, const struct tri_refine_options *quality, double *sure)
 {
-    double began = tri_seconds(), estimate = tri_estimate(state->mesh, quality);
+    double began = tri_seconds(), estimate = tri_estimate(state->mesh, quality, &state->executor, sure);
     state->report->seconds_partition += tri_seconds() - began;
     return estimate;
 }
@@ -471,14 +472,14 @@ static enum tri_status refine_a_little(struct par_state *state, const struct tri
 static enum tri_status refine_level(struct par_state *state, const struct tri_refine_options *quality, int level,
                                     struct tri_error *error)
 {
-    double estimate = estimate_of(state, quality), cell = cell_size(state, estimate);
+    double sure, estimate = estimate_of(state, quality, &sure), cell = cell_size(state, estimate);
     double large = cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS);
-    if (estimate >= large && tri_sure_work(state->mesh, quality) < large) {
+    if (estimate >= large && sure < large) {
         bool done;
         enum tri_status status = refine_a_little(state, quality, large * A_LITTLE, &done, error);
         if (status || done)
             return status;
-        estimate = estimate_of(state, quality);
+        estimate = estimate_of(state, quality, &sure);
         cell = cell_size(state, estimate);
     }
     if (estimate >= cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS))
@@ -579,7 +580,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
                               .n_kept = mesh->n_vertices};
     bool sequential = must_be_sequential(quality, options);
     bool can_sweep = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE;
-    enum tri_status status = can_sweep ? TRI_OK : tri_refine_check(mesh, quality, error);
+    enum tri_status status = can_sweep ? TRI_OK : tri_refine_check(mesh, quality, &state.executor, error);
     if (!status && is_bounded(options))
         status = par_park_open(&state.park, mesh, options->sink ? options->scratch : NULL, options->memory, error);
     if (status)

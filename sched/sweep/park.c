@@ -12,7 +12,6 @@
 #include <fcntl.h>
 #include <math.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,6 +25,7 @@
 #endif
 
 #include "sched/sweep/spool.h"
+#include "sched/threads.h"
 
 enum { EXTRAS = 12, SHEETS = TRI_ARRAYS + EXTRAS, GRAIN = 1 << 18, LOOK_NANOSECONDS = 1000000 };
 
@@ -303,17 +303,6 @@ static void *watch(void *user)
     return NULL;
 }
 
-/* Signals do not find the thread. */
-static bool start_watch(struct par_park *park)
-{
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    park->watched = pthread_create(&park->watch, NULL, watch, park) == 0;
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return park->watched;
-}
-
 /* --- the move */
 
 /* Memory that was freed goes back to the system. */
@@ -337,7 +326,8 @@ static enum tri_status leave(void *user, struct tri_mesh *mesh, struct tri_error
     enum tri_status status = tri_mesh_move(mesh, &park->storage, error);
     trim();
     atomic_store(&park->away, true);
-    if (!status && !park->watched && !start_watch(park))
+    park->watched = park->watched || (!status && par_thread_start(&park->watch, watch, park));
+    if (!status && !park->watched)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no thread can be made to watch over memory");
     return par_park_status(park, status, error);
 }
