@@ -55,10 +55,10 @@ struct par_state {
     bool may_number;         /* nothing is refined after this schedule */
     struct par_partition cells; /* of the last schedule of the whole mesh: the tiles by which it is numbered */
     bool numbered;           /* and nothing was */
-    double estimate;         /* of the triangles of a mesh that does not fit in memory */
     int64_t gone;            /* triangles that have been handed out, and are no more */
     bool delivered;          /* all have */
-    struct par_park *park;   /* where the mesh lies; NULL: in memory */
+    bool stays;              /* a mesh that does not fit in memory is not swept, or no more */
+    struct par_park *park;   /* bounds the memory of the mesh; NULL: nobody does */
 };
 
 /* The key of the first triangle that a block leaves in a phase of a round. */
