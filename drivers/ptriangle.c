@@ -167,7 +167,7 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
     struct tri_counts before;
     const struct tri_sink streams = streams_sink(&p->streams);
     struct par_queue queue;
-    enum tri_status status = tri_count_mesh(&before, mesh, error);
+    enum tri_status status = tri_count_mesh(&before, mesh, NULL, error);
     int64_t unused = mesh->n_vertices - before.vertices;
     status = status ? status : streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
     status = status ? status : streams_open_text(&p->streams, run, set, error);
@@ -213,8 +213,10 @@ static enum tri_status refine(void *user, struct run *run, struct tri_output_set
 
 static double estimate(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *quality)
 {
-    (void)user;
-    return tri_estimate(mesh, quality);
+    struct program *p = user;
+    const struct tri_executor executor = par_executor(&p->threads);
+    double sure;
+    return tri_estimate(mesh, quality, &executor, &sure);
 }
 
 static enum tri_status share(void *user, struct run *run, enum tri_status status, struct tri_error *error)

@@ -436,7 +436,9 @@ static enum tri_status tell(struct runner *r)
 {
     struct run *run = &r->run;
     const struct tri_switches *s = &run->arguments->switches;
-    enum tri_status status = run->plan.swept ? TRI_OK : tri_count_mesh(&run->counts, &run->mesh, r->error);
+    enum tri_status status = TRI_OK;
+    if (!run->plan.swept)
+        status = tri_count_mesh(&run->counts, &run->mesh, run->hooks->executor, r->error);
     run->total_seconds = tri_seconds() - r->begin;
     if (status)
         return status;
@@ -502,15 +504,12 @@ static enum tri_status check_files(const struct runner *r, const struct mesh_fil
 
 static enum tri_status make_mesh(struct runner *r)
 {
-    struct run *run = &r->run;
     enum tri_status status = keep_partial(r, generate(r, true));
     end_stage(r, RUN_QUALITY);
     if (status)
         return status;
     tell_of_quality(r);
     tell_of_input(r);
-    if (!run->plan.swept)
-        tri_mesh_compact(&run->mesh);
     return TRI_OK;
 }
 

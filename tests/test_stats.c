@@ -6,7 +6,7 @@
 static struct tri_counts counted(const struct tri_mesh *mesh)
 {
     struct tri_counts counts;
-    assert_int_equal(tri_count_mesh(&counts, mesh, NULL), TRI_OK);
+    assert_int_equal(tri_count_mesh(&counts, mesh, NULL, NULL), TRI_OK);
     return counts;
 }
 

@@ -39,6 +39,35 @@ static uint64_t hilbert_of(uint32_t x, uint32_t y, int bits)
 
 uint64_t tri_hilbert(uint32_t x, uint32_t y) { return hilbert_of(x, y, BITS); }
 
+/* Four levels in one step: the same with four bits of each and ranks of 8 bits. Made where many points share the cost
+ * of it. */
+enum { MANY = 1024 };
+typedef uint16_t four_levels[4][256];
+
+static void make_four_levels(four_levels table)
+{
+    for (unsigned orientation = 0; orientation < 4; orientation++)
+        for (unsigned x = 0; x < 16; x++)
+            for (unsigned y = 0; y < 16; y++) {
+                unsigned outer = two_levels[orientation][4 * (x >> 2) + (y >> 2)];
+                unsigned inner = two_levels[outer & 3][4 * (x & 3) + (y & 3)];
+                table[orientation][16 * x + y] = (uint16_t)((outer >> 2) << 6 | inner);
+            }
+}
+
+/* The same as hilbert_of. */
+static inline uint64_t hilbert_by_four(uint32_t x, uint32_t y, int bits, four_levels table)
+{
+    uint64_t key = 0;
+    unsigned orientation = 0;
+    for (; bits >= 4; bits -= 4) {
+        unsigned step = table[orientation][16 * (x >> (bits - 4) & 15) + (y >> (bits - 4) & 15)];
+        key = key << 8 | step >> 2;
+        orientation = step & 3;
+    }
+    return bits ? key << 4 | two_levels[orientation][4 * (x & 3) + (y & 3)] >> 2 : key;
+}
+
 struct ordering {
     const struct tri_point *xy;
     int32_t *order;
@@ -46,6 +75,7 @@ struct ordering {
     int bits;             /* 2^bits x 2^bits cells */
     struct tri_point low; /* of the box */
     double scale;         /* cells in a unit of length */
+    uint16_t (*table)[256]; /* four levels; NULL: it is not worth while */
     uint64_t *item;
 };
 
@@ -56,7 +86,8 @@ static void key_share(void *context, size_t share)
     for (int32_t i = range.first; i < range.last; i++) {
         struct tri_point p = k->xy[k->order[i]];
         uint32_t x = (uint32_t)((p.x - k->low.x) * k->scale), y = (uint32_t)((p.y - k->low.y) * k->scale);
-        k->item[i] = hilbert_of(x, y, k->bits) << ID_BITS | (uint32_t)k->order[i];
+        uint64_t key = k->table ? hilbert_by_four(x, y, k->bits, k->table) : hilbert_of(x, y, k->bits);
+        k->item[i] = key << ID_BITS | (uint32_t)k->order[i];
     }
 }
 
@@ -130,17 +161,18 @@ static void order_few(const struct tri_point *xy, int32_t *order, int32_t n)
 }
 
 static void order_points(const struct tri_point *xy, int32_t *order, int32_t n, bool coarse, uint64_t *item,
-                         uint64_t *scratch, const struct tri_executor *executor);
+                         uint64_t *scratch, uint16_t (*table)[256], const struct tri_executor *executor);
 
 /* Cells with several points are sorted within: by coordinates, or along a curve of their own. */
 static void order_cells(const struct tri_point *xy, int32_t *order, int32_t n, bool coarse, uint64_t *item,
-                        uint64_t *scratch, const struct tri_executor *executor)
+                        uint64_t *scratch, uint16_t (*table)[256], const struct tri_executor *executor)
 {
     for (int32_t first = 0, end; first < n; first = end) {
         for (end = first + 1; end < n && item[end] >> ID_BITS == item[first] >> ID_BITS;)
             end++;
         if (end - first > FEW)
-            order_points(xy, order + first, end - first, coarse, item + first, scratch + first, executor);
+            order_points(xy, order + first, end - first, coarse, item + first, scratch + first, table,
+                         executor);
         else if (end - first > 1)
             order_few(xy, order + first, end - first);
     }
@@ -164,29 +196,38 @@ static void emit_share(void *context, size_t share)
 }
 
 static void order_points(const struct tri_point *xy, int32_t *order, int32_t n, bool coarse, uint64_t *item,
-                         uint64_t *scratch, const struct tri_executor *executor)
+                         uint64_t *scratch, uint16_t (*table)[256], const struct tri_executor *executor)
 {
     struct box box = box_of(xy, order, n, executor);
     double width = box.high.x - box.low.x, height = box.high.y - box.low.y, side = width > height ? width : height;
     int bits = coarse ? coarse_bits(n) : BITS;
-    struct ordering ordering = {xy, order, n, bits, box.low, side > 0 ? ((1 << bits) - 1) / side : 0, item};
+    struct ordering ordering = {xy, order, n, bits, box.low, side > 0 ? ((1 << bits) - 1) / side : 0,
+                                n < MANY ? NULL : table, item};
     tri_execute(executor, tri_shares(n), key_share, &ordering);
     tri_radix_sort(item, scratch, n, side > 0 ? ID_BITS : 0, side > 0 ? ID_BITS + 2 * bits : ID_BITS,
                    executor); /* one place: by id */
     tri_execute(executor, tri_shares(n), emit_share, &ordering);
     if (side > 0)
-        order_cells(xy, order, n, coarse, item, scratch, executor);
+        order_cells(xy, order, n, coarse, item, scratch, table, executor);
+}
+
+static void order_all(const struct tri_point *xy, int32_t *order, int32_t n, bool coarse, uint64_t *scratch,
+                      const struct tri_executor *executor)
+{
+    four_levels table;
+    if (n >= MANY)
+        make_four_levels(table);
+    if (n > 0)
+        order_points(xy, order, n, coarse, scratch, scratch + n, table, executor);
 }
 
 void tri_hilbert_order(const struct tri_point *xy, int32_t *order, int32_t n, uint64_t *scratch,
                        const struct tri_executor *executor)
 {
-    if (n > 0)
-        order_points(xy, order, n, false, scratch, scratch + n, executor);
+    order_all(xy, order, n, false, scratch, executor);
 }
 
 void tri_hilbert_order_coarse(const struct tri_point *xy, int32_t *order, int32_t n, uint64_t *scratch)
 {
-    if (n > 0)
-        order_points(xy, order, n, true, scratch, scratch + n, NULL);
+    order_all(xy, order, n, true, scratch, NULL);
 }

@@ -771,7 +771,7 @@ enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_option
                            struct tri_refine_report *report, struct tri_error *error)
 {
     struct tri_refiner *refiner = NULL;
-    enum tri_status status = options->fence ? TRI_OK : tri_refine_check(mesh, options, error);
+    enum tri_status status = options->fence ? TRI_OK : tri_refine_check(mesh, options, NULL, error);
     *report = (struct tri_refine_report){0};
     status = status ? status : tri_refiner_new(&refiner, mesh, options, report, error);
     if (!status)

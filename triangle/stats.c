@@ -6,6 +6,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
 #include "triangle/degrees.h"
@@ -16,22 +17,43 @@ const double tri_aspect_limits[TRI_ASPECT_BINS] = {1.1547, 1.5, 2,  2.5, 3,   4,
 
 static const double DEGREES = 57.295779513082320877;
 
-enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh *mesh, struct tri_error *error)
+/* Vertices that refinement has made are all in use; others may lie outside, or be duplicates. */
+struct usage {
+    const struct tri_mesh *mesh;
+    _Atomic(bool) *used; /* [n_doubtful] */
+    int32_t n_doubtful;
+};
+
+/* Threads that meet at a vertex say the same. */
+static void note_corners(void *context, size_t share)
+{
+    const struct usage *u = context;
+    struct tri_range range = tri_share(share, u->mesh->n_triangles);
+    for (tri_triangle_id t = range.first; t < range.last; t++)
+        for (int k = 0; k < 3; k++)
+            if (u->mesh->tri[t].v[k] < u->n_doubtful)
+                atomic_store_explicit(&u->used[u->mesh->tri[t].v[k]], true, memory_order_relaxed);
+}
+
+static int64_t count_used(const struct usage *u, const struct tri_executor *executor)
+{
+    int64_t n = u->mesh->n_vertices - u->n_doubtful;
+    tri_execute(executor, tri_shares(u->mesh->n_triangles), note_corners, (void *)u);
+    for (tri_vertex_id v = 0; v < u->n_doubtful; v++)
+        n += atomic_load_explicit(&u->used[v], memory_order_relaxed);
+    return n;
+}
+
+enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh *mesh,
+                               const struct tri_executor *executor, struct tri_error *error)
 {
     *counts = (struct tri_counts){.triangles = mesh->n_triangles, .subsegments = mesh->n_subs};
-    /* Vertices that refinement has made are all in use; others may lie outside, or be duplicates. */
-    int32_t n_doubtful = mesh->incidence.n_vertices > 0 ? mesh->incidence.n_vertices : mesh->n_vertices;
-    uint8_t *used = calloc((size_t)n_doubtful + 1, 1);
-    if (!used)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to count %d vertices", (int)n_doubtful);
-    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
-        for (int k = 0; k < 3; k++)
-            if (mesh->tri[t].v[k] < n_doubtful)
-                used[mesh->tri[t].v[k]] = 1;
-    counts->vertices = mesh->n_vertices - n_doubtful;
-    for (tri_vertex_id v = 0; v < n_doubtful; v++)
-        counts->vertices += used[v];
-    free(used);
+    struct usage u = {mesh, NULL, mesh->incidence.n_vertices > 0 ? mesh->incidence.n_vertices : mesh->n_vertices};
+    u.used = calloc((size_t)u.n_doubtful + 1, sizeof *u.used);
+    if (!u.used)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to count %d vertices", (int)u.n_doubtful);
+    counts->vertices = count_used(&u, executor);
+    free((void *)u.used);
     for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
         bool boundary = tri_is_boundary(&mesh->sub[s]);
         *(boundary ? &counts->exterior : &counts->interior) += 1;

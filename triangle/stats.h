@@ -14,7 +14,8 @@ struct tri_counts {
 };
 
 /* O(triangles); one byte a vertex while it runs. No number is free in the mesh. TRI_NO_MEMORY. */
-enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh *mesh, struct tri_error *error);
+enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh *mesh,
+                               const struct tri_executor *executor, struct tri_error *error);
 
 enum { TRI_ASPECT_BINS = 16, TRI_ANGLE_BINS = 18 };
 

@@ -1,7 +1,7 @@
 /* What a mesh means to its users beside corners: edges, neighbours, Voronoi diagram, midpoints, vertices in use.
  *
  * All of it is worked out from struct tri_mesh item by item, so that nobody needs a copy of the whole: arrays are
- * made only where an order has to be counted out. No number is free in the mesh (tri_mesh_compact).
+ * made only where an order has to be counted out. No number is free in the mesh.
  *
  * ORDER OF EDGES: triangles in their order; in each the edges from its first to its second, second to third, third
  * to first corner; each edge where it is met first. So an edge is known by the code (4 * triangle + opposite corner)

@@ -41,6 +41,9 @@ static uint64_t item_of(int32_t key, int first, int32_t id)
     return (uint64_t)key << KEY_SHIFT | (uint64_t)first << ID_BITS | (uint64_t)id;
 }
 
+static uint64_t least(uint64_t a, uint64_t b) { return a < b ? a : b; }
+static uint64_t most(uint64_t a, uint64_t b) { return a < b ? b : a; }
+
 static int32_t key_of(uint64_t item) { return (int32_t)(item >> KEY_SHIFT); }
 static int first_of(uint64_t item) { return (int)(item >> ID_BITS & 3); }
 static int32_t id_of(uint64_t item) { return (int32_t)(item & ((UINT64_C(1) << ID_BITS) - 1)); }
@@ -241,11 +244,11 @@ static void rank_subs(struct numbering *n)
 
 static int32_t place_of(int32_t number, int first) { return number << 2 | first; }
 
-static int32_t new_code(const int32_t *place_of_triangle, int32_t code)
+static inline int32_t new_code(const int32_t *place_of_triangle, int32_t code)
 {
+    static const uint8_t turned[4][4] = {{0, 1, 2}, {2, 0, 1}, {1, 2, 0}};
     int32_t place = place_of_triangle[tri_of(code)];
-    int e = tri_edge(code) - (place & 3);
-    return tri_code(place >> 2, e < 0 ? e + 3 : e);
+    return (place & ~3) | turned[place & 3][tri_edge(code)];
 }
 
 /* The last tile of corners by their new numbers. */
@@ -257,12 +260,6 @@ static int32_t tile_of_triangle(const struct numbering *n, const int32_t v[3])
         last = tile > last ? tile : last;
     }
     return last;
-}
-
-/* Not if all vertices are new: of these the one with the largest number is in the last tile. */
-static bool is_stray(const struct numbering *n, const int32_t v[3], int first)
-{
-    return tile_of_number(n, v[first]) != tile_of_triangle(n, v);
 }
 
 static int32_t tile_of_item(const struct numbering *n, uint64_t item)
@@ -293,19 +290,28 @@ static inline int32_t tile_after(const struct numbering *n, struct tile_range *l
     return last->tile;
 }
 
-/* Without a branch, which could not be predicted. */
-static inline int32_t choose(bool yes, int32_t a, int32_t b) { return b ^ ((a ^ b) & -(int32_t)yes); }
-
-static inline uint64_t key_triangle(const struct numbering *n, const int32_t *rank, const int32_t *old, int32_t t)
+/* Is the triangle's tile another than that of its first corner? A new vertex with a smaller number is in no later
+ * one. */
+static bool is_stray(const struct numbering *n, const struct tile_range *last, const int32_t v[3], uint64_t item)
 {
+    int32_t number = key_of(item);
+    bool same = (uint32_t)(number - last->first) < (uint32_t)last->count;
+    int32_t tile = same ? last->tile : tile_of_number(n, number);
+    bool stray = false;
+    for (int k = 0; k < 3; k++)
+        stray |= v[k] < n->n_kept && n->kept_tile[v[k]] > tile;
+    return stray;
+}
+
+/* The item of the corner with the largest number is the largest: no branch, which could not be predicted. */
+static inline uint64_t key_triangle(const struct numbering *n, const struct tile_range *last, const int32_t *old,
+                                    int32_t t)
+{
+    const int32_t *rank = n->rank;
     const int32_t v[3] = {rank[old[0]], rank[old[1]], rank[old[2]]};
-    bool turn = v[1] > v[0];
-    int32_t key = choose(turn, v[1], v[0]), less = choose(turn, v[0], v[1]), second = choose(turn, v[2], v[1]);
-    bool last = v[2] > key;
-    int32_t first = choose(last, 2, turn);
-    n->place[t] = choose(last, v[0], second);
-    uint64_t item = item_of(choose(last, v[2], key), first, t);
-    if ((less < n->n_kept || v[2] < n->n_kept) && is_stray(n, v, first))
+    uint64_t item = most(most(item_of(v[0], 0, t), item_of(v[1], 1, t)), item_of(v[2], 2, t));
+    n->place[t] = rank[old[tri_next[first_of(item)]]];
+    if (((v[0] < n->n_kept) | (v[1] < n->n_kept) | (v[2] < n->n_kept)) && is_stray(n, last, v, item))
         item |= UINT64_C(1) << STRAY_BIT;
     return item;
 }
@@ -314,7 +320,6 @@ static void key_share(void *context, size_t share)
 {
     const struct numbering *n = context;
     const struct tri_triangle *tri = n->mesh->tri;
-    const int32_t *rank = n->rank;
     struct tri_range range = share_of(&n->triangles, share);
     struct tile_range last = {0};
     uint64_t *items = items_of(n);
@@ -325,7 +330,7 @@ static void key_share(void *context, size_t share)
             n->place[t] = TRI_NONE;
             continue;
         }
-        uint64_t item = key_triangle(n, rank, tri[t].v, t);
+        uint64_t item = key_triangle(n, &last, tri[t].v, t);
         items[t] = item;
         count[tile_after(n, &last, item)]++;
     }
@@ -437,9 +442,6 @@ static void sort_others(const struct numbering *n, struct sorting *s)
     }
 }
 
-static uint64_t least(uint64_t a, uint64_t b) { return a < b ? a : b; }
-static uint64_t most(uint64_t a, uint64_t b) { return a < b ? b : a; }
-
 /* The first of four items in their order, without a branch that depends on it; all ones stand for the others. */
 static void sort_four(const uint64_t *item, int32_t count, uint64_t *to)
 {
@@ -539,25 +541,23 @@ static bool stands_here(const struct move *m, int32_t t)
     return place != TRI_NONE && (m->down ? place >> 2 < m->batch.first : place >> 2 >= m->batch.last);
 }
 
-/* A few are fetched before the first is looked at, so that the memory works on all of them at once. */
+/* Those that come soon are fetched already, so that the memory works on many at once. */
 static void gather_batch(void *context, size_t share)
 {
-    enum { AT_ONCE = 32 };
+    enum { AHEAD = 32 };
     struct move *m = context;
     const struct numbering *n = m->n;
     struct tri_range range = batch_share(m, share);
-    struct tri_triangle from[AT_ONCE];
-    struct tri_triangle *to = n->buffer;
-    for (int32_t t = range.first; t < range.last; t++)
-        m->parked[share] += stands_here(m, t);
-    for (int32_t first = range.first; first < range.last; first += AT_ONCE) {
-        int32_t count = range.last - first < AT_ONCE ? range.last - first : AT_ONCE;
-        const uint64_t *item = dealt_items(n) + first;
-        for (int32_t i = 0; i < count; i++)
-            from[i] = *source_of(n, item[i]);
-        for (int32_t i = 0; i < count; i++)
-            to[first - m->batch.first + i] = renamed(n, &from[i], first_of(item[i]));
+    struct tri_triangle *to = n->buffer - m->batch.first;
+    const uint64_t *item = dealt_items(n);
+    int32_t parked = 0;
+    for (int32_t t = range.first; t < range.last; t++) {
+        parked += stands_here(m, t);
+        if (t + AHEAD < range.last)
+            __builtin_prefetch(source_of(n, item[t + AHEAD]));
+        to[t] = renamed(n, source_of(n, item[t]), first_of(item[t]));
     }
+    m->parked[share] = parked;
 }
 
 static void put_down(void *context, size_t share)

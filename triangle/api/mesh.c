@@ -128,7 +128,6 @@ static enum tri_status settle(struct tri_api_mesh *m, struct tri_error *error)
 {
     forget(m);
     m->mesh.stop = NULL;
-    tri_mesh_compact(&m->mesh);
     enum tri_status status = make_places(m, error);
     return status ? status : make_attributes(m, error);
 }

@@ -124,7 +124,6 @@ static enum tri_status run_stages(struct io_run *run, const struct triangulateio
     status = tri_generate(&run->mesh, &run->input.pslg, &run->how, &run->report, run->error);
     if (status)
         return status;
-    tri_mesh_compact(&run->mesh);
     warn_of_switches(run);
     warn_of_input(run);
     return TRI_OK;
