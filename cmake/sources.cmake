@@ -204,7 +204,8 @@ set(PTRIANGLE_PARALLEL_SOURCES
     drivers/shared_input.c
     drivers/streams.c
     drivers/restart.c
-    drivers/prediction.c)
+    drivers/prediction.c
+    drivers/replay.c)
 set(PTRIANGLE_REPORT_SOURCE drivers/report_json.c)
 set(PTRIANGLE_NO_REPORT_SOURCE drivers/report_none.c)
 

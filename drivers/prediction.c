@@ -18,8 +18,7 @@ static int largest_first(const void *left, const void *right)
     return (*a < *b) - (*a > *b);
 }
 
-/* Each piece goes to the thread that is free first. Sorts `seconds`; `load` [threads] is scratch. */
-static double makespan(double *seconds, int32_t n, double *load, int threads)
+double prediction_makespan(double *seconds, int32_t n, double *load, int threads)
 {
     double longest = 0;
     qsort(seconds, (size_t)n, sizeof *seconds, largest_first);
@@ -44,7 +43,7 @@ double prediction_refine(const struct par_block_report *blocks, int32_t n_blocks
         for (int32_t i = first; i < end; i++)
             seconds[i - first] = blocks[i].seconds;
         if (blocks[first].round >= first_round)
-            sum += makespan(seconds, end - first, load, threads);
+            sum += prediction_makespan(seconds, end - first, load, threads);
     }
     free(seconds);
     free(load);

@@ -12,6 +12,10 @@
 
 #include "sched/schedule.h"
 
+/* Seconds until the last of n pieces of work ends, where each goes to the thread that is free first, the longest first.
+ * Sorts `seconds`; `load` [threads] is scratch. */
+double prediction_makespan(double *seconds, int32_t n, double *load, int threads);
+
 /* Seconds of the phases' parallel parts on so many threads, threads >= 1. first_round: blocks of rounds before it do
  * not count. Negative: no memory. O(n log n + n threads). */
 double prediction_refine(const struct par_block_report *blocks, int32_t n_blocks, int first_round, int threads);

@@ -12,6 +12,7 @@
 
 #include "drivers/interrupt.h"
 #include "drivers/prediction.h"
+#include "drivers/replay.h"
 #include "drivers/resources.h"
 #include "triangle/text/write.h"
 
@@ -89,6 +90,32 @@ static json_t *predictions_of(const struct par_report *r)
     return list;
 }
 
+static json_t *replay_of(const struct par_report *r, int n_ranks, int times)
+{
+    struct replay_how how = replay_usual(n_ranks, times);
+    struct replay s;
+    if (!replay_on_ranks(r, &how, &s))
+        return json_null();
+    return json_pack("{s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "ranks", n_ranks, "times_the_mesh",
+                     times * times, "seconds", real(s.total), "alone_seconds", real(s.alone), "refine_seconds",
+                     real(s.refine), "merge_seconds", real(s.merge), "communication_seconds", real(s.communicate),
+                     "hand_out_seconds", real(s.hand_out), "processor_seconds_of_busiest", real(s.processor), "bytes",
+                     real(s.bytes), "messages", real(s.messages), "most_bytes_of_a_rank", real(s.most_bytes));
+}
+
+/* This mesh on more ranks, and one as many times as large as there are ranks; of one process. */
+static json_t *replays_of(const struct par_report *r)
+{
+    static const struct {
+        int ranks, times;
+    } rows[] = {{1, 1}, {2, 1},  {4, 1},  {9, 1},  {16, 1},    {64, 1},
+                {4, 2}, {9, 3}, {16, 4}, {64, 8}, {121, 11}, {1024, 32}};
+    json_t *list = json_array();
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        json_array_append_new(list, replay_of(r, rows[i].ranks, rows[i].times));
+    return list;
+}
+
 static json_t *refused_of(const struct tri_refine_report *r)
 {
     return json_pack("{s:o, s:o, s:o, s:o, s:o}", "input_angle", whole(r->given_up[TRI_EXCUSE_INPUT_ANGLE]),
@@ -117,10 +144,10 @@ static json_t *schedule_of(const struct par_report *r)
     }
     json_decref(way);
     json_t *times =
-        json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "seconds", parts_of(r), "overhead_percent",
+        json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "seconds", parts_of(r), "overhead_percent",
                   real(prediction_overhead(r)), "numbering_percent", real(prediction_numbering(r)),
                   "later_rounds_seconds_estimate", real(prediction_refine(r->blocks, r->n_blocks, 1, r->threads)),
-                  "prediction", predictions_of(r), "blocks", blocks_of(r));
+                  "prediction", predictions_of(r), "prediction_on_ranks", replays_of(r), "blocks", blocks_of(r));
     if (json_object_update(counts, times)) {
         json_decref(counts);
         counts = NULL;

@@ -1,5 +1,6 @@
-/* List scheduling of measured blocks, and the shares that follow. */
+/* List scheduling of measured blocks, the shares that follow, and the same on ranks. */
 #include "drivers/prediction.h"
+#include "drivers/replay.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -73,11 +74,85 @@ static void test_shares(void **state)
     assert_true(is_near(prediction_overhead(&report), 0));
 }
 
+/* --- on ranks */
+
+enum { SIDE = 5 }; /* of a mesh of 2 x 2 tiles, in blocks */
+
+/* Seconds: 1 in tiles, 1/4 in blocks over two of them, half of that at rims, 1/16 in the middle. */
+static struct par_report four_tiles(struct par_block_report blocks[SIDE * SIDE])
+{
+    for (int c = 0; c < SIDE; c++)
+        for (int r = 0; r < SIDE; r++) {
+            double seconds = (c % 2 == 1 ? 1 : c == 2 ? 0.25 : 0.125) * (r % 2 == 1 ? 1 : r == 2 ? 0.25 : 0.125);
+            blocks[c * SIDE + r] = block_of(0, 0, 2 * (c % 2 == 0) + (r % 2 == 0), c * SIDE + r, seconds);
+        }
+    return (struct par_report){.columns = SIDE, .rows = SIDE, .threads = 1, .blocks = blocks,
+                               .n_blocks = SIDE * SIDE, .seconds_prerefine = 0.5, .seconds_number = 2};
+}
+
+static struct replay replayed(const struct par_report *report, int n_ranks, int times)
+{
+    struct replay_how how = {.n_ranks = n_ranks, .threads = 1, .times = times, .bandwidth = 1e9, .pair_bytes = 1000,
+                             .pair_seconds = 0.5};
+    struct replay replay;
+    assert_true(replay_on_ranks(report, &how, &replay));
+    assert_true(is_near(replay.total, replay.alone + replay.refine + replay.merge + replay.communicate +
+                                          replay.hand_out));
+    return replay;
+}
+
+static void test_one_rank_does_all(void **state)
+{
+    (void)state;
+    struct par_block_report blocks[SIDE * SIDE];
+    const struct par_report report = four_tiles(blocks);
+    struct replay r = replayed(&report, 1, 1);
+    assert_true(is_near(r.refine, 6.25) && is_near(r.alone, 0.5) && is_near(r.hand_out, 2));
+    assert_true(r.merge == 0 && r.bytes == 0 && r.messages == 0);
+    r = replayed(&report, 1, 3); /* where copies meet, what was at two rims is one block */
+    assert_true(is_near(r.refine, 9 * 6.25) && is_near(r.alone, 9 * 0.5) && is_near(r.hand_out, 9 * 2));
+}
+
+/* Each has a column. Between them lie five blocks, which one of them lends and the other refines. */
+static void test_two_ranks_meet_along_a_column(void **state)
+{
+    (void)state;
+    struct par_block_report blocks[SIDE * SIDE];
+    const struct par_report report = four_tiles(blocks);
+    struct replay r = replayed(&report, 2, 1);
+    double refine = 2.5 + 2.5 * (0.125 + 0.25); /* a column, and those left and right of it */
+    assert_true(is_near(r.refine, refine));
+    assert_true(is_near(r.bytes, 5 * 1000) && is_near(r.most_bytes, 5 * 500));
+    assert_true(is_near(r.messages, 2 * REPLAY_SWAPS)); /* in two phases */
+    assert_true(is_near(r.merge, 5 * 0.25) && is_near(r.hand_out, 1));
+    assert_true(is_near(r.processor, 0.5 + refine + 5 * 0.25 + 1));
+}
+
+/* Each has a tile: three lend to the first for the block in the middle. */
+static void test_four_ranks_meet_at_a_corner(void **state)
+{
+    (void)state;
+    struct par_block_report blocks[SIDE * SIDE];
+    const struct par_report report = four_tiles(blocks);
+    struct replay four = replayed(&report, 4, 1), many = replayed(&report, 100, 1);
+    assert_true(is_near(four.refine, 1 + 0.375 + 0.375 + 0.375 * 0.375));
+    assert_true(is_near(four.bytes, (2 + 2 + 7) * 1000));
+    assert_true(is_near(four.messages, (2 + 2 + 5) * REPLAY_SWAPS));
+    assert_true(is_near(many.refine, four.refine) && is_near(many.bytes, four.bytes)); /* some have nothing */
+    struct par_report none = report;
+    struct replay_how how = replay_usual(2, 1);
+    none.columns = none.rows = 0;
+    assert_false(replay_on_ranks(&none, &how, &four));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_largest_first),
         cmocka_unit_test(test_phases_follow_each_other),
+        cmocka_unit_test(test_one_rank_does_all),
+        cmocka_unit_test(test_two_ranks_meet_along_a_column),
+        cmocka_unit_test(test_four_ranks_meet_at_a_corner),
         cmocka_unit_test(test_shares),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

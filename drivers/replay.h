@@ -1,0 +1,46 @@
+/* What a mesh that one process has made would have taken on the ranks of a network: a prediction from measured blocks,
+ * never a measurement.
+ *
+ * MODEL. Every rank makes the coarse mesh. Tiles go to ranks as sched/ranks/ deals them out; a block is done by the
+ * rank that owns the first of its tiles, and whoever owns another of them lends and gets back. Four phases follow each
+ * other. Each takes as long as its busiest rank refines (list scheduling on its threads: prediction.h), then as long as
+ * the busiest one packs and unpacks, then as long as the slowest one's messages are under way; agreements take some
+ * latencies in proportion to the logarithm of the number of ranks. Then each rank numbers and hands out what it owns.
+ *
+ * Not in the model: links of the network that are shared, threads and ranks that share caches and memory, files. Nor
+ * may ranks begin a phase while others, elsewhere in the plane, still refine for the last one, which would be quicker.
+ */
+#ifndef DRIVERS_REPLAY_H
+#define DRIVERS_REPLAY_H
+
+#include "sched/schedule.h"
+
+enum { REPLAY_SWAPS = 3 }; /* times that ranks exchange something in a phase: lent, asked for and lent, given back */
+
+struct replay_how {
+    int n_ranks, threads;  /* of each rank */
+    int times;             /* the mesh is so many copies of the measured one, in each direction; >= 1 */
+    double latency;        /* seconds of a message */
+    double bandwidth;      /* bytes a second that a rank sends and receives */
+    double pair_bytes;     /* lent and given back for a block and one more rank that owns a part of it */
+    double pair_seconds;   /* of a processor, for packing and unpacking these, of both ranks */
+};
+
+struct replay { /* seconds; the first five add up to the total */
+    double alone;           /* for the coarse mesh, on each rank, and for what is not replayed */
+    double refine, merge, communicate;
+    double hand_out;        /* numbers and tiles */
+    double total;
+    double processor;       /* of the rank that takes most */
+    double bytes, messages; /* that are sent, of all ranks */
+    double most_bytes;      /* that one rank sends */
+};
+
+/* The usual network and what has been measured on ranks. */
+struct replay_how replay_usual(int n_ranks, int times);
+
+/* Blocks of the first round of the report's first schedule are replayed; what comes after counts as done by one rank.
+ * False: no memory, or no schedule. O(blocks times^2). */
+bool replay_on_ranks(const struct par_report *report, const struct replay_how *how, struct replay *replay);
+
+#endif
