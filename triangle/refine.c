@@ -101,7 +101,7 @@ static int bucket_of(const struct tri_refiner *r, double shortest)
 }
 
 /* Does a corner of the triangle see the subsegment opposite to it under too wide an angle? */
-static bool crowds_a_wall(const struct tri_refiner *r, const struct tri_triangle *t)
+static bool encroaches_opposite(const struct tri_refiner *r, const struct tri_triangle *t)
 {
     for (int e = 0; e < 3; e++) {
         if (t->n[e] >= 0)
@@ -121,7 +121,7 @@ static bool push_angle(struct tri_refiner *r, tri_triangle_id triangle, double s
 {
     const struct tri_triangle *t = &r->mesh->tri[triangle];
     assert(triangle >= 0 && tri_is_live(t));
-    int bucket = crowds_a_wall(r, t) ? TRI_URGENT_BUCKET : bucket_of(r, shortest);
+    int bucket = encroaches_opposite(r, t) ? TRI_URGENT_BUCKET : bucket_of(r, shortest);
     return tri_bad_queue_push_angle(&r->queue, (struct tri_entry){triangle, t->state}, bucket);
 }
 
@@ -684,7 +684,7 @@ static bool refine_worklist(struct tri_refiner *r)
  * points are inserted, n being the triangles of the mesh at that angle. Proof: each is counted (count_point); after
  * 200 + n / 4 of them no triangle is bad by more than BACK_ANGLE, after twice as many again none is bad by its angle.
  * So without sizes and -D the mesh has at most 2.5 n + 1200 triangles. Each of these points may make a triangle too
- * large for its bound, or crowd a subsegment under -D; what comes of that is finite by inside.c and disk.c. */
+ * large for its bound, or encroach a subsegment under -D; what comes of that is finite by inside.c and disk.c. */
 static void begin_stages(struct tri_refiner *r)
 {
     double usual = fmin(r->options->min_angle, TRI_USUAL_ANGLE);
