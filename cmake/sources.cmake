@@ -159,14 +159,13 @@ set(PTRIANGLE_PUBLIC_HEADERS
 # needs the room sched/ and its library.
 set(PTRIANGLE_DRIVER_SOURCES)
 set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle)
-set(PTRIANGLE_JUDGE_SOURCES
-    drivers/all_cores.c
+set(PTRIANGLE_JUDGE_SOURCES drivers/all_cores.c drivers/verdict.c)
+set(PTRIANGLE_JUDGED_SOURCES # reading of meshes that are there, for the judge and for meshplot
     drivers/resources.c
     drivers/scratch.c
     drivers/judged_text.c
     drivers/judged_h5.c
-    drivers/judged_files.c
-    drivers/verdict.c)
+    drivers/judged_files.c)
 set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed
 set(PTRIANGLE_PETSC_EXAMPLES poisson) # likewise, where PETSc is found
 set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
@@ -174,11 +173,6 @@ set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
 # meshplot, built where cairo is found.
 set(PTRIANGLE_PLOT_SOURCES
     drivers/all_cores.c
-    drivers/resources.c
-    drivers/scratch.c
-    drivers/judged_text.c
-    drivers/judged_h5.c
-    drivers/judged_files.c
     drivers/plot_part.c
     drivers/plot_colour.c
     drivers/plot_shade.c

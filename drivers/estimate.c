@@ -17,19 +17,19 @@ static const double TEXT_BYTES = 6.5e8, USUAL_SECONDS = 1.25e-7;
 /* --- triangles */
 
 /* What area bounds alone ask for, and what there is already. */
-static double triangles_by_area(const struct run *run)
+static double triangles_by_area(const struct run *run, double demand)
 {
-    return AREA_FACTOR * tri_area_demand(&run->mesh, &run->options.quality) + run->mesh.n_triangles;
+    return AREA_FACTOR * demand + run->mesh.n_triangles;
 }
 
-static double triangles_of(const struct run *run)
+static double triangles_of(const struct run *run, double demand)
 {
     const struct tri_refine_options *quality = &run->options.quality;
     const struct run_hooks *hooks = run->hooks;
     double now = run->mesh.n_triangles;
     if (!run->options.refine)
         return now;
-    double by_area = triangles_by_area(run);
+    double by_area = triangles_by_area(run, demand);
     double triangles = hooks->estimate ? hooks->estimate(hooks->user, &run->mesh, quality) : by_area;
     triangles = fmax(triangles, by_area < TRI_MAX_TRIANGLES ? 0 : by_area); /* estimates may end at what a mesh holds */
     return quality->max_steiner < 0 ? triangles : fmin(triangles, now + 2 * (double)quality->max_steiner);
@@ -120,9 +120,10 @@ static double swept_memory_of(const struct run *run, double triangles)
 struct estimate estimate_make(const struct run *run, bool with_seconds)
 {
     const struct tri_refine_options *quality = &run->options.quality;
-    struct estimate e = {.triangles = triangles_of(run)};
-    if (run->options.refine && quality->max_steiner < 0)
-        e.least = tri_area_demand(&run->mesh, quality);
+    double demand = run->options.refine ? tri_area_demand(&run->mesh, quality, run->hooks->executor) : 0;
+    struct estimate e = {.triangles = triangles_of(run, demand)};
+    if (quality->max_steiner < 0)
+        e.least = demand;
     double grown = fmax(e.triangles - run->mesh.n_triangles, 0);
     e.vertices = run->mesh.n_vertices + grown / 2;
     e.more = grown * bytes_a_triangle(run);

@@ -465,13 +465,7 @@ static bool apply(struct settings *s, int option)
 /* Cuts off a suffix that the user, or the shell's completion, has left at the base name. */
 static void cut_suffix(char *base)
 {
-    static const char *const suffixes[] = {".node", ".ele", ".poly", NULL};
-    for (int i = 0; suffixes[i] != NULL; i++) {
-        if (ends_with(base, suffixes[i])) {
-            base[strlen(base) - strlen(suffixes[i])] = '\0';
-            return;
-        }
-    }
+    (void)(judged_cut_suffix(base, ".node") || judged_cut_suffix(base, ".ele") || judged_cut_suffix(base, ".poly"));
 }
 
 /* 0: go on; < 0: done, with success; > 0: exit code. */

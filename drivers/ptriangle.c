@@ -213,8 +213,10 @@ static enum tri_status refine(void *user, struct run *run, struct tri_output_set
 
 static double estimate(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *quality)
 {
-    (void)user;
-    return tri_estimate(mesh, quality);
+    struct program *p = user;
+    const struct tri_executor executor = par_executor(&p->threads);
+    double sure;
+    return tri_estimate(mesh, quality, &executor, &sure);
 }
 
 static enum tri_status share(void *user, struct run *run, enum tri_status status, struct tri_error *error)

@@ -21,51 +21,60 @@ enum tri_status par_refine_as(const struct tri_api_way *way, struct tri_mesh *me
     return status;
 }
 
+/* A call of one of the functions below. */
+struct call {
+    struct tri_settings settings; /* the caller's, taken */
+    int threads;
+    struct tri_executor executor;
+    struct par_options how;
+    struct tri_api_way way;
+};
+
+static enum tri_status begin(struct call *call, const struct tri_settings *settings, struct tri_error *error)
+{
+    enum tri_status status = tri_api_settings_take(&call->settings, settings, error);
+    if (status)
+        return status;
+    call->threads = par_threads(call->settings.threads, false);
+    call->executor = par_executor(&call->threads);
+    call->how = par_defaults();
+    call->way = (struct tri_api_way){.refine = par_refine_as, .executor = &call->executor, .user = &call->how};
+    return TRI_OK;
+}
+
 enum tri_status par_mesh_new(struct tri_mesh **mesh, const struct tri_figure *figure,
                              const struct tri_settings *settings, struct tri_error *error)
 {
-    struct tri_settings own;
+    struct call call;
+    enum tri_status status = begin(&call, settings, error);
     *mesh = NULL;
-    enum tri_status status = tri_api_settings_take(&own, settings, error);
     if (status)
         return status;
-    int threads = par_threads(own.threads, false);
-    const struct tri_executor executor = par_executor(&threads);
-    struct par_options how = par_defaults();
-    how.by_block = own.numbered_by_block;
-    const struct tri_api_way way = {.refine = par_refine_as, .executor = &executor, .user = &how};
-    return tri_api_mesh_new(mesh, figure, &own, &way, error);
+    call.how.by_block = call.settings.numbered_by_block;
+    return tri_api_mesh_new(mesh, figure, &call.settings, &call.way, error);
 }
 
 enum tri_status par_mesh_refine(struct tri_mesh *mesh, const struct tri_settings *settings, struct tri_error *error)
 {
-    struct tri_settings own;
-    enum tri_status status = tri_api_settings_take(&own, settings, error);
+    struct call call;
+    enum tri_status status = begin(&call, settings, error);
     if (status)
         return status;
-    int threads = par_threads(own.threads, false);
-    const struct tri_executor executor = par_executor(&threads);
-    struct par_options how = par_defaults();
-    how.by_block = own.numbered_by_block;
-    const struct tri_api_way way = {.refine = par_refine_as, .executor = &executor, .user = &how};
-    return tri_api_mesh_refine(mesh, &own, &way, error);
+    call.how.by_block = call.settings.numbered_by_block;
+    return tri_api_mesh_refine(mesh, &call.settings, &call.way, error);
 }
 
 enum tri_status par_mesh_stream(const struct tri_figure *figure, const struct tri_settings *settings, int64_t memory,
                                 const char *scratch, const struct tri_sink *sink, struct tri_error *error)
 {
-    struct tri_settings own;
+    struct call call;
     if (memory < 0 || !sink || !sink->take)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "a stream needs a sink that takes, and a bound on memory >= 0");
-    enum tri_status status = tri_api_settings_take(&own, settings, error);
+    enum tri_status status = begin(&call, settings, error);
     if (status)
         return status;
-    int threads = par_threads(own.threads, false);
-    const struct tri_executor executor = par_executor(&threads);
-    struct par_options how = par_defaults();
-    how.memory = memory;
-    how.scratch = scratch;
-    how.sink = sink;
-    const struct tri_api_way way = {.refine = par_refine_as, .executor = &executor, .user = &how};
-    return tri_api_mesh_stream(figure, &own, &way, error);
+    call.how.memory = memory;
+    call.how.scratch = scratch;
+    call.how.sink = sink;
+    return tri_api_mesh_stream(figure, &call.settings, &call.way, error);
 }

@@ -153,7 +153,7 @@ static void choose_numbers(struct par_partition *p, double cell_triangles)
 
 enum tri_status par_partition_make(struct par_partition *p, const struct tri_mesh *mesh,
                                    const struct tri_refine_options *options, double estimate, double cell_triangles,
-                                   struct tri_error *error)
+                                   const struct tri_executor *executor, struct tri_error *error)
 {
     struct samples s = {0};
     *p = (struct par_partition){.n_columns = 3, .n_rows = 3, .estimate = estimate};
@@ -164,7 +164,7 @@ enum tri_status par_partition_make(struct par_partition *p, const struct tri_mes
     p->x = malloc((size_t)p->n_columns * sizeof *p->x);
     p->y = malloc((size_t)p->n_columns * (size_t)p->n_rows * sizeof *p->y);
     double grain = estimate / par_cells(p) / SAMPLES_PER_CELL;
-    bool done = p->x && p->y && tri_sample_work(mesh, options, grain, add_sample, &s) && cut_plane(p, &s);
+    bool done = p->x && p->y && tri_sample_work(mesh, options, grain, executor, add_sample, &s) && cut_plane(p, &s);
     free(s.item);
     if (done)
         return TRI_OK;

@@ -41,7 +41,7 @@ struct par_partition {
  * samples log samples). */
 enum tri_status par_partition_make(struct par_partition *partition, const struct tri_mesh *mesh,
                                    const struct tri_refine_options *options, double estimate, double cell_triangles,
-                                   struct tri_error *error);
+                                   const struct tri_executor *executor, struct tri_error *error);
 
 /* A copy with memory of its own. */
 enum tri_status par_partition_copy(struct par_partition *copy, const struct par_partition *partition,

@@ -414,27 +414,24 @@ static uint64_t key_of(const struct par_state *state, int32_t i)
 bool par_merge_worklist(struct par_state *state, const int32_t *item, const uint64_t *key, int32_t n)
 {
     struct par_worklist *list = &state->worklist;
-    struct leftovers merged = {{0}, {0}};
-    int32_t sum = list->n + n, k = 0;
-    merged.item.item = malloc(((size_t)sum + 1) * sizeof *merged.item.item);
-    merged.key.item = malloc(((size_t)sum + 1) * sizeof *merged.key.item);
-    if (!merged.item.item || !merged.key.item) {
-        free(merged.item.item);
-        free(merged.key.item);
+    int32_t sum = list->n + n, k = 0, *items = malloc(((size_t)sum + 1) * sizeof *items);
+    uint64_t *keys = malloc(((size_t)sum + 1) * sizeof *keys);
+    if (!items || !keys) {
+        free(items);
+        free(keys);
         return false;
     }
     for (int32_t i = 0, at = 0; at < sum; at++) {
         bool old = k == n || (i < list->n && key_of(state, i) < key[k]);
-        merged.item.item[at] = old ? list->item[i] : item[k];
-        merged.key.item[at] = old ? key_of(state, i) : key[k];
+        items[at] = old ? list->item[i] : item[k];
+        keys[at] = old ? key_of(state, i) : key[k];
         i += old;
         k += !old;
     }
-    merged.item.n = merged.item.capacity = merged.key.n = merged.key.capacity = sum;
     free(state->worklist.item);
     free(state->key.item);
-    state->worklist = merged.item;
-    state->key = merged.key;
+    state->worklist = (struct par_worklist){items, sum, sum};
+    state->key = (struct par_keys){keys, sum, sum};
     return true;
 }
 

@@ -109,8 +109,8 @@ static bool areas_decide(const struct par_state *state, const struct tri_refine_
                          double cell)
 {
     struct tri_refine_options coarse = coarse_bounds(quality, cell);
-    return tri_has_sizes(quality) &&
-           tri_estimate(state->mesh, &coarse) < estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
+    double sure, most = estimate * fmin(4 * COARSE_PER_CELL / cell, 0.25);
+    return tri_has_sizes(quality) && tri_estimate(state->mesh, &coarse, &state->executor, &sure) < most;
 }
 
 static enum tri_status prerefine_uniform(struct par_state *state, const struct tri_refine_options *quality,
@@ -335,7 +335,7 @@ static enum tri_status try_to_sweep(struct par_state *state, const struct par_pa
 static enum tri_status park(struct par_state *state, struct tri_error *error)
 {
     const struct par_options *options = state->options;
-    enum tri_status status = tri_refine_check(state->mesh, state->quality, error);
+    enum tri_status status = tri_refine_check(state->mesh, state->quality, &state->executor, error);
     if (status)
         return status;
     if (!options->scratch)
@@ -426,7 +426,8 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
 {
     struct par_partition partition;
     double began = tri_seconds();
-    enum tri_status status = par_partition_make(&partition, state->mesh, quality, estimate, cell, error);
+    enum tri_status status = par_partition_make(&partition, state->mesh, quality, estimate, cell, &state->executor,
+                                                error);
     state->report->seconds_partition += tri_seconds() - began;
     if (status)
         return status;
@@ -446,9 +447,9 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
     return status;
 }
 
-static double estimate_of(struct par_state *state, const struct tri_refine_options *quality)
+static double estimate_of(struct par_state *state, const struct tri_refine_options *quality, double *sure)
 {
-    double began = tri_seconds(), estimate = tri_estimate(state->mesh, quality);
+    double began = tri_seconds(), estimate = tri_estimate(state->mesh, quality, &state->executor, sure);
     state->report->seconds_partition += tri_seconds() - began;
     return estimate;
 }
@@ -476,14 +477,14 @@ static enum tri_status refine_a_little(struct par_state *state, const struct tri
 static enum tri_status refine_level(struct par_state *state, const struct tri_refine_options *quality, int level,
                                     struct tri_error *error)
 {
-    double estimate = estimate_of(state, quality), cell = cell_size(state, estimate);
+    double sure, estimate = estimate_of(state, quality, &sure), cell = cell_size(state, estimate);
     double large = cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS);
-    if (estimate >= large && tri_sure_work(state->mesh, quality) < large) {
+    if (estimate >= large && sure < large) {
         bool done;
         enum tri_status status = refine_a_little(state, quality, large * A_LITTLE, &done, error);
         if (status || done)
             return status;
-        estimate = estimate_of(state, quality);
+        estimate = estimate_of(state, quality, &sure);
         cell = cell_size(state, estimate);
     }
     if (estimate >= cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS))
@@ -562,7 +563,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
                               .n_kept = mesh->n_vertices};
     bool sequential = must_be_sequential(quality, options);
     bool can_sweep = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE;
-    enum tri_status status = can_sweep ? TRI_OK : tri_refine_check(mesh, quality, error);
+    enum tri_status status = can_sweep ? TRI_OK : tri_refine_check(mesh, quality, &state.executor, error);
     if (status)
         return status;
     status = sequential ? refine_rest(&state, quality, true, error) : refine_by_schedule(&state, quality, error);

@@ -1,12 +1,25 @@
 /* Threads are tried by making them, and letting them wait for each other, so that all are there at once. */
 #include "sched/threads.h"
 
+#include <signal.h>
+
 #ifdef _OPENMP
 #include <omp.h>
-#include <pthread.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <unistd.h>
+#endif
+
+bool par_thread_start(pthread_t *thread, void *(*run)(void *user), void *user)
+{
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    bool started = pthread_create(thread, NULL, run, user) == 0;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return started;
+}
+
+#ifdef _OPENMP
 
 /* A forked child has lost the threads that libgomp still counts on, and would wait for them for ever: it works alone.
  * That needs to be known process-wide, the one thing here that is. */
@@ -24,22 +37,18 @@ static void *wait_for_end(void *gate)
     return NULL;
 }
 
-/* How many threads can there be beside this one, if no more than n are wanted? Signals do not find them. */
+/* How many threads can there be beside this one, if no more than n are wanted? */
 static int try_threads(int n)
 {
     pthread_t thread[PAR_MOST_THREADS];
     pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
-    sigset_t all, before;
     int made = 0;
-    sigfillset(&all);
-    pthread_sigmask(SIG_BLOCK, &all, &before);
     pthread_mutex_lock(&gate);
-    while (made < n && pthread_create(&thread[made], NULL, wait_for_end, &gate) == 0)
+    while (made < n && par_thread_start(&thread[made], wait_for_end, &gate))
         made++;
     pthread_mutex_unlock(&gate);
     for (int i = 0; i < made; i++)
         pthread_join(thread[i], NULL);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
     return made;
 }
 

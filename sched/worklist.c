@@ -19,6 +19,36 @@ bool par_worklist_add(struct par_worklist *triangles, int32_t triangle)
     return true;
 }
 
+static int ascending(const void *left, const void *right)
+{
+    const int32_t *a = left, *b = right;
+    return (*a > *b) - (*a < *b);
+}
+
+int32_t par_sort_unique(int32_t *item, int32_t n)
+{
+    int32_t kept = 0;
+    if (n > 0)
+        qsort(item, (size_t)n, sizeof *item, ascending);
+    for (int32_t i = 0; i < n; i++)
+        if (i == 0 || item[i] != item[kept - 1])
+            item[kept++] = item[i];
+    return kept;
+}
+
+int32_t par_worklist_find(const struct par_worklist *list, int32_t item)
+{
+    int32_t low = 0, high = list->n;
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if (list->item[middle] < item)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 bool par_triangle_set_of(struct par_triangle_set *set, const struct par_worklist *triangles, int32_t n_triangles)
 {
     set->word = calloc((size_t)n_triangles / 64 + 1, sizeof *set->word);
@@ -60,24 +90,11 @@ static int32_t gather(const struct finding *f, int32_t n)
     return filled;
 }
 
-static int32_t first_in_worklist(const struct par_worklist *worklist, int32_t triangle)
-{
-    int32_t low = 0, high = worklist->n;
-    while (low < high) {
-        int32_t middle = low + (high - low) / 2;
-        if (worklist->item[middle] < triangle)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 /* The bad ones of a range, where the worklist holds those that are as old as it is. A new life has begun for every
  * triangle when it was filled: who has a higher number was born since. */
 static int32_t find_newborn(const struct finding *f, struct tri_range range, int32_t *found)
 {
-    int32_t n = 0, next = first_in_worklist(f->worklist, range.first);
+    int32_t n = 0, next = par_worklist_find(f->worklist, range.first);
     for (int32_t t = range.first; t < range.last; t++) {
         bool was_bad = next < f->worklist->n && f->worklist->item[next] == t;
         next += was_bad;

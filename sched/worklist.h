@@ -13,6 +13,12 @@ struct par_worklist {
 /* Amortised O(1). False: no memory. */
 bool par_worklist_add(struct par_worklist *triangles, int32_t triangle);
 
+/* Brings ids in ascending order, each once; returns how many are left. */
+int32_t par_sort_unique(int32_t *item, int32_t n);
+
+/* Of a list in ascending order the place of the first item that is not less than this. */
+int32_t par_worklist_find(const struct par_worklist *list, int32_t item);
+
 /* A set of triangles, as bits. */
 struct par_triangle_set {
     uint64_t *word; /* [(n_triangles + 63) / 64] */

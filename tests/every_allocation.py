@@ -37,7 +37,7 @@ ALL = FAST + [
 ]
 
 LONGEST = 60  # seconds of one run
-MOST, MOST_FAST = 160, 60  # runs of a case in each mode
+MOST, MOST_FAST = 80, 60  # runs of a case in each mode
 
 
 def prepare(folder, inputs, bin_folder, data):

@@ -55,6 +55,33 @@ for file in tests/test_*.c; do
     grep -qE "ptriangle_test\(${name%.c}[ )]" tests/CMakeLists.txt || breach "$file is not registered in tests/CMakeLists.txt"
 done
 
+# ... and has a test program of its name, but where that of another name goes through it.
+tested_by() {
+    case $1 in
+    triangle/check/*) echo check ;;
+    triangle/hdf5/*) echo hdf5 ;;
+    triangle/api/* | sched/mesh.c) echo api ;;
+    triangle/dropin/switches.c) echo switches ;;
+    triangle/dropin/*) echo triangulate ;;
+    triangle/text/window.c) echo read ;;
+    triangle/text/output.c | triangle/text/layouts.c) echo write ;;
+    triangle/text/stream.c) echo text_stream ;;
+    triangle/text/boundary.c | triangle/text/gmsh.c | triangle/text/grouping.c) echo formats ;;
+    triangle/text/hydro.c | triangle/text/vtu.c) echo formats ;;
+    sched/triangulate.c) echo par_triangulate ;;
+    sched/sweep/checkpoint.c | sched/sweep/spool.c) echo checkpoint ;;
+    sched/sweep/numbering.c) echo numbering ;;
+    sched/sweep/queue.c) echo queue ;;
+    sched/threads.c | sched/sweep/*) echo schedule ;;
+    sched/ranks/fragment.c) echo fragment ;;
+    sched/ranks/*) echo ranks ;;
+    *) basename "${1%.*}" ;;
+    esac
+}
+for file in triangle/*.c triangle/*/*.c triangle/*/*.cpp sched/*.c sched/*/*.c; do
+    [ -f "tests/test_$(tested_by "$file").c" ] || breach "$file has no test program"
+done
+
 # 2. drivers/ -> sched/ -> triangle/, never back; only sched/ knows threads, and the judge. The folders in triangle/ may
 # include the mesher, the mesher none of them, and they none of each other, but for api/, the door to all, and
 # hdf5/, whose files are outputs of text/.

@@ -4,6 +4,7 @@
 #include <dirent.h>
 #include <stdio.h>
 
+#include "triangle/estimate.h"
 #include "triangle/delaunay.h"
 #include "triangle/text/read.h"
 
@@ -334,6 +335,12 @@ struct tri_mesh support_constrained(const struct tri_pslg *pslg, struct tri_cons
     if (tri_mesh_validate(&mesh, &error) != TRI_OK)
         fail_msg("%s", error.text);
     return mesh;
+}
+
+double support_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *quality)
+{
+    double sure;
+    return tri_estimate(mesh, quality, NULL, &sure);
 }
 
 struct tri_options support_quality(double min_angle, double max_area)

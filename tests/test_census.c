@@ -122,11 +122,11 @@ static void test_check(void **state)
     struct tri_mesh mesh = support_generate(&square, &none, &report);
     struct tri_refine_options quality = tri_refine_defaults();
     quality.max_area = 1.01 / 0.75 / TRI_MAX_TRIANGLES; /* no mesh fills more of its bound than that */
-    assert_int_equal(tri_refine_check(&mesh, &quality, &error), TRI_OK);
+    assert_int_equal(tri_refine_check(&mesh, &quality, NULL, &error), TRI_OK);
     quality.max_area = 0.99 / 0.75 / TRI_MAX_TRIANGLES;
-    assert_int_equal(tri_refine_check(&mesh, &quality, &error), TRI_TOO_LARGE);
+    assert_int_equal(tri_refine_check(&mesh, &quality, NULL, &error), TRI_TOO_LARGE);
     quality.max_steiner = 10;
-    assert_int_equal(tri_refine_check(&mesh, &quality, &error), TRI_OK);
+    assert_int_equal(tri_refine_check(&mesh, &quality, NULL, &error), TRI_OK);
     tri_mesh_free(&mesh);
     tri_pslg_free(&square);
 }

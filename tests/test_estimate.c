@@ -28,12 +28,19 @@ static void test_areas(void **state)
         struct tri_mesh mesh = coarse_square(0);
         struct tri_refine_options quality = support_quality(20, area).quality;
         struct tri_refine_report report;
-        double estimate = tri_estimate(&mesh, &quality), sure = tri_sure_work(&mesh, &quality);
+        double sure, estimate = tri_estimate(&mesh, &quality, NULL, &sure);
         assert_true(sure > mesh.n_triangles && sure < estimate + mesh.n_triangles);
         assert_int_equal(tri_refine(&mesh, &quality, &report, NULL), TRI_OK);
         assert_true(estimate > 0.8 * mesh.n_triangles && estimate < 1.25 * mesh.n_triangles);
         tri_mesh_free(&mesh);
     }
+}
+
+static double sure_work(const struct tri_mesh *mesh, const struct tri_refine_options *quality)
+{
+    double sure;
+    tri_estimate(mesh, quality, NULL, &sure);
+    return sure;
 }
 
 /* A size test that asks for the same as an area bound is probed for about as much. */
@@ -45,12 +52,12 @@ static void test_size_test_is_probed(void **state)
     double bound = 1e-4;
     probed.unsuitable = wants_smaller;
     probed.unsuitable_user = &bound;
-    double one = tri_sure_work(&mesh, &areas), other = tri_sure_work(&mesh, &probed);
+    double one = sure_work(&mesh, &areas), other = sure_work(&mesh, &probed);
     assert_true(other > one / 4 && other < one * 4);
     bound = HUGE_VAL; /* asks for nothing */
-    assert_true(tri_sure_work(&mesh, &probed) == mesh.n_triangles);
+    assert_true(sure_work(&mesh, &probed) == mesh.n_triangles);
     bound = -1; /* is never content: no test of size */
-    assert_true(tri_sure_work(&mesh, &probed) == mesh.n_triangles);
+    assert_true(sure_work(&mesh, &probed) == mesh.n_triangles);
     tri_mesh_free(&mesh);
 }
 
@@ -66,12 +73,12 @@ static void test_shares(void **state)
         assert_true(work >= 1);
         sum += work;
     }
-    double all = tri_estimate(&mesh, &quality);
+    double all = support_estimate(&mesh, &quality);
     assert_true(sum >= all && sum < 1.3 * all); /* each is taken for a bad one here */
     int32_t v = mesh.tri[0].v[0];
     mesh.tri[0].v[0] = TRI_NONE;
     assert_true(tri_work_of(&mesh, &quality, 0) == 0);
-    assert_true(tri_estimate(&mesh, &quality) < all);
+    assert_true(support_estimate(&mesh, &quality) < all);
     mesh.tri[0].v[0] = v;
     tri_mesh_free(&mesh);
 }
@@ -100,18 +107,18 @@ static void test_samples(void **state)
     (void)state;
     struct tri_mesh mesh = coarse_square(30);
     struct tri_refine_options quality = support_quality(25, 1e-4).quality;
-    double all = tri_estimate(&mesh, &quality);
+    double all = support_estimate(&mesh, &quality);
     int32_t before = 0;
     for (double grain = 2000; grain > 10; grain /= 5) {
         struct samples s = {.room = INT32_MAX, .inside = true};
-        assert_true(tri_sample_work(&mesh, &quality, grain, take, &s));
+        assert_true(tri_sample_work(&mesh, &quality, grain, NULL, take, &s));
         assert_true(s.inside && s.n > before);
         assert_true(s.work <= all * (1 + 1e-9) && s.work > all - 2 * grain);
         assert_true(s.most < 2 * grain);
         before = s.n;
     }
     struct samples few = {.room = 3, .inside = true};
-    assert_false(tri_sample_work(&mesh, &quality, 10, take, &few));
+    assert_false(tri_sample_work(&mesh, &quality, 10, NULL, take, &few));
     assert_int_equal(few.n, 3);
     tri_mesh_free(&mesh);
 }

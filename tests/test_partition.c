@@ -53,7 +53,8 @@ static struct par_partition cut(const struct tri_mesh *mesh, const struct tri_re
 {
     struct par_partition partition;
     struct tri_error error;
-    assert_int_equal(par_partition_make(&partition, mesh, quality, tri_estimate(mesh, quality), cell, &error), TRI_OK);
+    assert_int_equal(par_partition_make(&partition, mesh, quality,
+                                        support_estimate(mesh, quality), cell, NULL, &error), TRI_OK);
     return partition;
 }
 
@@ -302,16 +303,16 @@ static void test_work_follows_the_bounds(void **state)
     pslg.regions[2] = 1;
     pslg.regions[3] = 1e-3;
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    double none = tri_estimate(&mesh, &options.quality);
+    double none = support_estimate(&mesh, &options.quality);
     options.quality.region_areas = true;
-    double fine = tri_estimate(&mesh, &options.quality);
+    double fine = support_estimate(&mesh, &options.quality);
     options.quality.max_area = 1e-2;
-    assert_true(tri_estimate(&mesh, &options.quality) == fine);
+    assert_true(support_estimate(&mesh, &options.quality) == fine);
     options.quality.region_areas = false;
-    double coarse = tri_estimate(&mesh, &options.quality);
+    double coarse = support_estimate(&mesh, &options.quality);
     assert_true(fabs((fine - none) / (coarse - none) - 10) < 1e-9);
     options.quality.area_scale = 10;
-    assert_true(fabs((coarse - none) / (tri_estimate(&mesh, &options.quality) - none) - 10) < 1e-9);
+    assert_true(fabs((coarse - none) / (support_estimate(&mesh, &options.quality) - none) - 10) < 1e-9);
     assert_true(tri_work_of(&mesh, &options.quality, 0) > 1);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
@@ -340,9 +341,9 @@ static void test_size_tests_are_probed(void **state)
     options.refine = false;
     struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
     options.quality.unsuitable = is_never_right;
-    assert_true(tri_estimate(&mesh, &options.quality) < 100);
+    assert_true(support_estimate(&mesh, &options.quality) < 100);
     options.quality.unsuitable = is_too_large;
-    double estimate = tri_estimate(&mesh, &options.quality);
+    double estimate = support_estimate(&mesh, &options.quality);
     struct par_partition p = cut(&mesh, &options.quality, estimate / 64);
     struct tri_refine_report report;
     assert_int_equal(tri_refine(&mesh, &options.quality, &report, NULL), TRI_OK);

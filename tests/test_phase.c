@@ -41,7 +41,8 @@ static struct tri_mesh start_of(const struct trial *trial, struct tri_refine_opt
 static struct par_partition cut(const struct tri_mesh *mesh, const struct tri_refine_options *quality, double block)
 {
     struct par_partition partition;
-    assert_int_equal(par_partition_make(&partition, mesh, quality, tri_estimate(mesh, quality), block, NULL), TRI_OK);
+    assert_int_equal(par_partition_make(&partition, mesh, quality,
+                                        support_estimate(mesh, quality), block, NULL, NULL), TRI_OK);
     assert_true(partition.n_columns > 2 && partition.n_rows > 2);
     return partition;
 }

@@ -256,7 +256,7 @@ static void test_closing_keeps_the_mesh(void **state)
             /* leaves out what is marked */
             struct par_partition tiles;
             const struct tri_refine_options none = tri_refine_defaults();
-            assert_int_equal(par_partition_make(&tiles, &mesh, &none, mesh.n_triangles, 100, NULL), TRI_OK);
+            assert_int_equal(par_partition_make(&tiles, &mesh, &none, mesh.n_triangles, 100, NULL, NULL), TRI_OK);
             assert_int_equal(par_number(&mesh, &tiles, mesh.incidence.n_vertices, NULL, NULL), TRI_OK);
             par_partition_free(&tiles);
             par_room_free(&spare);

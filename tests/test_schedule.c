@@ -146,14 +146,14 @@ static void test_any_number_of_threads_and_order_of_blocks_make_one_mesh(void **
     static const struct {
         int threads;
         unsigned shuffle;
-    } runs[] = {{3, 0}, {1, 1}, {8, 0}, {2, 4711}};
+    } runs[] = {{3, 1}, {8, 0}, {2, 4711}};
     for (int i = 0; i < N_TRIALS; i++) {
         struct start start = trials_start_of(&trials[i]);
         struct par_options options = small_blocks(trials[i].block, 1);
         struct par_report first_report, report;
         print_message("  %s\n", trials[i].file);
         struct tri_mesh first = refine(&start, &options, &first_report);
-        for (int k = 0; k < (i < N_USUAL ? 4 : 2); k++) {
+        for (int k = 0; k < (i < N_USUAL ? 3 : 1); k++) {
             options.threads = runs[k].threads;
             options.shuffle = runs[k].shuffle;
             struct tri_mesh mesh = refine(&start, &options, &report);
@@ -174,7 +174,7 @@ static void test_any_number_of_threads_and_order_of_blocks_make_one_mesh(void **
 static void test_room_moves_ids_alone(void **state)
 {
     (void)state;
-    static const int32_t rooms[] = {1, 50, 333};
+    static const int32_t rooms[] = {1, 50};
     for (int i = 0; i < N_USUAL; i++) {
         struct start start = trials_start_of(&trials[i]);
         struct par_options options = small_blocks(trials[i].block, 2);
@@ -184,7 +184,7 @@ static void test_room_moves_ids_alone(void **state)
         struct tri_mesh coarse = trials_coarse_mesh(&start);
         int32_t n_kept = coarse.n_vertices;
         tri_mesh_free(&coarse);
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < 2; k++) {
             options.tight_room = rooms[k];
             options.shuffle = (unsigned)k;
             options.by_block = k == 1;
@@ -1024,7 +1024,7 @@ static void test_every_allocation_may_fail_on_the_way_to_a_sink(void **state)
         options.memory = 1000;
         options.scratch = ".";
         while (fail_streaming_once(&start, &options, k))
-            k += 11;
+            k += 1 + k / 12; /* the later, the more alike */
         assert_true(k > 50);
         tri_pslg_free(&start.pslg);
     }
@@ -1036,10 +1036,10 @@ static void test_every_allocation_may_fail(void **state)
     for (int run = 0; run < 4; run++) {
         struct start start = square(60, 25, 4e-4);
         struct par_options options = small_blocks(256, run < 2 ? 1 : 2);
-        int64_t k = 1, step = run % 2 ? 7 : 3;
+        int64_t k = 1;
         options.tight_room = run % 2 ? 20 : 0;
         while (fail_once(&start, &options, k, run % 2))
-            k += step;
+            k += 1 + k / 24;
         assert_true(k > 100);
         tri_pslg_free(&start.pslg);
     }

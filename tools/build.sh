@@ -1,11 +1,11 @@
 #!/bin/sh
 # Configures and builds a preset of CMakePresets.json on all cores, into build/<preset>.
 # Usage: tools/build.sh PRESET [CMAKE_OPTION...]
-# PTRIANGLE_BUILD names another folder for the builds.
+# PTRIANGLE_BUILD names another folder for the builds, PTRIANGLE_TARGET what of it is built: all without.
 set -eu
 cd "$(dirname "$0")/.."
 preset=$1
 shift
 folder=${PTRIANGLE_BUILD:-build}/$preset
 cmake --preset "$preset" -B "$folder" "$@"
-cmake --build "$folder" --parallel "$(nproc 2>/dev/null || echo 2)"
+cmake --build "$folder" --parallel "$(nproc 2>/dev/null || echo 2)" --target "${PTRIANGLE_TARGET:-all}"

@@ -11,22 +11,42 @@
 /* No mesh has triangles of more than this share of their bounds on average. (Measured: 0.63 to 0.67.) */
 static const double MOST_OVER_BOUND = 0.75;
 
-double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+struct demand {
+    const struct tri_mesh *mesh;
+    const struct tri_criterion *criterion;
+    double triangles[TRI_MOST_SHARES]; /* of each share */
+};
+
+static void add_demand(void *context, size_t share)
+{
+    struct demand *d = context;
+    const struct tri_mesh *mesh = d->mesh;
+    struct tri_range range = tri_share(share, mesh->n_triangles);
+    double sum = 0;
+    for (tri_triangle_id t = range.first; t < range.last; t++)
+        if (tri_is_live(&mesh->tri[t]))
+            sum += tri_shape_of(mesh->xy, mesh->tri[t].v).area2 / tri_area2_bound(d->criterion, mesh->tri[t].region);
+    d->triangles[share] = sum;
+}
+
+double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                       const struct tri_executor *executor)
 {
     const struct tri_criterion c = tri_criterion_of_areas(mesh, options);
+    struct demand d = {.mesh = mesh, .criterion = &c};
     double triangles = 0;
     if (!(options->max_area > 0 || options->region_areas))
         return 0;
-    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
-        if (tri_is_live(&mesh->tri[t]))
-            triangles += tri_shape_of(mesh->xy, mesh->tri[t].v).area2 / tri_area2_bound(&c, mesh->tri[t].region);
+    tri_execute(executor, tri_shares(mesh->n_triangles), add_demand, &d);
+    for (size_t share = 0; share < tri_shares(mesh->n_triangles); share++)
+        triangles += d.triangles[share];
     return triangles / MOST_OVER_BOUND;
 }
 
 enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
-                                 struct tri_error *error)
+                                 const struct tri_executor *executor, struct tri_error *error)
 {
-    double triangles = options->max_steiner < 0 ? tri_area_demand(mesh, options) : 0;
+    double triangles = options->max_steiner < 0 ? tri_area_demand(mesh, options, executor) : 0;
     if (triangles <= TRI_MAX_TRIANGLES)
         return TRI_OK;
     /* Far beyond, a lower bound that can be read will do. */

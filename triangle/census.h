@@ -10,12 +10,13 @@ extern "C" {
 
 /* Triangles that the area bounds ask for at least: the sum of all areas over their bounds, and a third more, since no
  * mesh fills its bounds; 0 without. O(triangles). */
-double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_options *options);
+double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                       const struct tri_executor *executor);
 
 /* TRI_TOO_LARGE where the area bounds ask for more triangles than one mesh can hold; tri_refine asks first.
  * O(triangles). */
 enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
-                                 struct tri_error *error);
+                                 const struct tri_executor *executor, struct tri_error *error);
 
 /* found[last - first] receives the triangles from first to last - 1 at which there is something for the loop to do (an
  * angle that is bad and not hopeless, a bad size; an encroached subsegment if conforming), in order; returns how

@@ -168,14 +168,6 @@ static void place_share(void *context, size_t share)
     }
 }
 
-static int bits_of(int32_t number)
-{
-    int bits = 1;
-    while (bits < 31 && number >> bits)
-        bits++;
-    return bits;
-}
-
 static void find_order(struct sorting *s, const struct tri_executor *executor)
 {
     tri_execute(executor, tri_shares(s->n_triangles), list_share, s);
@@ -245,7 +237,7 @@ enum tri_status tri_curve_sort(struct tri_mesh *mesh, struct tri_triangle *tri, 
                                int32_t n_live, const struct tri_executor *executor, struct tri_error *error)
 {
     struct sorting s = {.mesh = mesh, .tri = tri, .n_triangles = n_triangles, .n_live = n_live,
-                        .vertex_bits = bits_of(mesh->n_vertices)};
+                        .vertex_bits = tri_bits_of(mesh->n_vertices)};
     enum tri_status status = take_hull(mesh, tri, error);
     s.n_live -= mesh->n_subs; /* ghosts */
     return status ? status : sort(&s, executor, error);

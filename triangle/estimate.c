@@ -4,6 +4,7 @@
 #include "triangle/estimate.h"
 
 #include <assert.h>
+#include <stdlib.h>
 
 #include "triangle/criterion.h"
 #include "triangle/quality.h"
@@ -158,24 +159,90 @@ static struct estimator estimator_for(const struct tri_mesh *mesh, const struct 
     return e;
 }
 
-double tri_sure_work(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+/* What each n-th triangle adds to the work, by area or by angle. */
+struct works {
+    const struct estimator *e;
+    double (*of)(const struct estimator *e, tri_triangle_id t);
+    int32_t step, n; /* triangle step * i, i < n */
+    double *known;   /* [n] each, looked up by all threads; NULL: to be asked for */
+    double sum[TRI_MOST_SHARES]; /* of each share */
+};
+
+static double area_of_live(const struct estimator *e, tri_triangle_id t)
 {
-    const struct estimator e = estimator_for(mesh, options);
-    double sum = mesh->n_triangles;
-    for (tri_triangle_id t = 0; tri_has_sizes(options) && t < mesh->n_triangles; t++)
-        if (tri_is_live(&mesh->tri[t]))
-            sum += area_work(&e, t);
+    return tri_is_live(&e->mesh->tri[t]) ? area_work(e, t) : 0;
+}
+
+static double angle_of_live(const struct estimator *e, tri_triangle_id t)
+{
+    return tri_is_live(&e->mesh->tri[t]) ? angle_work(e->mesh, e->options, t) : 0;
+}
+
+static struct works area_works(const struct estimator *e)
+{
+    return (struct works){.e = e, .of = area_of_live, .step = 1, .n = e->mesh->n_triangles};
+}
+
+static struct works angle_works(const struct estimator *e)
+{
+    int32_t step = survey_step(e->mesh);
+    return (struct works){.e = e, .of = angle_of_live, .step = step, .n = (e->mesh->n_triangles + step - 1) / step};
+}
+
+static inline double work_at(const struct works *w, int32_t i)
+{
+    return w->known ? w->known[i] : w->of(w->e, w->step * i);
+}
+
+static void sum_share(void *context, size_t share)
+{
+    struct works *w = context;
+    struct tri_range range = tri_share(share, w->n);
+    double sum = 0;
+    for (int32_t i = range.first; i < range.last; i++)
+        sum += w->step * work_at(w, i);
+    w->sum[share] = sum;
+}
+
+/* A size test is the caller's: whether threads may ask it at once is not known here. */
+static const struct tri_executor *executor_for(const struct works *w, const struct tri_executor *executor)
+{
+    return w->e->options->unsuitable ? NULL : executor;
+}
+
+/* In shares that the mesh decides: the same for any number of threads. */
+static double sum_of(struct works w, const struct tri_executor *executor)
+{
+    double sum = 0;
+    tri_execute(executor_for(&w, executor), tri_shares(w.n), sum_share, &w);
+    for (size_t share = 0; share < tri_shares(w.n); share++)
+        sum += w.sum[share];
     return sum;
 }
 
-double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options)
+static void know_share(void *context, size_t share)
 {
-    int32_t step = survey_step(mesh);
-    double sum = tri_sure_work(mesh, options) - mesh->n_triangles;
-    for (tri_triangle_id t = 0; t < mesh->n_triangles; t += step)
-        if (tri_is_live(&mesh->tri[t]))
-            sum += step * angle_work(mesh, options, t);
-    return sum;
+    const struct works *w = context;
+    struct tri_range range = tri_share(share, w->n);
+    for (int32_t i = range.first; i < range.last; i++)
+        w->known[i] = w->of(w->e, w->step * i);
+}
+
+/* Where there is no memory each is asked for when it is needed. */
+static void know_all(struct works *w, const struct tri_executor *executor)
+{
+    w->known = tri_shares(w->n) > 1 ? malloc((size_t)w->n * sizeof *w->known) : NULL;
+    if (w->known)
+        tri_execute(executor_for(w, executor), tri_shares(w->n), know_share, w);
+}
+
+double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                    const struct tri_executor *executor, double *sure)
+{
+    const struct estimator e = estimator_for(mesh, options);
+    double areas = tri_has_sizes(options) ? sum_of(area_works(&e), executor) : 0;
+    *sure = mesh->n_triangles + areas;
+    return areas + sum_of(angle_works(&e), executor);
 }
 
 /* Who is given the samples. */
@@ -203,17 +270,14 @@ static bool sample_triangle(const struct receiver *to, const struct estimator *e
 }
 
 /* Small pieces of work are gathered until they are worth a sample. */
-static bool sample_angles(const struct receiver *to, const struct tri_mesh *mesh,
-                          const struct tri_refine_options *options, double grain)
+static bool sample_angles(const struct receiver *to, const struct works *angles, double grain)
 {
-    int32_t step = survey_step(mesh);
+    const struct tri_mesh *mesh = angles->e->mesh;
     double waiting = 0;
-    for (tri_triangle_id t = 0; t < mesh->n_triangles; t += step) {
-        const tri_vertex_id *v = mesh->tri[t].v;
-        if (!tri_is_live(&mesh->tri[t]))
-            continue;
-        waiting += step * angle_work(mesh, options, t);
-        if (waiting < grain)
+    for (int32_t i = 0; i < angles->n; i++) {
+        const tri_vertex_id *v = mesh->tri[angles->step * i].v;
+        waiting += angles->step * work_at(angles, i);
+        if (waiting < grain || v[0] == TRI_NONE)
             continue;
         int k = tri_shape_of(mesh->xy, v).shortest;
         if (!to->take(to->user, middle(mesh->xy[v[tri_next[k]]], mesh->xy[v[tri_prev[k]]]), waiting))
@@ -223,18 +287,17 @@ static bool sample_angles(const struct receiver *to, const struct tri_mesh *mesh
     return true;
 }
 
-static bool sample_areas(const struct receiver *to, const struct tri_mesh *mesh,
-                         const struct tri_refine_options *options, double grain)
+static bool sample_areas(const struct receiver *to, const struct works *areas, double grain)
 {
-    const struct estimator e = estimator_for(mesh, options);
+    const struct tri_mesh *mesh = areas->e->mesh;
     double waiting = 0;
     for (tri_triangle_id t = 0; t < mesh->n_triangles; t++) {
-        double work = tri_is_live(&mesh->tri[t]) ? area_work(&e, t) : 0;
+        double work = work_at(areas, t);
         waiting += work < grain ? work : 0;
         if (work < grain && waiting < grain)
             continue;
         struct corners corners = corners_of(mesh, t);
-        if (!sample_triangle(to, &e, mesh->tri[t].region, &corners, work < grain ? waiting : work,
+        if (!sample_triangle(to, areas->e, mesh->tri[t].region, &corners, work < grain ? waiting : work,
                              work < grain ? waiting : grain, DEEPEST_CUT))
             return false;
         waiting = work < grain ? 0 : waiting;
@@ -243,10 +306,19 @@ static bool sample_areas(const struct receiver *to, const struct tri_mesh *mesh,
 }
 
 bool tri_sample_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, double grain,
-                     tri_take_work *take, void *user)
+                     const struct tri_executor *executor, tri_take_work *take, void *user)
 {
     const struct receiver to = {take, user};
+    const struct estimator e = estimator_for(mesh, options);
     assert(take && grain >= 0);
-    return sample_angles(&to, mesh, options, grain) &&
-           (!tri_has_sizes(options) || sample_areas(&to, mesh, options, grain));
+    struct works angles = angle_works(&e), areas = area_works(&e);
+    know_all(&angles, executor);
+    bool taken = sample_angles(&to, &angles, grain);
+    free(angles.known);
+    if (!taken || !tri_has_sizes(options))
+        return taken;
+    know_all(&areas, executor);
+    taken = sample_areas(&to, &areas, grain);
+    free(areas.known);
+    return taken;
 }

@@ -10,11 +10,10 @@ extern "C" {
 
 /* Estimates the number of triangles that refinement will end with: for bounded areas from the areas, for a bounded
  * angle from the edges' lengths, for a size test by probing it with triangles that get smaller. It may be more than any
- * mesh can hold. O(triangles), and a probe for each thousand triangles or so of those to come. */
-double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options);
-
-/* That part of it which is no guess: what there is, and what areas and the size test ask for. O(triangles). */
-double tri_sure_work(const struct tri_mesh *mesh, const struct tri_refine_options *options);
+ * mesh can hold. *sure: that part of it which is no guess: what there is, and what areas and the size test ask for.
+ * O(triangles), and a probe for each thousand triangles or so of those to come. */
+double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                    const struct tri_executor *executor, double *sure);
 
 /* The share of one bad triangle in that. */
 double tri_work_of(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id t);
@@ -25,7 +24,7 @@ typedef bool tri_take_work(void *user, struct tri_point q, double work);
 /* Hands out the work in pieces of about `grain`, each with its place, in an order that the mesh decides; small ones are
  * gathered. False: `take` said so. O(triangles + pieces). */
 bool tri_sample_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, double grain,
-                     tri_take_work *take, void *user);
+                     const struct tri_executor *executor, tri_take_work *take, void *user);
 
 #ifdef __cplusplus
 }

@@ -4,6 +4,15 @@
 
 #include "triangle/executor.h"
 
+/* Bits of a number that is not negative, at least one. */
+static inline int tri_bits_of(int32_t number)
+{
+    int bits = 1;
+    while (bits < 31 && number >> bits)
+        bits++;
+    return bits;
+}
+
 /* Sorts items[n] by their bits low .. high - 1, 0 <= low < high <= 64; those that agree in them keep their order. Bits
  * at and above high must be zero. What lies below low comes along: an index, mostly. scratch[n]. Cannot fail.
  * O(n (high - low)): for keys that are spread one pass through memory, and up to four in the cache. */

@@ -95,6 +95,7 @@ static int bucket_of(const struct tri_refiner *r, double shortest)
 {
     int exponent, first = TRI_URGENT_BUCKET + 1;
     double mantissa = frexp(shortest, &exponent);
+    assert(shortest >= 0 && shortest < HUGE_VAL);
     int bucket = first + 4 * (exponent - r->least_exponent) + (int)(8 * mantissa) - 4;
     return bucket < first ? first : bucket >= TRI_BUCKETS ? TRI_BUCKETS - 1 : bucket;
 }
@@ -118,6 +119,7 @@ static bool crowds_a_wall(const struct tri_refiner *r, const struct tri_triangle
 static bool push_angle(struct tri_refiner *r, tri_triangle_id triangle, double shortest)
 {
     const struct tri_triangle *t = &r->mesh->tri[triangle];
+    assert(triangle >= 0 && tri_is_live(t));
     int bucket = crowds_a_wall(r, t) ? TRI_URGENT_BUCKET : bucket_of(r, shortest);
     return tri_bad_queue_push_angle(&r->queue, (struct tri_entry){triangle, t->state}, bucket);
 }
@@ -174,6 +176,7 @@ static bool judge_fan(struct tri_refiner *r)
 
 static bool queue_encroached(struct tri_refiner *r, int32_t s)
 {
+    assert(s >= 0 && r->options->conforming);
     if (!tri_grow(&r->encroached, &r->encroached_capacity, r->n_encroached + 1, sizeof *r->encroached))
         return false;
     r->encroached[r->n_encroached++] = s;
@@ -205,7 +208,8 @@ static enum tri_status make_room(struct tri_refiner *r)
 static int32_t add_vertex(struct tri_refiner *r, struct tri_point p, int32_t on, int32_t marker)
 {
     struct tri_mesh *m = r->mesh;
-    assert(m->n_vertices < m->vertex_capacity);
+    assert(m->n_vertices < m->vertex_capacity && tri_is_in_range(p));
+    assert(on == TRI_VERTEX_FREE || (on >= 0 && on < m->n_parents));
     int32_t v = m->n_vertices++;
     m->xy[v] = p;
     m->on[v] = on;
@@ -229,6 +233,7 @@ static const int32_t *corners_around(const struct tri_refiner *r, struct tri_poi
 static enum outcome insert_free(struct tri_refiner *r, struct tri_point p, int32_t triangle,
                                 const struct tri_shape *shape)
 {
+    assert(p.x == r->cavity.p.x && p.y == r->cavity.p.y && r->cavity.n_edges == r->cavity.n_tri + 2);
     if (make_room(r))
         return FAILED;
     int32_t v = add_vertex(r, p, TRI_VERTEX_FREE, 0);
@@ -253,12 +258,14 @@ static enum outcome defer(struct tri_refiner *r, tri_triangle_id triangle, int64
 /* The fence does, since this place lies beyond it. */
 static enum outcome defer_fenced(struct tri_refiner *r, tri_triangle_id triangle, struct tri_point place)
 {
+    assert(!tri_fence_holds(r->options->fence, place));
     r->report->short_of += r->options->whole && tri_fence_holds(r->options->whole, place);
     return defer(r, triangle, &r->report->fenced);
 }
 
 static enum outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
 {
+    assert(excuse < TRI_EXCUSES);
     r->excuse = excuse;
     return REFUSED;
 }
@@ -305,6 +312,7 @@ static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, 
     if (found == TRI_SEARCH_NO_MEMORY || make_room(r))
         return FAILED;
     bool boundary = tri_is_boundary(&old);
+    assert(r->cavity.n_edges > n_left || boundary);
     int32_t v = add_vertex(r, r->cavity.p, old.parent, old.marker ? old.marker : boundary ? 1 : 0);
     m->feature[v] = tri_feature_on_segment(m, &r->cavity, s, r->sized);
     tri_interpolate_edge(m, old.v[0], old.v[1], fraction, v);
@@ -367,6 +375,7 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
     double l = shape->l[shape->shortest];
     if (r->options->urgent)
         return HUGE_VAL;
+    assert(l > 0 && badness != TRI_GOOD);
     double reach = r->criterion.bounds.off_centre > 0 ? r->criterion.bounds.off_centre * sqrt(l) : HUGE_VAL;
     double area2_bound = tri_area2_bound(&r->criterion, t->region);
     if (badness == TRI_BAD_SIZE && shape->area2 > area2_bound) {
@@ -406,6 +415,7 @@ static enum outcome propose(struct tri_refiner *r, int32_t triangle, const struc
     enum outcome outcome = find_cavity(r, triangle, p);
     if (outcome != DONE)
         return outcome;
+    assert(r->cavity.n_tri > 0 && r->cavity.tri[0] == triangle);
     int32_t s = find_encroached(r);
     if (s == TRI_NONE)
         return insert_free(r, p, triangle, shape);
@@ -432,6 +442,7 @@ static enum outcome propose_inside(struct tri_refiner *r, int32_t triangle, cons
 /* Lowers the angle bound that the loop works for; what is already bad by the old one stays. */
 static void lower_bound(struct tri_refiner *r, double degrees)
 {
+    assert(degrees >= 0 && degrees <= r->options->min_angle);
     double lens_cos2 = r->criterion.bounds.lens_cos2;
     r->criterion.bounds = tri_bounds_for(degrees, r->options->conforming);
     r->criterion.bounds.lens_cos2 = degrees > 0 ? r->criterion.bounds.lens_cos2 : lens_cos2;
@@ -483,6 +494,7 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
 {
     for (;;) {
         const struct tri_triangle *t = &r->mesh->tri[entry.t];
+        assert(entry.t >= 0 && entry.state <= t->state);
         if (t->state != entry.state || !tri_is_live(t))
             return DONE;
         struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
@@ -548,6 +560,7 @@ static bool next_entry(struct tri_refiner *r)
 
 static bool work_off(struct tri_refiner *r)
 {
+    assert(r->step != NOT_BEGUN);
     for (;;) {
         if (must_stop(r))
             return false;
@@ -614,6 +627,7 @@ static bool queue_chunk(struct tri_refiner *r)
 static bool refine_worklist(struct tri_refiner *r)
 {
     if (r->step == NOT_BEGUN) {
+        assert(!r->in_hand && r->n_encroached == 0);
         r->n_worklist = listed_count(r);
         r->next_listed = 0;
         r->step = FIRST_PASS;
@@ -661,6 +675,7 @@ static void begin_stages(struct tri_refiner *r)
 
 static void go_beyond(struct tri_refiner *r)
 {
+    assert(!r->options->fence && r->stage != EASY_STAGE);
     r->beyond = 200 + r->mesh->n_triangles / 4;
     r->back = 2 * r->beyond;
     lower_bound(r, r->options->min_angle);
@@ -733,8 +748,10 @@ enum tri_status tri_refiner_run(struct tri_refiner *r, struct tri_error *error)
     struct tri_error own;
     r->error = error ? error : &own;
     r->error->status = TRI_OK;
-    if (refine_in_stages(r))
+    if (refine_in_stages(r)) {
+        assert(!r->in_hand && r->n_encroached == 0);
         return TRI_OK;
+    }
     if (r->error->status == TRI_OK)
         tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "out of memory while refining");
     return r->error->status;
@@ -754,7 +771,7 @@ enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_option
                            struct tri_refine_report *report, struct tri_error *error)
 {
     struct tri_refiner *refiner = NULL;
-    enum tri_status status = options->fence ? TRI_OK : tri_refine_check(mesh, options, error);
+    enum tri_status status = options->fence ? TRI_OK : tri_refine_check(mesh, options, NULL, error);
     *report = (struct tri_refine_report){0};
     status = status ? status : tri_refiner_new(&refiner, mesh, options, report, error);
     if (!status)

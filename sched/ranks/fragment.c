@@ -223,28 +223,22 @@ static void write_triangles(const struct cutting *c, const struct parts *p)
     }
 }
 
-static int ascending(const void *left, const void *right)
+/* The place of an entry of the worklist among the triangles; TRI_NONE: it is not there. */
+static int32_t entry_at(const struct cutting *c, int32_t i)
 {
-    const int32_t *a = left, *b = right;
-    return (*a > *b) - (*a < *b);
-}
-
-/* The place of each entry of the worklist among the triangles; NULL: it is not there. */
-static const int32_t *entry_at(const struct cutting *c, int32_t i)
-{
-    size_t n = (size_t)c->triangles.n;
-    return n > 0 ? bsearch(&c->state->worklist.item[i], c->triangles.item, n, sizeof(int32_t), ascending) : NULL;
+    int32_t triangle = c->state->worklist.item[i], at = par_worklist_find(&c->triangles, triangle);
+    return at < c->triangles.n && c->triangles.item[at] == triangle ? at : TRI_NONE;
 }
 
 static void write_entries(const struct cutting *c, const struct parts *p)
 {
     int32_t n = 0;
     for (int32_t i = 0; i < c->state->worklist.n; i++) {
-        const int32_t *at = entry_at(c, i);
-        if (!at)
+        int32_t at = entry_at(c, i);
+        if (at == TRI_NONE)
             continue;
         p->keys[n] = c->state->key.item[i];
-        p->entries[n++] = (int32_t)(at - c->triangles.item);
+        p->entries[n++] = at;
     }
     assert(n == c->header.n_entries);
 }
@@ -257,7 +251,7 @@ static bool write_all(struct cutting *c, struct par_bytes *to)
     h->n_triangles = c->triangles.n;
     h->n_subs = c->subs.n;
     for (int32_t i = 0; i < c->state->worklist.n; i++)
-        h->n_entries += entry_at(c, i) != NULL;
+        h->n_entries += entry_at(c, i) != TRI_NONE;
     h->bytes = parts_of(h, (char *)h).bytes; /* their sizes alone */
     if (!par_bytes_reserve(to, h->bytes))
         return false;
@@ -512,8 +506,7 @@ static void drop_vertices(struct pasting *p)
     for (size_t at = 0; at <= p->places.mask; at++)
         if (p->places.key[at] != 0 && p->places.value[at] >= 0 && is_inside(&p->inside, p->places.value[at]))
             doomed->item[doomed->n++] = p->places.value[at];
-    if (doomed->n > 1)
-        qsort(doomed->item, (size_t)doomed->n, sizeof *doomed->item, ascending);
+    doomed->n = par_sort_unique(doomed->item, doomed->n);
     for (int32_t i = 0; i < doomed->n; i++)
         p->mesh->on[doomed->item[i]] = TRI_VERTEX_NONE;
 }

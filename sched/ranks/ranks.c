@@ -98,23 +98,11 @@ static enum tri_status refine_own(struct par_ranks *r, struct tri_error *error)
 
 /* --- later rounds, on rank 0 */
 
-static int ascending(const void *left, const void *right)
-{
-    const int32_t *a = left, *b = right;
-    return (*a > *b) - (*a < *b);
-}
-
 /* A list of 32-bit numbers in ascending order, each once. */
 static void sort_unique(struct par_bytes *list)
 {
     int32_t *item = (int32_t *)(void *)list->at;
-    size_t n = list->n / sizeof *item, kept = 0;
-    if (n > 0)
-        qsort(item, n, sizeof *item, ascending);
-    for (size_t i = 0; i < n; i++)
-        if (i == 0 || item[i] != item[kept - 1])
-            item[kept++] = item[i];
-    list->n = kept * sizeof *item;
+    list->n = (size_t)par_sort_unique(item, (int32_t)(list->n / sizeof *item)) * sizeof *item;
 }
 
 static enum tri_status no_memory(struct tri_error *error)

@@ -88,14 +88,6 @@ static struct tri_triangle *parked_of(const struct numbering *n)
     return (struct tri_triangle *)(void *)items_of(n);
 }
 
-static int bits_of(int32_t number)
-{
-    int bits = 1;
-    while (bits < 31 && number >> bits)
-        bits++;
-    return bits;
-}
-
 /* --- tiles */
 
 static struct tri_range share_of(const struct deal *d, size_t share) { return tri_share_of(share, d->shares, d->n); }
@@ -216,7 +208,7 @@ static void rename_subs(struct numbering *n)
 
 static void sort_subs(const struct numbering *n, int32_t limit)
 {
-    tri_radix_sort(items_of(n), items_of(n) + n->n_items, n->n_subs, KEY_SHIFT, KEY_SHIFT + bits_of(limit),
+    tri_radix_sort(items_of(n), items_of(n) + n->n_items, n->n_subs, KEY_SHIFT, KEY_SHIFT + tri_bits_of(limit),
                    n->executor);
 }
 
@@ -367,7 +359,7 @@ static void sort_items(uint64_t *item, uint64_t *scratch, int32_t count)
     }
     for (int32_t i = 0; i < count; i++)
         item[i] -= (uint64_t)low << KEY_SHIFT;
-    tri_radix_sort(item, scratch, count, KEY_SHIFT, KEY_SHIFT + bits_of(high - low), NULL);
+    tri_radix_sort(item, scratch, count, KEY_SHIFT, KEY_SHIFT + tri_bits_of(high - low), NULL);
 }
 
 static void insert_items(uint64_t *item, int32_t count)

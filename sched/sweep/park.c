@@ -7,7 +7,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,6 +15,8 @@
 #include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
+
+#include "sched/threads.h"
 
 /* MOST_EXTRA: bytes a triangle. */
 enum { OTHERS = TRI_ARRAYS, PARTS, GRAIN = 1 << 21, MOST_EXTRA = 64, LOOK_NANOSECONDS = 5000000 };
@@ -119,17 +120,6 @@ static void *watch(void *user)
     return NULL;
 }
 
-/* Signals do not find the thread. */
-static bool start_watch(struct par_park *park)
-{
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    park->watched = pthread_create(&park->watch, NULL, watch, park) == 0;
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return park->watched;
-}
-
 /* --- the file */
 
 static void lay_out(struct par_park *park, const struct tri_mesh *mesh)
@@ -194,7 +184,8 @@ static enum tri_status set_up(struct par_park *park, struct tri_mesh *mesh, cons
                         strerror(errno));
     park->storage = (struct tri_storage){reserve, extra, park};
     enum tri_status status = tri_mesh_move(mesh, &park->storage, error);
-    if (!status && !start_watch(park))
+    park->watched = !status && par_thread_start(&park->watch, watch, park);
+    if (!status && !park->watched)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no thread can be made to watch over memory");
     return par_park_status(park, status, error);
 }

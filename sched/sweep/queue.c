@@ -3,10 +3,10 @@
 #include "sched/sweep/queue.h"
 
 #include <assert.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "sched/threads.h"
 #include "triangle/status.h"
 
 struct par_queued {
@@ -87,16 +87,6 @@ static void *hand_on(void *user)
     return NULL;
 }
 
-/* Signals are for the others. */
-static void start(struct par_queue *q)
-{
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    q->running = pthread_create(&q->thread, NULL, hand_on, q) == 0;
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-}
-
 /* Waits until all tiles have been handed on, or, where they are to be dropped, until the one in hand has. */
 static void finish(struct par_queue *q, bool drop)
 {
@@ -130,7 +120,7 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     q->n_attributes = stream->n_attributes;
     enum tri_status status = q->to->begin ? q->to->begin(q->to->user, stream, error) : TRI_OK;
     if (!status)
-        start(q);
+        q->running = par_thread_start(&q->thread, hand_on, q);
     return status;
 }
 

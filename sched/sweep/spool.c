@@ -201,7 +201,7 @@ static enum tri_status hand_out(const struct par_spool *spool, const struct head
     struct packed p = {arrays, 0};
     struct tri_tile tile = {h->column, h->row, h->first_vertex, h->first_triangle, h->first_segment,
                             h->n_vertices, h->n_triangles, h->n_segments, NULL, NULL, NULL, NULL, NULL, NULL, NULL};
-    const char *at[7];
+    const void *at[7];
     const size_t bytes[7] = {16 * v, 4 * v, 8 * v * (size_t)h->n_attributes, 12 * t, 4 * t, 8 * s, 4 * s};
     for (int k = 0; k < 7; k++) {
         at[k] = p.bytes + p.n;
@@ -209,12 +209,12 @@ static enum tri_status hand_out(const struct par_spool *spool, const struct head
     }
     int64_t *corners = numbers(at[3], 3 * t, end), *ends = numbers(at[5], 2 * s, end);
     tile.points = (const double(*)[2])at[0];
-    tile.point_markers = (const int32_t *)at[1];
-    tile.attributes = (const double *)at[2];
+    tile.point_markers = at[1];
+    tile.attributes = at[2];
     tile.corners = (const int64_t(*)[3])corners;
-    tile.regions = (const int32_t *)at[4];
+    tile.regions = at[4];
     tile.ends = (const int64_t(*)[2])ends;
-    tile.segment_markers = (const int32_t *)at[6];
+    tile.segment_markers = at[6];
     enum tri_status status = corners && ends ? spool->to->take(spool->to->user, &tile, error) : no_memory(spool, error);
     free(corners);
     free(ends);

@@ -236,10 +236,11 @@ static bool fill_subs(const struct par_tile_job *job, const struct tri_mesh *mes
         memcpy(job->copy.ends[i], item[i].end, sizeof item[i].end);
         job->copy.segment_markers[i] = item[i].marker;
     }
-    if (item)
+    bool memory = item;
+    if (memory)
         show_numbers((int64_t *)job->copy.ends, 2 * (size_t)n, mesh);
     free(item);
-    return item;
+    return memory;
 }
 
 /* --- all */

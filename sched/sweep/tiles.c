@@ -329,12 +329,6 @@ static bool reserve_jobs(struct par_tiles *tiles)
 
 /* --- what has been handed out goes */
 
-static int ascending(const void *left, const void *right)
-{
-    const int32_t *a = left, *b = right;
-    return (*a > *b) - (*a < *b);
-}
-
 /* Numbered corners of triangles that stay. */
 static bool corners_that_stay(const struct column *c, struct par_worklist *stay)
 {
@@ -348,34 +342,14 @@ static bool corners_that_stay(const struct column *c, struct par_worklist *stay)
                 if (v >= tiles->n_kept && tiles->number[v] >= 0)
                     memory = memory && par_worklist_add(stay, v);
             }
-    if (stay->n > 0)
-        qsort(stay->item, (size_t)stay->n, sizeof *stay->item, ascending);
-    int32_t kept = 0;
-    for (int32_t i = 0; i < stay->n; i++)
-        if (i == 0 || stay->item[i] != stay->item[kept - 1])
-            stay->item[kept++] = stay->item[i];
-    stay->n = kept;
+    stay->n = par_sort_unique(stay->item, stay->n);
     return memory;
-}
-
-/* The first item of a list, ascending, that is not less than this. */
-static int32_t first_from(const struct par_worklist *list, int32_t item)
-{
-    int32_t low = 0, high = list->n;
-    while (low < high) {
-        int32_t middle = low + (high - low) / 2;
-        if (list->item[middle] < item)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
 }
 
 /* Of a list of vertices, ascending, those that do not stay go; they are left in it. */
 static void let_vertices_go(struct par_tiles *tiles, const struct par_worklist *stay, struct par_worklist *list)
 {
-    int32_t left = 0, k = list->n > 0 ? first_from(stay, list->item[0]) : 0;
+    int32_t left = 0, k = list->n > 0 ? par_worklist_find(stay, list->item[0]) : 0;
     for (int32_t i = 0; i < list->n; i++) {
         int32_t v = list->item[i];
         while (k < stay->n && stay->item[k] < v)
