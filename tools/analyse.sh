@@ -1,7 +1,7 @@
 #!/bin/sh
 # Static analysis of triangle/, sched/ and drivers/: cppcheck (tools/cppcheck.txt says what is let pass, and why) and
-# clang-tidy (.clang-tidy). No finding is left; exit code 1 if there is one. clang-tidy leaves out what its build does not
-# compile: poisson.c, for PETSc is not of its MPI.
+# clang-tidy (.clang-tidy). No finding is left; exit code 1 if there is one. clang-tidy leaves out what its build does
+# not compile: poisson.c, for PETSc is not of its MPI.
 # Usage: tools/analyse.sh
 set -eu
 cd "$(dirname "$0")/.."
