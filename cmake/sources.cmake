@@ -120,6 +120,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/room.c
     sched/sweep/tile_copy.c
     sched/sweep/finds.c
+    sched/sweep/pipeline.c
     sched/sweep/tile_fill.c
     sched/sweep/tiles.c
     sched/sweep/stream.c

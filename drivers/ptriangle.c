@@ -140,6 +140,20 @@ static enum tri_status refine_into(struct program *p, struct run *run, const str
     return options.carrier ? par_relay_finish(&relay, status, error) : status;
 }
 
+/* The same where tiles come from other ranks, too: who receives them does not wait for the disk. */
+static enum tri_status refine_behind_queue(struct program *p, struct run *run, const struct tri_sink *sink,
+                                           struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                           struct tri_error *error)
+{
+    struct par_queue queue;
+    if (!par_queue_begin(&queue, sink, waiting_bytes(&run->plan)))
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a queue of tiles");
+    const struct tri_sink queued = par_queue_sink(&queue);
+    enum tri_status status = refine_into(p, run, &queued, mesh, quality, error);
+    par_queue_free(&queue);
+    return status;
+}
+
 /* A rank whose tiles are written by another one. */
 static enum tri_status help_others(struct program *p, struct run *run, struct tri_mesh *mesh,
                                    const struct tri_refine_options *quality, struct tri_error *error)
@@ -166,18 +180,13 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
 {
     struct tri_counts before;
     const struct tri_sink streams = streams_sink(&p->streams);
-    struct par_queue queue;
     enum tri_status status = tri_count_mesh(&before, mesh, NULL, error);
     int64_t unused = mesh->n_vertices - before.vertices;
     status = status ? status : streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
     status = status ? status : streams_open_text(&p->streams, run, set, error);
-    if (!status && !par_queue_begin(&queue, &streams, waiting_bytes(&run->plan)))
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a queue of tiles");
-    if (!status) {
-        const struct tri_sink sink = par_queue_sink(&queue);
-        status = refine_into(p, run, &sink, mesh, quality, error);
-        par_queue_free(&queue);
-    }
+    if (!status)
+        status = p->launch.carrier ? refine_behind_queue(p, run, &streams, mesh, quality, error)
+                                   : refine_into(p, run, &streams, mesh, quality, error);
     streams_close(&p->streams);
     tri_mesh_free(mesh); /* what is left of it is no mesh */
     tell_of_parking(p, run->arguments->switches.quiet);

@@ -32,14 +32,14 @@ struct player {
     struct replay *sum;
 };
 
-/* Measured: 15 million triangles on 2, 4 and 9 ranks, 2 GHz; docs/scaling.md. It goes with the sides of blocks, which
- * have the same size in all large meshes. */
-static const double PAIR_BYTES = 520e3, PAIR_SECONDS = 0.013;
+/* Measured: 15 million triangles on 2, 4 and 9 ranks. */
+static const double CELL = 125e3, PAIR_BYTES = 520e3, PAIR_SECONDS = 0.013;
 
-struct replay_how replay_usual(int n_ranks, int times)
+struct replay_how replay_usual(int n_ranks, int threads, int times, double cell)
 {
-    return (struct replay_how){.n_ranks = n_ranks, .threads = 1, .times = times, .latency = 2e-6, .bandwidth = 1e10,
-                               .pair_bytes = PAIR_BYTES, .pair_seconds = PAIR_SECONDS};
+    double side = sqrt(cell / CELL);
+    return (struct replay_how){.n_ranks = n_ranks, .threads = threads, .times = times, .latency = 2e-6,
+                               .bandwidth = 1e10, .pair_bytes = PAIR_BYTES * side, .pair_seconds = PAIR_SECONDS * side};
 }
 
 /* --- blocks */

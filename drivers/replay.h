@@ -36,8 +36,9 @@ struct replay { /* seconds; the first five add up to the total */
     double most_bytes;      /* that one rank sends */
 };
 
-/* The usual network and what has been measured on ranks. */
-struct replay_how replay_usual(int n_ranks, int times);
+/* The network of the predictions in docs/scaling.md, and what has been measured on ranks, for cells of so many
+ * triangles: it goes with the sides of blocks. */
+struct replay_how replay_usual(int n_ranks, int threads, int times, double cell);
 
 /* Blocks of the first round of the report's first schedule are replayed; what comes after counts as done by one rank.
  * False: no memory, or no schedule. O(blocks times^2). */

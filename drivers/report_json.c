@@ -90,29 +90,38 @@ static json_t *predictions_of(const struct par_report *r)
     return list;
 }
 
-static json_t *replay_of(const struct par_report *r, int n_ranks, int times)
+static json_t *replay_of(const struct par_report *r, const struct replay_how *how, double triangles)
 {
-    struct replay_how how = replay_usual(n_ranks, times);
     struct replay s;
-    if (!replay_on_ranks(r, &how, &s))
+    if (!replay_on_ranks(r, how, &s))
         return json_null();
-    return json_pack("{s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "ranks", n_ranks, "times_the_mesh",
-                     times * times, "seconds", real(s.total), "alone_seconds", real(s.alone), "refine_seconds",
-                     real(s.refine), "merge_seconds", real(s.merge), "communication_seconds", real(s.communicate),
-                     "hand_out_seconds", real(s.hand_out), "processor_seconds_of_busiest", real(s.processor), "bytes",
-                     real(s.bytes), "messages", real(s.messages), "most_bytes_of_a_rank", real(s.most_bytes));
+    return json_pack("{s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "ranks", how->n_ranks,
+                     "threads", how->threads, "triangles", whole((int64_t)triangles), "seconds", real(s.total),
+                     "alone_seconds", real(s.alone), "refine_seconds", real(s.refine), "merge_seconds", real(s.merge),
+                     "communication_seconds", real(s.communicate), "hand_out_seconds", real(s.hand_out),
+                     "processor_seconds_of_busiest", real(s.processor), "bytes", real(s.bytes), "messages",
+                     real(s.messages), "most_bytes_of_a_rank", real(s.most_bytes));
 }
 
-/* This mesh on more ranks, and one as many times as large as there are ranks; of one process. */
-static json_t *replays_of(const struct par_report *r)
+/* This mesh on ranks; about the largest of the paper's Table 2, and one as large a rank; and one of 10^10 on 4, 16 and
+ * 64 nodes of 64 cores. */
+static json_t *replays_of(const struct par_report *r, double triangles)
 {
+    enum { MOST_TIMES = 100 };
     static const struct {
-        int ranks, times;
-    } rows[] = {{1, 1}, {2, 1},  {4, 1},  {9, 1},  {16, 1},    {64, 1},
-                {4, 2}, {9, 3}, {16, 4}, {64, 8}, {121, 11}, {1024, 32}};
+        int ranks, threads;
+        double triangles; /* 0: as many as there are */
+    } rows[] = {{1, 1, 0},       {2, 1, 0},       {4, 1, 0},     {9, 1, 0},     {16, 1, 0},   {64, 1, 0},
+                {121, 1, 8.7e8}, {1024, 1, 7.4e9}, {32, 8, 1e10}, {128, 8, 1e10}, {512, 8, 1e10}};
     json_t *list = json_array();
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        json_array_append_new(list, replay_of(r, rows[i].ranks, rows[i].times));
+    double cells = ((double)r->columns - 1) * ((double)r->rows - 1);
+    for (size_t i = 0; cells > 0 && i < sizeof rows / sizeof *rows; i++) {
+        double times = fmax(1, round(sqrt(rows[i].triangles / triangles)));
+        struct replay_how how = replay_usual(rows[i].ranks, rows[i].threads, (int)fmin(times, MOST_TIMES),
+                                             triangles / cells);
+        if (times <= MOST_TIMES)
+            json_array_append_new(list, replay_of(r, &how, triangles * times * times));
+    }
     return list;
 }
 
@@ -126,7 +135,7 @@ static json_t *refused_of(const struct tri_refine_report *r)
 
 static const char *const way_names[] = {[PAR_IN_MEMORY] = "in memory", [PAR_SWEPT] = "swept", [PAR_PARKED] = "parked"};
 
-static json_t *schedule_of(const struct par_report *r)
+static json_t *schedule_of(const struct par_report *r, double triangles)
 {
     json_t *inserted = json_pack("{s:o, s:o}", "free", whole(r->total.inserted_free), "on_segments",
                                  whole(r->total.inserted_on_segments));
@@ -147,7 +156,8 @@ static json_t *schedule_of(const struct par_report *r)
         json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "seconds", parts_of(r), "overhead_percent",
                   real(prediction_overhead(r)), "numbering_percent", real(prediction_numbering(r)),
                   "later_rounds_seconds_estimate", real(prediction_refine(r->blocks, r->n_blocks, 1, r->threads)),
-                  "prediction", predictions_of(r), "prediction_on_ranks", replays_of(r), "blocks", blocks_of(r));
+                  "prediction", predictions_of(r), "prediction_on_ranks", replays_of(r, triangles), "blocks",
+                  blocks_of(r));
     if (json_object_update(counts, times)) {
         json_decref(counts);
         counts = NULL;
@@ -248,7 +258,7 @@ static json_t *report_of(const struct run *run, const struct par_report *schedul
                      "version", PTRIANGLE_VERSION, "command", command_of(run->arguments), "stopped", run->stopped,
                      "threads", threads, "peak_memory_bytes", whole(memory), "bounds", bounds, "seconds",
                      stages_of(run, schedule), "mesh", mesh_of(run), "ranks", ranks_of(ranks), "schedule",
-                     schedule ? schedule_of(schedule) : json_null());
+                     schedule ? schedule_of(schedule, (double)run->counts.triangles) : json_null());
 }
 
 enum tri_status report_check(struct tri_error *error)

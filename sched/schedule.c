@@ -20,7 +20,7 @@
 /* Cells hold one in CELLS of the final triangles, within limits: small ones keep many threads busy, large ones make
  * fewer seams. Coarse triangles a cell has after pre-refinement: enough for seams to be narrow, few enough for
  * pre-refinement to take a few thousandths of the time. (docs/performance.md) */
-static const double CELLS = 128, SMALLEST_CELL = 8192, LARGEST_CELL = 131072, COARSE_PER_CELL = 64;
+static const double CELLS = 128, SMALLEST_CELL = 8192, LARGEST_CELL = 65536, COARSE_PER_CELL = 64;
 
 /* Of the fewest triangles that are worth a schedule, a share that one call makes at once to see whether they come. */
 static const double A_LITTLE = 0.25;

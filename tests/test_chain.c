@@ -2,6 +2,7 @@
 #include "support.h"
 #include "triangle/chain.h"
 
+/* The mesh; of its subsegments some run one way, some the other. */
 static struct tri_mesh mesh_of(struct tri_pslg *pslg)
 {
     struct tri_options options = tri_defaults();
@@ -9,6 +10,12 @@ static struct tri_mesh mesh_of(struct tri_pslg *pslg)
     struct tri_mesh mesh = support_generate(pslg, &options, NULL);
     tri_pslg_free(pslg);
     assert_int_equal(mesh.n_parents, mesh.n_subs);
+    for (int32_t s = 0; s < mesh.n_subs; s += 3) {
+        const struct tri_subsegment was = mesh.sub[s];
+        mesh.sub[s] = (struct tri_subsegment){{was.v[1], was.v[0]}, {was.side[1], was.side[0]}, was.marker, was.parent};
+        mesh.parents[was.parent].v[0] = was.v[1];
+        mesh.parents[was.parent].v[1] = was.v[0];
+    }
     return mesh;
 }
 

@@ -123,6 +123,26 @@ static void test_samples(void **state)
     tri_mesh_free(&mesh);
 }
 
+/* To the last bit, whoever works on which share. */
+static void test_any_threads_say_the_same(void **state)
+{
+    (void)state;
+    struct tri_mesh mesh = coarse_square(40000);
+    struct tri_refine_options quality = support_quality(25, 1e-5).quality;
+    double sure[2], all[2];
+    struct samples s[2];
+    assert_true(tri_shares(mesh.n_triangles) > 2);
+    for (int k = 0; k < 2; k++) {
+        const struct tri_executor *executor = k ? &support_backwards : NULL;
+        s[k] = (struct samples){.room = INT32_MAX, .inside = true};
+        all[k] = tri_estimate(&mesh, &quality, executor, &sure[k]);
+        assert_true(tri_sample_work(&mesh, &quality, 10, executor, take, &s[k]));
+    }
+    assert_true(all[0] == all[1] && sure[0] == sure[1]);
+    assert_true(s[0].work == s[1].work && s[0].most == s[1].most && s[0].n == s[1].n);
+    tri_mesh_free(&mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -130,6 +150,7 @@ int main(void)
         cmocka_unit_test(test_size_test_is_probed),
         cmocka_unit_test(test_shares),
         cmocka_unit_test(test_samples),
+        cmocka_unit_test(test_any_threads_say_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

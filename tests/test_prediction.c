@@ -140,7 +140,7 @@ static void test_four_ranks_meet_at_a_corner(void **state)
     assert_true(is_near(four.messages, (2 + 2 + 5) * REPLAY_SWAPS));
     assert_true(is_near(many.refine, four.refine) && is_near(many.bytes, four.bytes)); /* some have nothing */
     struct par_report none = report;
-    struct replay_how how = replay_usual(2, 1);
+    struct replay_how how = replay_usual(2, 1, 1, 1e5);
     none.columns = none.rows = 0;
     assert_false(replay_on_ranks(&none, &how, &four));
 }

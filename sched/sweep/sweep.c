@@ -10,7 +10,7 @@ struct par_tiles par_tiles_of(const struct par_state *state, const struct par_pa
     return (struct par_tiles){.mesh = state->mesh, .partition = partition, .executor = &state->executor,
                               .n_kept = state->n_kept, .sink = state->options->sink,
                               .figure = state->options->figure, .region_column = state->options->region_column,
-                              .n_jobs = 2 * state->report->threads};
+                              .n_threads = state->report->threads};
 }
 
 /* Something that no block could do lies left of x, where every block has had its turn. */

@@ -10,7 +10,6 @@ struct par_tile_job {
     struct par_tile_copy copy; /* where the tile's arrays are */
     uint64_t *scratch;         /* [n_scratch] */
     int64_t n_scratch;
-    bool no_memory;
 };
 
 /* Scratch of so many words. False: no memory. */

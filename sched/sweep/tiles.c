@@ -1,6 +1,5 @@
 /* One column of tiles at a time: find its vertices and number them, find its triangles and subsegments, whose corners
- * have their numbers then, hand out, let go; in shares or tile by tile, in parallel. Only `take` is called by one
- * thread.
+ * have their numbers then, hand out, let go; in shares or tile by tile, in parallel.
  *
  * What is found of something is kept where nobody else looks any more: in place of its number a vertex has that of its
  * row, as long as it waits; the record of a final triangle becomes what is handed out of it, so that the numbers of its
@@ -12,6 +11,7 @@
 #include <string.h>
 
 #include "sched/sweep/finds.h"
+#include "sched/sweep/pipeline.h"
 #include "sched/sweep/tile_fill.h"
 #include "triangle/hilbert.h"
 
@@ -240,12 +240,12 @@ void par_tiles_forget(struct par_tiles *tiles, int32_t v)
     tiles->number[v] = NO_NUMBER;
 }
 
-/* --- tile by tile, some rows at once */
+/* --- tile by tile */
 
-struct batch {
-    struct column *column;
-    int32_t first;
-};
+static enum tri_status no_memory(struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a column of tiles");
+}
 
 static struct tri_tile tile_of(const struct column *c, int32_t r)
 {
@@ -257,71 +257,50 @@ static struct tri_tile tile_of(const struct column *c, int32_t r)
                              .n_segments = c->subs.start[r + 1] - s};
 }
 
-static void number_tile(void *context, size_t index)
+static enum tri_status number_tile(void *context, int32_t row, int32_t slot, struct tri_error *error)
 {
-    const struct batch *batch = context;
-    struct column *c = batch->column;
-    struct par_tile_job *job = &c->tiles->job[index];
-    int32_t row = batch->first + (int32_t)index, first = c->vertices.start[row];
-    int32_t n = c->vertices.start[row + 1] - first, *order = c->vertices.item + first;
-    job->no_memory = !par_tile_job_reserve(job, 2 * (int64_t)n);
-    if (job->no_memory)
-        return;
+    const struct column *c = context;
+    struct par_tile_job *job = &c->tiles->job[slot];
+    int32_t first = c->vertices.start[row], n = c->vertices.start[row + 1] - first, *order = c->vertices.item + first;
+    if (!par_tile_job_reserve(job, 2 * (int64_t)n))
+        return no_memory(error);
     tri_hilbert_order_coarse(c->tiles->mesh->xy, order, n, job->scratch);
     for (int32_t i = 0; i < n; i++)
         c->tiles->number[order[i]] = c->tiles->n_vertices + first + i;
+    return TRI_OK;
 }
 
-static void fill_tile(void *context, size_t index)
+static enum tri_status fill_tile(void *context, int32_t row, int32_t slot, struct tri_error *error)
 {
-    const struct batch *batch = context;
-    const struct column *c = batch->column;
-    int32_t row = batch->first + (int32_t)index;
-    struct par_tile_job *job = &c->tiles->job[index];
+    const struct column *c = context;
+    struct par_tile_job *job = &c->tiles->job[slot];
     job->tile = tile_of(c, row);
-    job->no_memory = !par_tile_fill(job, c->tiles->mesh, c->tiles->number, c->vertices.item + c->vertices.start[row],
-                                    c->triangles.item + c->triangles.start[row], c->subs.item + c->subs.start[row]);
+    bool memory = par_tile_fill(job, c->tiles->mesh, c->tiles->number, c->vertices.item + c->vertices.start[row],
+                                c->triangles.item + c->triangles.start[row], c->subs.item + c->subs.start[row]);
+    return memory ? TRI_OK : no_memory(error);
 }
 
-static bool is_empty(const struct tri_tile *t) { return t->n_vertices + t->n_triangles + t->n_segments == 0; }
-
-static enum tri_status take_batch(const struct column *c, int32_t n, struct tri_error *error)
+static enum tri_status take_tile(void *context, int32_t row, int32_t slot, struct tri_error *error)
 {
+    const struct column *c = context;
     const struct tri_sink *sink = c->tiles->sink;
-    enum tri_status status = TRI_OK;
-    for (int32_t i = 0; !status && i < n; i++)
-        if (!is_empty(&c->tiles->job[i].tile))
-            status = sink->take(sink->user, &c->tiles->job[i].tile, error);
-    return status;
+    const struct tri_tile *tile = &c->tiles->job[slot].tile;
+    (void)row;
+    bool is_empty = tile->n_vertices + tile->n_triangles + tile->n_segments == 0;
+    return is_empty ? TRI_OK : sink->take(sink->user, tile, error);
 }
 
-static enum tri_status no_memory(struct tri_error *error)
+static struct par_pipeline pipeline_of(struct column *c)
 {
-    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a column of tiles");
+    int32_t threads = c->tiles->n_threads > 0 ? c->tiles->n_threads : 1;
+    return (struct par_pipeline){.n = c->vertices.n_rows, .n_slots = c->tiles->n_jobs, .n_threads = threads,
+                                 .context = c};
 }
 
-/* Does this with all rows; and hands them out, if that is what it is for. */
-static enum tri_status for_rows(struct column *c, void (*task)(void *context, size_t index), bool take,
-                                struct tri_error *error)
-{
-    int32_t n_rows = c->vertices.n_rows, at_once = c->tiles->n_jobs;
-    enum tri_status status = TRI_OK;
-    for (int32_t row = 0; !status && row < n_rows; row += at_once) {
-        struct batch batch = {c, row};
-        int32_t n = n_rows - row < at_once ? n_rows - row : at_once;
-        bool memory = true;
-        tri_execute(c->tiles->executor, (size_t)n, task, &batch);
-        for (int32_t i = 0; i < n; i++)
-            memory = memory && !c->tiles->job[i].no_memory;
-        status = !memory ? no_memory(error) : take ? take_batch(c, n, error) : TRI_OK;
-    }
-    return status;
-}
-
+/* Two more than threads: while one tile is taken another is ready. */
 static bool reserve_jobs(struct par_tiles *tiles)
 {
-    if (tiles->n_jobs < 1)
-        tiles->n_jobs = 1;
+    tiles->n_jobs = tiles->n_threads > 1 ? tiles->n_threads + 2 : 1;
     if (!tiles->job)
         tiles->job = calloc((size_t)tiles->n_jobs, sizeof *tiles->job);
     return tiles->job;
@@ -421,7 +400,9 @@ static enum tri_status number_column(struct column *c, struct tri_error *error)
     tri_execute(executor, PAR_FIND_SHARES, find_vertices, c);
     if (!memory_has_lasted(c) || !par_finds_deal(&c->vertices, row_of_vertex, c, executor))
         return no_memory(error);
-    return for_rows(c, number_tile, false, error);
+    struct par_pipeline pipeline = pipeline_of(c);
+    pipeline.make = number_tile;
+    return par_pipeline_run(&pipeline, executor, error);
 }
 
 static enum tri_status hand_out_column(struct column *c, struct tri_error *error)
@@ -432,7 +413,10 @@ static enum tri_status hand_out_column(struct column *c, struct tri_error *error
     if (!memory_has_lasted(c) || !par_finds_deal(&c->triangles, row_of_final, c, executor) ||
         !par_finds_deal(&c->subs, row_of_found_sub, c, executor))
         return no_memory(error);
-    return for_rows(c, fill_tile, true, error);
+    struct par_pipeline pipeline = pipeline_of(c);
+    pipeline.make = fill_tile;
+    pipeline.take = take_tile;
+    return par_pipeline_run(&pipeline, executor, error);
 }
 
 static void free_column(struct column *c)

@@ -35,8 +35,9 @@ struct par_tiles {
     int32_t capacity;
     int64_t n_vertices, n_triangles, n_segments; /* handed out so far */
     struct par_worklist held;         /* numbered vertices that triangles beyond the last column still have */
-    int32_t n_jobs;               /* tiles that are made at once; 0: one */
-    struct par_tile_job *job;     /* [n_jobs] */
+    int32_t n_threads;            /* of the executor; 0: one */
+    int32_t n_jobs;
+    struct par_tile_job *job;     /* [n_jobs] tiles on their way */
 };
 
 /* Triangles to expect, to the order: the same, however the mesh is carried through. */

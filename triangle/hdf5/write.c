@@ -102,77 +102,84 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
 
 /* --- tiles */
 
-/* Puts row i of a tile at `at`, and returns its end. */
-typedef char *put_call(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at);
+/* Puts rows i to end - 1 of a tile at `at`. */
+typedef void put_call(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end, char *at);
 
-static char *put_point(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
+static void put_points(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end, char *at)
 {
     (void)w;
-    return tri_put_f64(tri_put_f64(at, tile->points[i][0]), tile->points[i][1]);
+    for (; i < end; i++)
+        at = tri_put_f64(tri_put_f64(at, tile->points[i][0]), tile->points[i][1]);
 }
 
-static char *put_point_marker(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
+static void put_point_markers(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end,
+                              char *at)
 {
     (void)w;
-    return tri_put_i32(at, tile->point_markers[i]);
+    for (; i < end; i++)
+        at = tri_put_i32(at, tile->point_markers[i]);
 }
 
-static char *put_point_attributes(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
+static void put_point_attributes(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end,
+                                 char *at)
 {
-    const int32_t width = w->arrays.point_attributes.width;
-    for (int32_t k = 0; k < width; k++)
-        at = tri_put_f64(at, tile->attributes[(int64_t)i * width + k]);
-    return at;
+    const int64_t width = w->arrays.point_attributes.width;
+    for (int64_t k = i * width; k < end * width; k++)
+        at = tri_put_f64(at, tile->attributes[k]);
 }
 
-static char *put_corners(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
-{
-    (void)w;
-    for (int k = 0; k < 3; k++)
-        at = tri_put_i32(at, (int32_t)tile->corners[i][k]);
-    return at;
-}
-
-static char *put_wide_corners(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
+static void put_corners(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end, char *at)
 {
     (void)w;
-    for (int k = 0; k < 3; k++)
-        at = tri_put_i64(at, tile->corners[i][k]);
-    return at;
+    for (; i < end; i++)
+        for (int k = 0; k < 3; k++)
+            at = tri_put_i32(at, (int32_t)tile->corners[i][k]);
 }
 
-static char *put_columns(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
-{
-    const double *values = w->columns + (int64_t)tile->regions[i] * w->n_columns;
-    for (int32_t k = 0; k < w->n_columns; k++)
-        at = tri_put_f64(at, values[k]);
-    return at;
-}
-
-static char *put_whole_columns(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
-{
-    const double *values = w->columns + (int64_t)tile->regions[i] * w->n_columns;
-    for (int32_t k = 0; k < w->n_columns; k++)
-        at = tri_put_i32(at, (int32_t)values[k]);
-    return at;
-}
-
-static char *put_ends(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
+static void put_wide_corners(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end,
+                             char *at)
 {
     (void)w;
-    return tri_put_i32(tri_put_i32(at, (int32_t)tile->ends[i][0]), (int32_t)tile->ends[i][1]);
+    for (; i < end; i++)
+        for (int k = 0; k < 3; k++)
+            at = tri_put_i64(at, tile->corners[i][k]);
 }
 
-static char *put_wide_ends(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
+static void put_columns(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end, char *at)
 {
-    (void)w;
-    return tri_put_i64(tri_put_i64(at, tile->ends[i][0]), tile->ends[i][1]);
+    for (; i < end; i++)
+        for (int32_t k = 0; k < w->n_columns; k++)
+            at = tri_put_f64(at, w->columns[(int64_t)tile->regions[i] * w->n_columns + k]);
 }
 
-static char *put_segment_marker(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, char *at)
+static void put_whole_columns(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end,
+                              char *at)
+{
+    for (; i < end; i++)
+        for (int32_t k = 0; k < w->n_columns; k++)
+            at = tri_put_i32(at, (int32_t)w->columns[(int64_t)tile->regions[i] * w->n_columns + k]);
+}
+
+static void put_ends(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end, char *at)
 {
     (void)w;
-    return tri_put_i32(at, tile->segment_markers[i]);
+    for (; i < end; i++)
+        at = tri_put_i32(tri_put_i32(at, (int32_t)tile->ends[i][0]), (int32_t)tile->ends[i][1]);
+}
+
+static void put_wide_ends(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end, char *at)
+{
+    (void)w;
+    for (; i < end; i++)
+        at = tri_put_i64(tri_put_i64(at, tile->ends[i][0]), tile->ends[i][1]);
+}
+
+static void put_segment_markers(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end,
+                                char *at)
+{
+    (void)w;
+    for (; i < end; i++)
+        at = tri_put_i32(at, tile->segment_markers[i]);
 }
 
 /* The tile's n rows of one array. */
@@ -185,10 +192,10 @@ static enum tri_status add_rows(struct tri_h5_writer *w, struct tri_h5_array *ar
         enum tri_status status = tri_h5_array_room(array, &at, &room, error);
         if (status)
             return status;
-        const int32_t end = room < n - i ? i + room : n, begin = i;
-        for (; i < end; i++)
-            at = put(w, tile, i, at);
-        tri_h5_array_advance(array, end - begin);
+        const int32_t end = room < n - i ? i + room : n;
+        put(w, tile, i, end, at);
+        tri_h5_array_advance(array, end - i);
+        i = end;
     }
     return TRI_OK;
 }
@@ -236,8 +243,8 @@ static enum tri_status add_points(struct tri_h5_writer *w, const struct tri_tile
 {
     const int32_t n = tile->n_vertices;
     enum tri_status status = allocate(w, w->arrays.points.n + n, error);
-    status = status ? status : add_rows(w, &w->arrays.points, tile, n, put_point, error);
-    status = status ? status : add_rows(w, &w->arrays.point_markers, tile, n, put_point_marker, error);
+    status = status ? status : add_rows(w, &w->arrays.points, tile, n, put_points, error);
+    status = status ? status : add_rows(w, &w->arrays.point_markers, tile, n, put_point_markers, error);
     status = status ? status : add_rows(w, &w->arrays.point_attributes, tile, n, put_point_attributes, error);
     extend_bounds(w, tile);
     w->n_input += tile->column < 0 ? n : 0;
@@ -295,7 +302,7 @@ static enum tri_status write_segments(struct tri_h5_writer *w, struct tri_error 
         status = status ? status : tri_h5_segments_next(&w->segments, &tile, error);
         status = status ? status : add_rows(w, &a->segments, &tile, tile.n_segments, put, error);
         status = status ? status
-                        : add_rows(w, &a->segment_markers, &tile, tile.n_segments, put_segment_marker, error);
+                        : add_rows(w, &a->segment_markers, &tile, tile.n_segments, put_segment_markers, error);
     } while (!status && tile.n_segments > 0);
     return status;
 }
