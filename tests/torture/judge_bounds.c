@@ -57,8 +57,8 @@ static void judge_areas(const struct outcome *o, struct bounds *b, struct verdic
 }
 
 /* Where vertices ran away triangles are given up, beside small angles and dear spaces at any bound: there the checker
- * finds the reason itself. Elsewhere none up to the angle that theory promises (Ruppert 1995: 20.7 degrees), some above,
- * and with -D more, beside spaces too dear to fill, whose circles ask for edges that are no features. */
+ * finds the reason itself. Elsewhere none are up to the angle that theory promises (Ruppert 1995: 20.7 degrees), and
+ * few above; with -D more, beside spaces too dear to fill, whose circles ask for edges that are no features. */
 static int64_t may_run_away(const struct outcome *o, int64_t count, struct verdict *verdict)
 {
     const double PROMISED = 20.7, LIKELY = 25, FEW = o->options.quality.conforming ? 0.1 : 0.02;
