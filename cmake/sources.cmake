@@ -191,6 +191,7 @@ set(PTRIANGLE_RUN_SOURCES
     drivers/self_check.c
     drivers/resources.c
     drivers/estimate.c
+    drivers/disk_needs.c
     drivers/plan.c
     drivers/run.c)
 set(PTRIANGLE_RUN_PROGRAMS triangle ptriangle)

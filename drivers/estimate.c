@@ -10,7 +10,14 @@
 /* Measured: bytes a triangle at the peak, at least and with one refinement loop or the schedule and its numbering; time
  * of the numbering against that of refining; triangles against the least number that area bounds ask for. */
 static const double LEAST_BYTES = 44, LOOP_BYTES = 52, SCHEDULE_BYTES = 74, NUMBERING = 0.55, AREA_FACTOR = 1.14;
-static const double LEAST_SHARE = 0.5; /* of what a sweep is expected to hold, beyond doubt */
+/* Measured, of a mesh that is handed out as it is made: bytes of buffers and libraries; for pages of files on their
+ * way, a thread; and, for each root of (triangles * triangles in a cell), of the columns' mesh, on disk with room to
+ * grow, of what numbers and hands them out, and of the state of a checkpoint, of which there are two. */
+static const double BUFFERS = 1.5e7, PAGES = 4.8e7, COLUMNS_MESH = 290, COLUMNS_WORK = 115, COLUMNS_STATE = 520;
+/* The same a triangle, of a mesh that stays as a whole; and of the tiles in a checkpoint. */
+static const double PARKED_WORK = 6, PARKED_BYTES = 90, TILES_BYTES = 26;
+/* Of the schedule: triangles in a cell (sched/schedule.c). */
+static const double CELLS = 128, SMALLEST_CELL = 8192, LARGEST_CELL = 131072;
 /* Text that one thread writes in a second where a triangle takes it the usual time. */
 static const double TEXT_BYTES = 6.5e8, USUAL_SECONDS = 1.25e-7;
 
@@ -111,27 +118,45 @@ static double seconds_of(const struct run *run, double triangles, double disk)
 
 /* --- all together */
 
-static double swept_memory_of(const struct run *run, double triangles)
+/* The root that what a sweep holds grows with: so many triangles are in a column, to the order. */
+static double column_of(double triangles)
 {
-    const struct run_hooks *hooks = run->hooks;
-    return hooks->swept_memory ? hooks->swept_memory(hooks->user, triangles) : HUGE_VAL;
+    return sqrt(triangles * fmin(fmax(triangles / CELLS, SMALLEST_CELL), LARGEST_CELL));
+}
+
+/* As schedules go: above TRI_EASY_ANGLE there are two, and a limit on new points makes it one call. */
+static bool is_swept(const struct run *run)
+{
+    const struct tri_refine_options *quality = &run->options.quality;
+    return quality->min_angle <= TRI_EASY_ANGLE && quality->max_steiner < 0;
+}
+
+static struct needs needs_of(const struct run *run, double grown, double bytes, bool sweeps)
+{
+    const double column = column_of(grown), pages = PAGES * fmax(run->hooks->threads, 1);
+    const double work = sweeps ? COLUMNS_WORK * column : PARKED_WORK * grown;
+    struct needs n = {.triangles = grown, .whole = grown > TRI_MAX_TRIANGLES ? HUGE_VAL : grown * bytes};
+    n.held = sweeps ? BUFFERS + work + COLUMNS_MESH * column : n.whole;
+    n.floor = fmin(n.held, BUFFERS + work + pages);
+    n.away = sweeps ? COLUMNS_MESH * column : PARKED_BYTES * grown;
+    n.checkpoint = run->hooks->limits.checkpoint ? TILES_BYTES * grown + COLUMNS_STATE * column : 0;
+    return n;
 }
 
 struct estimate estimate_make(const struct run *run, bool with_seconds)
 {
     const struct tri_refine_options *quality = &run->options.quality;
-    double demand = run->options.refine ? tri_area_demand(&run->mesh, quality, run->hooks->executor) : 0;
-    struct estimate e = {.triangles = triangles_of(run, demand)};
-    if (quality->max_steiner < 0)
-        e.least = demand;
-    double grown = fmax(e.triangles - run->mesh.n_triangles, 0);
-    e.vertices = run->mesh.n_vertices + grown / 2;
-    e.more = grown * bytes_a_triangle(run);
-    e.least_more = e.least * LEAST_BYTES;
-    e.swept = swept_memory_of(run, grown);
-    e.least_swept = LEAST_SHARE * swept_memory_of(run, e.least);
-    e.disk = disk_of(run, e.vertices, e.triangles);
-    e.least_disk = disk_of(run, 0.5 * e.least, e.least);
-    e.seconds = with_seconds ? seconds_of(run, e.triangles, e.disk) : 0;
+    const double demand = run->options.refine ? tri_area_demand(&run->mesh, quality, run->hooks->executor) : 0;
+    const double now = run->mesh.n_triangles, triangles = triangles_of(run, demand), grown = fmax(triangles - now, 0);
+    const bool sweeps = is_swept(run);
+    struct estimate e = {.sweeps = sweeps, .vertices = run->mesh.n_vertices + grown / 2};
+    e.likely = needs_of(run, grown, bytes_a_triangle(run), sweeps);
+    e.likely.triangles = triangles;
+    e.likely.files = disk_of(run, e.vertices, triangles);
+    if (demand > 0 && quality->max_steiner < 0) {
+        e.least = needs_of(run, demand, LEAST_BYTES, sweeps);
+        e.least.files = disk_of(run, 0.5 * demand, demand);
+    }
+    e.seconds = with_seconds ? seconds_of(run, triangles, e.likely.files) : 0;
     return e;
 }

@@ -4,14 +4,23 @@
 
 #include "drivers/run.h"
 
+/* Bytes of a number of triangles, beyond what is taken now. */
+struct needs {
+    double triangles;
+    double whole;      /* memory of a mesh that is in memory as a whole; +oo: it is too large for one */
+    double held;       /* memory of one that is handed out as it is made, where its arrays are in memory, */
+    double floor;      /* and where they are in files: it cannot be less */
+    double away;       /* of these files */
+    double checkpoint; /* of the folder of checkpoints */
+    double files;      /* of the output */
+};
+
 struct estimate {
-    double least;   /* triangles that area bounds ask for beyond doubt; 0: none */
-    double triangles, vertices;
-    double more;    /* bytes of memory that a mesh in memory takes beyond what is taken now .. */
-    double least_more; /* .. beyond doubt */
-    double swept, least_swept; /* the same for a mesh that is swept */
-    double disk, least_disk; /* bytes of files */
-    double seconds; /* from here on; costs a few milliseconds to find out, and is 0 unless asked for */
+    struct needs least;  /* what area bounds ask for beyond doubt; all 0: there are none */
+    struct needs likely;
+    double vertices;
+    bool sweeps;         /* a mesh that is handed out as it is made is never there as a whole: some columns are */
+    double seconds;      /* from here on; costs a few milliseconds to find out, and is 0 unless asked for */
 };
 
 /* Of the mesh as it is and the bounds. How good it is: docs/performance.md. O(triangles). */

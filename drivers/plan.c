@@ -1,5 +1,6 @@
 /* RULE. What is sure refuses, what is likely warns: areas ask for so many triangles beyond doubt, angles for about so
- * many. A mesh that fits stays in memory, which is quicker. */
+ * many. A bound that was asked for (--memory) refuses what is likely, too. A mesh that fits stays in memory, which is
+ * quicker. */
 #define _DEFAULT_SOURCE /* access */
 
 #include "drivers/plan.h"
@@ -10,10 +11,12 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "drivers/disk_needs.h"
 #include "drivers/resources.h"
 
-/* A mesh in memory may take so much more than expected; less than the other is not worth looking for. */
-static const double MARGIN = 1.15, WORTH_A_LOOK = 1e8;
+/* A mesh in memory may take so much more than expected, and more where it must not; less than the third is not worth
+ * looking for. */
+static const double MARGIN = 1.15, STRICT_MARGIN = 1.5, WORTH_A_LOOK = 1e8;
 
 double plan_memory_left(const struct run *run)
 {
@@ -32,8 +35,7 @@ static const char *by_switches(const struct tri_switches *s)
         {s->edges, "-e (edges)"},           {s->voronoi, "-v (Voronoi diagram)"},
         {s->neighbors, "-n (neighbours)"},  {s->off, "-g (.off)"},
         {s->second_order, "-o2"},           {s->jettison, "-j"},
-        {s->check, "-C (self check)"},      {s->max_steiner >= 0, "-S"},
-        {s->verbosity > 0, "-V (shapes)"},
+        {s->check, "-C (self check)"},      {s->verbosity > 0, "-V (shapes)"},
     };
     for (size_t i = 0; i < sizeof asks / sizeof *asks; i++)
         if (asks[i].given)
@@ -44,7 +46,7 @@ static const char *by_switches(const struct tri_switches *s)
 const char *plan_obstacle(const struct run *run)
 {
     const struct run_hooks *hooks = run->hooks;
-    if (!hooks->swept_memory)
+    if (!hooks->streams)
         return "";
     if (!run->options.refine)
         return "no bounds";
@@ -57,23 +59,27 @@ const char *plan_obstacle(const struct run *run)
 
 /* --- refusals and warnings */
 
+static bool is_strict(const struct run *run) { return run->hooks->limits.memory > 0; }
+
 static double millions(double triangles) { return fmin(1e-6 * triangles, 1e9); }
 
-static enum tri_status fail_too_many(const struct estimate *e, const char *obstacle, struct tri_error *error)
+/* Why all triangles of a mesh must be there at a time. */
+static enum tri_status fail_too_many(const struct needs *n, const char *why, struct tri_error *error)
 {
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
                     "the area bounds ask for at least %.0f million triangles, and a mesh holds %d million%s%s",
-                    millions(e->least), TRI_MAX_TRIANGLES / 1000000,
-                    *obstacle ? " where it must be in memory as a whole, as for " : "", obstacle);
+                    millions(n->triangles), TRI_MAX_TRIANGLES / 1000000,
+                    *why ? " where it must be in memory as a whole, as for " : "", why);
 }
 
-static enum tri_status fail_memory(const struct estimate *e, double needed, double left, const char *obstacle,
+static enum tri_status fail_memory(const struct needs *n, bool sure, double needed, double left, const char *obstacle,
                                    struct tri_error *error)
 {
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                    "the area bounds ask for at least %.3g million triangles, which take %.3g GB of memory; %.3g GB "
-                    "are left%s%s", millions(e->least), 1e-9 * needed, 1e-9 * left,
-                    *obstacle ? "; less would do but for " : "", obstacle);
+                    "the %sbounds ask for %s %.3g million triangles, which take %.3g GB of memory; %.3g GB are left"
+                    "%s%s",
+                    sure ? "area " : "", sure ? "at least" : "about", millions(n->triangles), 1e-9 * needed,
+                    1e-9 * left, *obstacle ? "; less would do but for " : "", obstacle);
 }
 
 static void warn_of_memory(const struct console *console, double needed, double left)
@@ -83,85 +89,143 @@ static void warn_of_memory(const struct console *console, double needed, double 
                      1e-9 * left);
 }
 
-static enum tri_status check_memory(const struct estimate *e, double left, const char *obstacle,
+static void warn_of_triangles(const struct console *console)
+{
+    console_warn(console, "the bounds may ask for more triangles than the %d million that a mesh holds.\n",
+                 TRI_MAX_TRIANGLES / 1000000);
+}
+
+static enum tri_status check_whole(const struct run *run, const struct estimate *e, double left, const char *obstacle,
+                                   const struct console *console, struct tri_error *error)
+{
+    if (e->least.triangles > TRI_MAX_TRIANGLES)
+        return fail_too_many(&e->least, obstacle, error);
+    if (e->least.whole > left)
+        return fail_memory(&e->least, true, e->least.whole, left, obstacle, error);
+    if (e->likely.triangles > TRI_MAX_TRIANGLES)
+        warn_of_triangles(console);
+    else if (is_strict(run) && e->likely.whole > left)
+        return fail_memory(&e->likely, false, e->likely.whole, left, obstacle, error);
+    else
+        warn_of_memory(console, e->likely.whole, left);
+    return TRI_OK;
+}
+
+/* A mesh that is handed out, but never swept, is there as a whole, if not in memory. */
+static enum tri_status check_stream(const struct run *run, const struct estimate *e, double left,
                                     const struct console *console, struct tri_error *error)
 {
-    if (e->least > TRI_MAX_TRIANGLES)
-        return fail_too_many(e, obstacle, error);
-    if (e->least_more > left)
-        return fail_memory(e, e->least_more, left, obstacle, error);
-    if (e->triangles > TRI_MAX_TRIANGLES)
-        console_warn(console, "the bounds may ask for more triangles than the %d million that a mesh holds.\n",
-                     TRI_MAX_TRIANGLES / 1000000);
-    else
-        warn_of_memory(console, e->more, left);
+    static const char why[] = "bounds above 31 degrees and -S";
+    if (!e->sweeps && e->least.triangles > TRI_MAX_TRIANGLES)
+        return fail_too_many(&e->least, why, error);
+    if (!e->sweeps && e->likely.triangles > TRI_MAX_TRIANGLES)
+        warn_of_triangles(console);
+    if (e->least.floor > left)
+        return fail_memory(&e->least, true, e->least.floor, left, "", error);
+    if (is_strict(run) && e->likely.floor > left)
+        return fail_memory(&e->likely, false, e->likely.floor, left, "", error);
+    warn_of_memory(console, e->likely.floor, left);
     return TRI_OK;
 }
 
-static enum tri_status check_sweep(const struct estimate *e, double left, const struct console *console,
-                                   struct tri_error *error)
+/* What a run puts on disk. */
+static void list_places(struct disk_place places[DISK_PLACES], const struct run *run, const struct needs *n,
+                        double left)
 {
-    if (e->least_swept > left)
-        return fail_memory(e, e->least_swept, left, "", error);
-    warn_of_memory(console, e->swept, left);
-    return TRI_OK;
+    const struct run_limits *limits = &run->hooks->limits;
+    places[0] = (struct disk_place){"the files", run->arguments->output, n->files};
+    places[1] = (struct disk_place){"what does not fit in memory", limits->scratch,
+                                    run->plan.swept && n->held > left ? n->away : 0};
+    places[2] = (struct disk_place){"the checkpoint", limits->checkpoint, run->plan.swept ? n->checkpoint : 0};
 }
 
-static enum tri_status check_disk(const struct run *run, const struct estimate *e, const struct console *console,
-                                  struct tri_error *error)
+static double sum_of(const struct disk_place places[DISK_PLACES])
 {
-    const char *output = run->arguments->output;
-    double left = fmax(e->disk, e->least_disk) > WORTH_A_LOOK ? resources_disk(output) : HUGE_VAL;
-    if (e->least_disk > left)
-        return tri_fail(error, TRI_CANNOT_WRITE, output, 0,
-                        "the area bounds ask for at least %.3g million triangles, whose files take %.3g GB; %.3g GB "
-                        "are left on that disk", millions(e->least), 1e-9 * e->least_disk, 1e-9 * left);
-    if (e->disk > left)
-        console_warn(console, "the files may take about %.3g GB; %.3g GB are left on that disk.\n", 1e-9 * e->disk,
-                     1e-9 * left);
+    return places[0].bytes + places[1].bytes + places[2].bytes;
+}
+
+static enum tri_status check_disk(const struct run *run, const struct estimate *e, double memory,
+                                  const struct console *console, struct tri_error *error)
+{
+    struct disk_place sure[DISK_PLACES], likely[DISK_PLACES];
+    double needed;
+    list_places(sure, run, &e->least, memory);
+    list_places(likely, run, &e->likely, memory);
+    const struct disk_place *place = sum_of(sure) > WORTH_A_LOOK ? disk_too_small(sure, &needed) : NULL;
+    if (place)
+        return tri_fail(error, TRI_CANNOT_WRITE, place->path, 0,
+                        "the area bounds ask for at least %.3g million triangles; %s and what else comes onto that "
+                        "disk take %.3g GB, and %.3g GB are left there", millions(e->least.triangles), place->what,
+                        1e-9 * needed, 1e-9 * disk_left(place));
+    place = sum_of(likely) > WORTH_A_LOOK ? disk_too_small(likely, &needed) : NULL;
+    if (place)
+        console_warn(console, "%s: %s and what else comes onto that disk may take about %.3g GB; %.3g GB are left.\n",
+                     place->path, place->what, 1e-9 * needed, 1e-9 * disk_left(place));
     return TRI_OK;
 }
 
-/* A folder that was asked for is tried before the work, which may take hours until it is needed. */
+/* A folder is tried before the work, which may take hours until it is needed. */
 static enum tri_status check_scratch(const char *folder, struct tri_error *error)
 {
-    if (folder && access(folder, W_OK | X_OK) != 0)
+    if (access(folder, W_OK | X_OK) != 0)
         return tri_fail(error, TRI_CANNOT_WRITE, folder, 0, "cannot park a mesh in this directory: %s",
                         strerror(errno));
     return TRI_OK;
 }
 
-/* --- all together */
-
-static bool fits(const struct estimate *e, double left)
+/* A mesh that is never swept has no columns between which a state could be kept. */
+static enum tri_status check_checkpoint(const struct run *run, const struct estimate *e, struct tri_error *error)
 {
-    return e->triangles <= TRI_MAX_TRIANGLES && e->least <= TRI_MAX_TRIANGLES && MARGIN * e->more <= left;
+    if (!run->hooks->limits.checkpoint || e->sweeps)
+        return TRI_OK;
+    return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "above 31 degrees, and with -S, a mesh that does not fit in memory "
+                    "keeps no checkpoint: leave out --checkpoint and --resume, or allow %.3g GB of memory",
+                    1e-9 * STRICT_MARGIN * e->likely.whole);
 }
 
-static void say_sweep(const struct console *console, const struct estimate *e)
+/* --- all together */
+
+static bool fits(const struct run *run, const struct estimate *e, double left)
 {
+    double margin = is_strict(run) ? STRICT_MARGIN : MARGIN;
+    return fmax(e->likely.triangles, e->least.triangles) <= TRI_MAX_TRIANGLES && margin * e->likely.whole <= left;
+}
+
+static void say_way(const struct console *console, const struct run *run, const struct estimate *e, double left)
+{
+    const struct needs *n = &e->likely;
     char whole[64] = "are too many for a mesh in memory";
-    if (e->triangles <= TRI_MAX_TRIANGLES)
-        snprintf(whole, sizeof whole, "would take %.3g GB of memory", 1e-9 * e->more);
-    console_say(console, "Sweeping: about %.3g million triangles %s, a few columns of them %.3g GB.\n",
-                millions(e->triangles), whole, 1e-9 * e->swept);
+    if (n->whole < HUGE_VAL)
+        snprintf(whole, sizeof whole, "would take %.3g GB of memory", 1e-9 * n->whole);
+    if (e->sweeps)
+        console_say(console, "Sweeping: about %.3g million triangles %s, a few columns of them %.3g GB.\n",
+                    millions(n->triangles), whole, 1e-9 * n->held);
+    if (n->held > left)
+        console_say(console, "Parking: what does not fit in memory goes to %s, about %.3g GB.\n",
+                    run->hooks->limits.scratch, 1e-9 * n->away);
+}
+
+static enum tri_status check_stream_all(const struct run *run, const struct estimate *e, double left,
+                                        const struct console *console, struct tri_error *error)
+{
+    enum tri_status status = check_stream(run, e, left, console, error);
+    status = status || fits(run, e, left) ? status : check_checkpoint(run, e, error);
+    return status ? status : check_scratch(run->hooks->limits.scratch, error);
 }
 
 enum tri_status plan_make(struct run_plan *plan, const struct run *run, const struct estimate *e,
                           const struct console *console, struct tri_error *error)
 {
-    bool look = fmax(e->more, e->least_more) > WORTH_A_LOOK || run->hooks->limits.memory > 0;
+    bool look = fmax(e->likely.whole, e->least.whole) > WORTH_A_LOOK || is_strict(run);
     double left = look ? plan_memory_left(run) : HUGE_VAL;
     const char *obstacle = plan_obstacle(run);
-    bool sweep = run->hooks->always_sweep || !fits(e, left);
-    *plan = (struct run_plan){sweep && !obstacle, resources_memory_used() + left, e->triangles};
-    enum tri_status status =
-        plan->swept ? check_sweep(e, left, console, error) : check_memory(e, left, obstacle, console, error);
-    status = status ? status : check_disk(run, e, console, error);
+    bool stream = run->hooks->always_sweep || !fits(run, e, left);
+    *plan = (struct run_plan){stream && !obstacle, resources_memory_used() + left, e->likely.triangles};
+    enum tri_status status = plan->swept ? check_stream_all(run, e, left, console, error)
+                                         : check_whole(run, e, left, obstacle, console, error);
+    status = status ? status : check_disk(run, e, left, console, error);
     if (!status && plan->swept)
-        status = check_scratch(run->hooks->limits.scratch, error);
-    if (!status && plan->swept)
-        say_sweep(console, e);
+        say_way(console, run, e, left);
     return status;
 }
 
@@ -173,15 +237,28 @@ static void print_bytes(const char *what, double needed, double left)
     putchar('\n');
 }
 
+static const char *way_of(const struct run *run, const struct estimate *e)
+{
+    return !run->plan.swept ? "all in memory" : e->sweeps ? "swept, a few columns in memory at a time"
+                                                          : "all in memory, or in files as far as it does not fit";
+}
+
 void plan_print(const struct run *run, const struct estimate *e)
 {
     int threads = run->hooks->threads > 1 ? run->hooks->threads : 1;
-    double left = plan_memory_left(run), more = run->plan.swept ? e->swept : e->more;
-    printf("\nEstimate:\n\n  Triangles: %.3g million\n  Vertices: %.3g million\n", 1e-6 * e->triangles,
+    const struct needs *n = &e->likely;
+    struct disk_place places[DISK_PLACES];
+    double left = plan_memory_left(run), more = run->plan.swept ? fmin(n->held, fmax(left, n->floor)) : n->whole;
+    list_places(places, run, n, left);
+    printf("\nEstimate:\n\n  Triangles: %.3g million\n  Vertices: %.3g million\n", 1e-6 * n->triangles,
            1e-6 * e->vertices);
     if (run->options.refine)
-        printf("  Way: %s\n", run->plan.swept ? "swept, a few columns in memory at a time" : "all in memory");
+        printf("  Way: %s\n", way_of(run, e));
     print_bytes("Memory", resources_memory_used() + more, left);
-    print_bytes("Disk", e->disk, resources_disk(run->arguments->output));
+    print_bytes("Disk", n->files, disk_left(&places[0]));
+    if (places[1].bytes > 0)
+        print_bytes("Disk for what does not fit in memory", places[1].bytes, disk_left(&places[1]));
+    if (places[2].bytes > 0)
+        print_bytes("Disk for the checkpoint", places[2].bytes, disk_left(&places[2]));
     printf("  Time: %.2g s on %d thread%s\n", e->seconds, threads, threads > 1 ? "s" : "");
 }

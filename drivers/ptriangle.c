@@ -34,7 +34,7 @@ struct program {
     int threads;
     struct progress progress;
     struct restart restart;
-    char *scratch;             /* folder for what is parked */
+    char *scratch;             /* folder for what does not fit in memory */
     struct file_names h5;      /* HDF5 files that are wanted */
     char *xdmf[STREAMS_MOST];  /* [h5.n] names of the texts beside them */
     struct streams streams;
@@ -88,7 +88,8 @@ static struct par_options options_of(struct program *p, const struct run *run)
     options.figure = &run->pslg;
     options.region_column = tri_switches_grid(s, &run->mesh, &run->pslg, &run->elements).regions;
     options.sweep = run->plan.swept;
-    options.memory = run->plan.swept && run->plan.memory < HUGE_VAL ? (int64_t)run->plan.memory : 0;
+    if ((run->plan.swept || run->hooks->limits.memory > 0) && run->plan.memory < HUGE_VAL)
+        options.memory = (int64_t)run->plan.memory;
     options.scratch = p->scratch;
     options.checkpoint = p->restart.wanted ? &p->restart.checkpoint : NULL;
     return options;
@@ -163,15 +164,16 @@ static enum tri_status help_others(struct program *p, struct run *run, struct tr
     return status;
 }
 
-/* A sweep that blocks left something of, or could not do at all. */
+/* What did not fit in memory, or could not be swept. */
 static void tell_of_parking(const struct program *p, bool quiet)
 {
     const struct console console = {.program = PROGRAM, .quiet = quiet};
-    if (p->schedule.way == PAR_PARKED)
-        console_say(&console, "The mesh could not be swept, and was parked: %.3g GB in %s.\n",
+    if (p->schedule.parked > 0)
+        console_say(&console, "%s parked: %.3g GB in %s.\n",
+                    p->schedule.way == PAR_SWEPT ? "What did not fit in memory was" : "The mesh was not swept, and was",
                     1e-9 * (double)p->schedule.parked, p->scratch);
     if (p->schedule.way != PAR_SWEPT && p->restart.wanted)
-        console_say(&console, "There was no checkpoint.\n");
+        fprintf(stderr, "%s: there was no checkpoint.\n", PROGRAM);
 }
 
 /* Refines, and writes what is finished meanwhile. */
@@ -252,15 +254,6 @@ static enum tri_status write_streams(struct program *p, const struct run *run, s
     status = status ? status : streams_hand_out(run, n_before, &sink, error);
     streams_close(&p->streams);
     return status;
-}
-
-/* Measured: a sweep holds about three columns of cells, of up to so many triangles each. */
-static double swept_memory(void *user, double triangles)
-{
-    static const double BYTES = 290, SMALLEST_CELL = 8192, LARGEST_CELL = 131072, CELLS = 128;
-    double cell = fmin(fmax(triangles / CELLS, SMALLEST_CELL), LARGEST_CELL);
-    (void)user;
-    return BYTES * sqrt(triangles * cell);
 }
 
 static enum tri_status write_further(void *user, const struct run *run, struct tri_output_set *set,
@@ -369,14 +362,14 @@ static struct run_hooks hooks_of(struct program *p)
     const struct long_options *o = &p->options;
     bool goes_on = p->restart.wanted && par_checkpoint_has_state(&p->restart.checkpoint);
     struct run_hooks hooks = {.program = PROGRAM, .refine = refine, .estimate = estimate, .write = write_further,
-                              .swept_memory = swept_memory,
+                              .streams = true,
                               .always_sweep = goes_on || p->launch.carrier || sweep_for_tests(),
                               .written_elsewhere = p->launch.rank > 0,
                               .share = p->launch.carrier ? share : NULL, .agree = p->launch.carrier ? agree : NULL,
                               .whole_mesh = whole_mesh(o), .threads = p->threads, .user = p,
                               .limits = {.seconds = o->time_limit, .write_partial = o->write_partial,
-                                         .dry_run = o->dry_run, .memory = memory_of(o), .scratch = o->scratch,
-                                         .checkpoint = p->restart.wanted}};
+                                         .dry_run = o->dry_run, .memory = memory_of(o), .scratch = p->scratch,
+                                         .checkpoint = p->restart.wanted ? p->restart.checkpoint.directory : NULL}};
     for (int i = 0; i < o->n_exports; i++)
         add_further(&hooks.exports, o->exports[i]);
     hooks.exports_alone = o->n_exports + o->n_streams > 0 && !o->output;
@@ -390,10 +383,12 @@ static int run_program(struct program *p, const struct arguments *arguments, str
     p->threads = par_threads(long_options_threads(&p->options), true);
     p->progress = progress_start(PROGRAM, p->options.progress, arguments->switches.quiet);
     const struct tri_executor executor = par_executor(&p->threads);
+    p->scratch = scratch_of(&p->options, arguments);
     struct run_hooks hooks = hooks_of(p);
     hooks.executor = &executor;
-    p->scratch = scratch_of(&p->options, arguments);
-    if (name_streams(p, &hooks, error)) {
+    if (!p->scratch)
+        tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
+    if (!p->scratch || name_streams(p, &hooks, error)) {
         console_error(&(struct console){.program = PROGRAM}, error);
         return EXIT_FAILURE;
     }

@@ -7,10 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
-enum { LINE_BYTES = 512, PATH_BYTES = 4096 };
+enum { LINE_BYTES = 512, PATH_BYTES = RESOURCES_PATH };
 
 /* What is asked of every limit: what is left below it, or all that it gives. */
 enum extent { LEFT, ALL };
@@ -152,11 +153,20 @@ double resources_processor_seconds(void)
            1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
+void resources_folder(const char *path, char folder[RESOURCES_PATH])
+{
+    struct stat info;
+    const char *slash = strrchr(path, '/');
+    if (stat(path, &info) == 0 && S_ISDIR(info.st_mode))
+        snprintf(folder, RESOURCES_PATH, "%s", path);
+    else
+        snprintf(folder, RESOURCES_PATH, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
+}
+
 double resources_disk(const char *path)
 {
-    char directory[PATH_BYTES];
-    const char *slash = strrchr(path, '/');
+    char folder[RESOURCES_PATH];
     struct statvfs disk;
-    snprintf(directory, sizeof directory, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
-    return statvfs(directory, &disk) == 0 ? (double)disk.f_bavail * (double)disk.f_frsize : HUGE_VAL;
+    resources_folder(path, folder);
+    return statvfs(folder, &disk) == 0 ? (double)disk.f_bavail * (double)disk.f_frsize : HUGE_VAL;
 }

@@ -22,7 +22,12 @@ int64_t resources_memory_peak(void);
 /* Seconds of processors that all its threads have taken. */
 double resources_processor_seconds(void);
 
-/* Bytes free on the file system that holds the file's directory; HUGE_VAL: not known. */
+enum { RESOURCES_PATH = 4096 };
+
+/* The folder itself, or that of a file which is there or will be. */
+void resources_folder(const char *path, char folder[RESOURCES_PATH]);
+
+/* Bytes free on the file system that holds this folder; HUGE_VAL: not known. */
 double resources_disk(const char *path);
 
 #endif

@@ -55,12 +55,19 @@ static bool is_option(const char *word, const char *option)
     return strncmp(word, option, n) == 0 && (word[n] == 0 || word[n] == '=');
 }
 
-/* The command that goes on: the words that were given, but for those that name the directory. */
+/* Is this one of the options, which all have a value, that the command that goes on has not? */
+static bool is_left_out(const char *word)
+{
+    return is_option(word, "--checkpoint") || is_option(word, "--resume") || is_option(word, "--time-limit");
+}
+
+/* The command that goes on: the words that were given, but for those that name the directory, and the limit of time,
+ * which was that of the run that is over. */
 static void print_command(const struct restart *r, const struct arguments *arguments)
 {
     for (int i = 1; i < arguments->argc; i++) {
         const char *word = arguments->argv[i];
-        if (is_option(word, "--checkpoint") || is_option(word, "--resume"))
+        if (is_left_out(word))
             i += strchr(word, '=') == NULL;
         else
             print_word(word);

@@ -25,7 +25,7 @@ enum run_stage {
 
 /* How the mesh is made: see drivers/plan.h. */
 struct run_plan {
-    bool swept;    /* by columns, of which few are in memory at a time; else the whole mesh is */
+    bool swept;    /* files are written meanwhile, and the mesh goes; else it stays in memory */
     double memory; /* bytes of memory that the process may take; HUGE_VAL: not known */
     double triangles; /* that are expected */
 };
@@ -56,8 +56,9 @@ struct run_limits {
     bool write_partial; /* a run that is stopped while it refines writes the valid mesh that it has */
     bool dry_run;       /* nothing is refined or written: an estimate is printed */
     double memory;      /* bytes that the process may take; 0: what there is */
-    bool checkpoint;    /* a run that is stopped while it is swept takes the time to keep its state */
-    const char *scratch; /* directory for what does not fit there; NULL: that of the output */
+    const char *checkpoint; /* directory: a run that is stopped while it is swept takes the time to keep its state
+                               there; NULL: none */
+    const char *scratch; /* directory for what does not fit in memory */
 };
 
 struct run_hooks {
@@ -71,9 +72,7 @@ struct run_hooks {
     /* Triangles that the mesh will have, and the share of them by which that may be wrong; NULL: what areas ask for is
      * all that is known. */
     double (*estimate)(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *options);
-    /* Bytes of memory that sweeping so many triangles takes, beyond what is taken now; refine follows run->plan then.
-     * NULL: nothing is ever swept. */
-    double (*swept_memory)(void *user, double triangles);
+    bool streams;                   /* refine follows run->plan, and can write files meanwhile */
     bool always_sweep;              /* on ranks, and for tests: also what would fit in memory */
     bool written_elsewhere;         /* another rank reads and writes all files */
     /* Several ranks, which call these together. share: after the first has read the input; all have it then. agree:

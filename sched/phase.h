@@ -46,10 +46,10 @@ struct par_state {
     bool may_number;         /* nothing is refined after this schedule */
     struct par_partition cells; /* of the last schedule of the whole mesh: the tiles by which it is numbered */
     bool numbered;           /* and nothing was */
-    double estimate;         /* of the triangles of a mesh that does not fit in memory */
     int64_t gone;            /* triangles that have been handed out, and are no more */
     bool delivered;          /* all have */
-    struct par_park *park;   /* where the mesh lies; NULL: in memory */
+    bool stays;              /* a mesh that does not fit in memory is not swept, or no more */
+    struct par_park *park;   /* bounds the memory of the mesh; NULL: nobody does */
 };
 
 /* Refines the blocks of one phase; takes from the worklist what they can take and puts back what they leave. only: the

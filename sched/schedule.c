@@ -193,7 +193,8 @@ static enum tri_status number_mesh(struct par_state *state, struct tri_error *er
 {
     double began = tri_seconds();
     par_tell(state, PAR_NUMBERING);
-    enum tri_status status = par_number(state->mesh, &state->cells, state->n_kept, &state->executor, error);
+    enum tri_status status = par_park_expect(state->park, state->mesh, par_number_bytes(state->mesh), error);
+    status = status ? status : par_number(state->mesh, &state->cells, state->n_kept, &state->executor, error);
     state->numbered = true;
     state->report->seconds_number += tri_seconds() - began;
     return status;
@@ -331,32 +332,26 @@ static enum tri_status try_to_sweep(struct par_state *state, const struct par_pa
     return status;
 }
 
-/* From here on the mesh lies in a file. */
-static enum tri_status park(struct par_state *state, struct tri_error *error)
+/* The whole mesh does not fit in memory: it is swept where nothing comes after this schedule and the sink can begin
+ * again. If that leaves something over, or cannot be, it moves to files as it grows. */
+static enum tri_status leave_memory(struct par_state *state, const struct par_partition *partition,
+                                    struct tri_error *error)
 {
     const struct par_options *options = state->options;
-    enum tri_status status = tri_refine_check(state->mesh, state->quality, &state->executor, error);
-    if (status)
+    enum tri_status status = TRI_OK;
+    bool can_sweep = state->may_number && (options->sink->begin || !options->scratch);
+    state->stays = true;
+    if (can_sweep)
+        status = try_to_sweep(state, partition, &state->delivered, error);
+    if (state->delivered)
+        state->report->way = PAR_SWEPT;
+    if (status || state->delivered)
         return status;
     if (!options->scratch)
         return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
                         "about %.1f GB are asked for and there are %.1f: a mesh like this needs a scratch directory",
-                        1e-9 * BYTES_IN_MEMORY * state->estimate, 1e-9 * (double)options->memory);
-    return par_park_open(&state->park, state->mesh, options->scratch, options->memory, error);
-}
-
-/* The whole mesh does not fit in memory: it is swept where nothing comes after this schedule and the sink can begin
- * again; if that leaves something over, or cannot be, it is parked. */
-static enum tri_status leave_memory(struct par_state *state, const struct par_partition *partition,
-                                    struct tri_error *error)
-{
-    enum tri_status status = TRI_OK;
-    bool can_sweep = state->may_number && (state->options->sink->begin || !state->options->scratch);
-    state->estimate = partition->estimate;
-    if (can_sweep)
-        status = try_to_sweep(state, partition, &state->delivered, error);
-    state->report->way = state->delivered ? PAR_SWEPT : PAR_PARKED;
-    return status || state->delivered ? status : park(state, error);
+                        1e-9 * BYTES_IN_MEMORY * partition->estimate, 1e-9 * (double)options->memory);
+    return tri_refine_check(state->mesh, state->quality, &state->executor, error);
 }
 
 /* What no block could do, and what blocks have left unused. */
@@ -401,7 +396,7 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
     }
     if (!status && top && state->may_number && state->options->sink && state->options->carrier)
         status = refine_on_ranks(state, partition, error);
-    else if (!status && top && !state->park && is_too_much(state, partition->estimate))
+    else if (!status && top && !state->stays && is_too_much(state, partition->estimate))
         status = leave_memory(state, partition, error);
     if (status || state->delivered)
         return status;
@@ -541,16 +536,38 @@ static enum tri_status deliver(struct par_state *state, struct tri_error *error)
     return !status && state->options->sink ? par_hand_out(state, error) : status;
 }
 
+/* A bound on memory that somebody keeps: on ranks each has its own part, and a sink without a scratch directory gets a
+ * sweep and no more. */
+static bool is_bounded(const struct par_options *options)
+{
+    return options->memory > 0 && !options->carrier && (options->scratch || !options->sink);
+}
+
 static void clean_up(struct par_state *state)
 {
-    state->report->parked = state->park ? par_park_bytes(state->park) : 0;
+    struct par_report *report = state->report;
+    report->parked = state->park ? par_park_bytes(state->park) : 0;
+    if (report->parked > 0 && report->way == PAR_IN_MEMORY)
+        report->way = PAR_PARKED;
     par_park_close(state->park, state->mesh);
-    if (state->report->way != PAR_IN_MEMORY)
+    if (report->way != PAR_IN_MEMORY)
         tri_mesh_drop(state->mesh);
     free(state->worklist.item);
     free(state->key.item);
     par_partition_free(&state->cells);
     par_room_free(&state->spare);
+}
+
+/* By a schedule or by one call; and to the sink. */
+static enum tri_status refine_and_deliver(struct par_state *state, const struct tri_refine_options *quality,
+                                          bool sequential, struct tri_error *error)
+{
+    double began = tri_seconds();
+    enum tri_status status = sequential ? refine_rest(state, quality, true, error)
+                                        : refine_by_schedule(state, quality, error);
+    if (sequential)
+        state->report->seconds_last += tri_seconds() - began;
+    return status ? status : deliver(state, error);
 }
 
 enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
@@ -564,12 +581,13 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     bool sequential = must_be_sequential(quality, options);
     bool can_sweep = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE;
     enum tri_status status = can_sweep ? TRI_OK : tri_refine_check(mesh, quality, &state.executor, error);
+    if (!status && is_bounded(options))
+        status = par_park_open(&state.park, mesh, options->sink ? options->scratch : NULL, options->memory, error);
     if (status)
         return status;
-    status = sequential ? refine_rest(&state, quality, true, error) : refine_by_schedule(&state, quality, error);
-    if (sequential)
-        report->seconds_last += tri_seconds() - began;
-    status = status ? status : deliver(&state, error);
+    if (state.park)
+        state.executor = par_park_executor(state.park, state.executor);
+    status = refine_and_deliver(&state, quality, sequential, error);
     status = par_park_status(state.park, status, error);
     clean_up(&state);
     report->seconds_total = tri_seconds() - began;

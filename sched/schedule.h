@@ -31,17 +31,19 @@ struct par_options {
     bool by_block;           /* new vertices and triangles are numbered as blocks made them: quicker. Else what the
                                 schedule made is numbered tile by tile, along a curve (sched/sweep/numbering.h): a
                                 solver that goes through the triangles runs twice as fast then. By block, a sink gets
-                                the mesh as one tile, and it is never swept */
+                                no tiles but pieces of the mesh, and it is never swept */
     const struct tri_sink *sink; /* takes the finished mesh, tile by tile (ptriangle/tiles.h); NULL: nobody */
     const struct tri_pslg *figure; /* the mesh's input: its points are handed out bit by bit as they came; NULL: as they
                                       are in the mesh, where what is smaller than 2^-216 units is 0 */
     bool region_column;      /* the attribute of its region is handed out with a triangle, also where the mesh has no
                                 columns */
-    int64_t memory;          /* bytes that the process may have in memory, about; 0: no bound. Where a sink takes the
-                                mesh and it would not fit, it is swept from left to right: few columns are in memory at
-                                a time, and *mesh is not a mesh afterwards, to be freed and no more. The tiles are the
-                                same for any bound. TRI_TOO_LARGE where that cannot be done */
-    const char *scratch;     /* directory for what has to be parked then; NULL: nothing can be */
+    int64_t memory;          /* bytes that the process may have in memory; 0: no bound. Where a sink takes the mesh and
+                                it would not fit, it is swept from left to right: few columns are there at a time, and
+                                *mesh is not a mesh afterwards, to be freed and no more. What does not fit then, lies in
+                                files in `scratch` (sched/sweep/park.h). The tiles are the same for any bound. Without a
+                                sink: TRI_NO_MEMORY as soon as it would not fit */
+    const char *scratch;     /* directory for these files; NULL: with a sink, the bound decides on the sweep alone, and
+                                a mesh that cannot be swept is TRI_TOO_LARGE */
     struct par_checkpoint *checkpoint; /* where the state of a sweep is kept, and taken from (sched/sweep/checkpoint.h);
                                           NULL: nowhere */
     bool sweep;              /* for tests: whatever memory there is */
@@ -60,7 +62,7 @@ struct par_options {
 enum par_way { /* how a mesh was carried through */
     PAR_IN_MEMORY,
     PAR_SWEPT,  /* column by column; what is finished went */
-    PAR_PARKED  /* column by column; it stayed, in a file */
+    PAR_PARKED  /* it stayed, in files */
 };
 
 struct par_block_report {
@@ -86,7 +88,7 @@ struct par_report {
     int64_t deferred, left_over;  /* refused by fences in all phases; bad triangles that sequential calls got at last */
     enum par_way way;
     int64_t most_live;            /* triangles in the mesh at a time, with the room that blocks have been dealt */
-    int64_t parked;               /* bytes of the file in `scratch`; 0: none */
+    int64_t parked;               /* most bytes of files in `scratch` at a time; 0: all was in memory */
     int64_t pauses;               /* times a block waited for room */
     double seconds_prerefine, seconds_partition, seconds_room, seconds_merge, seconds_last, seconds_total;
     double seconds_find;          /* bad triangles, and the block of each; in equal shares */

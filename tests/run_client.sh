@@ -66,6 +66,16 @@ if [ -x "$work/cmake/dropin_parallel" ]; then
     [ "$(wc -l <"$work/sizes.txt")" -eq 1 ]
 fi
 
+echo "== a stream"
+if [ -x "$work/cmake/stream" ]; then
+    for memory in 0 30; do # all there is, and less than the mesh takes
+        "$work/cmake/stream" "$square" 20 0.000003 $memory "$work"
+    done | uniq >"$work/streams.txt"
+    cat "$work/streams.txt"
+    grep -q 'area 1.000000000000$' "$work/streams.txt"
+    [ "$(sed 's/ in .* tiles//' "$work/streams.txt" | uniq | wc -l)" -eq 1 ]
+fi
+
 echo "== ranks"
 if [ -n "${MPIEXEC:-}" ]; then
     OMP_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 \

@@ -346,7 +346,7 @@ static void test_budgets_hand_out_the_same_tiles(void **state)
                       (long long)tight_report.parked);
         assert_same_stream(&parts, &whole);
         assert_memory_equal(&tight_report.total, &report.total, sizeof report.total);
-        assert_true((tight_report.way == PAR_PARKED) == (tight_report.parked > 0));
+        assert_true(tight_report.parked > 0); /* nothing fits, nor does what a sweep holds */
         n_ways[tight_report.way]++;
         begun_again += parts.n_begun > 1;
         free_stream(&whole);
@@ -476,7 +476,7 @@ static void test_scratch_that_cannot_be_used(void **state)
     assert_string_equal(error.file, "nowhere");
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
     limit = before;
-    limit.rlim_cur = 1 << 20;
+    limit.rlim_cur = 1 << 17; /* less than the file of an array */
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
     enum tri_status status = refine_parked(&start, ".", &error);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
@@ -1016,7 +1016,7 @@ static bool fail_streaming_once(const struct start *start, const struct par_opti
 static void test_every_allocation_may_fail_on_the_way_to_a_sink(void **state)
 {
     (void)state;
-    static const double angles[] = {20, 30, 33}; /* swept, begun again, parked */
+    static const double angles[] = {20, 30, 33}; /* swept, one call, parked */
     for (int i = 0; i < 3; i++) {
         struct start start = square(60, angles[i], i == 1 ? 0 : 4e-4);
         struct par_options options = small_blocks(256, 1);
@@ -1025,7 +1025,7 @@ static void test_every_allocation_may_fail_on_the_way_to_a_sink(void **state)
         options.scratch = ".";
         while (fail_streaming_once(&start, &options, k))
             k += 1 + k / 12; /* the later, the more alike */
-        assert_true(k > 50);
+        assert_true(k > 30);
         tri_pslg_free(&start.pslg);
     }
 }

@@ -1,8 +1,8 @@
 /* Storage of the mesh: growth, links, reordering, compaction, and the check of its invariants.
  *
- * Growth is by half: as a storage does it or through realloc, by which the C library moves pages of large arrays rather
- * than bytes, so that the peak stays near what is used. The triangle array starts at a cache line, so that a triangle
- * never straddles two. */
+ * Growth is by half, by less where memory is bounded: as a storage does it or through realloc, by which the C library
+ * moves pages of large arrays rather than bytes, so that the peak stays near what is used. The triangle array starts at
+ * a cache line, so that a triangle never straddles two. */
 #include "triangle/mesh.h"
 
 #include <assert.h>
@@ -39,12 +39,13 @@ static void *grow_aligned(void *old, size_t used, size_t bytes)
     return aligned;
 }
 
-/* The capacity to take for `need` items: half as much again, at least 64; 0 where need is above the limit. */
-static int32_t next_capacity(int32_t capacity, int64_t need, int32_t limit)
+/* The capacity to take for `need` items: more by a share of what there is or, where `tight`, is needed, at least 64; 0
+ * where need is above the limit. */
+static int32_t next_capacity(int32_t capacity, int64_t need, int32_t limit, bool tight)
 {
     if (need > limit)
         return 0;
-    int64_t wanted = capacity + (int64_t)capacity / 2;
+    int64_t wanted = tight ? need + need / 16 : capacity + (int64_t)capacity / 2;
     wanted = wanted < need ? need : wanted;
     wanted = wanted < 64 ? 64 : wanted;
     return (int32_t)(wanted > limit ? limit : wanted);
@@ -113,6 +114,22 @@ static bool grow_array(struct tri_mesh *mesh, enum tri_array which, int32_t capa
     return fresh || a.item == 0;
 }
 
+size_t tri_mesh_bytes(const struct tri_mesh *mesh)
+{
+    size_t bytes = 0;
+    for (enum tri_array which = TRI_XY; which < TRI_ARRAYS; which++)
+        bytes += (size_t)array_of(mesh, which).capacity * array_of(mesh, which).item;
+    return bytes;
+}
+
+size_t tri_mesh_bytes_used(const struct tri_mesh *mesh)
+{
+    size_t bytes = 0;
+    for (enum tri_array which = TRI_XY; which < TRI_ARRAYS; which++)
+        bytes += (size_t)array_of(mesh, which).n * array_of(mesh, which).item;
+    return bytes;
+}
+
 static enum tri_status no_memory(struct tri_error *error, const char *what, int32_t count)
 {
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d %s", (int)count, what);
@@ -141,7 +158,9 @@ void *tri_mesh_extra(const struct tri_mesh *mesh, size_t bytes)
 
 void tri_mesh_extra_free(const struct tri_mesh *mesh, void *extra)
 {
-    if (!mesh->storage)
+    if (mesh->storage)
+        mesh->storage->extra_free(mesh->storage->user, extra);
+    else
         free(extra);
 }
 
@@ -198,6 +217,14 @@ void tri_mesh_swap(struct tri_mesh *a, struct tri_mesh *b)
     take_counts(b, &before);
 }
 
+static bool fill(struct tri_mesh *to, enum tri_array which, const void *from, size_t bytes)
+{
+    if (to->storage)
+        return to->storage->fill(to->storage->user, which, from, bytes);
+    memcpy(array_of(to, which).at, from, bytes);
+    return true;
+}
+
 /* *to, which is empty, receives the arrays of *from, in this storage. */
 static bool copy_arrays(struct tri_mesh *to, const struct tri_mesh *from, const struct tri_storage *storage)
 {
@@ -207,7 +234,7 @@ static bool copy_arrays(struct tri_mesh *to, const struct tri_mesh *from, const 
         struct array a = array_of(from, which);
         memory = a.capacity == 0 || grow_array(to, which, a.capacity);
         if (memory && a.n > 0 && a.item > 0)
-            memcpy(array_of(to, which).at, a.at, (size_t)a.n * a.item);
+            memory = fill(to, which, a.at, (size_t)a.n * a.item);
     }
     if (memory)
         take_counts(to, from);
@@ -231,58 +258,84 @@ enum tri_status tri_mesh_move(struct tri_mesh *mesh, const struct tri_storage *s
     return TRI_OK;
 }
 
+/* The arrays that one count belongs to. */
+struct group {
+    enum tri_array first, last;
+    int32_t *capacity;
+    int32_t limit;
+    const char *items;
+};
+
+/* Where memory is bounded they grow by less rather than leave. */
+static enum tri_status choose_capacity(struct tri_mesh *mesh, const struct group *g, int64_t need, int32_t *capacity,
+                                       struct tri_error *error)
+{
+    const struct tri_bound *bound = mesh->storage ? NULL : mesh->bound;
+    size_t item = 0;
+    for (enum tri_array which = g->first; which <= g->last; which++)
+        item += array_of(mesh, which).item;
+    const size_t others = tri_mesh_bytes(mesh) - (size_t)*g->capacity * item;
+    *capacity = next_capacity(*g->capacity, need, g->limit, mesh->storage);
+    if (!*capacity)
+        return too_large(error, g->items);
+    if (!bound || bound->allows(bound->user, mesh, others + (size_t)*capacity * item))
+        return TRI_OK;
+    *capacity = next_capacity(*g->capacity, need, g->limit, true);
+    if (bound->allows(bound->user, mesh, others + (size_t)*capacity * item))
+        return TRI_OK;
+    return bound->leave(bound->user, mesh, error);
+}
+
+static enum tri_status grow_group(struct tri_mesh *mesh, const struct group *g, int64_t need, struct tri_error *error)
+{
+    int32_t capacity;
+    enum tri_status status = choose_capacity(mesh, g, need, &capacity, error);
+    for (enum tri_array which = g->first; !status && which <= g->last; which++)
+        if (!grow_array(mesh, which, capacity))
+            status = no_memory(error, g->items, capacity);
+    if (!status)
+        *g->capacity = capacity;
+    return status;
+}
+
 enum tri_status tri_mesh_reserve_vertices(struct tri_mesh *mesh, int32_t more, struct tri_error *error)
 {
+    const int64_t need = (int64_t)mesh->n_vertices + more;
     assert(more >= 0);
-    int64_t need = (int64_t)mesh->n_vertices + more;
     if (need <= mesh->vertex_capacity)
         return TRI_OK;
-    int32_t capacity = next_capacity(mesh->vertex_capacity, need, TRI_MAX_VERTICES);
-    if (!capacity)
-        return too_large(error, "vertices");
-    for (enum tri_array which = TRI_XY; which <= TRI_ATTRIBUTES; which++)
-        if (!grow_array(mesh, which, capacity))
-            return no_memory(error, "vertices", capacity);
-    mesh->vertex_capacity = capacity;
-    return TRI_OK;
+    const struct group g = {TRI_XY, TRI_ATTRIBUTES, &mesh->vertex_capacity, TRI_MAX_VERTICES, "vertices"};
+    return grow_group(mesh, &g, need, error);
 }
 
 enum tri_status tri_mesh_reserve_triangles(struct tri_mesh *mesh, int32_t more, struct tri_error *error)
 {
+    const int64_t need = (int64_t)mesh->n_triangles + more;
     assert(more >= 0);
-    int64_t need = (int64_t)mesh->n_triangles + more;
     if (need <= mesh->triangle_capacity)
         return TRI_OK;
-    int32_t capacity = next_capacity(mesh->triangle_capacity, need, TRI_MAX_TRIANGLES);
+    const struct group g = {TRI_TRIANGLES, TRI_TRIANGLES, &mesh->triangle_capacity, TRI_MAX_TRIANGLES, "triangles"};
+    return grow_group(mesh, &g, need, error);
+}
+
+static enum tri_status reserve_parents(struct tri_mesh *mesh, int64_t need, struct tri_error *error)
+{
+    int32_t capacity = next_capacity(mesh->parent_capacity, need, TRI_MAX_TRIANGLES, false);
     if (!capacity)
-        return too_large(error, "triangles");
-    if (!grow_array(mesh, TRI_TRIANGLES, capacity))
-        return no_memory(error, "triangles", capacity);
-    mesh->triangle_capacity = capacity;
+        return too_large(error, "segments");
+    if (!grow(&mesh->parents, capacity, sizeof *mesh->parents))
+        return no_memory(error, "segments", capacity);
+    mesh->parent_capacity = capacity;
     return TRI_OK;
 }
 
 enum tri_status tri_mesh_reserve_subs(struct tri_mesh *mesh, int32_t more, struct tri_error *error)
 {
+    const int64_t need = (int64_t)mesh->n_subs + more, parents = (int64_t)mesh->n_parents + more;
+    const struct group g = {TRI_SUBS, TRI_SUBS, &mesh->sub_capacity, TRI_MAX_TRIANGLES, "subsegments"};
     assert(more >= 0);
-    int64_t need = (int64_t)mesh->n_subs + more, parents = (int64_t)mesh->n_parents + more;
-    if (need > mesh->sub_capacity) {
-        int32_t capacity = next_capacity(mesh->sub_capacity, need, TRI_MAX_TRIANGLES);
-        if (!capacity)
-            return too_large(error, "subsegments");
-        if (!grow_array(mesh, TRI_SUBS, capacity))
-            return no_memory(error, "subsegments", capacity);
-        mesh->sub_capacity = capacity;
-    }
-    if (parents > mesh->parent_capacity) {
-        int32_t capacity = next_capacity(mesh->parent_capacity, parents, TRI_MAX_TRIANGLES);
-        if (!capacity)
-            return too_large(error, "segments");
-        if (!grow(&mesh->parents, capacity, sizeof *mesh->parents))
-            return no_memory(error, "segments", capacity);
-        mesh->parent_capacity = capacity;
-    }
-    return TRI_OK;
+    enum tri_status status = need > mesh->sub_capacity ? grow_group(mesh, &g, need, error) : TRI_OK;
+    return status || parents <= mesh->parent_capacity ? status : reserve_parents(mesh, parents, error);
 }
 
 /* 1 for coordinates of ordinary size, else the power of two that brings the largest one to the order of 1. */

@@ -75,13 +75,26 @@ struct tri_region {
 };
 
 /* Where the arrays are that grow with refinement, if not in memory from malloc. reserve: the array has at least so many
- * bytes afterwards, what is in it stays, pages are zero that have not been written to; NULL: there is no room. An array
- * starts at a page. extra: so many bytes for what is larger than memory when the mesh is, until the storage goes. */
+ * bytes afterwards, what is in it stays; NULL: there is no room. An array starts at a page. fill: its first bytes
+ * become these, of which no more than a little is in memory then; false: there is no room. extra: so many bytes for
+ * what is larger than memory when the mesh is, until they are freed. */
 enum tri_array { TRI_XY, TRI_ON, TRI_MARKERS, TRI_FEATURE, TRI_ATTRIBUTES, TRI_TRIANGLES, TRI_SUBS, TRI_ARRAYS };
 
 struct tri_storage {
     void *(*reserve)(void *user, enum tri_array array, size_t bytes);
+    bool (*fill)(void *user, enum tri_array array, const void *from, size_t bytes);
     void *(*extra)(void *user, size_t bytes);
+    void (*extra_free)(void *user, void *extra);
+    void *user;
+};
+
+struct tri_mesh;
+
+/* Who watches over the memory that these arrays take. allows: may they take so many bytes? Else they leave, to a
+ * storage (tri_mesh_move); or it is an error. */
+struct tri_bound {
+    bool (*allows)(void *user, const struct tri_mesh *mesh, size_t bytes);
+    enum tri_status (*leave)(void *user, struct tri_mesh *mesh, struct tri_error *error);
     void *user;
 };
 
@@ -119,6 +132,7 @@ struct tri_mesh {
     double unit;              /* a power of two: the caller's coordinates are xy * unit */
 
     const struct tri_storage *storage; /* borrowed; NULL: malloc */
+    const struct tri_bound *bound;     /* asked before they grow there; borrowed; NULL: nobody */
     const struct tri_stop *stop; /* whoever works on the mesh asks it whether to go on; borrowed; NULL: nobody */
 };
 
@@ -165,6 +179,10 @@ void tri_mesh_free(struct tri_mesh *mesh);
 /* Memory for something as large as the mesh, where the mesh is. NULL: there is none. */
 void *tri_mesh_extra(const struct tri_mesh *mesh, size_t bytes);
 void tri_mesh_extra_free(const struct tri_mesh *mesh, void *extra);
+
+/* Bytes of the arrays that grow with refinement: with room for more, and of what is in use. */
+size_t tri_mesh_bytes(const struct tri_mesh *mesh);
+size_t tri_mesh_bytes_used(const struct tri_mesh *mesh);
 
 /* The arrays that grow with refinement. Move: to a storage, which the mesh borrows from then on. Copy: *copy has
  * another such mesh's, in memory from malloc, and nothing else. Swap: two meshes change theirs, and the counts of them.

@@ -24,13 +24,16 @@ enum tri_status par_mesh_refine(struct tri_mesh *mesh, const struct tri_settings
 /* The mesh of par_mesh_new, handed to a sink tile by tile (ptriangle/tiles.h): points, triangles and segments with the
  * same numbers and in the same order, whatever memory there is and however many threads.
  *
- * memory: bytes that the process may have resident, about; 0: no bound. A mesh that would need more, or be larger than
- * one struct tri_mesh can be, is swept from left to right where min_angle is at most 31: tiles are handed out as they
- * become final, and go; it may have any number of triangles. The figure's own triangulation, a few columns of tiles and
- * what the sink holds are in memory then. Where that cannot be done (above 31 degrees, or where triangles are left over
- * that are large against the tiles around them) the mesh, of at most 2^29 triangles, lies in a file in the directory
- * scratch, some 60 to 80 bytes a triangle, which has no name and is gone with the process; without scratch (NULL) that
- * is TRI_TOO_LARGE. A full disk is TRI_CANNOT_WRITE. Settings that make it one sequential refinement stay in memory.
+ * memory: bytes that the process may have resident; 0: no bound. A mesh that would need more, or be larger than one
+ * struct tri_mesh can be, is swept from left to right where min_angle is at most 31: tiles are handed out as they
+ * become final, and go; it may have any number of triangles. The figure's own triangulation, a few columns of tiles
+ * and what the sink holds are in memory then. Where that cannot be done (above 31 degrees, settings that make it one
+ * sequential refinement, or where triangles are left over that are large against the tiles around them) the mesh, of
+ * at most 2^29 triangles, is there as a whole. What of this does not fit in memory lies in files in the directory
+ * scratch, up to 90 bytes a triangle, which have no names and are gone with the process; a full disk is
+ * TRI_CANNOT_WRITE. Without scratch (NULL) the bound decides alone whether the mesh is swept, and one that cannot be is
+ * TRI_TOO_LARGE. The bound holds as far as there is room beside the mesh: some 40 MB, 50 MB a thread, and a third of
+ * what a sweep has in memory.
  *
  * Figure, settings and sink are the caller's and only read. The calling thread calls the sink. Any status other than
  * TRI_OK: what has been taken is worth nothing. */

@@ -27,6 +27,12 @@ extern "C" {
 enum tri_status par_number(struct tri_mesh *mesh, const struct par_partition *partition, int32_t n_kept,
                            const struct tri_executor *executor, struct tri_error *error);
 
+/* What par_number takes beside the mesh, to the order. */
+static inline size_t par_number_bytes(const struct tri_mesh *mesh)
+{
+    return 30 * (size_t)mesh->n_triangles + 8 * (size_t)mesh->n_vertices + 28 * (size_t)mesh->n_subs;
+}
+
 #ifdef __cplusplus
 }
 #endif

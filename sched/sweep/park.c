@@ -1,11 +1,16 @@
-/* One sparse file, mapped as a whole: each array has a part of it that holds the largest there can be. */
-#define _DEFAULT_SOURCE /* madvise, MAP_NORESERVE */
+/* One file for each array, mapped as far as it has disk space.
+ *
+ * INVARIANT: arrays in memory take, with all else that the process has there, no more than the bound when they begin to
+ * grow. All else is the most that has been seen beside the arrays in use, and a share of the bound for what is to come
+ * before they grow again. */
+#define _DEFAULT_SOURCE /* madvise, malloc_trim */
 
 #include "sched/sweep/park.h"
 
 #include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -15,140 +20,90 @@
 #include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
+#include "sched/sweep/spool.h"
 #include "sched/threads.h"
 
-/* MOST_EXTRA: bytes a triangle. */
-enum { OTHERS = TRI_ARRAYS, PARTS, GRAIN = 1 << 21, MOST_EXTRA = 64, LOOK_NANOSECONDS = 5000000 };
+enum { EXTRAS = 12, SHEETS = TRI_ARRAYS + EXTRAS, GRAIN = 1 << 18, LOOK_NANOSECONDS = 1000000 };
 
-struct part {
-    size_t first, size, used; /* in the file; `used` bytes have disk space */
+/* Shares of the bound: for what grows between two growths of the arrays; and, where the arrays are in files, of what
+ * all else leaves of it, for pages of theirs before they are unmapped. */
+static const double TO_COME = 0.1, TOUCHED = 0.3;
+
+/* One array in its file. */
+struct sheet {
+    int file;   /* -1: none */
+    char *at;   /* mapping of all that has disk space; NULL: nothing has */
+    size_t size;
 };
 
 struct par_park {
-    int file;
-    char *at; /* the mapping */
-    size_t size;
-    struct part part[PARTS];
-    size_t taken; /* of the part OTHERS */
+    const char *folder;         /* NULL: what does not fit is an error */
+    double memory, others;      /* the bound; the most seen in memory beside the arrays */
+    double files;               /* bytes of pages of files to begin with: libraries */
+    struct sheet sheet[SHEETS]; /* arrays, then extras; changed under the lock */
     struct tri_storage storage;
-    int64_t memory;
-    int fault;    /* errno of the reservation that failed; 0: none */
+    struct tri_bound bound;
+    size_t most, wanted;        /* bytes of disk; with those of the reservation that failed */
+    int fault;                  /* errno of that; 0: none */
+    pthread_mutex_t lock;
+    const struct tri_stop *outer; /* the mesh's own */
+    struct tri_stop stop;
+    struct tri_executor inner;
     pthread_t watch;
     bool watched;
-    atomic_bool over;
+    atomic_bool away, over;     /* arrays are in files; the watch ends */
 };
 
-static size_t rounded(size_t bytes) { return (bytes + GRAIN - 1) / GRAIN * GRAIN; }
+/* --- what is in memory */
 
-/* Disk space for so many bytes of a part, and a little ahead, so that it seldom grows. */
-static void *reserve_part(struct par_park *park, struct part *part, size_t bytes)
+struct resident {
+    double all, files; /* bytes; the second: pages of files, libraries among them */
+};
+
+/* More than any bound where the system does not tell. */
+static struct resident resident(void)
 {
-    size_t wanted = rounded(bytes);
-    if (wanted > part->size)
-        return NULL;
-    if (wanted > part->used) {
-        int fault;
-        do
-            fault = posix_fallocate(park->file, (off_t)(part->first + part->used), (off_t)(wanted - part->used));
-        while (fault == EINTR);
-        if (fault) {
-            park->fault = fault;
-            return NULL;
-        }
-        part->used = wanted;
-    }
-    return park->at + part->first;
+    char text[128];
+    unsigned long long all, files;
+    const double page = (double)sysconf(_SC_PAGESIZE);
+    int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+    ssize_t n = file >= 0 ? read(file, text, sizeof text - 1) : 0;
+    if (file >= 0)
+        close(file);
+    text[n > 0 ? n : 0] = 0;
+    if (sscanf(text, "%*u %llu %llu", &all, &files) != 2)
+        return (struct resident){INFINITY, 0};
+    return (struct resident){(double)all * page, (double)files * page};
 }
 
-static void *reserve(void *user, enum tri_array array, size_t bytes)
+static void look_at_others(struct par_park *park, const struct tri_mesh *mesh)
 {
-    struct par_park *park = user;
-    return reserve_part(park, &park->part[array], bytes);
+    const double others = resident().all - (mesh->storage ? 0 : (double)tri_mesh_bytes_used(mesh));
+    park->others = others > park->others ? others : park->others;
 }
 
-static void *extra(void *user, size_t bytes)
-{
-    struct par_park *park = user;
-    char *part = reserve_part(park, &park->part[OTHERS], park->taken + bytes);
-    if (!part)
-        return NULL;
-    part += park->taken;
-    park->taken += (bytes + 63) / 64 * 64;
-    return part;
-}
-
-int64_t par_park_bytes(const struct par_park *park)
-{
-    size_t sum = 0;
-    for (int k = 0; k < PARTS; k++)
-        sum += park->part[k].used;
-    return (int64_t)sum;
-}
-
-enum tri_status par_park_status(const struct par_park *park, enum tri_status status, struct tri_error *error)
-{
-    if (status != TRI_NO_MEMORY || !park || !park->fault)
-        return status;
-    return tri_fail(error, TRI_CANNOT_WRITE, NULL, 0, "cannot park %.1f GB of the mesh in the scratch directory: %s",
-                    1e-9 * (double)par_park_bytes(park), strerror(park->fault));
-}
-
-/* --- what leaves memory */
-
-/* Bytes of the process in memory; more than any bound where the system does not tell. */
-static double resident(void)
-{
-    unsigned long long all, here = 0;
-    FILE *file = fopen("/proc/self/statm", "r");
-    bool known = file && fscanf(file, "%llu %llu", &all, &here) == 2;
-    if (file)
-        fclose(file);
-    return known ? (double)here * (double)sysconf(_SC_PAGESIZE) : INFINITY;
-}
-
-/* Looks often enough that what is touched between two looks is small. */
-static void *watch(void *user)
+static bool allows(void *user, const struct tri_mesh *mesh, size_t bytes)
 {
     struct par_park *park = user;
-    const struct timespec pause = {0, LOOK_NANOSECONDS};
-    while (!atomic_load(&park->over)) {
-        if (resident() > 0.75 * (double)park->memory)
-            madvise(park->at, park->size, MADV_DONTNEED);
-        nanosleep(&pause, NULL);
-    }
-    return NULL;
+    look_at_others(park, mesh);
+    return (double)bytes + park->others + TO_COME * park->memory <= park->memory;
 }
 
-/* --- the file */
+/* --- files */
 
-static void lay_out(struct par_park *park, const struct tri_mesh *mesh)
-{
-    const size_t vertices = TRI_MAX_VERTICES, triangles = TRI_MAX_TRIANGLES;
-    const size_t size[PARTS] = {
-        [TRI_XY] = vertices * sizeof *mesh->xy,
-        [TRI_ON] = vertices * sizeof *mesh->on,
-        [TRI_MARKERS] = vertices * sizeof *mesh->vertex_markers,
-        [TRI_FEATURE] = vertices * sizeof *mesh->feature,
-        [TRI_ATTRIBUTES] = vertices * (size_t)mesh->n_attributes * sizeof *mesh->attributes,
-        [TRI_TRIANGLES] = triangles * sizeof *mesh->tri,
-        [TRI_SUBS] = triangles * sizeof *mesh->sub,
-        [OTHERS] = triangles * MOST_EXTRA,
-    };
-    for (int k = 0; k < PARTS; k++) {
-        park->part[k] = (struct part){park->size, rounded(size[k]), 0};
-        park->size += rounded(size[k]);
-    }
-}
-
-/* A file without a name. */
-static int open_file(const char *scratch)
+/* Without a name. */
+static int open_file(const char *folder)
 {
     const char name[] = "/ptriangle-XXXXXX";
-    char *path = malloc(strlen(scratch) + sizeof name);
+    char *path = malloc(strlen(folder) + sizeof name);
+    errno = ENOMEM;
     if (!path)
         return -1;
-    strcpy(path, scratch);
+    strcpy(path, folder);
     strcat(path, name);
     int file = mkstemp(path);
     if (file >= 0)
@@ -157,55 +112,257 @@ static int open_file(const char *scratch)
     return file;
 }
 
+static int64_t bytes_now(const struct par_park *park)
+{
+    int64_t sum = 0;
+    for (int k = 0; k < SHEETS; k++)
+        sum += (int64_t)park->sheet[k].size;
+    return sum;
+}
+
 /* Beyond a limit on files a signal would come. */
-static bool is_allowed(size_t size)
+static int check_limit(size_t size)
 {
     struct rlimit limit;
-    return getrlimit(RLIMIT_FSIZE, &limit) || limit.rlim_cur == RLIM_INFINITY || size <= limit.rlim_cur;
+    bool allowed = getrlimit(RLIMIT_FSIZE, &limit) || limit.rlim_cur == RLIM_INFINITY || size <= limit.rlim_cur;
+    return allowed ? 0 : EFBIG;
 }
 
-static bool map_file(struct par_park *park)
+/* Disk space. Returns errno. */
+static int extend_file(struct sheet *sheet, const char *folder, size_t size)
 {
-    if (!is_allowed(park->size))
-        errno = EFBIG;
-    else if (ftruncate(park->file, (off_t)park->size) == 0) {
-        void *at = mmap(NULL, park->size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_NORESERVE, park->file, 0);
-        park->at = at == MAP_FAILED ? NULL : at;
+    int fault;
+    if (sheet->file < 0)
+        sheet->file = open_file(folder);
+    if (sheet->file < 0)
+        return errno;
+    fault = check_limit(size);
+    while (!fault || fault == EINTR) {
+        fault = posix_fallocate(sheet->file, (off_t)sheet->size, (off_t)(size - sheet->size));
+        if (!fault)
+            break;
     }
-    return park->at;
+    return fault;
 }
 
-static enum tri_status set_up(struct par_park *park, struct tri_mesh *mesh, const char *scratch,
-                              struct tri_error *error)
+static int extend(struct sheet *sheet, const char *folder, size_t size)
 {
-    park->file = open_file(scratch);
-    if (park->file < 0 || !map_file(park))
-        return tri_fail(error, TRI_CANNOT_WRITE, scratch, 0, "cannot park a mesh in this directory: %s",
-                        strerror(errno));
-    park->storage = (struct tri_storage){reserve, extra, park};
+    int fault = extend_file(sheet, folder, size);
+    if (fault)
+        return fault;
+    void *at = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, sheet->file, 0);
+    if (at == MAP_FAILED)
+        return errno;
+    if (sheet->at)
+        munmap(sheet->at, sheet->size);
+    sheet->at = at;
+    sheet->size = size;
+    return 0;
+}
+
+static void *reserve_sheet(struct par_park *park, struct sheet *sheet, size_t bytes)
+{
+    const size_t wanted = (bytes + GRAIN - 1) / GRAIN * GRAIN;
+    pthread_mutex_lock(&park->lock);
+    const int fault = wanted > sheet->size ? extend(sheet, park->folder, wanted) : 0;
+    const size_t now = (size_t)bytes_now(park);
+    park->most = now > park->most ? now : park->most;
+    pthread_mutex_unlock(&park->lock);
+    if (!fault)
+        return sheet->at;
+    park->fault = fault;
+    park->wanted = now + (wanted - sheet->size);
+    return NULL;
+}
+
+static void drop_sheet(struct par_park *park, struct sheet *sheet)
+{
+    pthread_mutex_lock(&park->lock);
+    if (sheet->at)
+        munmap(sheet->at, sheet->size);
+    if (sheet->file >= 0)
+        close(sheet->file);
+    *sheet = (struct sheet){.file = -1};
+    pthread_mutex_unlock(&park->lock);
+}
+
+/* --- the storage */
+
+static void *reserve(void *user, enum tri_array array, size_t bytes)
+{
+    struct par_park *park = user;
+    return reserve_sheet(park, &park->sheet[array], bytes + 1);
+}
+
+static bool fill(void *user, enum tri_array array, const void *from, size_t bytes)
+{
+    struct par_park *park = user;
+    if (par_write_at(park->sheet[array].file, from, bytes, 0))
+        return true;
+    park->fault = errno ? errno : EIO;
+    park->wanted = (size_t)bytes_now(park);
+    return false;
+}
+
+static void *extra(void *user, size_t bytes)
+{
+    struct par_park *park = user;
+    for (int k = TRI_ARRAYS; k < SHEETS; k++)
+        if (!park->sheet[k].at) {
+            void *at = reserve_sheet(park, &park->sheet[k], bytes + 1);
+            if (!at)
+                drop_sheet(park, &park->sheet[k]);
+            return at;
+        }
+    return NULL;
+}
+
+static void extra_free(void *user, void *extra)
+{
+    struct par_park *park = user;
+    for (int k = TRI_ARRAYS; extra && k < SHEETS; k++)
+        if (park->sheet[k].at == extra)
+            drop_sheet(park, &park->sheet[k]);
+}
+
+int64_t par_park_bytes(const struct par_park *park) { return (int64_t)park->most; }
+
+enum tri_status par_park_status(const struct par_park *park, enum tri_status status, struct tri_error *error)
+{
+    if (status != TRI_NO_MEMORY || !park || !park->fault || park->fault == ENOMEM)
+        return status;
+    return tri_fail(error, TRI_CANNOT_WRITE, park->folder, 0,
+                    "cannot park %.3g MB there of a mesh that does not fit in memory: %s", 1e-6 * (double)park->wanted,
+                    strerror(park->fault));
+}
+
+/* --- what leaves memory again */
+
+static void unmap_pages(struct par_park *park)
+{
+    pthread_mutex_lock(&park->lock);
+    for (int k = 0; k < SHEETS; k++)
+        if (park->sheet[k].at)
+            madvise(park->sheet[k].at, park->sheet[k].size, MADV_DONTNEED);
+    pthread_mutex_unlock(&park->lock);
+}
+
+static void look(struct par_park *park)
+{
+    if (!atomic_load_explicit(&park->away, memory_order_relaxed))
+        return;
+    const struct resident now = resident();
+    const double ours = now.files - park->files, left = park->memory - (now.all - ours);
+    if (ours > TOUCHED * (left > 0 ? left : 0))
+        unmap_pages(park);
+}
+
+/* Whoever works on the mesh asks now and then whether to go on, and looks on that occasion. */
+static bool is_asked(void *user)
+{
+    struct par_park *park = user;
+    look(park);
+    return tri_stop_is_asked(park->outer);
+}
+
+struct looking {
+    struct par_park *park;
+    void (*task)(void *context, size_t index);
+    void *context;
+};
+
+static void look_and_do(void *context, size_t index)
+{
+    const struct looking *l = context;
+    look(l->park);
+    l->task(l->context, index);
+}
+
+static void run_looking(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
+{
+    struct par_park *park = self;
+    struct looking l = {park, task, context};
+    tri_execute(&park->inner, n_tasks, look_and_do, &l);
+}
+
+struct tri_executor par_park_executor(struct par_park *park, struct tri_executor inner)
+{
+    park->inner = inner;
+    return (struct tri_executor){run_looking, park};
+}
+
+/* For work that does not look itself. */
+static void *watch(void *user)
+{
+    struct par_park *park = user;
+    const struct timespec pause = {0, LOOK_NANOSECONDS};
+    while (!atomic_load(&park->over)) {
+        look(park);
+        nanosleep(&pause, NULL);
+    }
+    return NULL;
+}
+
+/* --- the move */
+
+/* Memory that was freed goes back to the system. */
+static void trim(void)
+{
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+}
+
+static enum tri_status leave(void *user, struct tri_mesh *mesh, struct tri_error *error)
+{
+    struct par_park *park = user;
+    assert(!mesh->storage);
+    if (!park->folder)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
+                        "the mesh, %.3g million triangles so far, outgrows the %.3g GB of memory that are allowed",
+                        1e-6 * mesh->n_triangles, 1e-9 * park->memory);
+    for (int k = 0; k < TRI_ARRAYS; k++) /* of a mesh that was dropped */
+        drop_sheet(park, &park->sheet[k]);
     enum tri_status status = tri_mesh_move(mesh, &park->storage, error);
-    park->watched = !status && par_thread_start(&park->watch, watch, park);
+    trim();
+    atomic_store(&park->away, true);
+    park->watched = park->watched || (!status && par_thread_start(&park->watch, watch, park));
     if (!status && !park->watched)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no thread can be made to watch over memory");
     return par_park_status(park, status, error);
 }
 
-enum tri_status par_park_open(struct par_park **park, struct tri_mesh *mesh, const char *scratch, int64_t memory,
+enum tri_status par_park_expect(struct par_park *park, struct tri_mesh *mesh, size_t bytes, struct tri_error *error)
+{
+    if (!park || mesh->storage || allows(park, mesh, tri_mesh_bytes_used(mesh) + bytes))
+        return TRI_OK;
+    return leave(park, mesh, error);
+}
+
+/* --- beginning and end */
+
+enum tri_status par_park_open(struct par_park **park, struct tri_mesh *mesh, const char *folder, int64_t memory,
                               struct tri_error *error)
 {
     struct par_park *p = calloc(1, sizeof *p);
     *park = NULL;
-    if (!p)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a parked mesh");
-    p->file = -1;
-    p->memory = memory;
-    lay_out(p, mesh);
-    enum tri_status status = set_up(p, mesh, scratch, error);
-    if (status)
-        par_park_close(p, mesh);
-    else
-        *park = p;
-    return status;
+    if (!p || pthread_mutex_init(&p->lock, NULL) != 0) {
+        free(p);
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a mesh that may be parked");
+    }
+    p->folder = folder;
+    p->memory = (double)memory;
+    p->files = resident().files;
+    p->storage = (struct tri_storage){reserve, fill, extra, extra_free, p};
+    p->bound = (struct tri_bound){allows, leave, p};
+    for (int k = 0; k < SHEETS; k++)
+        p->sheet[k].file = -1;
+    p->outer = mesh->stop;
+    p->stop = (struct tri_stop){is_asked, p};
+    mesh->stop = &p->stop;
+    mesh->bound = &p->bound;
+    *park = p;
+    return TRI_OK;
 }
 
 void par_park_close(struct par_park *park, struct tri_mesh *mesh)
@@ -214,12 +371,13 @@ void par_park_close(struct par_park *park, struct tri_mesh *mesh)
         return;
     if (mesh->storage == &park->storage)
         tri_mesh_drop(mesh);
+    mesh->bound = NULL;
+    mesh->stop = park->outer;
     atomic_store(&park->over, true);
     if (park->watched)
         pthread_join(park->watch, NULL);
-    if (park->at)
-        munmap(park->at, park->size);
-    if (park->file >= 0)
-        close(park->file);
+    for (int k = 0; k < SHEETS; k++)
+        drop_sheet(park, &park->sheet[k]);
+    pthread_mutex_destroy(&park->lock);
     free(park);
 }

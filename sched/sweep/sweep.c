@@ -31,7 +31,9 @@ static enum tri_status finish_column(struct par_state *state, struct par_tiles *
 {
     double began = tri_seconds();
     *left = is_left_behind(state, par_fence(tiles->partition, column, 0).x_max);
-    enum tri_status status = *left ? TRI_OK : par_tiles_column(tiles, column, &state->spare, error);
+    enum tri_status status = *left ? TRI_OK : par_park_expect(state->park, state->mesh, par_tiles_bytes(tiles), error);
+    if (!status && !*left)
+        status = par_tiles_column(tiles, column, &state->spare, error);
     state->gone = tiles->n_triangles;
     state->report->seconds_number += tri_seconds() - began;
     return status;

@@ -21,7 +21,7 @@
 
 struct par_tiles {
     struct tri_mesh *mesh;
-    const struct par_partition *partition; /* NULL: the whole mesh is one tile */
+    const struct par_partition *partition; /* NULL: the mesh has no tiles, and goes in pieces */
     const struct tri_executor *executor;
     const struct tri_sink *sink;
     const struct tri_pslg *figure; /* its points are handed out as they came, bit by bit; NULL: the mesh's are */
@@ -54,6 +54,12 @@ enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct
 enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, struct par_room *spare,
                                  struct tri_error *error);
 
+/* What par_tiles_column takes beside the mesh, to the order. */
+static inline size_t par_tiles_bytes(const struct par_tiles *tiles)
+{
+    return 40 * (size_t)tiles->mesh->n_triangles;
+}
+
 /* Room for what each vertex has here; nothing is known yet of those that come later. False: no memory. */
 bool par_tiles_reserve(struct par_tiles *tiles);
 
@@ -68,7 +74,8 @@ void par_tiles_forget(struct par_tiles *tiles, int32_t v);
 enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error);
 
 /* Hands out, from begin to end, a mesh in memory that has no free numbers: as it is, its tiles those of the partition
- * that it was numbered by, if it was (sched/sweep/numbering.h). Instead of all calls above. */
+ * that it was numbered by, if it was (sched/sweep/numbering.h); else in pieces, all vertices first. Instead of all
+ * calls above. */
 enum tri_status par_tiles_whole(struct par_tiles *tiles, struct tri_error *error);
 
 void par_tiles_free(struct par_tiles *tiles);
