@@ -31,8 +31,8 @@
  * SLOPE is about the grading of a mesh of 30 degrees. Without narrow corners as features one random figure in thirty
  * had triangles given up below 34 degrees, in and beside corners of a few degrees. SHRINK is 64 for bounds
  * that theory promises, and 16 beyond: where nothing runs away, one edge in a million is shorter than s / 16 for bounds
- * up to 34 degrees, and where something does it costs up to the square of SHRINK. (269 points on nested rings took at 34
- * degrees 168 times the triangles of 25 degrees with 64, and 47 times with 16.) */
+ * up to 34 degrees, and where something does it costs up to the square of SHRINK. (269 points on nested rings took at
+ * 34 degrees 168 times the triangles of 25 degrees with 64, and 47 times with 16.) */
 #include "triangle/feature_size.h"
 
 #include <assert.h>
