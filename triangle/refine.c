@@ -470,7 +470,7 @@ static bool at_limit(struct tri_refiner *r)
     return r->report->hit_limit = true;
 }
 
-/* Beyond the usual angle edges must be eight times as long, so that afterwards there is room for better angles around
+/* Beyond the usual angle edges must be twice as long, so that afterwards there is room for better angles around
  * them. */
 static bool is_hopeless(const struct tri_refiner *r, int32_t triangle, const struct tri_shape *shape)
 {
@@ -478,7 +478,7 @@ static bool is_hopeless(const struct tri_refiner *r, int32_t triangle, const str
     int k = shape->shortest;
     if (tri_is_hopeless(r->mesh, triangle, shape))
         return true;
-    if (r->stage != BEYOND_STAGE || !tri_has_run_away(r->mesh, v[tri_next[k]], v[tri_prev[k]], shape->l[k] / 64))
+    if (r->stage != BEYOND_STAGE || !tri_has_run_away(r->mesh, v[tri_next[k]], v[tri_prev[k]], shape->l[k] / 4))
         return false;
     return r->report->hit_cap = true;
 }
