@@ -369,10 +369,11 @@ static struct run_hooks hooks_of(struct program *p)
                               .whole_mesh = whole_mesh(o), .threads = p->threads, .user = p,
                               .limits = {.seconds = o->time_limit, .write_partial = o->write_partial,
                                          .dry_run = o->dry_run, .memory = memory_of(o), .scratch = p->scratch,
-                                         .checkpoint = p->restart.wanted ? p->restart.checkpoint.directory : NULL}};
+                                         .checkpoint = o->resume ? o->resume : o->checkpoint}};
     for (int i = 0; i < o->n_exports; i++)
         add_further(&hooks.exports, o->exports[i]);
     hooks.exports_alone = o->n_exports + o->n_streams > 0 && !o->output;
+    hooks.n_streamed = o->n_streams;
     add_further(&hooks.further, o->report && !report_is_printed(o->report) ? o->report : NULL);
     add_further(&hooks.further, o->blocks);
     return hooks;

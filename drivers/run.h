@@ -84,6 +84,7 @@ struct run_hooks {
     int threads;                    /* to refine with, for estimates */
     struct file_names exports;      /* the mesh in other formats .. */
     bool exports_alone;             /* .. and in no others */
+    int n_streamed;                 /* HDF5 files, which refine or write makes */
     struct file_names further;      /* files that are written beside the mesh .. */
     /* .. by this, into the guarded set of files (drivers/interrupt.h) that holds those of the mesh; NULL: none. */
     enum tri_status (*write)(void *user, const struct run *run, struct tri_output_set *set, struct tri_error *error);

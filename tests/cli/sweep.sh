@@ -61,8 +61,10 @@ for words in "-e" "-n" "-v" "-o2" "-j" "--blocks b" "--write-partial" "--output 
     complains 'where it must be in memory as a whole, as for |less would do but for '
     wrote
 done
-program 0 -pqa square.poly --max-area 1e-9 --output x.h5 --memory 4G --dry-run
+program 0 -pqa square.poly --max-area 1e-7 --output x.h5 --memory 500M --checkpoint x --dry-run
 matches '^  Way: swept'
+matches '^  Disk: [1-9][0-9]{2} MB'
+matches '^  Disk for the checkpoint: [1-9][0-9]{3} MB'
 wrote
 
 # --- a folder for what is parked is tried before the work
