@@ -165,14 +165,15 @@ static enum tri_status help_others(struct program *p, struct run *run, struct tr
 }
 
 /* What did not fit in memory, or could not be swept. */
-static void tell_of_parking(const struct program *p, bool quiet)
+static void tell_of_parking(const struct program *p, bool quiet, enum tri_status status)
 {
     const struct console console = {.program = PROGRAM, .quiet = quiet};
     if (p->schedule.parked > 0)
         console_say(&console, "%s parked: %.3g GB in %s.\n",
                     p->schedule.way == PAR_SWEPT ? "What did not fit in memory was" : "The mesh was not swept, and was",
                     1e-9 * (double)p->schedule.parked, p->scratch);
-    if (p->schedule.way != PAR_SWEPT && p->restart.wanted)
+    const bool stopped = status == TRI_STOPPED; /* another failure is told in one line */
+    if (p->schedule.way != PAR_SWEPT && p->restart.wanted && (!status || stopped))
         fprintf(stderr, "%s: there was no checkpoint.\n", PROGRAM);
 }
 
@@ -191,7 +192,7 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
                                    : refine_into(p, run, &streams, mesh, quality, error);
     streams_close(&p->streams);
     tri_mesh_free(mesh); /* what is left of it is no mesh */
-    tell_of_parking(p, run->arguments->switches.quiet);
+    tell_of_parking(p, run->arguments->switches.quiet, status);
     if (!status)
         count_streamed(&run->counts, &before, unused, &p->streams);
     return status;

@@ -1,20 +1,22 @@
 #!/bin/sh
 # Real ranks: the client tests/client/ranks.c under every MPI of this machine, with more ranks than cores, on inputs of
 # several kinds. A hang is a failure: each run has a time limit.
-# Usage: run_mpi.sh SOURCE_ROOT BUILD_DIR WORK_DIR "RANKS..." [COMPILER_OPTIONS...]; one number of ranks: one input
+# Usage: run_mpi.sh SOURCE_ROOT BUILD_DIR WORK_DIR C_COMPILER "RANKS..." [OPTIONS...]; one number of ranks: one input
 set -u
 root=$1
 build=$2
 work=$3
-counts=$4
-shift 4
+compiler=$4
+counts=$5
+shift 5
 mkdir -p "$work"
 failed=0
 found=0
 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMP_NUM_THREADS=1
 OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_btl=self,vader,tcp OMPI_MCA_mpi_yield_when_idle=1
 export OMPI_ALLOW_RUN_AS_ROOT OMPI_ALLOW_RUN_AS_ROOT_CONFIRM OMP_NUM_THREADS
-export OMPI_MCA_rmaps_base_oversubscribe OMPI_MCA_btl OMPI_MCA_mpi_yield_when_idle
+OMPI_CC=$compiler MPICH_CC=$compiler # that of the libraries: it knows their OpenMP
+export OMPI_CC MPICH_CC OMPI_MCA_rmaps_base_oversubscribe OMPI_MCA_btl OMPI_MCA_mpi_yield_when_idle
 
 # try WANTED_CODE RANKS FILE ANGLE AREA
 try() {

@@ -127,6 +127,9 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
 enum tri_status par_hand_out(struct par_state *state, struct tri_error *error)
 {
     struct par_tiles tiles = par_tiles_of(state, state->numbered ? &state->cells : NULL);
+    enum tri_status status = par_park_expect(state->park, state->mesh, par_tiles_whole_bytes(&tiles), error);
+    if (status)
+        return status;
     if (state->options->carrier)
         return par_whole_on_ranks(state->options->carrier, &tiles, error);
     return par_tiles_whole(&tiles, error);

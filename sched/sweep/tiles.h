@@ -80,6 +80,13 @@ enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error);
  * calls above. */
 enum tri_status par_tiles_whole(struct par_tiles *tiles, struct tri_error *error);
 
+/* What par_tiles_whole takes beside the mesh, to the order: the copy of a tile, and what a sink makes of it. */
+static inline size_t par_tiles_whole_bytes(const struct par_tiles *tiles)
+{
+    const size_t n = (size_t)tiles->mesh->n_triangles, most = (size_t)1 << 16;
+    return 200 * (n < most ? n : most);
+}
+
 void par_tiles_free(struct par_tiles *tiles);
 
 #endif
