@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "sched/cells.h"
 #include "triangle/census.h"
 #include "triangle/clock.h"
 
@@ -16,8 +17,6 @@ static const double LEAST_BYTES = 44, LOOP_BYTES = 52, SCHEDULE_BYTES = 74, NUMB
 static const double BUFFERS = 1.5e7, PAGES = 4.8e7, COLUMNS_MESH = 290, COLUMNS_WORK = 115, COLUMNS_STATE = 520;
 /* The same a triangle, of a mesh that stays as a whole; and of the tiles in a checkpoint. */
 static const double PARKED_WORK = 6, PARKED_BYTES = 90, TILES_BYTES = 26;
-/* Of the schedule: triangles in a cell (sched/schedule.c). */
-static const double CELLS = 128, SMALLEST_CELL = 8192, LARGEST_CELL = 131072;
 /* Text that one thread writes in a second where a triangle takes it the usual time. */
 static const double TEXT_BYTES = 6.5e8, USUAL_SECONDS = 1.25e-7;
 
@@ -122,7 +121,7 @@ static double seconds_of(const struct run *run, double triangles, double disk)
 /* The root that what a sweep holds grows with: so many triangles are in a column, to the order. */
 static double column_of(double triangles)
 {
-    return sqrt(triangles * fmin(fmax(triangles / CELLS, SMALLEST_CELL), LARGEST_CELL));
+    return sqrt(triangles * par_triangles_in_cell(triangles));
 }
 
 /* As schedules go: above TRI_EASY_ANGLE there are two, and a limit on new points makes it one call. */

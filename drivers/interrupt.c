@@ -9,6 +9,7 @@
  *     LATE, HELD          -- a request or the clock --> DUE; the handler returns
  *     LATE, not HELD      -- a request or the clock --> ENDING, by the handler
  *     HELD                -- the set is changed -->     not HELD, or, if DUE, ENDING, by the program
+ *     HELD                -- all have their names -->   DONE: from then on no request ends the program
  *
  * So a handler never waits, no request is lost, and one alone ends the program, while nobody changes the set. Handlers
  * may run on any thread.
@@ -38,6 +39,7 @@ enum {
     DUE = 8,
     GOING_ON = 16, /* what is left is to be done, though somebody has asked */
     TOLD = 32,     /* the program has said why it ends */
+    DONE = 64,     /* all files have their names: the program ends by itself, with success */
     WHO = 256      /* who has asked, times this */
 };
 enum { NOBODY = 0, TIME_UP = 255 }; /* who, else the number of a signal */
@@ -127,9 +129,9 @@ static void end_when_free(void)
 {
     unsigned before = atomic_load(&state), after;
     do
-        after = before | (before & HELD ? DUE : ENDING);
+        after = before | (before & DONE ? 0 : before & HELD ? DUE : ENDING);
     while (!atomic_compare_exchange_weak(&state, &before, after));
-    if (!(before & (HELD | ENDING)))
+    if (!(before & (HELD | ENDING | DONE)))
         end_now();
 }
 
@@ -191,13 +193,15 @@ static void hold(void)
         pause(); /* another thread's handler is ending the program */
 }
 
+static bool is_due(unsigned now) { return (now & (DUE | DONE)) == DUE; }
+
 static void release(void)
 {
     unsigned before = atomic_load(&state), after;
     do
-        after = (before & ~(unsigned)HELD) | (before & DUE ? ENDING : 0);
+        after = (before & ~(unsigned)HELD) | (is_due(before) ? ENDING : 0);
     while (!atomic_compare_exchange_weak(&state, &before, after));
-    if (before & DUE)
+    if (is_due(before))
         end_now();
 }
 
@@ -310,6 +314,8 @@ enum tri_status interrupt_commit(struct tri_output_set *set, struct tri_error *e
     hold();
     enum tri_status status = tri_outputs_commit(set, error);
     publish(set);
+    if (!status)
+        set_unless(DONE, 0);
     release();
     return status;
 }

@@ -37,7 +37,7 @@ int interrupt_code(void);
 /* What has asked: "SIGTERM", "the time limit"; "another task", where nobody has asked this one. */
 const char *interrupt_cause(void);
 
-/* Begins an empty set and guards it; it lives as long as the program. */
+/* Begins an empty set and guards it; its names are known to the handlers until it is committed or dropped. */
 void interrupt_begin(struct tri_output_set *set);
 
 /* tri_output_open in the guarded set, while handlers wait. */

@@ -113,7 +113,7 @@ static enum tri_status try_all(struct tri_output_set *set, const struct mesh_fil
 enum tri_status mesh_files_check(const struct mesh_files *files, const struct file_names *further,
                                  const struct file_names *read, struct tri_error *error)
 {
-    static struct tri_output_set set; /* outlives this call, since signals look at it */
+    static struct tri_output_set set; /* large; handlers know its names until interrupt_drop */
     interrupt_begin(&set);
     set.trial = true;
     enum tri_status status = try_all(&set, files, further, read, error);

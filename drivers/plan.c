@@ -133,7 +133,8 @@ static void list_places(struct disk_place places[DISK_PLACES], const struct run 
                         double left)
 {
     const struct run_limits *limits = &run->hooks->limits;
-    places[0] = (struct disk_place){"the files", run->arguments->output, n->files};
+    places[0] = (struct disk_place){"the files", run->hooks->first_file ? run->hooks->first_file
+                                                                       : run->arguments->output, n->files};
     places[1] = (struct disk_place){"what does not fit in memory", limits->scratch,
                                     run->plan.swept && n->held > left ? n->away : 0};
     places[2] = (struct disk_place){"the checkpoint", limits->checkpoint, run->plan.swept ? n->checkpoint : 0};

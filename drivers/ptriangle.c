@@ -374,6 +374,7 @@ static struct run_hooks hooks_of(struct program *p)
     for (int i = 0; i < o->n_exports; i++)
         add_further(&hooks.exports, o->exports[i]);
     hooks.exports_alone = o->n_exports + o->n_streams > 0 && !o->output;
+    hooks.first_file = o->n_streams > 0 ? o->streams[0] : hooks.exports_alone ? o->exports[0] : NULL;
     hooks.n_streamed = o->n_streams;
     add_further(&hooks.further, o->report && !report_is_printed(o->report) ? o->report : NULL);
     add_further(&hooks.further, o->blocks);
@@ -427,6 +428,8 @@ static int carry_out(struct program *p, const struct arguments *arguments, struc
     }
     if (p->launch.carrier && (p->options.checkpoint || p->options.resume))
         tri_fail(error, TRI_BAD_INPUT, NULL, 0, "several tasks keep no checkpoints");
+    else if (p->launch.carrier && memory_of(&p->options) > 0)
+        tri_fail(error, TRI_BAD_INPUT, NULL, 0, "several tasks keep no bound on memory: leave out --memory");
     else if (arguments->file)
         restart_open(&p->restart, &p->options, error);
     if (error->status) {

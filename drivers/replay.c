@@ -48,7 +48,7 @@ static void take_blocks(struct player *p, const struct par_report *report)
 {
     for (int32_t i = 0; i < report->n_blocks; i++) {
         const struct par_block_report *b = &report->blocks[i];
-        if (b->schedule == 0 && b->round == 0 && b->block < report->columns * report->rows)
+        if (b->schedule == report->schedule && b->round == 0 && b->block < report->columns * report->rows)
             p->measured[b->block] += b->seconds;
         else
             p->later += b->seconds;

@@ -40,7 +40,7 @@ struct replay { /* seconds; the first five add up to the total */
  * triangles: it goes with the sides of blocks. */
 struct replay_how replay_usual(int n_ranks, int threads, int times, double cell);
 
-/* Blocks of the first round of the report's first schedule are replayed; what comes after counts as done by one rank.
+/* Blocks of the first round of the report's own schedule are replayed; what comes after counts as done by one rank.
  * False: no memory, or no schedule. O(blocks times^2). */
 bool replay_on_ranks(const struct par_report *report, const struct replay_how *how, struct replay *replay);
 

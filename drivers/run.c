@@ -36,7 +36,7 @@ struct runner {
     struct tri_error *error;
 };
 
-static struct tri_output_set outputs; /* signals look at it */
+static struct tri_output_set outputs; /* its temporary names are published to the handlers (interrupt.c) */
 
 /* Ends a stage; the next one begins. */
 static void end_stage(struct runner *r, enum run_stage stage)

@@ -84,6 +84,7 @@ struct run_hooks {
     int threads;                    /* to refine with, for estimates */
     struct file_names exports;      /* the mesh in other formats .. */
     bool exports_alone;             /* .. and in no others */
+    const char *first_file;         /* of those that take most of the disk; NULL: they have the arguments' base name */
     int n_streamed;                 /* HDF5 files, which refine or write makes */
     struct file_names further;      /* files that are written beside the mesh .. */
     /* .. by this, into the guarded set of files (drivers/interrupt.h) that holds those of the mesh; NULL: none. */

@@ -7,6 +7,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "sched/cells.h"
 #include "sched/phase.h"
 #include "sched/ranks/ranks.h"
 #include "sched/sweep/numbering.h"
@@ -17,10 +18,9 @@
 #include "triangle/clock.h"
 #include "triangle/estimate.h"
 
-/* Cells hold one in CELLS of the final triangles, within limits: small ones keep many threads busy, large ones make
- * fewer seams. Coarse triangles a cell has after pre-refinement: enough for seams to be narrow, few enough for
- * pre-refinement to take a few thousandths of the time. (docs/performance.md) */
-static const double CELLS = 128, SMALLEST_CELL = 8192, LARGEST_CELL = 65536, COARSE_PER_CELL = 64;
+/* Coarse triangles that a cell has after pre-refinement: enough for seams to be narrow, few enough for pre-refinement
+ * to take a few thousandths of the time. (docs/performance.md) */
+static const double COARSE_PER_CELL = 64;
 
 /* Of the fewest triangles that are worth a schedule, a share that one call makes at once to see whether they come. */
 static const double A_LITTLE = 0.25;
@@ -245,7 +245,7 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
             break;
         par_partition_coarsen(partition);
     }
-    state->report->deferred += state->report->total.fenced; /* run_schedule clears it in the total */
+    state->report->deferred += state->report->total.fenced; /* finish_schedule clears it in the total */
     return status;
 }
 
@@ -376,6 +376,7 @@ static enum tri_status report_schedule(struct par_state *state, const struct par
     struct par_report *report = state->report;
     if (report->partition.x)
         return TRI_OK;
+    report->schedule = state->n_schedules;
     report->columns = partition->n_columns;
     report->rows = partition->n_rows;
     report->radius_measured = state->radius * state->mesh->unit;
@@ -409,10 +410,7 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
 
 static double cell_size(const struct par_state *state, double estimate)
 {
-    double cell = estimate / CELLS;
-    if (state->options->cell_triangles > 0)
-        return state->options->cell_triangles;
-    return cell < SMALLEST_CELL ? SMALLEST_CELL : cell > LARGEST_CELL ? LARGEST_CELL : cell;
+    return state->options->cell_triangles > 0 ? state->options->cell_triangles : par_triangles_in_cell(estimate);
 }
 
 /* The schedule on one level, after a pre-refinement. */

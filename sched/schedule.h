@@ -66,7 +66,8 @@ enum par_way { /* how a mesh was carried through */
 };
 
 struct par_block_report {
-    int32_t schedule; /* which of the meshes that the phases refined, in the order in which that was begun: from 0 */
+    int32_t schedule; /* which of the meshes that the phases refined, in the order in which that was begun: from 0;
+                         pre-refinement that is itself a schedule comes before what it is for */
     int32_t round, phase, block;
     int64_t worklist, inserted, deferred;
     double seconds;
@@ -77,6 +78,7 @@ struct par_report {
     int threads;
     int rounds;                   /* of four phases, of all levels */
     int levels;                   /* meshes that the phases refined: this one, its pre-refinement, ..; 0: none */
+    int32_t schedule;             /* the first of the whole mesh: its number in struct par_block_report */
     int32_t columns, rows;        /* of blocks in the first round; this and what follows of the first phase is told of
                                      the first schedule of the whole mesh, where sizes and angles have one each */
     struct par_partition partition; /* blocks of the first round, in the mesh's units; none where the call was
@@ -103,8 +105,8 @@ struct par_report {
 struct par_options par_defaults(void);
 
 /* Refines as tri_refine does, with several threads. Where the options do not allow a schedule (max_steiner; worklist,
- * gate, fence, left or more_room of the caller's; a size test that must not run in parallel) or the mesh is small it
- * is one sequential call. A size test is also asked about triangles that will never be, smaller and larger ones, to
+ * gate, fence, deferred or more_room of the caller's; a size test that must not run in parallel) or the mesh is small
+ * it is one sequential call. A size test is also asked about triangles that will never be, smaller and larger ones, to
  * find out how much work there is where. In a child that was forked after a call there is one thread. What an angle
  * bound above TRI_USUAL_ANGLE asks for beyond that is one sequential call, too. Vertices that are there keep their ids;
  * unless by_block, those of triangles and subsegments may change. Safe to call from several threads on different

@@ -73,7 +73,6 @@ tested_by() {
     sched/sweep/numbering.c) echo numbering ;;
     sched/sweep/queue.c) echo queue ;;
     sched/threads.c | sched/sweep/*) echo schedule ;;
-    sched/ranks/fragment.c) echo fragment ;;
     sched/ranks/*) echo ranks ;;
     *) basename "${1%.*}" ;;
     esac

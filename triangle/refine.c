@@ -766,16 +766,17 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
 
 enum tri_status tri_refiner_run(struct tri_refiner *r, struct tri_error *error)
 {
-    struct tri_error own;
-    r->error = error ? error : &own;
-    r->error->status = TRI_OK;
+    struct tri_error own = {.status = TRI_OK}; /* the caller's stays as it is where nothing fails */
+    r->error = &own;
     if (refine_in_stages(r)) {
         assert(!r->in_hand && r->n_encroached == 0);
         return TRI_OK;
     }
-    if (r->error->status == TRI_OK)
-        tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "out of memory while refining");
-    return r->error->status;
+    if (own.status == TRI_OK)
+        tri_fail(&own, TRI_NO_MEMORY, NULL, 0, "out of memory while refining");
+    if (error)
+        *error = own;
+    return own.status;
 }
 
 void tri_refiner_free(struct tri_refiner *r)
