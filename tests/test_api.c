@@ -12,6 +12,7 @@
 #include "ptriangle/check.h"
 #include "ptriangle/files.h"
 #include "ptriangle/par.h"
+#include "triangle/feature_size.h"
 
 /* A square with a square hole in it, two regions on either side of a wall, attributes, markers. */
 static const double points[][2] = {{0, 0}, {4, 0}, {4, 3}, {0, 3}, {1, 1}, {2, 1}, {2, 2}, {1, 2}, {3, 0}, {3, 3}};
@@ -274,6 +275,7 @@ static void test_edge_length(void **state)
     settings.edge_length = length_at;
     settings.edge_length_user = &asked;
     struct tri_mesh *mesh = mesh_of(&figure, &settings);
+    assert_true(mesh->limits.shrink == tri_shrink(30)); /* as the programs have it */
     struct tri_ints triangles = tri_mesh_triangles(mesh);
     struct tri_reals xy = tri_mesh_points(mesh);
     double largest[4] = {0};

@@ -50,7 +50,7 @@ struct tri_refiner {
     struct tri_mesh *mesh;
     const struct tri_refine_options *options;
     struct tri_refine_report *report;
-    struct tri_error *error;
+    struct tri_error error; /* of the run that is on */
     struct tri_criterion criterion;
     int least_exponent; /* of mesh->limits.shortest2 */
     struct tri_cavity cavity;
@@ -200,10 +200,10 @@ static enum tri_status make_room(struct tri_refiner *r)
     if (vertices >= 1 && triangles >= 2 && m->sub_capacity > m->n_subs)
         return TRI_OK;
     if (r->options->more_room)
-        return r->error->status = r->options->more_room(r->options->more_room_user, m, r->error);
-    enum tri_status status = tri_mesh_reserve_vertices(m, 1, r->error);
-    status = status ? status : tri_mesh_reserve_triangles(m, 2, r->error);
-    return status ? status : tri_mesh_reserve_subs(m, 1, r->error);
+        return r->error.status = r->options->more_room(r->options->more_room_user, m, &r->error);
+    enum tri_status status = tri_mesh_reserve_vertices(m, 1, &r->error);
+    status = status ? status : tri_mesh_reserve_triangles(m, 2, &r->error);
+    return status ? status : tri_mesh_reserve_subs(m, 1, &r->error);
 }
 
 static int32_t add_vertex(struct tri_refiner *r, struct tri_point p, int32_t on, int32_t marker)
@@ -274,7 +274,7 @@ static enum outcome wait_for_more(struct tri_refiner *r, const tri_vertex_id edg
 {
     assert(r->options->part);
     r->options->part->beyond(r->options->part->user, edge);
-    r->error->status = TRI_NO_ROOM;
+    r->error.status = TRI_NO_ROOM;
     return FAILED;
 }
 
@@ -505,7 +505,7 @@ static bool is_hopeless(const struct tri_refiner *r, int32_t triangle, const str
 /* Somebody asks for the end: between two points the mesh is in order. */
 static bool must_stop(struct tri_refiner *r)
 {
-    return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(r->error);
+    return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(&r->error);
 }
 
 /* Treats one bad triangle until it is gone, given up or deferred. */
@@ -766,17 +766,16 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
 
 enum tri_status tri_refiner_run(struct tri_refiner *r, struct tri_error *error)
 {
-    struct tri_error own = {.status = TRI_OK}; /* the caller's stays as it is where nothing fails */
-    r->error = &own;
+    r->error = (struct tri_error){.status = TRI_OK}; /* the caller's stays as it is where nothing fails */
     if (refine_in_stages(r)) {
         assert(!r->in_hand && r->n_encroached == 0);
         return TRI_OK;
     }
-    if (own.status == TRI_OK)
-        tri_fail(&own, TRI_NO_MEMORY, NULL, 0, "out of memory while refining");
+    if (r->error.status == TRI_OK)
+        tri_fail(&r->error, TRI_NO_MEMORY, NULL, 0, "out of memory while refining");
     if (error)
-        *error = own;
-    return own.status;
+        *error = r->error;
+    return r->error.status;
 }
 
 void tri_refiner_free(struct tri_refiner *r)

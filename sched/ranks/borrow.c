@@ -264,10 +264,11 @@ static bool keep_own_entries(struct par_ranks *r)
     bool *keep = malloc((size_t)r->state->worklist.n + 1);
     for (int32_t i = 0; keep && i < r->state->worklist.n; i++)
         keep[i] = par_has_own(r, r->state->worklist.item[i]);
-    if (keep)
-        par_worklist_keep(r->state, keep);
+    if (!keep)
+        return false;
+    par_worklist_keep(r->state, keep);
     free(keep);
-    return keep;
+    return true;
 }
 
 enum tri_status par_keep_own(struct par_ranks *r, struct tri_error *error)

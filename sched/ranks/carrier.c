@@ -63,18 +63,21 @@ static int first_to_fail(struct par_carrier *carrier, enum tri_status status, in
     return -1;
 }
 
-/* Everybody's error becomes that of one rank. */
-static enum tri_status share_error(struct par_carrier *carrier, int from, struct tri_error *error)
+/* Everybody's error becomes that of one rank. Word by word: no memory may be left, and whoever stayed away would be
+ * waited for. */
+static void share_error(struct par_carrier *carrier, int from, int64_t *all, struct tri_error *error)
 {
     enum { WORDS = sizeof(struct tri_error) / sizeof(int64_t) + 1 };
-    int64_t mine[WORDS] = {0}, *all = malloc((size_t)carrier->n_ranks * sizeof mine);
+    int64_t word[WORDS] = {0};
     struct tri_error own = {0};
     error = error ? error : &own;
-    memcpy(mine, error, sizeof *error);
-    if (all && ask_all(carrier, mine, WORDS, all))
-        memcpy(error, all + (size_t)from * WORDS, sizeof *error);
-    free(all);
-    return error->status;
+    memcpy(word, error, sizeof *error);
+    for (int k = 0; k < WORDS; k++) {
+        if (!ask_all(carrier, &word[k], 1, all))
+            return;
+        word[k] = all[from];
+    }
+    memcpy(error, word, sizeof *error);
 }
 
 enum tri_status par_agree(struct par_carrier *carrier, enum tri_status status, struct tri_error *error)
@@ -87,16 +90,14 @@ enum tri_status par_agree(struct par_carrier *carrier, enum tri_status status, s
         return out_of_touch(carrier, error);
     int from = first_to_fail(carrier, status, all);
     enum tri_status agreed = from >= 0 ? (enum tri_status)all[from] : TRI_OK;
-    if (all != few)
-        free(all);
-    if (from == -2)
-        return out_of_touch(carrier, error);
     if (agreed) {
-        share_error(carrier, from, error);
+        share_error(carrier, from, all, error);
         carrier->ended = true;
         carrier->status = agreed;
     }
-    return agreed;
+    if (all != few)
+        free(all);
+    return from == -2 ? out_of_touch(carrier, error) : agreed;
 }
 
 static void free_all(struct par_bytes *bytes, int n)

@@ -64,12 +64,12 @@ static inline size_t par_tiles_bytes(const struct par_tiles *tiles)
 bool par_tiles_reserve(struct par_tiles *tiles);
 
 /* The same in two steps, in each of which columns come from left to right. Number: its vertices, from
- * tiles->n_vertices on; ids that are free have been marked (par_room_mark), and *column is to be freed in any case.
+ * tiles->n_vertices on; ids that are free have been marked (par_room_mark), and *numbered is to be freed in any case.
  * Hand out: by then all corners of its triangles have their numbers, or are vertices of later tiles. */
 struct par_column;
-enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t number, struct par_column **column,
+enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct par_column **numbered,
                                  struct tri_error *error);
-enum tri_status par_tiles_hand_out(struct par_column *column, struct par_room *spare, struct tri_error *error);
+enum tri_status par_tiles_hand_out(struct par_column *numbered, struct par_room *spare, struct tri_error *error);
 void par_column_free(struct par_column *column);
 
 /* Tells the sink that all columns have had their turn. */
