@@ -1,12 +1,12 @@
 #!/bin/sh
 # Runs the fast tests in a build that counts lines (preset coverage), prints how many lines of triangle/ and sched/ they
 # reach, file by file, and fails where that is below 95% of all or 80% of a file. Needs gcovr (Debian: gcovr; PyPI: gcovr).
-# Usage: tools/coverage.sh [CTEST_OPTION...]     default: -L fast
+# Usage: tools/coverage.sh [CTEST_OPTION...]     default: -L 'fast|ranks'
 set -eu
 cd "$(dirname "$0")/.."
 folder=${PTRIANGLE_BUILD:-build}/coverage
 least=80 # per cent of a file, whose rest is failing reads and writes mostly; of all of them 95
-[ $# -gt 0 ] || set -- -L fast
+[ $# -gt 0 ] || set -- -L 'fast|ranks'
 command -v gcovr >/dev/null || {
     echo "coverage: gcovr is missing (Debian: apt-get install gcovr; or pip install gcovr)" >&2
     exit 2
