@@ -334,9 +334,12 @@ static enum tri_status leave(void *user, struct tri_mesh *mesh, struct tri_error
 
 enum tri_status par_park_expect(struct par_park *park, struct tri_mesh *mesh, size_t bytes, struct tri_error *error)
 {
-    if (!park || mesh->storage || allows(park, mesh, tri_mesh_bytes_used(mesh) + bytes))
+    const size_t all = tri_mesh_bytes_used(mesh) + bytes;
+    if (!park || mesh->storage || allows(park, mesh, all))
         return TRI_OK;
-    return leave(park, mesh, error);
+    trim(); /* what was used for the same before, and is free now, is not counted twice */
+    park->others = 0;
+    return allows(park, mesh, all) ? TRI_OK : leave(park, mesh, error);
 }
 
 /* --- beginning and end */

@@ -57,7 +57,7 @@ enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, struct
 /* What par_tiles_column takes beside the mesh, to the order. */
 static inline size_t par_tiles_bytes(const struct par_tiles *tiles)
 {
-    return 40 * (size_t)tiles->mesh->n_triangles;
+    return 20 * (size_t)tiles->mesh->n_triangles;
 }
 
 /* Room for what each vertex has here; nothing is known yet of those that come later. False: no memory. */
