@@ -1,8 +1,8 @@
 /* One file for each array, mapped as far as it has disk space.
  *
  * INVARIANT: arrays in memory take, with all else that the process has there, no more than the bound when they begin to
- * grow. All else is the most that has been seen beside the arrays in use, and a share of the bound for what is to come
- * before they grow again. */
+ * grow. All else is the most that has been seen beside the arrays in use since memory was last trimmed, and a share of
+ * the bound for what is to come before they grow again. */
 #define _DEFAULT_SOURCE /* madvise, malloc_trim */
 
 #include "sched/sweep/park.h"
@@ -42,7 +42,7 @@ struct sheet {
 
 struct par_park {
     const char *folder;         /* NULL: what does not fit is an error */
-    double memory, others;      /* the bound; the most seen in memory beside the arrays */
+    double memory, others;      /* the bound; the most seen in memory beside the arrays, since it was trimmed */
     double files;               /* bytes of pages of files to begin with: libraries */
     struct sheet sheet[SHEETS]; /* arrays, then extras; changed under the lock */
     struct tri_storage storage;
