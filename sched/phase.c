@@ -20,8 +20,7 @@ struct task {
     int32_t expected;       /* triangles, to the order */
     struct tri_fence fence, active; /* the second in the caller's coordinates */
     bool has_margin;
-    struct par_room room;
-    struct tri_mesh view;
+    struct par_view view;
     struct tri_owners owners;
     struct tri_refine_options options;
     struct tri_refine_report report;
@@ -224,8 +223,8 @@ static void set_up(struct phase *p, struct task *task)
     task->options.n_worklist = task->n_worklist;
     task->options.deferred = leave_triangle;
     task->options.deferred_user = task;
-    task->options.more_room = par_more_room;
-    task->options.more_room_user = &task->room;
+    task->options.more_room = par_view_more_room;
+    task->options.more_room_user = &task->view;
 }
 
 /* Room for a task that is full. A pause costs what the block had in the cache, and whoever waits with it the time of
@@ -252,7 +251,7 @@ static enum tri_status deal_room(struct phase *p, bool first, struct tri_error *
             more = p->state->options->tight_room;
         task->pauses += !first;
         p->state->report->pauses += !first;
-        status = par_room_extend(&task->room, &p->state->spare, p->state->mesh, more, error);
+        status = par_room_extend(&task->view.room, &p->state->spare, p->state->mesh, more, error);
     }
     return status;
 }
@@ -300,14 +299,14 @@ static void run_task(struct phase *p, struct task *task)
     assert(task->pausing);
     task->owners = (struct tri_owners){p->mark, task->block + 1};
     task->options.owners = p->mark ? &task->owners : NULL;
-    par_room_enter(&task->room, &task->view, p->state->mesh);
+    par_view_begin(&task->view, p->state->mesh);
     task->asked.n = 0;
     task->status = TRI_OK;
     if (!task->refiner)
-        task->status = tri_refiner_new(&task->refiner, &task->view, &task->options, &task->report, &task->error);
+        task->status = tri_refiner_new(&task->refiner, &task->view.mesh, &task->options, &task->report, &task->error);
     if (!task->status)
         task->status = tri_refiner_run(task->refiner, &task->error);
-    par_room_leave(&task->room, &task->view);
+    par_view_end(&task->view);
     task->pausing = task->status == TRI_NO_ROOM;
     if (!task->pausing) {
         tri_refiner_free(task->refiner);
@@ -511,7 +510,7 @@ static enum tri_status collect(struct phase *p, struct tri_error *error)
         }
         par_add_up(&p->state->report->total, &task->report);
         memory = memory && report_block(p, task);
-        par_room_return(&task->room, &p->state->spare);
+        par_room_return(&task->view.room, &p->state->spare);
         free(task->left.item);
         free(task->changed.item);
         free(task->asked.item);
