@@ -15,7 +15,7 @@ enum { GONE = -2 }; /* in phase.block_of: the triangle is no more */
 /* A block at work. Every field is its own while the phase runs; others read it before and after. */
 struct task {
     int32_t block;
-    int32_t *worklist;         /* part of the phase's list */
+    tri_triangle_id *worklist; /* part of the phase's list */
     int32_t n_worklist;
     int32_t expected;       /* triangles, to the order */
     struct tri_fence fence, active; /* the second in the caller's coordinates */
@@ -43,7 +43,7 @@ struct phase {
     int32_t only;       /* column, or TRI_NONE */
     int32_t *block_of;  /* [worklist.n] */
     double *work;       /* [worklist.n] triangles that each will become, to the order */
-    int32_t *worklist;     /* [worklist.n] by block */
+    tri_triangle_id *worklist; /* [worklist.n] by block */
     struct task *tasks;
     int32_t n_tasks;
     int32_t *order;     /* [n_tasks] in which tasks are started */
@@ -51,7 +51,7 @@ struct phase {
     size_t n_marks;
 };
 
-static void leave_triangle(void *user, int32_t triangle)
+static void leave_triangle(void *user, tri_triangle_id triangle)
 {
     struct task *task = user;
     if (!par_worklist_add(&task->left, triangle))
@@ -80,7 +80,7 @@ static bool is_active(void *user, const double p[2])
 }
 
 /* The block that has its turn now and owns triangle t. */
-static int32_t owner_now(const struct phase *p, int32_t t)
+static int32_t owner_now(const struct phase *p, tri_triangle_id t)
 {
     int32_t block = par_owner_of(p->partition, p->phase, p->state->mesh, t);
     if (p->state->share)
@@ -95,7 +95,7 @@ static void assign_share(void *context, size_t share)
     const struct tri_mesh *mesh = p->state->mesh;
     const struct tri_range range = tri_share_of(share, TRI_MOST_SHARES, p->state->worklist.n);
     for (int32_t i = range.first; i < range.last; i++) {
-        int32_t t = p->state->worklist.item[i];
+        tri_triangle_id t = p->state->worklist.item[i];
         p->block_of[i] = tri_is_live(&mesh->tri[t]) ? owner_now(p, t) : GONE;
         p->work[i] = p->block_of[i] >= 0 ? tri_work_of(mesh, p->state->quality, t) : 0;
     }
@@ -144,7 +144,7 @@ static bool deal_worklists(struct phase *p)
                     .block = b, .worklist = p->worklist + start[b], .n_worklist = start[b + 1] - start[b],
                     .expected = expect(p->phase, work[b]), .pausing = true};
     for (int32_t i = 0; i < worklist->n; i++) {
-        int32_t triangle = worklist->item[i];
+        tri_triangle_id triangle = worklist->item[i];
         if (p->block_of[i] >= 0)
             p->worklist[start[p->block_of[i]]++] = triangle;
         else if (p->block_of[i] == TRI_NONE) {

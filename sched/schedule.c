@@ -37,7 +37,7 @@ void par_report_free(struct par_report *report)
     report->n_blocks = 0;
 }
 
-int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, int32_t t, int *phase)
+int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, tri_triangle_id t, int *phase)
 {
     for (*phase = 0; report->partition.x && *phase < PAR_PHASES; ++*phase) {
         int32_t block = par_owner_of(&report->partition, *phase, mesh, t);
