@@ -38,7 +38,7 @@ void par_report_free(struct par_report *report)
     report->n_blocks = 0;
 }
 
-int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, int32_t t, int *phase)
+int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, tri_triangle_id t, int *phase)
 {
     for (*phase = 0; report->partition.x && *phase < PAR_PHASES; ++*phase) {
         int32_t block = par_owner_of(&report->partition, *phase, mesh, t);
@@ -595,6 +595,21 @@ static enum tri_status refine_by_schedule(struct par_state *state, const struct 
     return status ? status : refine_beyond(state, quality, error);
 }
 
+/* Hands out a mesh that is finished, tile by tile if it is numbered. */
+static enum tri_status hand_out(struct par_state *state, struct tri_error *error)
+{
+    struct par_tiles tiles = par_tiles_of(state, state->numbered ? &state->cells : NULL);
+    enum tri_status status = par_park_expect(state->park, state->mesh, par_tiles_whole_bytes(&tiles), error);
+    if (status)
+        return status;
+    if (state->options->carrier)
+        return par_whole_on_ranks(state->options->carrier, &tiles, error);
+    status = par_tiles_whole(&tiles, error);
+    if (status && state->options->checkpoint) /* what there is of the mesh is kept, whether that can be or not */
+        (void)par_state_border(state->options->checkpoint, state, true, NULL);
+    return status;
+}
+
 /* Numbers, and hands out, what has not gone yet. */
 static enum tri_status deliver(struct par_state *state, struct tri_error *error)
 {
@@ -606,7 +621,7 @@ static enum tri_status deliver(struct par_state *state, struct tri_error *error)
     state->stage = PAR_FINISHED;
     status = status ? status : come_to_border(state, false, error);
     let_stop(state, true);
-    return !status && state->options->sink ? par_hand_out(state, error) : status;
+    return !status && state->options->sink ? hand_out(state, error) : status;
 }
 
 /* A bound on memory that somebody keeps: on ranks each has its own part, and a sink without a scratch directory gets a

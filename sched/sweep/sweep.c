@@ -1,7 +1,6 @@
 /* Columns in turn: refine, look for what is left behind, hand out. */
 #include "sched/sweep/sweep.h"
 
-#include "sched/ranks/ranks.h"
 #include "sched/sweep/ahead.h"
 #include "sched/sweep/state.h"
 #include "triangle/clock.h"
@@ -120,19 +119,5 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
     state->report->deferred += state->report->total.fenced;
     state->report->total.gated = state->report->total.fenced = 0; /* all of them have had their turn */
     par_tiles_free(&tiles);
-    return status;
-}
-
-enum tri_status par_hand_out(struct par_state *state, struct tri_error *error)
-{
-    struct par_tiles tiles = par_tiles_of(state, state->numbered ? &state->cells : NULL);
-    enum tri_status status = par_park_expect(state->park, state->mesh, par_tiles_whole_bytes(&tiles), error);
-    if (status)
-        return status;
-    if (state->options->carrier)
-        return par_whole_on_ranks(state->options->carrier, &tiles, error);
-    status = par_tiles_whole(&tiles, error);
-    if (status && state->options->checkpoint) /* what there is of the mesh is kept, whether that can be or not */
-        (void)par_state_border(state->options->checkpoint, state, true, NULL);
     return status;
 }
