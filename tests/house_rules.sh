@@ -98,6 +98,9 @@ refuse '#[[:space:]]*pragma[[:space:]]+omp|<(omp|pthread|threads)\.h>' 'knows th
     triangle/*.[ch] triangle/api/*.[ch] triangle/text/*.[ch] triangle/hdf5/*.[ch] triangle/dropin/*.[ch] \
     triangle/*/*.cpp # the judge has loops on all cores
 
+# One mesh on several ranks stands above the sweep, and beside it: sched/schedule.c chooses between them.
+refuse '#[[:space:]]*include[[:space:]]*"sched/ranks/' 'includes what stands above it' sched/sweep/*.[ch]
+
 # One file of sched/ runs anything in parallel: all else there hands tasks to an executor.
 others=$(ls sched/*.[ch] sched/*/*.[ch] | grep -vx sched/threads.c | tr '\n' ' ')
 # shellcheck disable=SC2086 # one word a file
