@@ -136,7 +136,7 @@ static void list_places(struct disk_place places[DISK_PLACES], const struct run 
     places[0] = (struct disk_place){"the files", run->hooks->first_file ? run->hooks->first_file
                                                                        : run->arguments->output, n->files};
     places[1] = (struct disk_place){"what does not fit in memory", limits->scratch,
-                                    run->plan.swept && n->held > left ? n->away : 0};
+                                    run->plan.swept ? (n->held > left ? n->away : 0) + n->kept : 0};
     const double states = run->plan.swept ? n->checkpoint : n->states;
     places[2] = (struct disk_place){"the checkpoint", limits->checkpoint, limits->checkpoint ? states : 0};
 }
