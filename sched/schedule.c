@@ -513,6 +513,7 @@ static enum tri_status refine_by_schedule(struct par_state *state, const struct 
                                           struct tri_error *error)
 {
     struct tri_refine_options usual = *quality;
+    usual.final_angle = tri_final_angle(quality);
     usual.min_angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
     enum tri_status status = usual.min_angle > TRI_EASY_ANGLE ? refine_sizes_first(state, &usual, error) : TRI_OK;
     state->may_number = !state->options->by_block && quality->min_angle <= TRI_USUAL_ANGLE;
