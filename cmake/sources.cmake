@@ -84,6 +84,7 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/window.c
     triangle/text/read.c
     triangle/text/output.c
+    triangle/text/behind.c
     triangle/text/write.c
     triangle/text/layouts.c
     triangle/text/stream.c
