@@ -1,6 +1,7 @@
 /* Files are those of the machine that wrote them: arrays as they lie in memory. */
 #include "sched/sweep/checkpoint.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -14,9 +15,10 @@
 #include "triangle/clock.h"
 #include "triangle/grow.h"
 
-static const uint64_t MANIFEST = UINT64_C(0x316863697274706b), STATE = UINT64_C(0x3265746174736974); /* versions, too */
+static const uint64_t MANIFEST = UINT64_C(0x326863697274706b), STATE = UINT64_C(0x3265746174736974); /* versions, too */
 
 static const char *const state_name[2] = {"state-0", "state-1"};
+static const char piece_prefix[] = "piece-";
 static const char manifest_name[] = "manifest", fresh_name[] = "manifest-new", tiles_name[] = "tiles";
 
 /* --- files in the directory */
@@ -40,8 +42,7 @@ static enum tri_status cannot_write(const char *directory, const char *name, str
     return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "cannot write: %s", strerror(errno));
 }
 
-/* What has got names or lost them in it is so after the machine has died, too. */
-static bool sync_directory(const char *directory)
+bool par_checkpoint_sync(const char *directory)
 {
     int file = open(directory, O_RDONLY | O_CLOEXEC);
     bool done = file >= 0 && (fsync(file) == 0 || errno == EINVAL);
@@ -60,7 +61,7 @@ static uint64_t hash_of(const struct par_manifest *m)
 static bool is_manifest(const struct par_manifest *m)
 {
     return m->word == MANIFEST && m->hash == hash_of(m) && (m->which == 0 || m->which == 1) && m->state_bytes >= 0 &&
-           m->tiles_bytes >= 0;
+           m->tiles_bytes >= 0 && m->n_ranks >= 0 && m->n_ranks <= INT32_MAX;
 }
 
 static enum tri_status read_manifest(struct par_manifest *m, const char *directory, struct tri_error *error)
@@ -86,7 +87,7 @@ static enum tri_status write_manifest(struct par_checkpoint *c, struct par_manif
         done = close(file) == 0 && done;
     path_of(from, c->directory, fresh_name);
     path_of(to, c->directory, manifest_name);
-    if (!done || rename(from, to) != 0 || !sync_directory(c->directory))
+    if (!done || rename(from, to) != 0 || !par_checkpoint_sync(c->directory))
         return cannot_write(c->directory, manifest_name, error);
     c->manifest = m;
     return TRI_OK;
@@ -146,6 +147,25 @@ enum tri_status par_checkpoint_open(struct par_checkpoint *c, const char *direct
     return status;
 }
 
+void par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *directory, int64_t which, int rank)
+{
+    snprintf(path, PAR_CHECKPOINT_PATH, "%s/%s%d-%d", directory, piece_prefix, (int)which, rank);
+}
+
+/* Of however many ranks there have been. */
+static void remove_pieces(const char *path)
+{
+    DIR *directory = opendir(path);
+    char piece[PAR_CHECKPOINT_PATH];
+    for (const struct dirent *entry; directory && (entry = readdir(directory));)
+        if (strncmp(entry->d_name, piece_prefix, sizeof piece_prefix - 1) == 0 && strlen(entry->d_name) < 32) {
+            path_of(piece, path, entry->d_name);
+            unlink(piece);
+        }
+    if (directory)
+        closedir(directory);
+}
+
 void par_checkpoint_close(struct par_checkpoint *c, bool remove)
 {
     const char *const names[] = {manifest_name, fresh_name, state_name[0], state_name[1], tiles_name};
@@ -154,8 +174,10 @@ void par_checkpoint_close(struct par_checkpoint *c, bool remove)
         path_of(path, c->directory, names[i]);
         unlink(path);
     }
-    if (remove)
+    if (remove) {
+        remove_pieces(c->directory);
         rmdir(c->directory);
+    }
     if (c->lock >= 0)
         close(c->lock);
     c->lock = -1;
@@ -184,7 +206,7 @@ static uint64_t hash_mesh(uint64_t hash, const struct tri_mesh *m)
     return par_hash(hash, m->columns, (size_t)m->n_regions * (size_t)m->n_columns * sizeof *m->columns);
 }
 
-static uint64_t run_of(const struct par_state *state, const struct par_partition *p)
+uint64_t par_checkpoint_run(const struct par_state *state, const struct par_partition *p)
 {
     const int64_t counts[] = {p->n_columns, p->n_rows, state->n_kept, state->worklist.n, state->mesh->n_vertices,
                               state->mesh->n_triangles, state->mesh->n_subs};
@@ -193,6 +215,14 @@ static uint64_t run_of(const struct par_state *state, const struct par_partition
     hash = par_hash(hash, p->y, (size_t)p->n_columns * (size_t)p->n_rows * sizeof *p->y);
     hash = par_hash(hash, state->worklist.item, (size_t)state->worklist.n * sizeof *state->worklist.item);
     return hash_mesh(hash, state->mesh);
+}
+
+enum tri_status par_checkpoint_check(const struct par_checkpoint *c, uint64_t run, struct tri_error *error)
+{
+    if (par_checkpoint_has_state(c) && run != c->manifest.run)
+        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
+                        "is the checkpoint of another run: of another input, or with other switches");
+    return TRI_OK;
 }
 
 /* --- state: a head, and then arrays, the same walk for writing and reading */
@@ -266,7 +296,8 @@ static enum tri_status save(struct par_checkpoint *c, const struct par_state *st
 {
     struct par_manifest m = c->manifest;
     struct head h = head_of(state, tiles, odd);
-    m.which = c->manifest.state_bytes > 0 ? 1 - c->manifest.which : 0;
+    m.which = par_checkpoint_next(&c->manifest);
+    m.n_ranks = 0;
     const char *name = state_name[m.which];
     struct carrier to = {.file = open_in(c->directory, name, O_WRONLY | O_CREAT | O_TRUNC), .writing = true};
     to.failed = to.file < 0;
@@ -289,6 +320,11 @@ static enum tri_status save(struct par_checkpoint *c, const struct par_state *st
 }
 
 /* --- going on */
+
+static enum tri_status damaged(const struct par_checkpoint *c, const char *name, struct tri_error *error)
+{
+    return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "the checkpoint's file %s is damaged", name);
+}
 
 static bool is_count(int64_t n, int64_t least) { return n >= least && n <= INT32_MAX; }
 
@@ -364,7 +400,7 @@ static enum tri_status load(struct par_checkpoint *c, struct par_state *state, s
     if (from.file >= 0)
         close(from.file);
     if (!sound)
-        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "the checkpoint's file %s is damaged", name);
+        return damaged(c, name, error);
     if (!status) {
         set_counts(&h, state, tiles);
         *odd = (int32_t)h.odd;
@@ -372,16 +408,48 @@ static enum tri_status load(struct par_checkpoint *c, struct par_state *state, s
     return status;
 }
 
+/* --- a state of others */
+
+enum tri_status par_checkpoint_put(struct par_checkpoint *c, const void *state, size_t n, struct par_manifest next,
+                                   struct tri_error *error)
+{
+    next.which = par_checkpoint_next(&c->manifest);
+    next.of = c->manifest.of;
+    next.state_bytes = (int64_t)n;
+    next.state_hash = par_hash(0, state, n);
+    const char *name = state_name[next.which];
+    int file = open_in(c->directory, name, O_WRONLY | O_CREAT | O_TRUNC);
+    bool done = file >= 0 && par_write_at(file, state, n, 0) && fsync(file) == 0;
+    if (file >= 0)
+        done = close(file) == 0 && done;
+    enum tri_status status = done ? write_manifest(c, next, error) : cannot_write(c->directory, name, error);
+    c->saved += !status;
+    return status;
+}
+
+enum tri_status par_checkpoint_get(const struct par_checkpoint *c, void *state, struct tri_error *error)
+{
+    const struct par_manifest *m = &c->manifest;
+    int file = open_in(c->directory, state_name[m->which], O_RDONLY);
+    bool sound = file >= 0 && par_read_at(file, state, (size_t)m->state_bytes, 0) &&
+                 par_hash(0, state, (size_t)m->state_bytes) == m->state_hash;
+    if (file >= 0)
+        close(file);
+    return sound ? TRI_OK : damaged(c, state_name[m->which], error);
+}
+
 /* --- for the sweep */
 
 enum tri_status par_checkpoint_begin(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles,
                                      int32_t *odd, struct tri_error *error)
 {
-    uint64_t run = run_of(state, tiles->partition);
+    uint64_t run = par_checkpoint_run(state, tiles->partition);
     bool again = par_checkpoint_has_state(c);
-    if (again && run != c->manifest.run)
-        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
-                        "is the checkpoint of another run: of another input, or with other switches");
+    enum tri_status checked = par_checkpoint_check(c, run, error);
+    if (checked)
+        return checked;
+    if (again && c->manifest.n_ranks > 0)
+        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "is the checkpoint of several tasks");
     c->manifest.run = run;
     if (ftruncate(c->spool.file, (off_t)c->spool.length) != 0)
         return cannot_write(c->directory, tiles_name, error);

@@ -19,6 +19,7 @@
 #include "sched/sweep/spool.h"
 #include "triangle/stop.h"
 
+struct par_partition;
 struct par_state;
 struct par_tiles;
 
@@ -32,7 +33,8 @@ struct par_manifest {
     int64_t state_bytes;   /* 0: there is no state yet: whoever goes on starts over */
     uint64_t state_hash;
     int64_t tiles_bytes;
-    int64_t triangles;     /* handed out so far */
+    int64_t triangles;     /* handed out so far; of a state of ranks: there are so many */
+    int64_t n_ranks;       /* whose state this is (sched/ranks/pieces.h); 0: a sweep's */
 };
 
 struct par_checkpoint {
@@ -59,6 +61,28 @@ bool par_checkpoint_is_there(const char *directory);
 
 /* Is there a state, from which a run can go on? */
 static inline bool par_checkpoint_has_state(const struct par_checkpoint *c) { return c->manifest.state_bytes > 0; }
+
+/* What the run is of, before anything is done: a hash over the mesh, the bounds, the cells and the worklist. */
+uint64_t par_checkpoint_run(const struct par_state *state, const struct par_partition *partition);
+
+/* TRI_BAD_INPUT: there is a state, and it is another run's. */
+enum tri_status par_checkpoint_check(const struct par_checkpoint *checkpoint, uint64_t run, struct tri_error *error);
+
+/* A state of n bytes, whatever they are, becomes the one that counts; `next`: its manifest, but for what is said of the
+ * file. TRI_CANNOT_WRITE: the last one counts on. */
+enum tri_status par_checkpoint_put(struct par_checkpoint *checkpoint, const void *state, size_t n,
+                                   struct par_manifest next, struct tri_error *error);
+
+/* The state that counts, of manifest.state_bytes bytes. TRI_BAD_INPUT: it is damaged. */
+enum tri_status par_checkpoint_get(const struct par_checkpoint *checkpoint, void *state, struct tri_error *error);
+
+/* The path of rank `rank`'s piece of a state, see manifest.which; for that of the state to be written next,
+ * par_checkpoint_next. */
+void par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *directory, int64_t which, int rank);
+static inline int64_t par_checkpoint_next(const struct par_manifest *m) { return m->state_bytes > 0 ? 1 - m->which : 0; }
+
+/* What has got names in a directory, or lost them, is so after the machine has died, too. */
+bool par_checkpoint_sync(const char *directory);
 
 /* Frees what it holds; with `remove` also the files, and the directory if nothing else is in it. */
 void par_checkpoint_close(struct par_checkpoint *checkpoint, bool remove);
