@@ -353,8 +353,6 @@ static enum tri_status refine_rounds(struct par_ranks *r, int64_t *left, struct 
     for (int32_t round = 0; !status && round < stand->round; round++)
         par_partition_coarsen(&partition);
     status = status ? status : refine_round(r, &partition, left, error);
-    if (!status && stand->round == 0)
-        r->state->report->left_over += *left;
     while (!status && *left > 0 && par_can_coarsen(&partition)) {
         par_partition_coarsen(&partition);
         *stand = (struct par_stand){.round = stand->round + 1};
@@ -448,6 +446,7 @@ static enum tri_status refine_all(struct par_ranks *r, struct par_tiles *tiles, 
     int64_t left = 0;
     enum tri_status status = begin(r, error);
     status = status ? status : refine_rounds(r, &left, error);
+    r->state->report->left_over += status ? 0 : left;
     if (!status && left > 0)
         status = par_keep(r, refine_rest(r, error), error);
     status = add_up(r, status, error);
