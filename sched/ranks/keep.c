@@ -198,7 +198,8 @@ static enum tri_status keep(struct par_ranks *r, struct tri_error *error)
     int64_t mine[PAR_DONE], done[PAR_DONE], told[2] = {0};
     int64_t *all = malloc(2 * (size_t)r->carrier->n_ranks * sizeof *all);
     par_count_done(r, mine);
-    enum tri_status status = par_sum(r->carrier, mine, PAR_DONE, done, all ? TRI_OK : par_ranks_no_memory(error), error);
+    enum tri_status status = all ? TRI_OK : par_ranks_no_memory(error);
+    status = par_sum(r->carrier, mine, PAR_DONE, done, status, error);
     status = status ? status : write_pieces(r, told, error);
     status = par_gather(r->carrier, told, 2, all, status, error);
     if (!status && r->carrier->rank == 0)

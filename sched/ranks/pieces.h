@@ -1,13 +1,13 @@
 /* What a rank has, in a file, so that other ranks, of another number, can go on with it.
  *
- * For each of its tiles a rank writes all triangles with a corner there, and their entries of the worklist, as a message
- * of its own (talk.h). Whoever owns a tile afterwards pastes that as if it had borrowed it.
+ * For each of its tiles a rank writes all triangles with a corner there, and their entries of the worklist, as one
+ * message (talk.h). Whoever owns a tile afterwards pastes that as if it had borrowed it.
  *
- * THEOREM. Then it has what the invariant of ranks.h asks for, whoever wrote what. Its triangles are those with a corner
- * in its tiles, which is what the pieces of these tiles tell of; those that several tell of are known by their corners.
- * Two triangles with a common edge know of each other, and of the subsegment there, if an end of the edge lies in one of
- * its tiles, since both are in the piece of that. Across other edges nobody looks here: a block that may change one of
- * the two has both ends in its box, and asks the owners of these. */
+ * THEOREM. Then it has what the invariant of ranks.h asks for, whoever wrote what. Its triangles are those with a
+ * corner in its tiles, which is what the pieces of these tiles tell of; those that several tell of are known by their
+ * corners. Two triangles with a common edge know of each other, and of the subsegment there, if an end of the edge lies
+ * in one of its tiles, since both are in the piece of that. Across other edges nobody looks here: a block that may
+ * change one of the two has both ends in its box, and asks the owners of these. */
 #ifndef SCHED_RANKS_PIECES_H
 #define SCHED_RANKS_PIECES_H
 
