@@ -34,7 +34,7 @@ static void find_tiles(struct sorting *s)
 {
     const struct par_territory *territory = &s->ranks->territory;
     const struct tri_mesh *mesh = s->ranks->state->mesh;
-    for (int32_t v = 0; v < mesh->n_vertices; v++)
+    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
         s->tile_of[v] = mesh->on[v] != TRI_VERTEX_NONE && par_is_own(territory, mesh->xy[v])
                             ? par_tile_at(territory, mesh->xy[v]) - territory->start[territory->rank] : TRI_NONE;
 }

@@ -79,7 +79,10 @@ enum tri_status par_checkpoint_get(const struct par_checkpoint *checkpoint, void
 /* The path of rank `rank`'s piece of a state, see manifest.which; for that of the state to be written next,
  * par_checkpoint_next. */
 void par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *directory, int64_t which, int rank);
-static inline int64_t par_checkpoint_next(const struct par_manifest *m) { return m->state_bytes > 0 ? 1 - m->which : 0; }
+static inline int64_t par_checkpoint_next(const struct par_manifest *m)
+{
+    return m->state_bytes > 0 ? 1 - m->which : 0;
+}
 
 /* What has got names in a directory, or lost them, is so after the machine has died, too. */
 bool par_checkpoint_sync(const char *directory);
