@@ -34,7 +34,7 @@ void par_report_free(struct par_report *report)
     par_partition_free(&report->partition);
     free(report->blocks);
     report->blocks = NULL;
-    report->n_blocks = 0;
+    report->n_blocks = report->block_capacity = 0;
 }
 
 int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, tri_triangle_id t, int *phase)
@@ -308,7 +308,8 @@ static void go_back(struct par_state *state, struct before *before)
     state->key.n = 0;
     state->gone = 0;
     par_room_free(&state->spare);
-    before->report.blocks = report->blocks; /* it may have moved */
+    before->report.blocks = report->blocks; /* they may have moved */
+    before->report.block_capacity = report->block_capacity;
     *report = before->report;
     report->most_live = live;
 }

@@ -99,7 +99,7 @@ struct par_report {
     double seconds_refine;        /* wall time of the phases' parallel parts */
     double phase_seconds[4];      /* refine, by phase, over all rounds */
     struct par_block_report *blocks; /* [n_blocks] in canonical order; owned by the report */
-    int32_t n_blocks;
+    int32_t n_blocks, block_capacity;
 };
 
 struct par_options par_defaults(void);
