@@ -23,7 +23,37 @@ struct writer {
     uint64_t hash; /* of its file */
 };
 
-static size_t state_bytes(int64_t n_ranks) { return sizeof(struct common) + (size_t)n_ranks * sizeof(struct writer); }
+/* All of it, and how many ranks have written it. */
+struct state {
+    char *bytes; /* of struct common on */
+    int64_t n_ranks;
+};
+
+static size_t bytes_of(const struct state *s)
+{
+    return sizeof(struct common) + (size_t)s->n_ranks * sizeof(struct writer);
+}
+
+static bool make_state(struct state *s, int64_t n_ranks)
+{
+    *s = (struct state){.n_ranks = n_ranks};
+    s->bytes = calloc(1, bytes_of(s));
+    return s->bytes;
+}
+
+/* Both to the checkpoint's file and from there. */
+static enum tri_status walk(struct par_state_file *file, void *user, struct tri_error *error)
+{
+    const struct state *s = user;
+    (void)error;
+    par_carry(file, s->bytes, bytes_of(s));
+    return TRI_OK;
+}
+
+static const struct writer *writers_of(const struct state *s)
+{
+    return (const struct writer *)(const void *)(s->bytes + sizeof(struct common));
+}
 
 static int32_t tiles_in_all(const struct par_ranks *r) { return r->territory.start[r->territory.n_ranks]; }
 
@@ -46,15 +76,16 @@ static bool find_straddlers(struct par_ranks *r)
     return memory;
 }
 
-static enum tri_status read_pieces(struct par_ranks *r, const struct par_manifest *m, const struct writer *writer,
+static enum tri_status read_pieces(struct par_ranks *r, const struct par_manifest *m, const struct state *from,
                                    struct tri_error *error)
 {
+    const struct writer *writer = writers_of(from);
     char path[PAR_CHECKPOINT_PATH];
     enum tri_status status = TRI_OK;
     forget_all(r->state, r->n_common);
     if (!par_index_straddlers(r))
         return par_ranks_no_memory(error);
-    for (int p = 0; !status && p < m->n_ranks; p++) {
+    for (int p = 0; !status && p < from->n_ranks; p++) {
         const struct par_piece_file file = {p > 0 ? (int32_t)writer[p - 1].end : 0, (int32_t)writer[p].end, m->run,
                                             writer[p].hash};
         par_checkpoint_piece(path, r->state->options->checkpoint->directory, m->which, p);
@@ -63,13 +94,14 @@ static enum tri_status read_pieces(struct par_ranks *r, const struct par_manifes
     return status || find_straddlers(r) ? status : par_ranks_no_memory(error);
 }
 
-static bool is_state(const struct par_ranks *r, const struct common *c, const struct writer *writer, int64_t n)
+static bool is_state(const struct par_ranks *r, const struct common *c, const struct state *s)
 {
+    const struct writer *writer = writers_of(s);
     bool good = c->word == STATE && c->n_tiles == tiles_in_all(r) && c->stand.round >= 0 && c->stand.round < 32 &&
-                c->stand.phase >= 0 && c->stand.phase <= PAR_PHASES && c->stand.step >= 0 && n > 0;
-    for (int64_t p = 0; good && p < n; p++)
+                c->stand.phase >= 0 && c->stand.phase <= PAR_PHASES && c->stand.step >= 0;
+    for (int64_t p = 0; good && p < s->n_ranks; p++)
         good = writer[p].end >= (p > 0 ? writer[p - 1].end : 0) && writer[p].end <= c->n_tiles;
-    return good && writer[n - 1].end == c->n_tiles;
+    return good && writer[s->n_ranks - 1].end == c->n_tiles;
 }
 
 /* Rank 0 counts what has been done for all. */
@@ -83,58 +115,61 @@ static void go_on_from(struct par_ranks *r, const struct common *c)
         par_add_done(r, c->done);
 }
 
-static enum tri_status take_up(struct par_ranks *r, const struct par_manifest *m, char *bytes, struct tri_error *error)
+static enum tri_status take_up(struct par_ranks *r, const struct par_manifest *m, const struct state *from,
+                               struct tri_error *error)
 {
     const struct par_checkpoint *checkpoint = r->state->options->checkpoint;
-    size_t n = (size_t)m->state_bytes;
-    enum tri_status status = bytes ? TRI_OK : par_ranks_no_memory(error);
+    enum tri_status status = from->bytes ? TRI_OK : par_ranks_no_memory(error);
     if (!status && r->carrier->rank == 0)
-        status = par_checkpoint_get(checkpoint, bytes, error);
-    status = par_spread(r->carrier, PAR_MOVE_INPUT, bytes, n, status, error);
+        status = par_checkpoint_read(checkpoint, walk, (void *)from, error);
+    status = par_spread(r->carrier, PAR_MOVE_INPUT, from->bytes, bytes_of(from), status, error);
     if (status)
         return status;
     struct common common;
-    const struct writer *writer = (const struct writer *)(const void *)(bytes + sizeof common);
-    memcpy(&common, bytes, sizeof common);
-    if (!is_state(r, &common, writer, m->n_ranks))
+    memcpy(&common, from->bytes, sizeof common);
+    if (!is_state(r, &common, from))
         return tri_fail(error, TRI_BAD_INPUT, checkpoint->directory, 0, "the checkpoint's state is damaged");
-    status = read_pieces(r, m, writer, error);
+    status = read_pieces(r, m, from, error);
     if (!status)
         go_on_from(r, &common);
     return status;
 }
 
 /* Rank 0 has read it. */
-static enum tri_status check_manifest(struct par_ranks *r, struct par_manifest *m, struct tri_error *error)
+static enum tri_status check_manifest(struct par_ranks *r, struct par_manifest *m, struct state *from,
+                                      struct tri_error *error)
 {
-    const struct par_checkpoint *c = r->state->options->checkpoint;
-    enum tri_status status = TRI_OK;
+    struct par_checkpoint *c = r->state->options->checkpoint;
+    enum tri_status status = r->carrier->rank == 0 ? par_checkpoint_take(c, r->run, error) : TRI_OK;
     *m = c->manifest;
-    if (r->carrier->rank == 0)
-        status = par_checkpoint_check(c, r->run, error);
-    if (!status && m->state_bytes > 0 && r->carrier->rank == 0 && (size_t)m->state_bytes != state_bytes(m->n_ranks))
-        status = tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
-                          m->n_ranks == 0 ? "is the checkpoint of one task" : "the checkpoint's state is damaged");
-    return par_spread(r->carrier, PAR_MOVE_INPUT, m, sizeof *m, status, error);
+    if (!status && par_checkpoint_has_state(c) && m->kind != PAR_RANKS_STATE)
+        status = tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "is the checkpoint of one task");
+    status = par_spread(r->carrier, PAR_MOVE_INPUT, m, sizeof *m, status, error);
+    *from = (struct state){.n_ranks = (m->state_bytes - (int64_t)sizeof(struct common)) /
+                                      (int64_t)sizeof(struct writer)};
+    if (!status && m->state_bytes > 0 && (from->n_ranks < 1 || m->state_bytes != (int64_t)bytes_of(from)))
+        status = tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "the checkpoint's state is damaged");
+    return status;
 }
 
 enum tri_status par_take_up(struct par_ranks *r, bool *again, struct tri_error *error)
 {
     struct par_checkpoint *c = r->state->options->checkpoint;
-    struct par_manifest m = {0};
+    struct par_manifest m;
+    struct state from;
     *again = false;
     if (!c)
         return TRI_OK;
     c->stop = r->state->mesh->stop;
     c->last = tri_seconds();
-    enum tri_status status = check_manifest(r, &m, error);
+    enum tri_status status = check_manifest(r, &m, &from, error);
     if (status || m.state_bytes == 0)
         return status;
     *again = true;
     r->state->mesh->stop = NULL; /* there is something to lose */
-    char *bytes = malloc((size_t)m.state_bytes);
-    status = take_up(r, &m, bytes, error);
-    free(bytes);
+    make_state(&from, from.n_ranks);
+    status = take_up(r, &m, &from, error);
+    free(from.bytes);
     return status;
 }
 
@@ -154,23 +189,22 @@ static int64_t count_triangles(const struct par_ranks *r)
 static enum tri_status put(struct par_ranks *r, const int64_t *told, const int64_t done[PAR_DONE],
                            struct tri_error *error)
 {
-    size_t n = (size_t)r->carrier->n_ranks;
-    char *bytes = calloc(1, state_bytes((int64_t)n));
-    if (!bytes)
-        return par_ranks_no_memory(error);
+    struct state state;
     struct common common = {.word = STATE, .stand = r->stand, .n_tiles = tiles_in_all(r),
                             .left_over = r->state->report->left_over - r->left_before};
-    struct writer *writer = (struct writer *)(void *)(bytes + sizeof common);
-    struct par_manifest m = {.run = r->run, .n_ranks = (int64_t)n};
+    int64_t triangles = 0;
+    if (!make_state(&state, r->carrier->n_ranks))
+        return par_ranks_no_memory(error);
     memcpy(common.done, done, sizeof common.done);
-    memcpy(bytes, &common, sizeof common);
-    for (size_t p = 0; p < n; p++) {
-        writer[p] = (struct writer){r->territory.start[p + 1], (uint64_t)told[2 * p]};
-        m.triangles += told[2 * p + 1];
+    memcpy(state.bytes, &common, sizeof common);
+    for (int p = 0; p < r->carrier->n_ranks; p++) {
+        const struct writer writer = {r->territory.start[p + 1], (uint64_t)told[2 * p]};
+        memcpy(state.bytes + sizeof common + (size_t)p * sizeof writer, &writer, sizeof writer);
+        triangles += told[2 * p + 1];
     }
-    enum tri_status status = par_checkpoint_put(r->state->options->checkpoint, bytes, state_bytes((int64_t)n), m,
-                                                error);
-    free(bytes);
+    enum tri_status status = par_checkpoint_write(r->state->options->checkpoint, PAR_RANKS_STATE, triangles, walk,
+                                                  &state, error);
+    free(state.bytes);
     return status;
 }
 
@@ -180,7 +214,7 @@ static enum tri_status write_pieces(struct par_ranks *r, int64_t told[2], struct
     const struct par_checkpoint *c = r->state->options->checkpoint;
     char path[PAR_CHECKPOINT_PATH];
     uint64_t hash = 0;
-    int64_t which = par_checkpoint_next(&c->manifest);
+    int64_t which = par_checkpoint_next(c);
     enum tri_status status = par_spread(r->carrier, PAR_MOVE_INPUT, &which, sizeof which, TRI_OK, error);
     if (status)
         return status;

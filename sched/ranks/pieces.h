@@ -15,7 +15,7 @@
 
 struct par_piece_file {
     int32_t first, end; /* its tiles: first .. end - 1 */
-    uint64_t run;       /* as par_checkpoint_run says */
+    uint64_t run;       /* as par_state_run says */
     uint64_t hash;      /* as it was told when the file was written */
 };
 

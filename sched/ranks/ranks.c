@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sched/sweep/state.h"
 #include "triangle/grow.h"
 
 /* --- who works where */
@@ -492,7 +493,7 @@ enum tri_status par_refine_on_ranks(struct par_state *state, const struct par_pa
     bool memory = init(&r, partition);
     r.before = state->report->total;
     r.left_before = state->report->left_over;
-    r.run = par_checkpoint_run(state, partition);
+    r.run = par_state_run(state);
     enum tri_status status = par_agree(carrier, memory ? TRI_OK : par_ranks_no_memory(error), error);
     if (!status)
         status = refine_all(&r, tiles, error);
