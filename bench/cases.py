@@ -6,7 +6,7 @@ Seconds of a run, by stage, all of wall time:
   quality   from there to the refined mesh
   number    new numbers for it, along a curve, where a program does that
   memory    these three
-  process   the whole process, with reading and, where the case says so, writing of text files
+  process   the whole process, with reading and, where the case says so, writing of files
   processor its processor time
 and what a program reports beyond that.
 """
@@ -38,8 +38,9 @@ class Run:
 
 
 class Case:
-    """ours: a failure or a fault is ours to mend. check: options of trianglecheck beyond bounds and input."""
-    ours, threads, check, limit = True, 1, (), LIMIT
+    """ours: a failure or a fault is ours to mend. check: options of trianglecheck beyond bounds and input. judged: by
+    trianglecheck; else its triangles are counted alone, by itself."""
+    ours, threads, check, limit, judged = True, 1, (), LIMIT, True
     compare_input, bounds_area = True, True
 
     def __init__(self, settings, domain):
@@ -71,12 +72,13 @@ class Case:
 class Ours(Case):
     """ptriangle. `switches` beyond those of the domain: with `r`, its .poly file has a mesh beside it."""
 
-    def __init__(self, settings, domain, threads, switches="", files=False, options=()):
+    def __init__(self, settings, domain, threads, switches="", files="", options=()):
+        """files: "" for none, "text", or "HDF5"."""
         super().__init__(settings, domain)
         self.threads, self.switches, self.files, self.options = threads, switches, files, options
         words = ["ours", f"{threads} thread{'s' if threads > 1 else ''}"]
         if files:
-            words.append("with files")
+            words.append(f"with {files} files")
         if options:
             words.append(" ".join(options))
         self.name = ", ".join(words)
@@ -104,9 +106,10 @@ class Ours(Case):
         if not self.files:
             return self._call("-NEP")
         base = os.path.join(self.settings.scratch, "timed")
-        run = self._call("--output", base)
+        output = base + (".h5" if self.files == "HDF5" else "")
+        run = self._call("--output", output)
         remove(base)
-        run.seconds["process"] = self._execute("--output", base).wall
+        run.seconds["process"] = self._execute("--output", output).wall
         remove(base)
         return run
 
@@ -147,9 +150,9 @@ class Triangle(Case):
     that filling its arrays is not in the time."""
     ours, name = False, "Triangle 1.6"
 
-    def __init__(self, settings, domain, switches=""):
+    def __init__(self, settings, domain, switches="", judged=True):
         super().__init__(settings, domain)
-        self.switches = switches
+        self.switches, self.judged = switches, judged
         if "r" in switches:
             self.check = ("--refined",)
 
@@ -167,7 +170,7 @@ class Triangle(Case):
         ended = self.execute(python(self.settings), peer("triangle_call.py"), self.library, self.domain.path,
                              self.switches + switches, *base)
         said = json.loads(ended.output)
-        return said["seconds"], str(said["counts"]), ended
+        return said["seconds"], said["counts"], ended
 
     def run(self):
         first, counts, ended = self._call(self.domain.plain_switches + "NEP")
@@ -175,11 +178,13 @@ class Triangle(Case):
         if self.domain.angle:
             seconds["memory"], counts, ended = self._call(self.domain.switches + "NEP")
             seconds["quality"] = seconds["memory"] - first
-        return Run(seconds, ended, counts)
+        vertices, triangles, subsegments = counts
+        return Run(seconds, ended, str(counts), {"vertices": vertices, "triangles": triangles,
+                                                 "subsegments": subsegments})
 
     def write(self, base):
         seconds, counts, ended = self._call(self.domain.switches, base)
-        return base, Run({"memory": seconds}, ended, counts)
+        return base, Run({"memory": seconds}, ended, str(counts))
 
 
 class Peer(Case):

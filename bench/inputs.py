@@ -82,8 +82,8 @@ def shared_coasts(settings, angle, area):
     return found
 
 
-def random_points(settings, angle):
-    n = 10_000 if settings.small else 1_000_000
+def random_points(settings, angle, n=1_000_000):
+    n = n // 100 if settings.small else n
     path = os.path.join(settings.work, "inputs", f"random{n}.node")
     if not os.path.exists(path):
         source, pslg = random.Random(1), meshfiles.Pslg()

@@ -3,7 +3,7 @@ import statistics
 from dataclasses import dataclass
 
 from cases import Failure
-from judge import judge
+from judge import count, judge
 from settings import say
 
 
@@ -45,9 +45,11 @@ class Measured:
     def judge(self):
         if self.reason:
             return
-        judged = self._attempt("judging", lambda: judge(self.case))
+        judged = self._attempt("judging", lambda: judge(self.case) if self.case.judged else count(self.case))
         if judged:
             self.verdict, self.first = judged
+            if not self.case.judged:
+                self.runs.append(self.first)
             say(f"  {self.case.name}: {self.verdict.triangles:,} triangles, {self.verdict.text}")
             if self.verdict.faults and self.case.ours:
                 self.reason = "faults: " + self.verdict.faults
@@ -105,9 +107,11 @@ def measure(title, cases, settings, repeats=None):
     measured = [Measured(case) for case in cases]
     for m in measured:
         m.judge()
-    for _ in range(repeats or settings.repeats):
+    repeats = repeats or settings.repeats
+    for _ in range(repeats):
         for m in measured:
-            m.sample()
+            if len(m.runs) < repeats:
+                m.sample()
     for m in measured:
         if m.reason:
             say(f"  without {m.case.name}: {m.reason}")

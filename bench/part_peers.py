@@ -51,5 +51,5 @@ def run(settings):
         lines = [_line(m, measured[0].verdict.total_area if measured[0].verdict else 0) for m in measured]
         texts.append(f"### {domain.name}, `-{domain.switches}`\n\n" + table(HEAD, lines))
         rows += [row for m in measured for row in m.rows("peers")]
-    text = NOTE.format(repeats) + "\n".join(texts)
-    return {"title": "Other mesh generators", "text": text, "rows": rows, "targets": []}
+        text = NOTE.format(repeats) + "\n".join(texts)
+        yield {"title": "Other mesh generators", "text": text, "rows": rows, "targets": []}

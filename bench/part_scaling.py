@@ -51,5 +51,5 @@ def run(settings):
         texts.append(f"### {domain.name}, `-{domain.switches}`\n\n{size}{_same(measured, settings)}\n\n"
                      + table(HEAD, _lines(measured)))
         rows += [row for m in measured for row in m.rows("scaling")]
-    text = NOTE.format(settings.repeats) + "\n".join(texts)
-    return {"title": "Scaling", "text": text, "rows": rows, "targets": []}
+        text = NOTE.format(settings.repeats) + "\n".join(texts)
+        yield {"title": "Scaling", "text": text, "rows": rows, "targets": []}

@@ -1,7 +1,10 @@
 """Where the time goes, stage by stage, beside Triangle 1.6 on the same input in the same turns; and the targets
 that speak of it."""
+import os
+import statistics
+
 from cases import Ours, Sequential, Triangle
-from inputs import letter, norway, plate, random_points, shared_coasts, square
+from inputs import Domain, letter, norway, random_points, shared_coasts, square
 from measure import measure, millions_per_second, ratio, table
 
 HEAD = ("program", "triangles", "smallest angle", "Delaunay, s", "Quality, s", "numbering, s", "all, s",
@@ -13,55 +16,64 @@ In memory, without files. Triangle 1.6: Delaunay is a call of its library functi
 them, Quality the difference; the calls ask for no output arrays, and all conversion of input is outside the clock.
 Ours, sequential: `triangle`; else `ptriangle`, which numbers the mesh along a curve when it is done (unless told
 `--numbering blocks`); Triangle and `triangle` leave their triangles in the order in which they came about. Bytes a
-triangle: resident peak of the whole process over triangles made, input and, for Triangle, Python included. Median
-(least–most) of {} runs in turns.
+triangle: resident peak of the whole process over triangles made, input and, for Triangle, Python included. Triangle's
+meshes are counted and not judged here. Median (least–most) of {} runs in turns.
 
 """
 TRIANGLE, SEQUENTIAL, ONE, MOST = range(4)
 
 
 def _cases(settings, domain):
-    return [Triangle(settings, domain), Sequential(settings, domain), Ours(settings, domain, 1),
+    return [Triangle(settings, domain, judged=False), Sequential(settings, domain), Ours(settings, domain, 1),
             Ours(settings, domain, settings.threads)]
 
 
 def _line(m, other):
     if not m.good:
         return (m.case.name, "missing: " + m.reason, *["–"] * 9)
-    v = m.verdict
-    return (m.case.name, f"{v.triangles:,}", f"{v.smallest_angle:.2f}", m.text("delaunay"), m.text("quality"),
-            m.text("number"), m.text("memory"), millions_per_second(v.triangles, m.median("quality")),
+    v, smallest = m.verdict, f"{m.verdict.smallest_angle:.2f}" if m.case.judged else "–"
+    return (m.case.name, f"{v.triangles:,}", smallest, m.text("delaunay"), m.text("quality"), m.text("number"),
+            m.text("memory"), millions_per_second(v.triangles, m.median("quality")),
             ratio(other.median("quality"), m.median("quality")), ratio(other.median("memory"), m.median("memory")),
             f"{m.peak / v.triangles:.0f}")
 
 
-def _with_files(settings, domain):
-    """The whole process, from text files to text files."""
-    cases = [Triangle(settings, domain), Ours(settings, domain, 1, files=True),
-             Ours(settings, domain, settings.threads, files=True),
-             Ours(settings, domain, settings.threads, files=True, options=("--numbering", "blocks"))]
-    measured = measure(f"stages: {domain.name} -{domain.switches}, with files", cases, settings)
-    call, ours = measured[0], measured[1:]
-    lines = [(m.case.name, m.text("read"), m.text("delaunay"), m.text("quality"), m.text("number"), m.text("write"),
-              m.text("process"), ratio(call.median("memory"), m.median("process"))) for m in ours]
-    text = (f"### {domain.name}, -{domain.switches}: the whole process, with text files\n\nTriangle 1.6: "
-            f"{call.text('memory')} s for its call alone, without reading, writing or filling an output array: the "
-            "least a process could take.\n\n" + table(FILES_HEAD, lines))
-    return text, measured
-
-
-def _target(asked, least, measured, other, stage, against="memory"):
-    reached = other.median(against) / measured.median(stage) if other.good and measured.good else None
+def _ratio_target(asked, least, above, below, stage, of_above=None):
+    """Seconds of the one over seconds of the other."""
+    reached = above.median(of_above or stage) / below.median(stage) if above.good and below.good else None
     return {"asked": asked, "least": least, "reached": reached}
 
 
-def _quality_targets(name, goals, measured):
-    """goals: what is asked of one thread and of two; one thread is `triangle` or `ptriangle --threads 1`."""
-    targets = []
-    for goal, indices in zip(goals, ((SEQUENTIAL, ONE), (MOST,))):
+def _share_target(asked, most, shares):
+    return {"asked": asked, "most": most, "reached": statistics.median(shares) if shares else None}
+
+
+def _sequential_shares(m, threads=64):
+    for run in m.runs:
+        schedule = run.facts["schedule"]
+        for predicted in schedule["prediction"] if schedule else ():
+            if predicted["threads"] == threads:
+                yield predicted["sequential_share"]
+
+
+def _targets(domain, goals, measured):
+    """goals: of one thread (`triangle` or `ptriangle --threads 1`) and of all, in refinement; and of all threads
+    against one. 0: none is set."""
+    targets, most, triangle = [], measured[MOST], measured[TRIANGLE]
+    for goal, indices in ((goals[0], (SEQUENTIAL, ONE)), (goals[1], (MOST,))):
         for i in indices if goal else ():
-            asked = f"refinement, {name}, {measured[i].case.name}"
-            targets.append(_target(asked, goal, measured[i], measured[TRIANGLE], "quality", "quality"))
+            asked = f"refinement, {domain.name}, {measured[i].case.name}"
+            targets.append(_ratio_target(asked, goal, triangle, measured[i], "quality"))
+    if goals[2]:
+        targets.append(_ratio_target(f"one thread over all, refinement, {domain.name}", goals[2], measured[ONE], most,
+                                     "quality"))
+    if domain.angle:
+        targets.append(_share_target(f"numbering over refinement, {domain.name}, {most.case.name}", 0.1,
+                                     [r.seconds["number"] / r.seconds["quality"] for r in most.runs]))
+        targets.append(_ratio_target(f"`triangle` over ours on one thread, {domain.name}", 0.95, measured[SEQUENTIAL],
+                                     measured[ONE], "quality"))
+        targets.append(_share_target(f"sequential share predicted at 64 threads, {domain.name}", 0.05,
+                                     list(_sequential_shares(measured[ONE]))))
     return targets
 
 
@@ -70,29 +82,79 @@ def _mean_area(domain, m):
     return {"asked": f"mean area over bound, {domain.name}, {m.case.name}", "least": 0.66, "reached": reached}
 
 
+# --- whole processes
+
+
+def _files(settings, domain, goals):
+    """From text files to text files, and to HDF5."""
+    cases = [Triangle(settings, domain, judged=False), Ours(settings, domain, 1, files="text"),
+             Ours(settings, domain, settings.threads, files="text"),
+             Ours(settings, domain, settings.threads, files="text", options=("--numbering", "blocks")),
+             Ours(settings, domain, settings.threads, files="HDF5")]
+    measured = measure(f"stages: {domain.name} -{domain.switches}, with files", cases, settings)
+    call, ours = measured[0], measured[1:]
+    lines = [(m.case.name, m.text("read"), m.text("delaunay"), m.text("quality"), m.text("number"), m.text("write"),
+              m.text("process"), ratio(call.median("memory"), m.median("process"))) for m in ours]
+    text = (f"### {domain.name}, -{domain.switches}: the whole process, with files\n\nTriangle 1.6: "
+            f"{call.text('memory')} s for its call alone, without reading, writing or filling an output array: the "
+            "least a process could take.\n\n" + table(FILES_HEAD, lines))
+    targets = [_ratio_target(f"whole process, {domain.name}, {m.case.name}", goal, call, m, "process", "memory")
+               for goal, m in zip(goals, (measured[2], measured[4]))]
+    return text, [row for m in measured for row in m.rows("stages with files")], targets
+
+
+def _again(settings, domain):
+    """A mesh is read from text files and refined further, which is hardly any work."""
+    base = os.path.join(settings.work, "inputs", "again_small" if settings.small else "again")
+    Ours(settings, domain, settings.threads).write(base)
+    again = Domain("its mesh, `-r` to the same bounds", base + ".poly", domain.angle, domain.area)
+    cases = [Ours(settings, again, n, "r") for n in sorted({1, settings.threads})]
+    measured = measure(f"stages: {again.name}", cases, settings)
+    lines = [(m.case.name, m.text("read"), m.text("delaunay"), m.text("quality"), m.text("number"), m.text("write"),
+              m.text("process"), "–") for m in measured]
+    text = f"### {domain.name}, {again.name}: the whole process without writing\n\n" + table(FILES_HEAD, lines)
+    target = _ratio_target(f"one thread over all, whole process, {again.name}", 1.8, measured[0], measured[-1],
+                           "process")
+    return text, [row for m in measured for row in m.rows("stages again")], [target]
+
+
+# --- all
+
+
+def _jobs(settings):
+    coasts = [norway(settings, 30, 2.2e5), *shared_coasts(settings, 30, 0.016)[-1:]]
+    yield letter(settings, 2.5e-8), (9, 16, 0)
+    yield square(settings, 1e-7), (4.8, 9, 0)
+    yield random_points(settings, 30), (0, 0, 0)
+    for coast in coasts:
+        yield coast, (0, 0, 1.9)
+    yield random_points(settings, 0, 10_000_000), (0, 0, 0)
+
+
+def _stages(settings, domain, goals):
+    measured = measure(f"stages: {domain.name} -{domain.switches}", _cases(settings, domain), settings)
+    text = f"### {domain.name}, `-{domain.switches}`\n\n" + table(HEAD, [_line(m, measured[0]) for m in measured])
+    targets, most = _targets(domain, goals, measured), measured[MOST]
+    if domain.name.startswith("unit square"):
+        targets += [_mean_area(domain, m) for m in measured[SEQUENTIAL:]]
+    elif domain.path.endswith(".node") and domain.angle:
+        targets.append(_ratio_target(f"all, {domain.name}, {most.case.name}", 7, measured[TRIANGLE], most, "memory"))
+    elif domain.path.endswith(".node"):
+        targets.append(_ratio_target(f"triangulation, {domain.name}, {most.case.name}", 5, measured[TRIANGLE], most,
+                                     "delaunay"))
+        targets.append(_ratio_target(f"one thread over all, triangulation, {domain.name}", 1.85, measured[ONE], most,
+                                     "delaunay"))
+    return text, [row for m in measured for row in m.rows("stages")], targets
+
+
 def run(settings):
-    points = random_points(settings, 30)
-    coasts = [norway(settings, 30, 2.2e5), *shared_coasts(settings, 30, 0.016)]
-    jobs = [(letter(settings, 2.5e-8), (6, 11)), (square(settings, 1e-7), (4.5, 8)), *((c, (0, 6)) for c in coasts),
-            (plate(settings, 1e-4), (0, 0)), (points, (0, 6)), (points.without_bounds(), (0, 0))]
+    figure = letter(settings, 2.5e-8)
+    steps = [(_files, figure, (9, 12)), *((_stages, *job) for job in _jobs(settings)), (_again, figure)]
     texts, rows, targets = [], [], []
-    for domain, goals in jobs:
-        measured = measure(f"stages: {domain.name} -{domain.switches}", _cases(settings, domain), settings)
-        lines = [_line(m, measured[TRIANGLE]) for m in measured]
-        texts.append(f"### {domain.name}, `-{domain.switches}`\n\n" + table(HEAD, lines))
-        rows += [row for m in measured for row in m.rows("stages")]
-        targets += _quality_targets(domain.name, goals, measured)
-        if domain.name.startswith("unit square"):
-            targets += [_mean_area(domain, m) for m in measured[SEQUENTIAL:]]
-        elif domain is points:
-            targets.append(_target(f"triangulation and refinement, {domain.name}, {measured[MOST].case.name}", 6,
-                                   measured[MOST], measured[TRIANGLE], "memory"))
-        elif not domain.angle:
-            targets.append(_target(f"triangulation, {domain.name}, {measured[MOST].case.name}", 2.5, measured[MOST],
-                                   measured[TRIANGLE], "delaunay"))
-    text, measured = _with_files(settings, jobs[0][0])
-    rows += [row for m in measured for row in m.rows("stages with files")]
-    targets += [_target(f"whole process with text files, {jobs[0][0].name}, {m.case.name}", 7, m, measured[0],
-                        "process") for m in measured[2:]]
-    text = NOTE.format(settings.repeats) + "\n".join([*texts, text])
-    return {"title": "Stages, beside Triangle 1.6", "text": text, "rows": rows, "targets": targets}
+    for step, *what in steps:
+        text, more_rows, more_targets = step(settings, *what)
+        texts.append(text)
+        rows += more_rows
+        targets += more_targets
+        yield {"title": "Stages, beside Triangle 1.6", "text": NOTE.format(settings.repeats) + "\n".join(texts),
+               "rows": rows, "targets": targets}

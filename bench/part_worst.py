@@ -46,6 +46,7 @@ def _cell(measured, n):
 
 def run(settings):
     sizes = (1_000, 10_000) if settings.small else (10_000, 100_000, 1_000_000)
+    head = ("input", "switches", *(f"{n:,} vertices" for n in sizes))
     lines, rows = [], []
     for builders, largest in ((worst.TRIANGULATION, sizes[-1]), (worst.DEARER, sizes[-2])):
         for build in builders:
@@ -55,6 +56,5 @@ def run(settings):
             cells = [_cell(m, n) for m, n in zip(measured, taken)]
             lines.append((domain.name, f"`-{domain.switches}`", *cells, *["–"] * (len(sizes) - len(cells))))
             rows += [{**row, "input": f"{row['input']}, {n}"} for m, n in zip(measured, taken) for row in m.rows("worst")]
-    head = ("input", "switches", *(f"{n:,} vertices" for n in sizes))
-    return {"title": "Inputs of the worst kind", "text": NOTE.format(settings.repeats) + table(head, lines),
-            "rows": rows, "targets": []}
+            yield {"title": "Inputs of the worst kind", "text": NOTE.format(settings.repeats) + table(head, lines),
+                   "rows": rows, "targets": []}

@@ -47,14 +47,24 @@ def _machine_table(parts):
     return table(("", ""), lines)
 
 
+def _bound(target):
+    return f"at least {target['least']:g}" if "least" in target else f"at most {target['most']:g}"
+
+
+def _reached(target):
+    reached = target["reached"]
+    if reached is None:
+        return "missing", ""
+    good = reached >= target["least"] if "least" in target else reached <= target["most"]
+    return f"{reached:.3g}", "yes" if good else "NO"
+
+
 def _targets(parts):
     lines = []
     for part in parts.values():
         for t in part["targets"]:
-            reached = t["reached"]
-            lines.append((t["asked"], f"{t['least']:g}", "missing" if reached is None else f"{reached:.3g}",
-                          "" if reached is None else "yes" if reached >= t["least"] else "NO"))
-    return table(("target", "asked, at least", "reached", ""), lines)
+            lines.append((t["asked"], _bound(t), *_reached(t)))
+    return table(("target", "asked", "reached", ""), lines)
 
 
 def write(settings):
@@ -69,4 +79,3 @@ def write(settings):
     _write_csv(os.path.join(settings.results, "results.csv"), parts)
     with open(os.path.join(settings.results, "results.md"), "w") as file:
         file.write("\n".join(text))
-    print(f"bench: wrote {os.path.relpath(os.path.join(settings.results, 'results.md'))} and .csv")

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Runs parts of the benchmark; see Makefile.bench. Each part is a module part_<name> with run(settings), which returns
-title, text (Markdown), rows (for results.csv) and targets. Exit code 1 if one of our meshes has a fault, or a program
-that is there fails."""
+"""Runs parts of the benchmark; see Makefile.bench. Each part is a module part_<name> with run(settings), which yields
+what it has so far, again and again: title, text (Markdown), rows (for results.csv) and targets. All of that is kept,
+so that a run that is interrupted has not been in vain. Exit code 1 if one of our meshes has a fault, or a program that
+is there fails."""
 import importlib
 import json
 import sys
@@ -14,12 +15,13 @@ import settings as options
 
 def measure(settings, part):
     start, others, where = time.perf_counter(), machine.Others(), machine.describe(settings)
-    result = importlib.import_module("part_" + part).run(settings)
-    disturbance = others.average()
-    where["others"] = "unknown" if disturbance is None else f"{disturbance:.2f}"
-    result["machine"] = where
-    with open(report.path_of(settings, part), "w") as file:
-        json.dump(result, file, indent=1)
+    for result in importlib.import_module("part_" + part).run(settings):
+        disturbance = others.average()
+        where["others"] = "unknown" if disturbance is None else f"{disturbance:.2f}"
+        result["machine"] = where
+        with open(report.path_of(settings, part), "w") as file:
+            json.dump(result, file, indent=1)
+        report.write(settings)
     options.say(f"{part}: {time.perf_counter() - start:.0f} s")
 
 

@@ -128,7 +128,7 @@ static bool cut_plane(struct par_partition *p, struct samples *s)
 static void find_box(struct par_partition *p, const struct tri_mesh *mesh)
 {
     p->low = p->high = mesh->xy[0];
-    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++) {
         struct tri_point q = mesh->xy[v];
         p->low.x = q.x < p->low.x ? q.x : p->low.x;
         p->low.y = q.y < p->low.y ? q.y : p->low.y;
@@ -260,9 +260,9 @@ int32_t par_block_at(const struct par_partition *p, int phase, struct tri_point 
     return column * p->n_rows + row;
 }
 
-int32_t par_owner_of(const struct par_partition *p, int phase, const struct tri_mesh *mesh, int32_t t)
+int32_t par_owner_of(const struct par_partition *p, int phase, const struct tri_mesh *mesh, tri_triangle_id t)
 {
-    const int32_t *v = mesh->tri[t].v;
+    const tri_vertex_id *v = mesh->tri[t].v;
     int32_t block = par_block_at(p, phase, mesh->xy[v[0]]);
     for (int k = 1; k < 3 && block != TRI_NONE; k++)
         if (par_block_at(p, phase, mesh->xy[v[k]]) != block)

@@ -15,13 +15,12 @@ enum { GONE = -2 }; /* in phase.block_of: the triangle is no more */
 /* A block at work. Every field is its own while the phase runs; others read it before and after. */
 struct task {
     int32_t block;
-    int32_t *worklist;         /* part of the phase's list */
+    tri_triangle_id *worklist; /* part of the phase's list */
     int32_t n_worklist;
     int32_t expected;       /* triangles, to the order */
     struct tri_fence fence, active; /* the second in the caller's coordinates */
     bool has_margin;
-    struct par_room room;
-    struct tri_mesh view;
+    struct par_view view;
     struct tri_owners owners;
     struct tri_refine_options options;
     struct tri_refine_report report;
@@ -44,7 +43,7 @@ struct phase {
     int32_t only;       /* column, or TRI_NONE */
     int32_t *block_of;  /* [worklist.n] */
     double *work;       /* [worklist.n] triangles that each will become, to the order */
-    int32_t *worklist;     /* [worklist.n] by block */
+    tri_triangle_id *worklist; /* [worklist.n] by block */
     struct task *tasks;
     int32_t n_tasks;
     int32_t *order;     /* [n_tasks] in which tasks are started */
@@ -52,7 +51,7 @@ struct phase {
     size_t n_marks;
 };
 
-static void leave_triangle(void *user, int32_t triangle)
+static void leave_triangle(void *user, tri_triangle_id triangle)
 {
     struct task *task = user;
     if (!par_worklist_add(&task->left, triangle))
@@ -81,7 +80,7 @@ static bool is_active(void *user, const double p[2])
 }
 
 /* The block that has its turn now and owns triangle t. */
-static int32_t owner_now(const struct phase *p, int32_t t)
+static int32_t owner_now(const struct phase *p, tri_triangle_id t)
 {
     int32_t block = par_owner_of(p->partition, p->phase, p->state->mesh, t);
     if (p->state->share)
@@ -96,7 +95,7 @@ static void assign_share(void *context, size_t share)
     const struct tri_mesh *mesh = p->state->mesh;
     const struct tri_range range = tri_share_of(share, TRI_MOST_SHARES, p->state->worklist.n);
     for (int32_t i = range.first; i < range.last; i++) {
-        int32_t t = p->state->worklist.item[i];
+        tri_triangle_id t = p->state->worklist.item[i];
         p->block_of[i] = tri_is_live(&mesh->tri[t]) ? owner_now(p, t) : GONE;
         p->work[i] = p->block_of[i] >= 0 ? tri_work_of(mesh, p->state->quality, t) : 0;
     }
@@ -145,7 +144,7 @@ static bool deal_worklists(struct phase *p)
                     .block = b, .worklist = p->worklist + start[b], .n_worklist = start[b + 1] - start[b],
                     .expected = expect(p->phase, work[b]), .pausing = true};
     for (int32_t i = 0; i < worklist->n; i++) {
-        int32_t triangle = worklist->item[i];
+        tri_triangle_id triangle = worklist->item[i];
         if (p->block_of[i] >= 0)
             p->worklist[start[p->block_of[i]]++] = triangle;
         else if (p->block_of[i] == TRI_NONE) {
@@ -224,8 +223,8 @@ static void set_up(struct phase *p, struct task *task)
     task->options.n_worklist = task->n_worklist;
     task->options.deferred = leave_triangle;
     task->options.deferred_user = task;
-    task->options.more_room = par_more_room;
-    task->options.more_room_user = &task->room;
+    task->options.more_room = par_view_more_room;
+    task->options.more_room_user = &task->view;
 }
 
 /* Room for a task that is full. A pause costs what the block had in the cache, and whoever waits with it the time of
@@ -252,7 +251,7 @@ static enum tri_status deal_room(struct phase *p, bool first, struct tri_error *
             more = p->state->options->tight_room;
         task->pauses += !first;
         p->state->report->pauses += !first;
-        status = par_room_extend(&task->room, &p->state->spare, p->state->mesh, more, error);
+        status = par_room_extend(&task->view.room, &p->state->spare, p->state->mesh, more, error);
     }
     return status;
 }
@@ -300,14 +299,14 @@ static void run_task(struct phase *p, struct task *task)
     assert(task->pausing);
     task->owners = (struct tri_owners){p->mark, task->block + 1};
     task->options.owners = p->mark ? &task->owners : NULL;
-    par_room_enter(&task->room, &task->view, p->state->mesh);
+    par_view_begin(&task->view, p->state->mesh);
     task->asked.n = 0;
     task->status = TRI_OK;
     if (!task->refiner)
-        task->status = tri_refiner_new(&task->refiner, &task->view, &task->options, &task->report, &task->error);
+        task->status = tri_refiner_new(&task->refiner, &task->view.mesh, &task->options, &task->report, &task->error);
     if (!task->status)
         task->status = tri_refiner_run(task->refiner, &task->error);
-    par_room_leave(&task->room, &task->view);
+    par_view_end(&task->view);
     task->pausing = task->status == TRI_NO_ROOM;
     if (!task->pausing) {
         tri_refiner_free(task->refiner);
@@ -511,7 +510,7 @@ static enum tri_status collect(struct phase *p, struct tri_error *error)
         }
         par_add_up(&p->state->report->total, &task->report);
         memory = memory && report_block(p, task);
-        par_room_return(&task->room, &p->state->spare);
+        par_room_return(&task->view.room, &p->state->spare);
         free(task->left.item);
         free(task->changed.item);
         free(task->asked.item);

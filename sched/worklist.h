@@ -6,12 +6,12 @@
 #include "triangle/refine.h"
 
 struct par_worklist {
-    int32_t *item;
+    tri_triangle_id *item;
     int32_t n, capacity;
 };
 
 /* Amortised O(1). False: no memory. */
-bool par_worklist_add(struct par_worklist *triangles, int32_t triangle);
+bool par_worklist_add(struct par_worklist *triangles, tri_triangle_id triangle);
 
 /* Brings ids in ascending order, each once; returns how many are left. */
 int32_t par_sort_unique(int32_t *item, int32_t n);
@@ -28,7 +28,7 @@ struct par_triangle_set {
 bool par_triangle_set_of(struct par_triangle_set *set, const struct par_worklist *triangles, int32_t n_triangles);
 
 /* Adds a triangle to the list unless it is in the set, which is that of the list. False: no memory. */
-bool par_worklist_add_new(struct par_worklist *triangles, struct par_triangle_set *set, int32_t triangle);
+bool par_worklist_add_new(struct par_worklist *triangles, struct par_triangle_set *set, tri_triangle_id triangle);
 
 /* The worklist becomes all triangles that violate the bounds, in the order of their numbers; *radius, the largest
  * circumradius among them. known: the worklist is that already, for the mesh as it was after the last call; then only
