@@ -44,7 +44,7 @@ struct par_options {
                                 sink: TRI_NO_MEMORY as soon as it would not fit */
     const char *scratch;     /* directory for these files; NULL: with a sink, the bound decides on the sweep alone, and
                                 a mesh that cannot be swept is TRI_TOO_LARGE */
-    struct par_checkpoint *checkpoint; /* where the state of a sweep is kept, and taken from (sched/sweep/checkpoint.h);
+    struct par_checkpoint *checkpoint; /* where the state of the run is kept, and taken from (sched/sweep/state.h);
                                           NULL: nowhere */
     bool sweep;              /* for tests: whatever memory there is */
     struct par_carrier *carrier; /* not NULL: this is one of several ranks, which all make this call with the same mesh,
