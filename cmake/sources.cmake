@@ -139,8 +139,10 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/ranks/carrier.c
     sched/ranks/borrow.c
     sched/ranks/hand_out.c
+    sched/ranks/keep.c
     sched/ranks/lend.c
     sched/ranks/paste.c
+    sched/ranks/pieces.c
     sched/ranks/ranks.c
     sched/ranks/relay.c
     sched/ranks/stream.c
