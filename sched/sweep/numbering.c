@@ -105,6 +105,7 @@ static int32_t add_up_counts(struct deal *d, int32_t n_tiles)
         }
     }
     d->start[n_tiles] = sum;
+    assert(sum <= d->n);
     return sum;
 }
 
@@ -121,6 +122,7 @@ static int32_t find_tile(struct tile_finder *f, const struct par_partition *p, s
         f->fence = par_fence(p, column, row);
         f->tile = column / 2 * (p->n_rows / 2) + row / 2;
     }
+    assert(tri_fence_holds(&f->fence, q));
     return f->tile;
 }
 
