@@ -79,6 +79,7 @@ set(PTRIANGLE_CHECK_SOURCES
 # Room triangle/, text files. The one C++ file wraps std::from_chars and std::to_chars.
 set(PTRIANGLE_TEXT_SOURCES
     triangle/text/decimal.cpp
+    triangle/text/names.c
     triangle/text/text.c
     triangle/text/window.c
     triangle/text/read.c

@@ -24,6 +24,7 @@
 #include "sched/sweep/queue.h"
 #include "sched/threads.h"
 #include "triangle/estimate.h"
+#include "triangle/text/names.h"
 #include "triangle/text/write.h"
 
 static const char PROGRAM[] = PTRIANGLE_NAME;
@@ -277,7 +278,7 @@ static enum tri_status name_output(struct arguments *arguments, const char *base
 {
     if (!base || !arguments->file)
         return TRI_OK;
-    char *output = joined(base, "");
+    char *output = tri_joined(base, "");
     if (!output)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
     free(arguments->output);
@@ -320,8 +321,8 @@ static char *scratch_of(const struct long_options *options, const struct argumen
     const char *output = options->n_streams > 0 ? options->streams[0] : arguments->output;
     const char *slash = output ? strrchr(output, '/') : NULL;
     if (asked && *asked)
-        return joined(asked, "");
-    char *folder = joined(slash ? output : ".", "");
+        return tri_joined(asked, "");
+    char *folder = tri_joined(slash ? output : ".", "");
     if (folder && slash)
         folder[slash - output + 1] = 0;
     return folder;

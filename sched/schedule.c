@@ -592,6 +592,7 @@ static enum tri_status refine_by_schedule(struct par_state *state, const struct 
                                           struct tri_error *error)
 {
     struct tri_refine_options usual = *quality;
+    usual.final_angle = tri_final_angle(quality);
     usual.min_angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
     const bool sizes = usual.min_angle > TRI_EASY_ANGLE && tri_has_sizes(&usual);
     if (!sizes && state->stage == PAR_SIZES)
