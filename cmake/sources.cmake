@@ -131,6 +131,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/sweep/spool.c
     sched/sweep/checkpoint.c
     sched/sweep/ahead.c
+    sched/sweep/remain.c
     sched/sweep/sweep.c
     sched/worklist.c
     sched/phase.c
