@@ -45,7 +45,7 @@ struct run {
     struct tri_mesh mesh;
     struct tri_report report;
     struct tri_counts counts;
-    int64_t remain[TRI_EXCUSES]; /* of a mesh that was handed out as it was made: triangles that stay below the bounds */
+    int64_t remain[TRI_EXCUSES]; /* of a swept or parked mesh: triangles that stay below the bounds */
     bool remain_known;
     double seconds[RUN_STAGES];
     double total_seconds;
