@@ -17,18 +17,16 @@ static struct tri_refine_report report_of(const struct par_state *state)
 bool par_remain_begin(struct par_state *state)
 {
     struct par_worklist *list = &state->remaining;
-    const size_t n = (size_t)state->mesh->n_triangles;
-    free(list->item);
-    *list = (struct par_worklist){.item = malloc((n + 1) * sizeof *list->item)};
-    if (!list->item)
-        return false;
-    list->n = tri_find_hopeless(state->mesh, state->quality, list->item);
-    tri_triangle_id *less = realloc(list->item, ((size_t)list->n + 1) * sizeof *less);
-    list->item = less ? less : list->item;
-    list->capacity = list->n;
+    tri_triangle_id *found = malloc(((size_t)state->mesh->n_triangles + 1) * sizeof *found);
+    const int32_t n = found ? tri_find_hopeless(state->mesh, state->quality, found) : 0;
+    bool memory = found;
+    list->n = 0;
+    for (int32_t i = 0; memory && i < n; i++)
+        memory = par_worklist_add(list, found[i]);
+    free(found);
     memset(state->report->remain, 0, sizeof state->report->remain);
-    state->report->remain_known = true;
-    return true;
+    state->report->remain_known = memory;
+    return memory;
 }
 
 static bool has_corner_left_of(const struct tri_mesh *mesh, tri_triangle_id t, double x)
