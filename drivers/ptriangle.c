@@ -24,6 +24,7 @@
 #include "sched/sweep/queue.h"
 #include "sched/threads.h"
 #include "triangle/estimate.h"
+#include "triangle/text/names.h"
 #include "triangle/text/write.h"
 
 static const char PROGRAM[] = PTRIANGLE_NAME;
@@ -165,16 +166,13 @@ static enum tri_status help_others(struct program *p, struct run *run, struct tr
 }
 
 /* What did not fit in memory, or could not be swept. */
-static void tell_of_parking(const struct program *p, bool quiet, enum tri_status status)
+static void tell_of_parking(const struct program *p, bool quiet)
 {
     const struct console console = {.program = PROGRAM, .quiet = quiet};
     if (p->schedule.parked > 0)
         console_say(&console, "%s parked: %.3g GB in %s.\n",
                     p->schedule.way == PAR_SWEPT ? "What did not fit in memory was" : "The mesh was not swept, and was",
                     1e-9 * (double)p->schedule.parked, p->scratch);
-    const bool stopped = status == TRI_STOPPED; /* another failure is told in one line */
-    if (p->schedule.way != PAR_SWEPT && p->restart.wanted && (!status || stopped))
-        fprintf(stderr, "%s: there was no checkpoint.\n", PROGRAM);
 }
 
 /* Refines, and writes what is finished meanwhile. */
@@ -192,7 +190,7 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
                                    : refine_into(p, run, &streams, mesh, quality, error);
     streams_close(&p->streams);
     tri_mesh_free(mesh); /* what is left of it is no mesh */
-    tell_of_parking(p, run->arguments->switches.quiet, status);
+    tell_of_parking(p, run->arguments->switches.quiet);
     if (!status)
         count_streamed(&run->counts, &before, unused, &p->streams);
     return status;
@@ -210,9 +208,6 @@ static enum tri_status refine(void *user, struct run *run, struct tri_output_set
         status = sweep(p, run, set, mesh, quality, error);
     } else {
         struct par_options options = options_of(p, run);
-        if (p->restart.wanted)
-            console_say(&(struct console){.program = PROGRAM, .quiet = run->arguments->switches.quiet},
-                        "The mesh stays in memory: there will be no checkpoint, and --resume starts over.\n");
         status = refine_with(p, run, &options, mesh, quality, error);
         if (!status)
             progress_stage(&p->progress, "writing");
@@ -280,7 +275,7 @@ static enum tri_status name_output(struct arguments *arguments, const char *base
 {
     if (!base || !arguments->file)
         return TRI_OK;
-    char *output = joined(base, "");
+    char *output = tri_joined(base, "");
     if (!output)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
     free(arguments->output);
@@ -323,8 +318,8 @@ static char *scratch_of(const struct long_options *options, const struct argumen
     const char *output = options->n_streams > 0 ? options->streams[0] : arguments->output;
     const char *slash = output ? strrchr(output, '/') : NULL;
     if (asked && *asked)
-        return joined(asked, "");
-    char *folder = joined(slash ? output : ".", "");
+        return tri_joined(asked, "");
+    char *folder = tri_joined(slash ? output : ".", "");
     if (folder && slash)
         folder[slash - output + 1] = 0;
     return folder;
@@ -361,7 +356,7 @@ static const char *whole_mesh(const struct long_options *o)
 static struct run_hooks hooks_of(struct program *p)
 {
     const struct long_options *o = &p->options;
-    bool goes_on = p->restart.wanted && par_checkpoint_has_state(&p->restart.checkpoint);
+    bool goes_on = p->restart.wanted && par_checkpoint_has_sweep(&p->restart.checkpoint);
     struct run_hooks hooks = {.program = PROGRAM, .refine = refine, .estimate = estimate, .write = write_further,
                               .streams = true,
                               .always_sweep = goes_on || p->launch.carrier || sweep_for_tests(),
@@ -415,6 +410,12 @@ static void free_program(struct program *p)
         free(p->xdmf[i]);
 }
 
+/* One task goes on where several were at work. */
+static bool goes_on_alone(const struct program *p)
+{
+    return !p->launch.carrier && p->restart.wanted && par_checkpoint_has_ranks(&p->restart.checkpoint);
+}
+
 /* Once the words have been taken. */
 static int carry_out(struct program *p, const struct arguments *arguments, struct tri_error *error)
 {
@@ -426,17 +427,20 @@ static int carry_out(struct program *p, const struct arguments *arguments, struc
         help_full(PROGRAM, "on all cores", long_options_help);
         return EXIT_SUCCESS;
     }
-    if (p->launch.carrier && (p->options.checkpoint || p->options.resume))
-        tri_fail(error, TRI_BAD_INPUT, NULL, 0, "several tasks keep no checkpoints");
-    else if (p->launch.carrier && memory_of(&p->options) > 0)
+    if (p->launch.carrier && memory_of(&p->options) > 0)
         tri_fail(error, TRI_BAD_INPUT, NULL, 0, "several tasks keep no bound on memory: leave out --memory");
     else if (arguments->file)
-        restart_open(&p->restart, &p->options, error);
+        restart_open(&p->restart, &p->options, p->launch.carrier, error);
     if (error->status) {
         console_error(&(struct console){.program = PROGRAM}, error);
         return EXIT_FAILURE;
     }
+    const bool alone = goes_on_alone(p);
+    int64_t room;
+    struct par_carrier one = par_carrier_alone(&room);
+    p->launch.carrier = alone ? &one : p->launch.carrier;
     int code = run_program(p, arguments, error);
+    p->launch.carrier = alone ? NULL : p->launch.carrier;
     restart_close(&p->restart, PROGRAM, arguments, code);
     return code;
 }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "triangle/estimate.h"
+#include "triangle/grow.h"
 
 enum { SAMPLES_PER_CELL = 32 };
 
@@ -17,21 +18,15 @@ struct sample {
 
 struct samples {
     struct sample *item;
-    size_t n, capacity;
+    int64_t n, capacity;
 };
 
 /* A tri_take_work: user is a struct samples. */
 static bool add_sample(void *user, struct tri_point q, double work)
 {
     struct samples *s = user;
-    if (s->n == s->capacity) {
-        size_t capacity = s->capacity ? 2 * s->capacity : 4096;
-        struct sample *fresh = realloc(s->item, capacity * sizeof *fresh);
-        if (!fresh)
-            return false;
-        s->item = fresh;
-        s->capacity = capacity;
-    }
+    if (!tri_grow_far(&s->item, &s->capacity, s->n + 1, sizeof *s->item))
+        return false;
     s->item[s->n++] = (struct sample){q, work};
     return true;
 }
@@ -57,14 +52,14 @@ static int by_y(const void *left, const void *right)
 
 /* Sorted samples into n shares of equal work; cut[k] receives the index at which share k begins, cut[n] that of the
  * end. */
-static void cut_shares(const struct samples *s, int32_t n, size_t *cut)
+static void cut_shares(const struct samples *s, int32_t n, int64_t *cut)
 {
     double total = 0, sum = 0;
     int32_t k = 1;
-    for (size_t i = 0; i < s->n; i++)
+    for (int64_t i = 0; i < s->n; i++)
         total += s->item[i].work;
     cut[0] = 0;
-    for (size_t i = 0; i < s->n && k < n; i++) {
+    for (int64_t i = 0; i < s->n && k < n; i++) {
         sum += s->item[i].work;
         while (k < n && sum >= total * k / n)
             cut[k++] = i + 1;
@@ -76,13 +71,13 @@ static void cut_shares(const struct samples *s, int32_t n, size_t *cut)
 
 /* Boundaries half way between the last sample of a share and the first of the next. Where a share is empty they are
  * equal: an empty cell. */
-static void place_bounds(double *bounds, int32_t n_shares, const struct samples *s, const size_t *cut, bool along_x,
+static void place_bounds(double *bounds, int32_t n_shares, const struct samples *s, const int64_t *cut, bool along_x,
                          double low, double high)
 {
     bounds[0] = low;
     bounds[n_shares] = high;
     for (int32_t k = 1; k < n_shares; k++) {
-        size_t i = cut[k];
+        int64_t i = cut[k];
         bounds[k] = bounds[k - 1];
         if (i == 0 || i >= s->n)
             continue;
@@ -93,26 +88,26 @@ static void place_bounds(double *bounds, int32_t n_shares, const struct samples 
 }
 
 /* Rows of a block column from the samples first .. end - 1, which lie in it. */
-static void cut_rows(struct par_partition *p, const struct samples *s, size_t first, size_t end, int32_t column,
-                     struct sample *scratch, size_t *cut)
+static void cut_rows(struct par_partition *p, const struct samples *s, int64_t first, int64_t end, int32_t column,
+                     struct sample *scratch, int64_t *cut)
 {
     struct samples inside = {scratch, end - first, end - first};
-    for (size_t i = 0; i < inside.n; i++)
+    for (int64_t i = 0; i < inside.n; i++)
         scratch[i] = s->item[first + i];
     if (inside.n > 0)
-        qsort(scratch, inside.n, sizeof *scratch, by_y);
+        qsort(scratch, (size_t)inside.n, sizeof *scratch, by_y);
     cut_shares(&inside, p->n_rows - 1, cut);
     place_bounds(p->y + (size_t)column * (size_t)p->n_rows, p->n_rows - 1, &inside, cut, false, p->low.y, p->high.y);
 }
 
 static bool cut_plane(struct par_partition *p, struct samples *s)
 {
-    size_t *columns = malloc((size_t)p->n_columns * sizeof *columns), *rows = malloc((size_t)p->n_rows * sizeof *rows);
-    struct sample *scratch = malloc((s->n + 1) * sizeof *scratch);
+    int64_t *columns = malloc((size_t)p->n_columns * sizeof *columns), *rows = malloc((size_t)p->n_rows * sizeof *rows);
+    struct sample *scratch = malloc(((size_t)s->n + 1) * sizeof *scratch);
     int32_t last = p->n_columns - 1;
     if (columns && rows && scratch) {
         if (s->n > 0)
-            qsort(s->item, s->n, sizeof *s->item, by_x);
+            qsort(s->item, (size_t)s->n, sizeof *s->item, by_x);
         cut_shares(s, last, columns);
         place_bounds(p->x, last, s, columns, true, p->low.x, p->high.x);
         for (int32_t k = 0; k <= last; k++)
