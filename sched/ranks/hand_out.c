@@ -206,7 +206,7 @@ static enum tri_status prepare(struct handing *h, int64_t count[3], struct tri_e
     h->end_tile = par_first_block(territory, rank + 1);
     h->column = calloc((size_t)(h->end - h->first) + 1, sizeof(struct par_column *));
     h->told = calloc((size_t)territory->n_ranks, sizeof *h->told);
-    par_room_mark(&h->ranks->state->spare, h->mesh);
+    par_room_mark(&h->ranks->state->spare, h->mesh, &h->ranks->state->executor);
     if (!h->column || !h->told || !par_tiles_reserve(h->tiles))
         return no_memory(error);
     count[0] = count_vertices(h);
