@@ -46,12 +46,15 @@ add_library(judged OBJECT ${PTRIANGLE_JUDGED_SOURCES})
 target_link_libraries(judged PUBLIC libtrihdf5 libtritext libtriangle)
 ptriangle_flags(judged STRICT)
 
-# The judge, on all cores where there is OpenMP: it is compiled into the program once more, so that the library, which is
-# in other programs too, needs no OpenMP.
-ptriangle_program(trianglecheck judged)
-target_sources(trianglecheck PRIVATE ${PTRIANGLE_JUDGE_SOURCES} ${PTRIANGLE_CHECK_SOURCES})
+
+# The judge, on all cores where there is OpenMP.
+ptriangle_program(trianglecheck judged libtricheck)
+target_sources(trianglecheck PRIVATE ${PTRIANGLE_JUDGE_SOURCES})
 if(OpenMP_C_FOUND)
     target_link_libraries(trianglecheck PRIVATE OpenMP::OpenMP_C)
+else()
+    find_package(Threads REQUIRED)
+    target_link_libraries(trianglecheck PRIVATE Threads::Threads)
 endif()
 foreach(name IN LISTS PTRIANGLE_EXAMPLES)
     add_executable(${name} drivers/${name}.c)

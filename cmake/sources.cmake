@@ -83,6 +83,7 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/window.c
     triangle/text/read.c
     triangle/text/output.c
+    triangle/text/behind.c
     triangle/text/write.c
     triangle/text/layouts.c
     triangle/text/stream.c
@@ -111,8 +112,8 @@ set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c)
 set(PTRIANGLE_TEXT_NEEDS triangle/status.c triangle/pslg.c triangle/api/figure.c)
 set(PTRIANGLE_CHECK_NEEDS ${PTRIANGLE_TEXT_NEEDS} triangle/predicates.c)
 
-# Room sched/, the parallel schedule: compiled with OpenMP, as are drivers/ptriangle.c, which asks for the number of
-# threads, and the program trianglecheck with the judge in it (programs.cmake), and nothing else.
+# Room sched/, the parallel schedule: compiled with OpenMP, as are the programs ptriangle and trianglecheck, which hand
+# out threads (sched/threads.h), and nothing else.
 set(PTRIANGLE_SCHED_SOURCES
     sched/theory.c
     sched/threads.c
@@ -163,7 +164,7 @@ set(PTRIANGLE_PUBLIC_HEADERS
 # needs the room sched/ and its library.
 set(PTRIANGLE_DRIVER_SOURCES)
 set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle)
-set(PTRIANGLE_JUDGE_SOURCES drivers/all_cores.c drivers/verdict.c)
+set(PTRIANGLE_JUDGE_SOURCES drivers/verdict.c sched/threads.c)
 set(PTRIANGLE_JUDGED_SOURCES # reading of meshes that are there, for the judge and for meshplot
     drivers/resources.c
     drivers/scratch.c
@@ -176,7 +177,6 @@ set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
 
 # meshplot, built where cairo is found.
 set(PTRIANGLE_PLOT_SOURCES
-    drivers/all_cores.c
     drivers/plot_part.c
     drivers/plot_colour.c
     drivers/plot_shade.c

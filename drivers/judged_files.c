@@ -8,7 +8,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "drivers/all_cores.h"
 #include "triangle/text/read.h"
 #include "triangle/text/text.h"
 
@@ -56,7 +55,8 @@ static const char *read_neighbor_row(void *user, size_t i, struct tri_fields *fi
     return NULL;
 }
 
-static enum tri_status parse_neighbors(struct judged_files *f, const struct tri_text *text, struct tri_error *error)
+static enum tri_status parse_neighbors(struct judged_files *f, const struct tri_text *text,
+                                       const struct tri_executor *executor, struct tri_error *error)
 {
     struct tri_cursor cursor = tri_cursor_begin(text);
     struct tri_fields fields;
@@ -72,22 +72,24 @@ static enum tri_status parse_neighbors(struct judged_files *f, const struct tri_
         return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
     struct neighbor_rows rows = {f->neighbors, f->base};
     struct tri_table table = {"triangle", (size_t)n, f->base, read_neighbor_row, &rows};
-    return tri_cursor_table(&cursor, &table, &all_cores, error);
+    return tri_cursor_table(&cursor, &table, executor, error);
 }
 
-static enum tri_status read_neighbors(struct judged_files *f, const char *path, struct tri_error *error)
+static enum tri_status read_neighbors(struct judged_files *f, const char *path, const struct tri_executor *executor,
+                                      struct tri_error *error)
 {
     struct tri_text text = {0};
-    enum tri_status status = tri_text_load(&text, path, 0, &all_cores, NULL, error);
+    enum tri_status status = tri_text_load(&text, path, 0, executor, NULL, error);
     if (status == TRI_OK)
-        status = parse_neighbors(f, &text, error);
+        status = parse_neighbors(f, &text, executor, error);
     tri_text_free(&text);
     return status;
 }
 
-static enum tri_status read_arrays(struct judged_files *f, const struct judged_names *names, struct tri_error *error)
+static enum tri_status read_arrays(struct judged_files *f, const struct judged_names *names,
+                                   const struct tri_executor *executor, struct tri_error *error)
 {
-    struct tri_read_options options = {.default_base = 1, .may_be_empty = true, .executor = &all_cores};
+    struct tri_read_options options = {.default_base = 1, .may_be_empty = true, .executor = executor};
     bool points_in_poly;
     enum tri_status status =
         names->poly ? tri_read_poly(names->poly, names->node, &options, &f->mesh, &f->base, &points_in_poly, error)
@@ -96,13 +98,14 @@ static enum tri_status read_arrays(struct judged_files *f, const struct judged_n
     if (status == TRI_OK)
         status = tri_read_ele(names->ele, &options, f->base, f->mesh.n_points, &f->elements, error);
     if (status == TRI_OK && names->neigh)
-        status = read_neighbors(f, names->neigh, error);
+        status = read_neighbors(f, names->neigh, executor, error);
     return status;
 }
 
-static enum tri_status read_input(struct judged_files *f, const char *path, struct tri_error *error)
+static enum tri_status read_input(struct judged_files *f, const char *path, const struct tri_executor *executor,
+                                  struct tri_error *error)
 {
-    struct tri_read_options options = {.default_base = f->base, .executor = &all_cores,
+    struct tri_read_options options = {.default_base = f->base, .executor = executor,
                                        .regions_if_any = (f->source.given >> TRI_CHECK_ATTRIBUTES & 1) != 0};
     int32_t base;
     bool points_in_poly;
@@ -173,10 +176,10 @@ static enum tri_status read_texts(struct judged_files *f, const struct judged_as
     f->listed = names->poly != NULL;
     enum tri_status status = TRI_OK;
     if (judged_fits(ask->base, ask->memory)) {
-        status = read_arrays(f, names, error);
+        status = read_arrays(f, names, ask->executor, error);
         f->source = take_arrays(f);
     } else {
-        status = judged_text_read(&f->text, names, ask->scratch, error);
+        status = judged_text_read(&f->text, names, ask->scratch, ask->executor, error);
         f->source = judged_text_source(&f->text);
         f->source.memory = ask->memory;
         f->base = f->text.base;
@@ -226,7 +229,7 @@ enum tri_status judged_read(struct judged_files *f, const struct judged_ask *ask
 {
     enum tri_status status = is_hdf5(ask->base) ? open_h5(f, ask, error) : read_mesh(f, ask, error);
     if (status == TRI_OK && ask->input != NULL)
-        status = read_input(f, ask->input, error);
+        status = read_input(f, ask->input, ask->executor, error);
     if (status == TRI_OK)
         leave_out_nodes(f);
     f->source.scratch = ask->scratch;

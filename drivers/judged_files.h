@@ -35,6 +35,7 @@ struct judged_ask {
     const char *input;   /* NULL: none */
     double memory;       /* bytes that may be used */
     const char *scratch; /* folder */
+    const struct tri_executor *executor; /* reads text in stretches; NULL: nobody */
 };
 
 /* Reads base.node or base.poly, base.ele and base.neigh, or opens base; and the input, a .poly or .node file. */

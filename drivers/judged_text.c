@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "drivers/all_cores.h"
 #include "triangle/text/window.h"
 
 enum { STRETCH = 1 << 22, ROWS = 1 << 17, N_FIELDS = 4 }; /* bytes of text; rows of them at most */
@@ -13,6 +12,7 @@ enum { STRETCH = 1 << 22, ROWS = 1 << 17, N_FIELDS = 4 }; /* bytes of text; rows
 struct rows {
     struct judged_text *text;
     struct tri_window *window;
+    const struct tri_executor *executor;
     double *reals;    /* points, or attributes */
     int64_t *numbers; /* corners, neighbours or ends */
     int32_t *markers;
@@ -235,7 +235,7 @@ static enum tri_status read_file(struct rows *r, const char *path, const char *f
     struct tri_window window;
     if (path == NULL)
         return TRI_OK;
-    enum tri_status status = tri_window_open(&window, path, STRETCH, &all_cores, error);
+    enum tri_status status = tri_window_open(&window, path, STRETCH, r->executor, error);
     r->window = &window;
     if (!status)
         status = take(r, folder, error);
@@ -270,10 +270,10 @@ static enum tri_status read_all(struct rows *r, const struct judged_names *names
 }
 
 enum tri_status judged_text_read(struct judged_text *t, const struct judged_names *names, const char *folder,
-                                 struct tri_error *error)
+                                 const struct tri_executor *executor, struct tri_error *error)
 {
     *t = (struct judged_text){.base = 1};
-    struct rows r = {.text = t, .largest = -1};
+    struct rows r = {.text = t, .executor = executor, .largest = -1};
     r.reals = malloc(2 * ROWS * sizeof *r.reals);
     r.numbers = malloc(3 * ROWS * sizeof *r.numbers);
     r.markers = malloc(ROWS * sizeof *r.markers);

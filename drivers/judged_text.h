@@ -22,7 +22,7 @@ struct judged_text {
 /* A few MiB of memory; scratch files in that folder, of 20 bytes a point and 24 a triangle, 8 more where it has an
  * attribute and 24 where it has neighbours. Errors: as triangle/text/read.h, TRI_CANNOT_WRITE. */
 enum tri_status judged_text_read(struct judged_text *text, const struct judged_names *names, const char *folder,
-                                 struct tri_error *error);
+                                 const struct tri_executor *executor, struct tri_error *error);
 void judged_text_close(struct judged_text *text);
 
 struct tri_check_source judged_text_source(struct judged_text *text);

@@ -237,7 +237,7 @@ static enum tri_status take_part(struct settings *s, struct files *f, const stru
 static enum tri_status read_part(struct settings *s, struct files *f, double memory, struct tri_error *error)
 {
     const char *folder = getenv("TMPDIR");
-    const struct judged_ask ask = {s->base, NULL, memory, folder != NULL && folder[0] != '\0' ? folder : "/tmp"};
+    const struct judged_ask ask = {s->base, NULL, memory, folder != NULL && folder[0] != '\0' ? folder : "/tmp", NULL};
     struct judged_files judged = {0};
     enum tri_status status = judged_read(&judged, &ask, error);
     if (status == TRI_OK)

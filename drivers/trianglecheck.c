@@ -7,16 +7,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 #include "drivers/judged_files.h"
 #include "drivers/resources.h"
 #include "drivers/verdict.h"
+#include "sched/threads.h"
 #include "triangle/check/check.h"
 
-enum { FAULTS = 1, TROUBLE = 2, MOST_THREADS = 256, WORTH_THREADS = 1 << 15 };
+enum { FAULTS = 1, TROUBLE = 2, WORTH_THREADS = 1 << 15 };
 
 static const char usage[] = "Usage: " PTRIANGLE_NAME " [options] BASE\n";
 
@@ -64,7 +62,7 @@ struct settings {
     const char *input;
     struct tri_check_options check;
     bool ignore_markers, ignore_regions, json, quiet;
-    int64_t threads; /* 0: as OpenMP has it */
+    int64_t threads; /* 0: not given */
     double memory, memory_share; /* one of them, or 0: not given */
     const char *scratch;         /* NULL: not given */
 };
@@ -89,24 +87,6 @@ static int fail_with(const struct tri_error *e)
 
 /* --- judging */
 
-static void set_threads(int64_t n)
-{
-#ifdef _OPENMP
-    omp_set_num_threads((int)(n < MOST_THREADS ? n : MOST_THREADS));
-#else
-    (void)n;
-#endif
-}
-
-static int64_t usual_threads(void)
-{
-#ifdef _OPENMP
-    return omp_get_max_threads();
-#else
-    return 1;
-#endif
-}
-
 /* Bytes that the process may use: the number asked for, or the share of what there is; by default most of that. */
 static double memory_to_use(const struct settings *s)
 {
@@ -116,8 +96,8 @@ static double memory_to_use(const struct settings *s)
     return resources_memory() * (s->memory_share > 0 ? s->memory_share : USUAL_PERCENT / 100.0);
 }
 
-static enum tri_status judge(const struct settings *s, struct judged_files *f, struct tri_check_report *report,
-                             struct tri_error *error)
+static enum tri_status judge(const struct settings *s, struct judged_files *f, const struct tri_executor *executor,
+                             int threads, struct tri_check_report *report, struct tri_error *error)
 {
     unsigned ignored = 0;
     if (s->ignore_markers)
@@ -127,8 +107,10 @@ static enum tri_status judge(const struct settings *s, struct judged_files *f, s
     f->source.given &= ~ignored;
     struct tri_check_options options = s->check;
     options.base = f->base;
-    if (f->source.n_triangles < WORTH_THREADS)
-        set_threads(1);
+    if (f->source.n_triangles >= WORTH_THREADS) {
+        options.executor = executor;
+        options.n_threads = threads;
+    }
     return tri_check_from(&f->source, s->input != NULL ? &f->input : NULL, &options, report, error);
 }
 
@@ -306,14 +288,16 @@ static int run(const struct settings *s, struct judged_files *f)
 {
     struct tri_error error = {0};
     struct tri_check_report report;
-    set_threads(s->threads > 0 ? s->threads : usual_threads());
-    struct judged_ask ask = {s->base, s->input, memory_to_use(s), s->scratch != NULL ? s->scratch : usual_scratch()};
+    int threads = par_threads(s->threads < PAR_MOST_THREADS ? (int)s->threads : PAR_MOST_THREADS, false);
+    const struct tri_executor executor = par_executor(&threads);
+    struct judged_ask ask = {s->base, s->input, memory_to_use(s), s->scratch != NULL ? s->scratch : usual_scratch(),
+                             &executor};
     enum tri_status status = judged_read(f, &ask, &error);
     if (f->stale_neighbors)
         fail("%s.neigh is of another mesh than %s.ele, by their numbers of triangles: it is not judged", s->base,
              s->base);
     if (status == TRI_OK)
-        status = judge(s, f, &report, &error);
+        status = judge(s, f, &executor, threads, &report, &error);
     if (status != TRI_OK)
         return fail_with(&error);
     struct verdict_style style = {s->base, s->check.min_angle, s->quiet};

@@ -197,7 +197,7 @@ static void box_share(void *context, size_t share)
     struct boxing *b = context;
     const struct tri_range range = tri_share(share, b->mesh->n_vertices);
     struct tri_point low = b->mesh->xy[range.first], high = low;
-    for (int32_t v = range.first; v < range.last; v++)
+    for (tri_vertex_id v = range.first; v < range.last; v++)
         widen(&low, &high, b->mesh->xy[v], b->mesh->xy[v]);
     b->low[share] = low;
     b->high[share] = high;
@@ -337,9 +337,9 @@ int32_t par_block_at(const struct par_partition *p, int phase, struct tri_point 
     return column * p->n_rows + row;
 }
 
-int32_t par_owner_of(const struct par_partition *p, int phase, const struct tri_mesh *mesh, int32_t t)
+int32_t par_owner_of(const struct par_partition *p, int phase, const struct tri_mesh *mesh, tri_triangle_id t)
 {
-    const int32_t *v = mesh->tri[t].v;
+    const tri_vertex_id *v = mesh->tri[t].v;
     int32_t block = par_block_at(p, phase, mesh->xy[v[0]]);
     for (int k = 1; k < 3 && block != TRI_NONE; k++)
         if (par_block_at(p, phase, mesh->xy[v[k]]) != block)

@@ -66,7 +66,7 @@ struct tri_fence par_fence(const struct par_partition *partition, int32_t column
 int32_t par_block_at(const struct par_partition *partition, int phase, struct tri_point q);
 
 /* The block of a phase that holds all corners of triangle t, or TRI_NONE. O(log blocks). */
-int32_t par_owner_of(const struct par_partition *partition, int phase, const struct tri_mesh *mesh, int32_t t);
+int32_t par_owner_of(const struct par_partition *partition, int phase, const struct tri_mesh *mesh, tri_triangle_id t);
 
 /* The smaller side of the cell that holds q. O(log blocks). */
 double par_cell_size(const struct par_partition *partition, struct tri_point q);

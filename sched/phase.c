@@ -17,13 +17,12 @@ enum { GONE = -2 }; /* in phase.block_of: the triangle is no more */
 /* A block at work. Every field is its own while the phase runs; others read it before and after. */
 struct task {
     int32_t block;
-    int32_t *worklist;         /* part of the phase's list */
+    tri_triangle_id *worklist; /* part of the phase's list */
     int32_t n_worklist;
     int32_t expected;       /* triangles, to the order */
     struct tri_fence fence, active; /* the second in the caller's coordinates */
     bool has_margin;
-    struct par_room room;
-    struct tri_mesh view;
+    struct par_view view;
     struct tri_owners owners;
     struct tri_refine_options options;
     struct tri_refine_report report;
@@ -46,7 +45,7 @@ struct phase {
     int32_t only;       /* column, or TRI_NONE */
     int32_t *block_of;  /* [worklist.n] */
     double *work;       /* [worklist.n] triangles that each will become, to the order */
-    int32_t *worklist;     /* [worklist.n] by block */
+    tri_triangle_id *worklist; /* [worklist.n] by block */
     struct task *tasks;
     int32_t n_tasks;
     int32_t *order;     /* [n_tasks] in which tasks are started */
@@ -54,7 +53,7 @@ struct phase {
     size_t n_marks;
 };
 
-static void leave_triangle(void *user, int32_t triangle)
+static void leave_triangle(void *user, tri_triangle_id triangle)
 {
     struct task *task = user;
     if (!par_worklist_add(&task->left, triangle))
@@ -83,7 +82,7 @@ static bool is_active(void *user, const double p[2])
 }
 
 /* The block that has its turn now and owns triangle t. */
-static int32_t owner_now(const struct phase *p, int32_t t)
+static int32_t owner_now(const struct phase *p, tri_triangle_id t)
 {
     int32_t block = par_owner_of(p->partition, p->phase, p->state->mesh, t);
     if (p->state->share)
@@ -98,7 +97,7 @@ static void assign_share(void *context, size_t share)
     const struct tri_mesh *mesh = p->state->mesh;
     const struct tri_range range = tri_share_of(share, TRI_MOST_SHARES, p->state->worklist.n);
     for (int32_t i = range.first; i < range.last; i++) {
-        int32_t t = p->state->worklist.item[i];
+        tri_triangle_id t = p->state->worklist.item[i];
         p->block_of[i] = tri_is_live(&mesh->tri[t]) ? owner_now(p, t) : GONE;
         p->work[i] = p->block_of[i] >= 0 ? tri_work_of(mesh, p->state->quality, t) : 0;
     }
@@ -116,8 +115,8 @@ static int32_t expect(int phase, double work)
     return expected < 1e7 ? (int32_t)expected : 10000000;
 }
 
-/* Counting sort of the worklist by block, in shares. Blocks are counted from 1; what no block of this phase takes, which
- * stays in the worklist, comes before all of them; what has gone is dropped. */
+/* Counting sort of the worklist by block, in shares. Blocks are counted from 1; what no block of this phase takes
+ * comes before all of them, and stays in the worklist; what has gone is dropped. */
 struct dealing {
     struct phase *p;
     size_t shares, bins;
@@ -299,8 +298,8 @@ static void set_up(struct phase *p, struct task *task)
     task->options.n_worklist = task->n_worklist;
     task->options.deferred = leave_triangle;
     task->options.deferred_user = task;
-    task->options.more_room = par_more_room;
-    task->options.more_room_user = &task->room;
+    task->options.more_room = par_view_more_room;
+    task->options.more_room_user = &task->view;
 }
 
 /* Room for a task that is full. A pause costs what the block had in the cache, and whoever waits with it the time of
@@ -335,7 +334,7 @@ static enum tri_status deal_room(struct phase *p, bool first, struct tri_error *
             more = p->state->options->tight_room;
         task->pauses += !first;
         p->state->report->pauses += !first;
-        status = par_room_extend(&task->room, &p->state->spare, p->state->mesh, more, error);
+        status = par_room_extend(&task->view.room, &p->state->spare, p->state->mesh, more, error);
     }
     return status;
 }
@@ -383,14 +382,14 @@ static void run_task(struct phase *p, struct task *task)
     assert(task->pausing);
     task->owners = (struct tri_owners){p->mark, task->block + 1};
     task->options.owners = p->mark ? &task->owners : NULL;
-    par_room_enter(&task->room, &task->view, p->state->mesh);
+    par_view_begin(&task->view, p->state->mesh);
     task->asked.n = 0;
     task->status = TRI_OK;
     if (!task->refiner)
-        task->status = tri_refiner_new(&task->refiner, &task->view, &task->options, &task->report, &task->error);
+        task->status = tri_refiner_new(&task->refiner, &task->view.mesh, &task->options, &task->report, &task->error);
     if (!task->status)
         task->status = tri_refiner_run(task->refiner, &task->error);
-    par_room_leave(&task->room, &task->view);
+    par_view_end(&task->view);
     task->pausing = task->status == TRI_NO_ROOM;
     if (!task->pausing) {
         tri_refiner_free(task->refiner);
@@ -507,7 +506,7 @@ struct leftovers {
     uint64_t *key;           /* [before[n_tasks]] */
 };
 
-static bool is_new(const struct leftovers *left, int32_t triangle)
+static bool is_new(const struct leftovers *left, tri_triangle_id triangle)
 {
     const uint64_t bit = (uint64_t)1 << triangle % 64;
     return !(atomic_fetch_or_explicit(&left->seen[triangle / 64], bit, memory_order_relaxed) & bit);
@@ -625,7 +624,7 @@ static enum tri_status collect(struct phase *p, struct tri_error *error)
         }
         par_add_up(&p->state->report->total, &task->report);
         memory = memory && report_block(p, task);
-        par_room_return(&task->room, &p->state->spare);
+        par_room_return(&task->view.room, &p->state->spare);
         free(task->left.item);
         free(task->changed.item);
         free(task->asked.item);

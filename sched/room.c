@@ -19,7 +19,9 @@ static enum tri_status no_memory(struct tri_error *error)
 
 bool par_ranges_reserve(struct par_ranges *ranges, int32_t need)
 {
-    return tri_grow(&ranges->item, &ranges->capacity, need, sizeof *ranges->item);
+    int32_t capacity = ranges->capacity; /* both arrays grow alike */
+    return tri_grow(&ranges->below, &capacity, need, sizeof *ranges->below) &&
+           tri_grow(&ranges->item, &ranges->capacity, need, sizeof *ranges->item);
 }
 
 /* How many items of a kind there are in a mesh, and how many there can be. */
@@ -43,60 +45,69 @@ static struct par_range *current_of(struct par_room *room, enum par_kind kind)
     return room->current[kind] < ranges->n ? &ranges->item[room->current[kind]] : NULL;
 }
 
-/* Shows a view the current range of a kind. */
-static void enter(struct par_room *room, struct tri_mesh *view, enum par_kind kind)
+/* The counts of a view become those of the room's current range. */
+static void begin_range(struct par_view *view, enum par_kind kind)
 {
-    const struct par_range *range = current_of(room, kind);
-    struct counts counts = counts_of(view, kind);
+    const struct par_range *range = current_of(&view->room, kind);
+    struct counts counts = counts_of(&view->mesh, kind);
     assert(!range || (0 <= range->next && range->next <= range->end));
     *counts.used = range ? range->next : 0;
     *counts.capacity = range ? range->end : 0;
 }
 
-static void leave(struct par_room *room, struct tri_mesh *view, enum par_kind kind)
+/* The room learns how far its current range has been used. */
+static void end_range(struct par_view *view, enum par_kind kind)
 {
-    struct par_range *range = current_of(room, kind);
-    struct counts counts = counts_of(view, kind);
+    struct par_range *range = current_of(&view->room, kind);
+    struct counts counts = counts_of(&view->mesh, kind);
     if (!range)
         return;
     assert(range->next <= *counts.used && *counts.used <= range->end && *counts.capacity == range->end);
     range->next = *counts.used;
 }
 
-enum tri_status par_more_room(void *user, struct tri_mesh *view, struct tri_error *error)
+enum tri_status par_view_more_room(void *user, struct tri_mesh *mesh, struct tri_error *error)
 {
-    struct par_room *room = user;
+    struct par_view *view = user;
+    assert(mesh == &view->mesh);
     for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++) {
-        const struct counts counts = counts_of(view, kind);
+        const struct counts counts = counts_of(mesh, kind);
         assert(*counts.used <= *counts.capacity);
         while (*counts.capacity - *counts.used < one_insertion[kind]) {
-            leave(room, view, kind);
-            if (room->current[kind] + 1 >= room->ranges[kind].n)
+            end_range(view, kind);
+            if (view->room.current[kind] + 1 >= view->room.ranges[kind].n)
                 return tri_fail(error, TRI_NO_ROOM, NULL, 0, "the block's room is full");
-            room->current[kind]++;
-            enter(room, view, kind);
+            view->room.current[kind]++;
+            begin_range(view, kind);
         }
     }
     return TRI_OK;
 }
 
-void par_room_enter(struct par_room *room, struct tri_mesh *view, const struct tri_mesh *shared)
+void par_view_begin(struct par_view *view, const struct tri_mesh *shared)
 {
-    *view = *shared;
+    view->mesh = *shared;
     for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++)
-        enter(room, view, kind);
+        begin_range(view, kind);
 }
 
-void par_room_leave(struct par_room *room, struct tri_mesh *view)
+void par_view_end(struct par_view *view)
 {
     for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++)
-        leave(room, view, kind);
+        end_range(view, kind);
 }
 
 /* Room in both lists for one more range in a block's hands: to take it now, and to give it back later. */
 static bool reserve_deal(struct par_ranges *to, struct par_ranges *spare)
 {
     return par_ranges_reserve(to, to->n + 1) && par_ranges_reserve(spare, spare->n + spare->dealt + 1);
+}
+
+/* Items of a range that insertions can take: none where not even one fits. */
+static int32_t usable(struct par_range range, enum par_kind kind)
+{
+    int32_t n = range.end - range.next;
+    return n >= one_insertion[kind] ? n : 0;
 }
 
 static void deal(struct par_ranges *to, struct par_ranges *spare, struct par_range range)
@@ -124,7 +135,7 @@ static enum tri_status extend(struct par_room *room, struct par_room *spare, str
         if (!reserve_deal(to, from))
             return no_memory(error);
         struct par_range range = from->item[--from->n];
-        need -= range.end - range.next;
+        need -= usable(range, kind);
         deal(to, from, range);
     }
     if (need <= 0)
@@ -141,14 +152,12 @@ static enum tri_status extend(struct par_room *room, struct par_room *spare, str
     return TRI_OK;
 }
 
-/* Unused items in the hands of a block, in ranges where an insertion fits. */
+/* Unused items in the hands of a block. */
 static int32_t left_of(const struct par_room *room, enum par_kind kind)
 {
     int32_t left = 0;
-    for (int32_t i = room->current[kind]; i < room->ranges[kind].n; i++) {
-        int32_t here = room->ranges[kind].item[i].end - room->ranges[kind].item[i].next;
-        left += here >= one_insertion[kind] ? here : 0;
-    }
+    for (int32_t i = room->current[kind]; i < room->ranges[kind].n; i++)
+        left += usable(room->ranges[kind].item[i], kind);
     return left;
 }
 
@@ -203,12 +212,14 @@ void par_room_return(struct par_room *room, struct par_room *spare)
 
 void par_room_free(struct par_room *room)
 {
-    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++)
+    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++) {
         free(room->ranges[kind].item);
+        free(room->ranges[kind].below);
+    }
     *room = (struct par_room){0};
 }
 
-void par_room_mark_sub(struct tri_mesh *mesh, int32_t s)
+void par_room_mark_sub(struct tri_mesh *mesh, tri_sub_id s)
 {
     mesh->sub[s] = (struct tri_subsegment){{TRI_NONE, TRI_NONE}, {TRI_NONE, TRI_NONE}, 0, TRI_NONE};
 }
@@ -249,74 +260,117 @@ void par_room_mark(const struct par_room *spare, struct tri_mesh *shared, const 
     }
 }
 
+/* --- closing: what lies above the new end of an array goes into the gaps below it */
+
 static int by_start(const void *left, const void *right)
 {
     const struct par_range *a = left, *b = right;
     return (a->next > b->next) - (a->next < b->next);
 }
 
-/* Gaps sorted by place; the walk over holes from below and items from above. */
+/* Brings the gaps in order, and counts what lies below each. */
+static void sort_gaps(struct par_ranges *gaps)
+{
+    int32_t below = 0;
+    if (gaps->n)
+        qsort(gaps->item, (size_t)gaps->n, sizeof *gaps->item, by_start);
+    for (int32_t i = 0; i < gaps->n; i++) {
+        assert(i == 0 || gaps->item[i - 1].end <= gaps->item[i].next);
+        gaps->below[i] = below;
+        below += gaps->item[i].end - gaps->item[i].next;
+    }
+}
+
+/* An array whose gaps are being closed. The items from the end downwards go to the unused places from the beginning
+ * upwards. So it can be calculated where an item goes, and no table is needed, for which there might be no memory. */
 struct closing {
-    struct par_ranges *gaps;
-    int32_t low, high;   /* gaps low .. high - 1 are not dealt with */
-    int32_t last;        /* items above this one are gone */
+    const struct par_ranges *gaps; /* in order */
+    int32_t count; /* items and unused places */
+    int32_t kept;  /* items at the end: those that lie above it move */
 };
 
 static struct closing closing_of(struct par_ranges *gaps, int32_t count)
 {
-    if (gaps->n)
-        qsort(gaps->item, (size_t)gaps->n, sizeof *gaps->item, by_start);
-    return (struct closing){gaps, 0, gaps->n, count - 1};
+    sort_gaps(gaps);
+    const struct par_range *last = gaps->n > 0 ? &gaps->item[gaps->n - 1] : NULL;
+    int32_t unused = last ? gaps->below[gaps->n - 1] + last->end - last->next : 0;
+    assert(!last || last->end <= count);
+    return (struct closing){gaps, count, count - unused};
 }
 
-/* The next hole to fill and the item to fill it with; false at the end, when last + 1 is the new count. */
-static bool next_move(struct closing *c, int32_t *hole, int32_t *item)
+/* The last of some ascending numbers that is not above this one; -1: none. */
+static int32_t last_up_to(const struct par_ranges *gaps, bool by_place, int32_t number)
 {
-    for (;;) {
-        while (c->high > c->low && c->gaps->item[c->high - 1].end == c->last + 1) /* a gap at the end vanishes */
-            c->last = c->gaps->item[--c->high].next - 1;
-        if (c->low == c->high)
-            return false;
-        struct par_range *gap = &c->gaps->item[c->low];
-        if (gap->next == gap->end) {
-            c->low++;
-            continue;
-        }
-        *hole = gap->next++;
-        *item = c->last--;
-        assert(*hole < *item);
-        return true;
+    int32_t low = 0, high = gaps->n;
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if ((by_place ? gaps->item[middle].next : gaps->below[middle]) <= number)
+            low = middle + 1;
+        else
+            high = middle;
     }
+    return low - 1;
+}
+
+/* Where an item goes that lies above the new end. O(log gaps). */
+static int32_t place_of(const struct closing *c, int32_t item)
+{
+    const int32_t gap = last_up_to(c->gaps, true, item);
+    assert(c->kept <= item && item < c->count && gap >= 0 && c->gaps->item[gap].end <= item);
+    int32_t unused_below = c->gaps->below[gap] + c->gaps->item[gap].end - c->gaps->item[gap].next;
+    int32_t used_above = c->count - 1 - item - (c->count - c->kept - unused_below);
+    int32_t into = last_up_to(c->gaps, false, used_above);
+    int32_t place = c->gaps->item[into].next + used_above - c->gaps->below[into];
+    assert(c->gaps->item[into].next <= place && place < c->gaps->item[into].end && place < c->kept);
+    return place;
+}
+
+/* Calls move for each item that lies above the new end, from the end downwards. */
+static void move_items(const struct closing *c, struct tri_mesh *mesh,
+                       void (*move)(struct tri_mesh *mesh, int32_t from, int32_t to))
+{
+    int32_t end = c->count;
+    for (int32_t gap = c->gaps->n; end > c->kept; end = c->gaps->item[gap].next) {
+        gap--;
+        int32_t first = c->gaps->item[gap].end > c->kept ? c->gaps->item[gap].end : c->kept;
+        for (int32_t item = end - 1; item >= first; item--)
+            move(mesh, item, place_of(c, item));
+    }
+}
+
+static void move_triangle(struct tri_mesh *mesh, tri_triangle_id from, tri_triangle_id to)
+{
+    struct tri_triangle *t = &mesh->tri[to];
+    *t = mesh->tri[from];
+    assert(tri_is_live(t));
+    for (int e = 0; e < 3; e++)
+        tri_relink(mesh, t->n[e], t->v[tri_next[e]], tri_code(to, e));
 }
 
 static void close_triangles(struct par_ranges *gaps, struct tri_mesh *mesh)
 {
-    struct closing c = closing_of(gaps, mesh->n_triangles);
-    int32_t hole, item;
-    while (next_move(&c, &hole, &item)) {
-        struct tri_triangle *t = &mesh->tri[hole];
-        *t = mesh->tri[item];
-        for (int e = 0; e < 3; e++)
-            tri_relink(mesh, t->n[e], t->v[tri_next[e]], tri_code(hole, e));
-    }
-    mesh->n_triangles = c.last + 1;
+    const struct closing closing = closing_of(gaps, mesh->n_triangles);
+    move_items(&closing, mesh, move_triangle);
+    mesh->n_triangles = closing.kept;
+}
+
+static void move_sub(struct tri_mesh *mesh, tri_sub_id from, tri_sub_id to)
+{
+    struct tri_subsegment *s = &mesh->sub[to];
+    *s = mesh->sub[from];
+    for (int side = 0; side < 2; side++)
+        if (s->side[side] != TRI_NONE)
+            *tri_link_at(mesh, s->side[side]) = ~to;
 }
 
 static void close_subs(struct par_ranges *gaps, struct tri_mesh *mesh)
 {
-    struct closing c = closing_of(gaps, mesh->n_subs);
-    int32_t hole, item;
-    while (next_move(&c, &hole, &item)) {
-        struct tri_subsegment *s = &mesh->sub[hole];
-        *s = mesh->sub[item];
-        for (int side = 0; side < 2; side++)
-            if (s->side[side] != TRI_NONE)
-                mesh->tri[tri_of(s->side[side])].n[tri_edge(s->side[side])] = ~hole;
-    }
-    mesh->n_subs = c.last + 1;
+    const struct closing closing = closing_of(gaps, mesh->n_subs);
+    move_items(&closing, mesh, move_sub);
+    mesh->n_subs = closing.kept;
 }
 
-static void move_vertex(struct tri_mesh *mesh, int32_t from, int32_t to)
+static void move_vertex(struct tri_mesh *mesh, tri_vertex_id from, tri_vertex_id to)
 {
     size_t n = (size_t)mesh->n_attributes;
     mesh->xy[to] = mesh->xy[from];
@@ -327,48 +381,33 @@ static void move_vertex(struct tri_mesh *mesh, int32_t from, int32_t to)
         memcpy(mesh->attributes + (size_t)to * n, mesh->attributes + (size_t)from * n, n * sizeof *mesh->attributes);
 }
 
-/* The number that a vertex has now which has moved away from here, until all corners have learnt it. It is kept in the
- * memory of the place left behind, since closing must not fail for want of memory. */
-static int32_t *forwarding_at(const struct tri_mesh *mesh, int32_t v, int32_t kept)
-{
-    (void)kept;
-    assert(v >= kept);
-    return &mesh->vertex_markers[v];
-}
-
-/* Corners that have moved: of vertices that lay at `kept` or above. */
+/* Corners learn where vertices have gone. */
 struct renaming {
     const struct tri_mesh *mesh;
-    int32_t kept;
+    const struct closing *vertices;
 };
 
 static void rename_corners(void *context, size_t share)
 {
     const struct renaming *r = context;
     const struct tri_range range = tri_share(share, r->mesh->n_triangles);
-    for (int32_t t = range.first; t < range.last; t++)
+    for (tri_triangle_id t = range.first; t < range.last; t++)
         for (int k = 0; k < 3; k++)
-            if (r->mesh->tri[t].v[k] >= r->kept)
-                r->mesh->tri[t].v[k] = *forwarding_at(r->mesh, r->mesh->tri[t].v[k], r->kept);
+            if (r->mesh->tri[t].v[k] >= r->vertices->kept)
+                r->mesh->tri[t].v[k] = place_of(r->vertices, r->mesh->tri[t].v[k]);
 }
 
-/* Moves vertices into gaps. */
 static void close_vertices(struct par_ranges *gaps, struct tri_mesh *mesh, const struct tri_executor *executor)
 {
-    struct closing c = closing_of(gaps, mesh->n_vertices);
-    int32_t hole, item;
-    while (next_move(&c, &hole, &item)) {
-        move_vertex(mesh, item, hole);
-        *forwarding_at(mesh, item, c.last + 1) = hole;
-    }
-    int32_t kept = c.last + 1;
-    struct renaming renaming = {mesh, kept};
+    const struct closing closing = closing_of(gaps, mesh->n_vertices);
+    struct renaming renaming = {mesh, &closing};
+    move_items(&closing, mesh, move_vertex);
     tri_execute(executor, tri_shares(mesh->n_triangles), rename_corners, &renaming);
-    for (int32_t s = 0; s < mesh->n_subs; s++)
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2; k++)
-            if (mesh->sub[s].v[k] >= kept)
-                mesh->sub[s].v[k] = *forwarding_at(mesh, mesh->sub[s].v[k], kept);
-    mesh->n_vertices = kept;
+            if (mesh->sub[s].v[k] >= closing.kept)
+                mesh->sub[s].v[k] = place_of(&closing, mesh->sub[s].v[k]);
+    mesh->n_vertices = closing.kept;
 }
 
 void par_room_close(struct par_room *spare, struct tri_mesh *shared, const struct tri_executor *executor)

@@ -1,11 +1,11 @@
 /* Room for what blocks add: ranges of vertices, triangles and subsegments in the shared arrays.
  *
- * A block works on a view of the mesh: the shared arrays, with counts and capacities of its own that point into a range
- * that nobody else uses. When a range is full the view moves to the block's next one; when there is none the block
- * pauses until all others have paused or ended, and goes on after the arrays have grown. Ranges are dealt out between
- * phases, by one thread and in canonical order: so the ids that a block uses do not depend on who runs when. What a
- * block leaves unused goes to the blocks of the next phase; what is unused at the end is filled with the last items of
- * the arrays (par_room_close), or marked for par_number, which leaves it out (par_room_mark). */
+ * A block works on a view of the mesh (struct par_view): the shared arrays, with counts and capacities of its own that
+ * point into a range that nobody else uses. When a range is full the view moves to the block's next one; when there is
+ * none the block pauses until all others have paused or ended, and goes on after the arrays have grown. Ranges are
+ * dealt out between phases, by one thread and in canonical order: so the ids that a block uses do not depend on who
+ * runs when. What a block leaves unused goes to the blocks of the next phase; what is unused at the end is filled with
+ * the last items of the arrays (par_room_close), or marked for par_number, which leaves it out (par_room_mark). */
 #ifndef SCHED_ROOM_H
 #define SCHED_ROOM_H
 
@@ -19,6 +19,7 @@ struct par_range {
 
 struct par_ranges {
     struct par_range *item;
+    int32_t *below;        /* [n] while gaps are closed: items in the ranges before each; as much room as item has */
     int32_t n, capacity;
     int32_t dealt; /* of spare: ranges that blocks have and will return; there is always room for them here */
 };
@@ -26,21 +27,27 @@ struct par_ranges {
 /* Room for `need` ranges in all; amortised O(1) a range. False: no memory. */
 bool par_ranges_reserve(struct par_ranges *ranges, int32_t need);
 
-/* What one block has. The current range of each kind lives in its view while it runs. */
+/* What one block has, or what nobody has. */
 struct par_room {
     struct par_ranges ranges[PAR_KINDS];
-    int32_t current[PAR_KINDS];
+    int32_t current[PAR_KINDS]; /* of a block: the range that it uses */
 };
 
-/* A tri_more_room: user is the struct par_room that belongs to this view. */
-enum tri_status par_more_room(void *user, struct tri_mesh *view, struct tri_error *error);
+/* The mesh as one block sees it. */
+struct par_view {
+    struct tri_mesh mesh; /* the shared arrays, which are not its own; counts and capacities: those of the room's
+                             current ranges, while the block runs */
+    struct par_room room;
+};
 
-/* Makes *view, what a block works on: the shared arrays, which may have moved, with counts and capacities that are
- * those of the room's current ranges. */
-void par_room_enter(struct par_room *room, struct tri_mesh *view, const struct tri_mesh *shared);
+/* Where the block begins, or goes on: the shared arrays may have moved since. */
+void par_view_begin(struct par_view *view, const struct tri_mesh *shared);
 
-/* Remembers in the room how far the view's ranges have been used. */
-void par_room_leave(struct par_room *room, struct tri_mesh *view);
+/* A tri_more_room: user is the struct par_view. */
+enum tri_status par_view_more_room(void *user, struct tri_mesh *mesh, struct tri_error *error);
+
+/* Where the block ends, or pauses: its room learns how far it has been used. */
+void par_view_end(struct par_view *view);
 
 /* Sees to it that the room has at least `triangles` unused triangles, and vertices and subsegments to match: from
  * `spare` first, else from the end of the shared arrays, which grow. TRI_NO_MEMORY, TRI_TOO_LARGE: what it got so

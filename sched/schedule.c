@@ -37,7 +37,7 @@ void par_report_free(struct par_report *report)
     report->n_blocks = 0;
 }
 
-int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, int32_t t, int *phase)
+int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, tri_triangle_id t, int *phase)
 {
     for (*phase = 0; report->partition.x && *phase < PAR_PHASES; ++*phase) {
         int32_t block = par_owner_of(&report->partition, *phase, mesh, t);
@@ -543,6 +543,18 @@ static enum tri_status refine_by_schedule(struct par_state *state, const struct 
     return status;
 }
 
+/* Hands out a mesh that is finished, tile by tile if it is numbered. */
+static enum tri_status hand_out(struct par_state *state, struct tri_error *error)
+{
+    struct par_tiles tiles = par_tiles_of(state, state->numbered ? &state->cells : NULL);
+    enum tri_status status = par_park_expect(state->park, state->mesh, par_tiles_whole_bytes(&tiles), error);
+    if (status)
+        return status;
+    if (state->options->carrier)
+        return par_whole_on_ranks(state->options->carrier, &tiles, error);
+    return par_tiles_whole(&tiles, error);
+}
+
 /* Numbers, and hands out, what has not gone yet. */
 static enum tri_status deliver(struct par_state *state, struct tri_error *error)
 {
@@ -551,7 +563,7 @@ static enum tri_status deliver(struct par_state *state, struct tri_error *error)
         return TRI_OK;
     if (state->report->levels > 0 && !state->options->by_block && !state->numbered)
         status = number_mesh(state, error);
-    return !status && state->options->sink ? par_hand_out(state, error) : status;
+    return !status && state->options->sink ? hand_out(state, error) : status;
 }
 
 /* A bound on memory that somebody keeps: on ranks each has its own part, and a sink without a scratch directory gets a

@@ -120,7 +120,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
 
 /* The block (column * n_rows + row) whose fence owns triangle t in the first phase that owns it, 0 to 3, which *phase
  * receives; TRI_NONE and -1 where no fence of the first round does. For pictures. */
-int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, int32_t t, int *phase);
+int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, tri_triangle_id t, int *phase);
 
 void par_report_free(struct par_report *report);
 

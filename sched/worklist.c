@@ -10,7 +10,7 @@
 #include "triangle/census.h"
 #include "triangle/grow.h"
 
-bool par_worklist_add(struct par_worklist *triangles, int32_t triangle)
+bool par_worklist_add(struct par_worklist *triangles, tri_triangle_id triangle)
 {
     assert(triangles->n >= 0 && triangles->n <= triangles->capacity);
     if (!tri_grow(&triangles->item, &triangles->capacity, triangles->n + 1, sizeof *triangles->item))
@@ -63,7 +63,7 @@ struct finding {
     struct tri_mesh *mesh;
     const struct tri_refine_options *bounds;
     const struct par_worklist *worklist; /* to choose from; or, when filling, the worklist as it was, or NULL */
-    int32_t *found;               /* [n_triangles or worklist.n] each share's own behind one another, with gaps */
+    tri_triangle_id *found;       /* [n_triangles or worklist.n] each share's own behind one another, with gaps */
     int32_t n[TRI_MOST_SHARES];
     double radius2[TRI_MOST_SHARES];
 };
@@ -83,10 +83,10 @@ static int32_t gather(const struct finding *f, int32_t n)
 
 /* The bad ones of a range, where the worklist holds those that are as old as it is. A new life has begun for every
  * triangle when it was filled: who has a higher number was born since. */
-static int32_t find_newborn(const struct finding *f, struct tri_range range, int32_t *found)
+static int32_t find_newborn(const struct finding *f, struct tri_range range, tri_triangle_id *found)
 {
     int32_t n = 0, next = par_worklist_find(f->worklist, range.first);
-    for (int32_t t = range.first; t < range.last; t++) {
+    for (tri_triangle_id t = range.first; t < range.last; t++) {
         bool was_bad = next < f->worklist->n && f->worklist->item[next] == t;
         next += was_bad;
         assert(next == f->worklist->n || f->worklist->item[next] > t); /* in order, and each once */
@@ -98,11 +98,11 @@ static int32_t find_newborn(const struct finding *f, struct tri_range range, int
     return n;
 }
 
-static double largest_radius2(const struct tri_mesh *mesh, const int32_t *triangle, int32_t n)
+static double largest_radius2(const struct tri_mesh *mesh, const tri_triangle_id *triangle, int32_t n)
 {
     double largest = 0;
     for (int32_t i = 0; i < n; i++) {
-        const int32_t *v = mesh->tri[triangle[i]].v;
+        const tri_vertex_id *v = mesh->tri[triangle[i]].v;
         double r2 = par_radius2(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]);
         largest = r2 > largest ? r2 : largest;
     }
@@ -113,11 +113,11 @@ static void fill_share(void *context, size_t share)
 {
     struct finding *f = context;
     struct tri_range range = tri_share(share, f->mesh->n_triangles);
-    int32_t *found = f->found + range.first;
+    tri_triangle_id *found = f->found + range.first;
     f->n[share] = f->worklist ? find_newborn(f, range, found)
                           : tri_find_work(f->mesh, f->bounds, range.first, range.last, found);
     f->radius2[share] = largest_radius2(f->mesh, found, f->n[share]);
-    for (int32_t t = range.first; t < range.last; t++)
+    for (tri_triangle_id t = range.first; t < range.last; t++)
         f->mesh->tri[t].state = 0;
 }
 
@@ -144,7 +144,7 @@ static void filter_share(void *context, size_t share)
     struct finding *f = context;
     struct tri_range range = tri_share(share, f->worklist->n);
     for (int32_t i = range.first; i < range.last; i++) {
-        int32_t triangle = f->worklist->item[i];
+        tri_triangle_id triangle = f->worklist->item[i];
         f->n[share] += tri_find_work(f->mesh, f->bounds, triangle, triangle + 1, &f->found[range.first + f->n[share]]);
     }
 }

@@ -6,12 +6,12 @@
 #include "triangle/refine.h"
 
 struct par_worklist {
-    int32_t *item;
+    tri_triangle_id *item;
     int32_t n, capacity;
 };
 
 /* Amortised O(1). False: no memory. */
-bool par_worklist_add(struct par_worklist *triangles, int32_t triangle);
+bool par_worklist_add(struct par_worklist *triangles, tri_triangle_id triangle);
 
 /* Brings ids in ascending order, each once; returns how many are left. */
 int32_t par_sort_unique(int32_t *item, int32_t n);

@@ -8,10 +8,12 @@
 void *__real_malloc(size_t bytes);
 void *__real_calloc(size_t n, size_t bytes);
 void *__real_realloc(void *block, size_t bytes);
+int __real_posix_memalign(void **block, size_t alignment, size_t bytes);
 void __real_free(void *block);
 void *__wrap_malloc(size_t bytes);
 void *__wrap_calloc(size_t n, size_t bytes);
 void *__wrap_realloc(void *block, size_t bytes);
+int __wrap_posix_memalign(void **block, size_t alignment, size_t bytes);
 void __wrap_free(void *block);
 
 atomic_llong support_calls, support_fail_at = INT64_MAX, support_held;
@@ -45,6 +47,13 @@ void *__wrap_realloc(void *block, size_t bytes)
     void *fresh = must_fail() ? NULL : __real_realloc(block, bytes);
     support_held += fresh != NULL && block == NULL;
     return fresh;
+}
+
+int __wrap_posix_memalign(void **block, size_t alignment, size_t bytes)
+{
+    int fault = must_fail() ? ENOMEM : __real_posix_memalign(block, alignment, bytes);
+    support_held += fault == 0;
+    return fault;
 }
 
 void __wrap_free(void *block)

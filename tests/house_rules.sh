@@ -32,7 +32,7 @@ awk '{
         }
     }
     print FILENAME ":" FNR ": " out
-}' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] sched/*/*.[ch] >"$code"
+}' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] sched/*/*.[ch] drivers/*.[ch] >"$code"
 
 # refuse PATTERN REASON FILE...
 refuse() {
@@ -59,7 +59,7 @@ done
 tested_by() {
     case $1 in
     triangle/check/*) echo check ;;
-    triangle/hdf5/*) echo hdf5 ;;
+    triangle/hdf5/* | triangle/text/behind.c) echo hdf5 ;;
     triangle/api/* | sched/mesh.c) echo api ;;
     triangle/dropin/switches.c) echo switches ;;
     triangle/dropin/*) echo triangulate ;;
@@ -81,7 +81,7 @@ for file in triangle/*.c triangle/*/*.c triangle/*/*.cpp sched/*.c sched/*/*.c; 
     [ -f "tests/test_$(tested_by "$file").c" ] || breach "$file has no test program"
 done
 
-# 2. drivers/ -> sched/ -> triangle/, never back; only sched/ knows threads, and the judge. The folders in triangle/ may
+# 2. drivers/ -> sched/ -> triangle/, never back; only sched/ knows threads. The folders in triangle/ may
 # include the mesher, the mesher none of them, and they none of each other, but for api/, the door to all, and
 # hdf5/, whose files are outputs of text/.
 refuse '#[[:space:]]*include[[:space:]]*"(sched|drivers|tests)/' 'includes an upper room' \
@@ -95,11 +95,13 @@ refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|text|hdf5|check)/' 'inclu
 refuse '#[[:space:]]*include[[:space:]]*"(triangle|sched|drivers)/' 'is public, and includes what is not' \
     include/ptriangle/*.h
 refuse '#[[:space:]]*pragma[[:space:]]+omp|<(omp|pthread|threads)\.h>' 'knows threads' \
-    triangle/*.[ch] triangle/api/*.[ch] triangle/text/*.[ch] triangle/hdf5/*.[ch] triangle/dropin/*.[ch] \
-    triangle/*/*.cpp # the judge has loops on all cores
+    triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp
 
-# One file of sched/ runs anything in parallel: all else there hands tasks to an executor.
-others=$(ls sched/*.[ch] sched/*/*.[ch] | grep -vx sched/threads.c | tr '\n' ' ')
+# One mesh on several ranks stands above the sweep, and beside it: sched/schedule.c chooses between them.
+refuse '#[[:space:]]*include[[:space:]]*"sched/ranks/' 'includes what stands above it' sched/sweep/*.[ch]
+
+# One file runs anything in parallel: all else hands tasks to an executor.
+others=$(ls sched/*.[ch] sched/*/*.[ch] drivers/*.[ch] | grep -vx sched/threads.c | tr '\n' ' ')
 # shellcheck disable=SC2086 # one word a file
 refuse '#[[:space:]]*pragma[[:space:]]+omp|<omp\.h>' 'does not leave threads to sched/threads.c' $others
 
@@ -111,7 +113,7 @@ refuse '#[[:space:]]*include[[:space:]]*[<"](ptriangle/)?mpi\.h' 'knows MPI' $ot
 # The judge knows nothing of the judged but input, status codes and predicates: nobody is judge of his own cause.
 for file in triangle/check/*.[ch]; do
     strange=$("$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -I . -I include -MM -x c "$file" | tr ' \\' '\n\n' | grep '^triangle/' |
-        grep -vE '^triangle/(check/[a-z_]+\.[ch]|(pslg|status|predicates|expansion|point|arithmetic)\.h)$')
+        grep -vE '^triangle/(check/[a-z_]+\.[ch]|(pslg|status|predicates|expansion|point|arithmetic|executor)\.h)$')
     [ -z "$strange" ] || breach "$file includes" $strange
 done
 

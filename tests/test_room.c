@@ -65,6 +65,17 @@ static int32_t room_left(const struct par_room *room, int kind)
     return n;
 }
 
+/* Of these, those that insertions can take: each takes two. */
+static int32_t room_usable(const struct par_room *room)
+{
+    int32_t n = 0;
+    for (int32_t i = 0; i < room->ranges[PAR_TRIANGLES].n; i++) {
+        int32_t here = room->ranges[PAR_TRIANGLES].item[i].end - room->ranges[PAR_TRIANGLES].item[i].next;
+        n += here >= 2 ? here : 0;
+    }
+    return n;
+}
+
 static void table_free(struct table *table)
 {
     for (int kind = 0; kind < PAR_KINDS; kind++)
@@ -72,27 +83,27 @@ static void table_free(struct table *table)
 }
 
 /* Uses up to n points' worth of room, as the refinement loop does; false where the room was full before. */
-static bool use_room(struct table *table, struct par_room *room, const struct tri_mesh *shared, int32_t who, int32_t n,
+static bool use_room(struct table *table, struct par_view *view, const struct tri_mesh *shared, int32_t who, int32_t n,
                      struct support_random *random)
 {
-    struct tri_mesh view = {0};
+    struct tri_mesh *mesh = &view->mesh;
     bool enough = true;
-    par_room_enter(room, &view, shared);
+    par_view_begin(view, shared);
     for (int32_t i = 0; i < n && enough; i++) {
-        bool need = view.vertex_capacity - view.n_vertices < 1 || view.triangle_capacity - view.n_triangles < 2 ||
-                    view.sub_capacity - view.n_subs < 1;
-        enum tri_status status = need ? par_more_room(room, &view, NULL) : TRI_OK;
+        bool need = mesh->vertex_capacity - mesh->n_vertices < 1 || mesh->triangle_capacity - mesh->n_triangles < 2 ||
+                    mesh->sub_capacity - mesh->n_subs < 1;
+        enum tri_status status = need ? par_view_more_room(view, mesh, NULL) : TRI_OK;
         assert_true(status == TRI_OK || status == TRI_NO_ROOM);
         enough = status == TRI_OK;
         if (!enough)
             break;
         int32_t taken[4][2] = {
-            {PAR_VERTICES, view.n_vertices++}, {PAR_TRIANGLES, view.n_triangles++},
-            {PAR_TRIANGLES, view.n_triangles++}};
+            {PAR_VERTICES, mesh->n_vertices++}, {PAR_TRIANGLES, mesh->n_triangles++},
+            {PAR_TRIANGLES, mesh->n_triangles++}};
         int n_taken = 3;
         if (support_below(random, 4) == 0) {
             taken[3][0] = PAR_SUBS;
-            taken[3][1] = view.n_subs++;
+            taken[3][1] = mesh->n_subs++;
             n_taken = 4;
         }
         for (int k = 0; k < n_taken; k++) {
@@ -101,7 +112,7 @@ static bool use_room(struct table *table, struct par_room *room, const struct tr
             *owner = USED;
         }
     }
-    par_room_leave(room, &view);
+    par_view_end(view);
     return enough;
 }
 
@@ -123,29 +134,30 @@ static void test_random_dealings(void **state)
         struct support_random random = {seed};
         struct tri_mesh shared;
         struct table table = {0};
-        struct par_room room[ROOMS] = {0}, spare = {0};
+        struct par_view view[ROOMS] = {0};
+        struct par_room spare = {0};
         assert_int_equal(tri_mesh_init(&shared, NULL), TRI_OK);
         for (int step = 0; step < 300; step++) {
             int32_t who = support_below(&random, ROOMS), action = support_below(&random, 8);
             if (action == 0) {
-                give_back(&table, &room[who], &spare);
+                give_back(&table, &view[who].room, &spare);
                 assert_int_equal(table_count(&table, PAR_TRIANGLES, who), 0);
                 assert_int_equal(table_count(&table, PAR_TRIANGLES, SPARE), room_left(&spare, PAR_TRIANGLES));
             } else if (action < 3) {
                 int32_t more = support_below(&random, seed % 2 ? 12 : 400) + 1;
-                assert_int_equal(par_room_extend(&room[who], &spare, &shared, more, NULL), TRI_OK);
-                assert_true(room_left(&room[who], PAR_TRIANGLES) >= more);
-                assert_true(room_left(&room[who], PAR_VERTICES) >= more / 2);
+                assert_int_equal(par_room_extend(&view[who].room, &spare, &shared, more, NULL), TRI_OK);
+                assert_true(room_usable(&view[who].room) >= more);
+                assert_true(room_left(&view[who].room, PAR_VERTICES) >= more / 2);
                 table_grow(&table, &shared);
-                table_claim(&table, &room[who], who);
+                table_claim(&table, &view[who].room, who);
             } else {
-                use_room(&table, &room[who], &shared, who, support_below(&random, seed % 2 ? 8 : 150), &random);
+                use_room(&table, &view[who], &shared, who, support_below(&random, seed % 2 ? 8 : 150), &random);
             }
             for (int kind = 0; kind < PAR_KINDS; kind++)
-                assert_int_equal(table_count(&table, kind, who), room_left(&room[who], kind));
+                assert_int_equal(table_count(&table, kind, who), room_left(&view[who].room, kind));
         }
         for (int32_t who = 0; who < ROOMS; who++)
-            give_back(&table, &room[who], &spare);
+            give_back(&table, &view[who].room, &spare);
         for (int kind = 0; kind < PAR_KINDS; kind++) { /* each item is used or spare */
             assert_int_equal(table_count(&table, kind, NOBODY), 0);
             assert_int_equal(table_count(&table, kind, USED) + room_left(&spare, kind), count_of(&shared, kind));
@@ -170,9 +182,8 @@ static struct tri_mesh mesh_with_attributes(void)
 }
 
 /* Refines some more on a view, until it is done, or its limit is reached, or it has no more room. */
-static int64_t refine_in_room(struct tri_mesh *shared, struct par_room *room, int64_t limit, double max_area)
+static int64_t refine_in_view(struct tri_mesh *shared, struct par_view *view, int64_t limit, double max_area)
 {
-    struct tri_mesh view = {0};
     struct tri_refine_options options = tri_refine_defaults();
     struct tri_refine_report report;
     int32_t n = shared->n_triangles, *worklist = malloc((size_t)n * sizeof *worklist);
@@ -180,16 +191,16 @@ static int64_t refine_in_room(struct tri_mesh *shared, struct par_room *room, in
     options.min_angle = 30;
     options.max_area = max_area;
     options.max_steiner = limit;
-    options.more_room = par_more_room;
-    options.more_room_user = room;
+    options.more_room = par_view_more_room;
+    options.more_room_user = view;
     options.worklist = worklist;
     for (int32_t i = 0; i < n; i++)
         if (tri_is_live(&shared->tri[i]))
             worklist[options.n_worklist++] = i;
-    par_room_enter(room, &view, shared);
-    enum tri_status status = tri_refine(&view, &options, &report, NULL);
+    par_view_begin(view, shared);
+    enum tri_status status = tri_refine(&view->mesh, &options, &report, NULL);
     assert_true(status == TRI_OK || status == TRI_NO_ROOM);
-    par_room_leave(room, &view);
+    par_view_end(view);
     free(worklist);
     return report.inserted_free + report.inserted_on_segments;
 }
@@ -229,22 +240,23 @@ static void test_closing_keeps_the_mesh(void **state)
     for (uint64_t seed = 0; seed < 30; seed++) {
         struct support_random random = {seed};
         struct tri_mesh mesh = mesh_with_attributes();
-        struct par_room room[ROOMS] = {0}, spare = {0};
+        struct par_view view[ROOMS] = {0};
+        struct par_room spare = {0};
         int64_t vertices = mesh.n_vertices;
         for (int step = 0; step < 40; step++) {
             int32_t who = support_below(&random, ROOMS), action = support_below(&random, 4);
             if (action == 0) {
-                par_room_return(&room[who], &spare);
+                par_room_return(&view[who].room, &spare);
             } else if (action == 1) {
-                assert_int_equal(par_room_extend(&room[who], &spare, &mesh, 1 + support_below(&random, 300), NULL),
+                assert_int_equal(par_room_extend(&view[who].room, &spare, &mesh, 1 + support_below(&random, 300), NULL),
                                  TRI_OK);
-                par_room_mark(&room[who], &mesh, NULL); /* so that the mesh can be looked at */
+                par_room_mark(&view[who].room, &mesh, NULL); /* so that the mesh can be looked at */
             } else {
-                vertices += refine_in_room(&mesh, &room[who], support_below(&random, 60), 2e-4);
+                vertices += refine_in_view(&mesh, &view[who], support_below(&random, 60), 2e-4);
             }
         }
         for (int32_t who = 0; who < ROOMS; who++)
-            par_room_return(&room[who], &spare);
+            par_room_return(&view[who].room, &spare);
         par_room_mark(&spare, &mesh, NULL);
         struct support_places places = support_places(&mesh);
         assert_true(vertices > mesh.n_input || seed > 0);

@@ -74,7 +74,7 @@ static bool needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
 }
 
 int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id first,
-                      tri_triangle_id last, int32_t *found)
+                      tri_triangle_id last, tri_triangle_id *found)
 {
     const struct tri_criterion c = tri_criterion_for(mesh, options);
     int32_t n = 0;

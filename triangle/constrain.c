@@ -76,7 +76,7 @@ static enum tri_status no_memory(struct layer *l)
     return tri_fail(l->error, TRI_NO_MEMORY, NULL, 0, "out of memory for segment %d", (int)l->segment);
 }
 
-static bool push_piece(struct layer *l, int32_t from, int32_t to, struct tri_course course)
+static bool push_piece(struct layer *l, tri_vertex_id from, tri_vertex_id to, struct tri_course course)
 {
     assert(from >= 0 && from < l->mesh->n_vertices && to >= 0 && to < l->mesh->n_vertices);
     if (from == to)
@@ -87,22 +87,22 @@ static bool push_piece(struct layer *l, int32_t from, int32_t to, struct tri_cou
     return room;
 }
 
-static int corner_of(const struct tri_triangle *t, int32_t v)
+static int corner_of(const struct tri_triangle *t, tri_vertex_id v)
 {
     assert(t->v[0] == v || t->v[1] == v || t->v[2] == v);
     return t->v[0] == v ? 0 : t->v[1] == v ? 1 : 2;
 }
 
 /* The next triangle around v, counter-clockwise or clockwise; TRI_NONE at the boundary. */
-static int32_t turn(const struct tri_mesh *mesh, int32_t t, int32_t v, bool left)
+static tri_triangle_id turn(const struct tri_mesh *mesh, tri_triangle_id t, tri_vertex_id v, bool left)
 {
     int k = corner_of(&mesh->tri[t], v);
-    int32_t code = tri_across(mesh, tri_code(t, left ? tri_next[k] : tri_prev[k]));
+    tri_halfedge code = tri_across(mesh, tri_code(t, left ? tri_next[k] : tri_prev[k]));
     return code == TRI_NONE ? TRI_NONE : tri_of(code);
 }
 
 /* Does the ray from a (corner k of t) to q leave through t: right edge included, left edge not? */
-static bool leaves_through(const struct tri_mesh *mesh, int32_t t, int k, struct tri_point q)
+static bool leaves_through(const struct tri_mesh *mesh, tri_triangle_id t, int k, struct tri_point q)
 {
     const struct tri_triangle *at = &mesh->tri[t];
     struct tri_point a = mesh->xy[at->v[k]], right = mesh->xy[at->v[tri_next[k]]], left = mesh->xy[at->v[tri_prev[k]]];
@@ -112,7 +112,7 @@ static bool leaves_through(const struct tri_mesh *mesh, int32_t t, int k, struct
     return r > 0 && s < 0;
 }
 
-static bool along_left(const struct tri_mesh *mesh, int32_t t, int k, struct tri_point q)
+static bool along_left(const struct tri_mesh *mesh, tri_triangle_id t, int k, struct tri_point q)
 {
     const struct tri_triangle *at = &mesh->tri[t];
     struct tri_point a = mesh->xy[at->v[k]], left = mesh->xy[at->v[tri_prev[k]]];
@@ -126,7 +126,7 @@ struct rotation {
     bool clockwise;
 };
 
-static struct rotation rotate_from(const struct layer *l, int32_t a, struct tri_point q)
+static struct rotation rotate_from(const struct layer *l, tri_vertex_id a, struct tri_point q)
 {
     assert(l->corner[a] != TRI_NONE);
     return (struct rotation){a, l->corner[a], l->corner[a], q, false};
@@ -134,9 +134,9 @@ static struct rotation rotate_from(const struct layer *l, int32_t a, struct tri_
 
 /* The triangle, if it is the one at hand (whose left edge counts only where nothing lies beyond it); else TRI_NONE, and
  * the next one is at hand. After the last one r->t is TRI_NONE. */
-static int32_t rotate(const struct layer *l, struct rotation *r)
+static tri_triangle_id rotate(const struct layer *l, struct rotation *r)
 {
-    int32_t t = r->t;
+    tri_triangle_id t = r->t;
     int k = corner_of(&l->mesh->tri[t], r->vertex);
     if (leaves_through(l->mesh, t, k, r->q) || along_left(l->mesh, t, k, r->q))
         return t;
@@ -153,9 +153,10 @@ static int32_t rotate(const struct layer *l, struct rotation *r)
 /* The triangle through which the segment leaves its end *a towards *b. Where *a is a hub, with many triangles, the
  * search goes on around both ends in turns, and the two are exchanged if it succeeds at *b: so the cost is that of the
  * end with fewer triangles. Remembered as the corner, so that the edges of a fan in order cost O(1) each. */
-static int32_t find_exit(struct layer *l, int32_t *a, int32_t *b)
+static tri_triangle_id find_exit(struct layer *l, tri_vertex_id *a, tri_vertex_id *b)
 {
-    int32_t from = *a, to = *b, found = TRI_NONE;
+    const tri_vertex_id from = *a, to = *b;
+    tri_triangle_id found = TRI_NONE;
     struct rotation at[2] = {rotate_from(l, from, l->mesh->xy[to]), rotate_from(l, to, l->mesh->xy[from])};
     int end = 0;
     for (int n = 0; at[end].t != TRI_NONE && (found = rotate(l, &at[end])) == TRI_NONE;)
@@ -172,7 +173,7 @@ static int32_t marker_of(const struct layer *l, struct tri_course course)
     return course.marked == TRI_NONE ? 0 : l->pslg->segment_markers[course.marked];
 }
 
-static bool set_course(struct layer *l, int32_t s, struct tri_course course)
+static bool set_course(struct layer *l, tri_sub_id s, struct tri_course course)
 {
     bool room = tri_grow(&l->course, &l->course_capacity, s + 1, sizeof *l->course);
     if (room)
@@ -180,7 +181,7 @@ static bool set_course(struct layer *l, int32_t s, struct tri_course course)
     return room;
 }
 
-static bool mark_edge(struct layer *l, int32_t t, int e, struct tri_course course)
+static bool mark_edge(struct layer *l, tri_triangle_id t, int e, struct tri_course course)
 {
     struct tri_mesh *mesh = l->mesh;
     int32_t link = mesh->tri[t].n[e], from = mesh->tri[t].v[tri_next[e]], to = mesh->tri[t].v[tri_prev[e]];
@@ -191,7 +192,7 @@ static bool mark_edge(struct layer *l, int32_t t, int e, struct tri_course cours
     }
     if (tri_mesh_reserve_subs(mesh, 1, l->error))
         return false;
-    int32_t s = tri_mesh_add_sub(mesh, from, to, 0, course.first);
+    tri_sub_id s = tri_mesh_add_sub(mesh, from, to, 0, course.first);
     mesh->sub[s].side[0] = tri_code(t, e);
     mesh->sub[s].side[1] = link;
     mesh->tri[t].n[e] = ~s;
@@ -206,7 +207,7 @@ static struct tri_point end_of(const struct layer *l, int32_t segment, int k)
 }
 
 /* Does v lie within so many resolutions, those of the segment's larger end, of the line of an input segment? */
-static bool keeps_to(const struct layer *l, int32_t segment, int32_t v, double resolutions)
+static bool keeps_to(const struct layer *l, int32_t segment, tri_vertex_id v, double resolutions)
 {
     const int32_t *ends = &l->pslg->segments[2 * segment];
     if (v == ends[0] || v == ends[1])
@@ -222,7 +223,7 @@ static enum tri_status cannot_keep(const struct layer *l, int32_t segment)
                     "segment %d cannot be kept to its line: too much lies within rounding of it", (int)segment);
 }
 
-static enum tri_status check_distance(struct layer *l, struct tri_course course, int32_t v)
+static enum tri_status check_distance(struct layer *l, struct tri_course course, tri_vertex_id v)
 {
     int32_t segment[2] = {course.first, course.marked};
     for (int k = 0; k < 2; k++)
@@ -232,7 +233,8 @@ static enum tri_status check_distance(struct layer *l, struct tri_course course,
 }
 
 /* Makes ab, whose gap begins in triangle t, a subsegment. */
-static enum tri_status lay_edge(struct layer *l, int32_t t, int32_t a, int32_t b, struct tri_course course)
+static enum tri_status lay_edge(struct layer *l, tri_triangle_id t, tri_vertex_id a, tri_vertex_id b,
+                                struct tri_course course)
 {
     struct tri_mesh *mesh = l->mesh;
     enum tri_status status = check_distance(l, course, a);
@@ -243,7 +245,7 @@ static enum tri_status lay_edge(struct layer *l, int32_t t, int32_t a, int32_t b
     bool right = mesh->tri[t].v[tri_next[k]] == b;
     if (right || mesh->tri[t].v[tri_prev[k]] == b)
         return mark_edge(l, t, right ? tri_prev[k] : tri_next[k], course) ? TRI_OK : no_memory(l);
-    int32_t code;
+    tri_halfedge code;
     status = tri_recover_edge(&l->recovery, mesh, t, a, b, &code, l->error);
     if (status)
         return status;
@@ -254,7 +256,7 @@ static enum tri_status lay_edge(struct layer *l, int32_t t, int32_t a, int32_t b
     return mark_edge(l, tri_of(code), tri_edge(code), course) ? TRI_OK : no_memory(l);
 }
 
-static bool keep_corners(struct layer *l, int32_t v)
+static bool keep_corners(struct layer *l, tri_vertex_id v)
 {
     bool room = tri_grow(&l->corner, &l->corner_capacity, l->mesh->n_vertices, sizeof *l->corner);
     if (!room)
@@ -269,7 +271,7 @@ static bool keep_corners(struct layer *l, int32_t v)
 }
 
 /* Takes subsegment s, which has triangles on both sides, out of the mesh; the last one takes its number. */
-static bool take_up(struct layer *l, int32_t s)
+static bool take_up(struct layer *l, tri_sub_id s)
 {
     struct tri_mesh *mesh = l->mesh;
     int32_t left = mesh->sub[s].side[0], right = mesh->sub[s].side[1];
@@ -300,7 +302,7 @@ static tri_triangle_id locate(const struct tri_mesh *mesh, tri_triangle_id t, st
 }
 
 /* A subsegment that is an edge of triangle t and has q on it; TRI_NONE if there is none. */
-static int32_t sub_under(const struct tri_mesh *mesh, int32_t t, struct tri_point q)
+static tri_sub_id sub_under(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)
 {
     const struct tri_triangle *at = &mesh->tri[t];
     for (int e = 0; e < 3; e++)
@@ -326,7 +328,7 @@ static int32_t find_place(const struct layer *l, int32_t near, struct tri_point 
 
 /* Takes subsegment s up to be laid anew through a vertex that is not known yet (see finish_parts). On the hull the edge
  * stays, with nothing along it. */
-static bool take_apart(struct layer *l, int32_t s)
+static bool take_apart(struct layer *l, tri_sub_id s)
 {
     const struct tri_subsegment old = l->mesh->sub[s];
     struct tri_course course = l->course[s];
@@ -335,7 +337,7 @@ static bool take_apart(struct layer *l, int32_t s)
 }
 
 /* Cuts the last n - first pieces of the stack at vertex v. */
-static bool finish_parts(struct layer *l, int32_t first, int32_t v)
+static bool finish_parts(struct layer *l, int32_t first, tri_vertex_id v)
 {
     assert(first >= 0 && first < l->n_pieces && v != TRI_NONE);
     for (int32_t i = l->n_pieces - 1; i >= first; i--) {
@@ -351,12 +353,12 @@ static bool finish_parts(struct layer *l, int32_t first, int32_t v)
 
 /* A vertex that pieces may share instead of a crossing of their own. */
 struct choice {
-    int32_t vertex;  /* TRI_NONE: none yet */
+    tri_vertex_id vertex;  /* TRI_NONE: none yet */
     int before;      /* of how many pieces it lies before the start or beyond the end */
     double distance; /* squared, from the crossing */
 };
 
-static bool lies_between(const struct layer *l, int32_t v, const struct tri_piece *piece)
+static bool lies_between(const struct layer *l, tri_vertex_id v, const struct tri_piece *piece)
 {
     struct tri_point a = l->mesh->xy[piece->from], b = l->mesh->xy[piece->to], q = l->mesh->xy[v];
     double x = b.x - a.x, y = b.y - a.y, at = x * (q.x - a.x) + y * (q.y - a.y);
@@ -364,7 +366,7 @@ static bool lies_between(const struct layer *l, int32_t v, const struct tri_piec
 }
 
 /* The vertex that leads the fewest of the pieces from number `first` on back, then the nearest. */
-static void try_vertex(const struct layer *l, int32_t first, int32_t v, struct tri_point p, double within,
+static void try_vertex(const struct layer *l, int32_t first, tri_vertex_id v, struct tri_point p, double within,
                        struct choice *best)
 {
     struct choice now = {v, 0, tri_distance2(l->mesh->xy[v], p)};
@@ -379,7 +381,8 @@ static void try_vertex(const struct layer *l, int32_t first, int32_t v, struct t
 
 /* The best of the ends of those pieces, the corners of triangle t (where there is one) and the vertices around the
  * cavity of p, as far as they are within a distance of it; TRI_NONE if there is none. */
-static int32_t choose_vertex(const struct layer *l, int32_t first, int32_t t, struct tri_point p, double within)
+static tri_vertex_id choose_vertex(const struct layer *l, int32_t first, tri_triangle_id t, struct tri_point p,
+                                   double within)
 {
     struct choice best = {TRI_NONE, 0, 0};
     assert(first < l->n_pieces && within >= 0);
@@ -395,14 +398,15 @@ static int32_t choose_vertex(const struct layer *l, int32_t first, int32_t t, st
 }
 
 /* A vertex at p, whose cavity has been found, with marker and attributes of the piece `along`. */
-static enum tri_status add_crossing(struct layer *l, struct tri_point p, const struct tri_piece *along, int32_t *vertex)
+static enum tri_status add_crossing(struct layer *l, struct tri_point p, const struct tri_piece *along,
+                                    tri_vertex_id *vertex)
 {
     struct tri_mesh *mesh = l->mesh;
     enum tri_status status = tri_mesh_reserve_vertices(mesh, 1, l->error);
     status = status ? status : tri_mesh_reserve_triangles(mesh, 2, l->error);
     if (status)
         return status;
-    int32_t v = *vertex = mesh->n_vertices++;
+    tri_vertex_id v = *vertex = mesh->n_vertices++;
     struct tri_point from = mesh->xy[along->from], to = mesh->xy[along->to];
     double x = to.x - from.x, y = to.y - from.y;
     mesh->xy[v] = p;
@@ -432,7 +436,7 @@ static struct tri_point crossing_of(const struct layer *l, const struct tri_piec
 }
 
 /* Rule 3: the piece crosses subsegment s. */
-static enum tri_status cross(struct layer *l, const struct tri_piece *piece, int32_t s)
+static enum tri_status cross(struct layer *l, const struct tri_piece *piece, tri_sub_id s)
 {
     assert(s >= 0 && s < l->mesh->n_subs && !tri_is_boundary(&l->mesh->sub[s])); /* no piece leaves the hull */
     int32_t first = l->n_pieces, near = l->mesh->sub[s].v[0], on, t;
@@ -451,7 +455,7 @@ static enum tri_status cross(struct layer *l, const struct tri_piece *piece, int
     enum tri_search found = t == TRI_NONE ? TRI_SEARCH_OUTSIDE : tri_cavity_search(&l->cavity, l->mesh, p, t);
     if (found == TRI_SEARCH_NO_MEMORY)
         return no_memory(l);
-    int32_t v = choose_vertex(l, first, t, p, APART * tri_resolution(p));
+    tri_vertex_id v = choose_vertex(l, first, t, p, APART * tri_resolution(p));
     if (v == TRI_NONE && found != TRI_SEARCH_FOUND)
         return cannot_keep(l, l->segment);
     if (v != TRI_NONE) {
@@ -468,13 +472,14 @@ static enum tri_status cross(struct layer *l, const struct tri_piece *piece, int
 /* What a piece meets first. */
 struct meeting {
     int32_t end;    /* the vertex on it, or its own end; TRI_NONE where a subsegment is across it */
-    int32_t across; /* that subsegment, else TRI_NONE */
+    tri_sub_id across; /* that subsegment, else TRI_NONE */
     int32_t beside; /* the nearest to it of the vertices passed that are within rounding of it, or TRI_NONE */
     double distance;
 };
 
 /* Rule 2. */
-static void consider(const struct layer *l, const struct tri_piece *piece, int32_t v, double det, struct meeting *met)
+static void consider(const struct layer *l, const struct tri_piece *piece, tri_vertex_id v, double det,
+                     struct meeting *met)
 {
     const struct tri_point *xy = l->mesh->xy;
     struct tri_point a = xy[piece->from], b = xy[piece->to], q = xy[v];
@@ -493,7 +498,7 @@ static void consider(const struct layer *l, const struct tri_piece *piece, int32
 }
 
 /* t: the triangle through which the piece leaves its start. */
-static struct meeting look_ahead(const struct layer *l, const struct tri_piece *piece, int32_t t)
+static struct meeting look_ahead(const struct layer *l, const struct tri_piece *piece, tri_triangle_id t)
 {
     const struct tri_mesh *mesh = l->mesh;
     struct tri_point pa = mesh->xy[piece->from], pb = mesh->xy[piece->to];
@@ -510,7 +515,7 @@ static struct meeting look_ahead(const struct layer *l, const struct tri_piece *
     consider(l, piece, right, at_right, &met);
     consider(l, piece, left, at_left, &met);
     for (;;) {
-        int32_t link = mesh->tri[t].n[e];
+        tri_link link = mesh->tri[t].n[e];
         if (link < 0) {
             met.across = ~link;
             return met;
@@ -529,7 +534,7 @@ static struct meeting look_ahead(const struct layer *l, const struct tri_piece *
 }
 
 /* The piece ends at vertex v for now; the rest waits below it on the stack. */
-static enum tri_status stop_at(struct layer *l, const struct tri_piece *piece, int32_t v)
+static enum tri_status stop_at(struct layer *l, const struct tri_piece *piece, tri_vertex_id v)
 {
     assert(v != piece->from && v != piece->to);
     bool room = push_piece(l, v, piece->to, piece->course) && push_piece(l, piece->from, v, piece->course);
@@ -539,7 +544,7 @@ static enum tri_status stop_at(struct layer *l, const struct tri_piece *piece, i
 /* Lays the first part of a piece, which may be turned round for it, or cuts it; the rest goes back on the stack. */
 static enum tri_status lay_piece(struct layer *l, struct tri_piece piece)
 {
-    int32_t t = find_exit(l, &piece.from, &piece.to);
+    tri_triangle_id t = find_exit(l, &piece.from, &piece.to);
     struct meeting met = look_ahead(l, &piece, t);
     assert(piece.from != piece.to && (met.end == TRI_NONE || met.across == TRI_NONE));
     if (met.beside != TRI_NONE && (met.end == TRI_NONE || met.end == piece.to)) {
@@ -583,7 +588,7 @@ static enum tri_status lay_segment(struct layer *l, const struct tri_piece *segm
 }
 
 /* Rule 4: the nearer apex beside subsegment s; TRI_NONE if there is none. */
-static int32_t find_beside(const struct layer *l, int32_t s)
+static tri_vertex_id find_beside(const struct layer *l, tri_sub_id s)
 {
     const struct tri_mesh *mesh = l->mesh;
     const struct tri_subsegment *sub = &mesh->sub[s];
@@ -592,7 +597,7 @@ static int32_t find_beside(const struct layer *l, int32_t s)
     for (int side = 0; side < 2 && piece.course.first != TRI_NONE; side++) {
         if (sub->side[side] == TRI_NONE)
             continue;
-        int32_t v = tri_apex(mesh, sub->side[side]);
+        tri_vertex_id v = tri_apex(mesh, sub->side[side]);
         struct tri_relative a = tri_relative(&mesh->xy[piece.from], mesh->xy[v]);
         struct tri_relative b = tri_relative(&mesh->xy[piece.to], mesh->xy[v]);
         consider(l, &piece, v, tri_cross(a, b), &met);
@@ -600,7 +605,7 @@ static int32_t find_beside(const struct layer *l, int32_t s)
     return met.beside;
 }
 
-static enum tri_status lead_through(struct layer *l, int32_t s, int32_t v)
+static enum tri_status lead_through(struct layer *l, tri_sub_id s, tri_vertex_id v)
 {
     l->n_pieces = 0;
     l->segment = l->course[s].first;
@@ -612,8 +617,8 @@ static enum tri_status close_slits(struct layer *l)
 {
     for (bool again = true; again;) {
         again = false;
-        for (int32_t s = 0; s < l->mesh->n_subs;) {
-            int32_t v = find_beside(l, s);
+        for (tri_sub_id s = 0; s < l->mesh->n_subs;) {
+            tri_vertex_id v = find_beside(l, s);
             enum tri_status status = v == TRI_NONE ? TRI_OK : lead_through(l, s, v);
             if (status)
                 return status;
@@ -670,9 +675,9 @@ static enum tri_status find_corners(struct layer *l)
     l->corner = l->flips.corner = malloc((size_t)l->corner_capacity * sizeof *l->corner);
     if (!l->corner)
         return no_memory(l);
-    for (int32_t v = 0; v < mesh->n_vertices; v++)
+    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
         l->corner[v] = TRI_NONE;
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
         for (int k = 0; k < 3; k++)
             l->corner[mesh->tri[t].v[k]] = t;
     return TRI_OK;
@@ -691,7 +696,7 @@ static void free_layer(struct layer *l)
 /* Hull edges, along which nothing has been laid yet. */
 static enum tri_status list_courses(struct layer *l)
 {
-    for (int32_t s = 0; s < l->mesh->n_subs; s++)
+    for (tri_sub_id s = 0; s < l->mesh->n_subs; s++)
         if (!set_course(l, s, NOBODY))
             return no_memory(l);
     return TRI_OK;
@@ -704,7 +709,7 @@ static void settle(struct layer *l)
     struct tri_mesh *mesh = l->mesh;
     assert(mesh->n_subs <= mesh->n_parents && mesh->n_subs <= l->course_capacity);
     mesh->n_parents = 0;
-    for (int32_t s = 0; s < mesh->n_subs; s++) {
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
         struct tri_subsegment *sub = &mesh->sub[s];
         sub->marker = marker_of(l, l->course[s]);
         sub->parent = mesh->n_parents++;

@@ -67,7 +67,7 @@ static void find_twins(void *context, size_t share)
     struct twins *twins = context;
     const struct tri_point *xy = twins->mesh->xy;
     struct tri_range range = tri_share(share, twins->mesh->n_vertices);
-    for (int32_t v = range.first; v < range.last; v++) {
+    for (tri_vertex_id v = range.first; v < range.last; v++) {
         bool again = v > 0 && xy[v].x == xy[v - 1].x && xy[v].y == xy[v - 1].y;
         twins->mesh->twin[v] = again ? v - 1 : v;
         twins->found[share] += again;
@@ -86,7 +86,7 @@ static enum tri_status list_twins(struct tri_mesh *mesh, int32_t *n_twins, const
     tri_execute(executor, tri_shares(n), find_twins, &twins);
     for (size_t share = 0; share < tri_shares(n); share++)
         found += twins.found[share];
-    for (int32_t v = 1; found > 0 && v < n; v++)
+    for (tri_vertex_id v = 1; found > 0 && v < n; v++)
         if (mesh->twin[v] != v)
             mesh->twin[v] = mesh->twin[v - 1];
     if (found == 0) {
@@ -97,7 +97,7 @@ static enum tri_status list_twins(struct tri_mesh *mesh, int32_t *n_twins, const
     return TRI_OK;
 }
 
-static bool is_twin(const struct tri_mesh *mesh, int32_t v) { return mesh->twin && mesh->twin[v] != v; }
+static bool is_twin(const struct tri_mesh *mesh, tri_vertex_id v) { return mesh->twin && mesh->twin[v] != v; }
 
 /* --- rounds */
 
@@ -111,7 +111,7 @@ static uint32_t scatter(uint32_t i)
 }
 
 /* Round r of R holds one point in ROUND_GROWTH^(R - r), drawn by a fixed hash. */
-static int round_of(const struct builder *b, int32_t v)
+static int round_of(const struct builder *b, tri_vertex_id v)
 {
     int round = b->n_rounds - 1;
     for (uint32_t draw = scatter((uint32_t)v); round > 0 && draw % ROUND_GROWTH == 0; draw /= ROUND_GROWTH)
@@ -119,7 +119,7 @@ static int round_of(const struct builder *b, int32_t v)
     return round;
 }
 
-static bool is_to_insert(const struct builder *b, int32_t v)
+static bool is_to_insert(const struct builder *b, tri_vertex_id v)
 {
     return !is_twin(b->mesh, v) && v != b->first[0] && v != b->first[1] && v != b->first[2];
 }
@@ -131,7 +131,7 @@ static void arrange_leaf(void *context, size_t index)
     struct leaf *leaf = &b->leaf[index];
     int32_t at[MOST_ROUNDS + 1] = {0};
     leaf->range = tri_share_of(index, (size_t)b->n_leaves, b->mesh->n_vertices);
-    for (int32_t v = leaf->range.first; v < leaf->range.last; v++)
+    for (tri_vertex_id v = leaf->range.first; v < leaf->range.last; v++)
         if (is_to_insert(b, v))
             at[round_of(b, v) + 1]++;
     at[0] = leaf->range.first;
@@ -140,10 +140,10 @@ static void arrange_leaf(void *context, size_t index)
     assert(at[MOST_ROUNDS] <= leaf->range.last);
     for (int r = 0; r <= MOST_ROUNDS; r++)
         leaf->round[r] = at[r];
-    for (int32_t v = leaf->range.first; v < leaf->range.last; v++)
+    for (tri_vertex_id v = leaf->range.first; v < leaf->range.last; v++)
         if (is_to_insert(b, v))
             b->waiting[at[round_of(b, v)]++] = v;
-    for (int32_t t = 2 * at[MOST_ROUNDS]; t < 2 * leaf->range.last; t++)
+    for (tri_triangle_id t = 2 * at[MOST_ROUNDS]; t < 2 * leaf->range.last; t++)
         b->tri[t].v[0] = TRI_NONE;
     leaf->near = 2 * b->mesh->n_vertices;
 }
@@ -170,7 +170,7 @@ static void seek_entry(void *context, size_t index)
         return;
     }
     for (int32_t i = 0; leaf->entry == TRI_NONE && i < leaf->n_waiting; i++) {
-        int32_t t = tri_inserter_locate(&all, b->mesh->xy[b->waiting[leaf->round[b->round] + i]]);
+        tri_triangle_id t = tri_inserter_locate(&all, b->mesh->xy[b->waiting[leaf->round[b->round] + i]]);
         leaf->entry = tri_inserter_owns(&block, &b->tri[t]) ? t : TRI_NONE;
     }
 }
@@ -183,7 +183,7 @@ static enum tri_status insert_leaf(const struct builder *b, struct leaf *leaf, s
     for (int32_t i = 0; i < leaf->n_waiting; i++) {
         if (tri_stop_is_due(b->mesh->stop, step))
             return TRI_STOPPED;
-        int32_t triangle = 2 * (leaf->round[b->round] + leaf->n_inserted);
+        tri_triangle_id triangle = 2 * (leaf->round[b->round] + leaf->n_inserted);
         enum tri_insertion done = tri_insert(inserter, waiting[i], triangle);
         if (done == TRI_NO_ROOM_FOR_CAVITY)
             return TRI_NO_MEMORY;
@@ -262,7 +262,7 @@ static bool find_first(struct builder *b)
 {
     const struct tri_point *xy = b->mesh->xy;
     int32_t found = 0;
-    for (int32_t v = 0; found < 3 && v < b->mesh->n_vertices; v++)
+    for (tri_vertex_id v = 0; found < 3 && v < b->mesh->n_vertices; v++)
         if (!is_twin(b->mesh, v) && (found < 2 || tri_orient2d(xy[b->first[0]], xy[b->first[1]], xy[v]) != 0))
             b->first[found++] = v;
     return found == 3;

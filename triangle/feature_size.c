@@ -50,7 +50,7 @@ static bool is_beside(double edge, double left, double right) { return left <= r
  * of all estimates is the same in any order. */
 struct estimate {
     struct tri_mesh *mesh;
-    int32_t own[TRI_MOST_SHARES + 1]; /* share i: vertices own[i] .. own[i + 1] - 1 */
+    tri_vertex_id own[TRI_MOST_SHARES + 1]; /* share i: vertices own[i] .. own[i + 1] - 1 */
 };
 
 static void divide_vertices(struct estimate *e)
@@ -58,7 +58,7 @@ static void divide_vertices(struct estimate *e)
     size_t shares = tri_shares(e->mesh->n_triangles);
     e->own[0] = 0;
     for (size_t i = 1; i < shares; i++) {
-        int32_t v = e->mesh->tri[tri_share(i, e->mesh->n_triangles).first].v[0];
+        tri_vertex_id v = e->mesh->tri[tri_share(i, e->mesh->n_triangles).first].v[0];
         e->own[i] = v > e->own[i - 1] ? v : e->own[i - 1];
         assert(e->own[i] >= e->own[i - 1] && e->own[i] < e->mesh->n_vertices);
     }
@@ -98,7 +98,7 @@ static void estimate_share(const struct estimate *e, size_t share, bool own)
 static void estimate_own(void *context, size_t share)
 {
     const struct estimate *e = context;
-    for (int32_t v = e->own[share]; v < e->own[share + 1]; v++)
+    for (tri_vertex_id v = e->own[share]; v < e->own[share + 1]; v++)
         e->mesh->feature[v] = HUGE_VAL;
     estimate_share(e, share, true);
 }
@@ -112,7 +112,7 @@ void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *exe
         estimate_share(&e, share, false);
 }
 
-double tri_feature_inside(const struct tri_mesh *mesh, int32_t a, int32_t b, struct tri_point p, bool sized)
+double tri_feature_inside(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, struct tri_point p, bool sized)
 {
     assert(a != b);
     double sa = mesh->feature[a], sb = mesh->feature[b], near = sqrt(tri_relative(&mesh->xy[a], p).l);
@@ -121,7 +121,8 @@ double tri_feature_inside(const struct tri_mesh *mesh, int32_t a, int32_t b, str
 }
 
 /* May a point on parent p have the size of its distance from parent q, at w? */
-static bool counts(const struct tri_mesh *mesh, int32_t p, int32_t q, struct tri_point at, struct tri_point w)
+static bool counts(const struct tri_mesh *mesh, tri_parent_id p, tri_parent_id q, struct tri_point at,
+                   struct tri_point w)
 {
     if (p == q)
         return false;
@@ -132,7 +133,8 @@ static bool counts(const struct tri_mesh *mesh, int32_t p, int32_t q, struct tri
 }
 
 /* What vertex v, at `distance` from a point on parent p, says about the size there. */
-static double size_from(const struct tri_mesh *mesh, int32_t p, struct tri_point at, int32_t v, double distance)
+static double size_from(const struct tri_mesh *mesh, tri_parent_id p, struct tri_point at, tri_vertex_id v,
+                        double distance)
 {
     int32_t on = mesh->on[v];
     double inherited = mesh->feature[v] + SLOPE * distance;
@@ -142,7 +144,7 @@ static double size_from(const struct tri_mesh *mesh, int32_t p, struct tri_point
 }
 
 /* The distance of the new point from a subsegment on its edge, where it lies beside it and that counts. */
-static double size_from_wall(const struct tri_mesh *mesh, int32_t p, struct tri_point at, int32_t wall)
+static double size_from_wall(const struct tri_mesh *mesh, tri_parent_id p, struct tri_point at, int32_t wall)
 {
     const struct tri_subsegment *sub = &mesh->sub[wall];
     struct tri_relative a = tri_relative(&mesh->xy[sub->v[0]], at), b = tri_relative(&mesh->xy[sub->v[1]], at);
@@ -152,7 +154,7 @@ static double size_from_wall(const struct tri_mesh *mesh, int32_t p, struct tri_
     return fabs(tri_cross(a, b)) / sqrt(edge);
 }
 
-double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavity *cavity, int32_t s, bool sized)
+double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavity *cavity, tri_sub_id s, bool sized)
 {
     const struct tri_subsegment *sub = &mesh->sub[s];
     double size = HUGE_VAL, half = HUGE_VAL;
@@ -177,7 +179,7 @@ double tri_shrink(double min_angle)
     return min_angle <= PROMISED ? 64 : 16;
 }
 
-bool tri_has_run_away(const struct tri_mesh *mesh, int32_t a, int32_t b, double l2)
+bool tri_has_run_away(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, double l2)
 {
     double sa = mesh->feature[a], sb = mesh->feature[b], size = sa < sb ? sa : sb;
     double shrink = mesh->limits.shrink;

@@ -18,7 +18,7 @@ enum { NOT_FOUND = -2 };
 
 struct walk {
     const struct tri_mesh *mesh;
-    int32_t at;    /* the triangle where the last one ended */
+    tri_triangle_id at; /* the triangle where the last one ended */
     int64_t steps; /* that may still be made */
 };
 
@@ -133,7 +133,7 @@ static void pass_ends(struct sweep *w, const struct event *event, int32_t n)
 /* The triangle above subsegment s; where q lies on it, and there is none, the one below. */
 static tri_triangle_id face_at(const struct tri_mesh *mesh, tri_sub_id s, bool is_on)
 {
-    const int32_t *side = mesh->sub[s].side;
+    const tri_halfedge *side = mesh->sub[s].side;
     int above = left_end(mesh, s); /* left of its direction, if it runs to the right */
     tri_halfedge code = side[above] != TRI_NONE || !is_on ? side[above] : side[1 - above];
     return code == TRI_NONE ? TRI_NONE : tri_of(code);
@@ -147,7 +147,7 @@ static tri_triangle_id face_of(const struct sweep *w, struct tri_point q)
     return below == TRI_NONE ? TRI_NONE : face_at(w->mesh, below, false);
 }
 
-static void list_events(struct sweep *w, const struct tri_point *points, int32_t n, const int32_t *faces)
+static void list_events(struct sweep *w, const struct tri_point *points, int32_t n, const tri_triangle_id *faces)
 {
     for (tri_sub_id s = 0; s < w->mesh->n_subs; s++)
         for (int right = 0; right < 2; right++)
@@ -159,7 +159,7 @@ static void list_events(struct sweep *w, const struct tri_point *points, int32_t
     qsort(w->event, (size_t)w->n_events, sizeof *w->event, compare_events);
 }
 
-static void sweep(struct sweep *w, int32_t *faces)
+static void sweep(struct sweep *w, tri_triangle_id *faces)
 {
     for (int32_t i = 0, n_ends, end; i < w->n_events; i = end) {
         for (end = i; end < w->n_events && tri_compare_places(w->event[i].at, w->event[end].at) == 0;)
@@ -175,8 +175,8 @@ static void sweep(struct sweep *w, int32_t *faces)
     assert(w->order.root == TRI_NONE);
 }
 
-static enum tri_status sweep_for(const struct tri_mesh *mesh, const struct tri_point *points, int32_t n, int32_t *faces,
-                                 struct tri_error *error)
+static enum tri_status sweep_for(const struct tri_mesh *mesh, const struct tri_point *points, int32_t n,
+                                 tri_triangle_id *faces, struct tri_error *error)
 {
     struct sweep w = {.mesh = mesh};
     size_t n_subs = (size_t)mesh->n_subs;
@@ -206,8 +206,8 @@ static int32_t arrange(const struct tri_point *points, int32_t n, int32_t *order
     return n_order;
 }
 
-enum tri_status tri_locate_faces(const struct tri_mesh *mesh, const struct tri_point *points, int32_t n, int32_t *faces,
-                                 struct tri_error *error)
+enum tri_status tri_locate_faces(const struct tri_mesh *mesh, const struct tri_point *points, int32_t n,
+                                 tri_triangle_id *faces, struct tri_error *error)
 {
     int32_t *order = malloc(((size_t)n + 1) * sizeof *order);
     uint64_t *scratch = malloc((2 * (size_t)n + 1) * sizeof *scratch);

@@ -373,7 +373,8 @@ enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_psl
     return TRI_OK;
 }
 
-tri_sub_id tri_mesh_add_sub(struct tri_mesh *mesh, int32_t from, int32_t to, int32_t marker, int32_t segment)
+tri_sub_id tri_mesh_add_sub(struct tri_mesh *mesh, tri_vertex_id from, tri_vertex_id to, int32_t marker,
+                            int32_t segment)
 {
     int32_t s = mesh->n_subs++, parent = mesh->n_parents++;
     assert(s < mesh->sub_capacity && parent < mesh->parent_capacity);
@@ -388,7 +389,7 @@ struct gathering {
     char *scratch;
     const char *origin; /* item 0 */
     size_t item;
-    const int32_t *from;
+    const tri_vertex_id *from;
     int32_t n;
 };
 
@@ -419,8 +420,8 @@ static void bring_share(void *context, size_t share)
     memcpy(g->array + first, g->scratch + first, (size_t)(range.last - range.first) * g->item);
 }
 
-void tri_mesh_gather_vertices(struct tri_mesh *mesh, int32_t first, const int32_t *from, int32_t n, void *scratch,
-                              const struct tri_executor *executor)
+void tri_mesh_gather_vertices(struct tri_mesh *mesh, tri_vertex_id first, const tri_vertex_id *from, int32_t n,
+                              void *scratch, const struct tri_executor *executor)
 {
     void *array[] = {mesh->xy, mesh->on, mesh->vertex_markers, mesh->feature, mesh->attributes};
     const size_t item[] = {sizeof *mesh->xy, sizeof *mesh->on, sizeof *mesh->vertex_markers, sizeof *mesh->feature,
@@ -434,7 +435,7 @@ void tri_mesh_gather_vertices(struct tri_mesh *mesh, int32_t first, const int32_
     }
 }
 
-static void move_triangle(struct tri_mesh *mesh, int32_t from, int32_t to)
+static void move_triangle(struct tri_mesh *mesh, tri_triangle_id from, tri_triangle_id to)
 {
     struct tri_triangle *t = &mesh->tri[to];
     *t = mesh->tri[from];

@@ -257,7 +257,7 @@ static int32_t candidate(struct gap *g, int side)
     while (top->link >= 0) {
         struct tri_triangle *t = &g->mesh->tri[tri_of(top->link)];
         int e = tri_edge(top->link);
-        int32_t apex = t->v[e];
+        tri_vertex_id apex = t->v[e];
         if (!tri_in_circle(l, r, point_at(g, top->place), point_at(g, apex)))
             break;
         assert(tri_is_live(t) && g->r->n_free < g->r->n_crossed);

@@ -125,7 +125,7 @@ static bool push_angle(struct tri_refiner *r, tri_triangle_id triangle, double s
     return tri_bad_queue_push_angle(&r->queue, (struct tri_entry){triangle, t->state}, bucket);
 }
 
-static bool push(struct tri_refiner *r, int32_t triangle, enum tri_badness badness, double shortest)
+static bool push(struct tri_refiner *r, tri_triangle_id triangle, enum tri_badness badness, double shortest)
 {
     struct tri_entry entry = {triangle, r->mesh->tri[triangle].state};
     assert(badness != TRI_GOOD && tri_is_live(&r->mesh->tri[triangle]));
@@ -152,7 +152,7 @@ static bool judge_edge(struct tri_refiner *r, const struct tri_cavity_edge *edge
 static bool judge_urgent(struct tri_refiner *r)
 {
     for (int32_t i = 0; i < r->cavity.n_edges; i++) {
-        int32_t triangle = r->cavity.edge[i].triangle;
+        tri_triangle_id triangle = r->cavity.edge[i].triangle;
         const struct tri_triangle *t = &r->mesh->tri[triangle];
         struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
         enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
@@ -175,7 +175,7 @@ static bool judge_fan(struct tri_refiner *r)
     return true;
 }
 
-static bool queue_encroached(struct tri_refiner *r, int32_t s)
+static bool queue_encroached(struct tri_refiner *r, tri_sub_id s)
 {
     assert(s >= 0 && r->options->conforming);
     if (!tri_grow(&r->encroached, &r->encroached_capacity, r->n_encroached + 1, sizeof *r->encroached))
@@ -206,12 +206,12 @@ static enum tri_status make_room(struct tri_refiner *r)
     return status ? status : tri_mesh_reserve_subs(m, 1, &r->error);
 }
 
-static int32_t add_vertex(struct tri_refiner *r, struct tri_point p, int32_t on, int32_t marker)
+static tri_vertex_id add_vertex(struct tri_refiner *r, struct tri_point p, int32_t on, int32_t marker)
 {
     struct tri_mesh *m = r->mesh;
     assert(m->n_vertices < m->vertex_capacity && tri_is_in_range(p));
     assert(on == TRI_VERTEX_FREE || (on >= 0 && on < m->n_parents));
-    int32_t v = m->n_vertices++;
+    tri_vertex_id v = m->n_vertices++;
     m->xy[v] = p;
     m->on[v] = on;
     m->vertex_markers[v] = marker;
@@ -222,7 +222,7 @@ static int32_t add_vertex(struct tri_refiner *r, struct tri_point p, int32_t on,
 static const int32_t *corners_around(const struct tri_refiner *r, struct tri_point p)
 {
     for (int32_t i = 0; i < r->cavity.n_tri; i++) {
-        const int32_t *v = r->mesh->tri[r->cavity.tri[i]].v;
+        const tri_vertex_id *v = r->mesh->tri[r->cavity.tri[i]].v;
         struct tri_point a = r->mesh->xy[v[0]], b = r->mesh->xy[v[1]], c = r->mesh->xy[v[2]];
         if (tri_orient2d(a, b, p) >= 0 && tri_orient2d(b, c, p) >= 0 && tri_orient2d(c, a, p) >= 0)
             return v;
@@ -237,13 +237,13 @@ static void tell_changes(const struct tri_refiner *r)
 }
 
 /* Inserts p, whose cavity has been found, for the sake of a triangle. */
-static enum outcome insert_free(struct tri_refiner *r, struct tri_point p, int32_t triangle,
+static enum outcome insert_free(struct tri_refiner *r, struct tri_point p, tri_triangle_id triangle,
                                 const struct tri_shape *shape)
 {
     assert(p.x == r->cavity.p.x && p.y == r->cavity.p.y && r->cavity.n_edges == r->cavity.n_tri + 2);
     if (make_room(r))
         return FAILED;
-    int32_t v = add_vertex(r, p, TRI_VERTEX_FREE, 0);
+    tri_vertex_id v = add_vertex(r, p, TRI_VERTEX_FREE, 0);
     const int32_t *corner = r->mesh->tri[triangle].v;
     r->mesh->feature[v] = tri_feature_inside(r->mesh, corner[tri_next[shape->shortest]],
                                              corner[tri_prev[shape->shortest]], p, r->sized);
@@ -311,7 +311,7 @@ static enum tri_search find_split(struct tri_refiner *r, tri_sub_id s, double fr
 }
 
 /* Splits subsegment s, at this fraction of it, for the sake of a triangle. */
-static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, int32_t triangle)
+static enum outcome split_at(struct tri_refiner *r, tri_sub_id s, double fraction, tri_triangle_id triangle)
 {
     struct tri_mesh *m = r->mesh;
     const struct tri_subsegment old = m->sub[s];
@@ -330,7 +330,7 @@ static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, 
         return FAILED;
     bool boundary = tri_is_boundary(&old);
     assert(r->cavity.n_edges > n_left || boundary);
-    int32_t v = add_vertex(r, r->cavity.p, old.parent, old.marker ? old.marker : boundary ? 1 : 0);
+    tri_vertex_id v = add_vertex(r, r->cavity.p, old.parent, old.marker ? old.marker : boundary ? 1 : 0);
     m->feature[v] = tri_feature_on_segment(m, &r->cavity, s, r->sized);
     tri_interpolate_edge(m, old.v[0], old.v[1], fraction, v);
     int32_t second = tri_cavity_fill_split(&r->cavity, m, v, s, n_left);
@@ -342,7 +342,7 @@ static enum outcome split_at(struct tri_refiner *r, int32_t s, double fraction, 
     return room ? DONE : FAILED;
 }
 
-static enum outcome split(struct tri_refiner *r, int32_t s, int32_t triangle)
+static enum outcome split(struct tri_refiner *r, tri_sub_id s, tri_triangle_id triangle)
 {
     return split_at(r, s, tri_split_fraction(r->mesh, &r->mesh->sub[s]), triangle);
 }
@@ -371,7 +371,7 @@ static bool encroaches(const struct tri_refiner *r, int32_t i, bool *beyond)
 }
 
 /* The subsegment to split instead of inserting the new point: one that hides it, else the first that it encroaches. */
-static int32_t find_encroached(const struct tri_refiner *r)
+static tri_sub_id find_encroached(const struct tri_refiner *r)
 {
     int32_t found = TRI_NONE;
     for (int32_t i = 0; i < r->cavity.n_wall; i++) {
@@ -405,7 +405,7 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
 }
 
 /* The cavity of a new point for a triangle: DONE where it is found and is ours. */
-static enum outcome find_cavity(struct tri_refiner *r, int32_t triangle, struct tri_point p)
+static enum outcome find_cavity(struct tri_refiner *r, tri_triangle_id triangle, struct tri_point p)
 {
     if (!(fabs(p.x) < FARTHEST && fabs(p.y) < FARTHEST))
         return refuse(r, TRI_EXCUSE_PRECISION);
@@ -426,7 +426,7 @@ static enum outcome find_cavity(struct tri_refiner *r, int32_t triangle, struct 
 }
 
 /* The usual point, or the split of a subsegment that it encroaches. */
-static enum outcome propose(struct tri_refiner *r, int32_t triangle, const struct tri_shape *shape,
+static enum outcome propose(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape,
                             enum tri_badness badness)
 {
     const struct tri_triangle t = r->mesh->tri[triangle];
@@ -435,7 +435,7 @@ static enum outcome propose(struct tri_refiner *r, int32_t triangle, const struc
     if (outcome != DONE)
         return outcome;
     assert(r->cavity.n_tri > 0 && r->cavity.tri[0] == triangle);
-    int32_t s = find_encroached(r);
+    tri_sub_id s = find_encroached(r);
     if (s == TRI_NONE)
         return insert_free(r, p, triangle, shape);
     if (tri_is_flat(r->mesh, shape))
@@ -445,9 +445,9 @@ static enum outcome propose(struct tri_refiner *r, int32_t triangle, const struc
 }
 
 /* For sizes, where the usual point is refused: see inside.c. */
-static enum outcome propose_inside(struct tri_refiner *r, int32_t triangle, const struct tri_shape *shape)
+static enum outcome propose_inside(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape)
 {
-    int32_t s = tri_long_wall(r->mesh, r->options, triangle, shape);
+    tri_sub_id s = tri_long_wall(r->mesh, r->options, triangle, shape);
     enum outcome outcome = s == TRI_NONE ? REFUSED : split(r, s, triangle);
     if (outcome != REFUSED)
         return outcome == DONE ? AGAIN : outcome;
@@ -491,9 +491,9 @@ static bool at_limit(struct tri_refiner *r)
 
 /* Beyond the usual angle edges must be twice as long, so that afterwards there is room for better angles around
  * them. */
-static bool is_hopeless(const struct tri_refiner *r, int32_t triangle, const struct tri_shape *shape)
+static bool is_hopeless(const struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape)
 {
-    const int32_t *v = r->mesh->tri[triangle].v;
+    const tri_vertex_id *v = r->mesh->tri[triangle].v;
     int k = shape->shortest;
     if (tri_is_hopeless(r->mesh, triangle, shape))
         return true;
@@ -548,7 +548,7 @@ static bool split_encroached(struct tri_refiner *r)
     while (r->n_encroached > 0) {
         if (must_stop(r))
             return false;
-        int32_t s = r->encroached[r->n_encroached - 1];
+        tri_sub_id s = r->encroached[r->n_encroached - 1];
         const struct tri_subsegment *sub = &r->mesh->sub[s];
         if (sub->side[0] == TRI_BEYOND || sub->side[1] == TRI_BEYOND)
             return wait_for_more(r, sub->v) != FAILED;
@@ -596,7 +596,7 @@ static bool work_off(struct tri_refiner *r)
     }
 }
 
-static bool queue_bad(struct tri_refiner *r, int32_t triangle, bool sizes)
+static bool queue_bad(struct tri_refiner *r, tri_triangle_id triangle, bool sizes)
 {
     const struct tri_triangle *t = &r->mesh->tri[triangle];
     if (!tri_is_live(t))
@@ -608,7 +608,7 @@ static bool queue_bad(struct tri_refiner *r, int32_t triangle, bool sizes)
     return push(r, triangle, badness, shape.l[shape.shortest]);
 }
 
-static int32_t listed(const struct tri_refiner *r, int32_t i)
+static tri_triangle_id listed(const struct tri_refiner *r, int32_t i)
 {
     return r->options->worklist ? r->options->worklist[i] : i;
 }
@@ -619,7 +619,7 @@ static int32_t listed_count(const struct tri_refiner *r)
 }
 
 /* The subsegments beside a triangle. */
-static bool queue_beside(struct tri_refiner *r, int32_t triangle)
+static bool queue_beside(struct tri_refiner *r, tri_triangle_id triangle)
 {
     const struct tri_triangle *t = &r->mesh->tri[triangle];
     for (int e = 0; tri_is_live(t) && e < 3; e++)
@@ -632,7 +632,7 @@ static bool queue_beside(struct tri_refiner *r, int32_t triangle)
 static bool queue_chunk(struct tri_refiner *r)
 {
     for (int32_t i = 0; i < WORKLIST_CHUNK && r->next_listed < r->n_worklist; i++, r->next_listed++) {
-        int32_t triangle = listed(r, r->next_listed);
+        tri_triangle_id triangle = listed(r, r->next_listed);
         if ((r->options->conforming && !queue_beside(r, triangle)) || !queue_bad(r, triangle, false))
             return false;
     }

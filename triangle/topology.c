@@ -9,7 +9,7 @@
 /* Edges of a triangle in the order of the list, by their opposite corners. */
 static const int edge_order[3] = {2, 0, 1};
 
-void tri_neighbors(const struct tri_mesh *mesh, tri_triangle_id t, int32_t neighbors[3])
+void tri_neighbors(const struct tri_mesh *mesh, tri_triangle_id t, tri_triangle_id neighbors[3])
 {
     for (int e = 0; e < 3; e++) {
         tri_halfedge other = tri_across(mesh, tri_code(t, e));
@@ -110,7 +110,7 @@ struct tri_blend tri_voronoi_vertex(const struct tri_mesh *mesh, tri_triangle_id
     return blend;
 }
 
-void tri_voronoi_edge(const struct tri_mesh *mesh, tri_halfedge code, int32_t ends[2], double direction[2])
+void tri_voronoi_edge(const struct tri_mesh *mesh, tri_halfedge code, tri_triangle_id ends[2], double direction[2])
 {
     int32_t other = tri_across(mesh, code), edge[2];
     ends[0] = tri_of(code);

@@ -166,7 +166,7 @@ static bool give_all(struct par_ranks *r, struct par_worklist *changed, const st
 
 /* --- dropping */
 
-static void mark(uint64_t *word, int32_t v, bool on)
+static void mark(uint64_t *word, tri_vertex_id v, bool on)
 {
     uint64_t bit = (uint64_t)1 << v % 64;
     word[v / 64] = on ? word[v / 64] | bit : word[v / 64] & ~bit;

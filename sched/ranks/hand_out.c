@@ -22,14 +22,14 @@ struct handing {
     struct par_map *told;          /* [n_ranks] vertices that a rank has been told of */
 };
 
-static int32_t tile_of(const struct handing *h, int32_t v)
+static int32_t tile_of(const struct handing *h, tri_vertex_id v)
 {
     return par_block_at(h->tiles->partition, 0, h->mesh->xy[v]);
 }
 
 static bool is_own(const struct handing *h, int32_t tile) { return tile >= h->first_tile && tile < h->end_tile; }
 
-static int32_t last_tile(const struct handing *h, const int32_t *v, int n)
+static int32_t last_tile(const struct handing *h, const tri_vertex_id *v, int n)
 {
     int32_t last = tile_of(h, v[0]);
     for (int k = 1; k < n; k++) {
@@ -66,10 +66,10 @@ static int64_t count_vertices(struct handing *h)
     struct tri_mesh *mesh = h->mesh;
     struct par_tiles *tiles = h->tiles;
     int64_t n = 0;
-    for (int32_t v = 0; v < tiles->n_kept; v++)
+    for (tri_vertex_id v = 0; v < tiles->n_kept; v++)
         if (tiles->kept_tile[v] >= h->end_tile)
             tiles->kept_tile[v] = INT32_MAX;
-    for (int32_t v = tiles->n_kept; v < mesh->n_vertices; v++) {
+    for (tri_vertex_id v = tiles->n_kept; v < mesh->n_vertices; v++) {
         if (mesh->on[v] != TRI_VERTEX_NONE && !par_is_own(&h->ranks->territory, mesh->xy[v]))
             mesh->on[v] = TRI_VERTEX_NONE;
         n += mesh->on[v] != TRI_VERTEX_NONE;
@@ -80,8 +80,8 @@ static int64_t count_vertices(struct handing *h)
 static int64_t count_subs(struct handing *h)
 {
     int64_t n = 0;
-    for (int32_t s = 0; s < h->mesh->n_subs; s++) {
-        const int32_t *v = h->mesh->sub[s].v;
+    for (tri_sub_id s = 0; s < h->mesh->n_subs; s++) {
+        const tri_vertex_id *v = h->mesh->sub[s].v;
         if (v[0] != TRI_NONE && !is_own(h, last_tile(h, v, 2)))
             par_room_mark_sub(h->mesh, s);
         n += v[0] != TRI_NONE;
@@ -91,7 +91,7 @@ static int64_t count_subs(struct handing *h)
 
 /* --- numbers for others */
 
-static bool tell_number(struct handing *h, int32_t v, int p)
+static bool tell_number(struct handing *h, tri_vertex_id v, int p)
 {
     const struct numbered_place place = {h->mesh->xy[v], h->tiles->number[v]};
     if (par_map_get(&h->told[p], v) != TRI_NONE)
@@ -100,7 +100,7 @@ static bool tell_number(struct handing *h, int32_t v, int p)
 }
 
 /* Of a straddler's own new vertices to a rank that has it, too, and comes later. */
-static bool tell_numbers(struct handing *h, const int32_t v[3], int p)
+static bool tell_numbers(struct handing *h, const tri_vertex_id v[3], int p)
 {
     bool memory = true;
     for (int k = 0; k < 3; k++)
@@ -114,7 +114,7 @@ static bool tell_all(struct handing *h)
     const struct par_ranks *r = h->ranks;
     bool memory = true;
     for (int32_t i = 0; memory && i < r->straddlers.n; i++) {
-        const int32_t *v = h->mesh->tri[r->straddlers.item[i]].v;
+        const tri_vertex_id *v = h->mesh->tri[r->straddlers.item[i]].v;
         for (int k = 0; memory && k < 3; k++)
             if (tile_of(h, v[k]) >= h->end_tile)
                 memory = tell_numbers(h, v, par_owner_at(&r->territory, h->mesh->xy[v[k]]));
@@ -145,7 +145,7 @@ static void take_numbers(struct handing *h, struct par_bytes *told)
     qsort(told->at, n, sizeof(struct numbered_place), compare_places);
     for (int32_t i = 0; i < straddlers->n; i++)
         for (int k = 0; k < 3; k++) {
-            int32_t v = h->mesh->tri[straddlers->item[i]].v[k];
+            tri_vertex_id v = h->mesh->tri[straddlers->item[i]].v[k];
             if (v < h->tiles->n_kept || h->mesh->on[v] != TRI_VERTEX_NONE)
                 continue;
             const struct numbered_place *found =

@@ -243,12 +243,12 @@ static bool remove_gone(struct par_ranks *r, struct par_talk *talk, const struct
 {
     bool memory = true;
     for (int32_t i = 0; memory && i < message->gone.n; i++) {
-        int32_t *t = &talk->triangle.item[message->gone.item[i]];
+        tri_triangle_id *t = &talk->triangle.item[message->gone.item[i]];
         memory = par_remove_triangle(r->state, *t);
         *t = TRI_NONE;
     }
     for (int32_t i = 0; memory && i < message->gone_subs.n; i++) {
-        int32_t *s = &talk->sub.item[message->gone_subs.item[i]];
+        tri_sub_id *s = &talk->sub.item[message->gone_subs.item[i]];
         memory = par_remove_sub(r->state, *s);
         *s = TRI_NONE;
     }

@@ -110,7 +110,7 @@ bool par_remove_triangle(struct par_state *state, tri_triangle_id t)
     struct tri_triangle *triangle = &mesh->tri[t];
     assert(tri_is_live(triangle));
     for (int e = 0; e < 3; e++) {
-        int32_t link = triangle->n[e];
+        tri_link link = triangle->n[e];
         if (link >= 0 && *tri_link_at(mesh, link) == tri_code(t, e))
             *tri_link_at(mesh, link) = TRI_BEYOND;
         for (int side = 0; link < 0 && link != TRI_BEYOND && side < 2; side++)
@@ -227,7 +227,7 @@ struct pasting {
     bool is_borrowed;
     int32_t first_vertex, first_triangle, first_sub; /* numbers of the first new ones */
     bool *is_new;     /* [n_vertices] was not here */
-    int32_t *sub;     /* [n_new_subs] ids */
+    tri_sub_id *sub;     /* [n_new_subs] ids */
 };
 
 static int32_t append_vertex(struct pasting *p, int32_t i)
@@ -235,7 +235,7 @@ static int32_t append_vertex(struct pasting *p, int32_t i)
     struct tri_mesh *mesh = p->mesh;
     const struct par_told_vertex *told = &p->message->vertex[i];
     size_t n = (size_t)mesh->n_attributes;
-    int32_t v = take_id(p->ranks->state, PAR_VERTICES);
+    tri_vertex_id v = take_id(p->ranks->state, PAR_VERTICES);
     mesh->xy[v] = told->xy;
     mesh->feature[v] = told->feature;
     mesh->on[v] = told->on;
@@ -251,7 +251,7 @@ static bool paste_vertices(struct pasting *p)
     bool memory = true;
     for (int32_t i = 0; memory && i < p->message->n_vertices; i++) {
         const struct par_told_vertex *told = &p->message->vertex[i];
-        int32_t v = told->common;
+        tri_vertex_id v = told->common;
         if (v == TRI_NONE) {
             int32_t *at = at_place(&p->ranks->places, p->mesh, told->xy);
             v = *at != TRI_NONE ? *at : append_vertex(p, i);
@@ -274,7 +274,7 @@ static bool may_be_here(const struct pasting *p, const struct par_told_triangle 
 static int32_t paste_triangle(struct pasting *p, const struct par_told_triangle *told)
 {
     const int32_t *id = p->talk->vertex.item, v[3] = {id[told->v[0]], id[told->v[1]], id[told->v[2]]};
-    int32_t t = may_be_here(p, told) ? *at_corners(&p->ranks->triangles, p->mesh, v) : TRI_NONE;
+    tri_triangle_id t = may_be_here(p, told) ? *at_corners(&p->ranks->triangles, p->mesh, v) : TRI_NONE;
     if (t != TRI_NONE)
         return t;
     t = take_id(p->ranks->state, PAR_TRIANGLES);
@@ -363,7 +363,7 @@ static bool paste_subs(struct pasting *p)
         if (t == TRI_NONE)
             return false;
         if (told->sub == p->talk->sub.n) {
-            int32_t *s = &p->sub[told->sub - p->first_sub];
+            tri_sub_id *s = &p->sub[told->sub - p->first_sub];
             *s = *s == TRI_NONE ? append_sub(p, told) : *s;
             good = par_talk_add_sub(p->talk, p->mesh, *s);
         }

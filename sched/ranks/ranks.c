@@ -391,11 +391,11 @@ static int64_t fingerprint(const struct par_ranks *r)
     const struct tri_mesh *mesh = r->state->mesh;
     uint64_t hash = mix(mix((uint64_t)r->territory.partition->n_columns, (uint64_t)r->territory.partition->n_rows),
                         (uint64_t)r->state->worklist.n), bits[2];
-    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++) {
         memcpy(bits, &mesh->xy[v], sizeof bits);
         hash = mix(mix(hash, bits[0]), bits[1]);
     }
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
         for (int k = 0; k < 3; k++)
             hash = mix(hash, (uint64_t)mesh->tri[t].v[k]);
     return (int64_t)hash;

@@ -18,9 +18,9 @@ static int32_t column_beyond(const struct par_partition *p, double x, int32_t n_
     return low;
 }
 
-static double right_end(const struct tri_mesh *mesh, int32_t t)
+static double right_end(const struct tri_mesh *mesh, tri_triangle_id t)
 {
-    const int32_t *v = mesh->tri[t].v;
+    const tri_vertex_id *v = mesh->tri[t].v;
     double a = mesh->xy[v[0]].x, b = mesh->xy[v[1]].x, c = mesh->xy[v[2]].x;
     double most = a > b ? a : b;
     return most > c ? most : c;

@@ -150,7 +150,7 @@ static void count_vertices(void *context, size_t share)
     int32_t *count = n->vertices.at + share * (size_t)n->n_tiles;
     struct finder finder = {.fence = {1, 1, 0, 0}};
     for (int32_t i = range.first; i < range.last; i++) {
-        int32_t v = n->n_kept + i;
+        tri_vertex_id v = n->n_kept + i;
         n->rank[v] = TRI_NONE;
         if (mesh->on[v] != TRI_VERTEX_NONE)
             count[n->rank[v] = find_tile(&finder, n->partition, mesh->xy[v])]++;
@@ -162,7 +162,7 @@ static void deal_vertices(void *context, size_t share)
     const struct numbering *n = context;
     struct tri_range range = share_of(&n->vertices, share);
     int32_t *at = n->vertices.at + share * (size_t)n->n_tiles;
-    for (int32_t v = n->n_kept + range.first; v < n->n_kept + range.last; v++)
+    for (tri_vertex_id v = n->n_kept + range.first; v < n->n_kept + range.last; v++)
         if (n->rank[v] != TRI_NONE)
             n->order[at[n->rank[v]]++] = v;
 }
@@ -181,7 +181,7 @@ static void find_kept(void *context, size_t share)
     const struct numbering *n = context;
     struct tri_range range = tri_share(share, n->n_kept);
     struct finder finder = {.fence = {1, 1, 0, 0}};
-    for (int32_t v = range.first; v < range.last; v++) {
+    for (tri_vertex_id v = range.first; v < range.last; v++) {
         n->rank[v] = v;
         n->kept_tile[v] = find_tile(&finder, n->partition, n->mesh->xy[v]);
     }
@@ -201,7 +201,7 @@ static void rank_vertices(struct numbering *n)
 static void rename_subs(struct numbering *n)
 {
     struct tri_mesh *mesh = n->mesh;
-    for (int32_t s = 0; s < mesh->n_subs; s++)
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2 && mesh->sub[s].v[k] != TRI_NONE; k++)
             mesh->sub[s].v[k] = n->rank[mesh->sub[s].v[k]];
 }
@@ -223,12 +223,12 @@ static void rank_subs(struct numbering *n)
 {
     const struct tri_mesh *mesh = n->mesh;
     uint64_t *item = items_of(n);
-    for (int32_t s = 0; s < mesh->n_subs; s++)
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         if (mesh->sub[s].v[0] != TRI_NONE)
             item[n->n_subs++] = item_of(mesh->sub[s].v[0], 0, s);
     sort_subs(n, mesh->n_vertices);
     for (int32_t i = 0; i < n->n_subs; i++) {
-        int32_t parent = mesh->sub[id_of(item[i])].parent;
+        tri_parent_id parent = mesh->sub[id_of(item[i])].parent;
         assert(parent >= 0 && parent < mesh->n_parents);
         item[i] = item_of(parent, 0, id_of(item[i]));
     }
@@ -244,7 +244,7 @@ static void rank_subs(struct numbering *n)
 
 static int32_t place_of(int32_t number, int first) { return number << 2 | first; }
 
-static inline int32_t new_code(const int32_t *place_of_triangle, int32_t code)
+static inline tri_halfedge new_code(const int32_t *place_of_triangle, tri_halfedge code)
 {
     static const uint8_t turned[4][4] = {{0, 1, 2}, {2, 0, 1}, {1, 2, 0}};
     int32_t place = place_of_triangle[tri_of(code)];
@@ -252,7 +252,7 @@ static inline int32_t new_code(const int32_t *place_of_triangle, int32_t code)
 }
 
 /* The last tile of corners by their new numbers. */
-static int32_t tile_of_triangle(const struct numbering *n, const int32_t v[3])
+static int32_t tile_of_triangle(const struct numbering *n, const tri_vertex_id v[3])
 {
     int32_t last = 0;
     for (int k = 0; k < 3; k++) {
@@ -292,7 +292,7 @@ static inline int32_t tile_after(const struct numbering *n, struct tile_range *l
 
 /* Is the triangle's tile another than that of its first corner? A new vertex with a smaller number is in no later
  * one. */
-static bool is_stray(const struct numbering *n, const struct tile_range *last, const int32_t v[3], uint64_t item)
+static bool is_stray(const struct numbering *n, const struct tile_range *last, const tri_vertex_id v[3], uint64_t item)
 {
     int32_t number = key_of(item);
     bool same = (uint32_t)(number - last->first) < (uint32_t)last->count;
@@ -305,7 +305,7 @@ static bool is_stray(const struct numbering *n, const struct tile_range *last, c
 
 /* The item of the corner with the largest number is the largest: no branch, which could not be predicted. */
 static inline uint64_t key_triangle(const struct numbering *n, const struct tile_range *last, const int32_t *old,
-                                    int32_t t)
+                                    tri_triangle_id t)
 {
     const int32_t *rank = n->rank;
     const int32_t v[3] = {rank[old[0]], rank[old[1]], rank[old[2]]};
@@ -324,7 +324,7 @@ static void key_share(void *context, size_t share)
     struct tile_range last = {0};
     uint64_t *items = items_of(n);
     int32_t *count = n->triangles.at + share * (size_t)n->n_tiles;
-    for (int32_t t = range.first; t < range.last; t++) {
+    for (tri_triangle_id t = range.first; t < range.last; t++) {
         if (!tri_is_live(&tri[t])) {
             items[t] = FREE;
             n->place[t] = TRI_NONE;
@@ -344,7 +344,7 @@ static void deal_triangles(void *context, size_t share)
     const uint64_t *items = items_of(n);
     uint64_t *dealt = dealt_items(n);
     int32_t *at = n->triangles.at + share * (size_t)n->n_tiles;
-    for (int32_t t = range.first; t < range.last; t++)
+    for (tri_triangle_id t = range.first; t < range.last; t++)
         if (items[t] != FREE)
             dealt[at[tile_after(n, &last, items[t])]++] = items[t] & ~(UINT64_C(1) << STRAY_BIT);
 }
@@ -482,7 +482,7 @@ static void place_tile(void *context, size_t tile)
     sort_others(n, &s);
     sort_fans(&s);
     for (int32_t i = 0; i < s.count; i++) {
-        int32_t t = id_of(s.item[i]);
+        tri_triangle_id t = id_of(s.item[i]);
         n->place[t] = place_of(first + i, first_of(s.item[i]));
         down += first + i < t;
     }
@@ -518,7 +518,7 @@ static const struct tri_triangle *source_of(const struct numbering *n, uint64_t 
     return (item >> PARKED_BIT ? parked_of(n) : n->mesh->tri) + id_of(item);
 }
 
-static inline int32_t new_link(const int32_t *place, const int32_t *sub_rank, int32_t link)
+static inline tri_link new_link(const int32_t *place, const int32_t *sub_rank, tri_link link)
 {
     return link >= 0 ? new_code(place, link) : ~sub_rank[~link];
 }
@@ -535,7 +535,7 @@ static inline struct tri_triangle renamed(const struct numbering *n, const struc
 }
 
 /* Something stands here that is to go to a batch to come. */
-static bool stands_here(const struct move *m, int32_t t)
+static bool stands_here(const struct move *m, tri_triangle_id t)
 {
     int32_t place = m->n->place[t];
     return place != TRI_NONE && (m->down ? place >> 2 < m->batch.first : place >> 2 >= m->batch.last);
@@ -551,7 +551,7 @@ static void gather_batch(void *context, size_t share)
     struct tri_triangle *to = n->buffer - m->batch.first;
     const uint64_t *item = dealt_items(n);
     int32_t parked = 0;
-    for (int32_t t = range.first; t < range.last; t++) {
+    for (tri_triangle_id t = range.first; t < range.last; t++) {
         parked += stands_here(m, t);
         if (t + AHEAD < range.last)
             __builtin_prefetch(source_of(n, item[t + AHEAD]));
@@ -566,7 +566,7 @@ static void put_down(void *context, size_t share)
     const struct numbering *n = m->n;
     struct tri_range range = batch_share(m, share);
     int32_t parked = m->parked[share];
-    for (int32_t t = range.first; t < range.last; t++) {
+    for (tri_triangle_id t = range.first; t < range.last; t++) {
         if (stands_here(m, t)) {
             parked_of(n)[parked] = n->mesh->tri[t];
             dealt_items(n)[n->place[t] >> 2] = UINT64_C(1) << PARKED_BIT | item_of(0, n->place[t] & 3, parked++);
@@ -607,7 +607,7 @@ static void move_triangles(const struct numbering *n)
 static void move_subs(struct numbering *n)
 {
     struct tri_mesh *mesh = n->mesh;
-    for (int32_t s = 0; s < mesh->n_subs; s++) {
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
         if (mesh->sub[s].v[0] == TRI_NONE)
             continue;
         struct tri_subsegment *to = &n->sub[n->sub_rank[s]];

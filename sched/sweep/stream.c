@@ -22,8 +22,8 @@ static enum tri_status no_memory(struct tri_error *error)
 /* Who stands where in the caller's order; NULL: no memory. */
 static int32_t *caller_order(const struct tri_mesh *mesh, int32_t n_kept)
 {
-    int32_t *vertex = malloc(((size_t)n_kept + 1) * sizeof *vertex);
-    for (int32_t v = 0; vertex && v < n_kept; v++)
+    tri_vertex_id *vertex = malloc(((size_t)n_kept + 1) * sizeof *vertex);
+    for (tri_vertex_id v = 0; vertex && v < n_kept; v++)
         vertex[par_shown(mesh, v)] = v;
     return vertex;
 }
@@ -31,7 +31,7 @@ static int32_t *caller_order(const struct tri_mesh *mesh, int32_t n_kept)
 static bool copy_kept(const struct par_tiles *tiles, struct par_tile_copy *copy)
 {
     const struct tri_mesh *mesh = tiles->mesh;
-    int32_t *vertex = caller_order(mesh, tiles->n_kept);
+    tri_vertex_id *vertex = caller_order(mesh, tiles->n_kept);
     bool memory = par_tile_copy_reserve(copy, mesh, tiles->n_kept, 0, 0) && vertex;
     for (int32_t i = 0; memory && i < tiles->n_kept; i++) {
         par_tile_copy_vertex(copy, mesh, vertex[i], i);
@@ -90,7 +90,7 @@ enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error)
 
 /* --- the whole mesh */
 
-static int32_t last_tile(const struct par_tiles *tiles, const int32_t *vertex, int n)
+static int32_t last_tile(const struct par_tiles *tiles, const tri_vertex_id *vertex, int n)
 {
     int32_t last = -1;
     for (int k = 0; k < n; k++) {
@@ -100,12 +100,12 @@ static int32_t last_tile(const struct par_tiles *tiles, const int32_t *vertex, i
     return last;
 }
 
-static int32_t tile_of_vertex(const struct par_tiles *tiles, int32_t v) { return last_tile(tiles, &v, 1); }
-static int32_t tile_of_triangle(const struct par_tiles *tiles, int32_t t)
+static int32_t tile_of_vertex(const struct par_tiles *tiles, tri_vertex_id v) { return last_tile(tiles, &v, 1); }
+static int32_t tile_of_triangle(const struct par_tiles *tiles, tri_triangle_id t)
 {
     return last_tile(tiles, tiles->mesh->tri[t].v, 3);
 }
-static int32_t tile_of_sub(const struct par_tiles *tiles, int32_t s)
+static int32_t tile_of_sub(const struct par_tiles *tiles, tri_sub_id s)
 {
     return last_tile(tiles, tiles->mesh->sub[s].v, 2);
 }
@@ -143,8 +143,8 @@ static void copy_items(const struct tri_mesh *mesh, const struct tri_tile *tile,
 }
 
 /* Hands out what follows, up to these numbers. */
-static enum tri_status hand_out_up_to(struct par_tiles *tiles, int32_t tile_id, int32_t vertex, int32_t triangle,
-                                      int32_t sub, struct tri_error *error)
+static enum tri_status hand_out_up_to(struct par_tiles *tiles, int32_t tile_id, tri_vertex_id vertex,
+                                      tri_triangle_id triangle, tri_sub_id sub, struct tri_error *error)
 {
     int32_t n_rows = tiles->partition ? tiles->partition->n_rows : 1;
     struct par_tile_copy copy = {0};
@@ -200,9 +200,9 @@ enum tri_status par_tiles_whole(struct par_tiles *tiles, struct tri_error *error
     int32_t n_tiles = tiles->partition ? par_blocks(tiles->partition) : 0;
     enum tri_status status = par_tiles_begin(tiles, par_tiles_expected(tiles), error);
     for (int32_t tile = 0; !status && tile < n_tiles; tile++) {
-        int32_t v = end_of(tiles, tile, (int32_t)tiles->n_vertices, mesh->n_vertices, tile_of_vertex);
-        int32_t t = end_of(tiles, tile, (int32_t)tiles->n_triangles, mesh->n_triangles, tile_of_triangle);
-        int32_t s = end_of(tiles, tile, (int32_t)tiles->n_segments, mesh->n_subs, tile_of_sub);
+        tri_vertex_id v = end_of(tiles, tile, (int32_t)tiles->n_vertices, mesh->n_vertices, tile_of_vertex);
+        tri_triangle_id t = end_of(tiles, tile, (int32_t)tiles->n_triangles, mesh->n_triangles, tile_of_triangle);
+        tri_sub_id s = end_of(tiles, tile, (int32_t)tiles->n_segments, mesh->n_subs, tile_of_sub);
         status = hand_out_up_to(tiles, tile, v, t, s, error);
     }
     if (!status)

@@ -1,7 +1,6 @@
 /* Columns in turn: refine, look for what is left behind, hand out. */
 #include "sched/sweep/sweep.h"
 
-#include "sched/ranks/ranks.h"
 #include "sched/sweep/ahead.h"
 #include "triangle/clock.h"
 
@@ -122,15 +121,4 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
     state->report->total.gated = state->report->total.fenced = 0; /* all of them have had their turn */
     par_tiles_free(&tiles);
     return status;
-}
-
-enum tri_status par_hand_out(struct par_state *state, struct tri_error *error)
-{
-    struct par_tiles tiles = par_tiles_of(state, state->numbered ? &state->cells : NULL);
-    enum tri_status status = par_park_expect(state->park, state->mesh, par_tiles_whole_bytes(&tiles), error);
-    if (status)
-        return status;
-    if (state->options->carrier)
-        return par_whole_on_ranks(state->options->carrier, &tiles, error);
-    return par_tiles_whole(&tiles, error);
 }

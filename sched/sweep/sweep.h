@@ -1,4 +1,4 @@
-/* A mesh that is handed out as it is made, or as a whole.
+/* A mesh that is handed out as it is made.
  *
  * The first round of a schedule runs from left to right (phase.h, order of columns): the blocks of an odd column, then
  * those of the even one behind it. A column of tiles is final then, unless something is left over by all blocks that
@@ -17,8 +17,5 @@ struct par_tiles par_tiles_of(const struct par_state *state, const struct par_pa
  * do, with all that is around: the sweep has been given up, and neither mesh nor worklist is of any use. */
 enum tri_status par_sweep(struct par_state *state, const struct par_partition *partition, bool *done,
                           struct tri_error *error);
-
-/* Hands out a mesh that is finished, tile by tile if it is numbered. */
-enum tri_status par_hand_out(struct par_state *state, struct tri_error *error);
 
 #endif

@@ -48,7 +48,7 @@ void par_tile_copy_free(struct par_tile_copy *copy)
     *copy = (struct par_tile_copy){0};
 }
 
-void par_tile_copy_vertex(const struct par_tile_copy *copy, const struct tri_mesh *mesh, int32_t v, int32_t to)
+void par_tile_copy_vertex(const struct par_tile_copy *copy, const struct tri_mesh *mesh, tri_vertex_id v, int32_t to)
 {
     size_t n = (size_t)mesh->n_attributes;
     tri_mesh_place(mesh, v, copy->points[to]);

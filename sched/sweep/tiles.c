@@ -60,7 +60,7 @@ static void find_vertices(void *context, size_t share)
     struct tri_range range = par_finds_share(share, mesh->n_vertices);
     struct place_finder place = LOST;
     struct par_finder finder = par_finder_of(&c->vertices, share);
-    for (int32_t v = range.first < tiles->n_kept ? tiles->n_kept : range.first; v < range.last; v++) {
+    for (tri_vertex_id v = range.first < tiles->n_kept ? tiles->n_kept : range.first; v < range.last; v++) {
         if (tiles->number[v] != NO_NUMBER || mesh->on[v] == TRI_VERTEX_NONE || !(mesh->xy[v].x < c->end) ||
             mesh->xy[v].x < c->begin)
             continue;
@@ -102,7 +102,7 @@ static inline bool is_later(const struct par_column *c, int64_t number)
 }
 
 /* The row of the last tile among those of some vertices, of which new ones are told apart by their numbers. */
-static int32_t last_row(const struct par_column *c, struct row_of_numbers *hint, const int32_t *v,
+static int32_t last_row(const struct par_column *c, struct row_of_numbers *hint, const tri_vertex_id *v,
                         const int64_t *number, int n)
 {
     const struct par_tiles *tiles = c->tiles;
@@ -125,7 +125,7 @@ static int32_t last_row(const struct par_column *c, struct row_of_numbers *hint,
 }
 
 /* A triangle that somebody refers to later. */
-static bool has_number(const struct par_column *c, const int32_t v[3], const int64_t number[3])
+static bool has_number(const struct par_column *c, const tri_vertex_id v[3], const int64_t number[3])
 {
     for (int k = 0; k < 3; k++)
         if (v[k] >= c->tiles->n_kept && !is_later(c, number[k]))
@@ -142,8 +142,8 @@ static void find_triangles(void *context, size_t share)
     struct row_of_numbers hint = {0};
     struct par_finder finder = par_finder_of(&c->triangles, share);
     bool memory = true;
-    for (int32_t t = range.first; t < range.last; t++) {
-        const int32_t *v = mesh->tri[t].v;
+    for (tri_triangle_id t = range.first; t < range.last; t++) {
+        const tri_vertex_id *v = mesh->tri[t].v;
         if (v[0] == TRI_NONE)
             continue;
         const int64_t number[3] = {numbers[v[0]], numbers[v[1]], numbers[v[2]]};
@@ -158,10 +158,10 @@ static void find_triangles(void *context, size_t share)
     c->no_memory[share] = !par_finder_end(&finder) || !memory || c->no_memory[share];
 }
 
-static int32_t row_of_sub(const struct par_column *c, int32_t s)
+static int32_t row_of_sub(const struct par_column *c, tri_sub_id s)
 {
     struct row_of_numbers hint = {0};
-    const int32_t *v = c->tiles->mesh->sub[s].v;
+    const tri_vertex_id *v = c->tiles->mesh->sub[s].v;
     const int64_t number[2] = {c->tiles->number[v[0]], c->tiles->number[v[1]]};
     return last_row(c, &hint, v, number, 2);
 }
@@ -173,7 +173,7 @@ static void find_subs(void *context, size_t share)
     const struct tri_mesh *mesh = c->tiles->mesh;
     struct tri_range range = par_finds_share(share, mesh->n_subs);
     struct par_finder finder = par_finder_of(&c->subs, share);
-    for (int32_t s = range.first; s < range.last; s++) {
+    for (tri_sub_id s = range.first; s < range.last; s++) {
         int32_t row = mesh->sub[s].v[0] == TRI_NONE ? EARLIER : row_of_sub(c, s);
         if (row >= 0)
             par_find(&finder, s, row);
@@ -181,19 +181,19 @@ static void find_subs(void *context, size_t share)
     c->no_memory[share] = !par_finder_end(&finder) || c->no_memory[share];
 }
 
-static int32_t row_of_vertex(const void *context, int32_t v)
+static int32_t row_of_vertex(const void *context, tri_vertex_id v)
 {
     const struct par_column *c = context;
     return (int32_t)(FIRST_ROW - c->tiles->number[v]);
 }
 
-static int32_t row_of_final(const void *context, int32_t t)
+static int32_t row_of_final(const void *context, tri_triangle_id t)
 {
     const struct par_column *c = context;
     return par_final_row(&c->tiles->mesh->tri[t]);
 }
 
-static int32_t row_of_found_sub(const void *context, int32_t s) { return row_of_sub(context, s); }
+static int32_t row_of_found_sub(const void *context, tri_sub_id s) { return row_of_sub(context, s); }
 
 static bool memory_has_lasted(const struct par_column *c)
 {
@@ -210,7 +210,7 @@ static void place_kept(void *context, size_t share)
     struct par_tiles *tiles = context;
     struct tri_range range = tri_share(share, tiles->n_kept);
     struct place_finder place = LOST;
-    for (int32_t v = range.first; v < range.last; v++)
+    for (tri_vertex_id v = range.first; v < range.last; v++)
         tiles->kept_tile[v] = find_tile(&place, tiles->partition, tiles->mesh->xy[v]);
 }
 
@@ -234,7 +234,7 @@ bool par_tiles_reserve(struct par_tiles *tiles)
     int64_t *number = realloc(tiles->number, (size_t)now * sizeof *number);
     if (!number)
         return false;
-    for (int32_t v = before; v < now; v++)
+    for (tri_vertex_id v = before; v < now; v++)
         number[v] = v < tiles->n_kept ? v : NO_NUMBER;
     tiles->number = number;
     tiles->capacity = now;
@@ -318,7 +318,7 @@ static bool corners_that_stay(const struct par_column *c, struct par_worklist *s
     for (int s = 0; s < PAR_FIND_SHARES; s++)
         for (int32_t i = 0; i < c->straddling[s].n; i++)
             for (int k = 0; k < 3; k++) {
-                int32_t v = tiles->mesh->tri[c->straddling[s].item[i]].v[k];
+                tri_vertex_id v = tiles->mesh->tri[c->straddling[s].item[i]].v[k];
                 if (v >= tiles->n_kept && tiles->number[v] >= 0)
                     memory = memory && par_worklist_add(stay, v);
             }
@@ -331,7 +331,7 @@ static void let_vertices_go(struct par_tiles *tiles, const struct par_worklist *
 {
     int32_t left = 0, k = list->n > 0 ? par_worklist_find(stay, list->item[0]) : 0;
     for (int32_t i = 0; i < list->n; i++) {
-        int32_t v = list->item[i];
+        tri_vertex_id v = list->item[i];
         while (k < stay->n && stay->item[k] < v)
             k++;
         if (k < stay->n && stay->item[k] == v)

@@ -74,7 +74,7 @@ enum tri_status tri_mesh_neighbors(struct tri_mesh *mesh, struct tri_ints *neigh
         if (!m->neighbors)
             return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for neighbours of %d triangles",
                             (int)mesh->n_triangles);
-        for (int32_t t = 0; t < mesh->n_triangles; t++)
+        for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
             tri_neighbors(mesh, t, &m->neighbors[3 * (size_t)t]);
     }
     *neighbors = tri_ints_of(m->neighbors, mesh->n_triangles, 3);

@@ -104,7 +104,7 @@ static enum tri_status make_places(struct tri_api_mesh *m, struct tri_error *err
     m->places = malloc(((size_t)mesh->n_vertices + 1) * 2 * sizeof *m->places);
     if (!m->places)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d points", (int)mesh->n_vertices);
-    for (int32_t v = 0; v < mesh->n_vertices; v++)
+    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
         tri_mesh_place(mesh, v, &m->places[2 * (size_t)v]);
     return TRI_OK;
 }

@@ -133,18 +133,22 @@ static double signed_squared_cosine(double degrees)
     return cosine * fabs(cosine);
 }
 
+static void look_for_apexes(void *apexes, const struct check_share *share)
+{
+    struct apexes *q = apexes;
+    for (int32_t v = (int32_t)share->first; v < share->end; v++)
+        q->is_apex[v] = is_apex(q, v);
+}
+
 static void find_apexes(struct apexes *q)
 {
     struct checker *c = q->c;
-    int64_t n_apexes = 0;
-#pragma omp parallel for schedule(dynamic, 4096) reduction(+ : n_apexes)
+    tri_check_in_shares(c, c->n_frame, look_for_apexes, q);
     for (int32_t v = 0; v < c->n_frame; v++) {
-        q->is_apex[v] = is_apex(q, v);
-        n_apexes += q->is_apex[v];
+        c->report->n_apexes += q->is_apex[v];
         if (q->is_apex[v])
             c->state[check_vertex(c, v)] |= CHECK_APEX;
     }
-    c->report->n_apexes = n_apexes;
     for (int32_t i = 0; i < 2 * c->n_segments; i++)
         q->apex_of[i] = UNKNOWN;
 }

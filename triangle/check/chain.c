@@ -365,13 +365,13 @@ static bool names_points(const struct tri_pslg *input, int32_t id)
     return ends[0] >= 0 && ends[0] < input->n_points && ends[1] >= 0 && ends[1] < input->n_points;
 }
 
-static void find_stretches(struct chains *k)
+static void find_stretches(void *chains, const struct check_share *share)
 {
+    struct chains *k = chains;
     const struct checker *c = k->c;
-#pragma omp parallel for schedule(dynamic, 1024)
-    for (int32_t id = 0; id < c->input->n_segments; id++) {
+    for (int64_t id = share->first; id < share->end; id++) {
         const int32_t *ends = c->input->segments + 2 * (size_t)id;
-        int32_t a = names_points(c->input, id) ? c->twin[ends[0]] : -1, b = a >= 0 ? c->twin[ends[1]] : -1;
+        int32_t a = names_points(c->input, (int32_t)id) ? c->twin[ends[0]] : -1, b = a >= 0 ? c->twin[ends[1]] : -1;
         k->stretch[id] = b >= 0 && a != b ? tri_check_stretch(&k->lines, a, b) : (struct check_stretch){-1, -1};
     }
 }
@@ -499,7 +499,7 @@ static enum tri_status check_lines(struct chains *k)
         k->unmarked[s] = s;
     }
     k->unmarked[c->n_segments] = c->n_segments;
-    find_stretches(k);
+    tri_check_in_shares(k->c, k->c->input->n_segments, find_stretches, k);
     for (int32_t id = 0; id < c->input->n_segments && status == TRI_OK; id++) {
         if (k->stretch[id].first >= 0)
             take_stretch(k, id);

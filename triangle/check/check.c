@@ -9,9 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 #include "triangle/check/store.h"
 
@@ -80,33 +77,73 @@ void tri_check_fault(struct checker *c, enum tri_check_kind kind, const char *fo
     va_end(arguments);
 }
 
+struct sharing {
+    int64_t n;
+    size_t n_shares;
+    check_work *work;
+    void *user;
+};
+
+static void do_share(void *context, size_t i)
+{
+    const struct sharing *s = context;
+    int64_t k = (int64_t)i, of = (int64_t)s->n_shares;
+    s->work(s->user, &(struct check_share){i, s->n / of * k + s->n % of * k / of,
+                                           s->n / of * (k + 1) + s->n % of * (k + 1) / of});
+}
+
+void tri_check_in_shares(const struct checker *c, int64_t n, check_work *work, void *user)
+{
+    enum { WORTH_A_SHARE = 1 << 12 };
+    int64_t shares = n / WORTH_A_SHARE + 1;
+    struct sharing sharing = {n, (size_t)(shares < CHECK_MOST_SHARES ? shares : CHECK_MOST_SHARES), work, user};
+    assert(n >= 0);
+    tri_execute(c->options->executor, sharing.n_shares, do_share, &sharing);
+}
+
+/* Of each share: how many items are so, and the first. */
+struct counting {
+    const struct checker *c;
+    bool (*is_so)(const struct checker *c, int64_t i);
+    int64_t n[CHECK_MOST_SHARES], first[CHECK_MOST_SHARES];
+};
+
+static void count_share(void *counting, const struct check_share *share)
+{
+    struct counting *k = counting;
+    int64_t n = 0;
+    for (int64_t i = share->first; i < share->end; i++)
+        if (k->is_so(k->c, i) && n++ == 0)
+            k->first[share->number] = i;
+    k->n[share->number] = n;
+}
+
+int64_t tri_check_count(const struct checker *c, int64_t n, bool (*is_so)(const struct checker *c, int64_t i),
+                        int64_t *first)
+{
+    struct counting counting = {.c = c, .is_so = is_so};
+    int64_t sum = 0;
+    tri_check_in_shares(c, n, count_share, &counting);
+    for (int i = 0; i < CHECK_MOST_SHARES; i++) {
+        if (sum == 0)
+            *first = counting.first[i];
+        sum += counting.n[i];
+    }
+    return sum;
+}
+
 void tri_check_each(struct checker *c, enum tri_check_kind kind, int64_t first, int64_t n,
                     bool (*is_bad)(const struct checker *c, int64_t i), void (*tell)(struct checker *c, int64_t i))
 {
-    int64_t n_bad = 0, before = c->report->item[kind].count, least = n;
+    int64_t before = c->report->item[kind].count, least;
     tri_check_begin(c, kind);
-#pragma omp parallel for schedule(static) reduction(+ : n_bad) reduction(min : least)
-    for (int64_t i = 0; i < n; i++) {
-        if (is_bad(c, i)) {
-            n_bad++;
-            least = i < least ? i : least;
-        }
-    }
+    int64_t n_bad = tri_check_count(c, n, is_bad, &least);
     if (n_bad == 0)
         return;
     c->at = first + least;
     tell(c, least);
     c->at = 0;
     c->report->item[kind].count = before + n_bad;
-}
-
-int32_t tri_check_threads(void)
-{
-#ifdef _OPENMP
-    return omp_get_max_threads();
-#else
-    return 1;
-#endif
 }
 
 enum tri_status tri_check_read(struct checker *c, enum tri_check_array array, int64_t first, int64_t n, void *out)

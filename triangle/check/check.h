@@ -51,6 +51,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "triangle/executor.h"
 #include "triangle/pslg.h"
 #include "triangle/status.h"
 
@@ -127,6 +128,8 @@ struct tri_check_options {
     bool any_holes;    /* faces may be empty without a hole point: the mesher chose them by another rule */
     bool ignore_lost;  /* unused vertices may lie inside the mesh (a refined mesh keeps those it was given) */
     int32_t base;      /* number of the first vertex and triangle in the texts of the report */
+    const struct tri_executor *executor; /* does what can be done in shares; NULL: nobody. The report is the same */
+    int32_t n_threads; /* that it has, about; 0: one */
 };
 
 /* One kind of fault each, in the order in which a later kind leans on the earlier ones. */

@@ -65,12 +65,24 @@ static void fill(const struct checker *c, struct range r)
     }
 }
 
+struct ranges {
+    const struct checker *c;
+    void (*look)(const struct checker *c, struct range r);
+    int32_t n;
+};
+
+static void look_at_range(void *context, size_t i)
+{
+    const struct ranges *r = context;
+    int64_t n = r->c->part.n_points, k = (int64_t)i;
+    r->look(r->c, (struct range){(int32_t)(n * k / r->n), (int32_t)(n * (k + 1) / r->n)});
+}
+
 static void each_range(const struct checker *c, void (*look)(const struct checker *c, struct range r))
 {
-    int32_t n = c->part.n_points, n_ranges = tri_check_threads() < MOST_RANGES ? tri_check_threads() : MOST_RANGES;
-#pragma omp parallel for schedule(static)
-    for (int32_t i = 0; i < n_ranges; i++)
-        look(c, (struct range){(int32_t)((int64_t)n * i / n_ranges), (int32_t)((int64_t)n * (i + 1) / n_ranges)});
+    int32_t threads = c->options->n_threads > 0 ? c->options->n_threads : 1;
+    struct ranges ranges = {c, look, threads < MOST_RANGES ? threads : MOST_RANGES};
+    tri_execute(c->options->executor, (size_t)ranges.n, look_at_range, &ranges);
 }
 
 static void group(struct checker *c)
@@ -160,6 +172,12 @@ static void link_group(struct check_part *p, int32_t v)
     }
 }
 
+static void link_groups(void *part, const struct check_share *share)
+{
+    for (int64_t v = share->first; v < share->end; v++)
+        link_group(part, (int32_t)v);
+}
+
 static void note_side(struct checker *c, struct check_side *side, int32_t h)
 {
     if (h < 0)
@@ -186,17 +204,19 @@ static void constrain(struct checker *c)
     }
 }
 
-void tri_check_note_vertices(struct checker *c)
+static void note_vertices(void *checker, const struct check_share *share)
 {
+    const struct checker *c = checker;
     const struct check_part *p = &c->part;
-#pragma omp parallel for schedule(static)
-    for (int32_t v = 0; v < p->n_points; v++) {
+    for (int32_t v = (int32_t)share->first; v < share->end; v++) {
         uint8_t *state = &c->state[check_global(c, v)];
         int32_t turns = (*state & CHECK_TURNS) + p->turns[v];
         if (p->used[v])
             *state = (uint8_t)((*state & ~CHECK_TURNS) | CHECK_USED | (turns < CHECK_TURNS ? turns : CHECK_TURNS));
     }
 }
+
+void tri_check_note_vertices(struct checker *c) { tri_check_in_shares(c, c->part.n_points, note_vertices, c); }
 
 static enum tri_status make_room(struct check_part *p)
 {
@@ -216,9 +236,7 @@ enum tri_status tri_check_pair(struct checker *c)
     if (status != TRI_OK)
         return status;
     group(c);
-#pragma omp parallel for schedule(dynamic, 4096)
-    for (int32_t v = 0; v < p->n_points; v++)
-        link_group(p, v);
+    tri_check_in_shares(c, p->n_points, link_groups, p);
     constrain(c);
     return TRI_OK;
 }

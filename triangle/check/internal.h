@@ -218,7 +218,23 @@ void tri_check_unask(struct checker *c, enum tri_check_kind kind);
 __attribute__((format(printf, 3, 4)))
 #endif
 void tri_check_fault(struct checker *c, enum tri_check_kind kind, const char *format, ...);
-/* Looks at items 0 .. n - 1, on all cores: all that is_bad says so of are faults of this kind, which begins here; the
+/* Items that may be worked on at the same time as those of other shares. */
+enum { CHECK_MOST_SHARES = 64 };
+
+struct check_share {
+    size_t number;
+    int64_t first, end;
+};
+
+typedef void check_work(void *user, const struct check_share *share);
+
+/* Works on items 0 .. n - 1, in shares of a few thousand at least. */
+void tri_check_in_shares(const struct checker *c, int64_t n, check_work *work, void *user);
+
+/* How many of items 0 .. n - 1 are so, and the first of them, if there is one. */
+int64_t tri_check_count(const struct checker *c, int64_t n, bool (*is_so)(const struct checker *c, int64_t i),
+                        int64_t *first);
+/* Looks at items 0 .. n - 1: all that is_bad says so of are faults of this kind, which begins here; the
  * first of them is told, with the key `first` + its number. The same report whatever the number of threads. */
 void tri_check_each(struct checker *c, enum tri_check_kind kind, int64_t first, int64_t n,
                     bool (*is_bad)(const struct checker *c, int64_t i), void (*tell)(struct checker *c, int64_t i));
@@ -228,9 +244,6 @@ enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_c
 
 /* In the part. O(log n). */
 struct check_edge tri_check_find_edge(const struct checker *c, int32_t a, int32_t b);
-
-/* As many as OpenMP has; 1 without it. */
-int32_t tri_check_threads(void);
 
 /* n * size bytes, never a null pointer for n = 0. */
 void *tri_check_array(int64_t n, size_t size);

@@ -79,6 +79,13 @@ static void lay_line(struct check_lines *l, int32_t s, int32_t *n)
     l->begin[++l->n_lines] = *n;
 }
 
+static void find_forks(void *lines, const struct check_share *share)
+{
+    struct check_lines *l = lines;
+    for (int64_t i = share->first; i < share->end; i++)
+        l->forks[i + 1] = forks_at(l->c, l->at[i], 0) || forks_at(l->c, l->at[i], 1);
+}
+
 static void lay_lines(struct check_lines *l)
 {
     const struct checker *c = l->c;
@@ -90,9 +97,7 @@ static void lay_lines(struct check_lines *l)
         if (l->place[s] < 0 && check_is_listed_well(c, s))
             lay_line(l, s, &n);
     }
-#pragma omp parallel for schedule(dynamic, 1024)
-    for (int32_t i = 0; i < n; i++)
-        l->forks[i + 1] = forks_at(c, l->at[i], 0) || forks_at(c, l->at[i], 1);
+    tri_check_in_shares(c, n, find_forks, l);
     l->forks[0] = 0;
     for (int32_t i = 0; i < n; i++)
         l->forks[i + 1] += l->forks[i];

@@ -119,11 +119,8 @@ static bool is_doubtful(const struct checker *c)
 static void count(struct checker *c)
 {
     struct tri_check_report *r = c->report;
-    int64_t n_used = 0;
-#pragma omp parallel for schedule(static) reduction(+ : n_used)
-    for (int64_t v = 0; v < c->n_points; v++)
-        n_used += check_is_used(c, v);
-    r->n_used_points = n_used;
+    int64_t first;
+    r->n_used_points = tri_check_count(c, c->n_points, check_is_used, &first);
     r->n_boundary_edges = c->boundary.n;
     r->n_edges = (3 * c->n_triangles + c->boundary.n) / 2;
     for (int64_t i = 0; i < c->boundary.n; i++) {

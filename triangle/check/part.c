@@ -96,25 +96,27 @@ void tri_check_release_part(struct checker *c)
     *p = (struct check_part){0};
 }
 
-/* Corners that are vertices of the mesh? */
-static bool judge_corners(struct checker *c, const int64_t *corners, const int32_t *own)
+/* A corner of the part as it is given: in the caller's arrays, or as it has just been read. */
+static int64_t given_corner(const struct checker *c, int64_t h)
 {
-    int64_t n = 3 * (int64_t)c->part.n_triangles, n_bad = 0, least = n;
-    int64_t before = c->report->item[TRI_CHECK_ARRAYS].count;
-#pragma omp parallel for schedule(static) reduction(+ : n_bad) reduction(min : least)
-    for (int64_t h = 0; h < n; h++) {
-        int64_t v = corners != NULL ? corners[h] : own[h];
-        if (v < 0 || v >= c->n_points) {
-            n_bad++;
-            least = h < least ? h : least;
-        }
-    }
+    return c->whole != NULL ? c->part.triangles[h] : (int64_t)c->part.entry[h];
+}
+
+static bool is_no_vertex(const struct checker *c, int64_t h)
+{
+    int64_t v = given_corner(c, h);
+    return v < 0 || v >= c->n_points;
+}
+
+static bool judge_corners(struct checker *c)
+{
+    int64_t first, before = c->report->item[TRI_CHECK_ARRAYS].count;
+    int64_t n_bad = tri_check_count(c, 3 * (int64_t)c->part.n_triangles, is_no_vertex, &first);
     if (n_bad == 0)
         return true;
-    c->at = 3 * c->part.first + least;
+    c->at = 3 * c->part.first + first;
     tri_check_fault(c, TRI_CHECK_ARRAYS, "triangle %ld has corner %ld, which is not a vertex",
-                    check_part_triangle(c, (int32_t)(least / 3)),
-                    check_number(c, corners != NULL ? corners[least] : own[least]));
+                    check_part_triangle(c, (int32_t)(first / 3)), check_number(c, given_corner(c, first)));
     c->at = 0;
     c->report->item[TRI_CHECK_ARRAYS].count = before + n_bad;
     return false;
@@ -157,8 +159,15 @@ static void mark(struct check_room *r, const int64_t *corners, int64_t n)
     }
 }
 
+static void rank_corners(void *checker, const struct check_share *share)
+{
+    const struct checker *c = checker;
+    for (int64_t h = share->first; h < share->end; h++)
+        c->part.room->triangles[h] = rank_of(c->part.room, given_corner(c, h));
+}
+
 /* Step 2. */
-static enum tri_status number(struct checker *c, const int64_t *corners)
+static enum tri_status number(struct checker *c)
 {
     struct check_room *r = c->part.room;
     int64_t n = 0;
@@ -176,9 +185,7 @@ static enum tri_status number(struct checker *c, const int64_t *corners)
             return TRI_NO_MEMORY;
     }
     c->part.n_points = (int32_t)n;
-#pragma omp parallel for schedule(static)
-    for (int32_t h = 0; h < c->part.n_half_edges; h++)
-        r->triangles[h] = rank_of(r, corners[h]);
+    tri_check_in_shares(c, c->part.n_half_edges, rank_corners, c);
     return TRI_OK;
 }
 
@@ -220,10 +227,10 @@ static enum tri_status read_part(struct checker *c, bool *good)
     struct check_room *r = p->room;
     int64_t *corners = (int64_t *)p->entry; /* not needed yet */
     enum tri_status status = tri_check_read(c, TRI_CHECK_CORNERS, p->first, p->n_triangles, corners);
-    if (status != TRI_OK || !(*good = judge_corners(c, corners, NULL)) || !check_good(c, TRI_CHECK_ARRAYS))
+    if (status != TRI_OK || !(*good = judge_corners(c)) || !check_good(c, TRI_CHECK_ARRAYS))
         return status;
     mark(r, corners, p->n_half_edges);
-    status = number(c, corners);
+    status = number(c);
     if (status == TRI_OK)
         status = read_points(c);
     if (status == TRI_OK && r->neighbors != NULL)
@@ -249,7 +256,7 @@ static bool take_arrays(struct checker *c)
     p->own_neighbors = m->neighbors;
     p->attributes = check_wants_regions(c) ? m->attributes : NULL;
     p->n_attributes = m->n_attributes;
-    return judge_corners(c, NULL, p->triangles);
+    return judge_corners(c);
 }
 
 enum tri_status tri_check_load(struct checker *c, int64_t first, bool *good)

@@ -125,15 +125,14 @@ static int32_t begin_of_block(const struct checker *c, int32_t i)
     return begin < c->part.n_triangles ? (int32_t)begin : c->part.n_triangles;
 }
 
-static void look(struct checker *c)
+static void look(void *checker, size_t block)
 {
+    const struct checker *c = checker;
     struct check_quality *q = c->quality;
-#pragma omp parallel for schedule(dynamic)
-    for (int32_t i = 0; i < q->n_blocks; i++) {
-        q->block[i] = i == 0 ? q->begun : empty;
-        for (int32_t t = begin_of_block(c, i); t < begin_of_block(c, i + 1); t++)
-            note_shape(c, &q->block[i], t);
-    }
+    int32_t i = (int32_t)block;
+    q->block[i] = i == 0 ? q->begun : empty;
+    for (int32_t t = begin_of_block(c, i); t < begin_of_block(c, i + 1); t++)
+        note_shape(c, &q->block[i], t);
 }
 
 static void join(struct block *all, const struct block *b)
@@ -232,7 +231,7 @@ enum tri_status tri_check_shapes(struct checker *c)
             return TRI_NO_MEMORY;
     }
     int64_t before = q->all.n_large + q->begun.n_large;
-    look(c);
+    tri_execute(c->options->executor, (size_t)q->n_blocks, look, c);
     put_together(c);
     judge_areas(c, q->all.n_large + q->begun.n_large - before);
     return TRI_OK;

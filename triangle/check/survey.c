@@ -21,17 +21,35 @@ static bool are_exact(const double *values, int64_t n)
     return true;
 }
 
-static void look(struct survey *s, const double *values, int64_t n)
+/* Values in hand, and what each share finds. */
+struct looking {
+    const double *values;
+    struct survey share[CHECK_MOST_SHARES];
+};
+
+static void look_at_share(void *user, const struct check_share *share)
 {
-    bool exact = s->exact, finite = s->finite;
-    double largest = s->largest;
-#pragma omp parallel for schedule(static) reduction(&& : exact, finite) reduction(max : largest)
-    for (int64_t i = 0; i < n; i++) {
-        exact = exact && tri_is_exact_coordinate(values[i]);
-        finite = finite && isfinite(values[i]);
-        largest = fmax(largest, fabs(values[i]));
+    struct looking *l = user;
+    struct survey s = {true, true, 0};
+    for (int64_t i = share->first; i < share->end; i++) {
+        s.exact = s.exact && tri_is_exact_coordinate(l->values[i]);
+        s.finite = s.finite && isfinite(l->values[i]);
+        s.largest = fmax(s.largest, fabs(l->values[i]));
     }
-    *s = (struct survey){exact, finite, largest};
+    l->share[share->number] = s;
+}
+
+static void look(const struct checker *c, struct survey *s, const double *values, int64_t n)
+{
+    struct looking l = {.values = values};
+    for (int i = 0; i < CHECK_MOST_SHARES; i++)
+        l.share[i] = (struct survey){true, true, 0};
+    tri_check_in_shares(c, n, look_at_share, &l);
+    for (int i = 0; i < CHECK_MOST_SHARES; i++) {
+        s->exact = s->exact && l.share[i].exact;
+        s->finite = s->finite && l.share[i].finite;
+        s->largest = fmax(s->largest, l.share[i].largest);
+    }
 }
 
 static bool is_out_of_range(const double *p)
@@ -56,7 +74,7 @@ static void judge(struct checker *c, int64_t first, const double *points, int64_
 static enum tri_status pass(struct checker *c, struct survey *s)
 {
     if (c->whole != NULL && s != NULL) {
-        look(s, c->whole->points, 2 * c->n_points);
+        look(c, s, c->whole->points, 2 * c->n_points);
         return TRI_OK;
     }
     double *points = tri_check_array(SLICE, 2 * sizeof *points);
@@ -65,7 +83,7 @@ static enum tri_status pass(struct checker *c, struct survey *s)
         int64_t n = c->n_points - i < SLICE ? c->n_points - i : SLICE;
         status = tri_check_read(c, TRI_CHECK_POINTS, i, n, points);
         if (status == TRI_OK && s != NULL)
-            look(s, points, 2 * n);
+            look(c, s, points, 2 * n);
         else if (status == TRI_OK)
             judge(c, i, points, n);
     }

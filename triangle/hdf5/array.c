@@ -1,7 +1,7 @@
 /* Chunks of an array, from a buffer into the file.
  *
  * INVARIANT between calls: the buffer holds the last n_buffer <= chunk_rows rows; those before it are a whole number of
- * chunks, and in the file. */
+ * chunks, and in the file, but for at most one that is on its way there from the other buffer. */
 #include "triangle/hdf5/array.h"
 
 #include <assert.h>
@@ -29,20 +29,30 @@ static enum tri_status no_memory(const struct tri_h5_array *array, struct tri_er
     return tri_fail(error, TRI_NO_MEMORY, array->file->output->path, 0, "no memory to write %s", array->name);
 }
 
+/* Where bytes go that may pass the system's cache. */
+static char *new_buffer(size_t bytes)
+{
+    void *buffer = NULL;
+    return posix_memalign(&buffer, TRI_BEHIND_BYTES, bytes) == 0 ? buffer : NULL;
+}
+
 enum tri_status tri_h5_array_begin(struct tri_h5_array *array, struct tri_h5_file *file, const char *name,
                                    enum tri_h5_type type, int32_t width, int32_t chunk_rows, struct tri_error *error)
 {
     *array = (struct tri_h5_array){.file = file, .name = name, .type = type, .width = width > 0 ? width : 1,
                                    .is_list = width == 0, .chunk_rows = chunk_rows, .dataset = -1};
-    array->buffer = malloc(chunk_bytes(array));
+    array->buffer = new_buffer(chunk_bytes(array));
     return array->buffer ? TRI_OK : no_memory(array, error);
 }
 
 void tri_h5_array_free(struct tri_h5_array *array)
 {
+    if (array->file)
+        tri_h5_wait(array->file, &array->behind);
     if (array->file && array->dataset >= 0)
         H5Dclose(array->dataset);
     free(array->buffer);
+    free(array->other);
     *array = (struct tri_h5_array){.dataset = -1};
 }
 
@@ -98,6 +108,23 @@ enum tri_status tri_h5_array_allocate(struct tri_h5_array *array, int64_t n_chun
     return resize(array, n_chunks * array->chunk_rows, error);
 }
 
+/* Waits for what is on its way, then sends the buffer after it. */
+static bool send_chunk(struct tri_h5_array *array, const hsize_t place[2])
+{
+    tri_h5_wait(array->file, &array->behind);
+    array->other = array->other ? array->other : new_buffer(chunk_bytes(array));
+    array->file->behind = array->other ? &array->behind : NULL;
+    array->file->behind_data = array->buffer;
+    const bool sent = H5Dwrite_chunk(array->dataset, H5P_DEFAULT, 0, place, chunk_bytes(array), array->buffer) >= 0;
+    array->file->behind = NULL;
+    if (array->behind.under_way) {
+        char *buffer = array->buffer;
+        array->buffer = array->other;
+        array->other = buffer;
+    }
+    return sent && array->file->failure == 0;
+}
+
 /* The buffer as the chunk that begins with row `first`. */
 static enum tri_status write_chunk(struct tri_h5_array *array, int64_t first, struct tri_error *error)
 {
@@ -106,9 +133,7 @@ static enum tri_status write_chunk(struct tri_h5_array *array, int64_t first, st
     if (first / array->chunk_rows >= array->n_chunks)
         return tri_fail(error, TRI_INTERNAL, array->file->output->path, 0, "%s has more rows than expected",
                         array->name);
-    if (H5Dwrite_chunk(array->dataset, H5P_DEFAULT, 0, place, chunk_bytes(array), array->buffer) < 0)
-        return tri_h5_fail(array->file, array->name, error);
-    return TRI_OK;
+    return send_chunk(array, place) ? TRI_OK : tri_h5_fail(array->file, array->name, error);
 }
 
 static enum tri_status write_whole(struct tri_h5_array *array, struct tri_error *error)
@@ -156,6 +181,9 @@ enum tri_status tri_h5_array_end(struct tri_h5_array *array, struct tri_error *e
         status = write_whole(array, error);
     else if (array->n_buffer > 0)
         status = write_chunk(array, array->n - array->n_buffer, error);
+    tri_h5_wait(array->file, &array->behind);
+    if (!status && array->file->failure != 0)
+        status = tri_h5_fail(array->file, array->name, error);
     if (!status && array->n_chunks > 0)
         status = resize(array, array->n, error);
     if (array->dataset >= 0 && H5Dclose(array->dataset) < 0 && !status)
@@ -210,14 +238,17 @@ enum tri_status tri_h5_array_widen(struct tri_h5_array *array, struct tri_error 
 {
     assert(array->type == TRI_H5_INT32);
     const size_t rest = (size_t)array->n_buffer * (size_t)array->width;
-    char *wide = malloc(2 * chunk_bytes(array)), *narrow = array->buffer;
+    char *wide = new_buffer(2 * chunk_bytes(array)), *narrow = array->buffer;
     if (!wide)
         return no_memory(array, error);
+    tri_h5_wait(array->file, &array->behind);
+    free(array->other); /* too small from now on */
+    array->other = NULL;
     array->type = TRI_H5_INT64;
     array->buffer = wide;
     enum tri_status status = array->dataset >= 0 ? replace_dataset(array, error) : TRI_OK;
-    memcpy(wide, narrow, 4 * rest);
-    widen_numbers(wide, rest);
+    memcpy(array->buffer, narrow, 4 * rest);
+    widen_numbers(array->buffer, rest);
     free(narrow);
     return status;
 }

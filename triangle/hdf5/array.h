@@ -1,9 +1,10 @@
 /* An array of an HDF5 file that grows row by row, its length unknown until it ends.
  *
  * Rows gather in a buffer, as bytes of the file. A full buffer becomes a chunk of the dataset, written past HDF5's
- * caches in one piece. Where chunks lie in the file is decided by whoever allocates them, not by when they are full: so
- * what the file holds need not depend on the order in which rows of several arrays come. An array whose rows fit in the
- * buffer, and for which nothing was allocated, is a dataset without chunks, of just its size. */
+ * caches in one piece, while rows gather in a second buffer. Where chunks lie in the file is decided by whoever
+ * allocates them, not by when they are full: so what the file holds need not depend on the order in which rows of
+ * several arrays come. An array whose rows fit in the buffer, and for which nothing was allocated, is a dataset without
+ * chunks, of just its size. */
 #ifndef TRIANGLE_HDF5_ARRAY_H
 #define TRIANGLE_HDF5_ARRAY_H
 
@@ -11,6 +12,7 @@
 
 enum tri_h5_type { TRI_H5_FLOAT64, TRI_H5_INT32, TRI_H5_INT64 };
 
+/* May not move once something is allocated for it. */
 struct tri_h5_array {
     struct tri_h5_file *file; /* borrowed; NULL: there is no such array */
     const char *name;
@@ -21,6 +23,8 @@ struct tri_h5_array {
     int64_t n;         /* rows so far */
     int32_t n_buffer;  /* the last of them, which are in the buffer and not in the file */
     char *buffer;      /* [chunk_rows] rows */
+    char *other;       /* as large: what is on its way into the file; NULL: none was needed */
+    struct tri_behind behind;
     int64_t n_chunks;  /* allocated in the file */
     hid_t dataset;     /* < 0: nothing is allocated */
 };

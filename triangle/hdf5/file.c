@@ -99,15 +99,27 @@ static herr_t read_driven(H5FD_t *head, H5FD_mem_t kind, hid_t transfer, haddr_t
     return 0;
 }
 
+/* A chunk comes through HDF5 as it is. */
+static int write_now_or_behind(struct tri_h5_file *file, haddr_t place, const void *data, size_t size)
+{
+    struct tri_behind *behind = data == file->behind_data ? file->behind : NULL;
+    return behind ? tri_behind_start(behind, file->output, place, data, size)
+                  : tri_output_write_at(file->output, place, data, size);
+}
+
 static herr_t write_driven(H5FD_t *head, H5FD_mem_t kind, hid_t transfer, haddr_t place, size_t size, const void *data)
 {
     struct driven *driven = (struct driven *)head;
     (void)kind, (void)transfer;
     if (driven->written < place + size)
         driven->written = place + size;
-    if (driven->file->failure != 0)
-        return 0;
-    return note(driven->file, tri_output_write_at(driven->file->output, place, data, size));
+    return driven->file->failure != 0 ? 0 : note(driven->file, write_now_or_behind(driven->file, place, data, size));
+}
+
+void tri_h5_wait(struct tri_h5_file *file, struct tri_behind *behind)
+{
+    const int failure = tri_behind_wait(behind, file->output);
+    (void)note(file, failure);
 }
 
 /* The file ends where what has been allocated ends. */

@@ -9,7 +9,7 @@
 #include <hdf5.h>
 
 #include "triangle/status.h"
-#include "triangle/text/output.h"
+#include "triangle/text/behind.h"
 
 struct tri_h5_file {
     hid_t id;       /* of the file; < 0: not open */
@@ -17,6 +17,8 @@ struct tri_h5_file {
     struct tri_output *output; /* borrowed */
     int failure;    /* what writing has met first, as of tri_output_write_at; 0: nothing. From then on nothing is
                        written, and HDF5 is told that all is well, so that it lets go of what it has */
+    struct tri_behind *behind; /* NULL, or by which the next write is to be done if these are its data: */
+    const char *behind_data;
 };
 
 /* Creates the file in an output that has places: else TRI_CANNOT_WRITE. To be closed in any case; may not move. */
@@ -24,6 +26,9 @@ enum tri_status tri_h5_create(struct tri_h5_file *file, struct tri_output *outpu
 
 /* Writes what HDF5 has kept, and closes the file, unless that has been done; the output stays open. */
 enum tri_status tri_h5_close(struct tri_h5_file *file, struct tri_error *error);
+
+/* Waits for a write that has been begun; failures are noted in the file. */
+void tri_h5_wait(struct tri_h5_file *file, struct tri_behind *behind);
 
 /* What to say after a call of HDF5 has failed: what writing met, or what HDF5 tells. Never TRI_OK. */
 enum tri_status tri_h5_fail(struct tri_h5_file *file, const char *what, struct tri_error *error);

@@ -2,6 +2,8 @@
  *
  * All or nothing: once every file is closed only renames can fail. Before the first of them each file that is going to
  * be replaced gets a second name, by which it can be put back. */
+#define _GNU_SOURCE /* O_DIRECT */
+
 #include "triangle/text/output.h"
 
 #include <assert.h>
@@ -16,6 +18,10 @@
 #include <unistd.h>
 
 #include "triangle/text/text.h"
+
+#ifndef O_DIRECT
+#define O_DIRECT 0 /* the system has no such thing */
+#endif
 
 enum {
     MAX_LINKS = 40,
@@ -301,8 +307,17 @@ static enum tri_status open_output(const struct tri_output_set *set, struct tri_
     return status;
 }
 
+/* Closing any descriptor of a file drops its lock: so this comes right before the other one is closed. */
+static void close_direct(struct tri_output *output)
+{
+    if (output->direct >= 0)
+        close(output->direct);
+    output->direct = -1;
+}
+
 static void discard(struct tri_output *output)
 {
+    close_direct(output);
     if (output->file >= 0)
         close(output->file);
     if (output->temporary)
@@ -312,7 +327,7 @@ static void discard(struct tri_output *output)
     free(output->old);
     free(output->temporary);
     free(output->path);
-    *output = (struct tri_output){.file = -1};
+    *output = (struct tri_output){.file = -1, .direct = -1};
 }
 
 enum tri_status tri_output_open(struct tri_output_set *set, const char *path, struct tri_output **output,
@@ -321,7 +336,7 @@ enum tri_status tri_output_open(struct tri_output_set *set, const char *path, st
     *output = NULL;
     if (set->n == TRI_MAX_OUTPUTS)
         return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "more than %d files at a time", TRI_MAX_OUTPUTS);
-    struct tri_output new = {.file = -1, .stop = set->stop};
+    struct tri_output new = {.file = -1, .direct = -1, .stop = set->stop};
     const enum tri_status status = open_output(set, &new, path, error);
     if (status != TRI_OK) {
         discard(&new);
@@ -343,8 +358,6 @@ enum tri_status tri_output_restart(struct tri_output *output, struct tri_error *
 
 /* --- writing and closing */
 
-enum { STOPPED = -1 };
-
 /* write() or, for files, pwrite() of as much as the system takes at once. */
 static ssize_t write_some(const struct tri_output *output, uint64_t place, const char *data, size_t size)
 {
@@ -356,7 +369,7 @@ int tri_output_write_at(const struct tri_output *output, uint64_t place, const c
 {
     while (size > 0) {
         if (tri_stop_is_asked(output->stop))
-            return STOPPED;
+            return TRI_OUTPUT_STOPPED;
         const ssize_t written = write_some(output, place, data, size);
         if (written < 0 && errno != EINTR)
             return errno;
@@ -373,10 +386,31 @@ enum tri_status tri_output_conclude(struct tri_output *output, int result, struc
 {
     if (result == 0)
         return TRI_OK;
-    if (result == STOPPED)
+    if (result == TRI_OUTPUT_STOPPED)
         return tri_fail_stopped(error);
     output->failed = true;
     return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot write", result);
+}
+
+int tri_output_direct(struct tri_output *output)
+{
+    char name[64];
+    assert(tri_output_has_places(output));
+    if (output->direct < 0 && !output->no_direct) {
+        snprintf(name, sizeof name, "/proc/self/fd/%d", output->file);
+        output->direct = O_DIRECT ? open(name, O_WRONLY | O_DIRECT | O_CLOEXEC) : -1;
+        output->no_direct = output->direct < 0;
+    }
+    return output->direct >= 0 ? output->direct : output->file;
+}
+
+enum tri_status tri_output_sync(struct tri_output *output, struct tri_error *error)
+{
+    int result;
+    do
+        result = fsync(output->file);
+    while (result != 0 && errno == EINTR);
+    return tri_output_conclude(output, result == 0 || errno == EINVAL || errno == EROFS ? 0 : errno, error);
 }
 
 uint64_t tri_output_reserve(struct tri_output *output, size_t size)
@@ -440,6 +474,7 @@ static enum tri_status close_output(struct tri_output *output, struct tri_error 
 {
     if (output->failed)
         return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "the file is not complete");
+    close_direct(output);
     const int result = output->file < 0 ? 0 : close(output->file);
     output->file = -1;
     if (result != 0 && errno != EINTR) /* after EINTR the descriptor is closed all the same */

@@ -33,6 +33,8 @@ struct tri_output {
     bool replaces;   /* there was a file of that name */
     bool renamed;    /* it has its name */
     int file;        /* descriptor; -1: closed */
+    int direct;      /* another one for the same file, past the system's cache; -1: none */
+    bool no_direct;  /* there can be none */
     uint64_t size;   /* bytes written or reserved */
     bool failed;     /* something could not be written */
     const struct tri_stop *stop; /* the set's */
@@ -69,9 +71,19 @@ static inline bool tri_output_has_places(const struct tri_output *output) { retu
 /* The place of the next `size` bytes, which are then to be written there. */
 uint64_t tri_output_reserve(struct tri_output *output, size_t size);
 
-/* Writes bytes to a reserved place; by any thread. Returns 0, or what tri_output_conclude makes an error of. */
+enum { TRI_OUTPUT_STOPPED = -1 };
+
+/* Writes bytes to a reserved place; by any thread. Returns 0, or what tri_output_conclude makes an error of: errno, or
+ * TRI_OUTPUT_STOPPED. */
 int tri_output_write_at(const struct tri_output *output, uint64_t place, const char *data, size_t size);
 enum tri_status tri_output_conclude(struct tri_output *output, int result, struct tri_error *error);
+
+/* A descriptor of a file that has places, past the system's cache where that can be: then memory, sizes and places must
+ * be aligned for it. Stays open until the output is closed. */
+int tri_output_direct(struct tri_output *output);
+
+/* All that has been written is on the disk afterwards. Where there is no way to ask for it, nothing happens. */
+enum tri_status tri_output_sync(struct tri_output *output, struct tri_error *error);
 
 /* Moves all bytes from a place on by `by`, forwards or, where by < 0, backwards over those before it; for files that
  * have places. The bytes between are then to be written. */
@@ -81,8 +93,8 @@ enum tri_status tri_output_shift(struct tri_output *output, uint64_t from, int64
 enum tri_status tri_outputs_close(struct tri_output_set *set, struct tri_error *error);
 
 /* Closes all files, then renames all. If a file could not be written, closed or renamed, every name is as it was before
- * (where the file system knows second names of a file; else files renamed before the failure stay). Not synced to the
- * disk. */
+ * (where the file system knows second names of a file; else files renamed before the failure stay). What is to be on
+ * the disk, too, has been synced before. */
 enum tri_status tri_outputs_commit(struct tri_output_set *set, struct tri_error *error);
 
 /* Closes and removes what is not committed. */
