@@ -339,12 +339,17 @@ int32_t par_block_at(const struct par_partition *p, int phase, struct tri_point 
 
 int32_t par_owner_of(const struct par_partition *p, int phase, const struct tri_mesh *mesh, tri_triangle_id t)
 {
+    struct par_locator locator = PAR_LOST;
+    return par_locate_owner(&locator, p, phase, mesh, t);
+}
+
+int32_t par_locate_owner(struct par_locator *locator, const struct par_partition *p, int phase,
+                         const struct tri_mesh *mesh, tri_triangle_id t)
+{
     const tri_vertex_id *v = mesh->tri[t].v;
-    int32_t block = par_block_at(p, phase, mesh->xy[v[0]]);
-    for (int k = 1; k < 3 && block != TRI_NONE; k++)
-        if (par_block_at(p, phase, mesh->xy[v[k]]) != block)
-            block = TRI_NONE;
-    return block;
+    int32_t block = par_locate(locator, p, phase, mesh->xy[v[0]]);
+    bool owns = tri_fence_holds(&locator->fence, mesh->xy[v[1]]) && tri_fence_holds(&locator->fence, mesh->xy[v[2]]);
+    return owns ? block : TRI_NONE;
 }
 
 double par_cell_size(const struct par_partition *p, struct tri_point q)

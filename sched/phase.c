@@ -82,9 +82,9 @@ static bool is_active(void *user, const double p[2])
 }
 
 /* The block that has its turn now and owns triangle t. */
-static int32_t owner_now(const struct phase *p, tri_triangle_id t)
+static int32_t owner_now(const struct phase *p, struct par_locator *locator, tri_triangle_id t)
 {
-    int32_t block = par_owner_of(p->partition, p->phase, p->state->mesh, t);
+    int32_t block = par_locate_owner(locator, p->partition, p->phase, p->state->mesh, t);
     if (p->state->share)
         return block == TRI_NONE || p->state->share->is_mine[block] ? block : TRI_NONE;
     bool mine = p->only == TRI_NONE || block == TRI_NONE || block / p->partition->n_rows == p->only;
@@ -96,9 +96,10 @@ static void assign_share(void *context, size_t share)
     const struct phase *p = context;
     const struct tri_mesh *mesh = p->state->mesh;
     const struct tri_range range = tri_share_of(share, TRI_MOST_SHARES, p->state->worklist.n);
+    struct par_locator locator = PAR_LOST;
     for (int32_t i = range.first; i < range.last; i++) {
         tri_triangle_id t = p->state->worklist.item[i];
-        p->block_of[i] = tri_is_live(&mesh->tri[t]) ? owner_now(p, t) : GONE;
+        p->block_of[i] = tri_is_live(&mesh->tri[t]) ? owner_now(p, &locator, t) : GONE;
         p->work[i] = p->block_of[i] >= 0 ? tri_work_of(mesh, p->state->quality, t) : 0;
     }
 }

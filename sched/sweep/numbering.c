@@ -110,16 +110,18 @@ static int32_t add_up_counts(struct deal *d, int32_t n_tiles)
 
 /* The tile of places that mostly lie in the same one as the last. */
 struct finder {
-    struct tri_fence fence;
-    int32_t tile;
+    struct par_locator locator;
+    int32_t block, tile;
 };
+
+static const struct finder LOST = {{{1, 1, 0, 0}, TRI_NONE}, TRI_NONE, TRI_NONE};
 
 static int32_t find_tile(struct finder *f, const struct par_partition *p, struct tri_point q)
 {
-    if (!tri_fence_holds(&f->fence, q)) {
-        int32_t block = par_block_at(p, 0, q), column = block / p->n_rows, row = block % p->n_rows;
-        f->fence = par_fence(p, column, row);
-        f->tile = column / 2 * (p->n_rows / 2) + row / 2;
+    int32_t block = par_locate(&f->locator, p, 0, q);
+    if (block != f->block) {
+        f->block = block;
+        f->tile = block / p->n_rows / 2 * (p->n_rows / 2) + block % p->n_rows / 2;
     }
     return f->tile;
 }
@@ -148,7 +150,7 @@ static void count_vertices(void *context, size_t share)
     const struct tri_mesh *mesh = n->mesh;
     struct tri_range range = share_of(&n->vertices, share);
     int32_t *count = n->vertices.at + share * (size_t)n->n_tiles;
-    struct finder finder = {.fence = {1, 1, 0, 0}};
+    struct finder finder = LOST;
     for (int32_t i = range.first; i < range.last; i++) {
         tri_vertex_id v = n->n_kept + i;
         n->rank[v] = TRI_NONE;
@@ -180,7 +182,7 @@ static void find_kept(void *context, size_t share)
 {
     const struct numbering *n = context;
     struct tri_range range = tri_share(share, n->n_kept);
-    struct finder finder = {.fence = {1, 1, 0, 0}};
+    struct finder finder = LOST;
     for (tri_vertex_id v = range.first; v < range.last; v++) {
         n->rank[v] = v;
         n->kept_tile[v] = find_tile(&finder, n->partition, n->mesh->xy[v]);
