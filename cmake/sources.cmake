@@ -130,6 +130,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/sweep/park.c
     sched/sweep/spool.c
     sched/sweep/checkpoint.c
+    sched/sweep/state.c
     sched/sweep/ahead.c
     sched/sweep/sweep.c
     sched/worklist.c

@@ -15,8 +15,8 @@ static const double LEAST_BYTES = 44, LOOP_BYTES = 52, SCHEDULE_BYTES = 74, NUMB
  * way, a thread; and, for each root of (triangles * triangles in a cell), of the columns' mesh, on disk with room to
  * grow, of what numbers and hands them out, and of the state of a checkpoint, of which there are two. */
 static const double BUFFERS = 1.5e7, PAGES = 4.8e7, COLUMNS_MESH = 290, COLUMNS_WORK = 115, COLUMNS_STATE = 520;
-/* The same a triangle, of a mesh that stays as a whole; and of the tiles in a checkpoint. */
-static const double PARKED_WORK = 6, PARKED_BYTES = 90, TILES_BYTES = 26;
+/* The same a triangle, of a mesh that stays as a whole; of two states of it; and of the tiles in a checkpoint. */
+static const double PARKED_WORK = 6, PARKED_BYTES = 90, WHOLE_STATES = 120, TILES_BYTES = 26;
 /* Text that one thread writes in a second where a triangle takes it the usual time. */
 static const double TEXT_BYTES = 6.5e8, USUAL_SECONDS = 1.25e-7;
 
@@ -139,7 +139,8 @@ static struct needs needs_of(const struct run *run, double grown, double bytes, 
     n.held = sweeps ? BUFFERS + work + COLUMNS_MESH * column : n.whole;
     n.floor = fmin(n.held, BUFFERS + work + pages);
     n.away = sweeps ? COLUMNS_MESH * column : PARKED_BYTES * grown;
-    n.checkpoint = run->hooks->limits.checkpoint ? TILES_BYTES * grown + COLUMNS_STATE * column : 0;
+    n.states = WHOLE_STATES * grown;
+    n.checkpoint = sweeps ? TILES_BYTES * grown + COLUMNS_STATE * column : n.states;
     return n;
 }
 

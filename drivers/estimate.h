@@ -11,7 +11,8 @@ struct needs {
     double held;       /* memory of one that is handed out as it is made, where its arrays are in memory, */
     double floor;      /* and where they are in files: it cannot be less */
     double away;       /* of these files */
-    double checkpoint; /* of the folder of checkpoints */
+    double checkpoint; /* of the folder of checkpoints where it is handed out as it is made, */
+    double states;     /* and where it is in memory as a whole */
     double files;      /* of the output */
 };
 

@@ -137,7 +137,8 @@ static void list_places(struct disk_place places[DISK_PLACES], const struct run 
                                                                        : run->arguments->output, n->files};
     places[1] = (struct disk_place){"what does not fit in memory", limits->scratch,
                                     run->plan.swept && n->held > left ? n->away : 0};
-    places[2] = (struct disk_place){"the checkpoint", limits->checkpoint, run->plan.swept ? n->checkpoint : 0};
+    const double states = run->plan.swept ? n->checkpoint : n->states;
+    places[2] = (struct disk_place){"the checkpoint", limits->checkpoint, limits->checkpoint ? states : 0};
 }
 
 static double sum_of(const struct disk_place places[DISK_PLACES])
@@ -174,16 +175,6 @@ static enum tri_status check_scratch(const char *folder, struct tri_error *error
     return TRI_OK;
 }
 
-/* A mesh that is never swept has no columns between which a state could be kept. */
-static enum tri_status check_checkpoint(const struct run *run, const struct estimate *e, struct tri_error *error)
-{
-    if (!run->hooks->limits.checkpoint || e->sweeps)
-        return TRI_OK;
-    return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "above 31 degrees, and with -S, a mesh that does not fit in memory "
-                    "keeps no checkpoint: leave out --checkpoint and --resume, or allow %.3g GB of memory",
-                    1e-9 * STRICT_MARGIN * e->likely.whole);
-}
-
 /* --- all together */
 
 static bool fits(const struct run *run, const struct estimate *e, double left)
@@ -210,7 +201,6 @@ static enum tri_status check_stream_all(const struct run *run, const struct esti
                                         const struct console *console, struct tri_error *error)
 {
     enum tri_status status = check_stream(run, e, left, console, error);
-    status = status || fits(run, e, left) ? status : check_checkpoint(run, e, error);
     return status ? status : check_scratch(run->hooks->limits.scratch, error);
 }
 

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "triangle/grow.h"
+
 enum {
     BLOCK_BITS = 12, /* points of a block */
     BLOCK = 1 << BLOCK_BITS,
@@ -117,13 +119,8 @@ static bool shows(struct part *p, const int64_t *v, int n)
 
 static enum tri_status add(struct list *list, const int64_t *v, int n, struct tri_error *error)
 {
-    if (list->n + n > list->room) {
-        int64_t room = 2 * list->room + 1024, *at = realloc(list->at, (size_t)room * sizeof *at);
-        if (at == NULL)
-            return no_memory(error);
-        list->at = at;
-        list->room = room;
-    }
+    if (!tri_grow_far(&list->at, &list->room, list->n + n, sizeof *list->at))
+        return no_memory(error);
     memcpy(list->at + list->n, v, (size_t)n * sizeof *v);
     list->n += n;
     return TRI_OK;
@@ -132,14 +129,8 @@ static enum tri_status add(struct list *list, const int64_t *v, int n, struct tr
 static enum tri_status add_attribute(struct part *p, double value, struct tri_error *error)
 {
     int64_t n = p->corners.n / 3; /* with this one */
-    if (n > p->attribute_room) {
-        int64_t room = 2 * n;
-        double *attributes = realloc(p->attributes, (size_t)room * sizeof *attributes);
-        if (attributes == NULL)
-            return no_memory(error);
-        p->attributes = attributes;
-        p->attribute_room = room;
-    }
+    if (!tri_grow_far(&p->attributes, &p->attribute_room, n, sizeof *p->attributes))
+        return no_memory(error);
     p->attributes[n - 1] = value;
     return TRI_OK;
 }

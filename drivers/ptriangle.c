@@ -165,16 +165,13 @@ static enum tri_status help_others(struct program *p, struct run *run, struct tr
 }
 
 /* What did not fit in memory, or could not be swept. */
-static void tell_of_parking(const struct program *p, bool quiet, enum tri_status status)
+static void tell_of_parking(const struct program *p, bool quiet)
 {
     const struct console console = {.program = PROGRAM, .quiet = quiet};
     if (p->schedule.parked > 0)
         console_say(&console, "%s parked: %.3g GB in %s.\n",
                     p->schedule.way == PAR_SWEPT ? "What did not fit in memory was" : "The mesh was not swept, and was",
                     1e-9 * (double)p->schedule.parked, p->scratch);
-    const bool stopped = status == TRI_STOPPED; /* another failure is told in one line */
-    if (p->schedule.way != PAR_SWEPT && p->restart.wanted && (!status || stopped))
-        fprintf(stderr, "%s: there was no checkpoint.\n", PROGRAM);
 }
 
 /* Refines, and writes what is finished meanwhile. */
@@ -192,7 +189,7 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
                                    : refine_into(p, run, &streams, mesh, quality, error);
     streams_close(&p->streams);
     tri_mesh_free(mesh); /* what is left of it is no mesh */
-    tell_of_parking(p, run->arguments->switches.quiet, status);
+    tell_of_parking(p, run->arguments->switches.quiet);
     if (!status)
         count_streamed(&run->counts, &before, unused, &p->streams);
     return status;
@@ -210,9 +207,6 @@ static enum tri_status refine(void *user, struct run *run, struct tri_output_set
         status = sweep(p, run, set, mesh, quality, error);
     } else {
         struct par_options options = options_of(p, run);
-        if (p->restart.wanted)
-            console_say(&(struct console){.program = PROGRAM, .quiet = run->arguments->switches.quiet},
-                        "The mesh stays in memory: there will be no checkpoint, and --resume starts over.\n");
         status = refine_with(p, run, &options, mesh, quality, error);
         if (!status)
             progress_stage(&p->progress, "writing");
@@ -361,7 +355,7 @@ static const char *whole_mesh(const struct long_options *o)
 static struct run_hooks hooks_of(struct program *p)
 {
     const struct long_options *o = &p->options;
-    bool goes_on = p->restart.wanted && par_checkpoint_has_state(&p->restart.checkpoint);
+    bool goes_on = p->restart.wanted && par_checkpoint_has_sweep(&p->restart.checkpoint);
     struct run_hooks hooks = {.program = PROGRAM, .refine = refine, .estimate = estimate, .write = write_further,
                               .streams = true,
                               .always_sweep = goes_on || p->launch.carrier || sweep_for_tests(),

@@ -248,9 +248,11 @@ static void follow_stage(void *user, enum tri_stage begins)
     }
 }
 
-/* A stop that nobody has noticed counts as one up to here. */
+/* A stop that nobody has noticed counts as one up to here, unless the mesh is finished, and not kept elsewhere. */
 static enum tri_status notice_stop(struct runner *r, enum tri_status status)
 {
+    if (r->built && r->run.hooks->limits.checkpoint)
+        return status;
     return !status && tri_stop_is_asked(interrupt_stop()) ? tri_fail_stopped(r->error) : status;
 }
 

@@ -56,8 +56,7 @@ struct run_limits {
     bool write_partial; /* a run that is stopped while it refines writes the valid mesh that it has */
     bool dry_run;       /* nothing is refined or written: an estimate is printed */
     double memory;      /* bytes that the process may take; 0: what there is */
-    const char *checkpoint; /* directory: a run that is stopped while it is swept takes the time to keep its state
-                               there; NULL: none */
+    const char *checkpoint; /* directory: a run that is stopped takes the time to keep its state there; NULL: none */
     const char *scratch; /* directory for what does not fit in memory */
 };
 

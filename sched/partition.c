@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "triangle/estimate.h"
+#include "triangle/grow.h"
 
 enum {
     SAMPLES_PER_CELL = 32,
@@ -22,21 +23,15 @@ struct sample {
 
 struct samples {
     struct sample *item;
-    size_t n, capacity;
+    int64_t n, capacity;
 };
 
 /* A tri_take_work: user is a struct samples. */
 static bool add_sample(void *user, struct tri_point q, double work)
 {
     struct samples *s = user;
-    if (s->n == s->capacity) {
-        size_t capacity = s->capacity ? 2 * s->capacity : 4096;
-        struct sample *fresh = realloc(s->item, capacity * sizeof *fresh);
-        if (!fresh)
-            return false;
-        s->item = fresh;
-        s->capacity = capacity;
-    }
+    if (!tri_grow_far(&s->item, &s->capacity, s->n + 1, sizeof *s->item))
+        return false;
     s->item[s->n++] = (struct sample){q, work};
     return true;
 }
@@ -63,24 +58,24 @@ static int by_y(const void *left, const void *right)
 /* Runs of samples, each in order, or to be sorted. */
 struct runs {
     struct sample *from, *to;
-    size_t n, runs;
+    int64_t n, runs;
 };
 
-static size_t run_begin(const struct runs *r, size_t run) { return r->n * run / r->runs; }
+static int64_t run_begin(const struct runs *r, size_t run) { return r->n * (int64_t)run / r->runs; }
 
 static void sort_run(void *context, size_t run)
 {
     const struct runs *r = context;
-    size_t begin = run_begin(r, run), end = run_begin(r, run + 1);
-    qsort(r->from + begin, end - begin, sizeof *r->from, by_x);
+    int64_t begin = run_begin(r, run), end = run_begin(r, run + 1);
+    qsort(r->from + begin, (size_t)(end - begin), sizeof *r->from, by_x);
 }
 
 /* Two neighbours become one. */
 static void merge_runs(void *context, size_t pair)
 {
     const struct runs *r = context;
-    size_t a = run_begin(r, 2 * pair), middle = run_begin(r, 2 * pair + 1), end = run_begin(r, 2 * pair + 2);
-    for (size_t at = a, b = middle; at < end; at++)
+    int64_t a = run_begin(r, 2 * pair), middle = run_begin(r, 2 * pair + 1), end = run_begin(r, 2 * pair + 2);
+    for (int64_t at = a, b = middle; at < end; at++)
         r->to[at] = b == end || (a < middle && by_x(&r->from[a], &r->from[b]) <= 0) ? r->from[a++] : r->from[b++];
 }
 
@@ -88,27 +83,27 @@ static void merge_runs(void *context, size_t pair)
 static void sort_by_x(struct samples *s, struct sample *scratch, const struct tri_executor *executor)
 {
     struct runs r = {s->item, scratch, s->n, s->n < FEW ? 1 : RUNS};
-    tri_execute(executor, r.runs, sort_run, &r);
+    tri_execute(executor, (size_t)r.runs, sort_run, &r);
     for (; r.runs > 1; r.runs /= 2) {
-        tri_execute(executor, r.runs / 2, merge_runs, &r);
+        tri_execute(executor, (size_t)r.runs / 2, merge_runs, &r);
         struct sample *merged = r.to;
         r.to = r.from;
         r.from = merged;
     }
     if (r.from != s->item && s->n > 0)
-        memcpy(s->item, r.from, s->n * sizeof *s->item);
+        memcpy(s->item, r.from, (size_t)s->n * sizeof *s->item);
 }
 
 /* Sorted samples into n shares of equal work; cut[k] receives the index at which share k begins, cut[n] that of the
  * end. */
-static void cut_shares(const struct samples *s, int32_t n, size_t *cut)
+static void cut_shares(const struct samples *s, int32_t n, int64_t *cut)
 {
     double total = 0, sum = 0;
     int32_t k = 1;
-    for (size_t i = 0; i < s->n; i++)
+    for (int64_t i = 0; i < s->n; i++)
         total += s->item[i].work;
     cut[0] = 0;
-    for (size_t i = 0; i < s->n && k < n; i++) {
+    for (int64_t i = 0; i < s->n && k < n; i++) {
         sum += s->item[i].work;
         while (k < n && sum >= total * k / n)
             cut[k++] = i + 1;
@@ -120,13 +115,13 @@ static void cut_shares(const struct samples *s, int32_t n, size_t *cut)
 
 /* Boundaries half way between the last sample of a share and the first of the next. Where a share is empty they are
  * equal: an empty cell. */
-static void place_bounds(double *bounds, int32_t n_shares, const struct samples *s, const size_t *cut, bool along_x,
+static void place_bounds(double *bounds, int32_t n_shares, const struct samples *s, const int64_t *cut, bool along_x,
                          double low, double high)
 {
     bounds[0] = low;
     bounds[n_shares] = high;
     for (int32_t k = 1; k < n_shares; k++) {
-        size_t i = cut[k];
+        int64_t i = cut[k];
         bounds[k] = bounds[k - 1];
         if (i == 0 || i >= s->n)
             continue;
@@ -140,20 +135,21 @@ static void place_bounds(double *bounds, int32_t n_shares, const struct samples 
 struct cutting {
     struct par_partition *p;
     const struct samples *s;
-    const size_t *column;   /* [n_columns] the first sample of each column of cells; the last: the end */
+    const int64_t *column;  /* [n_columns] the first sample of each column of cells; the last: the end */
     struct sample *scratch; /* [2 * s->n] those of each block column, which has two columns of cells */
-    size_t *cut;            /* [n_columns][n_rows] */
+    int64_t *cut;           /* [n_columns][n_rows] */
 };
 
 static void cut_rows(void *context, size_t k)
 {
     const struct cutting *c = context;
-    const size_t before = k > 0 ? k - 1 : 0, first = c->column[before], rows = (size_t)c->p->n_rows;
-    const size_t end = c->column[k + 1 < (size_t)c->p->n_columns ? k + 1 : k], n = end - first;
+    const size_t before = k > 0 ? k - 1 : 0, after = k + 1 < (size_t)c->p->n_columns ? k + 1 : k;
+    const size_t rows = (size_t)c->p->n_rows;
+    const int64_t first = c->column[before], n = c->column[after] - first;
     struct samples inside = {c->scratch + (k > 0 ? first + c->column[k] : 0), n, n};
     if (n > 0) {
-        memcpy(inside.item, c->s->item + first, n * sizeof *inside.item);
-        qsort(inside.item, n, sizeof *inside.item, by_y);
+        memcpy(inside.item, c->s->item + first, (size_t)n * sizeof *inside.item);
+        qsort(inside.item, (size_t)n, sizeof *inside.item, by_y);
     }
     cut_shares(&inside, c->p->n_rows - 1, c->cut + k * rows);
     place_bounds(c->p->y + k * rows, c->p->n_rows - 1, &inside, c->cut + k * rows, false, c->p->low.y, c->p->high.y);
@@ -162,9 +158,9 @@ static void cut_rows(void *context, size_t k)
 static bool cut_plane(struct par_partition *p, struct samples *s, const struct tri_executor *executor)
 {
     const size_t n_columns = (size_t)p->n_columns;
-    size_t *columns = malloc(n_columns * sizeof *columns);
-    size_t *rows = malloc(n_columns * (size_t)p->n_rows * sizeof *rows);
-    struct sample *scratch = malloc((2 * s->n + 1) * sizeof *scratch);
+    int64_t *columns = malloc(n_columns * sizeof *columns);
+    int64_t *rows = malloc(n_columns * (size_t)p->n_rows * sizeof *rows);
+    struct sample *scratch = malloc((2 * (size_t)s->n + 1) * sizeof *scratch);
     if (columns && rows && scratch) {
         struct cutting cutting = {p, s, columns, scratch, rows};
         sort_by_x(s, scratch, executor);

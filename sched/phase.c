@@ -366,12 +366,10 @@ static bool watch_owners(struct phase *p)
     (void)p;
 #else
     size_t n = (size_t)p->state->mesh->triangle_capacity + 1;
-    int32_t *mark = realloc(p->mark, n * sizeof *mark);
-    if (!mark)
+    if (!tri_resize(&p->mark, n, sizeof *p->mark))
         return false;
     for (size_t i = p->n_marks; i < n; i++)
-        mark[i] = 0;
-    p->mark = mark;
+        p->mark[i] = 0;
     p->n_marks = n;
 #endif
     return true;
@@ -460,12 +458,8 @@ static bool order_tasks(struct phase *p)
 static bool report_block(const struct phase *p, const struct task *task)
 {
     struct par_report *report = p->state->report;
-    if (report->n_blocks % 256 == 0) {
-        struct par_block_report *fresh = realloc(report->blocks, ((size_t)report->n_blocks + 256) * sizeof *fresh);
-        if (!fresh)
-            return false;
-        report->blocks = fresh;
-    }
+    if (!tri_grow(&report->blocks, &report->block_capacity, report->n_blocks + 1, sizeof *report->blocks))
+        return false;
     report->blocks[report->n_blocks++] = (struct par_block_report){
         p->state->n_schedules - 1, p->state->round, p->phase, task->block, task->n_worklist,
         task->report.inserted_free + task->report.inserted_on_segments, task->report.fenced, task->seconds};

@@ -37,6 +37,14 @@ struct par_share {
     void *user;
 };
 
+/* The parts of a refinement, in their order (schedule.c). */
+enum par_stage {
+    PAR_SIZES,   /* sizes, where angles are dear */
+    PAR_BOUNDS,  /* all bounds, up to the usual angle */
+    PAR_BEYOND,  /* a larger angle */
+    PAR_FINISHED /* nothing is left but to hand it out */
+};
+
 /* What the phases of a schedule hand on. */
 struct par_state {
     struct tri_mesh *mesh;
@@ -49,11 +57,13 @@ struct par_state {
     double radius;           /* largest circumradius in the worklist when it was last filled */
     struct par_report *report;
     int32_t n_schedules;     /* begun so far; the last is the one that works */
-    int round;
+    enum par_stage stage;
+    bool amid;               /* in the phases of this stage's schedule: `cells` are its blocks before the first round */
+    int round, phase;        /* of that, the second from 0 */
     struct par_share *share; /* NULL: all blocks are done here, with all that they may look at */
     int32_t n_kept;          /* vertices there were before */
     bool may_number;         /* nothing is refined after this schedule */
-    struct par_partition cells; /* of the last schedule of the whole mesh: the tiles by which it is numbered */
+    struct par_partition cells; /* of the last schedule of the whole mesh, and the tiles by which it is numbered */
     bool numbered;           /* and nothing was */
     int64_t gone;            /* triangles that have been handed out, and are no more */
     bool delivered;          /* all have */

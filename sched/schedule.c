@@ -11,6 +11,7 @@
 #include "sched/phase.h"
 #include "sched/ranks/ranks.h"
 #include "sched/sweep/numbering.h"
+#include "sched/sweep/state.h"
 #include "sched/sweep/sweep.h"
 #include "sched/theory.h"
 #include "sched/threads.h"
@@ -34,7 +35,7 @@ void par_report_free(struct par_report *report)
     par_partition_free(&report->partition);
     free(report->blocks);
     report->blocks = NULL;
-    report->n_blocks = 0;
+    report->n_blocks = report->block_capacity = 0;
 }
 
 int32_t par_block_of(const struct par_report *report, const struct tri_mesh *mesh, tri_triangle_id t, int *phase)
@@ -241,30 +242,47 @@ static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, st
     return status;
 }
 
+/* Between two steps of what cannot be undone: a state may be kept here. */
+static enum tri_status come_to_border(struct par_state *state, bool surely, struct tri_error *error)
+{
+    struct par_checkpoint *checkpoint = state->options->checkpoint;
+    return checkpoint ? par_state_border(checkpoint, state, surely, error) : TRI_OK;
+}
+
+/* May what comes now be stopped, though not all that has been done is in a state? */
+static void let_stop(struct par_state *state, bool may)
+{
+    if (state->options->checkpoint)
+        par_state_may_stop(state->options->checkpoint, state, may);
+}
+
 static enum tri_status run_phases(struct par_state *state, const struct par_partition *partition,
                                   struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    for (int phase = 0; !status && phase < PAR_PHASES && state->worklist.n > 0; phase++) {
-        par_tell(state, phase + 1);
-        status = par_phase(state, partition, phase, TRI_NONE, error);
+    for (; !status && state->phase < PAR_PHASES && state->worklist.n > 0; state->phase++) {
+        status = state->amid ? come_to_border(state, false, error) : TRI_OK;
+        par_tell(state, state->phase + 1);
+        status = status ? status : par_phase(state, partition, state->phase, TRI_NONE, error);
     }
     return status;
 }
 
-/* Rounds of four phases until nothing is left to do, each round on blocks four times as large. */
+/* Rounds of four phases, from state->round and phase on, until nothing is left to do, each round on blocks four times
+ * as large. */
 static enum tri_status run_rounds(struct par_state *state, struct par_partition *partition, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     assert(par_cells(partition) >= 4);
-    state->n_schedules++;
-    for (state->round = 0; !status && state->round < MAX_ROUNDS; state->round++) {
+    for (; !status && state->round < MAX_ROUNDS; state->round++) {
         status = run_phases(state, partition, error);
+        state->phase = 0;
         state->report->rounds++;
         if (state->worklist.n == 0 || !par_can_coarsen(partition))
             break;
         par_partition_coarsen(partition);
     }
+    state->amid = false;
     state->report->deferred += state->report->total.fenced; /* finish_schedule clears it in the total */
     return status;
 }
@@ -328,7 +346,8 @@ static void go_back(struct par_state *state, struct before *before)
     state->key.n = 0;
     state->gone = 0;
     par_room_free(&state->spare);
-    before->report.blocks = report->blocks; /* it may have moved */
+    before->report.blocks = report->blocks; /* they may have moved */
+    before->report.block_capacity = report->block_capacity;
     *report = before->report;
     report->most_live = live;
 }
@@ -404,14 +423,24 @@ static enum tri_status report_schedule(struct par_state *state, const struct par
     return par_partition_copy(&report->partition, partition, error);
 }
 
+/* top: the mesh is the whole one, not what comes before its schedule. */
+static enum tri_status run_and_finish(struct par_state *state, const struct tri_refine_options *quality,
+                                      struct par_partition *partition, bool top, struct tri_error *error)
+{
+    enum tri_status status = run_rounds(state, partition, error);
+    note_size(state);
+    if (top)
+        state->report->left_over += state->worklist.n;
+    return finish_schedule(state, quality, top, status, error);
+}
+
 /* The phases of one level, on a mesh that has been pre-refined, and what is bad in it. */
 static enum tri_status run_schedule(struct par_state *state, const struct tri_refine_options *quality,
                                     struct par_partition *partition, bool top, struct tri_error *error)
 {
-    struct par_report *report = state->report;
     enum tri_status status = top ? report_schedule(state, partition, error) : TRI_OK;
     state->quality = quality;
-    if (!status && top && !state->options->by_block) {
+    if (!status && top) {
         par_partition_free(&state->cells);
         status = par_partition_copy(&state->cells, partition, error);
     }
@@ -421,11 +450,26 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         status = leave_memory(state, partition, error);
     if (status || state->delivered)
         return status;
-    status = run_rounds(state, partition, error);
-    note_size(state);
-    if (top)
-        report->left_over += state->worklist.n;
-    return finish_schedule(state, quality, top, status, error);
+    state->n_schedules++;
+    state->round = state->phase = 0;
+    state->amid = top;
+    return run_and_finish(state, quality, partition, top, error);
+}
+
+/* From where a checkpoint's state is, in the phases of a schedule. */
+static enum tri_status go_on(struct par_state *state, const struct tri_refine_options *quality,
+                             struct tri_error *error)
+{
+    struct par_partition partition;
+    enum tri_status status = par_partition_copy(&partition, &state->cells, error);
+    if (status)
+        return status;
+    for (int round = 0; round < state->round; round++)
+        par_partition_coarsen(&partition);
+    state->quality = quality;
+    status = run_and_finish(state, quality, &partition, true, error);
+    par_partition_free(&partition);
+    return status;
 }
 
 static double cell_size(const struct par_state *state, double estimate)
@@ -508,6 +552,20 @@ static enum tri_status refine_level(struct par_state *state, const struct tri_re
     return status;
 }
 
+/* The schedule of a stage, or what of it is still to be done. */
+static enum tri_status refine_stage(struct par_state *state, const struct tri_refine_options *quality,
+                                    enum par_stage stage, struct tri_error *error)
+{
+    if (state->stage > stage)
+        return TRI_OK;
+    if (state->amid)
+        return go_on(state, quality, error);
+    const bool begun = state->stage < stage;
+    state->stage = stage;
+    enum tri_status status = begun ? come_to_border(state, false, error) : TRI_OK;
+    return status ? status : refine_level(state, quality, 0, error);
+}
+
 /* Bounds above TRI_EASY_ANGLE are dear wherever triangles of different sizes meet, and in a mesh that comes out of a
  * coarse one by stages they meet everywhere. So sizes are brought about first, with an easy bound, and then the
  * angles on a mesh of one size. (Measured on letter.poly, 33 degrees: 2% more triangles than by one sequential call,
@@ -517,7 +575,7 @@ static enum tri_status refine_sizes_first(struct par_state *state, const struct 
 {
     struct tri_refine_options easy = *quality;
     easy.min_angle = TRI_SIZES_ANGLE;
-    return tri_has_sizes(quality) ? refine_level(state, &easy, 0, error) : TRI_OK;
+    return refine_stage(state, &easy, PAR_SIZES, error);
 }
 
 /* What a schedule cannot do, one call does. */
@@ -527,20 +585,35 @@ static bool must_be_sequential(const struct tri_refine_options *quality, const s
            quality->deferred || (quality->unsuitable && !options->size_test_in_parallel);
 }
 
+/* A last call for angles that no schedule serves. It may be long, and keeps no state. */
+static enum tri_status refine_beyond(struct par_state *state, const struct tri_refine_options *quality,
+                                     struct tri_error *error)
+{
+    double last = tri_seconds();
+    if (state->stage > PAR_BEYOND || quality->min_angle <= TRI_USUAL_ANGLE)
+        return TRI_OK;
+    state->stage = PAR_BEYOND;
+    enum tri_status status = come_to_border(state, true, error);
+    let_stop(state, true);
+    status = status ? status : refine_rest(state, quality, true, error);
+    let_stop(state, false);
+    state->report->seconds_last += tri_seconds() - last;
+    return status;
+}
+
 /* Refines by schedules: two where angles are dear, and a last call for what is beyond them. */
 static enum tri_status refine_by_schedule(struct par_state *state, const struct tri_refine_options *quality,
                                           struct tri_error *error)
 {
     struct tri_refine_options usual = *quality;
     usual.min_angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
-    enum tri_status status = usual.min_angle > TRI_EASY_ANGLE ? refine_sizes_first(state, &usual, error) : TRI_OK;
+    const bool sizes = usual.min_angle > TRI_EASY_ANGLE && tri_has_sizes(&usual);
+    if (!sizes && state->stage == PAR_SIZES)
+        state->stage = PAR_BOUNDS; /* the first */
+    enum tri_status status = sizes ? refine_sizes_first(state, &usual, error) : TRI_OK;
     state->may_number = !state->options->by_block && quality->min_angle <= TRI_USUAL_ANGLE;
-    status = status ? status : refine_level(state, &usual, 0, error);
-    double last = tri_seconds();
-    if (!status && quality->min_angle > TRI_USUAL_ANGLE)
-        status = refine_rest(state, quality, true, error);
-    state->report->seconds_last += tri_seconds() - last;
-    return status;
+    status = status ? status : refine_stage(state, &usual, PAR_BOUNDS, error);
+    return status ? status : refine_beyond(state, quality, error);
 }
 
 /* Hands out a mesh that is finished, tile by tile if it is numbered. */
@@ -552,7 +625,10 @@ static enum tri_status hand_out(struct par_state *state, struct tri_error *error
         return status;
     if (state->options->carrier)
         return par_whole_on_ranks(state->options->carrier, &tiles, error);
-    return par_tiles_whole(&tiles, error);
+    status = par_tiles_whole(&tiles, error);
+    if (status && state->options->checkpoint) /* what there is of the mesh is kept, whether that can be or not */
+        (void)par_state_border(state->options->checkpoint, state, true, NULL);
+    return status;
 }
 
 /* Numbers, and hands out, what has not gone yet. */
@@ -563,6 +639,9 @@ static enum tri_status deliver(struct par_state *state, struct tri_error *error)
         return TRI_OK;
     if (state->report->levels > 0 && !state->options->by_block && !state->numbered)
         status = number_mesh(state, error);
+    state->stage = PAR_FINISHED;
+    status = status ? status : come_to_border(state, false, error);
+    let_stop(state, true);
     return !status && state->options->sink ? hand_out(state, error) : status;
 }
 
@@ -579,6 +658,8 @@ static void clean_up(struct par_state *state)
     report->parked = state->park ? par_park_bytes(state->park) : 0;
     if (report->parked > 0 && report->way == PAR_IN_MEMORY)
         report->way = PAR_PARKED;
+    if (state->options->checkpoint)
+        par_state_end(state->options->checkpoint, state);
     par_park_close(state->park, state->mesh);
     if (report->way != PAR_IN_MEMORY)
         tri_mesh_drop(state->mesh);
@@ -593,8 +674,11 @@ static enum tri_status refine_and_deliver(struct par_state *state, const struct 
                                           bool sequential, struct tri_error *error)
 {
     double began = tri_seconds();
-    enum tri_status status = sequential ? refine_rest(state, quality, true, error)
-                                        : refine_by_schedule(state, quality, error);
+    enum tri_status status = TRI_OK;
+    if (!sequential)
+        status = refine_by_schedule(state, quality, error);
+    else if (state->stage < PAR_FINISHED)
+        status = refine_rest(state, quality, true, error);
     if (sequential)
         state->report->seconds_last += tri_seconds() - began;
     return status ? status : deliver(state, error);
@@ -606,7 +690,8 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     double began = tri_seconds();
     *report = (struct par_report){.threads = par_threads(options->threads, false)};
     struct timed timed = {par_executor(&report->threads), report->seconds_shared};
-    struct par_state state = {.mesh = mesh, .options = options, .report = report, .executor = {run_timed, &timed},
+    struct par_state state = {.mesh = mesh, .quality = quality, .options = options, .report = report,
+                              .executor = {run_timed, &timed},
                               .n_kept = mesh->n_vertices};
     bool sequential = must_be_sequential(quality, options);
     bool can_sweep = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE;
@@ -617,7 +702,9 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
         return status;
     if (state.park)
         timed.executor = par_park_executor(state.park, timed.executor);
-    status = refine_and_deliver(&state, quality, sequential, error);
+    if (options->checkpoint)
+        status = par_state_begin(options->checkpoint, &state, error);
+    status = status ? status : refine_and_deliver(&state, quality, sequential, error);
     status = par_park_status(state.park, status, error);
     clean_up(&state);
     report->seconds_total = tri_seconds() - began;

@@ -44,7 +44,7 @@ struct par_options {
                                 sink: TRI_NO_MEMORY as soon as it would not fit */
     const char *scratch;     /* directory for these files; NULL: with a sink, the bound decides on the sweep alone, and
                                 a mesh that cannot be swept is TRI_TOO_LARGE */
-    struct par_checkpoint *checkpoint; /* where the state of a sweep is kept, and taken from (sched/sweep/checkpoint.h);
+    struct par_checkpoint *checkpoint; /* where the state of the run is kept, and taken from (sched/sweep/state.h);
                                           NULL: nowhere */
     bool sweep;              /* for tests: whatever memory there is */
     struct par_carrier *carrier; /* not NULL: this is one of several ranks, which all make this call with the same mesh,
@@ -103,7 +103,7 @@ struct par_report {
     double seconds_refine;        /* wall time of the phases' parallel parts */
     double phase_seconds[4];      /* refine, by phase, over all rounds */
     struct par_block_report *blocks; /* [n_blocks] in canonical order; owned by the report */
-    int32_t n_blocks;
+    int32_t n_blocks, block_capacity;
 };
 
 struct par_options par_defaults(void);

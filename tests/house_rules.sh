@@ -105,6 +105,12 @@ others=$(ls sched/*.[ch] sched/*/*.[ch] drivers/*.[ch] | grep -vx sched/threads.
 # shellcheck disable=SC2086 # one word a file
 refuse '#[[:space:]]*pragma[[:space:]]+omp|<omp\.h>' 'does not leave threads to sched/threads.c' $others
 
+# Arrays grow in one way; the mesh's own lie where a storage has them, or at a cache line.
+others=$(ls triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] sched/*/*.[ch] drivers/*.[ch] |
+    grep -vx -e triangle/grow.h -e triangle/mesh.c | tr '\n' ' ')
+# shellcheck disable=SC2086 # one word a file
+refuse '[^a-z_]realloc\(' 'grows an array without triangle/grow.h' $others
+
 # One file knows MPI, so that all else can be compiled, and tried, without.
 others=$(ls triangle/*.[ch] triangle/*/*.[ch] sched/*.[ch] sched/*/*.[ch] | grep -vx sched/ranks/mpi.c | tr '\n' ' ')
 # shellcheck disable=SC2086 # one word a file
@@ -113,7 +119,7 @@ refuse '#[[:space:]]*include[[:space:]]*[<"](ptriangle/)?mpi\.h' 'knows MPI' $ot
 # The judge knows nothing of the judged but input, status codes and predicates: nobody is judge of his own cause.
 for file in triangle/check/*.[ch]; do
     strange=$("$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -I . -I include -MM -x c "$file" | tr ' \\' '\n\n' | grep '^triangle/' |
-        grep -vE '^triangle/(check/[a-z_]+\.[ch]|(pslg|status|predicates|expansion|point|arithmetic|executor)\.h)$')
+        grep -vE '^triangle/(check/[a-z_]+\.[ch]|(pslg|status|predicates|expansion|point|arithmetic|executor|grow)\.h)$')
     [ -z "$strange" ] || breach "$file includes" $strange
 done
 

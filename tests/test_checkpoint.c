@@ -1,5 +1,6 @@
-/* Sweeps that are stopped at any time, or whose tiles nobody takes any more, and go on: the tiles are those of a
- * sweep that was never stopped. Files that are damaged, byte by byte. */
+/* Runs that are stopped at any time, or whose tiles nobody takes any more, and go on: the mesh is that of a run that
+ * was never stopped, whether it is swept, or stays as a whole, in memory or parked. Files that are damaged, byte by
+ * byte. */
 #include "support.h"
 
 #include <dirent.h>
@@ -7,6 +8,7 @@
 #include <unistd.h>
 
 #include "sched/schedule.h"
+#include "trials.h"
 
 static const char DIRECTORY[] = "state";
 
@@ -14,6 +16,7 @@ static const char DIRECTORY[] = "state";
 struct taker {
     uint64_t hash;
     int64_t n, fail_at; /* tiles; the tile that is refused, -1: none */
+    int32_t n_attributes;
 };
 
 static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
@@ -21,6 +24,7 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     struct taker *t = user;
     (void)error;
     t->n = 0;
+    t->n_attributes = stream->n_attributes;
     t->hash = par_hash(0, stream->regions, (size_t)(stream->n_regions * stream->n_columns) * sizeof *stream->regions);
     return TRI_OK;
 }
@@ -34,7 +38,7 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
     t->hash = par_hash(t->hash, &tile->first_vertex, sizeof tile->first_vertex);
     t->hash = par_hash(t->hash, tile->points, v * sizeof *tile->points);
     t->hash = par_hash(t->hash, tile->point_markers, v * sizeof *tile->point_markers);
-    t->hash = par_hash(t->hash, tile->attributes, 2 * v * sizeof *tile->attributes);
+    t->hash = par_hash(t->hash, tile->attributes, (size_t)t->n_attributes * v * sizeof *tile->attributes);
     t->hash = par_hash(t->hash, tile->corners, k * sizeof *tile->corners);
     t->hash = par_hash(t->hash, tile->regions, k * sizeof *tile->regions);
     t->hash = par_hash(t->hash, tile->ends, s * sizeof *tile->ends);
@@ -279,6 +283,179 @@ static void test_damage_is_found(void **state)
     remove_all();
 }
 
+/* --- meshes that stay as a whole */
+
+/* How a trial is refined. */
+struct way {
+    struct trial trial;
+    bool has_sink, by_block;
+    int64_t memory, max_steiner;
+    enum par_way expected; /* of what has never been stopped */
+};
+
+static const struct way ways[] = {
+    {{"letter.poly", 30, 6000, 300, false, false, 0}, false, true, 0, -1, PAR_IN_MEMORY},
+    {{"section.poly", 28, 8000, 300, false, true, 0}, true, false, 0, -1, PAR_IN_MEMORY},
+    {{"naca2412_box.poly", 32, 6000, 256, false, false, 0}, true, false, 1000, -1, PAR_PARKED}, /* two schedules */
+    {{"cracked_plate.poly", 28, 6000, 256, false, false, 1}, true, false, 1000, -1, PAR_PARKED}, /* swept at first */
+    {{"section.poly", 35, 6000, 300, true, true, 0}, false, false, 0, -1, PAR_IN_MEMORY}, /* beyond the schedule */
+    {{"letter.poly", 20, 6000, 300, false, false, 0}, true, false, 0, 1500, PAR_IN_MEMORY}, /* no schedule */
+};
+
+enum { N_WAYS = sizeof ways / sizeof *ways };
+
+/* A run to be stopped after so many phases were told of. */
+struct whole_run {
+    const struct way *way;
+    struct par_checkpoint *checkpoint;
+    int64_t memory;
+    int threads;
+    int told, most_told;
+    struct taker taker;
+    uint64_t hash;
+    enum par_way was;
+    struct tri_error error;
+};
+
+static void count_phases(void *user, int round, int phase, int64_t triangles)
+{
+    struct whole_run *r = user;
+    (void)round, (void)phase, (void)triangles;
+    r->told++;
+}
+
+static bool is_told_enough(void *user)
+{
+    const struct whole_run *r = user;
+    return r->told >= r->most_told;
+}
+
+static uint64_t hash_of_mesh(const struct tri_mesh *m)
+{
+    const size_t v = (size_t)m->n_vertices;
+    uint64_t hash = par_hash(0, m->xy, v * sizeof *m->xy);
+    hash = par_hash(hash, m->vertex_markers, v * sizeof *m->vertex_markers);
+    hash = par_hash(hash, m->attributes, v * (size_t)m->n_attributes * sizeof *m->attributes);
+    for (int32_t t = 0; t < m->n_triangles; t++)
+        hash = par_hash(hash, m->tri[t].v, sizeof m->tri[t].v);
+    for (int32_t s = 0; s < m->n_subs; s++)
+        hash = par_hash(hash, m->sub[s].v, sizeof m->sub[s].v);
+    return hash;
+}
+
+static enum tri_status refine_whole(struct whole_run *r)
+{
+    struct start start = trials_start_of(&r->way->trial);
+    struct tri_mesh mesh = trials_coarse_mesh(&start);
+    const struct tri_sink sink = {&r->taker, begin, take, end};
+    const struct tri_stop stop = {is_told_enough, r};
+    struct par_options options = {.threads = r->threads, .cell_triangles = r->way->trial.block, .memory = r->memory,
+                                  .by_block = r->way->by_block, .sink = r->way->has_sink ? &sink : NULL,
+                                  .scratch = ".", .progress = count_phases, .progress_user = r,
+                                  .checkpoint = r->checkpoint};
+    struct par_report report;
+    start.options.quality.max_steiner = r->way->max_steiner;
+    mesh.stop = &stop;
+    enum tri_status status = par_refine(&mesh, &start.options.quality, &options, &report, &r->error);
+    r->was = report.way;
+    r->hash = r->way->has_sink ? r->taker.hash : status ? 0 : hash_of_mesh(&mesh);
+    par_report_free(&report);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&start.pslg);
+    return status;
+}
+
+static struct whole_run whole_run_of(const struct way *way, struct par_checkpoint *checkpoint)
+{
+    return (struct whole_run){.way = way, .checkpoint = checkpoint, .memory = way->memory, .threads = 2,
+                              .most_told = INT32_MAX, .taker = {.fail_at = -1}};
+}
+
+/* Stopped again and again; with other threads each time, and with the mesh in memory or in files. */
+static void go_on_until_done(const struct way *way, const struct whole_run *wanted)
+{
+    enum tri_status status = TRI_STOPPED;
+    int rounds = 0, with_state = 0;
+    remove_all();
+    for (; status == TRI_STOPPED && rounds < 100; rounds++) {
+        struct par_checkpoint c;
+        open_it(&c, rounds > 0);
+        struct whole_run r = whole_run_of(way, &c);
+        with_state += par_checkpoint_has_state(&c);
+        r.most_told = par_checkpoint_has_state(&c) ? rounds % 2 : rounds + 1;
+        r.threads = rounds % 3 + 1;
+        if (c.manifest.kind == PAR_WHOLE_STATE && way->has_sink)
+            r.memory = rounds % 2 * 1000;
+        status = refine_whole(&r);
+        if (!status)
+            assert_true(r.hash == wanted->hash && r.taker.n == wanted->taker.n);
+        par_checkpoint_close(&c, status == TRI_OK);
+    }
+    print_message("  %s: %d runs, %d of them from a state\n", way->trial.file, rounds, with_state);
+    assert_int_equal(status, TRI_OK);
+    assert_true(with_state >= (way->max_steiner < 0 ? 4 : 0));
+}
+
+static void test_whole_meshes_go_on(void **state)
+{
+    (void)state;
+    for (int i = 0; i < N_WAYS; i++) {
+        struct whole_run wanted = whole_run_of(&ways[i], NULL);
+        assert_int_equal(refine_whole(&wanted), TRI_OK);
+        assert_int_equal(wanted.was, ways[i].expected);
+        go_on_until_done(&ways[i], &wanted);
+    }
+}
+
+/* A state after each step changes nothing, and whoever fails to take a tile finds all of the mesh again. */
+static void test_a_finished_mesh_is_kept(void **state)
+{
+    (void)state;
+    for (int i = 0; i < N_WAYS; i++) {
+        if (!ways[i].has_sink)
+            continue;
+        struct whole_run wanted = whole_run_of(&ways[i], NULL);
+        assert_int_equal(refine_whole(&wanted), TRI_OK);
+        struct par_checkpoint c;
+        remove_all();
+        open_it(&c, false);
+        c.seconds = 0;
+        struct whole_run r = whole_run_of(&ways[i], &c);
+        r.taker.fail_at = wanted.taker.n - 1;
+        assert_int_equal(refine_whole(&r), TRI_CANNOT_WRITE);
+        assert_string_equal(r.error.text, "no more");
+        assert_true(par_checkpoint_has_state(&c) && c.manifest.kind == PAR_WHOLE_STATE);
+        par_checkpoint_close(&c, false);
+        open_it(&c, true);
+        r = whole_run_of(&ways[i], &c);
+        assert_int_equal(refine_whole(&r), TRI_OK);
+        assert_true(r.hash == wanted.hash && r.told == 0);
+        par_checkpoint_close(&c, true);
+    }
+}
+
+/* The state of a sweep does not serve a mesh that is to stay. */
+static void test_a_sweep_is_not_taken_for_a_whole(void **state)
+{
+    (void)state;
+    struct way way = {{"letter.poly", 30, 20000, 500, false, false, 0}, true, false, 0, -1, PAR_IN_MEMORY};
+    struct par_checkpoint c;
+    remove_all();
+    open_it(&c, false);
+    struct whole_run r = whole_run_of(&way, &c);
+    r.memory = 1000;
+    r.taker.fail_at = 5;
+    assert_int_equal(refine_whole(&r), TRI_CANNOT_WRITE);
+    assert_int_equal(c.manifest.kind, PAR_SWEPT_STATE);
+    par_checkpoint_close(&c, false);
+    open_it(&c, true);
+    way.has_sink = false;
+    r = whole_run_of(&way, &c);
+    assert_int_equal(refine_whole(&r), TRI_BAD_INPUT);
+    assert_non_null(strstr(r.error.text, "of a sweep"));
+    par_checkpoint_close(&c, true);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -286,6 +463,9 @@ int main(void)
         cmocka_unit_test(test_nobody_takes_tiles),
         cmocka_unit_test(test_other_runs_are_refused),
         cmocka_unit_test(test_damage_is_found),
+        cmocka_unit_test(test_whole_meshes_go_on),
+        cmocka_unit_test(test_a_finished_mesh_is_kept),
+        cmocka_unit_test(test_a_sweep_is_not_taken_for_a_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -56,14 +56,8 @@ bool tri_bad_queue_push_angle(struct tri_bad_queue *queue, struct tri_entry entr
 
 bool tri_bad_queue_spill(struct tri_bad_queue *queue)
 {
-    if (queue->n_cold + HALF > queue->cold_capacity) {
-        size_t capacity = queue->cold_capacity ? queue->cold_capacity + queue->cold_capacity / 2 : TRI_WINDOW;
-        struct tri_entry *fresh = realloc(queue->cold, capacity * sizeof *fresh);
-        if (!fresh)
-            return false;
-        queue->cold = fresh;
-        queue->cold_capacity = capacity;
-    }
+    if (!tri_grow_far(&queue->cold, &queue->cold_capacity, queue->n_cold + HALF, sizeof *queue->cold))
+        return false;
     for (int i = 0; i < HALF; i++)
         queue->cold[queue->n_cold++] = queue->window[queue->head++ & MASK];
     return true;
@@ -71,10 +65,10 @@ bool tri_bad_queue_spill(struct tri_bad_queue *queue)
 
 static void refill(struct tri_bad_queue *queue)
 {
-    size_t n = queue->n_cold < HALF ? queue->n_cold : HALF;
+    int64_t n = queue->n_cold < HALF ? queue->n_cold : HALF;
     assert(queue->head == queue->tail);
     queue->n_cold -= n;
-    for (size_t i = 0; i < n; i++)
+    for (int64_t i = 0; i < n; i++)
         queue->window[queue->tail++ & MASK] = queue->cold[queue->n_cold + i];
 }
 

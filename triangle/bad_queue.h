@@ -45,7 +45,7 @@ struct tri_bad_queue {
     struct tri_entry batch[TRI_BATCH]; /* taken from the ring, and found to be up to date */
     int32_t next, n_batch;    /* batch[next .. n_batch - 1] are still to be served */
     struct tri_entry *cold;   /* stack of what the window had no room for */
-    size_t n_cold, cold_capacity;
+    int64_t n_cold, cold_capacity;
 };
 
 bool tri_bad_queue_init(struct tri_bad_queue *queue);

@@ -7,6 +7,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "triangle/grow.h"
 #include "triangle/locate.h"
 #include "triangle/predicates.h"
 
@@ -203,17 +204,15 @@ static void spread(struct flood *f, tri_triangle_id start, tri_region_id region)
 static enum tri_status spread_regions(struct flood *f, const struct tri_pslg *pslg, struct tri_error *error)
 {
     struct tri_mesh *mesh = f->mesh;
-    struct tri_region *regions = realloc(mesh->regions, ((size_t)pslg->n_regions + 1) * sizeof *regions);
-    if (!regions)
+    if (!tri_resize(&mesh->regions, (size_t)pslg->n_regions + 1, sizeof *mesh->regions))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for regions");
     assert(mesh->n_regions == 1 && !mesh->columns); /* "no region" alone */
-    mesh->regions = regions;
     mesh->n_regions = pslg->n_regions + 1;
     int32_t *faces;
     enum tri_status status = locate(mesh, pslg->regions, pslg->n_regions, 4, &faces, error);
     for (int32_t k = pslg->n_regions - 1; !status && k >= 0; k--) { /* a region's last point wins, so it comes first */
         const double *r = &pslg->regions[4 * (size_t)k];
-        regions[k + 1] = (struct tri_region){r[2], r[3]};
+        mesh->regions[k + 1] = (struct tri_region){r[2], r[3]};
         if (faces[k] != TRI_NONE && !f->dead[faces[k]] && mesh->tri[faces[k]].region == 0)
             spread(f, faces[k], k + 1);
     }

@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "triangle/grow.h"
 #include "triangle/predicates.h"
 
 /* |error of the determinant| <= (10 + 96 u) u * permanent, u = 2^-53 (Shewchuk 1997, section 4.4). The permanent, the
@@ -20,20 +21,12 @@ void tri_cavity_free(struct tri_cavity *cavity)
     *cavity = (struct tri_cavity){0};
 }
 
-/* Each array is replaced only once its realloc has succeeded, so that a failure leaves everything to be freed. */
 static bool grow(struct tri_cavity *c)
 {
     int32_t capacity = c->capacity ? 2 * c->capacity : 256;
-    size_t n = (size_t)capacity;
-    int32_t *tri = realloc(c->tri, (n + 4) * sizeof *tri);
-    c->tri = tri ? tri : c->tri;
-    struct tri_cavity_edge *edge = realloc(c->edge, (n + 4) * sizeof *edge);
-    c->edge = edge ? edge : c->edge;
-    int32_t *wall = realloc(c->wall, (n + 4) * sizeof *wall);
-    c->wall = wall ? wall : c->wall;
-    struct tri_pending *pending = realloc(c->pending, (n + 4) * sizeof *pending);
-    c->pending = pending ? pending : c->pending;
-    if (!tri || !edge || !wall || !pending)
+    size_t n = (size_t)capacity + 4;
+    if (!tri_resize(&c->tri, n, sizeof *c->tri) || !tri_resize(&c->edge, n, sizeof *c->edge) ||
+        !tri_resize(&c->wall, n, sizeof *c->wall) || !tri_resize(&c->pending, n, sizeof *c->pending))
         return false;
     c->capacity = capacity;
     return true;

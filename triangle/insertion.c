@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "triangle/grow.h"
 #include "triangle/predicates.h"
 
 /* An edge of the cavity: the code of its triangle outside, and the corner at which it starts. */
@@ -27,13 +28,8 @@ static bool grow(struct tri_inserter *b)
 {
     int32_t capacity = b->capacity ? 2 * b->capacity : 256;
     size_t n = (size_t)capacity + 4;
-    int32_t *cavity = realloc(b->cavity, n * sizeof *cavity);
-    b->cavity = cavity ? cavity : b->cavity;
-    struct tri_inserter_edge *edge = realloc(b->edge, n * sizeof *edge);
-    b->edge = edge ? edge : b->edge;
-    struct tri_inserter_pending *pending = realloc(b->pending, n * sizeof *pending);
-    b->pending = pending ? pending : b->pending;
-    if (!cavity || !edge || !pending)
+    if (!tri_resize(&b->cavity, n, sizeof *b->cavity) || !tri_resize(&b->edge, n, sizeof *b->edge) ||
+        !tri_resize(&b->pending, n, sizeof *b->pending))
         return false;
     b->capacity = capacity;
     return true;

@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "triangle/grow.h"
+
 enum { LINE = 64 };
 
 _Static_assert(sizeof(struct tri_triangle) == 32, "two triangles fill a cache line");
@@ -49,17 +51,6 @@ static int32_t next_capacity(int32_t capacity, int64_t need, int32_t limit, bool
     wanted = wanted < need ? need : wanted;
     wanted = wanted < 64 ? 64 : wanted;
     return (int32_t)(wanted > limit ? limit : wanted);
-}
-
-static bool grow(void *array, int32_t capacity, size_t item)
-{
-    void *old, *fresh;
-    memcpy(&old, array, sizeof old);
-    fresh = realloc(old, (size_t)capacity * item);
-    if (!fresh)
-        return false;
-    memcpy(array, &fresh, sizeof fresh);
-    return true;
 }
 
 /* One of the arrays that grow with refinement. */
@@ -323,7 +314,7 @@ static enum tri_status reserve_parents(struct tri_mesh *mesh, int64_t need, stru
     int32_t capacity = next_capacity(mesh->parent_capacity, need, TRI_MAX_TRIANGLES, false);
     if (!capacity)
         return too_large(error, "segments");
-    if (!grow(&mesh->parents, capacity, sizeof *mesh->parents))
+    if (!tri_resize(&mesh->parents, (size_t)capacity, sizeof *mesh->parents))
         return no_memory(error, "segments", capacity);
     mesh->parent_capacity = capacity;
     return TRI_OK;

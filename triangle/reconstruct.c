@@ -15,6 +15,7 @@
 #include "triangle/carve.h"
 #include "triangle/chain.h"
 #include "triangle/flip.h"
+#include "triangle/grow.h"
 #include "triangle/predicates.h"
 #include "triangle/radix.h"
 #include "triangle/refine.h"
@@ -492,13 +493,12 @@ static enum tri_status make_regions(struct tri_mesh *mesh, const struct tri_elem
     while (size < 2 * n)
         size *= 2;
     mesh->n_columns = elements->attributes ? elements->n_attributes : 0;
-    struct tri_region *regions = realloc(mesh->regions, n * sizeof *regions);
-    mesh->regions = regions ? regions : mesh->regions;
+    bool memory = tri_resize(&mesh->regions, n, sizeof *mesh->regions);
     if (mesh->n_columns > 0)
         mesh->columns = calloc(n, (size_t)mesh->n_columns * sizeof *mesh->columns);
     struct values values = {mesh, elements, malloc(size * sizeof *values.place), size - 1};
     enum tri_status status = TRI_OK;
-    if (!regions || (mesh->n_columns > 0 && !mesh->columns) || !values.place) {
+    if (!memory || (mesh->n_columns > 0 && !mesh->columns) || !values.place) {
         status = no_memory(error, mesh->n_triangles);
     } else {
         memset(values.place, 0xff, size * sizeof *values.place); /* TRI_NONE */

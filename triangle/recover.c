@@ -111,18 +111,11 @@ static bool make_room(struct tri_recovery *r)
         return true;
     int32_t room = r->n_crossed + r->n_crossed / 2;
     size_t places = (size_t)room + 4; /* a and b stand in both chains */
-    int32_t *pool = realloc(r->pool, (size_t)room * sizeof *pool);
-    r->pool = pool ? pool : r->pool;
-    struct tri_recovery_place *at = realloc(r->at, places * sizeof *at);
-    r->at = at ? at : r->at;
-    bool done = pool && at;
-    for (int k = 0; k < 2; k++) {
-        struct tri_recovery_node *gap = realloc(r->gap[k], places * sizeof *gap);
-        r->gap[k] = gap ? gap : r->gap[k];
-        done = done && gap;
-    }
-    r->room = done ? room : r->room;
-    return done;
+    if (!tri_resize(&r->pool, (size_t)room, sizeof *r->pool) || !tri_resize(&r->at, places, sizeof *r->at) ||
+        !tri_resize(&r->gap[0], places, sizeof *r->gap[0]) || !tri_resize(&r->gap[1], places, sizeof *r->gap[1]))
+        return false;
+    r->room = room;
+    return true;
 }
 
 static int32_t n_places(const struct tri_recovery *r) { return r->n_crossed + 4; }

@@ -6,16 +6,15 @@
 #include <string.h>
 
 #include "triangle/clock.h"
+#include "triangle/grow.h"
 
 bool par_bytes_reserve(struct par_bytes *bytes, size_t more)
 {
     if (bytes->n + more <= bytes->capacity)
         return true;
     size_t capacity = bytes->n + more + bytes->capacity / 2;
-    char *fresh = realloc(bytes->at, capacity);
-    if (!fresh)
+    if (!tri_resize(&bytes->at, capacity, 1))
         return false;
-    bytes->at = fresh;
     bytes->capacity = capacity;
     return true;
 }

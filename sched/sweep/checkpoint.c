@@ -9,12 +9,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "sched/phase.h"
-#include "sched/sweep/tiles.h"
-#include "triangle/clock.h"
-#include "triangle/grow.h"
+#include "sched/sweep/spool.h"
 
-static const uint64_t MANIFEST = UINT64_C(0x316863697274706b), STATE = UINT64_C(0x3265746174736974); /* versions, too */
+static const uint64_t MANIFEST = UINT64_C(0x326863697274706b); /* a version, too */
 
 static const char *const state_name[2] = {"state-0", "state-1"};
 static const char manifest_name[] = "manifest", fresh_name[] = "manifest-new", tiles_name[] = "tiles";
@@ -60,7 +57,7 @@ static uint64_t hash_of(const struct par_manifest *m)
 static bool is_manifest(const struct par_manifest *m)
 {
     return m->word == MANIFEST && m->hash == hash_of(m) && (m->which == 0 || m->which == 1) && m->state_bytes >= 0 &&
-           m->tiles_bytes >= 0;
+           m->tiles_bytes >= 0 && (m->kind == PAR_SWEPT_STATE || m->kind == PAR_WHOLE_STATE);
 }
 
 static enum tri_status read_manifest(struct par_manifest *m, const char *directory, struct tri_error *error)
@@ -161,273 +158,110 @@ void par_checkpoint_close(struct par_checkpoint *c, bool remove)
     c->lock = -1;
 }
 
-/* --- of which run */
+/* --- what it is of */
 
-static uint64_t hash_bounds(uint64_t hash, const struct tri_refine_options *q)
+enum tri_status par_checkpoint_take(struct par_checkpoint *c, uint64_t run, struct tri_error *error)
 {
-    const double reals[] = {q->min_angle, q->max_area, q->area_scale};
-    const int64_t others[] = {q->region_areas, q->conforming, q->protect, q->max_steiner, q->unsuitable != NULL};
-    return par_hash(par_hash(hash, reals, sizeof reals), others, sizeof others);
-}
-
-static uint64_t hash_mesh(uint64_t hash, const struct tri_mesh *m)
-{
-    size_t v = (size_t)m->n_vertices;
-    hash = par_hash(hash, &m->unit, sizeof m->unit);
-    hash = par_hash(hash, m->xy, v * sizeof *m->xy);
-    hash = par_hash(hash, m->on, v * sizeof *m->on);
-    hash = par_hash(hash, m->vertex_markers, v * sizeof *m->vertex_markers);
-    hash = par_hash(hash, m->attributes, v * (size_t)m->n_attributes * sizeof *m->attributes);
-    hash = par_hash(hash, m->tri, (size_t)m->n_triangles * sizeof *m->tri);
-    hash = par_hash(hash, m->sub, (size_t)m->n_subs * sizeof *m->sub);
-    hash = par_hash(hash, m->regions, (size_t)m->n_regions * sizeof *m->regions);
-    return par_hash(hash, m->columns, (size_t)m->n_regions * (size_t)m->n_columns * sizeof *m->columns);
-}
-
-static uint64_t run_of(const struct par_state *state, const struct par_partition *p)
-{
-    const int64_t counts[] = {p->n_columns, p->n_rows, state->n_kept, state->worklist.n, state->mesh->n_vertices,
-                              state->mesh->n_triangles, state->mesh->n_subs};
-    uint64_t hash = par_hash(hash_bounds(0, state->quality), counts, sizeof counts);
-    hash = par_hash(hash, p->x, (size_t)p->n_columns * sizeof *p->x);
-    hash = par_hash(hash, p->y, (size_t)p->n_columns * (size_t)p->n_rows * sizeof *p->y);
-    hash = par_hash(hash, state->worklist.item, (size_t)state->worklist.n * sizeof *state->worklist.item);
-    return hash_mesh(hash, state->mesh);
-}
-
-/* --- state: a head, and then arrays, the same walk for writing and reading */
-
-struct head {
-    uint64_t word;
-    int64_t odd, round;
-    int64_t n_vertices, n_triangles, n_subs, n_worklist, n_keys, n_held, n_spare[PAR_KINDS];
-    int64_t tiles_vertices, tiles_triangles, tiles_segments;
-    int64_t pauses, most_live, deferred, left_over;
-    double radius;
-    struct tri_refine_report total;
-};
-
-/* A state's file while it is written or read. */
-struct carrier {
-    int file;
-    bool writing;
-    int64_t place;
-    uint64_t hash;
-    bool failed;
-};
-
-static void carry(struct carrier *c, void *bytes, size_t n)
-{
-    if (!c->failed && n > 0)
-        c->failed = c->writing ? !par_write_at(c->file, bytes, n, c->place) : !par_read_at(c->file, bytes, n, c->place);
-    if (!c->failed)
-        c->hash = par_hash(c->hash, bytes, n);
-    c->place += (int64_t)n;
-}
-
-static struct head head_of(const struct par_state *state, const struct par_tiles *tiles, int32_t odd)
-{
-    const struct tri_mesh *m = state->mesh;
-    const struct par_report *r = state->report;
-    struct head h = {.word = STATE, .odd = odd, .round = state->round,
-                     .n_vertices = m->n_vertices, .n_triangles = m->n_triangles, .n_subs = m->n_subs,
-                     .n_worklist = state->worklist.n, .n_keys = state->key.n, .n_held = tiles->held.n,
-                     .tiles_vertices = tiles->n_vertices, .tiles_triangles = tiles->n_triangles,
-                     .tiles_segments = tiles->n_segments, .pauses = r->pauses,
-                     .most_live = r->most_live, .deferred = r->deferred, .left_over = r->left_over,
-                     .radius = state->radius, .total = r->total};
-    for (int k = 0; k < PAR_KINDS; k++)
-        h.n_spare[k] = state->spare.ranges[k].n;
-    return h;
-}
-
-/* All arrays of which the head tells the lengths; there is room for them. */
-static void carry_arrays(struct carrier *c, const struct head *h, struct par_state *state, struct par_tiles *tiles)
-{
-    struct tri_mesh *m = state->mesh;
-    size_t v = (size_t)h->n_vertices;
-    carry(c, m->xy, v * sizeof *m->xy);
-    carry(c, m->on, v * sizeof *m->on);
-    carry(c, m->vertex_markers, v * sizeof *m->vertex_markers);
-    carry(c, m->feature, v * sizeof *m->feature);
-    carry(c, m->attributes, v * (size_t)m->n_attributes * sizeof *m->attributes);
-    carry(c, tiles->number, v * sizeof *tiles->number);
-    carry(c, m->tri, (size_t)h->n_triangles * sizeof *m->tri);
-    carry(c, m->sub, (size_t)h->n_subs * sizeof *m->sub);
-    carry(c, state->worklist.item, (size_t)h->n_worklist * sizeof *state->worklist.item);
-    carry(c, state->key.item, (size_t)h->n_keys * sizeof *state->key.item);
-    carry(c, tiles->held.item, (size_t)h->n_held * sizeof *tiles->held.item);
-    for (int k = 0; k < PAR_KINDS; k++)
-        carry(c, state->spare.ranges[k].item, (size_t)h->n_spare[k] * sizeof *state->spare.ranges[k].item);
-}
-
-static enum tri_status save(struct par_checkpoint *c, const struct par_state *state, const struct par_tiles *tiles,
-                            int32_t odd, struct tri_error *error)
-{
-    struct par_manifest m = c->manifest;
-    struct head h = head_of(state, tiles, odd);
-    m.which = c->manifest.state_bytes > 0 ? 1 - c->manifest.which : 0;
-    const char *name = state_name[m.which];
-    struct carrier to = {.file = open_in(c->directory, name, O_WRONLY | O_CREAT | O_TRUNC), .writing = true};
-    to.failed = to.file < 0;
-    carry(&to, &h, sizeof h);
-    carry_arrays(&to, &h, (struct par_state *)state, (struct par_tiles *)tiles); /* which it only reads, writing */
-    bool done = !to.failed && fsync(to.file) == 0;
-    if (to.file >= 0)
-        done = close(to.file) == 0 && done;
-    if (!done)
-        return cannot_write(c->directory, name, error);
-    if (fsync(c->spool.file) != 0)
-        return cannot_write(c->directory, tiles_name, error);
-    m.state_bytes = to.place;
-    m.state_hash = to.hash;
-    m.tiles_bytes = c->spool.length;
-    m.triangles = tiles->n_triangles;
-    enum tri_status status = write_manifest(c, m, error);
-    c->saved += !status;
-    return status;
-}
-
-/* --- going on */
-
-static bool is_count(int64_t n, int64_t least) { return n >= least && n <= INT32_MAX; }
-
-/* Could this be the head of a state of this run? */
-static bool is_head(const struct head *h, const struct par_state *state, const struct par_partition *partition)
-{
-    const struct tri_mesh *m = state->mesh;
-    bool counts = is_count(h->n_vertices, m->n_vertices) && is_count(h->n_triangles, m->n_triangles) &&
-                  is_count(h->n_subs, m->n_subs) && is_count(h->n_worklist, 0) && is_count(h->n_held, 0) &&
-                  (h->n_keys == 0 || h->n_keys == h->n_worklist);
-    for (int k = 0; k < PAR_KINDS; k++)
-        counts = counts && is_count(h->n_spare[k], 0);
-    return counts && h->word == STATE && h->odd > 1 && h->odd % 2 == 1 && h->odd <= partition->n_columns + 2;
-}
-
-static enum tri_status reserve(const struct head *h, struct par_state *state, struct par_tiles *tiles,
-                               struct tri_error *error)
-{
-    struct tri_mesh *m = state->mesh;
-    enum tri_status status = tri_mesh_reserve_vertices(m, (int32_t)h->n_vertices - m->n_vertices, error);
-    status = status ? status : tri_mesh_reserve_triangles(m, (int32_t)h->n_triangles - m->n_triangles, error);
-    status = status ? status : tri_mesh_reserve_subs(m, (int32_t)h->n_subs - m->n_subs, error);
-    if (status)
-        return status;
-    bool memory = par_tiles_reserve(tiles) &&
-                  tri_grow(&state->worklist.item, &state->worklist.capacity, (int32_t)h->n_worklist,
-                           sizeof *state->worklist.item) &&
-                  tri_grow(&state->key.item, &state->key.capacity, (int32_t)h->n_keys, sizeof *state->key.item) &&
-                  tri_grow(&tiles->held.item, &tiles->held.capacity, (int32_t)h->n_held, sizeof *tiles->held.item);
-    for (int k = 0; memory && k < PAR_KINDS; k++)
-        memory = par_ranges_reserve(&state->spare.ranges[k], (int32_t)h->n_spare[k]);
-    return memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the state of a checkpoint");
-}
-
-static void set_counts(const struct head *h, struct par_state *state, struct par_tiles *tiles)
-{
-    struct par_report *r = state->report;
-    state->mesh->n_vertices = (int32_t)h->n_vertices;
-    state->mesh->n_triangles = (int32_t)h->n_triangles;
-    state->mesh->n_subs = (int32_t)h->n_subs;
-    state->worklist.n = (int32_t)h->n_worklist;
-    state->key.n = (int32_t)h->n_keys;
-    state->round = (int)h->round;
-    state->radius = h->radius;
-    tiles->held.n = (int32_t)h->n_held;
-    tiles->n_vertices = h->tiles_vertices;
-    tiles->n_triangles = h->tiles_triangles;
-    tiles->n_segments = h->tiles_segments;
-    state->gone = h->tiles_triangles;
-    for (int k = 0; k < PAR_KINDS; k++)
-        state->spare.ranges[k].n = (int32_t)h->n_spare[k];
-    r->total = h->total;
-    r->pauses = h->pauses;
-    r->most_live = h->most_live;
-    r->deferred = h->deferred;
-    r->left_over = h->left_over;
-}
-
-static enum tri_status load(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles, int32_t *odd,
-                            struct tri_error *error)
-{
-    const char *name = state_name[c->manifest.which];
-    struct head h = {0};
-    struct carrier from = {.file = open_in(c->directory, name, O_RDONLY)};
-    from.failed = from.file < 0;
-    carry(&from, &h, sizeof h);
-    bool sound = !from.failed && is_head(&h, state, tiles->partition);
-    enum tri_status status = sound ? reserve(&h, state, tiles, error) : TRI_OK;
-    if (sound && !status) {
-        carry_arrays(&from, &h, state, tiles);
-        sound = !from.failed && from.place == c->manifest.state_bytes && from.hash == c->manifest.state_hash;
-    }
-    if (from.file >= 0)
-        close(from.file);
-    if (!sound)
-        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "the checkpoint's file %s is damaged", name);
-    if (!status) {
-        set_counts(&h, state, tiles);
-        *odd = (int32_t)h.odd;
-    }
-    return status;
-}
-
-/* --- for the sweep */
-
-enum tri_status par_checkpoint_begin(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles,
-                                     int32_t *odd, struct tri_error *error)
-{
-    uint64_t run = run_of(state, tiles->partition);
-    bool again = par_checkpoint_has_state(c);
-    if (again && run != c->manifest.run)
+    if (par_checkpoint_has_state(c) && run != c->manifest.run)
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
                         "is the checkpoint of another run: of another input, or with other switches");
     c->manifest.run = run;
     if (ftruncate(c->spool.file, (off_t)c->spool.length) != 0)
         return cannot_write(c->directory, tiles_name, error);
-    c->spool.to = tiles->sink;
-    c->spool.again = again;
-    c->sink = par_spool_sink(&c->spool);
-    c->stop = state->mesh->stop;
-    c->last = tri_seconds();
-    tiles->sink = &c->sink;
-    state->mesh->stop = again ? NULL : c->stop; /* as long as there is nothing to lose */
-    enum tri_status status = par_tiles_begin(tiles, tiles->partition->estimate, error);
-    return status || !again ? status : load(c, state, tiles, odd, error);
+    return TRI_OK;
 }
 
-enum tri_status par_checkpoint_border(struct par_checkpoint *c, struct par_state *state,
-                                      const struct par_tiles *tiles, int32_t odd, struct tri_error *error)
+enum tri_status par_checkpoint_forget(struct par_checkpoint *c, enum par_state_kind kind, struct tri_error *error)
 {
-    state->mesh->stop = NULL;
-    bool asked = tri_stop_is_asked(c->stop), failed = c->spool.failed != TRI_OK;
-    if (!asked && !failed && tri_seconds() - c->last < c->seconds)
-        return TRI_OK;
-    if (failed)
-        return par_checkpoint_last(c, state, tiles, odd, error);
-    enum tri_status status = save(c, state, tiles, odd, error);
-    c->last = tri_seconds();
-    return status || !asked ? status : tri_fail_stopped(error);
-}
-
-/* Whether the state could be saved or not, what the taker said is told. */
-enum tri_status par_checkpoint_last(struct par_checkpoint *c, const struct par_state *state,
-                                    const struct par_tiles *tiles, int32_t odd, struct tri_error *error)
-{
-    if (!c->spool.failed)
-        return TRI_OK;
-    (void)save(c, state, tiles, odd, NULL);
-    if (error)
-        *error = c->spool.failure;
-    return c->spool.failed;
-}
-
-enum tri_status par_checkpoint_end(struct par_checkpoint *c, struct par_state *state, bool forget,
-                                   struct tri_error *error)
-{
-    state->mesh->stop = c->stop;
-    if (!forget)
-        return TRI_OK;
+    const struct par_manifest none = {.of = c->manifest.of, .run = c->manifest.run, .kind = kind};
+    enum tri_status status = write_manifest(c, none, error);
+    if (status)
+        return status;
     c->spool.length = 0;
-    return write_manifest(c, (struct par_manifest){.of = c->manifest.of}, error);
+    return ftruncate(c->spool.file, 0) == 0 ? TRI_OK : cannot_write(c->directory, tiles_name, error);
+}
+
+/* --- a state's file */
+
+/* Bytes that are only checked, piece by piece; a hash goes on over whole words. */
+static void check(struct par_state_file *f, size_t n)
+{
+    char piece[1 << 14];
+    while (n > 0 && !f->failed) {
+        const size_t part = n < sizeof piece ? n : sizeof piece;
+        f->failed = !par_read_at(f->file, piece, part, f->place);
+        f->hash = f->failed ? f->hash : par_hash(f->hash, piece, part);
+        f->place += (int64_t)part;
+        n -= part;
+    }
+}
+
+void par_carry(struct par_state_file *f, void *bytes, size_t n)
+{
+    if (n == 0 || f->failed)
+        return;
+    if (f->way == PAR_CHECK) {
+        check(f, n);
+        return;
+    }
+    f->failed = f->way == PAR_WRITE ? !par_write_at(f->file, bytes, n, f->place)
+                                    : !par_read_at(f->file, bytes, n, f->place);
+    f->hash = f->failed ? f->hash : par_hash(f->hash, bytes, n);
+    f->place += (int64_t)n;
+}
+
+void par_carry_head(struct par_state_file *f, void *bytes, size_t n)
+{
+    const enum par_carrying way = f->way;
+    f->way = way == PAR_CHECK ? PAR_READ : way;
+    par_carry(f, bytes, n);
+    f->way = way;
+}
+
+enum tri_status par_checkpoint_write(struct par_checkpoint *c, enum par_state_kind kind, int64_t triangles,
+                                     par_state_walk *walk, void *user, struct tri_error *error)
+{
+    struct par_manifest m = c->manifest;
+    m.which = c->manifest.state_bytes > 0 ? 1 - c->manifest.which : 0;
+    const char *name = state_name[m.which];
+    struct par_state_file to = {.file = open_in(c->directory, name, O_WRONLY | O_CREAT | O_TRUNC), .way = PAR_WRITE};
+    to.failed = to.file < 0;
+    enum tri_status status = walk(&to, user, error);
+    bool done = !to.failed && fsync(to.file) == 0;
+    if (to.file >= 0)
+        done = close(to.file) == 0 && done;
+    if (status || !done)
+        return status ? status : cannot_write(c->directory, name, error);
+    if (fsync(c->spool.file) != 0)
+        return cannot_write(c->directory, tiles_name, error);
+    m.kind = kind;
+    m.state_bytes = to.place;
+    m.state_hash = to.hash;
+    m.tiles_bytes = c->spool.length;
+    m.triangles = triangles;
+    status = write_manifest(c, m, error);
+    c->saved += !status;
+    return status;
+}
+
+static enum tri_status walk_through(const struct par_checkpoint *c, enum par_carrying way, par_state_walk *walk,
+                                    void *user, struct tri_error *error)
+{
+    const char *name = state_name[c->manifest.which];
+    struct par_state_file from = {.file = open_in(c->directory, name, O_RDONLY), .way = way};
+    from.failed = from.file < 0;
+    enum tri_status status = walk(&from, user, error);
+    bool sound = !from.failed && from.place == c->manifest.state_bytes && from.hash == c->manifest.state_hash;
+    if (from.file >= 0)
+        close(from.file);
+    if (status || sound)
+        return status;
+    return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "the checkpoint's file %s is damaged", name);
+}
+
+enum tri_status par_checkpoint_read(const struct par_checkpoint *c, par_state_walk *walk, void *user,
+                                    struct tri_error *error)
+{
+    enum tri_status status = walk_through(c, PAR_CHECK, walk, user, error);
+    return status ? status : walk_through(c, PAR_READ, walk, user, error);
 }

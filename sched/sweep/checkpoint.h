@@ -1,51 +1,48 @@
-/* The state of a sweep in a directory, so that the sweep can go on after the process has died.
+/* The state of a run in a directory, so that the run can go on after the process has died.
  *
- *     tiles        all tiles that have been handed out (spool.h); only appended to
- *     state-0, state-1   what is in memory between two columns; the newer one counts
+ *     tiles        all tiles that a sweep has handed out (spool.h); only appended to
+ *     state-0, state-1   what is in memory between two steps (state.h); the newer one counts
  *     manifest     which of them, how long each is, their hashes, and of what run they are
  *
  * INVARIANT: whenever the process dies, the manifest, if there is one, describes a state and a beginning of the tiles
  * that are whole on the disk. For a state is written into the file that the manifest does not name, tiles and state are
- * synced, and then a new manifest takes the name of the old one.
- *
- * THEOREM. A sweep that goes on ends with the tiles of one that was never stopped. For what the columns to come do
- * depends on the mesh, the lists of what is left and the counts alone, all of which are in the state, with the numbers
- * by which they refer to each other; and tiles that are in the file are handed out again as they were. So neither the
- * number of threads nor the memory need be the same. What the run is of is told by a hash over the mesh, the worklist,
- * the cells and the bounds with which the sweep begins; those are made anew by whoever goes on. */
+ * synced, and then a new manifest takes the name of the old one. */
 #ifndef SCHED_SWEEP_CHECKPOINT_H
 #define SCHED_SWEEP_CHECKPOINT_H
 
 #include "sched/sweep/spool.h"
 #include "triangle/stop.h"
 
-struct par_state;
-struct par_tiles;
-
 enum { PAR_CHECKPOINT_PATH = 4096 };
+
+enum par_state_kind {
+    PAR_SWEPT_STATE, /* between two columns of a sweep; what is finished is in the tiles */
+    PAR_WHOLE_STATE  /* the mesh as a whole; it is swept no more */
+};
 
 struct par_manifest {
     uint64_t word, hash;   /* the second of all that follows */
     uint64_t of;           /* the program, as par_checkpoint_open was told */
     uint64_t run;          /* the mesh and the bounds */
+    int64_t kind;          /* enum par_state_kind */
     int64_t which;         /* the state's file: 0 or 1 */
     int64_t state_bytes;   /* 0: there is no state yet: whoever goes on starts over */
     uint64_t state_hash;
     int64_t tiles_bytes;
-    int64_t triangles;     /* handed out so far */
+    int64_t triangles;     /* so far */
 };
 
 struct par_checkpoint {
-    double seconds;              /* between two states at least; 0: one after each column. To be set after opening */
+    double seconds;              /* between two states at least; 0: one after each step. To be set after opening */
     const char *directory;       /* borrowed */
     struct par_manifest manifest; /* as it is on the disk */
     int lock;                    /* the directory's, held by this process */
     int saved;                   /* states written by this process */
-    double last;                 /* when the last was, or when the sweep began */
-    struct par_spool spool;      /* the rest is the sweep's */
+    double last;                 /* when the last was, or when the run began */
+    struct par_spool spool;
     char tiles_path[PAR_CHECKPOINT_PATH];
-    struct tri_sink sink;
-    const struct tri_stop *stop; /* asked between columns alone */
+    struct tri_sink sink;        /* of a sweep: the spool */
+    const struct tri_stop *stop; /* asked between steps alone */
 };
 
 /* Makes the directory unless it is there, and takes it: for a new run, or, resume, for one that goes on with what is in
@@ -60,30 +57,53 @@ bool par_checkpoint_is_there(const char *directory);
 /* Is there a state, from which a run can go on? */
 static inline bool par_checkpoint_has_state(const struct par_checkpoint *c) { return c->manifest.state_bytes > 0; }
 
+/* Is that one of a sweep? */
+static inline bool par_checkpoint_has_sweep(const struct par_checkpoint *c)
+{
+    return par_checkpoint_has_state(c) && c->manifest.kind == PAR_SWEPT_STATE;
+}
+
 /* Frees what it holds; with `remove` also the files, and the directory if nothing else is in it. */
 void par_checkpoint_close(struct par_checkpoint *checkpoint, bool remove);
 
-/* --- for the sweep */
+/* --- for who writes states */
 
-/* When a sweep begins: the tiles' sink becomes the checkpoint's, which may hand out tiles again, and, once a
- * column is finished, the mesh is no longer stopped in the midst of one. Then par_tiles_begin; and where there is a
- * state, *odd becomes the column that is next, and the mesh, the lists and the tiles' counts what they were.
- * TRI_BAD_INPUT: the state is another run's, or damaged. TRI_NO_MEMORY, TRI_CANNOT_WRITE, or what the sink says. */
-enum tri_status par_checkpoint_begin(struct par_checkpoint *checkpoint, struct par_state *state,
-                                     struct par_tiles *tiles, int32_t *odd, struct tri_error *error);
+/* It is to be of this run: a hash over all that the run's mesh depends on. Takes back tiles behind those of the last
+ * state. TRI_BAD_INPUT: the state is another run's. TRI_CANNOT_WRITE. */
+enum tri_status par_checkpoint_take(struct par_checkpoint *checkpoint, uint64_t run, struct tri_error *error);
 
-/* Between two columns, `odd` being next: writes the state where it is time to, where somebody asks for the end, and
- * where the tiles' taker has failed; then returns TRI_STOPPED or that failure. Else TRI_OK, TRI_CANNOT_WRITE,
- * TRI_NO_MEMORY. */
-enum tri_status par_checkpoint_border(struct par_checkpoint *checkpoint, struct par_state *state,
-                                      const struct par_tiles *tiles, int32_t odd, struct tri_error *error);
+/* What has been done so far is worth nothing; states to come are of this kind. TRI_CANNOT_WRITE. */
+enum tri_status par_checkpoint_forget(struct par_checkpoint *checkpoint, enum par_state_kind kind,
+                                      struct tri_error *error);
 
-/* The same after the last tile, where nobody is stopped any more. */
-enum tri_status par_checkpoint_last(struct par_checkpoint *checkpoint, const struct par_state *state,
-                                    const struct par_tiles *tiles, int32_t odd, struct tri_error *error);
+enum par_carrying { PAR_WRITE, PAR_CHECK, PAR_READ };
 
-/* The sweep has ended, in whatever way. forget: what it has done so far is worth nothing. TRI_CANNOT_WRITE. */
-enum tri_status par_checkpoint_end(struct par_checkpoint *checkpoint, struct par_state *state, bool forget,
-                                   struct tri_error *error);
+/* A state's file on its way: the same walk writes it, checks it, and reads it. */
+struct par_state_file {
+    int file;
+    enum par_carrying way;
+    int64_t place;
+    uint64_t hash;
+    bool failed; /* it could not be written or read; whoever walks need not ask */
+};
+
+/* The next bytes of it; not touched where it is only checked. */
+void par_carry(struct par_state_file *file, void *bytes, size_t n);
+
+/* The same for what says how much follows: it is read to be checked, too. */
+void par_carry_head(struct par_state_file *file, void *bytes, size_t n);
+
+/* Carries all of a state. file->failed may be set: then nothing more is carried. */
+typedef enum tri_status par_state_walk(struct par_state_file *file, void *user, struct tri_error *error);
+
+/* The state is on disk afterwards, and the tiles so far. TRI_CANNOT_WRITE, or what the walk says: then the last state
+ * counts. */
+enum tri_status par_checkpoint_write(struct par_checkpoint *checkpoint, enum par_state_kind kind, int64_t triangles,
+                                     par_state_walk *walk, void *user, struct tri_error *error);
+
+/* Checks all of the state, then reads it. TRI_BAD_INPUT: it is damaged, and the walk has only been asked to check; or
+ * what the walk says. */
+enum tri_status par_checkpoint_read(const struct par_checkpoint *checkpoint, par_state_walk *walk, void *user,
+                                    struct tri_error *error);
 
 #endif

@@ -200,6 +200,8 @@ enum tri_status par_tiles_whole(struct par_tiles *tiles, struct tri_error *error
     int32_t n_tiles = tiles->partition ? par_blocks(tiles->partition) : 0;
     enum tri_status status = par_tiles_begin(tiles, par_tiles_expected(tiles), error);
     for (int32_t tile = 0; !status && tile < n_tiles; tile++) {
+        if (tri_stop_is_asked(mesh->stop))
+            return tri_fail_stopped(error);
         tri_vertex_id v = end_of(tiles, tile, (int32_t)tiles->n_vertices, mesh->n_vertices, tile_of_vertex);
         tri_triangle_id t = end_of(tiles, tile, (int32_t)tiles->n_triangles, mesh->n_triangles, tile_of_triangle);
         tri_sub_id s = end_of(tiles, tile, (int32_t)tiles->n_segments, mesh->n_subs, tile_of_sub);

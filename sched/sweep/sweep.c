@@ -2,6 +2,7 @@
 #include "sched/sweep/sweep.h"
 
 #include "sched/sweep/ahead.h"
+#include "sched/sweep/state.h"
 #include "triangle/clock.h"
 
 struct par_tiles par_tiles_of(const struct par_state *state, const struct par_partition *partition)
@@ -58,7 +59,7 @@ static enum tri_status end_tiles(struct par_state *state, struct par_tiles *tile
     enum tri_status status = par_tiles_end(tiles, error);
     if (status || !state->options->checkpoint)
         return status;
-    return par_checkpoint_last(state->options->checkpoint, state, tiles, odd, error);
+    return par_state_last_column(state->options->checkpoint, state, tiles, odd, error);
 }
 
 static enum tri_status no_memory(struct tri_error *error)
@@ -79,7 +80,7 @@ static enum tri_status sweep_columns(struct par_state *state, struct par_tiles *
             continue;
         status = finish_column(state, tiles, odd - 2, left, error);
         if (!status && !*left && checkpoint)
-            status = par_checkpoint_border(checkpoint, state, tiles, odd + 2, error);
+            status = par_state_column(checkpoint, state, tiles, odd + 2, error);
     }
     return status || *left ? status : end_tiles(state, tiles, odd, error);
 }
@@ -93,7 +94,7 @@ static enum tri_status begin_sweep(struct par_state *state, struct par_tiles *ti
     if (!par_ahead_make(ahead, state, tiles->partition))
         status = no_memory(error);
     else if (state->options->checkpoint)
-        status = par_checkpoint_begin(state->options->checkpoint, state, tiles, odd, error);
+        status = par_state_begin_sweep(state->options->checkpoint, state, tiles, odd, error);
     else
         status = par_tiles_begin(tiles, tiles->partition->estimate, error);
     if (*odd == 1)
@@ -111,10 +112,8 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
     enum tri_status status = begin_sweep(state, &tiles, &ahead, &odd, error);
     status = status ? status : sweep_columns(state, &tiles, &ahead, odd, &left, error);
     par_ahead_free(&ahead);
-    if (state->options->checkpoint) {
-        enum tri_status ended = par_checkpoint_end(state->options->checkpoint, state, left, status ? NULL : error);
-        status = status ? status : ended;
-    }
+    if (!status && left && state->options->checkpoint)
+        status = par_state_give_up_sweep(state->options->checkpoint, state, error);
     *done = !status && !left;
     state->report->rounds++;
     state->report->deferred += state->report->total.fenced;

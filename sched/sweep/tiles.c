@@ -13,6 +13,7 @@
 #include "sched/sweep/finds.h"
 #include "sched/sweep/pipeline.h"
 #include "sched/sweep/tile_fill.h"
+#include "triangle/grow.h"
 #include "triangle/hilbert.h"
 
 /* In place of a row: the column's turn has been, or is to come. */
@@ -231,12 +232,10 @@ bool par_tiles_reserve(struct par_tiles *tiles)
         return false;
     if (now <= before)
         return true;
-    int64_t *number = realloc(tiles->number, (size_t)now * sizeof *number);
-    if (!number)
+    if (!tri_resize(&tiles->number, (size_t)now, sizeof *tiles->number))
         return false;
     for (tri_vertex_id v = before; v < now; v++)
-        number[v] = v < tiles->n_kept ? v : NO_NUMBER;
-    tiles->number = number;
+        tiles->number[v] = v < tiles->n_kept ? v : NO_NUMBER;
     tiles->capacity = now;
     return true;
 }

@@ -179,17 +179,44 @@ if [ -e /dev/full ] && (ulimit -f 600) 2>/dev/null; then
     check "no file" sh -c '! ls out* .tri-* 2>/dev/null'
 fi
 
-# --- a mesh in memory keeps nothing, and starts over
+# --- a mesh that stays as a whole goes on from a state, too
 unset PTRIANGLE_TEST_SWEEP
 fresh letter.poly
-program 0 -pq30a0.002 letter --output out.h5 --checkpoint state
-says 'The mesh stays in memory: there will be no checkpoint, and --resume starts over.'
-wrote out.h5 out.xdmf
-fresh letter.poly
-"$bin/ptriangle" -Qpq30a0.00005 letter --output out.h5 --checkpoint state --time-limit 0.01 >.out 2>.err
-check "stopped" test $? -eq 124
-program 0 -Qpq30a0.002 letter --output out.h5 --resume state
-wrote out.h5 out.xdmf
+program 0 -pq33a0.0005e letter --output whole --checkpoint state --every 0
+silent_on 'checkpoint'
+ls >.before
+limit=0.05
+rounds=0
+found=-1
+what="ptriangle --checkpoint, a mesh as a whole"
+until [ $found -eq 0 ] || [ $rounds -ge 60 ]; do
+    rounds=$((rounds + 1))
+    limit=$(echo "$limit" | awk '{ print $1 * 1.3 }')
+    if [ $((rounds % 2)) -eq 0 ]; then
+        "$bin/ptriangle" -Qpq33a0.0005e letter --output out --checkpoint state --resume state --every 0 \
+            --threads $((rounds % 3 + 1)) >.out 2>.err &
+        sleep "$limit"
+        kill -KILL $! 2>/dev/null
+        wait $! 2>/dev/null
+    else
+        "$bin/ptriangle" -Qpq33a0.0005e letter --output out --checkpoint state --resume state --every 0 \
+            --time-limit "$limit" >.out 2>.err
+    fi
+    found=$?
+    case $found in
+    0 | 124 | 137) ;;
+    *) fault "exit code $found: $(head -n 1 .err)" && break ;;
+    esac
+done
+for suffix in node ele edge poly; do
+    for which in whole out; do
+        grep -v '^#' $which.$suffix >.$which
+    done
+    check "the same .$suffix" cmp .whole .out
+done
+rm -rf state .whole # a run may have been killed after its last rename
+find . -name '.tri-*' -delete
+wrote out.edge out.ele out.node out.poly
 for words in "--every -1" "--every 5" "--checkpoint" "--resume="; do
     # shellcheck disable=SC2086
     program 1 -Qp letter $words

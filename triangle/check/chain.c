@@ -16,6 +16,7 @@
 #include <stdlib.h>
 
 #include "triangle/check/line.h"
+#include "triangle/grow.h"
 #include "triangle/predicates.h"
 
 enum { MAX_GRID_SIDE = 2048, HUB = 16 };
@@ -235,14 +236,8 @@ static enum tri_status make_grid(struct chains *k)
 
 static enum tri_status add_stop(struct chains *k, double at, int32_t v)
 {
-    if (k->n_stops == k->stop_capacity) {
-        int32_t capacity = k->stop_capacity + k->stop_capacity / 2 + 16;
-        struct stop *stop = realloc(k->stop, (size_t)capacity * sizeof *stop);
-        if (stop == NULL)
-            return TRI_NO_MEMORY;
-        k->stop = stop;
-        k->stop_capacity = capacity;
-    }
+    if (!tri_grow(&k->stop, &k->stop_capacity, k->n_stops + 1, sizeof *k->stop))
+        return TRI_NO_MEMORY;
     k->stop[k->n_stops++] = (struct stop){at, v};
     return TRI_OK;
 }
@@ -307,16 +302,8 @@ static enum tri_status find_stops(struct chains *k, const struct line *l)
 
 static enum tri_status note_missing(struct checker *c, struct tri_point from, struct tri_point to)
 {
-    if (c->n_missing == c->missing_capacity) {
-        if (c->missing_capacity > INT32_MAX / 2 - 16)
-            return TRI_TOO_LARGE;
-        int32_t capacity = 2 * c->missing_capacity + 16;
-        struct check_piece *missing = realloc(c->missing, (size_t)capacity * sizeof *missing);
-        if (missing == NULL)
-            return TRI_NO_MEMORY;
-        c->missing = missing;
-        c->missing_capacity = capacity;
-    }
+    if (!tri_grow(&c->missing, &c->missing_capacity, c->n_missing + 1, sizeof *c->missing))
+        return TRI_NO_MEMORY;
     if (!check_same_place(from, to))
         c->missing[c->n_missing++] = (struct check_piece){from, to};
     return TRI_OK;

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "triangle/check/store.h"
+#include "triangle/grow.h"
 
 static const char *const names[TRI_N_CHECKS] = {
     [TRI_CHECK_ARRAYS] = "indices and coordinates",
@@ -175,16 +176,8 @@ enum tri_status tri_check_ask(struct checker *c, struct tri_point at, enum tri_c
     at = (struct tri_point){tri_round_coordinate(at.x), tri_round_coordinate(at.y)};
     if (!tri_is_in_range(at))
         return TRI_OK; /* outside the mesh, all of which is in range */
-    if (c->n_queries == c->query_capacity) {
-        if (c->query_capacity > INT32_MAX / 2 - 16)
-            return TRI_TOO_LARGE;
-        int32_t capacity = 2 * c->query_capacity + 16;
-        struct check_query *queries = realloc(c->queries, (size_t)capacity * sizeof *queries);
-        if (queries == NULL)
-            return TRI_NO_MEMORY;
-        c->queries = queries;
-        c->query_capacity = capacity;
-    }
+    if (!tri_grow(&c->queries, &c->query_capacity, c->n_queries + 1, sizeof *c->queries))
+        return TRI_NO_MEMORY;
     c->queries[c->n_queries++] = (struct check_query){at, kind, id, tolerance, false};
     return TRI_OK;
 }

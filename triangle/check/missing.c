@@ -8,6 +8,8 @@
 
 #include <stdlib.h>
 
+#include "triangle/grow.h"
+
 enum { MOST_TRIALS = 1 << 27 };
 
 struct cut {
@@ -54,16 +56,8 @@ static void sort(struct check_piece *piece, int32_t n)
 
 static enum tri_status add_cut(struct cutting *k, int32_t i, struct tri_point p)
 {
-    if (k->n_cuts == k->capacity) {
-        if (k->capacity > INT32_MAX / 2 - 16)
-            return TRI_TOO_LARGE;
-        int32_t capacity = 2 * k->capacity + 16;
-        struct cut *cut = realloc(k->cut, (size_t)capacity * sizeof *cut);
-        if (cut == NULL)
-            return TRI_NO_MEMORY;
-        k->cut = cut;
-        k->capacity = capacity;
-    }
+    if (!tri_grow(&k->cut, &k->capacity, k->n_cuts + 1, sizeof *k->cut))
+        return TRI_NO_MEMORY;
     const struct check_piece *s = &k->piece[i];
     double x = s->to.x - s->from.x, y = s->to.y - s->from.y;
     double at = ((p.x - s->from.x) * x + (p.y - s->from.y) * y) / sqrt(x * x + y * y);

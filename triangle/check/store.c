@@ -7,6 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "triangle/grow.h"
+
 enum { MOST_BITS = 9, N_FILES = 1 << MOST_BITS, LEAST_ROOM = 256 };
 
 struct file {
@@ -52,15 +54,8 @@ void tri_check_store_free(struct check_store *s)
 
 enum tri_status tri_check_append(struct check_opens *o, const struct check_open *e)
 {
-    if (o->n == o->room) {
-        int64_t room = o->room + o->room / 2 + 64;
-        bool fits = (uint64_t)room < SIZE_MAX / sizeof *e;
-        struct check_open *at = fits ? realloc(o->at, (size_t)room * sizeof *at) : NULL;
-        if (at == NULL)
-            return TRI_NO_MEMORY;
-        o->at = at;
-        o->room = room;
-    }
+    if (!tri_grow_far(&o->at, &o->room, o->n + 1, sizeof *o->at))
+        return TRI_NO_MEMORY;
     o->at[o->n++] = *e;
     return TRI_OK;
 }

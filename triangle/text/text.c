@@ -12,6 +12,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "triangle/grow.h"
+
 enum { DEFAULT_CHUNK = 1 << 18 };
 
 static const size_t largest_pipe = (size_t)1 << 30; /* what has no size may have no end either: /dev/zero */
@@ -153,10 +155,8 @@ static enum tri_status read_sized(struct load *load, const struct tri_executor *
 static bool grow_data(struct tri_text *text, size_t *room)
 {
     const size_t larger = *room ? 2 * *room : (size_t)1 << 16;
-    char *const data = realloc(text->data, larger);
-    if (!data)
+    if (!tri_resize(&text->data, larger, 1))
         return false;
-    text->data = data;
     *room = larger;
     return true;
 }

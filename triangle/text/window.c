@@ -8,6 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "triangle/grow.h"
+
 /* Fills the room. */
 static enum tri_status fill(struct tri_window *w, struct tri_error *error)
 {
@@ -33,10 +35,8 @@ static size_t whole_lines(const struct tri_window *w)
 
 static enum tri_status grow(struct tri_window *w, struct tri_error *error)
 {
-    char *data = w->room <= SIZE_MAX / 2 ? realloc(w->data, 2 * w->room) : NULL;
-    if (!data)
+    if (!tri_resize(&w->data, w->room, 2))
         return tri_fail(error, TRI_NO_MEMORY, w->text.name, 0, "no memory for a line of %zu bytes", w->used);
-    w->data = data;
     w->room *= 2;
     return TRI_OK;
 }

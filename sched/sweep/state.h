@@ -1,0 +1,64 @@
+/* What a checkpoint keeps of a run, and when.
+ *
+ * Between two columns of a sweep: what is in memory then, and which column is next. Between two phases of a schedule
+ * whose mesh stays as a whole, in memory or parked, and before the calls beyond the schedule: all of the mesh, and
+ * which phase of which round, or which call, is next. A run that gives up its sweep goes over to the second.
+ *
+ * THEOREM. A run that goes on ends with the bytes of one that was never stopped. For what is still to come depends on
+ * the mesh, the lists of what is left, the free ranges of the arrays, the cells and the counts alone: all of them are
+ * in the state, with the numbers by which they refer to each other, ids included; the rest of the mesh (parents,
+ * regions, limits, the caller's order) refinement only reads, and it is made anew from the input. Tiles that are in the
+ * file are handed out again as they were. So neither the number of threads nor the memory need be the same. What the
+ * run is of is told by a hash over the mesh, the bounds and the options with which it begins, on which all else
+ * depends. */
+#ifndef SCHED_SWEEP_STATE_H
+#define SCHED_SWEEP_STATE_H
+
+#include "sched/sweep/checkpoint.h"
+#include "sched/sweep/tiles.h"
+
+struct par_state;
+
+/* When a run begins, with the mesh as it came. Where there is the state of a mesh as a whole, the mesh, the lists, the
+ * cells and the counts become what they were, and what is to be done next. TRI_BAD_INPUT: it is another run's, or
+ * damaged, and nothing has changed. TRI_NO_MEMORY, TRI_CANNOT_WRITE. */
+enum tri_status par_state_begin(struct par_checkpoint *checkpoint, struct par_state *state, struct tri_error *error);
+
+/* The run has ended, in whatever way. */
+void par_state_end(struct par_checkpoint *checkpoint, struct par_state *state);
+
+/* --- a mesh that stays as a whole */
+
+/* Between two steps, the next one being what the state says. From here on the mesh is not stopped within a step. Writes
+ * the state where it is time to, where somebody asks for the end (TRI_STOPPED then), or, `surely`, in any case.
+ * TRI_CANNOT_WRITE. */
+enum tri_status par_state_border(struct par_checkpoint *checkpoint, struct par_state *state, bool surely,
+                                 struct tri_error *error);
+
+/* The step at hand may be long, and may be stopped: what the last state has counts then. Or not, or no more. */
+void par_state_may_stop(struct par_checkpoint *checkpoint, struct par_state *state, bool may);
+
+/* --- a sweep */
+
+/* When a sweep begins: the tiles' sink becomes the checkpoint's, which may hand out tiles again, and, once a
+ * column is finished, the mesh is no longer stopped in the midst of one. Then par_tiles_begin; and where there is a
+ * state, *odd becomes the column that is next, and the mesh, the lists and the tiles' counts what they were.
+ * TRI_BAD_INPUT: the state is damaged. TRI_NO_MEMORY, TRI_CANNOT_WRITE, or what the sink says. */
+enum tri_status par_state_begin_sweep(struct par_checkpoint *checkpoint, struct par_state *state,
+                                      struct par_tiles *tiles, int32_t *odd, struct tri_error *error);
+
+/* Between two columns, `odd` being next: writes the state where it is time to, where somebody asks for the end, and
+ * where the tiles' taker has failed; then returns TRI_STOPPED or that failure. Else TRI_OK, TRI_CANNOT_WRITE,
+ * TRI_NO_MEMORY. */
+enum tri_status par_state_column(struct par_checkpoint *checkpoint, struct par_state *state,
+                                 const struct par_tiles *tiles, int32_t odd, struct tri_error *error);
+
+/* The same after the last tile, where nobody is stopped any more. */
+enum tri_status par_state_last_column(struct par_checkpoint *checkpoint, const struct par_state *state,
+                                      const struct par_tiles *tiles, int32_t odd, struct tri_error *error);
+
+/* The sweep has been given up: what it has done is worth nothing. TRI_CANNOT_WRITE. */
+enum tri_status par_state_give_up_sweep(struct par_checkpoint *checkpoint, struct par_state *state,
+                                        struct tri_error *error);
+
+#endif
