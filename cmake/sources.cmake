@@ -79,6 +79,7 @@ set(PTRIANGLE_CHECK_SOURCES
 # Room triangle/, text files. The one C++ file wraps std::from_chars and std::to_chars.
 set(PTRIANGLE_TEXT_SOURCES
     triangle/text/decimal.cpp
+    triangle/text/names.c
     triangle/text/text.c
     triangle/text/window.c
     triangle/text/read.c
@@ -138,8 +139,10 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/ranks/carrier.c
     sched/ranks/borrow.c
     sched/ranks/hand_out.c
+    sched/ranks/keep.c
     sched/ranks/lend.c
     sched/ranks/paste.c
+    sched/ranks/pieces.c
     sched/ranks/ranks.c
     sched/ranks/relay.c
     sched/ranks/stream.c

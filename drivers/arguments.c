@@ -4,16 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-char *joined(const char *first, const char *second)
-{
-    size_t n = strlen(first), m = strlen(second);
-    char *text = malloc(n + m + 1);
-    if (!text)
-        return NULL;
-    memcpy(text, first, n);
-    memcpy(text + n, second, m + 1);
-    return text;
-}
+#include "triangle/text/names.h"
 
 /* Adds 1 to the decimal number in text[0 .. n), n > 0, which has no leading zeros; text has room for one more digit. */
 static void increment(char *text, size_t n)
@@ -34,8 +25,8 @@ char *next_iteration(const char *name)
     const char *slash = strrchr(name, '/'), *dot = strrchr(slash ? slash : name, '.');
     size_t digits = dot ? strspn(dot + 1, "0123456789") : 0;
     if (digits == 0 || dot[1 + digits] != 0)
-        return joined(name, ".1");
-    char *next = joined(name, "0"); /* one digit more than there was */
+        return tri_joined(name, ".1");
+    char *next = tri_joined(name, "0"); /* one digit more than there was */
     if (!next)
         return NULL;
     char *number = next + (dot + 1 - name);
@@ -87,10 +78,10 @@ enum tri_status arguments_end(struct arguments *arguments, struct tri_error *err
 {
     if (!arguments->file)
         return TRI_OK;
-    arguments->input = joined(arguments->file, "");
+    arguments->input = tri_joined(arguments->file, "");
     if (arguments->input) {
         apply_suffix(arguments->input, &arguments->switches);
-        arguments->output = arguments->switches.no_iteration ? joined(arguments->input, "")
+        arguments->output = arguments->switches.no_iteration ? tri_joined(arguments->input, "")
                                                              : next_iteration(arguments->input);
     }
     return arguments->output ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");

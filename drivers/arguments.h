@@ -27,7 +27,4 @@ void arguments_free(struct arguments *arguments);
 /* The name of the next iteration, malloc'ed; NULL: no memory. box -> box.1, box.9 -> box.10, d.1/box -> d.1/box.1. */
 char *next_iteration(const char *name);
 
-/* Both texts in one, malloc'ed; NULL: no memory. */
-char *joined(const char *first, const char *second);
-
 #endif

@@ -8,21 +8,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "triangle/text/names.h"
 #include "triangle/text/read.h"
 #include "triangle/text/text.h"
 
 /* Bytes of memory for each byte of text: the text itself, arrays, and the judge's own. */
 #define TEXT_SHARE 4.0
-
-/* Stem + suffix, malloc'ed. */
-static char *with_suffix(const char *stem, const char *suffix)
-{
-    size_t n = strlen(stem) + strlen(suffix) + 1;
-    char *path = malloc(n);
-    if (path != NULL)
-        (void)snprintf(path, n, "%s%s", stem, suffix);
-    return path;
-}
 
 /* Cuts one of the suffixes off. */
 bool judged_cut_suffix(char *path, const char *suffix)
@@ -109,7 +100,7 @@ static enum tri_status read_input(struct judged_files *f, const char *path, cons
                                        .regions_if_any = (f->source.given >> TRI_CHECK_ATTRIBUTES & 1) != 0};
     int32_t base;
     bool points_in_poly;
-    char *stem = with_suffix(path, "");
+    char *stem = tri_joined(path, "");
     if (stem == NULL)
         return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
     if (judged_cut_suffix(stem, ".node")) {
@@ -117,7 +108,7 @@ static enum tri_status read_input(struct judged_files *f, const char *path, cons
         return tri_read_node(path, &options, &f->input, &base, error);
     }
     (void)judged_cut_suffix(stem, ".poly");
-    char *node = with_suffix(stem, ".node");
+    char *node = tri_joined(stem, ".node");
     free(stem);
     enum tri_status status = tri_read_poly(path, node, &options, &f->input, &base, &points_in_poly, error);
     free(node);
@@ -162,7 +153,7 @@ bool judged_fits(const char *base, double memory)
     static const char *const suffixes[] = {".node", ".ele", ".poly", ".neigh"};
     double bytes = 0;
     for (int i = 0; i < 4; i++) {
-        char *path = with_suffix(base, suffixes[i]);
+        char *path = tri_joined(base, suffixes[i]);
         bytes += size_of(path);
         free(path);
     }
@@ -191,8 +182,8 @@ static enum tri_status read_texts(struct judged_files *f, const struct judged_as
 
 static enum tri_status read_mesh(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
 {
-    char *node = with_suffix(ask->base, ".node"), *ele = with_suffix(ask->base, ".ele");
-    char *poly = with_suffix(ask->base, ".poly"), *neigh = with_suffix(ask->base, ".neigh");
+    char *node = tri_joined(ask->base, ".node"), *ele = tri_joined(ask->base, ".ele");
+    char *poly = tri_joined(ask->base, ".poly"), *neigh = tri_joined(ask->base, ".neigh");
     enum tri_status status = TRI_OK;
     if (node == NULL || ele == NULL || poly == NULL || neigh == NULL) {
         status = tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");

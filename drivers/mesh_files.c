@@ -7,6 +7,7 @@
 #include "drivers/interrupt.h"
 #include "triangle/grid.h"
 #include "triangle/text/formats.h"
+#include "triangle/text/names.h"
 
 enum plan { NOT_ASKED, SUPPRESSED, WRITTEN };
 
@@ -98,7 +99,7 @@ static enum tri_status try_all(struct tri_output_set *set, const struct mesh_fil
     for (int k = 0; k < N_KINDS && !status; k++) {
         if (plan_of(files, kinds[k].plan) != WRITTEN)
             continue;
-        char *path = joined(files->arguments->output, kinds[k].suffix);
+        char *path = tri_joined(files->arguments->output, kinds[k].suffix);
         status = path ? try_file(set, path, read, error)
                       : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
         free(path);
@@ -132,7 +133,7 @@ struct writer {
 static enum tri_status write_file(struct writer *w, const struct kind *kind)
 {
     const struct mesh_files *files = w->files;
-    char *path = joined(files->arguments->output, kind->suffix);
+    char *path = tri_joined(files->arguments->output, kind->suffix);
     if (!path)
         return tri_fail(w->error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
     console_say(files->console, "Writing %s.\n", path);

@@ -16,6 +16,7 @@
 #include "drivers/plot_part.h"
 #include "drivers/resources.h"
 #include "triangle/pslg.h"
+#include "triangle/text/names.h"
 #include "triangle/text/read.h"
 #include "triangle/text/text.h"
 #include "triangle/text/write.h"
@@ -92,20 +93,10 @@ static bool ends_with(const char *text, const char *suffix)
 
 /* --- reading */
 
-/* Stem + suffix, malloc'ed. */
-static char *with_suffix(const char *stem, const char *suffix)
-{
-    const size_t n = strlen(stem) + strlen(suffix) + 1;
-    char *path = malloc(n);
-    if (path != NULL)
-        (void)snprintf(path, n, "%s%s", stem, suffix);
-    return path;
-}
-
 static enum tri_status read_text(struct files *f, const char *stem, struct tri_error *error)
 {
     const struct tri_read_options options = {.default_base = 1};
-    char *node = with_suffix(stem, ".node"), *ele = with_suffix(stem, ".ele"), *poly = with_suffix(stem, ".poly");
+    char *node = tri_joined(stem, ".node"), *ele = tri_joined(stem, ".ele"), *poly = tri_joined(stem, ".poly");
     enum tri_status status = TRI_OK;
     int32_t base = 1;
     bool has_poly = false, points_in_poly;

@@ -24,6 +24,7 @@
 #include "sched/sweep/queue.h"
 #include "sched/threads.h"
 #include "triangle/estimate.h"
+#include "triangle/text/names.h"
 #include "triangle/text/write.h"
 
 static const char PROGRAM[] = PTRIANGLE_NAME;
@@ -274,7 +275,7 @@ static enum tri_status name_output(struct arguments *arguments, const char *base
 {
     if (!base || !arguments->file)
         return TRI_OK;
-    char *output = joined(base, "");
+    char *output = tri_joined(base, "");
     if (!output)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
     free(arguments->output);
@@ -317,8 +318,8 @@ static char *scratch_of(const struct long_options *options, const struct argumen
     const char *output = options->n_streams > 0 ? options->streams[0] : arguments->output;
     const char *slash = output ? strrchr(output, '/') : NULL;
     if (asked && *asked)
-        return joined(asked, "");
-    char *folder = joined(slash ? output : ".", "");
+        return tri_joined(asked, "");
+    char *folder = tri_joined(slash ? output : ".", "");
     if (folder && slash)
         folder[slash - output + 1] = 0;
     return folder;
@@ -409,6 +410,12 @@ static void free_program(struct program *p)
         free(p->xdmf[i]);
 }
 
+/* One task goes on where several were at work. */
+static bool goes_on_alone(const struct program *p)
+{
+    return !p->launch.carrier && p->restart.wanted && par_checkpoint_has_ranks(&p->restart.checkpoint);
+}
+
 /* Once the words have been taken. */
 static int carry_out(struct program *p, const struct arguments *arguments, struct tri_error *error)
 {
@@ -420,17 +427,20 @@ static int carry_out(struct program *p, const struct arguments *arguments, struc
         help_full(PROGRAM, "on all cores", long_options_help);
         return EXIT_SUCCESS;
     }
-    if (p->launch.carrier && (p->options.checkpoint || p->options.resume))
-        tri_fail(error, TRI_BAD_INPUT, NULL, 0, "several tasks keep no checkpoints");
-    else if (p->launch.carrier && memory_of(&p->options) > 0)
+    if (p->launch.carrier && memory_of(&p->options) > 0)
         tri_fail(error, TRI_BAD_INPUT, NULL, 0, "several tasks keep no bound on memory: leave out --memory");
     else if (arguments->file)
-        restart_open(&p->restart, &p->options, error);
+        restart_open(&p->restart, &p->options, p->launch.carrier, error);
     if (error->status) {
         console_error(&(struct console){.program = PROGRAM}, error);
         return EXIT_FAILURE;
     }
+    const bool alone = goes_on_alone(p);
+    int64_t room;
+    struct par_carrier one = par_carrier_alone(&room);
+    p->launch.carrier = alone ? &one : p->launch.carrier;
     int code = run_program(p, arguments, error);
+    p->launch.carrier = alone ? NULL : p->launch.carrier;
     restart_close(&p->restart, PROGRAM, arguments, code);
     return code;
 }

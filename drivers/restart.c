@@ -16,19 +16,29 @@ static enum tri_status check_options(const struct long_options *o, struct tri_er
     return TRI_OK;
 }
 
-enum tri_status restart_open(struct restart *restart, const struct long_options *o, struct tri_error *error)
+static enum tri_status open_directory(struct restart *restart, const struct long_options *o, const char *directory,
+                                      struct tri_error *error)
+{
+    bool resume = o->resume && (!o->checkpoint || par_checkpoint_is_there(directory));
+    if (!restart->follows)
+        return par_checkpoint_open(&restart->checkpoint, directory, resume, par_hash(0, version, sizeof version),
+                                   error);
+    restart->checkpoint.directory = directory;
+    return TRI_OK;
+}
+
+enum tri_status restart_open(struct restart *restart, const struct long_options *o, struct par_carrier *carrier,
+                             struct tri_error *error)
 {
     static const double USUAL_MINUTES = 10;
     const char *directory = o->resume ? o->resume : o->checkpoint;
-    *restart = (struct restart){0};
+    *restart = (struct restart){.follows = carrier && carrier->rank > 0};
     enum tri_status status = check_options(o, error);
-    if (status || !directory || o->dry_run)
-        return status;
-    bool resume = o->resume && (!o->checkpoint || par_checkpoint_is_there(directory));
-    status = par_checkpoint_open(&restart->checkpoint, directory, resume, par_hash(0, version, sizeof version), error);
-    restart->wanted = !status;
+    bool wanted = !status && directory && !o->dry_run;
+    status = wanted ? open_directory(restart, o, directory, error) : status;
+    restart->wanted = wanted && !status;
     restart->checkpoint.seconds = 60 * (o->has_every ? o->every : USUAL_MINUTES);
-    return status;
+    return carrier ? par_agree(carrier, status, error) : status;
 }
 
 /* A word as a shell would need it. */
@@ -79,7 +89,7 @@ static void print_command(const struct restart *r, const struct arguments *argum
 void restart_close(struct restart *r, const char *program, const struct arguments *arguments, int code)
 {
     enum { FIRST_STOP = 124 };
-    if (!r->wanted)
+    if (!r->wanted || r->follows)
         return;
     const struct par_manifest *m = &r->checkpoint.manifest;
     bool stopped = code >= FIRST_STOP, has_state = par_checkpoint_has_state(&r->checkpoint);

@@ -18,17 +18,13 @@
 #include "triangle/census.h"
 #include "triangle/clock.h"
 #include "triangle/quality.h"
-
-/* What is read: B.poly, B.node and so on. */
-struct names {
-    char *node, *poly, *ele, *area;
-};
+#include "triangle/text/names.h"
 
 /* A run and its clock. */
 struct runner {
     struct run run;
     struct console console;
-    struct names names;
+    struct tri_names names; /* of what is read */
     struct console_series input_warnings;
     double begin, mark; /* when the run and the stage began */
     int32_t *twin;      /* [pslg.n_points] first one of the points at a place, where the mesh will be gone; else NULL */
@@ -53,26 +49,24 @@ static void say_milliseconds(const struct runner *r, const char *what, double se
 
 /* --- arguments */
 
+static void warn_of_switch(void *user, const char *text, bool misread)
+{
+    const struct runner *r = user;
+    if (misread) /* which cannot have been meant */
+        console_remark(&r->console, "warning: %s\n", text);
+    else
+        console_warn(&r->console, "%s.\n", text);
+}
+
 static enum tri_status check_switches(struct runner *r)
 {
     const struct tri_switches *s = &r->run.arguments->switches;
-    for (int i = 0; i < s->n_notes; i++)
-        console_remark(&r->console, "warning: -%s: numbers of switches have no exponent; the e is taken for a switch\n",
-                       s->notes[i]);
-    if (s->bad_area)
-        return tri_fail(r->error, TRI_BAD_INPUT, NULL, 0, "the maximum area (-a) must be > 0");
-    if (s->mesh && s->no_iteration)
+    tri_switches_warn(s, warn_of_switch, r);
+    enum tri_status status = tri_switches_check(s, r->error);
+    if (!status && s->mesh && s->no_iteration)
         return tri_fail(r->error, TRI_BAD_INPUT, NULL, 0,
                         "-I cannot be used when refining (-r): it would overwrite the input");
-    if (s->jettison && s->no_node)
-        console_warn(&r->console, "-j and -N: vertices are renumbered, and no file tells how.\n");
-    if (s->weighted && (s->segments || s->mesh || tri_switches_refine(s)))
-        console_warn(&r->console, "weighted triangulations (-w, -W) are not made with -p, -q, -a, -u or -r.\n"
-                                  "  The switch is ignored.\n");
-    if (s->angle && s->min_angle > TRI_USUAL_ANGLE && s->min_angle < 180)
-        console_warn(&r->console, "an angle bound of %g degrees is above %g: it may not be reached everywhere.\n",
-                     s->min_angle, TRI_USUAL_ANGLE);
-    return TRI_OK;
+    return status;
 }
 
 /* --- input */
@@ -84,23 +78,8 @@ static void warn_of_input(void *user, const char *file, long line, const char *t
         console_warn(&r->console, "%s:%ld: %s.\n", file, line, text);
 }
 
-static void free_names(struct names *names)
-{
-    free(names->node);
-    free(names->poly);
-    free(names->ele);
-    free(names->area);
-}
-
-static enum tri_status make_names(struct names *names, const char *stem, struct tri_error *error)
-{
-    *names = (struct names){joined(stem, ".node"), joined(stem, ".poly"), joined(stem, ".ele"), joined(stem, ".area")};
-    if (names->node && names->poly && names->ele && names->area)
-        return TRI_OK;
-    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-}
-
-static enum tri_status read_pslg(struct runner *r, const struct names *names, const struct tri_read_options *options)
+static enum tri_status read_pslg(struct runner *r, const struct tri_names *names,
+                                 const struct tri_read_options *options)
 {
     struct run *run = &r->run;
     if (!run->arguments->switches.segments) {
@@ -116,7 +95,8 @@ static enum tri_status read_pslg(struct runner *r, const struct names *names, co
 }
 
 /* The triangles of a mesh that is to be refined, and their area bounds. */
-static enum tri_status read_mesh(struct runner *r, const struct names *names, const struct tri_read_options *options)
+static enum tri_status read_mesh(struct runner *r, const struct tri_names *names,
+                                 const struct tri_read_options *options)
 {
     struct run *run = &r->run;
     console_say(&r->console, "Opening %s.\n", names->ele);
@@ -532,7 +512,8 @@ static enum tri_status run_stages(struct runner *r)
 {
     struct run *run = &r->run;
     enum tri_status status = check_switches(r);
-    status = status ? status : make_names(&r->names, run->arguments->input, r->error);
+    const char *input = run->arguments->input;
+    status = status ? status : tri_names_make(&r->names, input, strlen(input), r->error);
     status = status ? status : get_input(r);
     if (status)
         return status;
@@ -572,7 +553,7 @@ static void free_run(struct runner *r)
     tri_elements_free(&r->run.elements);
     free(r->run.is_edge);
     free(r->twin);
-    free_names(&r->names);
+    tri_names_free(&r->names);
 }
 
 int run_arguments(const struct arguments *arguments, const struct run_hooks *hooks)

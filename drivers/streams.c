@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "drivers/interrupt.h"
+#include "triangle/text/names.h"
 
 static const char program[] = PTRIANGLE_NAME " " PTRIANGLE_VERSION;
 
@@ -57,7 +58,7 @@ static enum tri_status open_text(struct tri_output **output, const struct mesh_f
 {
     if (!mesh_files_has(files, suffix))
         return TRI_OK;
-    char *path = joined(files->arguments->output, suffix);
+    char *path = tri_joined(files->arguments->output, suffix);
     if (!path)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
     enum tri_status status = interrupt_open(set, path, output, error);

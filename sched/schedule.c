@@ -242,18 +242,24 @@ static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, st
     return status;
 }
 
+/* Ranks keep states of their own. */
+static struct par_checkpoint *checkpoint_of(const struct par_state *state)
+{
+    return state->options->carrier ? NULL : state->options->checkpoint;
+}
+
 /* Between two steps of what cannot be undone: a state may be kept here. */
 static enum tri_status come_to_border(struct par_state *state, bool surely, struct tri_error *error)
 {
-    struct par_checkpoint *checkpoint = state->options->checkpoint;
+    struct par_checkpoint *checkpoint = checkpoint_of(state);
     return checkpoint ? par_state_border(checkpoint, state, surely, error) : TRI_OK;
 }
 
 /* May what comes now be stopped, though not all that has been done is in a state? */
 static void let_stop(struct par_state *state, bool may)
 {
-    if (state->options->checkpoint)
-        par_state_may_stop(state->options->checkpoint, state, may);
+    if (checkpoint_of(state))
+        par_state_may_stop(checkpoint_of(state), state, may);
 }
 
 static enum tri_status run_phases(struct par_state *state, const struct par_partition *partition,
@@ -606,6 +612,7 @@ static enum tri_status refine_by_schedule(struct par_state *state, const struct 
                                           struct tri_error *error)
 {
     struct tri_refine_options usual = *quality;
+    usual.final_angle = tri_final_angle(quality);
     usual.min_angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
     const bool sizes = usual.min_angle > TRI_EASY_ANGLE && tri_has_sizes(&usual);
     if (!sizes && state->stage == PAR_SIZES)
@@ -658,8 +665,8 @@ static void clean_up(struct par_state *state)
     report->parked = state->park ? par_park_bytes(state->park) : 0;
     if (report->parked > 0 && report->way == PAR_IN_MEMORY)
         report->way = PAR_PARKED;
-    if (state->options->checkpoint)
-        par_state_end(state->options->checkpoint, state);
+    if (checkpoint_of(state))
+        par_state_end(checkpoint_of(state), state);
     par_park_close(state->park, state->mesh);
     if (report->way != PAR_IN_MEMORY)
         tri_mesh_drop(state->mesh);
@@ -702,7 +709,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
         return status;
     if (state.park)
         timed.executor = par_park_executor(state.park, timed.executor);
-    if (options->checkpoint)
+    if (checkpoint_of(&state))
         status = par_state_begin(options->checkpoint, &state, error);
     status = status ? status : refine_and_deliver(&state, quality, sequential, error);
     status = par_park_status(state.park, status, error);

@@ -13,6 +13,7 @@ struct fake_world {
     const struct par_bytes **out;
     const void *spread;
     struct fake_rank *rank;
+    int64_t *of_each;              /* [n_ranks][n_ranks] */
 };
 
 struct fake_rank {

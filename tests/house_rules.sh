@@ -63,7 +63,7 @@ tested_by() {
     triangle/api/* | sched/mesh.c) echo api ;;
     triangle/dropin/switches.c) echo switches ;;
     triangle/dropin/*) echo triangulate ;;
-    triangle/text/window.c) echo read ;;
+    triangle/text/names.c | triangle/text/window.c) echo read ;;
     triangle/text/output.c | triangle/text/layouts.c) echo write ;;
     triangle/text/stream.c) echo text_stream ;;
     triangle/text/boundary.c | triangle/text/gmsh.c | triangle/text/grouping.c) echo formats ;;

@@ -90,7 +90,8 @@ static void test_bundles_part(void **state)
     }
 }
 
-/* The loop leaves no subsegment encroached, on anything, and every split leaves a quarter at least on either side. */
+/* The loop leaves no subsegment encroached, on anything, and no split makes a part that is shorter than half the
+ * shortest edge. */
 static void test_nothing_stays_that_can_be_split(void **state)
 {
     (void)state;
@@ -100,9 +101,11 @@ static void test_nothing_stays_that_can_be_split(void **state)
         struct tri_options options = support_quality(0, 0);
         struct tri_mesh mesh = support_generate(&pslg, &options, &report);
         for (int32_t s = 0; s < mesh.n_subs; s++) {
-            double fraction = -1;
+            double fraction;
+            const tri_vertex_id *v = mesh.sub[s].v;
             if (tri_is_encroached(&mesh, &mesh.sub[s], &fraction))
-                assert_true(fraction >= 0.25 && fraction <= 0.75);
+                assert_true(fmin(fraction, 1 - fraction) * sqrt(tri_distance2(mesh.xy[v[0]], mesh.xy[v[1]])) >=
+                            0.5 * sqrt(mesh.limits.shortest2));
         }
         options.quality.conforming = true;
         assert_int_equal(tri_refine(&mesh, &options.quality, &report.quality, NULL), TRI_OK);

@@ -25,12 +25,14 @@ static void test_sizes_are_inherited_and_grow(void **state)
     (void)state;
     struct tri_point xy[] = {{0, 0}, {6, 0}};
     double feature[] = {2, 1};
-    struct tri_mesh mesh = {.xy = xy, .feature = feature, .n_vertices = 2, .limits.shrink = 16};
+    struct tri_mesh mesh = {.xy = xy, .feature = feature, .n_vertices = 2};
     assert_true(tri_feature_inside(&mesh, 0, 1, (struct tri_point){3, 4}, false) == 1 + 0.5 * 5);
     assert_true(tri_feature_inside(&mesh, 0, 1, (struct tri_point){3, 4}, true) == 3.5);
     assert_true(tri_feature_inside(&mesh, 0, 1, (struct tri_point){0.5, 0}, true) == 0.5);
-    assert_true(tri_has_run_away(&mesh, 0, 1, 0.0624 * 0.0624));
-    assert_false(tri_has_run_away(&mesh, 0, 1, 0.0626 * 0.0626));
+    assert_true(tri_has_run_away(&mesh, 30, 0, 1, 0.0624 * 0.0624));
+    assert_false(tri_has_run_away(&mesh, 30, 0, 1, 0.0626 * 0.0626));
+    assert_false(tri_has_run_away(&mesh, 20, 0, 1, 0.0157 * 0.0157)); /* where theory promises an end */
+    assert_true(tri_has_run_away(&mesh, 20, 0, 1, 0.0156 * 0.0156));
 }
 
 /* F of the theorem, with all vertices on segments as sources: no vertex inside knows of a smaller size. And no edge is

@@ -4,6 +4,8 @@
 #include "support.h"
 #include "trials.h"
 
+#include <stdio.h>
+
 #include "sched/ranks/ranks.h"
 #include "sched/ranks/relay.h"
 #include "sched/schedule.h"
@@ -99,6 +101,7 @@ struct member {
     enum tri_status status;
     struct tri_error error;
     bool relayed;
+    struct par_checkpoint checkpoint; /* open on rank 0, where there is one */
 };
 
 static void refine_to(struct member *m)
@@ -170,14 +173,12 @@ static void draw_shares(double share[MOST_RANKS + 1], int n_ranks, struct suppor
     share[n_ranks] = 1;
 }
 
-static void run_ranks(struct member *member, const struct start *start, const struct par_options *options, int n_ranks,
-                      const double *share, int fails, bool relayed)
+static void new_members(struct member *member, const struct start *start, const struct par_options *options,
+                        struct fake_world *world, const double *share, int fails, bool relayed)
 {
-    struct fake_world world;
-    fake_world_init(&world, n_ranks);
-    for (int p = 0; p < n_ranks; p++) {
+    for (int p = 0; p < world->n_ranks; p++) {
         member[p] = new_member(start, options);
-        member[p].carrier = fake_carrier(&world, p);
+        member[p].carrier = fake_carrier(world, p);
         member[p].carrier.share = share;
         member[p].options.carrier = &member[p].carrier;
         member[p].options.threads = 1 + p % 2;
@@ -185,6 +186,14 @@ static void run_ranks(struct member *member, const struct start *start, const st
         member[p].stream.fail_at = p == fails ? relayed ? 8 : 2 : 0;
         member[p].relayed = relayed;
     }
+}
+
+static void run_ranks(struct member *member, const struct start *start, const struct par_options *options, int n_ranks,
+                      const double *share, int fails, bool relayed)
+{
+    struct fake_world world;
+    fake_world_init(&world, n_ranks);
+    new_members(member, start, options, &world, share, fails, relayed);
     fake_run(&world, be_a_rank, member, sizeof *member);
     fake_world_free(&world);
 }
@@ -266,6 +275,149 @@ static void test_an_error_of_one_is_an_error_of_all(void **state)
     }
 }
 
+/* --- checkpoints */
+
+static const char DIRECTORY[] = "ranks-state";
+
+/* Rank 0 asks for the end as soon as there is something to go on from, and it is known. */
+static bool has_kept(void *user)
+{
+    const struct par_checkpoint *c = user;
+    return par_checkpoint_has_state(c) && c->last > 0;
+}
+
+/* From one checkpoint to the next, by so many ranks, of these shares. */
+static void run_a_step(struct member *member, const struct start *start, const struct par_options *options,
+                       int n_ranks, const double *share, bool resume)
+{
+    struct fake_world world;
+    fake_world_init(&world, n_ranks);
+    new_members(member, start, options, &world, share, -1, false);
+    assert_int_equal(par_checkpoint_open(&member[0].checkpoint, DIRECTORY, resume, 7, NULL), TRI_OK);
+    const struct tri_stop stop = {has_kept, &member[0].checkpoint};
+    for (int p = 0; p < n_ranks; p++) {
+        member[p].checkpoint.directory = DIRECTORY;
+        member[p].checkpoint.seconds = 0;
+        member[p].options.checkpoint = &member[p].checkpoint;
+    }
+    member[0].mesh.stop = &stop;
+    fake_run(&world, be_a_rank, member, sizeof *member);
+    fake_world_free(&world);
+    for (int p = 0; p < n_ranks; p++)
+        assert_int_equal(member[p].status, member[0].status);
+}
+
+static void remove_checkpoint(void)
+{
+    struct par_checkpoint c = {.directory = DIRECTORY, .lock = -1};
+    par_checkpoint_close(&c, true);
+}
+
+/* Each step is done by another number of ranks, of other shares. Returns how many runs it took. */
+static int run_in_steps(const struct member *alone, const struct start *start, const struct par_options *options,
+                        struct support_random *random)
+{
+    enum tri_status status = TRI_STOPPED;
+    int runs = 0;
+    remove_checkpoint();
+    while (status == TRI_STOPPED && runs < 400) {
+        struct member member[MOST_RANKS];
+        double share[MOST_RANKS + 1];
+        int n_ranks = 1 + support_below(random, runs < 2 ? MOST_RANKS : 5);
+        draw_shares(share, n_ranks, random);
+        run_a_step(member, start, options, n_ranks, runs % 2 ? share : NULL, runs > 0);
+        runs++;
+        status = member[0].status;
+        if (status && status != TRI_STOPPED)
+            fail_msg("run %d: %s", runs, member[0].error.text);
+        if (!status) {
+            compare(alone, member, n_ranks);
+            assert_int_equal(member[0].report.total.inserted_free, alone->report.total.inserted_free);
+            assert_int_equal(member[0].report.left_over > 0, alone->report.left_over > 0); /* ranks may share one */
+            assert_int_equal(member[0].report.rounds, alone->report.rounds);
+        }
+        par_checkpoint_close(&member[0].checkpoint, !status);
+        for (int p = 0; p < n_ranks; p++)
+            free_member(&member[p]);
+    }
+    assert_int_equal(status, TRI_OK);
+    return runs;
+}
+
+static void test_other_ranks_go_on(void **state)
+{
+    (void)state;
+    static const int chosen[] = {4, 6, 10};
+    struct support_random random = {11};
+    for (size_t i = 0; i < sizeof chosen / sizeof *chosen; i++) {
+        const struct trial *trial = &trials[chosen[i]];
+        struct start start = trials_start_of(trial);
+        struct par_options options = small_blocks(trial, 2);
+        options.cell_triangles /= 4; /* phases in several steps */
+        struct member alone = new_member(&start, &options);
+        refine_to(&alone);
+        int runs = run_in_steps(&alone, &start, &options, &random);
+        print_message("  %-28s in %d runs\n", trial->file, runs);
+        assert_true(runs > 2);
+        free_member(&alone);
+        tri_pslg_free(&start.pslg);
+    }
+}
+
+static void flip_byte(const char *name, long at)
+{
+    FILE *file = fopen(name, "r+b");
+    assert_non_null(file);
+    fseek(file, at, SEEK_SET);
+    int byte = fgetc(file);
+    assert_int_not_equal(byte, EOF);
+    fseek(file, at, SEEK_SET);
+    fputc(byte ^ 1, file);
+    fclose(file);
+}
+
+/* Two ranks go on, and both fail. */
+static void expect_refusal(const struct start *start, const struct par_options *options, const char *text)
+{
+    struct member member[2];
+    run_a_step(member, start, options, 2, NULL, true);
+    for (int p = 0; p < 2; p++) {
+        assert_int_equal(member[p].status, TRI_BAD_INPUT);
+        assert_non_null(strstr(member[p].error.text, text));
+        free_member(&member[p]);
+    }
+    par_checkpoint_close(&member[0].checkpoint, false);
+}
+
+static void test_what_does_not_fit_is_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        long at;
+    } damage[] = {{"piece-1-1", 9}, {"piece-1-0", 40}, {"piece-1-0", 5000}, {"piece-1-1", 4000}, {"state-1", 70}};
+    struct start start = trials_start_of(&trials[3]), other = trials_start_of(&trials[0]);
+    struct par_options options = small_blocks(&trials[3], 1);
+    struct member member[3];
+    remove_checkpoint();
+    run_a_step(member, &start, &options, 3, NULL, false); /* keeps twice */
+    assert_int_equal(member[0].status, TRI_STOPPED);
+    par_checkpoint_close(&member[0].checkpoint, false);
+    for (int p = 0; p < 3; p++)
+        free_member(&member[p]);
+    for (size_t i = 0; i < sizeof damage / sizeof *damage; i++) {
+        char path[64];
+        snprintf(path, sizeof path, "%s/%s", DIRECTORY, damage[i].name);
+        flip_byte(path, damage[i].at);
+        expect_refusal(&start, &options, "damaged");
+        flip_byte(path, damage[i].at);
+    }
+    expect_refusal(&other, &options, "of another run");
+    remove_checkpoint();
+    tri_pslg_free(&start.pslg);
+    tri_pslg_free(&other.pslg);
+}
+
 /* --- what the first rank has */
 
 struct listener {
@@ -312,6 +464,8 @@ int main(void)
         cmocka_unit_test(test_all_get_what_the_first_has),
         cmocka_unit_test(test_ranks_hand_out_what_one_process_does),
         cmocka_unit_test(test_an_error_of_one_is_an_error_of_all),
+        cmocka_unit_test(test_other_ranks_go_on),
+        cmocka_unit_test(test_what_does_not_fit_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,9 +6,11 @@
  * encroached.
  *
  * RULE. The point of e level with a vertex v is that at the distance of v from o, where e and v lie on two parents with
- * the common end o; else the foot of the perpendicular from v. A subsegment to which v is near (an eighth of its
- * length) is split level with v if that is in its middle half, else, and if v is farther away, where any subsegment is
- * split (tri_split_fraction).
+ * the common end o; else the foot of the perpendicular from v. Let v be at distance h from a subsegment of length l,
+ * and the point level with v at distance d from the nearer end a. The subsegment is split
+ *   - level with v, if h <= d and h < l / NARROW;
+ *   - d + h^2 / d from a, if h > d and that is less than
+ *   - the usual place (tri_split_fraction) from a: where it is split in all other cases.
  *
  * THEOREM (levels part two parents for good). Let u, on e, be level with v, on f, and f be all on one side of the line
  * of e. Then v encroaches neither part of e, and u no part of f. Proof. With a common end, circles with a diameter on a
@@ -18,8 +20,15 @@
  * not length / width of them, and a vertex in a bundle of parents is handed on across it once. All rays from one vertex
  * share their levels: nothing spirals around it (concentric shells: Ruppert 1995).
  *
- * THEOREM (end). Each part is at least a quarter of the whole, and none shorter than twice the root of limits.shortest2
- * is split: so there are finitely many splits, whatever the rest of refinement does.
+ * New levels, which the other parents of a bundle must take over and which may ask for more new ones, are for vertices
+ * that are as near to a as to e: two levels nearer to each other than their parents. One split is enough for such a
+ * vertex, too: it sees a and a point m from a at no more than 90 degrees if d (m - d) <= h^2, and that point and the
+ * far end if m >= d. (Halving until the level is in the middle would make as many new levels as it takes halves, on
+ * each parent others: in a bundle of a dozen that never ended.)
+ *
+ * THEOREM (end). No split makes a part shorter than half the shortest edge: the first takes d >= h, and h is that at
+ * least, or else v lies on e; the second makes parts of 2 h and more, the third of a quarter of a subsegment of two
+ * shortest edges and more. So there are finitely many splits, whatever the rest of refinement does.
  *
  * Rounding puts the point level with v an ulp beside its place. Where h, the distance of v from e, is so small that
  * this leaves v in a circle (h^2 < ulp * length), only shorter parts help: length * ulp / h^2 of them. That is done
@@ -63,21 +72,39 @@ static double level_with(const struct tri_mesh *mesh, const struct tri_subsegmen
     return ((at.x - a.x) * x + (at.y - a.y) * y) / (x * x + y * y);
 }
 
+/* Vertex v as a subsegment of length l sees it: see the rule. */
+struct sight {
+    double l, h, d;
+    bool from_end; /* d is measured from the subsegment's second end */
+};
+
+static struct sight sight_of(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v)
+{
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], at = mesh->xy[v];
+    double x = b.x - a.x, y = b.y - a.y, l = sqrt(x * x + y * y), level = level_with(mesh, s, v);
+    double nearer = level < 0.5 ? level : 1 - level;
+    return (struct sight){l, fabs(x * (at.y - a.y) - y * (at.x - a.x)) / l, nearer * l, level >= 0.5};
+}
+
+/* The fraction at which to split, by the rule. Below the shortest edge d is rounding. */
+static double fraction_for(const struct sight *v, double usual, double shortest)
+{
+    double from_nearer = v->from_end ? 1 - usual : usual, far = (v->d + v->h * (v->h / v->d)) / v->l;
+    if (NARROW * v->h >= v->l || v->d < shortest || (v->d < v->h && far >= from_nearer))
+        return usual;
+    double fraction = v->d < v->h ? far : v->d / v->l;
+    return v->from_end ? 1 - fraction : fraction;
+}
+
 /* Is the subsegment to be split for the sake of vertex v in its circle, and where? */
 static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v, double *fraction)
 {
-    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], at = mesh->xy[v];
-    double x = b.x - a.x, y = b.y - a.y, l = x * x + y * y, cross = x * (at.y - a.y) - y * (at.x - a.x);
-    if (!tri_can_split(mesh, a, b) || cross * cross < mesh->limits.shortest2 * l)
+    const struct sight sight = sight_of(mesh, s, v);
+    double shortest = sqrt(mesh->limits.shortest2), off = fmax(sight.d, ULP * shortest);
+    if (!tri_can_split(mesh, mesh->xy[s->v[0]], mesh->xy[s->v[1]]) || sight.h < shortest)
         return false;
-    *fraction = tri_split_fraction(mesh, s);
-    if (NARROW * NARROW * cross * cross >= l * l)
-        return true;
-    double level = level_with(mesh, s, v), nearer = level < 0.5 ? level : 1 - level;
-    if (nearer >= 0.25)
-        *fraction = level;
-    double shortest = sqrt(mesh->limits.shortest2), off = fmax(nearer * sqrt(l), ULP * shortest);
-    return off >= shortest || off * l * sqrt(l) <= MOST_PARTS * cross * cross;
+    *fraction = fraction_for(&sight, tri_split_fraction(mesh, s), shortest);
+    return NARROW * sight.h >= sight.l || off >= shortest || off * sight.l <= MOST_PARTS * sight.h * sight.h;
 }
 
 bool tri_is_encroached(const struct tri_mesh *mesh, const struct tri_subsegment *s, double *fraction)

@@ -8,7 +8,7 @@
 bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code);
 
 /* Does the apex of a triangle beside the subsegment lie in its circle, and do coordinates resolve a split because of
- * it? Where to split is then *fraction, from the start, in [1/4, 3/4]: see the rule in the .c file. */
+ * it? Where to split is then *fraction, from the start: see the rule in the .c file. */
 bool tri_is_encroached(const struct tri_mesh *mesh, const struct tri_subsegment *s, double *fraction);
 
 #endif

@@ -173,15 +173,16 @@ double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavi
     return sized && half < size ? half : size;
 }
 
-double tri_shrink(double min_angle)
+/* How many times shorter than the features around them edges may become for angles up to this bound: from where theory
+ * promises nothing fewer times. */
+static double shrink_for(double angle)
 {
     const double PROMISED = 28;
-    return min_angle <= PROMISED ? 64 : 16;
+    return angle <= PROMISED ? 64 : 16;
 }
 
-bool tri_has_run_away(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, double l2)
+bool tri_has_run_away(const struct tri_mesh *mesh, double angle, tri_vertex_id a, tri_vertex_id b, double l2)
 {
-    double sa = mesh->feature[a], sb = mesh->feature[b], size = sa < sb ? sa : sb;
-    double shrink = mesh->limits.shrink;
+    double sa = mesh->feature[a], sb = mesh->feature[b], size = sa < sb ? sa : sb, shrink = shrink_for(angle);
     return size * size > shrink * shrink * l2;
 }

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include "triangle/delaunay.h"
-#include "triangle/feature_size.h"
 
 struct tri_options tri_defaults(void) { return (struct tri_options){.quality = tri_refine_defaults()}; }
 
@@ -104,7 +103,6 @@ static enum tri_status refine(struct tri_mesh *mesh, const struct tri_options *o
     announce(options, TRI_STAGE_QUALITY);
     if (!options->refine)
         return TRI_OK;
-    mesh->limits.shrink = tri_shrink(options->quality.min_angle);
     return options->refine_call
                ? options->refine_call(options->refine_user, mesh, &options->quality, &report->quality, error)
                : tri_refine(mesh, &options->quality, &report->quality, error);

@@ -116,7 +116,6 @@ static double shortest_edge2(const struct tri_mesh *mesh)
 enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
 {
     mesh->limits.shortest2 = shortest_edge2(mesh);
-    mesh->limits.shrink = tri_shrink(0);
     tri_estimate_features(mesh, executor);
     find_acute(mesh);
     enum tri_status status = list_parents(mesh, error);

@@ -32,7 +32,6 @@ struct tri_limits {
     double shortest2;       /* square of the shortest edge that coordinates of this size can carry */
     double dearest_gap;     /* narrow spaces between parents that would cost more points than this are not filled */
     double gap_points;      /* about so many points those that are filled take */
-    double shrink;          /* edges become no more than so many times shorter than the features around them */
 };
 
 /* Makes the mesh ready for refinement: lists the parents at each vertex, estimates feature sizes, sets the limits, and

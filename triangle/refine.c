@@ -494,10 +494,11 @@ static bool at_limit(struct tri_refiner *r)
 static bool is_hopeless(const struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape)
 {
     const tri_vertex_id *v = r->mesh->tri[triangle].v;
+    const double angle = tri_final_angle(r->options);
     int k = shape->shortest;
-    if (tri_is_hopeless(r->mesh, triangle, shape))
+    if (tri_is_hopeless(r->mesh, angle, triangle, shape))
         return true;
-    if (r->stage != BEYOND_STAGE || !tri_has_run_away(r->mesh, v[tri_next[k]], v[tri_prev[k]], shape->l[k] / 4))
+    if (r->stage != BEYOND_STAGE || !tri_has_run_away(r->mesh, angle, v[tri_next[k]], v[tri_prev[k]], shape->l[k] / 4))
         return false;
     return r->report->hit_cap = true;
 }

@@ -29,6 +29,37 @@ bool par_bytes_add(struct par_bytes *bytes, const void *item, size_t n)
     return true;
 }
 
+/* --- one rank */
+
+static bool gather_own(void *self, const int64_t *mine, int32_t n, int64_t *all)
+{
+    (void)self;
+    memcpy(all, mine, (size_t)n * sizeof *all);
+    return true;
+}
+
+static bool deal_own(void *self, const int64_t *to, int64_t *from) { return gather_own(self, to, 1, from); }
+
+static bool transfer_nothing(void *self, const struct par_bytes *out, const struct par_bytes *in)
+{
+    (void)self, (void)out, (void)in;
+    return true;
+}
+
+static bool spread_to_none(void *self, void *bytes, size_t n)
+{
+    (void)self, (void)bytes, (void)n;
+    return true;
+}
+
+struct par_carrier par_carrier_alone(int64_t *room)
+{
+    return (struct par_carrier){.n_ranks = 1, .of_each = room, .gather = gather_own, .deal = deal_own,
+                                .transfer = transfer_nothing, .spread = spread_to_none};
+}
+
+/* --- agreements */
+
 static enum tri_status out_of_touch(struct par_carrier *carrier, struct tri_error *error)
 {
     carrier->ended = true;
@@ -81,21 +112,15 @@ static void share_error(struct par_carrier *carrier, int from, int64_t *all, str
 
 enum tri_status par_agree(struct par_carrier *carrier, enum tri_status status, struct tri_error *error)
 {
-    enum { FEW = 64 };
-    int64_t few[FEW], *all = few;
     if (carrier->ended)
         return carrier->status;
-    if (carrier->n_ranks > FEW && !(all = malloc((size_t)carrier->n_ranks * sizeof *all)))
-        return out_of_touch(carrier, error);
-    int from = first_to_fail(carrier, status, all);
-    enum tri_status agreed = from >= 0 ? (enum tri_status)all[from] : TRI_OK;
+    int from = first_to_fail(carrier, status, carrier->of_each);
+    enum tri_status agreed = from >= 0 ? (enum tri_status)carrier->of_each[from] : TRI_OK;
     if (agreed) {
-        share_error(carrier, from, all, error);
+        share_error(carrier, from, carrier->of_each, error);
         carrier->ended = true;
         carrier->status = agreed;
     }
-    if (all != few)
-        free(all);
     return from == -2 ? out_of_touch(carrier, error) : agreed;
 }
 

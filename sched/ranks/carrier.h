@@ -36,6 +36,7 @@ struct par_traffic {
 struct par_carrier {
     int rank, n_ranks;
     void *self;
+    int64_t *of_each;        /* [n_ranks] room for agreements: these must not fail for want of memory */
     /* Collective: all[n_ranks][n] receives everybody's n numbers. */
     bool (*gather)(void *self, const int64_t *mine, int32_t n, int64_t *all);
     /* Collective: from[p] receives what rank p has in to[rank]. */
@@ -53,6 +54,9 @@ struct par_carrier {
     double seconds_waiting;  /* for each other, in agreements */
     double seconds_moving;   /* what is sent and comes, once all are ready for it */
 };
+
+/* A rank that is alone, with nobody to wait for. `room` lives as long. */
+struct par_carrier par_carrier_alone(int64_t *room);
 
 bool par_bytes_reserve(struct par_bytes *bytes, size_t more);
 bool par_bytes_add(struct par_bytes *bytes, const void *item, size_t n);

@@ -117,32 +117,45 @@ static bool have_all(MPI_Comm comm, const void *memory)
     return MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, comm) == MPI_SUCCESS && all;
 }
 
-struct par_carrier *par_mpi_carrier_new(const void *comm)
+static void free_messenger(struct messenger *m)
+{
+    if (m)
+        free(m->carrier.of_each);
+    free(m);
+}
+
+static struct messenger *messenger_on(MPI_Comm comm)
 {
     struct messenger *m = calloc(1, sizeof *m);
-    MPI_Comm copy;
-    if (MPI_Comm_dup(*(const MPI_Comm *)comm, &copy) != MPI_SUCCESS) {
-        free(m);
+    if (!m)
         return NULL;
-    }
-    if (!have_all(copy, m)) {
-        MPI_Comm_free(&copy);
-        free(m);
-        return NULL;
-    }
-    m->comm = copy;
+    m->comm = comm;
     m->carrier = (struct par_carrier){.self = m, .gather = gather, .deal = deal, .transfer = transfer,
                                       .spread = spread};
-    MPI_Comm_rank(m->comm, &m->carrier.rank);
-    MPI_Comm_size(m->comm, &m->carrier.n_ranks);
-    return &m->carrier;
+    MPI_Comm_rank(comm, &m->carrier.rank);
+    MPI_Comm_size(comm, &m->carrier.n_ranks);
+    m->carrier.of_each = malloc((size_t)m->carrier.n_ranks * sizeof *m->carrier.of_each);
+    return m;
+}
+
+struct par_carrier *par_mpi_carrier_new(const void *comm)
+{
+    MPI_Comm copy;
+    if (MPI_Comm_dup(*(const MPI_Comm *)comm, &copy) != MPI_SUCCESS)
+        return NULL;
+    struct messenger *m = messenger_on(copy);
+    if (have_all(copy, m ? m->carrier.of_each : NULL))
+        return &m->carrier;
+    MPI_Comm_free(&copy);
+    free_messenger(m);
+    return NULL;
 }
 
 void par_mpi_carrier_free(struct par_carrier *carrier)
 {
     struct messenger *m = carrier->self;
     MPI_Comm_free(&m->comm);
-    free(m);
+    free_messenger(m);
 }
 
 enum tri_status par_stream_on(MPI_Comm comm, const struct tri_figure *figure, const struct tri_settings *settings,

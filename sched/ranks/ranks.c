@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sched/sweep/state.h"
 #include "triangle/grow.h"
 
 /* --- who works where */
@@ -25,7 +26,11 @@ static struct tri_fence box_of(const struct par_shift *shift, int32_t block)
 static bool has_its_turn(const struct par_shift *shift, int32_t block)
 {
     const struct par_partition *p = shift->partition;
-    return !p || (block / p->n_rows % 2 == 1 - shift->phase / 2 && block % p->n_rows % 2 == 1 - shift->phase % 2);
+    if (!p)
+        return true;
+    int32_t column = block / p->n_rows, row = block % p->n_rows;
+    return column % 2 == 1 - shift->phase / 2 && row % 2 == 1 - shift->phase % 2 &&
+           (column / 2 * ((p->n_rows + 1) / 2) + row / 2) % shift->n_steps == shift->step;
 }
 
 static bool init_shift(struct par_ranks *r)
@@ -90,7 +95,7 @@ static void assign(struct par_ranks *r, const int64_t *word)
     for (int32_t b = 0; b < blocks_of(s); b++) {
         const struct tri_fence box = box_of(s, b);
         s->worker[b] = s->worker[b] >= 0 && is_in(word, b) ? s->worker[b] : -1;
-        s->is_mine[b] = s->worker[b] < 0 || s->worker[b] == rank;
+        s->is_mine[b] = (s->worker[b] < 0 || s->worker[b] == rank) && has_its_turn(s, b);
         s->is_border[b] = s->worker[b] == rank;
         s->is_held[b] = s->worker[b] >= 0 && s->worker[b] != rank && par_has_part(&r->territory, &box, rank);
     }
@@ -202,20 +207,31 @@ static enum tri_status give_back(struct par_ranks *r, struct par_worklist *chang
 
 /* --- phases */
 
-static enum tri_status refine_phase(struct par_ranks *r, const struct par_partition *partition, int phase,
-                                    struct tri_error *error)
+/* Steps of a phase, between which there may be a checkpoint: as many for any number of ranks. */
+static int32_t steps_of(const struct par_ranks *r, const struct par_partition *partition)
+{
+    enum { MOST_STEPS = 8, BLOCKS_A_STEP = 16 };
+    int32_t steps = par_blocks(partition) / PAR_PHASES / BLOCKS_A_STEP;
+    if (!r->state->options->checkpoint || steps < 1)
+        return 1;
+    return steps < MOST_STEPS ? steps : MOST_STEPS;
+}
+
+static enum tri_status refine_step(struct par_ranks *r, const struct par_partition *partition,
+                                   struct tri_error *error)
 {
     struct par_state *state = r->state;
     bool any;
-    r->shift = (struct par_shift){.partition = partition, .phase = phase};
+    r->shift = (struct par_shift){.partition = partition, .phase = r->stand.phase, .step = r->stand.step,
+                                  .n_steps = steps_of(r, partition)};
     enum tri_status status = share_blocks(r, &any, error);
     struct par_share share = {.is_mine = r->shift.is_mine, .is_border = r->shift.is_border, .more = fetch, .user = r};
     if (!status && any)
         status = lend(r, error);
-    par_tell(state, phase + 1);
+    par_tell(state, r->stand.phase + 1);
     state->share = &share;
     if (!status)
-        status = par_phase(state, partition, phase, TRI_NONE, error);
+        status = par_phase(state, partition, r->stand.phase, TRI_NONE, error);
     state->share = NULL;
     if (any) {
         status = serve(r, status, error);
@@ -226,21 +242,27 @@ static enum tri_status refine_phase(struct par_ranks *r, const struct par_partit
     return status;
 }
 
-/* How many entries all ranks have. Who shares one counts it, too. Collective. */
-static enum tri_status count_rest(struct par_ranks *r, int64_t *left, enum tri_status status, struct tri_error *error)
+static void go_on(struct par_stand *stand, int32_t n_steps)
 {
-    int64_t mine = r->state->worklist.n;
-    return par_sum(r->carrier, &mine, 1, left, status, error);
+    if (++stand->step < n_steps)
+        return;
+    stand->step = 0;
+    stand->phase++;
 }
 
+/* From where it stands on. How many entries all ranks have in the end: who shares one counts it, too. Collective. */
 static enum tri_status refine_round(struct par_ranks *r, const struct par_partition *partition, int64_t *left,
                                     struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     r->state->report->rounds++;
-    for (int phase = 0; !status && phase < PAR_PHASES; phase++)
-        status = refine_phase(r, partition, phase, error);
-    return count_rest(r, left, status, error);
+    while (!status && r->stand.phase < PAR_PHASES) {
+        status = refine_step(r, partition, error);
+        go_on(&r->stand, steps_of(r, partition));
+        status = par_keep(r, status, error);
+    }
+    int64_t mine = r->state->worklist.n;
+    return par_sum(r->carrier, &mine, 1, left, status, error);
 }
 
 /* --- the last call */
@@ -305,7 +327,7 @@ static enum tri_status refine_rest(struct par_ranks *r, struct tri_error *error)
 {
     struct last_call call = {.ranks = r};
     bool any;
-    r->shift = (struct par_shift){0};
+    r->shift = (struct par_shift){.n_steps = 1};
     enum tri_status status = share_blocks(r, &any, error);
     if (!status && any)
         status = lend(r, error);
@@ -322,18 +344,24 @@ static enum tri_status refine_rest(struct par_ranks *r, struct tri_error *error)
     return status;
 }
 
-static enum tri_status refine_later(struct par_ranks *r, int64_t left, struct tri_error *error)
+/* Rounds on blocks four times as large each, until nothing is left or they cannot be larger. */
+static enum tri_status refine_rounds(struct par_ranks *r, int64_t *left, struct tri_error *error)
 {
     struct par_partition partition;
+    struct par_stand *stand = &r->stand;
     enum tri_status status = par_partition_copy(&partition, r->territory.partition, error);
-    r->state->report->left_over += left;
-    while (!status && left > 0 && par_can_coarsen(&partition)) {
+    status = par_agree(r->carrier, status, error);
+    for (int32_t round = 0; !status && round < stand->round; round++)
         par_partition_coarsen(&partition);
-        r->state->round++;
-        status = refine_round(r, &partition, &left, error);
+    status = status ? status : refine_round(r, &partition, left, error);
+    while (!status && *left > 0 && par_can_coarsen(&partition)) {
+        par_partition_coarsen(&partition);
+        *stand = (struct par_stand){.round = stand->round + 1};
+        r->state->round = stand->round;
+        status = refine_round(r, &partition, left, error);
     }
     par_partition_free(&partition);
-    return status || left == 0 ? status : refine_rest(r, error);
+    return status;
 }
 
 /* --- all together */
@@ -353,57 +381,47 @@ static bool tell_keys(struct par_state *state)
 }
 
 
-/* What all ranks have done since, everywhere. */
-static enum tri_status add_up(struct par_ranks *r, const struct tri_refine_report *before, enum tri_status status,
-                              struct tri_error *error)
+void par_count_done(const struct par_ranks *r, int64_t done[PAR_DONE])
+{
+    const struct tri_refine_report *total = &r->state->report->total, *before = &r->before;
+    done[0] = total->inserted_free - before->inserted_free;
+    done[1] = total->inserted_on_segments - before->inserted_on_segments;
+    done[2] = total->hit_cap && !before->hit_cap;
+    done[3] = total->fenced - before->fenced;
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        done[4 + k] = total->given_up[k] - before->given_up[k];
+}
+
+void par_add_done(struct par_ranks *r, const int64_t done[PAR_DONE])
 {
     struct tri_refine_report *total = &r->state->report->total;
-    int64_t mine[4 + TRI_EXCUSES] = {total->inserted_free - before->inserted_free,
-                                     total->inserted_on_segments - before->inserted_on_segments,
-                                     total->hit_cap && !before->hit_cap,
-                                     total->fenced - before->fenced};
-    int64_t sum[4 + TRI_EXCUSES];
+    total->inserted_free += done[0];
+    total->inserted_on_segments += done[1];
+    total->hit_cap = total->hit_cap || done[2] > 0;
+    total->fenced += done[3];
     for (int k = 0; k < TRI_EXCUSES; k++)
-        mine[4 + k] = total->given_up[k] - before->given_up[k];
-    status = par_sum(r->carrier, mine, 4 + TRI_EXCUSES, sum, status, error);
+        total->given_up[k] += done[4 + k];
+}
+
+/* What all ranks have done since, everywhere. */
+static enum tri_status add_up(struct par_ranks *r, enum tri_status status, struct tri_error *error)
+{
+    struct par_report *report = r->state->report;
+    int64_t mine[PAR_DONE], sum[PAR_DONE];
+    par_count_done(r, mine);
+    status = par_sum(r->carrier, mine, PAR_DONE, sum, status, error);
     if (status)
         return status;
-    *total = *before;
-    total->inserted_free += sum[0];
-    total->inserted_on_segments += sum[1];
-    total->hit_cap = total->hit_cap || sum[2] > 0;
-    r->state->report->deferred += sum[3];
-    for (int k = 0; k < TRI_EXCUSES; k++)
-        total->given_up[k] += sum[4 + k];
-    total->gated = total->fenced = 0;
+    report->total = r->before;
+    par_add_done(r, sum);
+    report->deferred += sum[3];
+    report->total.gated = report->total.fenced = 0;
     return TRI_OK;
-}
-
-static uint64_t mix(uint64_t hash, uint64_t word)
-{
-    hash = (hash ^ word) * 0x9e3779b97f4a7c15ull;
-    return hash ^ hash >> 29;
-}
-
-/* Of what all ranks must have alike. */
-static int64_t fingerprint(const struct par_ranks *r)
-{
-    const struct tri_mesh *mesh = r->state->mesh;
-    uint64_t hash = mix(mix((uint64_t)r->territory.partition->n_columns, (uint64_t)r->territory.partition->n_rows),
-                        (uint64_t)r->state->worklist.n), bits[2];
-    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++) {
-        memcpy(bits, &mesh->xy[v], sizeof bits);
-        hash = mix(mix(hash, bits[0]), bits[1]);
-    }
-    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
-        for (int k = 0; k < 3; k++)
-            hash = mix(hash, (uint64_t)mesh->tri[t].v[k]);
-    return (int64_t)hash;
 }
 
 static enum tri_status compare_meshes(struct par_ranks *r, enum tri_status status, struct tri_error *error)
 {
-    int64_t mine = fingerprint(r), *all = malloc((size_t)r->carrier->n_ranks * sizeof *all);
+    int64_t mine = (int64_t)r->run, *all = malloc((size_t)r->carrier->n_ranks * sizeof *all);
     status = par_gather(r->carrier, &mine, 1, all, status ? status : all ? TRI_OK : par_ranks_no_memory(error), error);
     for (int p = 0; !status && p < r->carrier->n_ranks; p++)
         if (all[p] != all[0])
@@ -413,19 +431,26 @@ static enum tri_status compare_meshes(struct par_ranks *r, enum tri_status statu
     return status;
 }
 
-/* Collective, from an agreement to another. */
-static enum tri_status refine_all(struct par_ranks *r, struct par_tiles *tiles, enum tri_status status,
-                                  struct tri_error *error)
+/* What a rank begins with: its part of the coarse mesh, or of what has been kept. */
+static enum tri_status begin(struct par_ranks *r, struct tri_error *error)
 {
-    const struct tri_refine_report before = r->state->report->total;
+    bool again;
+    enum tri_status status = compare_meshes(r, TRI_OK, error);
+    status = status ? status : par_take_up(r, &again, error);
+    status = status || again ? status : par_keep_own(r, error);
+    return par_agree(r->carrier, status, error);
+}
+
+/* Collective, from an agreement to another. */
+static enum tri_status refine_all(struct par_ranks *r, struct par_tiles *tiles, struct tri_error *error)
+{
     int64_t left = 0;
-    status = compare_meshes(r, status, error);
-    status = status ? status : par_keep_own(r, error);
-    status = par_agree(r->carrier, status, error);
-    status = status ? status : refine_round(r, r->territory.partition, &left, error);
+    enum tri_status status = begin(r, error);
+    status = status ? status : refine_rounds(r, &left, error);
+    r->state->report->left_over += status ? 0 : left;
     if (!status && left > 0)
-        status = refine_later(r, left, error);
-    status = add_up(r, &before, status, error);
+        status = par_keep(r, refine_rest(r, error), error);
+    status = add_up(r, status, error);
     return par_hand_out_on_ranks(r, tiles, status, error);
 }
 
@@ -466,9 +491,14 @@ enum tri_status par_refine_on_ranks(struct par_state *state, const struct par_pa
     state->round = 0;
     state->n_schedules++;
     bool memory = init(&r, partition);
+    r.before = state->report->total;
+    r.left_before = state->report->left_over;
+    r.run = par_state_run(state);
     enum tri_status status = par_agree(carrier, memory ? TRI_OK : par_ranks_no_memory(error), error);
     if (!status)
-        status = refine_all(&r, tiles, TRI_OK, error);
+        status = refine_all(&r, tiles, error);
+    if (state->options->checkpoint)
+        state->mesh->stop = state->options->checkpoint->stop;
     clean_up(&r);
     return status;
 }

@@ -35,6 +35,7 @@
 struct par_shift {
     const struct par_partition *partition; /* NULL: there is one block, the plane */
     int phase;
+    int32_t step, n_steps; /* only every n_steps-th block, from the step-th on */
     int *worker;     /* [blocks] of blocks at a border that have work; else -1 */
     bool *is_mine;   /* [blocks] as struct par_share has it */
     bool *is_border; /* [blocks] this rank works on it, and others hold a part */
@@ -48,6 +49,14 @@ struct par_index {
     int32_t n, capacity;
 };
 
+/* How far the schedule is: what comes next. */
+struct par_stand {
+    int32_t round, phase; /* the second PAR_PHASES: the round is over */
+    int32_t step;         /* of the phase */
+};
+
+enum { PAR_DONE = 4 + TRI_EXCUSES }; /* numbers that tell what has been done */
+
 struct par_ranks {
     struct par_state *state;
     struct par_carrier *carrier;
@@ -59,6 +68,10 @@ struct par_ranks {
     struct par_index places, triangles; /* of the straddlers and of what is borrowed */
     int32_t rings;     /* to lend when more is asked for */
     struct par_bytes *out, *in; /* [n_ranks] */
+    struct par_stand stand;
+    uint64_t run;              /* a hash of what all ranks began with */
+    struct tri_refine_report before; /* the report of what came before that .. */
+    int64_t left_before;       /* .. and its left_over */
 };
 
 /* Collective. Refines what is in the state's worklist, the same on all ranks, and hands each rank its own tiles: the
@@ -67,6 +80,21 @@ struct par_ranks {
  * or what a sink says. */
 enum tri_status par_refine_on_ranks(struct par_state *state, const struct par_partition *partition,
                                     struct par_tiles *tiles, struct tri_error *error);
+
+/* What this rank has done since its ranks began; the same of others joins its report. */
+void par_count_done(const struct par_ranks *ranks, int64_t done[PAR_DONE]);
+void par_add_done(struct par_ranks *ranks, const int64_t done[PAR_DONE]);
+
+/* --- keep.c: checkpoints, where they are wanted (sched/sweep/checkpoint.h) */
+
+/* Collective. Where there is a state, *again: mesh, worklist, report and stand are what they were; what there is now
+ * goes. TRI_BAD_INPUT: it is another run's, or damaged. */
+enum tri_status par_take_up(struct par_ranks *ranks, bool *again, struct tri_error *error);
+
+/* Collective, between two steps: keeps all that where it is time to, or somebody asks for the end; then returns
+ * TRI_STOPPED. Once there has been a step, nobody is stopped in the midst of one. status: how the step has ended.
+ * TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
+enum tri_status par_keep(struct par_ranks *ranks, enum tri_status status, struct tri_error *error);
 
 /* --- lend.c: what others work on. Every one fills or reads what is exchanged next; no memory: TRI_NO_MEMORY. */
 

@@ -123,18 +123,25 @@ void par_message_free(struct par_message *m)
     *m = (struct par_message){0};
 }
 
+/* The attributes of so many vertices: how many values; -1: more than are counted here. */
+static int32_t values_of(int64_t n_vertices, int32_t n_attributes)
+{
+    int64_t n = n_vertices * n_attributes;
+    return n <= INT32_MAX ? (int32_t)n : -1;
+}
+
 static bool tell_vertex(struct par_message *m, struct par_talk *talk, const struct tri_mesh *mesh, int32_t n_common,
                         tri_vertex_id v)
 {
-    int32_t n = mesh->n_attributes, at = m->n_vertices * n;
-    if (!tri_grow(&m->vertex, &m->vertex_capacity, m->n_vertices + 1, sizeof *m->vertex) ||
-        !tri_grow(&m->attribute, &m->attribute_capacity, at + n, sizeof *m->attribute) ||
+    int32_t n = mesh->n_attributes, end = values_of((int64_t)m->n_vertices + 1, n);
+    if (end < 0 || !tri_grow(&m->vertex, &m->vertex_capacity, m->n_vertices + 1, sizeof *m->vertex) ||
+        !tri_grow(&m->attribute, &m->attribute_capacity, end, sizeof *m->attribute) ||
         !par_talk_add_vertex(talk, v))
         return false;
     m->vertex[m->n_vertices++] = (struct par_told_vertex){v < n_common ? v : TRI_NONE, mesh->xy[v], mesh->feature[v],
                                                           mesh->on[v], mesh->vertex_markers[v]};
     if (n > 0)
-        memcpy(m->attribute + at, mesh->attributes + (size_t)v * (size_t)n, (size_t)n * sizeof *m->attribute);
+        memcpy(m->attribute + (end - n), mesh->attributes + (size_t)v * (size_t)n, (size_t)n * sizeof *m->attribute);
     return true;
 }
 
@@ -234,10 +241,11 @@ static void put_bytes(struct writer *w, const void *item, size_t n)
     w->lost = w->lost || !par_bytes_add(w->to, item, n);
 }
 
+/* What lies between one and the next: none comes twice. */
 static void put_ascending(struct writer *w, const struct par_worklist *list)
 {
-    for (int32_t i = 0, last = 0; i < list->n; last = list->item[i++])
-        put(w, (uint64_t)(list->item[i] - last));
+    for (int32_t i = 0, last = -1; i < list->n; last = list->item[i++])
+        put(w, (uint64_t)(list->item[i] - last - 1));
 }
 
 enum { COMMON, FREE, OTHER };
@@ -427,8 +435,8 @@ static void get_bytes(struct reader *r, void *item, size_t n)
 
 static void get_ascending(struct reader *r, struct par_worklist *list, int32_t n, int32_t end)
 {
-    for (int32_t last = 0; list->n < n; last = list->item[list->n++])
-        list->item[list->n] = last + get_below(r, (int64_t)end - last);
+    for (int32_t last = -1; !r->bad && list->n < n; last = list->item[list->n++])
+        list->item[list->n] = last + 1 + get_below(r, (int64_t)end - last - 1);
 }
 
 static void get_vertex(struct reader *r, struct par_told_vertex *v, double *attribute, int32_t n, int32_t n_common)
@@ -537,10 +545,11 @@ static bool reserve(struct par_message *m, const int32_t count[7], int32_t n_att
     m->n_sides = count[4];
     m->n_new_subs = count[5];
     m->n_entries = count[6];
-    return tri_grow(&m->gone.item, &m->gone.capacity, count[0], sizeof *m->gone.item) &&
+    int32_t values = values_of(count[2], n_attributes);
+    return values >= 0 && tri_grow(&m->gone.item, &m->gone.capacity, count[0], sizeof *m->gone.item) &&
            tri_grow(&m->gone_subs.item, &m->gone_subs.capacity, count[1], sizeof *m->gone_subs.item) &&
            tri_grow(&m->vertex, &m->vertex_capacity, count[2], sizeof *m->vertex) &&
-           tri_grow(&m->attribute, &m->attribute_capacity, count[2] * n_attributes, sizeof *m->attribute) &&
+           tri_grow(&m->attribute, &m->attribute_capacity, values, sizeof *m->attribute) &&
            tri_grow(&m->triangle, &m->triangle_capacity, count[3], sizeof *m->triangle) &&
            tri_grow(&m->side, &m->side_capacity, count[4], sizeof *m->side) &&
            tri_grow(&m->entry, &m->entry_capacity, count[6], sizeof *m->entry);
@@ -573,10 +582,11 @@ enum tri_status par_message_read(struct par_message *m, const struct par_talk *t
 {
     struct reader r = {0};
     int32_t count[7] = {0}, n = mesh->n_attributes;
+    const int64_t most = from->n < TRI_MAX_TRIANGLES ? (int64_t)from->n : TRI_MAX_TRIANGLES;
     *m = (struct par_message){0};
     begin(&r, from);
     for (int k = 0; !r.bad && k < 7; k++)
-        count[k] = get_below(&r, (int64_t)from->n); /* each takes a byte at least */
+        count[k] = get_below(&r, most); /* each takes a byte at least */
     if (!r.bad && !reserve(m, count, n))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for what lies at the border of ranks");
     if (!r.bad) {

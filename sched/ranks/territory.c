@@ -61,10 +61,15 @@ int par_owner_of_tile(const struct par_territory *t, int32_t tile)
     return low;
 }
 
-int par_owner_at(const struct par_territory *t, struct tri_point q)
+int32_t par_tile_at(const struct par_territory *t, struct tri_point q)
 {
     int32_t block = par_block_at(t->partition, 0, q), n_rows = t->partition->n_rows;
-    return par_owner_of_tile(t, block / n_rows / 2 * t->n_rows + block % n_rows / 2);
+    return block / n_rows / 2 * t->n_rows + block % n_rows / 2;
+}
+
+int par_owner_at(const struct par_territory *t, struct tri_point q)
+{
+    return par_owner_of_tile(t, par_tile_at(t, q));
 }
 
 /* The rows of tiles in a column that a box meets: *first to *end - 1. */

@@ -27,6 +27,9 @@ void par_territory_free(struct par_territory *territory);
 
 int par_owner_of_tile(const struct par_territory *territory, int32_t tile);
 
+/* The tile that holds a place. O(log tiles). */
+int32_t par_tile_at(const struct par_territory *territory, struct tri_point q);
+
 /* Who owns a place? O(log tiles). */
 int par_owner_at(const struct par_territory *territory, struct tri_point q);
 

@@ -1,6 +1,7 @@
 /* Files are those of the machine that wrote them: arrays as they lie in memory. */
 #include "sched/sweep/checkpoint.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -14,6 +15,7 @@
 static const uint64_t MANIFEST = UINT64_C(0x326863697274706b); /* a version, too */
 
 static const char *const state_name[2] = {"state-0", "state-1"};
+static const char piece_prefix[] = "piece-";
 static const char manifest_name[] = "manifest", fresh_name[] = "manifest-new", tiles_name[] = "tiles";
 
 /* --- files in the directory */
@@ -37,8 +39,7 @@ static enum tri_status cannot_write(const char *directory, const char *name, str
     return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "cannot write: %s", strerror(errno));
 }
 
-/* What has got names or lost them in it is so after the machine has died, too. */
-static bool sync_directory(const char *directory)
+bool par_checkpoint_sync(const char *directory)
 {
     int file = open(directory, O_RDONLY | O_CLOEXEC);
     bool done = file >= 0 && (fsync(file) == 0 || errno == EINVAL);
@@ -57,7 +58,7 @@ static uint64_t hash_of(const struct par_manifest *m)
 static bool is_manifest(const struct par_manifest *m)
 {
     return m->word == MANIFEST && m->hash == hash_of(m) && (m->which == 0 || m->which == 1) && m->state_bytes >= 0 &&
-           m->tiles_bytes >= 0 && (m->kind == PAR_SWEPT_STATE || m->kind == PAR_WHOLE_STATE);
+           m->tiles_bytes >= 0 && m->kind >= PAR_SWEPT_STATE && m->kind <= PAR_RANKS_STATE;
 }
 
 static enum tri_status read_manifest(struct par_manifest *m, const char *directory, struct tri_error *error)
@@ -83,7 +84,7 @@ static enum tri_status write_manifest(struct par_checkpoint *c, struct par_manif
         done = close(file) == 0 && done;
     path_of(from, c->directory, fresh_name);
     path_of(to, c->directory, manifest_name);
-    if (!done || rename(from, to) != 0 || !sync_directory(c->directory))
+    if (!done || rename(from, to) != 0 || !par_checkpoint_sync(c->directory))
         return cannot_write(c->directory, manifest_name, error);
     c->manifest = m;
     return TRI_OK;
@@ -143,6 +144,30 @@ enum tri_status par_checkpoint_open(struct par_checkpoint *c, const char *direct
     return status;
 }
 
+int64_t par_checkpoint_next(const struct par_checkpoint *c)
+{
+    return par_checkpoint_has_state(c) ? 1 - c->manifest.which : 0;
+}
+
+void par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *directory, int64_t which, int rank)
+{
+    snprintf(path, PAR_CHECKPOINT_PATH, "%s/%s%d-%d", directory, piece_prefix, (int)which, rank);
+}
+
+/* Of however many ranks there have been. */
+static void remove_pieces(const char *path)
+{
+    DIR *directory = opendir(path);
+    char piece[PAR_CHECKPOINT_PATH];
+    for (const struct dirent *entry; directory && (entry = readdir(directory));)
+        if (strncmp(entry->d_name, piece_prefix, sizeof piece_prefix - 1) == 0 && strlen(entry->d_name) < 32) {
+            path_of(piece, path, entry->d_name);
+            unlink(piece);
+        }
+    if (directory)
+        closedir(directory);
+}
+
 void par_checkpoint_close(struct par_checkpoint *c, bool remove)
 {
     const char *const names[] = {manifest_name, fresh_name, state_name[0], state_name[1], tiles_name};
@@ -151,8 +176,10 @@ void par_checkpoint_close(struct par_checkpoint *c, bool remove)
         path_of(path, c->directory, names[i]);
         unlink(path);
     }
-    if (remove)
+    if (remove) {
+        remove_pieces(c->directory);
         rmdir(c->directory);
+    }
     if (c->lock >= 0)
         close(c->lock);
     c->lock = -1;
@@ -222,7 +249,7 @@ enum tri_status par_checkpoint_write(struct par_checkpoint *c, enum par_state_ki
                                      par_state_walk *walk, void *user, struct tri_error *error)
 {
     struct par_manifest m = c->manifest;
-    m.which = c->manifest.state_bytes > 0 ? 1 - c->manifest.which : 0;
+    m.which = par_checkpoint_next(c);
     const char *name = state_name[m.which];
     struct par_state_file to = {.file = open_in(c->directory, name, O_WRONLY | O_CREAT | O_TRUNC), .way = PAR_WRITE};
     to.failed = to.file < 0;

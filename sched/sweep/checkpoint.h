@@ -2,6 +2,7 @@
  *
  *     tiles        all tiles that a sweep has handed out (spool.h); only appended to
  *     state-0, state-1   what is in memory between two steps (state.h); the newer one counts
+ *     piece-0-P, piece-1-P   of a state of ranks what rank P has (sched/ranks/pieces.h)
  *     manifest     which of them, how long each is, their hashes, and of what run they are
  *
  * INVARIANT: whenever the process dies, the manifest, if there is one, describes a state and a beginning of the tiles
@@ -17,7 +18,8 @@ enum { PAR_CHECKPOINT_PATH = 4096 };
 
 enum par_state_kind {
     PAR_SWEPT_STATE, /* between two columns of a sweep; what is finished is in the tiles */
-    PAR_WHOLE_STATE  /* the mesh as a whole; it is swept no more */
+    PAR_WHOLE_STATE, /* the mesh as a whole; it is swept no more */
+    PAR_RANKS_STATE  /* how far ranks are (sched/ranks/keep.c); what each has is in pieces beside it */
 };
 
 struct par_manifest {
@@ -63,6 +65,12 @@ static inline bool par_checkpoint_has_sweep(const struct par_checkpoint *c)
     return par_checkpoint_has_state(c) && c->manifest.kind == PAR_SWEPT_STATE;
 }
 
+/* Is that one of ranks? */
+static inline bool par_checkpoint_has_ranks(const struct par_checkpoint *c)
+{
+    return par_checkpoint_has_state(c) && c->manifest.kind == PAR_RANKS_STATE;
+}
+
 /* Frees what it holds; with `remove` also the files, and the directory if nothing else is in it. */
 void par_checkpoint_close(struct par_checkpoint *checkpoint, bool remove);
 
@@ -105,5 +113,12 @@ enum tri_status par_checkpoint_write(struct par_checkpoint *checkpoint, enum par
  * what the walk says. */
 enum tri_status par_checkpoint_read(const struct par_checkpoint *checkpoint, par_state_walk *walk, void *user,
                                     struct tri_error *error);
+
+/* Of a state of ranks: which of the two is to be written next, and a rank's piece of one. */
+int64_t par_checkpoint_next(const struct par_checkpoint *checkpoint);
+void par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *directory, int64_t which, int rank);
+
+/* What has got names in a directory, or lost them, is so after the machine has died, too. */
+bool par_checkpoint_sync(const char *directory);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Free ids in runs shorter than this are forgotten; a run takes the room of two ids. */
 enum { SHORTEST_RUN = 8 };
@@ -17,8 +18,10 @@ bool par_finds_begin(struct par_finds *finds, int32_t n_rows)
 
 void par_finds_free(struct par_finds *finds)
 {
-    for (int s = 0; s < PAR_FIND_SHARES; s++)
+    for (int s = 0; s < PAR_FIND_SHARES; s++) {
         free(finds->found[s].item);
+        free(finds->runs[s].item);
+    }
     free(finds->count);
     free(finds->item);
     free(finds->start);
@@ -39,30 +42,26 @@ static void add_up(struct par_finds *finds)
     finds->start[finds->n_rows] = finds->n = sum;
 }
 
-struct dealing {
-    struct par_finds *finds;
-    int32_t (*row_of)(const void *context, int32_t item);
-    const void *context;
-};
-
 static void deal_share(void *context, size_t share)
 {
-    const struct dealing *d = context;
-    const struct par_worklist *found = &d->finds->found[share];
-    int32_t *at = d->finds->count + share * (size_t)d->finds->n_rows;
-    int32_t *to = d->finds->item;
-    for (int32_t i = 0; i < found->n; i++)
-        to[at[d->row_of(d->context, found->item[i])]++] = found->item[i];
+    struct par_finds *finds = context;
+    const struct par_runs *runs = &finds->runs[share];
+    const int32_t *from = finds->found[share].item;
+    int32_t *at = finds->count + share * (size_t)finds->n_rows;
+    for (int32_t i = 0; i < runs->n; i++) {
+        const struct par_run run = runs->item[i];
+        memcpy(finds->item + at[run.row], from, (size_t)run.n * sizeof *from);
+        at[run.row] += run.n;
+        from += run.n;
+    }
 }
 
-bool par_finds_deal(struct par_finds *finds, int32_t (*row_of)(const void *context, int32_t item), const void *context,
-                    const struct tri_executor *executor)
+bool par_finds_deal(struct par_finds *finds, const struct tri_executor *executor)
 {
-    struct dealing dealing = {finds, row_of, context};
     add_up(finds);
     finds->item = malloc(((size_t)finds->n + 1) * sizeof *finds->item);
     if (finds->item)
-        tri_execute(executor, PAR_FIND_SHARES, deal_share, &dealing);
+        tri_execute(executor, PAR_FIND_SHARES, deal_share, finds);
     return finds->item;
 }
 

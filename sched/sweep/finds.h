@@ -6,11 +6,23 @@
 #include "sched/room.h"
 #include "sched/worklist.h"
 #include "triangle/executor.h"
+#include "triangle/grow.h"
 
 enum { PAR_FIND_SHARES = TRI_MOST_SHARES };
 
+/* Neighbours in a list are mostly of one row. */
+struct par_run {
+    int32_t row, n;
+};
+
+struct par_runs {
+    struct par_run *item;
+    int32_t n, capacity;
+};
+
 struct par_finds {
     struct par_worklist found[PAR_FIND_SHARES]; /* by each share, in the order of ids */
+    struct par_runs runs[PAR_FIND_SHARES];      /* the rows of these */
     int32_t n_rows;
     int32_t *count; /* [shares][n_rows] of what a share has found in a row; then where the next one goes */
     int32_t *item;  /* [n] row by row, each in the order of ids */
@@ -33,7 +45,8 @@ struct par_finder {
     struct par_finds *finds;
     size_t share;
     struct par_worklist list;
-    int32_t row, n; /* the last ones found are of this row */
+    struct par_runs runs;
+    struct par_run last; /* the run of the last ones, which has not been counted */
     bool no_memory;
 };
 
@@ -42,19 +55,26 @@ static inline struct par_finder par_finder_of(struct par_finds *finds, size_t sh
     return (struct par_finder){.finds = finds, .share = share};
 }
 
+/* The last run is over. */
 static inline void par_finder_count(struct par_finder *f)
 {
-    f->finds->count[f->share * (size_t)f->finds->n_rows + (size_t)f->row] += f->n;
-    f->n = 0;
+    if (f->last.n == 0)
+        return;
+    f->finds->count[f->share * (size_t)f->finds->n_rows + (size_t)f->last.row] += f->last.n;
+    if (tri_grow(&f->runs.item, &f->runs.capacity, f->runs.n + 1, sizeof *f->runs.item))
+        f->runs.item[f->runs.n++] = f->last;
+    else
+        f->no_memory = true;
+    f->last.n = 0;
 }
 
 static inline void par_find(struct par_finder *f, int32_t item, int32_t row)
 {
-    if (row != f->row) {
+    if (row != f->last.row) {
         par_finder_count(f);
-        f->row = row;
+        f->last.row = row;
     }
-    f->n++;
+    f->last.n++;
     if (f->list.n < f->list.capacity)
         f->list.item[f->list.n++] = item;
     else if (!par_worklist_add(&f->list, item))
@@ -66,12 +86,12 @@ static inline bool par_finder_end(struct par_finder *f)
 {
     par_finder_count(f);
     f->finds->found[f->share] = f->list;
+    f->finds->runs[f->share] = f->runs;
     return !f->no_memory;
 }
 
-/* Deals what has been found to the rows, which row_of tells. False: no memory. */
-bool par_finds_deal(struct par_finds *finds, int32_t (*row_of)(const void *context, int32_t item), const void *context,
-                    const struct tri_executor *executor);
+/* Deals what has been found to the rows. False: no memory. */
+bool par_finds_deal(struct par_finds *finds, const struct tri_executor *executor);
 
 /* Replaces a list of ids, ascending, by its runs, first and end of each; short ones are left out. */
 void par_finds_to_runs(struct par_worklist *list);

@@ -41,7 +41,7 @@ static uint64_t hash_mesh(uint64_t hash, const struct tri_mesh *m)
     return par_hash(hash, m->columns, (size_t)m->n_regions * (size_t)m->n_columns * sizeof *m->columns);
 }
 
-static uint64_t run_of(const struct par_state *state)
+uint64_t par_state_run(const struct par_state *state)
 {
     return hash_mesh(hash_options(hash_bounds(0, state->quality), state->options), state->mesh);
 }
@@ -327,10 +327,12 @@ enum tri_status par_state_begin(struct par_checkpoint *c, struct par_state *stat
     int32_t odd;
     c->stop = state->mesh->stop;
     c->last = tri_seconds();
-    enum tri_status status = par_checkpoint_take(c, run_of(state), error);
+    enum tri_status status = par_checkpoint_take(c, par_state_run(state), error);
     state->stays = c->manifest.kind == PAR_WHOLE_STATE;
     if (status || !par_checkpoint_has_state(c))
         return status;
+    if (par_checkpoint_has_ranks(c))
+        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "is the checkpoint of several tasks");
     if (!state->stays && !state->options->sink)
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
                         "is the checkpoint of a sweep, and this mesh is to be made as a whole");

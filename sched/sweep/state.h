@@ -24,6 +24,9 @@ struct par_state;
  * damaged, and nothing has changed. TRI_NO_MEMORY, TRI_CANNOT_WRITE. */
 enum tri_status par_state_begin(struct par_checkpoint *checkpoint, struct par_state *state, struct tri_error *error);
 
+/* What a run is of, as far as its mesh is now: a hash. */
+uint64_t par_state_run(const struct par_state *state);
+
 /* The run has ended, in whatever way. */
 void par_state_end(struct par_checkpoint *checkpoint, struct par_state *state);
 

@@ -7,42 +7,46 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FEW = 24 }; /* are sorted by insertion */
+enum {
+    FEW = 24,  /* are sorted by insertion */
+    AHEAD = 24 /* triangles that come so soon are fetched already */
+};
 
 /* --- final triangles */
 
 struct final {
     int64_t corner[3];
-    int32_t region, row;
+    int32_t region, unused;
 };
 
-_Static_assert(sizeof(struct final) == sizeof(struct tri_triangle), "one takes the place of the other");
+_Static_assert(sizeof(struct final) == sizeof(struct tri_triangle) &&
+                   offsetof(struct final, region) == offsetof(struct tri_triangle, region),
+               "one takes the place of the other");
 
-static struct final final_of(const struct tri_triangle *triangle)
+/* Straight from where it is: a copy on the stack, written in other pieces than it is read in, would have to be waited
+ * for. */
+static inline int64_t final_corner(const struct tri_triangle *triangle, int k)
 {
-    struct final final;
-    memcpy(&final, triangle, sizeof final);
-    return final;
+    int64_t corner;
+    memcpy(&corner, (const char *)triangle + offsetof(struct final, corner) + (size_t)k * sizeof corner, sizeof corner);
+    return corner;
+}
+
+static inline void put_corner(struct tri_triangle *triangle, int k, int64_t number)
+{
+    memcpy((char *)triangle + offsetof(struct final, corner) + (size_t)k * sizeof number, &number, sizeof number);
 }
 
 /* Without a branch, which could not be predicted. */
 static inline int64_t choose(bool yes, int64_t a, int64_t b) { return b ^ ((a ^ b) & -(int64_t)yes); }
 
-void par_final_make(struct tri_triangle *triangle, const int64_t number[3], int32_t row)
+void par_final_make(struct tri_triangle *triangle, const int64_t number[3])
 {
     const int64_t a = number[0], b = number[1], c = number[2];
     bool from_b = b > a, from_c = c > choose(from_b, b, a);
-    const struct final final = {{choose(from_c, c, choose(from_b, b, a)), choose(from_c, a, choose(from_b, c, b)),
-                                 choose(from_c, b, choose(from_b, a, c))},
-                                triangle->region, row};
-    memcpy(triangle, &final, sizeof final);
-}
-
-int32_t par_final_row(const struct tri_triangle *triangle)
-{
-    int32_t row;
-    memcpy(&row, (const char *)triangle + offsetof(struct final, row), sizeof row);
-    return row;
+    put_corner(triangle, 0, choose(from_c, c, choose(from_b, b, a)));
+    put_corner(triangle, 1, choose(from_c, a, choose(from_b, c, b)));
+    put_corner(triangle, 2, choose(from_c, b, choose(from_b, a, c)));
 }
 
 static int compare_finals(const void *left, const void *right)
@@ -73,10 +77,11 @@ void par_tile_job_free(struct par_tile_job *job)
 
 /* --- triangles */
 
-static void put(const struct par_tile_copy *copy, int32_t at, const struct final *final)
+/* From a struct final, wherever it lies. */
+static inline void put(const struct par_tile_copy *copy, int32_t at, const void *final)
 {
-    memcpy(copy->corners[at], final->corner, sizeof final->corner);
-    copy->regions[at] = final->region;
+    memcpy(copy->corners[at], (const char *)final + offsetof(struct final, corner), sizeof *copy->corners);
+    memcpy(&copy->regions[at], (const char *)final + offsetof(struct final, region), sizeof *copy->regions);
 }
 
 static struct final get(const struct par_tile_copy *copy, int32_t at)
@@ -116,79 +121,6 @@ static bool sort_many(const struct par_tile_copy *copy, int32_t first, int32_t n
     return true;
 }
 
-/* A fan of up to four, by the second corner, without a branch that depends on it. What follows stays where it is. */
-static void sort_four(const struct par_tile_copy *copy, int32_t first, int32_t n)
-{
-    struct final item[4];
-    int64_t key[4];
-    for (int k = 0; k < 4; k++) {
-        item[k] = get(copy, first + k);
-        key[k] = choose(k < n, item[k].corner[1], INT64_MAX);
-    }
-    for (int k = 0; k < 4; k++) {
-        int32_t rank = 0;
-        for (int i = 0; i < 4; i++)
-            rank += i < k ? key[i] <= key[k] : key[i] < key[k];
-        put(copy, first + rank, &item[k]);
-    }
-}
-
-static uint64_t own_place(const struct tri_tile *tile, const struct final *final)
-{
-    return (uint64_t)(final->corner[0] - tile->first_vertex);
-}
-
-/* Where each fan begins; and how many triangles come before all of them. */
-static int32_t count_fans(const struct tri_tile *tile, const struct tri_mesh *mesh, const int32_t *triangles,
-                          int32_t *begin)
-{
-    int32_t others = 0;
-    memset(begin, 0, (size_t)tile->n_vertices * sizeof *begin);
-    for (int32_t i = 0; i < tile->n_triangles; i++) {
-        const struct final final = final_of(&mesh->tri[triangles[i]]);
-        uint64_t own = own_place(tile, &final);
-        if (own < (uint64_t)tile->n_vertices)
-            begin[own]++;
-        else
-            others++;
-    }
-    for (int32_t v = 0, sum = others; v < tile->n_vertices; v++) {
-        int32_t count = begin[v];
-        begin[v] = sum;
-        sum += count;
-    }
-    return others;
-}
-
-/* at: where the next triangle of each fan goes. */
-static void fill_fans(const struct par_tile_job *job, const struct tri_mesh *mesh, const int32_t *triangles,
-                      int32_t *at)
-{
-    const struct tri_tile *tile = &job->tile;
-    int32_t other = 0;
-    for (int32_t i = 0; i < tile->n_triangles; i++) {
-        struct tri_triangle *t = &mesh->tri[triangles[i]];
-        const struct final final = final_of(t);
-        uint64_t own = own_place(tile, &final);
-        put(&job->copy, own < (uint64_t)tile->n_vertices ? at[own]++ : other++, &final);
-        t->v[0] = TRI_NONE;
-    }
-}
-
-static bool sort_fans(const struct par_tile_job *job, int32_t begin, const int32_t *end)
-{
-    const struct tri_tile *tile = &job->tile;
-    bool memory = sort_many(&job->copy, 0, begin);
-    for (int32_t v = 0; memory && v < tile->n_vertices; begin = end[v++]) {
-        int32_t n = end[v] - begin;
-        if (n <= 4 && begin + 4 <= tile->n_triangles)
-            sort_four(&job->copy, begin, n);
-        else
-            memory = sort_many(&job->copy, begin, n);
-    }
-    return memory;
-}
-
 /* The numbers that the caller knows. */
 static void show_numbers(int64_t *number, size_t n, const struct tri_mesh *mesh)
 {
@@ -196,13 +128,126 @@ static void show_numbers(int64_t *number, size_t n, const struct tri_mesh *mesh)
         number[i] = par_shown(mesh, number[i]);
 }
 
+/* What of a tile's triangles is where: the slot of each is its place in the tile, but for the order within a fan. */
+struct fans {
+    const struct tri_tile *tile;
+    struct tri_triangle *tri;      /* of the mesh */
+    const int32_t *triangles;      /* [n_triangles] */
+    int32_t *own;                  /* [n_triangles] the vertex at which each starts, counted from the tile's first, */
+    int32_t *slot;                 /* [n_triangles] and in each slot a triangle */
+    int32_t *end;                  /* [n_vertices] of each fan; before its slots are filled, the next free one */
+    int32_t others;                /* triangles of no fan, which come before all of them */
+    bool *has_input;               /* [n_vertices] a corner in the fan is one of the caller's points */
+};
+
+/* What they take of 8 bytes. */
+static int64_t fans_words(const struct tri_tile *tile)
+{
+    return tile->n_triangles + tile->n_vertices * INT64_C(5) / 8 + 1;
+}
+
+static int32_t *fan_words(int32_t **at, int32_t n)
+{
+    int32_t *words = *at;
+    *at += n;
+    return words;
+}
+
+/* Where each fan begins. Corners that are the caller's points are noticed. */
+static void count_fans(struct fans *f, int64_t n_input)
+{
+    const int32_t n = f->tile->n_vertices;
+    memset(f->end, 0, (size_t)n * (sizeof *f->end + sizeof *f->has_input)); /* one lies behind the other */
+    for (int32_t i = 0; i < f->tile->n_triangles; i++) {
+        const struct tri_triangle *t = &f->tri[f->triangles[i]];
+        if (i + AHEAD < f->tile->n_triangles)
+            __builtin_prefetch(&f->tri[f->triangles[i + AHEAD]]);
+        const uint64_t own = (uint64_t)(final_corner(t, 0) - f->tile->first_vertex);
+        f->own[i] = own < (uint64_t)n ? (int32_t)own : TRI_NONE;
+        if (f->own[i] == TRI_NONE) {
+            f->others++;
+            continue;
+        }
+        f->end[own]++;
+        if ((final_corner(t, 1) < n_input) | (final_corner(t, 2) < n_input))
+            f->has_input[own] = true;
+    }
+    for (int32_t v = 0, sum = f->others; v < n; v++) {
+        int32_t count = f->end[v];
+        f->end[v] = sum;
+        sum += count;
+    }
+}
+
+static void fill_slots(const struct fans *f)
+{
+    int32_t other = 0;
+    for (int32_t i = 0; i < f->tile->n_triangles; i++)
+        f->slot[f->own[i] != TRI_NONE ? f->end[f->own[i]]++ : other++] = f->triangles[i];
+}
+
+/* A fan of up to four, by the second corner, without a branch that depends on it: four are put, and those that are not
+ * of the fan are put again when their turn comes. */
+static inline void put_four(const struct fans *f, const struct par_tile_copy *copy, int32_t first, int32_t n)
+{
+    const struct tri_triangle *t[4];
+    int64_t key[4];
+    for (int k = 0; k < 4; k++) {
+        t[k] = &f->tri[f->slot[first + k]];
+        key[k] = choose(k < n, final_corner(t[k], 1), INT64_MAX);
+    }
+    for (int k = 0; k < 4; k++) {
+        int32_t rank = 0;
+        for (int i = 0; i < 4; i++)
+            rank += i < k ? key[i] <= key[k] : key[i] < key[k];
+        put(copy, first + rank, t[k]);
+    }
+}
+
+static bool put_many(const struct fans *f, const struct par_tile_copy *copy, int32_t first, int32_t n)
+{
+    for (int32_t i = first; i < first + n; i++)
+        put(copy, i, &f->tri[f->slot[i]]);
+    return sort_many(copy, first, n);
+}
+
+/* Triangles lie scattered: those that come soon are fetched already. */
+static bool put_fans(const struct fans *f, const struct par_tile_copy *copy, const struct tri_mesh *mesh)
+{
+    const int32_t n = f->tile->n_triangles;
+    bool memory = put_many(f, copy, 0, f->others);
+    show_numbers(copy->corners[0], 3 * (size_t)f->others, mesh);
+    for (int32_t v = 0, begin = f->others; memory && v < f->tile->n_vertices; begin = f->end[v++]) {
+        const int32_t count = f->end[v] - begin;
+        for (int k = 0; begin + AHEAD < n && k < 3; k++)
+            __builtin_prefetch(&f->tri[f->slot[begin + AHEAD - k]]);
+        if (count <= 4 && begin + 4 <= n)
+            put_four(f, copy, begin, count);
+        else
+            memory = put_many(f, copy, begin, count);
+        if (f->has_input[v])
+            show_numbers(copy->corners[begin], 3 * (size_t)count, mesh);
+    }
+    return memory;
+}
+
+static void free_triangles(const struct fans *f)
+{
+    for (int32_t i = 0; i < f->tile->n_triangles; i++)
+        f->tri[f->triangles[i]].v[0] = TRI_NONE;
+}
+
 static bool fill_triangles(const struct par_tile_job *job, const struct tri_mesh *mesh, const int32_t *triangles)
 {
-    int32_t *end = (int32_t *)(void *)job->scratch;
-    int32_t others = count_fans(&job->tile, mesh, triangles, end);
-    fill_fans(job, mesh, triangles, end);
-    bool memory = sort_fans(job, others, end);
-    show_numbers((int64_t *)job->copy.corners, 3 * (size_t)job->tile.n_triangles, mesh);
+    const struct tri_tile *tile = &job->tile;
+    int32_t *at = (int32_t *)(void *)job->scratch;
+    struct fans fans = {.tile = tile, .tri = mesh->tri, .triangles = triangles,
+                        .own = fan_words(&at, tile->n_triangles), .slot = fan_words(&at, tile->n_triangles),
+                        .end = fan_words(&at, tile->n_vertices), .has_input = (bool *)at};
+    count_fans(&fans, mesh->n_input);
+    fill_slots(&fans);
+    bool memory = put_fans(&fans, &job->copy, mesh);
+    free_triangles(&fans);
     return memory;
 }
 
@@ -249,11 +294,14 @@ bool par_tile_fill(struct par_tile_job *job, const struct tri_mesh *mesh, const 
                    const int32_t *vertices, const int32_t *triangles, const int32_t *subs)
 {
     struct tri_tile *tile = &job->tile;
-    if (!par_tile_job_reserve(job, tile->n_vertices / 2 + 1) ||
+    if (!par_tile_job_reserve(job, fans_words(tile)) ||
         !par_tile_copy_reserve(&job->copy, mesh, tile->n_vertices, tile->n_triangles, tile->n_segments))
         return false;
     par_tile_copy_show(&job->copy, tile);
-    for (int32_t i = 0; i < tile->n_vertices; i++)
+    for (int32_t i = 0; i < tile->n_vertices; i++) {
+        if (i + AHEAD < tile->n_vertices)
+            __builtin_prefetch(&mesh->xy[vertices[i + AHEAD]]);
         par_tile_copy_vertex(&job->copy, mesh, vertices[i], i);
+    }
     return fill_triangles(job, mesh, triangles) && fill_subs(job, mesh, number, subs);
 }

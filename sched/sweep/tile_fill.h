@@ -16,10 +16,9 @@ struct par_tile_job {
 bool par_tile_job_reserve(struct par_tile_job *job, int64_t n);
 void par_tile_job_free(struct par_tile_job *job);
 
-/* Makes of a triangle that is final, in place, what is handed out of it: the numbers of its corners, the largest first,
- * and the row of its tile. It is live still. */
-void par_final_make(struct tri_triangle *triangle, const int64_t number[3], int32_t row);
-int32_t par_final_row(const struct tri_triangle *triangle);
+/* Makes of a triangle that is final, in place, what is handed out of it: the numbers of its corners, the largest first.
+ * It is live still. */
+void par_final_make(struct tri_triangle *triangle, const int64_t number[3]);
 
 /* Fills the arrays of job->tile, of which the numbers are known: from its vertices in their order, and from its final
  * triangles and subsegments in any order. The triangles' ids are free afterwards. number: of each vertex. False: no

@@ -1,9 +1,8 @@
 /* One column of tiles at a time: find its vertices and number them, find its triangles and subsegments, whose corners
  * have their numbers then, hand out, let go; in shares or tile by tile, in parallel.
  *
- * What is found of something is kept where nobody else looks any more: in place of its number a vertex has that of its
- * row, as long as it waits; the record of a final triangle becomes what is handed out of it, so that the numbers of its
- * corners, which lie scattered, are fetched once. */
+ * The record of a final triangle, where nobody else looks any more, becomes what is handed out of it, so that the
+ * numbers of its corners, which lie scattered, are fetched once. */
 #include "sched/sweep/tiles.h"
 
 #include <assert.h>
@@ -19,8 +18,7 @@
 /* In place of a row: the column's turn has been, or is to come. */
 enum { EARLIER = -1, LATER = -2 };
 
-/* In place of a number: there is none; and what a vertex of row r has that waits for one: FIRST_ROW - r. */
-enum { NO_NUMBER = -1, FIRST_ROW = -2 };
+enum { NO_NUMBER = -1 };
 
 struct par_column {
     struct par_tiles *tiles;
@@ -65,9 +63,7 @@ static void find_vertices(void *context, size_t share)
         if (tiles->number[v] != NO_NUMBER || mesh->on[v] == TRI_VERTEX_NONE || !(mesh->xy[v].x < c->end) ||
             mesh->xy[v].x < c->begin)
             continue;
-        int32_t row = find_tile(&place, tiles->partition, mesh->xy[v]) - c->first_tile;
-        tiles->number[v] = FIRST_ROW - row;
-        par_find(&finder, v, row);
+        par_find(&finder, v, find_tile(&place, tiles->partition, mesh->xy[v]) - c->first_tile);
     }
     c->no_memory[share] = !par_finder_end(&finder);
 }
@@ -134,8 +130,16 @@ static bool has_number(const struct par_column *c, const tri_vertex_id v[3], con
     return false;
 }
 
+/* So that the memory works on many at once. */
+static inline void fetch_numbers(const int64_t *numbers, const tri_vertex_id v[3])
+{
+    for (int k = 0; k < 3 && v[0] != TRI_NONE; k++)
+        __builtin_prefetch(&numbers[v[k]]);
+}
+
 static void find_triangles(void *context, size_t share)
 {
+    enum { AHEAD = 16 };
     struct par_column *c = context;
     const struct tri_mesh *mesh = c->tiles->mesh;
     const int64_t *numbers = c->tiles->number;
@@ -145,12 +149,15 @@ static void find_triangles(void *context, size_t share)
     bool memory = true;
     for (tri_triangle_id t = range.first; t < range.last; t++) {
         const tri_vertex_id *v = mesh->tri[t].v;
+        __builtin_prefetch(&mesh->tri[t + 4 * AHEAD < range.last ? t + 4 * AHEAD : t]);
+        if (t + AHEAD < range.last)
+            fetch_numbers(numbers, mesh->tri[t + AHEAD].v);
         if (v[0] == TRI_NONE)
             continue;
         const int64_t number[3] = {numbers[v[0]], numbers[v[1]], numbers[v[2]]};
         int32_t row = last_row(c, &hint, v, number, 3);
         if (row >= 0) {
-            par_final_make(&mesh->tri[t], number, row);
+            par_final_make(&mesh->tri[t], number);
             par_find(&finder, t, row);
         } else if (row == LATER && has_number(c, v, number)) {
             memory = par_worklist_add(&c->straddling[share], t) && memory;
@@ -181,20 +188,6 @@ static void find_subs(void *context, size_t share)
     }
     c->no_memory[share] = !par_finder_end(&finder) || c->no_memory[share];
 }
-
-static int32_t row_of_vertex(const void *context, tri_vertex_id v)
-{
-    const struct par_column *c = context;
-    return (int32_t)(FIRST_ROW - c->tiles->number[v]);
-}
-
-static int32_t row_of_final(const void *context, tri_triangle_id t)
-{
-    const struct par_column *c = context;
-    return par_final_row(&c->tiles->mesh->tri[t]);
-}
-
-static int32_t row_of_found_sub(const void *context, tri_sub_id s) { return row_of_sub(context, s); }
 
 static bool memory_has_lasted(const struct par_column *c)
 {
@@ -399,7 +392,7 @@ static enum tri_status number_column(struct par_column *c, struct tri_error *err
 {
     const struct tri_executor *executor = c->tiles->executor;
     tri_execute(executor, PAR_FIND_SHARES, find_vertices, c);
-    if (!memory_has_lasted(c) || !par_finds_deal(&c->vertices, row_of_vertex, c, executor))
+    if (!memory_has_lasted(c) || !par_finds_deal(&c->vertices, executor))
         return no_memory(error);
     struct par_pipeline pipeline = pipeline_of(c);
     pipeline.make = number_tile;
@@ -411,8 +404,8 @@ static enum tri_status hand_out_column(struct par_column *c, struct tri_error *e
     const struct tri_executor *executor = c->tiles->executor;
     tri_execute(executor, PAR_FIND_SHARES, find_triangles, c);
     tri_execute(executor, PAR_FIND_SHARES, find_subs, c);
-    if (!memory_has_lasted(c) || !par_finds_deal(&c->triangles, row_of_final, c, executor) ||
-        !par_finds_deal(&c->subs, row_of_found_sub, c, executor))
+    if (!memory_has_lasted(c) || !par_finds_deal(&c->triangles, executor) ||
+        !par_finds_deal(&c->subs, executor))
         return no_memory(error);
     struct par_pipeline pipeline = pipeline_of(c);
     pipeline.make = fill_tile;

@@ -116,27 +116,73 @@ if [ -n "${PTRIANGLE_SHIM:-}" ]; then
         fi
     done
 
-    # --- one task is killed there: all end, and nothing has got its name
+    # --- one task is killed there: all end, and nothing has got its name; other tasks, or one, go on, to the same bytes
+    kept="--checkpoint state --resume state --every 0"
+    n=1
     for k in $(spread "${PTRIANGLE_SHORT_RUNS:-2}"); do
         rm -f two.*
-        with_one $((k % 2)) "$shim PTRIANGLE_FAIL_KILL=1 PTRIANGLE_FAIL_AT=$k" any -Qpq30a0.01 letter --output two
+        # shellcheck disable=SC2086 # several words
+        with_one $((k % 2)) "$shim PTRIANGLE_FAIL_KILL=1 PTRIANGLE_FAIL_AT=$k" any -Qpq30a0.01 letter --output two $kept
         check "killed at allocation $k: a failure" test "$found" -ne 0
         check "killed at allocation $k: no file" sh -c '! ls two.* 2>/dev/null'
+        n=$((4 - n)) # 3, or 1 without a launcher
+        tries=0      # a task may outlive its launcher by a second, and holds the folder
+        while [ $tries -lt 100 ]; do
+            # shellcheck disable=SC2086
+            if [ "$n" -gt 1 ]; then
+                timeout 100 "$MPIEXEC" -n "$n" "$bin/ptriangle" -Qpq30a0.01 letter --output two $kept >.out 2>.err
+            else
+                timeout 100 "$bin/ptriangle" -Qpq30a0.01 letter --output two $kept >.out 2>.err
+            fi
+            found=$?
+            grep -q 'another process works' .err || break
+            sleep 0.1
+            tries=$((tries + 1))
+        done
+        check "killed at allocation $k: $n go on" test "$found" -eq 0
+        check "the same bytes afterwards" same_but_for_comments one.node two.node
+        check "the same triangles afterwards" same_but_for_comments one.ele two.ele
+        check "no checkpoint is left" test ! -e state
     done
-    ranks 0 2 -Qpq30a0.01 letter --output two
-    tries=0 # a task may outlive its launcher by a second, and removes its files itself then
+    tries=0 # and removes its files itself then
     while ls .tri-* >/dev/null 2>&1 && [ $tries -lt 100 ]; do
         tries=$((tries + 1))
         sleep 0.1
     done
     check "what killed tasks have left is gone" sh -c '! ls .tri-* 2>/dev/null'
-    check "the same bytes afterwards" same_but_for_comments one.node two.node
 fi
+
+# --- stopped, and gone on with by others: one task of the state of three, two of that of one
+program 0 -Qpq30a0.001 letter --output one
+goes_on="-Qpq30a0.001 letter --output two --checkpoint state --resume state --every 0 --time-limit"
+rm -f two.*
+found=124
+tries=0
+while [ "$found" -eq 124 ] && [ $tries -lt 40 ]; do
+    limit=$(awk -v n=$tries 'BEGIN { print 0.2 * 1.3 ^ n }')
+    n=$((tries % 3 + 1))
+    # shellcheck disable=SC2086
+    if [ $n -gt 1 ]; then
+        timeout 100 "$MPIEXEC" -n $n "$bin/ptriangle" $goes_on "$limit" >.out 2>.err
+    else
+        timeout 100 "$bin/ptriangle" $goes_on "$limit" >.out 2>.err
+    fi
+    found=$?
+    what="$n ranks, for $limit s"
+    checks=$((checks + 1))
+    [ "$found" -eq 0 ] || [ "$found" -eq 124 ] || fault "exit code $found: $(head -n 3 .err)"
+    tries=$((tries + 1))
+done
+check "the same bytes by whoever goes on" same_but_for_comments one.node two.node
+PTRIANGLE_TEST_SWEEP=1 timeout 100 "$bin/ptriangle" -Qpq30a0.001 letter --output two --checkpoint swept --every 0 \
+    --time-limit 0.1 >.out 2>.err
+[ ! -e swept/state-0 ] || ranks 1 2 -Qpq30a0.001 letter --output two --resume swept
+rm -rf swept
 
 # --- one error, no file
 fresh letter.poly
 ranks 1 3 -Qpq30a0.01 absent.poly
 check "one line" test "$(grep -c 'absent.poly: cannot open' .err)" -eq 1
 ranks 1 2 -Qpq30a0.002 letter.poly --output "$PWD/absent/letter"
-ranks 1 2 -Qpq30a0.002 letter.poly --checkpoint state
+ranks 1 2 -Qpq30a0.002 letter.poly --resume absent
 check "nothing is written" test -z "$(ls ./*.ele .tri-* 2>/dev/null)"

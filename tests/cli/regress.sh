@@ -264,6 +264,9 @@ few 40000 -pq38 endless_q35_graded
 few 200000 -pq38AD slow_q41D_2369
 few 40000 -pq30 ranaway30
 few 10000 -pq33 thin_comb # each bar is a narrow space that no edge of the triangulation bridges
+fresh regress/bundle_levels.poly # circles in a bundle of segments whose ends are not level
+few 10000 -pD bundle_levels
+few 10000 -pa0.00065D bundle_levels
 fresh regress/below_dxf.poly # two triangles stayed below the bound without need
 run 0 -pq20 below_dxf
 says 'All triangles keep the bounds.'

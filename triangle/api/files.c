@@ -6,43 +6,13 @@
 #include <unistd.h>
 
 #include "triangle/api/figure.h"
+#include "triangle/text/names.h"
 #include "triangle/text/read.h"
 #include "triangle/text/write.h"
 
 /* --- reading */
 
-struct names { /* of the files that belong together */
-    char *node, *poly, *ele, *area;
-};
-
-static char *joined(const char *path, size_t length, const char *ending)
-{
-    char *name = malloc(length + strlen(ending) + 1);
-    if (name) {
-        memcpy(name, path, length);
-        memcpy(name + length, ending, strlen(ending) + 1);
-    }
-    return name;
-}
-
-static void free_names(struct names *names)
-{
-    free(names->node);
-    free(names->poly);
-    free(names->ele);
-    free(names->area);
-}
-
-static enum tri_status make_names(struct names *names, const char *path, size_t length, struct tri_error *error)
-{
-    *names = (struct names){joined(path, length, ".node"), joined(path, length, ".poly"), joined(path, length, ".ele"),
-                            joined(path, length, ".area")};
-    if (names->node && names->poly && names->ele && names->area)
-        return TRI_OK;
-    return tri_fail(error, TRI_NO_MEMORY, path, 0, "out of memory for file names");
-}
-
-static enum tri_status read_mesh(const struct names *names, struct tri_read_options *options, struct tri_pslg *pslg,
+static enum tri_status read_mesh(const struct tri_names *names, struct tri_read_options *options, struct tri_pslg *pslg,
                                  struct tri_elements *elements, struct tri_error *error)
 {
     bool has_poly = access(names->poly, R_OK) == 0, points_in_poly;
@@ -57,7 +27,7 @@ static enum tri_status read_mesh(const struct names *names, struct tri_read_opti
     return status;
 }
 
-static enum tri_status read_by_ending(const char *ending, const struct names *names, struct tri_pslg *pslg,
+static enum tri_status read_by_ending(const char *ending, const struct tri_names *names, struct tri_pslg *pslg,
                                       struct tri_elements *elements, struct tri_error *error)
 {
     struct tri_read_options options = {.default_base = 1, .regions_if_any = true};
@@ -101,15 +71,15 @@ enum tri_status tri_file_read(const char *path, struct tri_figure *figure, struc
     const struct tri_figure none = tri_no_figure();
     struct tri_pslg pslg = {0};
     struct tri_elements elements = {0};
-    struct names names;
+    struct tri_names names;
     enum tri_status status = tri_api_struct_give(figure, &none, sizeof none, "tri_figure", error);
     if (status)
         return status;
     if (!is_known(ending))
         return tri_fail(error, TRI_CANNOT_READ, path, 0, "not a file that is known: .poly, .node or .ele");
-    status = make_names(&names, path, (size_t)(ending - path), error);
+    status = tri_names_make(&names, path, (size_t)(ending - path), error);
     status = status ? status : read_by_ending(ending, &names, &pslg, &elements, error);
-    free_names(&names);
+    tri_names_free(&names);
     if (status) {
         tri_pslg_free(&pslg);
         tri_elements_free(&elements);
@@ -138,7 +108,7 @@ void tri_file_free(struct tri_figure *figure)
 static enum tri_status open_file(struct tri_output_set *set, const char *base, const char *ending,
                                  struct tri_output **output, struct tri_error *error)
 {
-    char *path = joined(base, strlen(base), ending);
+    char *path = tri_joined(base, ending);
     enum tri_status status = path ? tri_output_open(set, path, output, error)
                                   : tri_fail(error, TRI_NO_MEMORY, base, 0, "out of memory for file names");
     free(path);

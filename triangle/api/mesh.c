@@ -9,7 +9,6 @@
 
 #include "triangle/api/figure.h"
 #include "triangle/census.h"
-#include "triangle/feature_size.h"
 
 /* --- settings */
 
@@ -168,7 +167,6 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     *report = (struct tri_refine_report){0};
     if (!has_bounds(refiner->m, s) && !refiner->way->figure)
         return TRI_OK;
-    mesh->limits.shrink = tri_shrink(how.min_angle); /* `options` are not those that it was made by */
     return refiner->way->refine(refiner->way, mesh, &how, s, report, error);
 }
 

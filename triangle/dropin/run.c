@@ -69,20 +69,10 @@ static void warn_number(const struct io_run *run, int n, const char *what)
         warn(run, text);
 }
 
-static void warn_of_switches(const struct io_run *run)
+static void warn_of_switch(void *user, const char *text, bool misread)
 {
-    const struct tri_switches *s = run->switches;
-    for (int i = 0; i < s->n_notes; i++) {
-        char text[160];
-        snprintf(text, sizeof text, "%s: numbers of switches have no exponent; e is taken for a switch", s->notes[i]);
-        warn(run, text);
-    }
-    if (s->weighted)
-        warn(run, "weighted triangulations (w, W) are not made: the switch is ignored");
-    if (s->angle && s->min_angle > TRI_USUAL_ANGLE && s->min_angle < 180)
-        warn(run, "an angle bound above 34 degrees may not be reached everywhere");
-    if (s->jettison && s->no_node)
-        warn(run, "j and N: points are renumbered, and no array tells how");
+    (void)misread;
+    warn(user, text);
 }
 
 static void warn_of_input(const struct io_run *run)
@@ -103,11 +93,9 @@ static void warn_of_input(const struct io_run *run)
 static enum tri_status check_switches(const struct tri_switches *s, const struct triangulateio *vorout,
                                       struct tri_error *error)
 {
-    if (s->bad_area)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "switch a: the maximum area must be > 0");
     if (s->voronoi && !vorout)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "switch v: there is no struct for the Voronoi diagram");
-    return TRI_OK;
+    return tri_switches_check(s, error);
 }
 
 static enum tri_status run_stages(struct io_run *run, const struct triangulateio *in)
@@ -124,7 +112,7 @@ static enum tri_status run_stages(struct io_run *run, const struct triangulateio
     status = tri_generate(&run->mesh, &run->input.pslg, &run->how, &run->report, run->error);
     if (status)
         return status;
-    warn_of_switches(run);
+    tri_switches_warn(run->switches, warn_of_switch, run);
     warn_of_input(run);
     return TRI_OK;
 }

@@ -1,6 +1,7 @@
 /* The parser walks along the string once; each switch sees what is behind its letter and says where to go on. */
 #include "triangle/dropin/switches.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -173,6 +174,32 @@ void tri_switches_add(struct tri_switches *switches, const char *text)
 {
     while (*text)
         text = add_one(switches, text);
+}
+
+enum tri_status tri_switches_check(const struct tri_switches *s, struct tri_error *error)
+{
+    return s->bad_area ? tri_fail(error, TRI_BAD_INPUT, NULL, 0, "the maximum area (-a) must be > 0") : TRI_OK;
+}
+
+void tri_switches_warn(const struct tri_switches *s, void (*warn)(void *user, const char *text, bool misread),
+                       void *user)
+{
+    char text[160];
+    for (int i = 0; i < s->n_notes; i++) {
+        snprintf(text, sizeof text, "-%s: numbers of switches have no exponent; the e is taken for a switch",
+                 s->notes[i]);
+        warn(user, text, true);
+    }
+    if (s->jettison && s->no_node)
+        warn(user, "-j and -N: vertices are renumbered, and nothing tells how", false);
+    if (s->weighted && (s->segments || s->mesh || tri_switches_refine(s)))
+        warn(user, "weighted triangulations (-w, -W) are not made with -p, -q, -a, -u or -r: the switch is ignored",
+             false);
+    if (s->angle && s->min_angle > TRI_USUAL_ANGLE && s->min_angle < 180) {
+        snprintf(text, sizeof text, "an angle bound of %g degrees is above %g: it may not be reached everywhere",
+                 s->min_angle, TRI_USUAL_ANGLE);
+        warn(user, text, false);
+    }
 }
 
 bool tri_switches_refine(const struct tri_switches *s)

@@ -58,6 +58,14 @@ struct tri_switches tri_switches_none(void);
 /* Adds the switches of one string to those there are. Later numbers replace earlier ones. */
 void tri_switches_add(struct tri_switches *switches, const char *text);
 
+/* TRI_BAD_INPUT: something that cannot be. */
+enum tri_status tri_switches_check(const struct tri_switches *switches, struct tri_error *error);
+
+/* Tells in a sentence each of what was said that has not the effect that one might expect. misread: it was taken for
+ * something else than what was written. */
+void tri_switches_warn(const struct tri_switches *switches, void (*warn)(void *user, const char *text, bool misread),
+                       void *user);
+
 /* Does the quality stage run? */
 bool tri_switches_refine(const struct tri_switches *switches);
 

@@ -1,0 +1,260 @@
+/* Checkpoints of a run on ranks, between two steps: each rank writes what it owns, rank 0 how far all are; then the
+ * manifest. */
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sched/ranks/pieces.h"
+#include "sched/room.h"
+#include "triangle/clock.h"
+
+static const uint64_t STATE = UINT64_C(0x3174617473746972); /* a version as well */
+
+/* The state's file: this, then struct writer of each rank. */
+struct common {
+    uint64_t word;
+    struct par_stand stand;
+    int64_t n_tiles, left_over;
+    int64_t done[PAR_DONE];
+};
+
+struct writer {
+    int64_t end;   /* its tiles begin where those of the rank before it end */
+    uint64_t hash; /* of its file */
+};
+
+/* All of it, and how many ranks have written it. */
+struct state {
+    char *bytes; /* of struct common on */
+    int64_t n_ranks;
+};
+
+static size_t bytes_of(const struct state *s)
+{
+    return sizeof(struct common) + (size_t)s->n_ranks * sizeof(struct writer);
+}
+
+static bool make_state(struct state *s, int64_t n_ranks)
+{
+    *s = (struct state){.n_ranks = n_ranks};
+    s->bytes = calloc(1, bytes_of(s));
+    return s->bytes;
+}
+
+/* Both to the checkpoint's file and from there. */
+static enum tri_status walk(struct par_state_file *file, void *user, struct tri_error *error)
+{
+    const struct state *s = user;
+    (void)error;
+    par_carry(file, s->bytes, bytes_of(s));
+    return TRI_OK;
+}
+
+static const struct writer *writers_of(const struct state *s)
+{
+    return (const struct writer *)(const void *)(s->bytes + sizeof(struct common));
+}
+
+static int32_t tiles_in_all(const struct par_ranks *r) { return r->territory.start[r->territory.n_ranks]; }
+
+/* --- going on */
+
+/* The mesh is empty but for the vertices that all ranks have: what follows tells of all others. */
+static void forget_all(struct par_state *state, int32_t n_common)
+{
+    state->mesh->n_vertices = n_common;
+    state->mesh->n_triangles = state->mesh->n_subs = 0;
+    state->worklist.n = state->key.n = 0;
+    par_room_free(&state->spare);
+}
+
+static bool find_straddlers(struct par_ranks *r)
+{
+    bool memory = true;
+    for (tri_triangle_id t = 0; memory && t < r->state->mesh->n_triangles; t++)
+        memory = !par_has_foreign(r, t) || par_worklist_add(&r->straddlers, t);
+    return memory;
+}
+
+static enum tri_status read_pieces(struct par_ranks *r, const struct par_manifest *m, const struct state *from,
+                                   struct tri_error *error)
+{
+    const struct writer *writer = writers_of(from);
+    char path[PAR_CHECKPOINT_PATH];
+    enum tri_status status = TRI_OK;
+    forget_all(r->state, r->n_common);
+    if (!par_index_straddlers(r))
+        return par_ranks_no_memory(error);
+    for (int p = 0; !status && p < from->n_ranks; p++) {
+        const struct par_piece_file file = {p > 0 ? (int32_t)writer[p - 1].end : 0, (int32_t)writer[p].end, m->run,
+                                            writer[p].hash};
+        par_checkpoint_piece(path, r->state->options->checkpoint->directory, m->which, p);
+        status = par_pieces_read(r, path, &file, error);
+    }
+    return status || find_straddlers(r) ? status : par_ranks_no_memory(error);
+}
+
+static bool is_state(const struct par_ranks *r, const struct common *c, const struct state *s)
+{
+    const struct writer *writer = writers_of(s);
+    bool good = c->word == STATE && c->n_tiles == tiles_in_all(r) && c->stand.round >= 0 && c->stand.round < 32 &&
+                c->stand.phase >= 0 && c->stand.phase <= PAR_PHASES && c->stand.step >= 0;
+    for (int64_t p = 0; good && p < s->n_ranks; p++)
+        good = writer[p].end >= (p > 0 ? writer[p - 1].end : 0) && writer[p].end <= c->n_tiles;
+    return good && writer[s->n_ranks - 1].end == c->n_tiles;
+}
+
+/* Rank 0 counts what has been done for all. */
+static void go_on_from(struct par_ranks *r, const struct common *c)
+{
+    r->stand = c->stand;
+    r->state->round = c->stand.round;
+    r->state->report->rounds += c->stand.round;
+    r->state->report->left_over += c->left_over;
+    if (r->carrier->rank == 0)
+        par_add_done(r, c->done);
+}
+
+static enum tri_status take_up(struct par_ranks *r, const struct par_manifest *m, const struct state *from,
+                               struct tri_error *error)
+{
+    const struct par_checkpoint *checkpoint = r->state->options->checkpoint;
+    enum tri_status status = from->bytes ? TRI_OK : par_ranks_no_memory(error);
+    if (!status && r->carrier->rank == 0)
+        status = par_checkpoint_read(checkpoint, walk, (void *)from, error);
+    status = par_spread(r->carrier, PAR_MOVE_INPUT, from->bytes, bytes_of(from), status, error);
+    if (status)
+        return status;
+    struct common common;
+    memcpy(&common, from->bytes, sizeof common);
+    if (!is_state(r, &common, from))
+        return tri_fail(error, TRI_BAD_INPUT, checkpoint->directory, 0, "the checkpoint's state is damaged");
+    status = read_pieces(r, m, from, error);
+    if (!status)
+        go_on_from(r, &common);
+    return status;
+}
+
+/* Rank 0 has read it. */
+static enum tri_status check_manifest(struct par_ranks *r, struct par_manifest *m, struct state *from,
+                                      struct tri_error *error)
+{
+    struct par_checkpoint *c = r->state->options->checkpoint;
+    enum tri_status status = r->carrier->rank == 0 ? par_checkpoint_take(c, r->run, error) : TRI_OK;
+    *m = c->manifest;
+    if (!status && par_checkpoint_has_state(c) && m->kind != PAR_RANKS_STATE)
+        status = tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "is the checkpoint of one task");
+    status = par_spread(r->carrier, PAR_MOVE_INPUT, m, sizeof *m, status, error);
+    *from = (struct state){.n_ranks = (m->state_bytes - (int64_t)sizeof(struct common)) /
+                                      (int64_t)sizeof(struct writer)};
+    if (!status && m->state_bytes > 0 && (from->n_ranks < 1 || m->state_bytes != (int64_t)bytes_of(from)))
+        status = tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "the checkpoint's state is damaged");
+    return status;
+}
+
+enum tri_status par_take_up(struct par_ranks *r, bool *again, struct tri_error *error)
+{
+    struct par_checkpoint *c = r->state->options->checkpoint;
+    struct par_manifest m;
+    struct state from;
+    *again = false;
+    if (!c)
+        return TRI_OK;
+    c->stop = r->state->mesh->stop;
+    c->last = tri_seconds();
+    enum tri_status status = check_manifest(r, &m, &from, error);
+    if (status || m.state_bytes == 0)
+        return status;
+    *again = true;
+    r->state->mesh->stop = NULL; /* there is something to lose */
+    make_state(&from, from.n_ranks);
+    status = take_up(r, &m, &from, error);
+    free(from.bytes);
+    return status;
+}
+
+/* --- keeping */
+
+/* Those whose first corner is an own one: of all ranks together each once. */
+static int64_t count_triangles(const struct par_ranks *r)
+{
+    const struct tri_mesh *mesh = r->state->mesh;
+    int64_t n = 0;
+    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
+        n += tri_is_live(&mesh->tri[t]) && par_is_own(&r->territory, mesh->xy[mesh->tri[t].v[0]]);
+    return n;
+}
+
+/* Rank 0: what all have told of themselves becomes the state, and counts. */
+static enum tri_status put(struct par_ranks *r, const int64_t *told, const int64_t done[PAR_DONE],
+                           struct tri_error *error)
+{
+    struct state state;
+    struct common common = {.word = STATE, .stand = r->stand, .n_tiles = tiles_in_all(r),
+                            .left_over = r->state->report->left_over - r->left_before};
+    int64_t triangles = 0;
+    if (!make_state(&state, r->carrier->n_ranks))
+        return par_ranks_no_memory(error);
+    memcpy(common.done, done, sizeof common.done);
+    memcpy(state.bytes, &common, sizeof common);
+    for (int p = 0; p < r->carrier->n_ranks; p++) {
+        const struct writer writer = {r->territory.start[p + 1], (uint64_t)told[2 * p]};
+        memcpy(state.bytes + sizeof common + (size_t)p * sizeof writer, &writer, sizeof writer);
+        triangles += told[2 * p + 1];
+    }
+    enum tri_status status = par_checkpoint_write(r->state->options->checkpoint, PAR_RANKS_STATE, triangles, walk,
+                                                  &state, error);
+    free(state.bytes);
+    return status;
+}
+
+/* The manifest, which rank 0 has, says which files are free. */
+static enum tri_status write_pieces(struct par_ranks *r, int64_t told[2], struct tri_error *error)
+{
+    const struct par_checkpoint *c = r->state->options->checkpoint;
+    char path[PAR_CHECKPOINT_PATH];
+    uint64_t hash = 0;
+    int64_t which = par_checkpoint_next(c);
+    enum tri_status status = par_spread(r->carrier, PAR_MOVE_INPUT, &which, sizeof which, TRI_OK, error);
+    if (status)
+        return status;
+    par_checkpoint_piece(path, c->directory, which, r->carrier->rank);
+    status = par_pieces_write(r, path, r->run, &hash, error);
+    if (!status && !par_checkpoint_sync(c->directory))
+        status = tri_fail(error, TRI_CANNOT_WRITE, c->directory, 0, "cannot write");
+    told[0] = (int64_t)hash;
+    told[1] = count_triangles(r);
+    return status;
+}
+
+static enum tri_status keep(struct par_ranks *r, struct tri_error *error)
+{
+    int64_t mine[PAR_DONE], done[PAR_DONE], told[2] = {0};
+    int64_t *all = malloc(2 * (size_t)r->carrier->n_ranks * sizeof *all);
+    par_count_done(r, mine);
+    enum tri_status status = all ? TRI_OK : par_ranks_no_memory(error);
+    status = par_sum(r->carrier, mine, PAR_DONE, done, status, error);
+    status = status ? status : write_pieces(r, told, error);
+    status = par_gather(r->carrier, told, 2, all, status, error);
+    if (!status && r->carrier->rank == 0)
+        status = put(r, all, done, error);
+    free(all);
+    return par_agree(r->carrier, status, error);
+}
+
+enum tri_status par_keep(struct par_ranks *r, enum tri_status status, struct tri_error *error)
+{
+    struct par_checkpoint *c = r->state->options->checkpoint;
+    int64_t asked[2], sum[2];
+    if (!c)
+        return status;
+    r->state->mesh->stop = NULL; /* there is something to lose */
+    asked[0] = tri_stop_is_asked(c->stop);
+    asked[1] = r->carrier->rank == 0 && tri_seconds() - c->last >= c->seconds;
+    status = par_sum(r->carrier, asked, 2, sum, status, error);
+    if (status || sum[0] + sum[1] == 0)
+        return status;
+    status = keep(r, error);
+    c->last = tri_seconds();
+    return par_agree(r->carrier, status || sum[0] == 0 ? status : tri_fail_stopped(error), error);
+}

@@ -1,0 +1,275 @@
+/* Tile by tile: what has a corner in it, told as to another rank. */
+#include "sched/ranks/pieces.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const uint64_t PIECES = UINT64_C(0x3173656365697074); /* a version as well */
+
+struct head {
+    uint64_t word, run;
+    int64_t first_tile, n_tiles; /* an offset for each, and the end, follow: then what is told of each */
+};
+
+/* --- what belongs to which tile */
+
+/* Lists of the own tiles, one behind the other. */
+struct lists {
+    int32_t *start; /* [tiles + 1] */
+    int32_t *item;
+};
+
+struct sorting {
+    const struct par_ranks *ranks;
+    int32_t n_tiles;
+    int32_t *tile_of; /* [n_vertices] own tiles, from 0; TRI_NONE: of others, or no vertex */
+    struct lists triangles, entries;
+};
+
+static void find_tiles(struct sorting *s)
+{
+    const struct par_territory *territory = &s->ranks->territory;
+    const struct tri_mesh *mesh = s->ranks->state->mesh;
+    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
+        s->tile_of[v] = mesh->on[v] != TRI_VERTEX_NONE && par_is_own(territory, mesh->xy[v])
+                            ? par_tile_at(territory, mesh->xy[v]) - territory->start[territory->rank] : TRI_NONE;
+}
+
+/* The own tiles that have a corner of a triangle, each once; returns how many. */
+static int tiles_of(const struct sorting *s, tri_triangle_id t, int32_t tile[3])
+{
+    const struct tri_triangle *triangle = &s->ranks->state->mesh->tri[t];
+    int n = 0;
+    for (int k = 0; tri_is_live(triangle) && k < 3; k++) {
+        int32_t at = s->tile_of[triangle->v[k]];
+        if (at != TRI_NONE && (n < 1 || tile[0] != at) && (n < 2 || tile[1] != at))
+            tile[n++] = at;
+    }
+    return n;
+}
+
+/* The triangles triangle[0] to triangle[n - 1], NULL: of the same numbers, as indices into this list. */
+static bool sort_lists(const struct sorting *s, struct lists *lists, const int32_t *triangle, int32_t n)
+{
+    int32_t tile[3];
+    lists->start = calloc((size_t)s->n_tiles + 2, sizeof *lists->start);
+    for (int32_t i = 0; lists->start && i < n; i++)
+        for (int k = tiles_of(s, triangle ? triangle[i] : i, tile); k > 0; k--)
+            lists->start[tile[k - 1] + 2]++;
+    for (int32_t b = 0; lists->start && b < s->n_tiles; b++)
+        lists->start[b + 2] += lists->start[b + 1];
+    lists->item = lists->start ? malloc(((size_t)lists->start[s->n_tiles + 1] + 1) * sizeof *lists->item) : NULL;
+    for (int32_t i = 0; lists->item && i < n; i++)
+        for (int k = tiles_of(s, triangle ? triangle[i] : i, tile); k > 0; k--)
+            lists->item[lists->start[tile[k - 1] + 1]++] = i;
+    return lists->item;
+}
+
+static void free_sorting(struct sorting *s)
+{
+    free(s->tile_of);
+    free(s->triangles.start);
+    free(s->triangles.item);
+    free(s->entries.start);
+    free(s->entries.item);
+}
+
+static bool sort_all(struct sorting *s, const struct par_ranks *r)
+{
+    const struct par_territory *territory = &r->territory;
+    const struct par_state *state = r->state;
+    *s = (struct sorting){.ranks = r};
+    s->n_tiles = territory->start[territory->rank + 1] - territory->start[territory->rank];
+    s->tile_of = malloc(((size_t)state->mesh->n_vertices + 1) * sizeof *s->tile_of);
+    if (!s->tile_of)
+        return false;
+    find_tiles(s);
+    return sort_lists(s, &s->triangles, NULL, state->mesh->n_triangles) &&
+           sort_lists(s, &s->entries, state->worklist.item, state->worklist.n);
+}
+
+/* --- writing */
+
+/* Subsegments without an end in the tile are told of with the tiles of their ends: else two halves of one might come
+ * back as two. */
+static void leave_out_sides(const struct sorting *s, int32_t tile, struct par_message *m, struct par_talk *talk,
+                            int32_t *fresh)
+{
+    const struct tri_mesh *mesh = s->ranks->state->mesh;
+    int32_t kept = 0, n_subs = 0;
+    for (int32_t i = 0; i < m->n_new_subs; i++)
+        fresh[i] = TRI_NONE;
+    for (int32_t i = 0; i < m->n_sides; i++) {
+        struct par_told_side side = m->side[i];
+        const tri_vertex_id *end = mesh->sub[talk->sub.item[side.sub]].v;
+        if (s->tile_of[end[0]] != tile && s->tile_of[end[1]] != tile)
+            continue;
+        fresh[side.sub] = fresh[side.sub] == TRI_NONE ? n_subs++ : fresh[side.sub];
+        side.sub = fresh[side.sub];
+        m->side[kept++] = side;
+    }
+    m->n_sides = kept;
+    m->n_new_subs = talk->sub.n = n_subs;
+}
+
+static bool tell_piece(const struct sorting *s, int32_t tile, struct par_talk *talk, struct par_message *message)
+{
+    const struct par_state *state = s->ranks->state;
+    const struct lists *triangles = &s->triangles, *entries = &s->entries;
+    bool memory = true;
+    for (int32_t i = triangles->start[tile]; memory && i < triangles->start[tile + 1]; i++)
+        memory = par_talk_add_triangle(talk, triangles->item[i]);
+    memory = memory && par_talk_sort(talk, state->mesh, 0);
+    memory = memory && par_message_tell(message, talk, state->mesh, s->ranks->n_common, 0);
+    for (int32_t i = entries->start[tile]; memory && i < entries->start[tile + 1]; i++) {
+        int32_t entry = entries->item[i];
+        memory = par_message_add_entry(message, state->key.item[entry],
+                                       par_talk_number(talk, state->worklist.item[entry]));
+    }
+    int32_t *fresh = memory ? malloc(((size_t)message->n_new_subs + 1) * sizeof *fresh) : NULL;
+    if (fresh)
+        leave_out_sides(s, tile, message, talk, fresh);
+    free(fresh);
+    return fresh;
+}
+
+static bool pack_piece(const struct sorting *s, int32_t tile, struct par_bytes *bytes)
+{
+    struct par_talk talk = {0};
+    struct par_message message = {0};
+    bytes->n = 0;
+    bool memory = tell_piece(s, tile, &talk, &message) &&
+                  par_message_write(&message, &talk, s->ranks->state->mesh->n_attributes, bytes);
+    par_message_free(&message);
+    par_talk_free(&talk);
+    return memory;
+}
+
+static enum tri_status cannot_write(const char *path, struct tri_error *error)
+{
+    return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "cannot write: %s", strerror(errno));
+}
+
+/* Pieces one after the other, then their offsets, then the head. */
+static enum tri_status write_all(const struct sorting *s, int file, const char *path, struct head head,
+                                 int64_t *offset, struct tri_error *error)
+{
+    struct par_bytes bytes = {0};
+    enum tri_status status = TRI_OK;
+    size_t n = ((size_t)s->n_tiles + 1) * sizeof *offset;
+    offset[0] = (int64_t)(sizeof head + n);
+    for (int32_t tile = 0; !status && tile < s->n_tiles; tile++) {
+        if (!pack_piece(s, tile, &bytes))
+            status = par_ranks_no_memory(error);
+        else if (!par_write_at(file, bytes.at, bytes.n, offset[tile]))
+            status = cannot_write(path, error);
+        offset[tile + 1] = offset[tile] + (int64_t)bytes.n;
+    }
+    free(bytes.at);
+    if (!status && !(par_write_at(file, offset, n, sizeof head) && par_write_at(file, &head, sizeof head, 0) &&
+                     fsync(file) == 0))
+        status = cannot_write(path, error);
+    return status;
+}
+
+static enum tri_status write_file(const struct sorting *s, const char *path, uint64_t run, uint64_t *hash,
+                                  struct tri_error *error)
+{
+    const struct par_territory *territory = &s->ranks->territory;
+    const struct head head = {PIECES, run, territory->start[territory->rank], s->n_tiles};
+    size_t n = (size_t)s->n_tiles + 1;
+    int64_t *offset = calloc(n, sizeof *offset);
+    if (!offset)
+        return par_ranks_no_memory(error);
+    int file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    enum tri_status status = file < 0 ? cannot_write(path, error) : write_all(s, file, path, head, offset, error);
+    if (file >= 0 && close(file) != 0 && !status)
+        status = cannot_write(path, error);
+    *hash = par_hash(par_hash(0, &head, sizeof head), offset, n * sizeof *offset);
+    free(offset);
+    return status;
+}
+
+enum tri_status par_pieces_write(const struct par_ranks *r, const char *path, uint64_t run, uint64_t *hash,
+                                 struct tri_error *error)
+{
+    struct sorting s;
+    par_room_mark(&r->state->spare, r->state->mesh);
+    enum tri_status status = sort_all(&s, r) ? TRI_OK : par_ranks_no_memory(error);
+    status = status ? status : write_file(&s, path, run, hash, error);
+    free_sorting(&s);
+    return status;
+}
+
+/* --- reading */
+
+static enum tri_status damaged(const char *path, struct tri_error *error)
+{
+    return tri_fail(error, TRI_BAD_INPUT, path, 0, "is damaged, or not of this checkpoint");
+}
+
+/* The file's offsets, malloc'ed; NULL: it is not what was written. */
+static int64_t *read_offsets(int file, int32_t first, int32_t n_tiles, uint64_t run, uint64_t hash)
+{
+    const struct head wanted = {PIECES, run, first, n_tiles};
+    struct head head;
+    size_t n = ((size_t)n_tiles + 1) * sizeof(int64_t);
+    int64_t *offset = malloc(n);
+    if (offset && par_read_at(file, &head, sizeof head, 0) && par_read_at(file, offset, n, sizeof head) &&
+        memcmp(&head, &wanted, sizeof head) == 0 && par_hash(par_hash(0, &head, sizeof head), offset, n) == hash)
+        return offset;
+    free(offset);
+    return NULL;
+}
+
+static enum tri_status paste_piece(struct par_ranks *r, const struct par_bytes *bytes, struct tri_error *error)
+{
+    struct par_talk talk = {0};
+    struct par_message message;
+    enum tri_status status = par_message_read(&message, &talk, r->state->mesh, r->n_common, bytes, error);
+    status = status ? status : par_paste(r, &talk, &message, true, error);
+    if (!status && !par_merge_entries(r->state, &message, &talk))
+        status = par_ranks_no_memory(error);
+    par_message_free(&message);
+    par_talk_free(&talk);
+    return status;
+}
+
+static enum tri_status read_piece(struct par_ranks *r, int file, const char *path, const int64_t offset[2],
+                                  struct tri_error *error)
+{
+    struct par_bytes bytes = {.n = 0};
+    if (offset[1] < offset[0] || offset[0] < 0)
+        return damaged(path, error);
+    if (!par_bytes_reserve(&bytes, (size_t)(offset[1] - offset[0]) + 1))
+        return par_ranks_no_memory(error);
+    bytes.n = (size_t)(offset[1] - offset[0]);
+    enum tri_status status = par_read_at(file, bytes.at, bytes.n, offset[0]) ? TRI_OK : damaged(path, error);
+    status = status ? status : paste_piece(r, &bytes, error);
+    free(bytes.at);
+    return status == TRI_INTERNAL ? damaged(path, error) : status;
+}
+
+enum tri_status par_pieces_read(struct par_ranks *r, const char *path, const struct par_piece_file *of,
+                                struct tri_error *error)
+{
+    const struct par_territory *t = &r->territory;
+    int32_t own = t->start[t->rank], own_end = t->start[t->rank + 1];
+    int32_t first = own > of->first ? own : of->first, end = own_end < of->end ? own_end : of->end;
+    if (first >= end)
+        return TRI_OK;
+    int file = open(path, O_RDONLY | O_CLOEXEC);
+    if (file < 0)
+        return tri_fail(error, TRI_BAD_INPUT, path, 0, "cannot be read: %s", strerror(errno));
+    int64_t *offset = read_offsets(file, of->first, of->end - of->first, of->run, of->hash);
+    enum tri_status status = offset ? TRI_OK : damaged(path, error);
+    for (int32_t tile = first; !status && tile < end; tile++)
+        status = read_piece(r, file, path, &offset[tile - of->first], error);
+    free(offset);
+    close(file);
+    return status;
+}

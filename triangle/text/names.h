@@ -1,0 +1,32 @@
+/* Names of the files that belong together. */
+#ifndef TRIANGLE_TEXT_NAMES_H
+#define TRIANGLE_TEXT_NAMES_H
+
+#include <stddef.h>
+#include <string.h>
+
+#include "triangle/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The first `length` bytes of a name, and an ending; from malloc, NULL: no memory. */
+char *tri_name(const char *stem, size_t length, const char *ending);
+
+static inline char *tri_joined(const char *first, const char *second) { return tri_name(first, strlen(first), second); }
+
+/* The input files of a mesh: stem.node, and so on. */
+struct tri_names {
+    char *node, *poly, *ele, *area;
+};
+
+/* To be freed in any case. */
+enum tri_status tri_names_make(struct tri_names *names, const char *stem, size_t length, struct tri_error *error);
+void tri_names_free(struct tri_names *names);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
