@@ -279,6 +279,7 @@ void par_partition_coarsen(struct par_partition *p)
     merge_cells(p->x, p->n_columns, p->x);
     p->n_columns = columns;
     p->n_rows = rows;
+    assert(columns >= 3 && columns % 2 == 1 && rows >= 3 && rows % 2 == 1);
 }
 
 void par_partition_free(struct par_partition *p)
@@ -330,6 +331,7 @@ int32_t par_block_at(const struct par_partition *p, int phase, struct tri_point 
     assert(phase >= 0 && phase < PAR_PHASES);
     int32_t column = block_over(cell_at(p->x, p->n_columns, q.x), 1 - (phase >> 1));
     int32_t row = block_over(cell_at(rows_of(p, column), p->n_rows, q.y), 1 - (phase & 1));
+    assert(column < p->n_columns && row < p->n_rows);
     return column * p->n_rows + row;
 }
 
@@ -343,6 +345,7 @@ int32_t par_locate_owner(struct par_locator *locator, const struct par_partition
                          const struct tri_mesh *mesh, tri_triangle_id t)
 {
     const tri_vertex_id *v = mesh->tri[t].v;
+    assert(tri_is_live(&mesh->tri[t]));
     int32_t block = par_locate(locator, p, phase, mesh->xy[v[0]]);
     bool owns = tri_fence_holds(&locator->fence, mesh->xy[v[1]]) && tri_fence_holds(&locator->fence, mesh->xy[v[2]]);
     return owns ? block : TRI_NONE;

@@ -571,10 +571,12 @@ bool par_merge_worklist(struct par_state *state, const int32_t *item, const uint
         free(keys);
         return false;
     }
+    assert(state->key.n == 0 || state->key.n == list->n);
     for (int32_t i = 0, at = 0; at < sum; at++) {
         bool old = k == n || (i < list->n && key_of(state, i) < key[k]);
         items[at] = old ? list->item[i] : item[k];
         keys[at] = old ? key_of(state, i) : key[k];
+        assert(at == 0 || keys[at - 1] < keys[at]);
         i += old;
         k += !old;
     }
@@ -665,6 +667,7 @@ enum tri_status par_phase(struct par_state *state, const struct par_partition *p
 {
     size_t n = (size_t)state->worklist.n + 1;
     struct phase p = {.state = state, .partition = partition, .phase = phase, .only = only};
+    assert(phase >= 0 && phase < PAR_PHASES && (only == TRI_NONE || only % 2 == 1 - phase / 2));
     p.block_of = malloc(n * sizeof *p.block_of);
     p.work = malloc(n * sizeof *p.work);
     p.worklist = malloc(n * sizeof *p.worklist);

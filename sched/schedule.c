@@ -216,6 +216,7 @@ static enum tri_status number_mesh(struct par_state *state, struct tri_error *er
     par_tell(state, PAR_NUMBERING);
     enum tri_status status = par_park_expect(state->park, state->mesh, par_number_bytes(state->mesh), error);
     status = status ? status : par_number(state->mesh, &state->cells, state->n_kept, &timed->executor, error);
+    assert(status || (state->mesh->n_vertices >= state->n_kept && tri_mesh_is_sound(state->mesh)));
     state->numbered = true;
     state->report->seconds_number += tri_seconds() - began;
     return status;
@@ -695,6 +696,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
                            const struct par_options *options, struct par_report *report, struct tri_error *error)
 {
     double began = tri_seconds();
+    assert(tri_mesh_is_sound(mesh));
     *report = (struct par_report){.threads = par_threads(options->threads, false)};
     struct timed timed = {par_executor(&report->threads), report->seconds_shared};
     struct par_state state = {.mesh = mesh, .quality = quality, .options = options, .report = report,
@@ -714,6 +716,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     status = status ? status : refine_and_deliver(&state, quality, sequential, error);
     status = par_park_status(state.park, status, error);
     clean_up(&state);
+    assert(options->sink || tri_mesh_is_sound(mesh));
     report->seconds_total = tri_seconds() - began;
     return status;
 }

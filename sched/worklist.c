@@ -135,6 +135,7 @@ enum tri_status par_worklist_fill(struct par_worklist *worklist, struct tri_mesh
         largest2 = f.radius2[share] > largest2 ? f.radius2[share] : largest2;
     free(worklist->item);
     *worklist = (struct par_worklist){f.found, gather(&f, n), n + 1};
+    assert(worklist->n <= n && largest2 >= 0);
     *radius = sqrt(largest2);
     return TRI_OK;
 }

@@ -105,6 +105,7 @@ static int32_t add_up_counts(struct deal *d, int32_t n_tiles)
         }
     }
     d->start[n_tiles] = sum;
+    assert(sum <= d->n);
     return sum;
 }
 
@@ -123,6 +124,7 @@ static int32_t find_tile(struct tile_finder *f, const struct par_partition *p, s
         f->block = block;
         f->tile = block / p->n_rows / 2 * (p->n_rows / 2) + block % p->n_rows / 2;
     }
+    assert(tri_fence_holds(&f->fence, q));
     return f->tile;
 }
 

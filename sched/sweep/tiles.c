@@ -47,6 +47,7 @@ static int32_t find_tile(struct place_finder *f, const struct par_partition *p, 
         f->tile = par_block_at(p, 0, q);
         f->fence = par_fence(p, f->tile / p->n_rows, f->tile % p->n_rows);
     }
+    assert(tri_fence_holds(&f->fence, q));
     return f->tile;
 }
 
@@ -221,6 +222,7 @@ static bool know_kept(struct par_tiles *tiles)
 bool par_tiles_reserve(struct par_tiles *tiles)
 {
     int32_t before = tiles->capacity, now = tiles->mesh->vertex_capacity;
+    assert(tiles->n_kept <= tiles->mesh->n_vertices && tiles->mesh->n_vertices <= now);
     if (!know_kept(tiles))
         return false;
     if (now <= before)
