@@ -653,11 +653,10 @@ static enum tri_status deliver(struct par_state *state, struct tri_error *error)
     return !status && state->options->sink ? hand_out(state, error) : status;
 }
 
-/* A bound on memory that somebody keeps: on ranks each has its own part, and a sink without a scratch directory gets a
- * sweep and no more. */
+/* A bound on memory that somebody keeps: a sink without a scratch directory gets a sweep and no more. */
 static bool is_bounded(const struct par_options *options)
 {
-    return options->memory > 0 && !options->carrier && (options->scratch || !options->sink);
+    return options->memory > 0 && (options->scratch || !options->sink);
 }
 
 static void clean_up(struct par_state *state)

@@ -41,7 +41,8 @@ struct par_options {
                                 it would not fit, it is swept from left to right: few columns are there at a time, and
                                 *mesh is not a mesh afterwards, to be freed and no more. What does not fit then, lies in
                                 files in `scratch` (sched/sweep/park.h). The tiles are the same for any bound. Without a
-                                sink: TRI_NO_MEMORY as soon as it would not fit */
+                                sink: TRI_NO_MEMORY as soon as it would not fit. On ranks each has a bound of its own,
+                                and keeps it by files */
     const char *scratch;     /* directory for these files; NULL: with a sink, the bound decides on the sweep alone, and
                                 a mesh that cannot be swept is TRI_TOO_LARGE */
     struct par_checkpoint *checkpoint; /* where the state of the run is kept, and taken from (sched/sweep/state.h);
