@@ -11,6 +11,7 @@
 #include "sched/phase.h"
 #include "sched/ranks/ranks.h"
 #include "sched/sweep/numbering.h"
+#include "sched/sweep/remain.h"
 #include "sched/sweep/state.h"
 #include "sched/sweep/sweep.h"
 #include "sched/theory.h"
@@ -631,6 +632,8 @@ static enum tri_status hand_out(struct par_state *state, struct tri_error *error
     enum tri_status status = par_park_expect(state->park, state->mesh, par_tiles_whole_bytes(&tiles), error);
     if (status)
         return status;
+    if (state->options->count_remaining && !state->options->carrier)
+        par_remain_count_all(state);
     if (state->options->carrier)
         return par_whole_on_ranks(state->options->carrier, &tiles, error);
     status = par_tiles_whole(&tiles, error);
@@ -672,6 +675,7 @@ static void clean_up(struct par_state *state)
         tri_mesh_drop(state->mesh);
     free(state->worklist.item);
     free(state->key.item);
+    free(state->remaining.item);
     par_partition_free(&state->cells);
     par_room_free(&state->spare);
 }
@@ -688,6 +692,7 @@ static enum tri_status refine_and_deliver(struct par_state *state, const struct 
         status = refine_rest(state, quality, true, error);
     if (sequential)
         state->report->seconds_last += tri_seconds() - began;
+    state->quality = quality; /* all that was asked for */
     return status ? status : deliver(state, error);
 }
 
