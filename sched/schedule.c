@@ -145,7 +145,6 @@ static enum tri_status prerefine_graded(struct par_state *state, const struct tr
     struct tri_refine_report report;
     double least = smallest_cell(partition);
     struct coarse_test test = {partition, 1.0 / 16, least * least / 16, state->mesh->unit};
-    coarse.conforming = false;
     coarse.urgent = is_too_long;
     coarse.urgent_user = &test;
     coarse.max_steiner = (int64_t)(partition->estimate / 400);
