@@ -124,7 +124,7 @@ static int32_t find_tile(struct tile_finder *f, const struct par_partition *p, s
         f->block = block;
         f->tile = block / p->n_rows / 2 * (p->n_rows / 2) + block % p->n_rows / 2;
     }
-    assert(tri_fence_holds(&f->fence, q));
+    assert(tri_fence_holds(&f->locator.fence, q));
     return f->tile;
 }
 
