@@ -59,16 +59,6 @@ bool par_triangle_set_of(struct par_triangle_set *set, const struct par_worklist
     return set->word;
 }
 
-bool par_worklist_add_new(struct par_worklist *triangles, struct par_triangle_set *set, tri_triangle_id triangle)
-{
-    uint64_t bit = (uint64_t)1 << triangle % 64;
-    assert(triangle >= 0);
-    if (set->word[triangle / 64] & bit)
-        return true;
-    set->word[triangle / 64] |= bit;
-    return par_worklist_add(triangles, triangle);
-}
-
 struct finding {
     struct tri_mesh *mesh;
     const struct tri_refine_options *bounds;
