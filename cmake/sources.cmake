@@ -133,6 +133,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/sweep/checkpoint.c
     sched/sweep/state.c
     sched/sweep/ahead.c
+    sched/sweep/remain.c
     sched/sweep/sweep.c
     sched/worklist.c
     sched/phase.c

@@ -26,6 +26,7 @@ struct task {
     struct tri_refine_report report;
     struct tri_refiner *refiner;
     struct par_worklist left;  /* what gate and fence left */
+    struct par_worklist given_up;
     struct par_worklist changed, asked; /* where others hold a part of the block: made by it, waited for */
     bool lost;              /* no memory for one of these lists */
     struct tri_part part;
@@ -55,6 +56,13 @@ static void leave_triangle(void *user, tri_triangle_id triangle)
 {
     struct task *task = user;
     if (!par_worklist_add(&task->left, triangle))
+        task->lost = true;
+}
+
+static void note_given_up(void *user, tri_triangle_id triangle)
+{
+    struct task *task = user;
+    if (!par_worklist_add(&task->given_up, triangle))
         task->lost = true;
 }
 
@@ -223,6 +231,8 @@ static void set_up(struct phase *p, struct task *task)
     task->options.n_worklist = task->n_worklist;
     task->options.deferred = leave_triangle;
     task->options.deferred_user = task;
+    task->options.given_up = state->counts_remaining ? note_given_up : NULL;
+    task->options.given_up_user = task;
     task->options.more_room = par_view_more_room;
     task->options.more_room_user = &task->view;
 }
@@ -483,11 +493,21 @@ static bool gather_changes(const struct phase *p)
     return memory;
 }
 
+static bool gather_given_up(const struct phase *p)
+{
+    bool memory = true;
+    for (int32_t i = 0; i < p->n_tasks; i++)
+        for (int32_t k = 0; memory && k < p->tasks[i].given_up.n; k++)
+            memory = par_worklist_add(&p->state->remaining, p->tasks[i].given_up.item[k]);
+    return memory;
+}
+
 static bool take_back(struct phase *p)
 {
     struct leftovers left = {{0}, {0}};
     bool memory = gather_left(p, &left) &&
-                  par_merge_worklist(p->state, left.item.item, left.key.item, left.item.n) && gather_changes(p);
+                  par_merge_worklist(p->state, left.item.item, left.key.item, left.item.n) && gather_changes(p) &&
+                  gather_given_up(p);
     free(left.item.item);
     free(left.key.item);
     return memory;
@@ -508,6 +528,7 @@ static enum tri_status collect(struct phase *p, struct tri_error *error)
         memory = memory && report_block(p, task);
         par_room_return(&task->view.room, &p->state->spare);
         free(task->left.item);
+        free(task->given_up.item);
         free(task->changed.item);
         free(task->asked.item);
         tri_refiner_free(task->refiner);

@@ -11,6 +11,7 @@
 #include "sched/phase.h"
 #include "sched/ranks/ranks.h"
 #include "sched/sweep/numbering.h"
+#include "sched/sweep/remain.h"
 #include "sched/sweep/state.h"
 #include "sched/sweep/sweep.h"
 #include "sched/theory.h"
@@ -144,7 +145,6 @@ static enum tri_status prerefine_graded(struct par_state *state, const struct tr
     struct tri_refine_report report;
     double least = smallest_cell(partition);
     struct coarse_test test = {partition, 1.0 / 16, least * least / 16, state->mesh->unit};
-    coarse.conforming = false;
     coarse.urgent = is_too_long;
     coarse.urgent_user = &test;
     coarse.max_steiner = (int64_t)(partition->estimate / 400);
@@ -611,6 +611,8 @@ static enum tri_status hand_out(struct par_state *state, struct tri_error *error
     enum tri_status status = par_park_expect(state->park, state->mesh, par_tiles_whole_bytes(&tiles), error);
     if (status)
         return status;
+    if (state->options->count_remaining && !state->options->carrier)
+        par_remain_count_all(state);
     if (state->options->carrier)
         return par_whole_on_ranks(state->options->carrier, &tiles, error);
     status = par_tiles_whole(&tiles, error);
@@ -633,11 +635,10 @@ static enum tri_status deliver(struct par_state *state, struct tri_error *error)
     return !status && state->options->sink ? hand_out(state, error) : status;
 }
 
-/* A bound on memory that somebody keeps: on ranks each has its own part, and a sink without a scratch directory gets a
- * sweep and no more. */
+/* A bound on memory that somebody keeps: a sink without a scratch directory gets a sweep and no more. */
 static bool is_bounded(const struct par_options *options)
 {
-    return options->memory > 0 && !options->carrier && (options->scratch || !options->sink);
+    return options->memory > 0 && (options->scratch || !options->sink);
 }
 
 static void clean_up(struct par_state *state)
@@ -653,6 +654,7 @@ static void clean_up(struct par_state *state)
         tri_mesh_drop(state->mesh);
     free(state->worklist.item);
     free(state->key.item);
+    free(state->remaining.item);
     par_partition_free(&state->cells);
     par_room_free(&state->spare);
 }
@@ -669,6 +671,7 @@ static enum tri_status refine_and_deliver(struct par_state *state, const struct 
         status = refine_rest(state, quality, true, error);
     if (sequential)
         state->report->seconds_last += tri_seconds() - began;
+    state->quality = quality; /* all that was asked for */
     return status ? status : deliver(state, error);
 }
 

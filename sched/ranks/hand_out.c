@@ -209,6 +209,10 @@ static enum tri_status prepare(struct handing *h, int64_t count[3], struct tri_e
     assert(h->first <= h->end && h->first_tile <= h->end_tile);
     h->column = calloc((size_t)(h->end - h->first) + 1, sizeof(struct par_column *));
     h->told = calloc((size_t)territory->n_ranks, sizeof *h->told);
+    const size_t bytes = par_tiles_bytes(h->tiles) + par_tiles_whole_bytes(h->tiles); /* the second for the sink */
+    enum tri_status status = par_park_expect(h->ranks->state->park, h->mesh, bytes, error);
+    if (status)
+        return status;
     par_room_mark(&h->ranks->state->spare, h->mesh);
     if (!h->column || !h->told || !par_tiles_reserve(h->tiles))
         return no_memory(error);
