@@ -92,6 +92,7 @@ static struct par_options options_of(struct program *p, const struct run *run)
     bool bounded = run->hooks->limits.memory > 0 || (run->plan.swept && !p->launch.carrier);
     if (bounded && run->plan.memory < HUGE_VAL)
         options.memory = (int64_t)run->plan.memory;
+    options.count_remaining = !run->arguments->switches.quiet || p->options.report;
     options.scratch = p->scratch;
     options.checkpoint = p->restart.wanted ? &p->restart.checkpoint : NULL;
     return options;
@@ -196,6 +197,8 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
     tell_of_parking(p, run->arguments->switches.quiet);
     if (!status)
         count_streamed(&run->counts, &before, unused, &p->streams);
+    run->remain_known = !status && p->schedule.remain_known;
+    memcpy(run->remain, p->schedule.remain, sizeof run->remain);
     return status;
 }
 

@@ -1,5 +1,5 @@
 /* Blocks and tiles are counted as in sched/ranks/territory.h: columns first. Block (2 i + 1, 2 j + 1) is tile (i, j);
- * others lie over two tiles or four. Where copies of a mesh meet, what were two blocks at rims is one inside. */
+ * others lie over two tiles or four. Where copies of a mesh meet, what were two blocks at borders is one inside. */
 #include "drivers/replay.h"
 
 #include <math.h>

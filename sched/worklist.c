@@ -56,15 +56,6 @@ bool par_triangle_set_of(struct par_triangle_set *set, const struct par_worklist
     return set->word;
 }
 
-bool par_worklist_add_new(struct par_worklist *triangles, struct par_triangle_set *set, tri_triangle_id triangle)
-{
-    uint64_t bit = (uint64_t)1 << triangle % 64;
-    if (set->word[triangle / 64] & bit)
-        return true;
-    set->word[triangle / 64] |= bit;
-    return par_worklist_add(triangles, triangle);
-}
-
 struct finding {
     struct tri_mesh *mesh;
     const struct tri_refine_options *bounds;
@@ -141,6 +132,7 @@ enum tri_status par_worklist_fill(struct par_worklist *worklist, struct tri_mesh
         largest2 = f.radius2[share] > largest2 ? f.radius2[share] : largest2;
     free(worklist->item);
     *worklist = (struct par_worklist){f.found, gather(&f, n), n + 1};
+    assert(worklist->n <= n && largest2 >= 0);
     *radius = sqrt(largest2);
     return TRI_OK;
 }

@@ -36,9 +36,6 @@ struct par_triangle_set {
 /* The triangles of a list, out of n_triangles; false: no memory. To be freed by free(set->word). O(n_triangles). */
 bool par_triangle_set_of(struct par_triangle_set *set, const struct par_worklist *triangles, int32_t n_triangles);
 
-/* Adds a triangle to the list unless it is in the set, which is that of the list. False: no memory. */
-bool par_worklist_add_new(struct par_worklist *triangles, struct par_triangle_set *set, tri_triangle_id triangle);
-
 /* The worklist becomes all triangles that violate the bounds, in the order of their numbers; *radius, the largest
  * circumradius among them. known: the worklist is that already, for the mesh as it was after the last call; then only
  * triangles born since are judged. (Where options.conforming counts, a triangle may have become bad or good with the

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sched/sweep/spool.h"
 #include "triangle/grow.h"
 
 /* --- maps */
@@ -207,17 +208,7 @@ bool par_message_add_entry(struct par_message *m, uint64_t key, int32_t triangle
 /* --- writing */
 
 /* Of what stands before it at the end of a message. */
-static uint64_t hash_of(const char *bytes, size_t n)
-{
-    uint64_t hash = n, word;
-    for (size_t i = 0; i < n; i += sizeof word) {
-        word = 0;
-        memcpy(&word, bytes + i, n - i < sizeof word ? n - i : sizeof word);
-        hash = (hash ^ word) * 0x9e3779b97f4a7c15ull;
-        hash ^= hash >> 29;
-    }
-    return hash;
-}
+static uint64_t hash_of(const char *bytes, size_t n) { return par_hash(n, bytes, n); }
 
 struct writer {
     struct par_bytes *to;
