@@ -10,13 +10,10 @@
 #include "triangle/census.h"
 #include "triangle/grow.h"
 
-bool par_worklist_add(struct par_worklist *triangles, tri_triangle_id triangle)
+bool par_worklist_grow(struct par_worklist *triangles)
 {
     assert(triangles->n >= 0 && triangles->n <= triangles->capacity);
-    if (!tri_grow(&triangles->item, &triangles->capacity, triangles->n + 1, sizeof *triangles->item))
-        return false;
-    triangles->item[triangles->n++] = triangle;
-    return true;
+    return tri_grow(&triangles->item, &triangles->capacity, triangles->n + 1, sizeof *triangles->item);
 }
 
 static int ascending(const void *left, const void *right)
@@ -57,16 +54,6 @@ bool par_triangle_set_of(struct par_triangle_set *set, const struct par_worklist
         set->word[triangles->item[i] / 64] |= (uint64_t)1 << triangles->item[i] % 64;
     }
     return set->word;
-}
-
-bool par_worklist_add_new(struct par_worklist *triangles, struct par_triangle_set *set, tri_triangle_id triangle)
-{
-    uint64_t bit = (uint64_t)1 << triangle % 64;
-    assert(triangle >= 0);
-    if (set->word[triangle / 64] & bit)
-        return true;
-    set->word[triangle / 64] |= bit;
-    return par_worklist_add(triangles, triangle);
 }
 
 struct finding {

@@ -213,7 +213,7 @@ static enum tri_status prepare(struct handing *h, int64_t count[3], struct tri_e
     enum tri_status status = par_park_expect(h->ranks->state->park, h->mesh, bytes, error);
     if (status)
         return status;
-    par_room_mark(&h->ranks->state->spare, h->mesh);
+    par_room_mark(&h->ranks->state->spare, h->mesh, &h->ranks->state->executor);
     if (!h->column || !h->told || !par_tiles_reserve(h->tiles))
         return no_memory(error);
     count[0] = count_vertices(h);

@@ -122,18 +122,20 @@ static int32_t add_up_counts(struct deal *d, int32_t n_tiles)
 
 /* The tile of places that mostly lie in the same one as the last. */
 struct tile_finder {
-    struct tri_fence fence;
-    int32_t tile;
+    struct par_locator locator;
+    int32_t block, tile;
 };
+
+static const struct tile_finder LOST = {{{1, 1, 0, 0}, TRI_NONE}, TRI_NONE, TRI_NONE};
 
 static int32_t find_tile(struct tile_finder *f, const struct par_partition *p, struct tri_point q)
 {
-    if (!tri_fence_holds(&f->fence, q)) {
-        int32_t block = par_block_at(p, 0, q), column = block / p->n_rows, row = block % p->n_rows;
-        f->fence = par_fence(p, column, row);
-        f->tile = column / 2 * (p->n_rows / 2) + row / 2;
+    int32_t block = par_locate(&f->locator, p, 0, q);
+    if (block != f->block) {
+        f->block = block;
+        f->tile = block / p->n_rows / 2 * (p->n_rows / 2) + block % p->n_rows / 2;
     }
-    assert(tri_fence_holds(&f->fence, q));
+    assert(tri_fence_holds(&f->locator.fence, q));
     return f->tile;
 }
 
@@ -161,7 +163,7 @@ static void count_vertices(void *context, size_t share)
     const struct tri_mesh *mesh = n->mesh;
     struct tri_range range = share_of(&n->vertices, share);
     int32_t *count = n->vertices.at + share * (size_t)n->n_tiles;
-    struct tile_finder finder = {.fence = {1, 1, 0, 0}};
+    struct tile_finder finder = LOST;
     for (int32_t i = range.first; i < range.last; i++) {
         tri_vertex_id v = n->n_kept + i;
         n->tile_of[v] = TRI_NONE;
@@ -193,7 +195,7 @@ static void find_kept(void *context, size_t share)
 {
     const struct numbering *n = context;
     struct tri_range range = tri_share(share, n->n_kept);
-    struct tile_finder finder = {.fence = {1, 1, 0, 0}};
+    struct tile_finder finder = LOST;
     for (tri_vertex_id v = range.first; v < range.last; v++) {
         n->number[v] = v;
         n->kept_tile[v] = find_tile(&finder, n->partition, n->mesh->xy[v]);

@@ -441,7 +441,7 @@ enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct
 enum tri_status par_tiles_hand_out(struct par_column *c, struct par_room *spare, struct tri_error *error)
 {
     struct par_tiles *tiles = c->tiles;
-    par_room_mark(spare, tiles->mesh);
+    par_room_mark(spare, tiles->mesh, tiles->executor);
     enum tri_status status = hand_out_column(c, error);
     if (!status && !let_go(c, spare))
         status = no_memory(error);
@@ -454,7 +454,7 @@ enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, struct
                                  struct tri_error *error)
 {
     struct par_column *c;
-    par_room_mark(spare, tiles->mesh);
+    par_room_mark(spare, tiles->mesh, tiles->executor);
     enum tri_status status = par_tiles_number(tiles, column, &c, error);
     status = status ? status : par_tiles_hand_out(c, spare, error);
     par_column_free(c);

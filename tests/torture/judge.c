@@ -251,12 +251,18 @@ static void judge_schedule_size(const struct outcome *first, const struct tri_ps
                     (int)first->mesh.n_triangles, (int)one_call);
 }
 
+/* Sizes and -D make points for each that is there for angles. */
+static bool asks_for_more(const struct outcome *o)
+{
+    return o->options.quality.conforming || tri_has_sizes(&o->options.quality);
+}
+
 /* Above the usual angle at most so many times the triangles at that, which is proved but for what sizes and -D ask for
- * (refine.c); up to it, at most so many times those at an angle that theory promises: some 16 squared by
- * feature_size.c, 47 the most that was seen. Few triangles are not worth it. */
+ * (refine.c), and somewhat more then; up to it, at most so many times those at an angle that theory promises: some 16
+ * squared by feature_size.c, 47 the most that was seen. Few triangles are not worth it. */
 static void judge_amount(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
-    const double PROMISED = 25, BEYOND = 2.5, USUAL = 64;
+    const double PROMISED = 25, BEYOND = asks_for_more(first) ? 4 : 2.5, USUAL = 64;
     enum { FEW = 20000 };
     struct outcome less = *first;
     double angle = first->options.quality.min_angle;

@@ -75,9 +75,9 @@ static int64_t may_run_away(const struct outcome *o, int64_t count, struct verdi
 }
 
 /* The counts that the programs print. A point for a triangle beside a flat one may see the flat one from behind, and is
- * not inserted then; and its height is a feature that nothing can resolve: where there are flat triangles, a few around
- * each may be left. */
-enum { AROUND = 10 };
+ * not inserted then; and its height is a feature that nothing can resolve, so that the subsegments beside it stay as
+ * long as they are: where there are flat triangles, some around each may be left. */
+enum { AROUND = 20 };
 
 static void judge_angles(const struct outcome *o, const struct bounds *b, const struct tri_check_report *report,
                          struct verdict *verdict)
