@@ -217,7 +217,7 @@ static enum tri_status number_mesh(struct par_state *state, struct tri_error *er
     enum tri_status status = par_park_expect(state->park, state->mesh, par_number_bytes(state->mesh), error);
     status = status ? status : par_number(state->mesh, &state->cells, state->n_kept, &timed->executor, error);
     assert(status || (state->mesh->n_vertices >= state->n_kept && tri_mesh_is_sound(state->mesh)));
-    state->numbered = true;
+    state->end = PAR_NUMBERED;
     state->report->seconds_number += tri_seconds() - began;
     return status;
 }
@@ -299,7 +299,7 @@ static enum tri_status refine_on_ranks(struct par_state *state, const struct par
 {
     struct par_tiles tiles = par_tiles_of(state, partition);
     enum tri_status status = par_refine_on_ranks(state, partition, &tiles, error);
-    state->delivered = true;
+    state->end = PAR_DELIVERED;
     par_tiles_free(&tiles);
     return status;
 }
@@ -386,12 +386,15 @@ static enum tri_status leave_memory(struct par_state *state, const struct par_pa
     const struct par_options *options = state->options;
     enum tri_status status = TRI_OK;
     bool can_sweep = state->may_number && (options->sink->begin || !options->scratch);
+    bool swept = false;
     state->stays = true;
     if (can_sweep)
-        status = try_to_sweep(state, partition, &state->delivered, error);
-    if (state->delivered)
+        status = try_to_sweep(state, partition, &swept, error);
+    if (swept) {
         state->report->way = PAR_SWEPT;
-    if (status || state->delivered)
+        state->end = PAR_DELIVERED;
+    }
+    if (status || swept)
         return status;
     if (!options->scratch)
         return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
@@ -455,7 +458,7 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         status = refine_on_ranks(state, partition, error);
     else if (!status && top && !state->stays && is_too_much(state, partition->estimate))
         status = leave_memory(state, partition, error);
-    if (status || state->delivered)
+    if (status || state->end == PAR_DELIVERED)
         return status;
     state->n_schedules++;
     state->round = state->phase = 0;
@@ -627,7 +630,7 @@ static enum tri_status refine_by_schedule(struct par_state *state, const struct 
 /* Hands out a mesh that is finished, tile by tile if it is numbered. */
 static enum tri_status hand_out(struct par_state *state, struct tri_error *error)
 {
-    struct par_tiles tiles = par_tiles_of(state, state->numbered ? &state->cells : NULL);
+    struct par_tiles tiles = par_tiles_of(state, state->end == PAR_NUMBERED ? &state->cells : NULL);
     enum tri_status status = par_park_expect(state->park, state->mesh, par_tiles_whole_bytes(&tiles), error);
     if (status)
         return status;
@@ -645,9 +648,9 @@ static enum tri_status hand_out(struct par_state *state, struct tri_error *error
 static enum tri_status deliver(struct par_state *state, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    if (state->delivered)
+    if (state->end == PAR_DELIVERED)
         return TRI_OK;
-    if (state->report->levels > 0 && !state->options->by_block && !state->numbered)
+    if (state->report->levels > 0 && !state->options->by_block && state->end != PAR_NUMBERED)
         status = number_mesh(state, error);
     state->stage = PAR_FINISHED;
     status = status ? status : come_to_border(state, false, error);
