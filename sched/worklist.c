@@ -10,13 +10,10 @@
 #include "triangle/census.h"
 #include "triangle/grow.h"
 
-bool par_worklist_add(struct par_worklist *triangles, tri_triangle_id triangle)
+bool par_worklist_grow(struct par_worklist *triangles)
 {
     assert(triangles->n >= 0 && triangles->n <= triangles->capacity);
-    if (!tri_grow(&triangles->item, &triangles->capacity, triangles->n + 1, sizeof *triangles->item))
-        return false;
-    triangles->item[triangles->n++] = triangle;
-    return true;
+    return tri_grow(&triangles->item, &triangles->capacity, triangles->n + 1, sizeof *triangles->item);
 }
 
 static int ascending(const void *left, const void *right)

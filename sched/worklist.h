@@ -10,8 +10,17 @@ struct par_worklist {
     int32_t n, capacity;
 };
 
+/* Room for one more. False: no memory. */
+bool par_worklist_grow(struct par_worklist *triangles);
+
 /* Amortised O(1). False: no memory. */
-bool par_worklist_add(struct par_worklist *triangles, tri_triangle_id triangle);
+static inline bool par_worklist_add(struct par_worklist *triangles, tri_triangle_id triangle)
+{
+    if (triangles->n == triangles->capacity && !par_worklist_grow(triangles))
+        return false;
+    triangles->item[triangles->n++] = triangle;
+    return true;
+}
 
 /* Brings ids in ascending order, each once; returns how many are left. */
 int32_t par_sort_unique(int32_t *item, int32_t n);

@@ -215,14 +215,25 @@ struct writer {
     bool lost;
 };
 
+enum { LONGEST = 10, AHEAD = 1 << 12 }; /* bytes of a number; so many are reserved at once */
+
 static void put(struct writer *w, uint64_t n)
 {
-    unsigned char byte[10];
-    int k = 0;
+    struct par_bytes *to = w->to;
+    w->lost = w->lost || (to->capacity - to->n < LONGEST && !par_bytes_reserve(to, AHEAD));
+    if (w->lost)
+        return;
     for (; n >= 128; n >>= 7)
-        byte[k++] = (unsigned char)(n & 127) | 128;
-    byte[k++] = (unsigned char)n;
-    w->lost = w->lost || !par_bytes_add(w->to, byte, (size_t)k);
+        to->at[to->n++] = (char)((n & 127) | 128);
+    to->at[to->n++] = (char)n;
+}
+
+static void put_byte(struct writer *w, unsigned char byte)
+{
+    struct par_bytes *to = w->to;
+    w->lost = w->lost || (to->capacity == to->n && !par_bytes_reserve(to, AHEAD));
+    if (!w->lost)
+        to->at[to->n++] = (char)byte;
 }
 
 static void put_signed(struct writer *w, int64_t n) { put(w, n < 0 ? 2 * ~(uint64_t)n + 1 : 2 * (uint64_t)n); }
@@ -302,7 +313,7 @@ static void put_triangle(struct writer *w, const struct par_message *m, int32_t 
         bool is_first = (flags & ((1 << parent) - 1)) == 0;
         flags |= is_first && t->next[parent] == first + i - 1 ? LAST_IS_PARENT : 0;
     }
-    put_bytes(w, &(unsigned char){(unsigned char)flags}, 1);
+    put_byte(w, (unsigned char)flags);
     put_links(w, t, first + i, flags & LAST_IS_PARENT);
     for (int k = 0; k < 3; k++) {
         if (parent == 3 || (k == parent && !(flags & NEW_APEX)))
