@@ -189,7 +189,10 @@ static void say_way(const struct console *console, const struct run *run, const 
     char whole[64] = "are too many for a mesh in memory";
     if (n->whole < HUGE_VAL)
         snprintf(whole, sizeof whole, "would take %.3g GB of memory", 1e-9 * n->whole);
-    if (e->sweeps)
+    if (e->sweeps && run->hooks->n_ranks > 0)
+        console_say(console, "Sharing: about %.3g million triangles among %d tasks, up to %.3g GB of memory each.\n",
+                    millions(n->triangles), run->hooks->n_ranks, 1e-9 * n->held);
+    else if (e->sweeps)
         console_say(console, "Sweeping: about %.3g million triangles %s, a few columns of them %.3g GB.\n",
                     millions(n->triangles), whole, 1e-9 * n->held);
     if (n->held > left)
@@ -230,6 +233,8 @@ static void print_bytes(const char *what, double needed, double left)
 
 static const char *way_of(const struct run *run, const struct estimate *e)
 {
+    if (run->hooks->n_ranks > 0 && e->sweeps)
+        return "shared by all tasks";
     return !run->plan.swept ? "all in memory" : e->sweeps ? "swept, a few columns in memory at a time"
                                                           : "all in memory, or in files as far as it does not fit";
 }

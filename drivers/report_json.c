@@ -79,12 +79,12 @@ static json_t *predictions_of(const struct par_report *r)
     double sequential = prediction_sequential(r);
     for (int threads = 1; threads <= 256; threads *= 2) {
         double refine = prediction_refine(r->blocks, r->n_blocks, 0, threads);
-        double quality = sequential + refine + prediction_shared(r, r->seconds_find, threads);
+        double quality = sequential + refine + prediction_shared(r, threads);
         if (refine < 0)
             continue;
         json_array_append_new(list, json_pack("{s:i, s:o, s:o, s:o, s:o}", "threads", threads, "refine_seconds",
                                               real(refine), "quality_seconds", real(quality), "number_seconds",
-                                              real(prediction_shared(r, r->seconds_number, threads)),
+                                              real(prediction_number(r, threads)),
                                               "sequential_share", real(quality > 0 ? sequential / quality : 1)));
     }
     return list;
@@ -125,12 +125,11 @@ static json_t *replays_of(const struct par_report *r, double triangles)
     return list;
 }
 
-static json_t *refused_of(const struct tri_refine_report *r)
+static json_t *by_reason(const int64_t count[TRI_EXCUSES])
 {
-    return json_pack("{s:o, s:o, s:o, s:o, s:o}", "input_angle", whole(r->given_up[TRI_EXCUSE_INPUT_ANGLE]),
-                     "narrow_gap", whole(r->given_up[TRI_EXCUSE_NARROW_GAP]), "protected",
-                     whole(r->given_up[TRI_EXCUSE_PROTECTED]), "limit", whole(r->given_up[TRI_EXCUSE_LIMIT]),
-                     "precision", whole(r->given_up[TRI_EXCUSE_PRECISION]));
+    return json_pack("{s:o, s:o, s:o, s:o, s:o}", "input_angle", whole(count[TRI_EXCUSE_INPUT_ANGLE]), "narrow_gap",
+                     whole(count[TRI_EXCUSE_NARROW_GAP]), "protected", whole(count[TRI_EXCUSE_PROTECTED]), "limit",
+                     whole(count[TRI_EXCUSE_LIMIT]), "precision", whole(count[TRI_EXCUSE_PRECISION]));
 }
 
 static const char *const way_names[] = {[PAR_IN_MEMORY] = "in memory", [PAR_SWEPT] = "swept", [PAR_PARKED] = "parked"};
@@ -143,10 +142,11 @@ static json_t *schedule_of(const struct par_report *r, double triangles)
         json_pack("{s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "levels", r->levels, "rounds",
                   r->rounds, "columns", (int)r->columns, "rows", (int)r->rows, "prerefined", whole(r->prerefined),
                   "inserted", inserted, "deferred", whole(r->deferred), "left_over", whole(r->left_over), "refused",
-                  refused_of(&r->total), "pauses", whole(r->pauses), "radius_lemma7", real(r->radius_lemma7),
+                  by_reason(r->total.given_up), "pauses", whole(r->pauses), "radius_lemma7", real(r->radius_lemma7),
                   "radius_theory", real(r->radius_theory), "radius_measured", real(r->radius_measured));
-    json_t *way = json_pack("{s:s, s:o, s:o}", "way", way_names[r->way], "most_live_triangles", whole(r->most_live),
-                            "parked_bytes", whole(r->parked));
+    json_t *way = json_pack("{s:s, s:o, s:o, s:o}", "way", way_names[r->way], "most_live_triangles",
+                            whole(r->most_live), "parked_bytes", whole(r->parked), "below_bounds",
+                            r->remain_known ? by_reason(r->remain) : json_null());
     if (json_object_update(counts, way)) {
         json_decref(counts);
         counts = NULL;

@@ -341,6 +341,8 @@ static void tell_of_quality(struct runner *r)
         console_warn(&r->console, "the limit of -S was reached before the mesh was conforming.\n");
     if (!r->console.quiet && !run->plan.swept) /* a pass over all triangles */
         summary_bounds(&r->console, &run->mesh, &run->options.quality, report, run->hooks->executor);
+    else if (run->remain_known)
+        summary_remaining(&r->console, run->remain, &run->options.quality, report);
 }
 
 /* --- a run that is stopped */

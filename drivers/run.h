@@ -45,6 +45,8 @@ struct run {
     struct tri_mesh mesh;
     struct tri_report report;
     struct tri_counts counts;
+    int64_t remain[TRI_EXCUSES]; /* of a swept or parked mesh: triangles that stay below the bounds */
+    bool remain_known;
     double seconds[RUN_STAGES];
     double total_seconds;
     const char *stopped; /* what stopped the run, of which this is the mesh so far: "SIGTERM"; NULL: nothing */
@@ -74,6 +76,7 @@ struct run_hooks {
     bool streams;                   /* refine follows run->plan, and can write files meanwhile */
     bool always_sweep;              /* on ranks, and for tests: also what would fit in memory */
     bool written_elsewhere;         /* another rank reads and writes all files */
+    int n_ranks;                    /* that share the mesh; 0: it is all here */
     /* Several ranks, which call these together. share: after the first has read the input; all have it then. agree:
      * before anything gets its name, and by whoever fails, at whatever call the others are. Both return the same status
      * on all, with the same error. NULL: there is one. */

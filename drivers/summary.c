@@ -78,6 +78,12 @@ void summary_bounds(const struct console *console, const struct tri_mesh *mesh,
         say_reasons(console, count, options, report);
     }
     tri_count_bad(mesh, options, report, executor, count);
+    summary_remaining(console, count, options, report);
+}
+
+void summary_remaining(const struct console *console, const int64_t count[TRI_EXCUSES],
+                       const struct tri_refine_options *options, const struct tri_refine_report *report)
+{
     int64_t n = sum_of(count);
     if (n == 0)
         console_say(console, "All triangles keep the bounds.\n");

@@ -20,6 +20,10 @@ void summary_bounds(const struct console *console, const struct tri_mesh *mesh,
                     const struct tri_refine_options *options, const struct tri_refine_report *report,
                     const struct tri_executor *executor);
 
+/* The same of triangles that have been counted. */
+void summary_remaining(const struct console *console, const int64_t count[TRI_EXCUSES],
+                       const struct tri_refine_options *options, const struct tri_refine_report *report);
+
 /* The block "Statistics:". n_input_triangles is told with -r. */
 void summary_counts(const struct console *console, const struct tri_switches *switches, const struct tri_pslg *pslg,
                     int32_t n_input_triangles, const struct tri_counts *counts);

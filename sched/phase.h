@@ -53,6 +53,8 @@ struct par_state {
     struct tri_executor executor;
     struct par_worklist worklist;   /* triangles that may be bad, in canonical order; some may have gone since */
     struct par_keys key;     /* [worklist.n] ascending; n == 0: no block has had any */
+    struct par_worklist remaining; /* where bad triangles are counted as they leave (sched/sweep/remain.h) */
+    bool counts_remaining;   /* so it is now */
     struct par_room spare;   /* unused ranges of the arrays */
     double radius;           /* largest circumradius in the worklist when it was last filled */
     struct par_report *report;

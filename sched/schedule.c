@@ -11,6 +11,7 @@
 #include "sched/phase.h"
 #include "sched/ranks/ranks.h"
 #include "sched/sweep/numbering.h"
+#include "sched/sweep/remain.h"
 #include "sched/sweep/state.h"
 #include "sched/sweep/sweep.h"
 #include "sched/theory.h"
@@ -188,13 +189,34 @@ static enum tri_status refine_rest(struct par_state *state, const struct tri_ref
     return status;
 }
 
+/* How long stages work in shares: the executor of a struct par_state. */
+struct timed {
+    struct tri_executor executor;
+    double *seconds; /* [PAR_SHARINGS] */
+};
+
+_Static_assert(1 << (PAR_SHARINGS - 1) == TRI_MOST_SHARES, "the last ones have most shares");
+
+static void run_timed(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
+{
+    const struct timed *timed = self;
+    double began = tri_seconds();
+    int sharing = 0;
+    while (sharing + 1 < PAR_SHARINGS && n_tasks >> (sharing + 1) > 0)
+        sharing++;
+    timed->executor.run(timed->executor.self, n_tasks, task, context);
+    timed->seconds[sharing] += tri_seconds() - began;
+}
+
 /* Numbers that depend on the mesh alone; what is free in its arrays is gone then. */
 static enum tri_status number_mesh(struct par_state *state, struct tri_error *error)
 {
+    const struct timed *timed = state->executor.self; /* what it does in shares is told as numbering */
     double began = tri_seconds();
     par_tell(state, PAR_NUMBERING);
     enum tri_status status = par_park_expect(state->park, state->mesh, par_number_bytes(state->mesh), error);
-    status = status ? status : par_number(state->mesh, &state->cells, state->n_kept, &state->executor, error);
+    status = status ? status : par_number(state->mesh, &state->cells, state->n_kept, &timed->executor, error);
+    assert(status || (state->mesh->n_vertices >= state->n_kept && tri_mesh_is_sound(state->mesh)));
     state->numbered = true;
     state->report->seconds_number += tri_seconds() - began;
     return status;
@@ -206,7 +228,7 @@ static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, st
     enum tri_status status = TRI_OK;
     double began = tri_seconds();
     if (numbering) {
-        par_room_mark(&state->spare, state->mesh);
+        par_room_mark(&state->spare, state->mesh, &state->executor);
         state->report->seconds_merge += tri_seconds() - began;
         status = number_mesh(state, error);
         if (!status) {
@@ -384,7 +406,7 @@ static enum tri_status finish_schedule(struct par_state *state, const struct tri
 {
     double last = tri_seconds();
     if (!status && state->worklist.n > 0) { /* in the order of the worklist, which ids do not show in */
-        par_room_mark(&state->spare, state->mesh);
+        par_room_mark(&state->spare, state->mesh, &state->executor);
         status = refine_rest(state, quality, false, error);
     }
     state->report->seconds_last += tri_seconds() - last;
@@ -609,6 +631,8 @@ static enum tri_status hand_out(struct par_state *state, struct tri_error *error
     enum tri_status status = par_park_expect(state->park, state->mesh, par_tiles_whole_bytes(&tiles), error);
     if (status)
         return status;
+    if (state->options->count_remaining && !state->options->carrier)
+        par_remain_count_all(state);
     if (state->options->carrier)
         return par_whole_on_ranks(state->options->carrier, &tiles, error);
     status = par_tiles_whole(&tiles, error);
@@ -631,11 +655,10 @@ static enum tri_status deliver(struct par_state *state, struct tri_error *error)
     return !status && state->options->sink ? hand_out(state, error) : status;
 }
 
-/* A bound on memory that somebody keeps: on ranks each has its own part, and a sink without a scratch directory gets a
- * sweep and no more. */
+/* A bound on memory that somebody keeps: a sink without a scratch directory gets a sweep and no more. */
 static bool is_bounded(const struct par_options *options)
 {
-    return options->memory > 0 && !options->carrier && (options->scratch || !options->sink);
+    return options->memory > 0 && (options->scratch || !options->sink);
 }
 
 static void clean_up(struct par_state *state)
@@ -651,6 +674,7 @@ static void clean_up(struct par_state *state)
         tri_mesh_drop(state->mesh);
     free(state->worklist.item);
     free(state->key.item);
+    free(state->remaining.item);
     par_partition_free(&state->cells);
     par_room_free(&state->spare);
 }
@@ -667,6 +691,7 @@ static enum tri_status refine_and_deliver(struct par_state *state, const struct 
         status = refine_rest(state, quality, true, error);
     if (sequential)
         state->report->seconds_last += tri_seconds() - began;
+    state->quality = quality; /* all that was asked for */
     return status ? status : deliver(state, error);
 }
 
@@ -674,9 +699,11 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
                            const struct par_options *options, struct par_report *report, struct tri_error *error)
 {
     double began = tri_seconds();
+    assert(tri_mesh_is_sound(mesh));
     *report = (struct par_report){.threads = par_threads(options->threads, false)};
+    struct timed timed = {par_executor(&report->threads), report->seconds_shared};
     struct par_state state = {.mesh = mesh, .quality = quality, .options = options, .report = report,
-                              .executor = par_executor(&report->threads),
+                              .executor = {run_timed, &timed},
                               .n_kept = mesh->n_vertices};
     bool sequential = must_be_sequential(quality, options);
     bool can_sweep = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE;
@@ -686,12 +713,13 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     if (status)
         return status;
     if (state.park)
-        state.executor = par_park_executor(state.park, state.executor);
+        timed.executor = par_park_executor(state.park, timed.executor);
     if (checkpoint_of(&state))
         status = par_state_begin(options->checkpoint, &state, error);
     status = status ? status : refine_and_deliver(&state, quality, sequential, error);
     status = par_park_status(state.park, status, error);
     clean_up(&state);
+    assert(options->sink || tri_mesh_is_sound(mesh));
     report->seconds_total = tri_seconds() - began;
     return status;
 }

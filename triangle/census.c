@@ -86,6 +86,22 @@ int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_optio
     return n;
 }
 
+int32_t tri_find_hopeless(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                          tri_triangle_id *found)
+{
+    const struct tri_criterion c = tri_criterion_for(mesh, options);
+    int32_t n = 0;
+    for (tri_triangle_id triangle = 0; triangle < mesh->n_triangles; triangle++) {
+        const struct tri_triangle *t = &mesh->tri[triangle];
+        if (!tri_is_live(t) || needs_work(&c, triangle))
+            continue;
+        struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
+        if (tri_judge(&c, t, &shape) != TRI_GOOD)
+            found[n++] = triangle;
+    }
+    return n;
+}
+
 /* May a corner of the triangle be an end of a subsegment that must not be split? */
 static bool is_beside_protected(const struct tri_criterion *c, const struct tri_triangle *t)
 {
@@ -161,19 +177,33 @@ struct counting {
     int64_t count[TRI_MOST_SHARES][TRI_EXCUSES];
 };
 
+static void count_triangle(const struct tri_criterion *c, const struct tri_refine_report *report, tri_triangle_id t,
+                           int64_t count[TRI_EXCUSES])
+{
+    const struct tri_mesh *mesh = c->mesh;
+    if (!tri_is_live(&mesh->tri[t]))
+        return;
+    struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
+    enum tri_badness badness = tri_judge(c, &mesh->tri[t], &shape);
+    if (badness != TRI_GOOD)
+        count[excuse_for(c, t, &shape, badness, report)]++;
+}
+
 static void count_share(void *context, size_t share)
 {
     struct counting *c = context;
-    const struct tri_mesh *mesh = c->criterion.mesh;
-    struct tri_range range = tri_share(share, mesh->n_triangles);
-    for (tri_triangle_id t = range.first; t < range.last; t++) {
-        if (!tri_is_live(&mesh->tri[t]))
-            continue;
-        struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
-        enum tri_badness badness = tri_judge(&c->criterion, &mesh->tri[t], &shape);
-        if (badness != TRI_GOOD)
-            c->count[share][excuse_for(&c->criterion, t, &shape, badness, c->report)]++;
-    }
+    struct tri_range range = tri_share(share, c->criterion.mesh->n_triangles);
+    for (tri_triangle_id t = range.first; t < range.last; t++)
+        count_triangle(&c->criterion, c->report, t, c->count[share]);
+}
+
+void tri_count_bad_among(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                         const struct tri_refine_report *report, const tri_triangle_id *triangle, int32_t n,
+                         int64_t count[TRI_EXCUSES])
+{
+    const struct tri_criterion c = tri_criterion_for(mesh, options);
+    for (int32_t i = 0; i < n; i++)
+        count_triangle(&c, report, triangle[i], count);
 }
 
 void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options *options,

@@ -35,6 +35,16 @@ void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options 
                    const struct tri_refine_report *report, const struct tri_executor *executor,
                    int64_t count[TRI_EXCUSES]);
 
+/* The same of n triangles alone, each of which is listed once; adds to the counts. */
+void tri_count_bad_among(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                         const struct tri_refine_report *report, const tri_triangle_id *triangle, int32_t n,
+                         int64_t count[TRI_EXCUSES]);
+
+/* found[n_triangles] receives the triangles that violate the bounds though there is nothing to do at them: what
+ * tri_find_work leaves out. Returns how many. A size test is asked. O(triangles). */
+int32_t tri_find_hopeless(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                          tri_triangle_id *found);
+
 #ifdef __cplusplus
 }
 #endif

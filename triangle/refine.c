@@ -285,9 +285,12 @@ static enum outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
     return REFUSED;
 }
 
-static enum outcome give_up(struct tri_refiner *r, enum tri_excuse excuse)
+/* A triangle, or, where it is TRI_NONE, a subsegment. */
+static enum outcome give_up(struct tri_refiner *r, tri_triangle_id triangle, enum tri_excuse excuse)
 {
     r->report->given_up[excuse]++;
+    if (r->options->given_up && triangle != TRI_NONE)
+        r->options->given_up(r->options->given_up_user, triangle);
     return GIVEN_UP;
 }
 
@@ -524,11 +527,11 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         r->sized = badness == TRI_BAD_SIZE;
         if (badness == TRI_BAD_ANGLE && is_hopeless(r, entry.t, &shape)) {
             if (!tri_is_too_large(&r->criterion, t, &shape))
-                return give_up(r, TRI_EXCUSE_INPUT_ANGLE);
+                return give_up(r, entry.t, TRI_EXCUSE_INPUT_ANGLE);
             r->sized = true;
         }
         if (at_limit(r))
-            return give_up(r, TRI_EXCUSE_LIMIT);
+            return give_up(r, entry.t, TRI_EXCUSE_LIMIT);
         bool resolved = shape.l[shape.shortest] >= r->mesh->limits.shortest2;
         enum outcome outcome = resolved ? propose(r, entry.t, &shape, badness) : refuse(r, TRI_EXCUSE_PRECISION);
         if (outcome == REFUSED && tri_is_too_large(&r->criterion, t, &shape)) {
@@ -538,7 +541,7 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         if (outcome == DONE || outcome == AGAIN)
             count_point(r);
         if (outcome != AGAIN)
-            return outcome == REFUSED ? give_up(r, r->excuse) : outcome;
+            return outcome == REFUSED ? give_up(r, entry.t, r->excuse) : outcome;
         if (must_stop(r))
             return FAILED;
     }
@@ -568,7 +571,7 @@ static bool split_encroached(struct tri_refiner *r)
         if (outcome == DONE)
             count_point(r);
         if (outcome == REFUSED)
-            give_up(r, r->excuse);
+            give_up(r, TRI_NONE, r->excuse);
     }
     return true;
 }

@@ -75,6 +75,8 @@ struct tri_refine_options {
     int32_t n_worklist;
     tri_deferred *deferred; /* NULL: nobody */
     void *deferred_user;
+    tri_deferred *given_up; /* told of each triangle that is given up; it may be gone later. NULL: nobody */
+    void *given_up_user;
     tri_more_room *more_room; /* NULL: the mesh's arrays grow */
     void *more_room_user;
     const struct tri_part *part; /* NULL: all of the mesh is here */

@@ -1,7 +1,10 @@
 /* Columns in turn: refine, look for what is left behind, hand out. */
 #include "sched/sweep/sweep.h"
 
+#include <assert.h>
+
 #include "sched/sweep/ahead.h"
+#include "sched/sweep/remain.h"
 #include "sched/sweep/state.h"
 #include "triangle/clock.h"
 
@@ -29,9 +32,11 @@ static bool is_left_behind(const struct par_state *state, double x)
 static enum tri_status finish_column(struct par_state *state, struct par_tiles *tiles, int32_t column, bool *left,
                                      struct tri_error *error)
 {
-    double began = tri_seconds();
-    *left = is_left_behind(state, par_fence(tiles->partition, column, 0).x_max);
+    double began = tri_seconds(), end = par_fence(tiles->partition, column, 0).x_max;
+    *left = is_left_behind(state, end);
     enum tri_status status = *left ? TRI_OK : par_park_expect(state->park, state->mesh, par_tiles_bytes(tiles), error);
+    if (!status && !*left && state->counts_remaining)
+        par_remain_count(state, end);
     if (!status && !*left)
         status = par_tiles_column(tiles, column, &state->spare, error);
     state->gone = tiles->n_triangles;
@@ -44,6 +49,7 @@ static enum tri_status refine_columns(struct par_state *state, const struct par_
                                       struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
+    assert(odd % 2 == 1);
     for (int phase = 0; !status && phase < PAR_PHASES; phase++) {
         int32_t column = phase < 2 ? odd : odd - 1;
         par_tell(state, phase + 1);
@@ -99,6 +105,9 @@ static enum tri_status begin_sweep(struct par_state *state, struct par_tiles *ti
         status = par_tiles_begin(tiles, tiles->partition->estimate, error);
     if (*odd == 1)
         state->worklist.n = 0;
+    state->counts_remaining = state->options->count_remaining && *odd == 1; /* a sweep that goes on does not know */
+    if (!status && state->counts_remaining && !par_remain_begin(state))
+        status = no_memory(error);
     return status;
 }
 
@@ -111,6 +120,7 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
     int32_t odd;
     enum tri_status status = begin_sweep(state, &tiles, &ahead, &odd, error);
     status = status ? status : sweep_columns(state, &tiles, &ahead, odd, &left, error);
+    state->counts_remaining = false;
     par_ahead_free(&ahead);
     if (!status && left && state->options->checkpoint)
         status = par_state_give_up_sweep(state->options->checkpoint, state, error);

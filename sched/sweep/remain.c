@@ -1,0 +1,60 @@
+/* A list of triangles that have been given up, looked through once for each column. */
+#include "sched/sweep/remain.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "triangle/census.h"
+
+/* Reasons that name the schedule: nothing is deferred where no block leaves anything. */
+static struct tri_refine_report report_of(const struct par_state *state)
+{
+    struct tri_refine_report report = state->report->total;
+    report.gated = report.fenced = 0;
+    return report;
+}
+
+bool par_remain_begin(struct par_state *state)
+{
+    struct par_worklist *list = &state->remaining;
+    tri_triangle_id *found = malloc(((size_t)state->mesh->n_triangles + 1) * sizeof *found);
+    const int32_t n = found ? tri_find_hopeless(state->mesh, state->quality, found) : 0;
+    bool memory = found;
+    list->n = 0;
+    for (int32_t i = 0; memory && i < n; i++)
+        memory = par_worklist_add(list, found[i]);
+    free(found);
+    memset(state->report->remain, 0, sizeof state->report->remain);
+    state->report->remain_known = memory;
+    return memory;
+}
+
+static bool has_corner_left_of(const struct tri_mesh *mesh, tri_triangle_id t, double x)
+{
+    const tri_vertex_id *v = mesh->tri[t].v;
+    return mesh->xy[v[0]].x < x || mesh->xy[v[1]].x < x || mesh->xy[v[2]].x < x;
+}
+
+/* Those to come stay in front, those to count go behind them. */
+void par_remain_count(struct par_state *state, double x)
+{
+    const struct tri_mesh *mesh = state->mesh;
+    const struct tri_refine_report report = report_of(state);
+    struct par_worklist *list = &state->remaining;
+    int32_t n = par_sort_unique(list->item, list->n), kept = 0;
+    for (int32_t i = 0; i < n; i++) {
+        const tri_triangle_id t = list->item[i];
+        if (tri_is_live(&mesh->tri[t]) && !has_corner_left_of(mesh, t, x))
+            list->item[kept++] = t;
+        else if (tri_is_live(&mesh->tri[t]))
+            tri_count_bad_among(mesh, state->quality, &report, &t, 1, state->report->remain);
+    }
+    list->n = kept;
+}
+
+void par_remain_count_all(struct par_state *state)
+{
+    const struct tri_refine_report report = report_of(state);
+    tri_count_bad(state->mesh, state->quality, &report, &state->executor, state->report->remain);
+    state->report->remain_known = true;
+}
