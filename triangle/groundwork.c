@@ -86,8 +86,8 @@ static void merge_spokes(struct tri_point hub, const struct spoke *from, struct 
     }
 }
 
-/* By merging, which goes through memory in order: at a hub of a million parents five times as fast as a heap, which does
- * without memory. False where there is none. */
+/* By merging, which goes through memory in order: at a hub of a million parents five times as fast as a heap, which
+ * does without memory. False where there is none. */
 static bool sort_by_merging(const struct tri_mesh *mesh, tri_vertex_id hub, tri_parent_id *parent, int32_t n)
 {
     struct spoke *all = malloc(2 * (size_t)n * sizeof *all), *from = all, *to = all + n;
