@@ -316,7 +316,7 @@ int64_t tri_mesh_count(const struct tri_mesh *mesh, enum tri_count what)
 }
 
 _Static_assert((int)TRI_REASONS == (int)TRI_EXCUSES && (int)TRI_REASON_INPUT_ANGLE == (int)TRI_EXCUSE_INPUT_ANGLE &&
-                   (int)TRI_REASON_CHANNEL == (int)TRI_EXCUSE_NARROW_GAP &&
+                   (int)TRI_REASON_NARROW_GAP == (int)TRI_EXCUSE_NARROW_GAP &&
                    (int)TRI_REASON_PROTECTED == (int)TRI_EXCUSE_PROTECTED &&
                    (int)TRI_REASON_LIMIT == (int)TRI_EXCUSE_LIMIT &&
                    (int)TRI_REASON_PRECISION == (int)TRI_EXCUSE_PRECISION &&
