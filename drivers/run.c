@@ -107,7 +107,7 @@ static enum tri_status read_mesh(struct runner *r, const struct tri_names *names
     return tri_read_area(names->area, options, &run->elements, r->error);
 }
 
-/* Who names a file of another kind gets a word on what is read. */
+/* Where the file that was named is there, but not of a kind that is read, the error says which kinds are. */
 static void add_hint(const struct runner *r)
 {
     const char *file = r->run.arguments->file;
