@@ -205,7 +205,7 @@ static json_t *mesh_of(const struct run *run)
 /* --- ranks */
 
 static const char *const move_names[] = {
-    [PAR_MOVE_STRIPS] = "borders", [PAR_MOVE_BACK] = "back",   [PAR_MOVE_LEFT_OVER] = "left_over",
+    [PAR_MOVE_BORDERS] = "borders", [PAR_MOVE_BACK] = "back",   [PAR_MOVE_LEFT_OVER] = "left_over",
     [PAR_MOVE_NUMBERS] = "numbers", [PAR_MOVE_TILES] = "tiles", [PAR_MOVE_INPUT] = "input",
 };
 

@@ -9,7 +9,7 @@
  *      blocks 0 2 4 6  |---|-------|-------|---|
  *
  * Rows are cut in the same way, for each block column from the work inside it. A block has four cells, half or a
- * quarter of that at the rim. Its phase is the parity of its column and of its row; phase 0 has the odd ones,
+ * quarter of that where the cells end. Its phase is the parity of its column and of its row; phase 0 has the odd ones,
  * and both phases of odd columns come before those of even ones.
  *
  * INVARIANT: blocks of one phase are disjoint half-open boxes and tile the plane; a block of the next phase covers

@@ -95,7 +95,7 @@ static int32_t insert_block(struct trial *t, struct tri_range block, int32_t ent
             continue;
         memcpy(before, t->tri, bytes);
         enum tri_insertion done = tri_insert(&inserter, v, 2 * v);
-        assert_true(done != TRI_NO_ROOM_FOR_CAVITY);
+        assert_true(done != TRI_INSERTION_NO_MEMORY);
         inserted[v] = done == TRI_INSERTED;
         not_owned += done == TRI_NOT_OWNED;
         for (int32_t i = 0; i < 2 * t->n + 4; i++) {

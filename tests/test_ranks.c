@@ -244,7 +244,7 @@ static void test_ranks_hand_out_what_one_process_does(void **state)
                           " %.2f strips, %.2f back, %.2f left over, %.2f numbers\n",
                           trials[i].file, (long long)alone.stream.end[1], (int)alone.report.columns,
                           alone.report.rounds, (long long)alone.report.left_over, n_ranks,
-                          (double)sent(member, n_ranks, PAR_MOVE_STRIPS) / (double)alone.stream.end[1],
+                          (double)sent(member, n_ranks, PAR_MOVE_BORDERS) / (double)alone.stream.end[1],
                           (double)sent(member, n_ranks, PAR_MOVE_BACK) / (double)alone.stream.end[1],
                           (double)sent(member, n_ranks, PAR_MOVE_LEFT_OVER) / (double)alone.stream.end[1],
                           (double)sent(member, n_ranks, PAR_MOVE_NUMBERS) / (double)alone.stream.end[1]);

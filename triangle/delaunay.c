@@ -185,7 +185,7 @@ static enum tri_status insert_leaf(const struct builder *b, struct leaf *leaf, s
             return TRI_STOPPED;
         tri_triangle_id triangle = 2 * (leaf->round[b->round] + leaf->n_inserted);
         enum tri_insertion done = tri_insert(inserter, waiting[i], triangle);
-        if (done == TRI_NO_ROOM_FOR_CAVITY)
+        if (done == TRI_INSERTION_NO_MEMORY)
             return TRI_NO_MEMORY;
         if (done == TRI_NOT_OWNED)
             waiting[kept++] = waiting[i];

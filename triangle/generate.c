@@ -15,7 +15,7 @@ static void announce(const struct tri_options *options, enum tri_stage stage)
 }
 
 /* The segments of a PSLG by the numbers that its points have in the mesh. What names no point goes on naming none. */
-static enum tri_status rename_segments(struct tri_pslg *renamed, const struct tri_pslg *pslg, const int32_t *rank,
+static enum tri_status rename_segments(struct tri_pslg *renamed, const struct tri_pslg *pslg, const int32_t *place,
                                        struct tri_error *error)
 {
     size_t n = 2 * (size_t)pslg->n_segments;
@@ -25,7 +25,7 @@ static enum tri_status rename_segments(struct tri_pslg *renamed, const struct tr
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)pslg->n_segments);
     for (size_t i = 0; i < n; i++) {
         tri_vertex_id v = pslg->segments[i];
-        renamed->segments[i] = v >= 0 && v < pslg->n_points ? rank[v] : TRI_NONE;
+        renamed->segments[i] = v >= 0 && v < pslg->n_points ? place[v] : TRI_NONE;
     }
     return TRI_OK;
 }
@@ -55,17 +55,17 @@ static enum tri_status triangulate(struct tri_mesh *mesh, const struct tri_pslg 
                                    const struct tri_options *options, struct tri_report *report,
                                    struct tri_error *error)
 {
-    int32_t *rank = NULL;
+    int32_t *place = NULL;
     struct tri_pslg renamed = {0};
     enum tri_status status = tri_mesh_take_points(mesh, pslg, error);
     announce(options, TRI_STAGE_DELAUNAY);
-    status = status ? status : tri_sort_points(mesh, &rank, options->executor, error);
+    status = status ? status : tri_sort_points(mesh, &place, options->executor, error);
     status = status ? status : tri_delaunay(mesh, options->executor, error);
     assert(status || tri_mesh_is_sound(mesh));
     for (tri_vertex_id v = 0; !status && mesh->twin && v < mesh->n_input; v++)
         report->duplicates += mesh->twin[v] != v;
-    status = status ? status : rename_segments(&renamed, pslg, rank, error);
-    free(rank);
+    status = status ? status : rename_segments(&renamed, pslg, place, error);
+    free(place);
     status = status ? status : constrain_and_carve(mesh, &renamed, options, report, error);
     free(renamed.segments);
     return status;

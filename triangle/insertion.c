@@ -131,7 +131,7 @@ static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, tr
             if (!holds(b, t->v[e]))
                 return TRI_NOT_OWNED;
             if (b->n_cavity == b->capacity && !grow(b))
-                return TRI_NO_ROOM_FOR_CAVITY;
+                return TRI_INSERTION_NO_MEMORY;
             b->cavity[b->n_cavity++] = tri_of(link);
             b->pending[n_pending++] = (struct tri_inserter_pending){t->n[tri_prev[e]], end};
             link = t->n[tri_next[e]];
@@ -182,7 +182,7 @@ enum tri_insertion tri_insert(struct tri_inserter *b, tri_vertex_id v, tri_trian
     assert(holds(b, v) && tri_inserter_owns(b, &start) && in_disk(b, &start, q));
     b->n_cavity = b->n_edges = 0;
     if (b->capacity == 0 && !grow(b))
-        return TRI_NO_ROOM_FOR_CAVITY;
+        return TRI_INSERTION_NO_MEMORY;
     b->cavity[b->n_cavity++] = t;
     for (int e = 0; e < 3; e++) {
         enum tri_insertion found = explore(b, q, start.n[e], start.v[tri_next[e]], start.v[tri_prev[e]]);

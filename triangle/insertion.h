@@ -64,7 +64,7 @@ bool tri_inserter_owns(const struct tri_inserter *b, const struct tri_triangle *
  * owns. Sets `last`. */
 tri_triangle_id tri_inserter_locate(struct tri_inserter *b, struct tri_point q);
 
-enum tri_insertion { TRI_INSERTED, TRI_NOT_OWNED, TRI_NO_ROOM_FOR_CAVITY };
+enum tri_insertion { TRI_INSERTED, TRI_NOT_OWNED, TRI_INSERTION_NO_MEMORY };
 
 /* Inserts vertex v, of the block and at a place where no vertex is; takes this triangle and the next. TRI_NOT_OWNED:
  * the block does not own the cavity, or did not find it; nothing has changed. */

@@ -37,7 +37,7 @@ extern "C" {
 
 enum {
     TRI_NONE = -1,        /* no triangle on this side of a subsegment; no vertex; no parent */
-    TRI_BEYOND = INT32_MIN, /* a link, or a side of a subsegment, to a triangle in another address space: see below */
+    TRI_BEYOND = INT32_MIN, /* a link, or a side of a subsegment, to a triangle in another address space: see above */
     TRI_MAX_VERTICES = 1 << 28,
     TRI_MAX_TRIANGLES = 1 << 29
 };

@@ -16,7 +16,8 @@ struct tri_bounds {
     double off_centre; /* height of an off-centre over its edge in units of the edge; 0: always circumcentres */
 };
 
-/* min_angle in degrees, 0 .. 60; conforming: the lens is the whole diametral disk. */
+/* min_angle in degrees; above 60 as 60, which no mesh keeps; 0: no bound. conforming: the lens is the whole diametral
+ * disk. */
 struct tri_bounds tri_bounds_for(double min_angle, bool conforming);
 
 /* One instruction each, which fmin and fmax are not: those have to say what to do about NaN. */
@@ -49,7 +50,7 @@ static inline double tri_longer_product(double a, double b, double c)
 }
 
 /* The point that replaces a bad triangle, on the bisector of its shortest edge: the circumcentre or, where that lies
- * farther from the edge than `reach` (a height over the edge), the point at that height (off-centres: Uengoer 2004). */
+ * farther from the edge than `reach` (a height over the edge), the point at that height (off-centres: Üngör 2004). */
 struct tri_point tri_place(const struct tri_point *xy, const tri_vertex_id v[3], const struct tri_shape *shape,
                            double reach);
 

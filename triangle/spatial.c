@@ -1,6 +1,6 @@
 /* The two permutations of the caller's points.
  *
- * INVARIANT: origin is a permutation of 0 .. n_input - 1; rank is its inverse. Only input vertices move, so whatever
+ * INVARIANT: origin is a permutation of 0 .. n_input - 1; place is its inverse. Only input vertices move, so whatever
  * names a vertex at or above n_input stays as it is. */
 #include "triangle/spatial.h"
 
@@ -26,13 +26,13 @@ static enum tri_status no_memory(const struct tri_mesh *mesh, struct tri_error *
 /* The inverse of a permutation, malloc'ed; NULL: no memory. */
 static int32_t *inverse_of(const int32_t *order, int32_t n)
 {
-    int32_t *rank = array(n, sizeof *rank);
-    for (tri_vertex_id v = 0; rank && v < n; v++)
-        rank[order[v]] = v;
-    return rank;
+    int32_t *place = array(n, sizeof *place);
+    for (tri_vertex_id v = 0; place && v < n; v++)
+        place[order[v]] = v;
+    return place;
 }
 
-enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **rank, const struct tri_executor *executor,
+enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **place, const struct tri_executor *executor,
                                 struct tri_error *error)
 {
     int32_t n = mesh->n_input, *origin = array(n, sizeof *origin);
@@ -43,15 +43,15 @@ enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **rank, const str
             origin[v] = v;
         tri_hilbert_order(mesh->xy, origin, n, scratch, executor);
     }
-    *rank = origin && scratch ? inverse_of(origin, n) : NULL;
-    if (*rank) {
+    *place = origin && scratch ? inverse_of(origin, n) : NULL;
+    if (*place) {
         tri_mesh_gather_vertices(mesh, 0, origin, n, scratch, executor);
         mesh->origin = origin;
     } else {
         free(origin);
     }
     free(scratch);
-    return *rank ? TRI_OK : no_memory(mesh, error);
+    return *place ? TRI_OK : no_memory(mesh, error);
 }
 
 /* --- and back */
@@ -96,16 +96,16 @@ enum tri_status tri_restore_points(struct tri_mesh *mesh, const struct tri_execu
     int32_t n = mesh->n_input;
     if (!mesh->origin)
         return TRI_OK;
-    int32_t *rank = inverse_of(mesh->origin, n), *twin = mesh->twin ? array(n, sizeof *twin) : NULL;
+    int32_t *place = inverse_of(mesh->origin, n), *twin = mesh->twin ? array(n, sizeof *twin) : NULL;
     void *scratch = scratch_for(mesh);
-    if (!rank || !scratch || (mesh->twin && !twin)) {
-        free(rank);
+    if (!place || !scratch || (mesh->twin && !twin)) {
+        free(place);
         free(twin);
         free(scratch);
         return no_memory(mesh, error);
     }
-    tri_mesh_gather_vertices(mesh, 0, rank, n, scratch, executor);
-    free(rank);
+    tri_mesh_gather_vertices(mesh, 0, place, n, scratch, executor);
+    free(place);
     free(scratch);
     if (twin)
         restore_twins(mesh, twin);

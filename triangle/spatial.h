@@ -15,8 +15,8 @@ extern "C" {
 #endif
 
 /* Sorts the vertices of a mesh without triangles along the curve, equal ones by index, and sets mesh->origin.
- * (*rank)[n_input], malloc'ed, tells where each point went. O(n). TRI_NO_MEMORY: nothing has changed. */
-enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **rank, const struct tri_executor *executor,
+ * (*place)[n_input], malloc'ed, tells where each point went. O(n). TRI_NO_MEMORY: nothing has changed. */
+enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **place, const struct tri_executor *executor,
                                 struct tri_error *error);
 
 /* Gives the caller's points their own numbers back; nothing to do where mesh->origin is NULL. O(n).

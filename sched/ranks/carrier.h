@@ -20,7 +20,7 @@ struct par_bytes {
 
 /* What moves for what reason. */
 enum par_move {
-    PAR_MOVE_STRIPS,
+    PAR_MOVE_BORDERS,
     PAR_MOVE_BACK,
     PAR_MOVE_LEFT_OVER,
     PAR_MOVE_NUMBERS,

@@ -144,7 +144,7 @@ static enum tri_status lend(struct par_ranks *r, struct tri_error *error)
 {
     enum tri_status status = par_index_straddlers(r) ? TRI_OK : par_ranks_no_memory(error);
     status = status ? status : par_lend(r, error);
-    status = swap(r, PAR_MOVE_STRIPS, status, error);
+    status = swap(r, PAR_MOVE_BORDERS, status, error);
     status = status ? status : par_borrow(r, error);
     free_in(r);
     return status;
@@ -160,10 +160,10 @@ static enum tri_status lend_more(struct par_ranks *r, const struct par_worklist 
     if (!*any)
         return status;
     status = par_ask(r, asked, error);
-    status = swap(r, PAR_MOVE_STRIPS, status, error);
+    status = swap(r, PAR_MOVE_BORDERS, status, error);
     status = status ? status : par_lend_more(r, error);
     free_in(r);
-    status = swap(r, PAR_MOVE_STRIPS, status, error);
+    status = swap(r, PAR_MOVE_BORDERS, status, error);
     bool came = n == 0;
     for (int p = 0; p < r->carrier->n_ranks; p++)
         came = came || r->in[p].n > 0;

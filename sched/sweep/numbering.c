@@ -1,4 +1,4 @@
-/* Ranks of vertices, subsegments and triangles; then all move.
+/* New numbers of vertices, subsegments and triangles; then all move.
  *
  * THEOREM. Each order is total: new vertices lie at different places; of the triangles that start at a corner each has
  * another second corner, since an edge has one triangle on its left; of the subsegments of a parent, which all run its
@@ -8,10 +8,10 @@
  * tasks. A tile has an index here, in the order of tiles.
  *
  * All memory is asked for before anything moves. Triangles move in place, batch by batch of their new places, down from
- * the last: those of a batch are gathered in a buffer; those that stand in their places, and belong to batches to come,
- * are parked; then the batch is put down. So a triangle is parked only if it moves down, or, where more of them do than
- * up, and batches go up from the first, only if it moves up: at most half of them, in the memory of the items that
- * were sorted, and in what nobody touches otherwise. */
+ * the last: those of a batch are gathered in a buffer; those that stand in their places, and belong to batches to
+ * come, are set aside; then the batch is put down. So a triangle is set aside only if it moves down, or, where more of
+ * them do than up, and batches go up from the first, only if it moves up: at most half of them, in the memory of the
+ * items that were sorted, and in what nobody touches otherwise. */
 #include "sched/sweep/numbering.h"
 
 #include <assert.h>
@@ -65,25 +65,25 @@ struct numbering {
     int32_t *kept_tile; /* [n_kept] */
     struct deal vertices, triangles; /* new vertices; all triangles */
     int32_t *order;    /* [n_vertices - n_kept] the new vertices, one after the other; then ends of fans */
-    int32_t *rank;     /* [n_vertices] first the tile of a new vertex, then the new number of each */
+    int32_t *number;     /* [n_vertices] first the tile of a new vertex, then the new number of each */
     int32_t n_new;
-    int32_t *sub_rank; /* [n_subs] */
+    int32_t *sub_number; /* [n_subs] */
     struct tri_subsegment *sub; /* [n_subs] */
     int32_t *place;    /* [n_triangles] first the second corner of a triangle, then where it goes; TRI_NONE: free */
     size_t n_items;    /* the larger of n_triangles and n_subs */
-    void *park;        /* [3 * n_items] items: by tile, in the end in their new order; as they lie; room to park */
+    void *scratch;     /* [3 * n_items] items: by tile, in the end in their new order; as they lie; what is aside */
     struct tri_triangle *buffer; /* [batch] */
     int32_t batch;
     int32_t n_tri, n_subs;            /* live ones */
 };
 
-static uint64_t *dealt_items(const struct numbering *n) { return n->park; } /* tile by tile, in the end sorted */
+static uint64_t *dealt_items(const struct numbering *n) { return n->scratch; } /* tile by tile, in the end sorted */
 static uint64_t *items_of(const struct numbering *n) { return dealt_items(n) + n->n_items; }
 
-/* Of items in their new order: the triangle has been parked, and the id is its place there. */
-enum { PARKED_BIT = 63 };
+/* Of items in their new order: the triangle has been set aside, and the id is its place there. */
+enum { ASIDE_BIT = 63 };
 
-static struct tri_triangle *parked_of(const struct numbering *n)
+static struct tri_triangle *aside_of(const struct numbering *n)
 {
     return (struct tri_triangle *)(void *)items_of(n);
 }
@@ -109,12 +109,12 @@ static int32_t add_up_counts(struct deal *d, int32_t n_tiles)
 }
 
 /* The tile of places that mostly lie in the same one as the last. */
-struct finder {
+struct tile_finder {
     struct tri_fence fence;
     int32_t tile;
 };
 
-static int32_t find_tile(struct finder *f, const struct par_partition *p, struct tri_point q)
+static int32_t find_tile(struct tile_finder *f, const struct par_partition *p, struct tri_point q)
 {
     if (!tri_fence_holds(&f->fence, q)) {
         int32_t block = par_block_at(p, 0, q), column = block / p->n_rows, row = block % p->n_rows;
@@ -148,12 +148,12 @@ static void count_vertices(void *context, size_t share)
     const struct tri_mesh *mesh = n->mesh;
     struct tri_range range = share_of(&n->vertices, share);
     int32_t *count = n->vertices.at + share * (size_t)n->n_tiles;
-    struct finder finder = {.fence = {1, 1, 0, 0}};
+    struct tile_finder finder = {.fence = {1, 1, 0, 0}};
     for (int32_t i = range.first; i < range.last; i++) {
         tri_vertex_id v = n->n_kept + i;
-        n->rank[v] = TRI_NONE;
+        n->number[v] = TRI_NONE;
         if (mesh->on[v] != TRI_VERTEX_NONE)
-            count[n->rank[v] = find_tile(&finder, n->partition, mesh->xy[v])]++;
+            count[n->number[v] = find_tile(&finder, n->partition, mesh->xy[v])]++;
     }
 }
 
@@ -163,37 +163,37 @@ static void deal_vertices(void *context, size_t share)
     struct tri_range range = share_of(&n->vertices, share);
     int32_t *at = n->vertices.at + share * (size_t)n->n_tiles;
     for (tri_vertex_id v = n->n_kept + range.first; v < n->n_kept + range.last; v++)
-        if (n->rank[v] != TRI_NONE)
-            n->order[at[n->rank[v]]++] = v;
+        if (n->number[v] != TRI_NONE)
+            n->order[at[n->number[v]]++] = v;
 }
 
-static void rank_tile(void *context, size_t tile)
+static void number_tile(void *context, size_t tile)
 {
     const struct numbering *n = context;
     int32_t first = n->vertices.start[tile], end = n->vertices.start[tile + 1];
-    tri_hilbert_order_coarse(n->mesh->xy, n->order + first, end - first, (uint64_t *)n->park + 2 * (size_t)first);
+    tri_hilbert_order_coarse(n->mesh->xy, n->order + first, end - first, (uint64_t *)n->scratch + 2 * (size_t)first);
     for (int32_t i = first; i < end; i++)
-        n->rank[n->order[i]] = n->n_kept + i;
+        n->number[n->order[i]] = n->n_kept + i;
 }
 
 static void find_kept(void *context, size_t share)
 {
     const struct numbering *n = context;
     struct tri_range range = tri_share(share, n->n_kept);
-    struct finder finder = {.fence = {1, 1, 0, 0}};
+    struct tile_finder finder = {.fence = {1, 1, 0, 0}};
     for (tri_vertex_id v = range.first; v < range.last; v++) {
-        n->rank[v] = v;
+        n->number[v] = v;
         n->kept_tile[v] = find_tile(&finder, n->partition, n->mesh->xy[v]);
     }
 }
 
-static void rank_vertices(struct numbering *n)
+static void number_vertices(struct numbering *n)
 {
     tri_execute(n->executor, tri_shares(n->n_kept), find_kept, n);
     tri_execute(n->executor, n->vertices.shares, count_vertices, n);
     n->n_new = add_up_counts(&n->vertices, n->n_tiles);
     tri_execute(n->executor, n->vertices.shares, deal_vertices, n);
-    tri_execute(n->executor, (size_t)n->n_tiles, rank_tile, n);
+    tri_execute(n->executor, (size_t)n->n_tiles, number_tile, n);
 }
 
 /* --- subsegments */
@@ -203,7 +203,7 @@ static void rename_subs(struct numbering *n)
     struct tri_mesh *mesh = n->mesh;
     for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2 && mesh->sub[s].v[k] != TRI_NONE; k++)
-            mesh->sub[s].v[k] = n->rank[mesh->sub[s].v[k]];
+            mesh->sub[s].v[k] = n->number[mesh->sub[s].v[k]];
 }
 
 static void sort_subs(const struct numbering *n, int32_t limit)
@@ -219,7 +219,7 @@ static int32_t tile_of_sub(const struct numbering *n, const struct tri_subsegmen
 }
 
 /* By start, then, since sorting keeps the order of equals, by parent, then by tile. */
-static void rank_subs(struct numbering *n)
+static void number_subs(struct numbering *n)
 {
     const struct tri_mesh *mesh = n->mesh;
     uint64_t *item = items_of(n);
@@ -237,7 +237,7 @@ static void rank_subs(struct numbering *n)
         item[i] = item_of(tile_of_sub(n, &mesh->sub[id_of(item[i])]), 0, id_of(item[i]));
     sort_subs(n, n->n_tiles);
     for (int32_t i = 0; i < n->n_subs; i++)
-        n->sub_rank[id_of(item[i])] = i;
+        n->sub_number[id_of(item[i])] = i;
 }
 
 /* --- triangles. A place is the new number, and how far corners turn to bring the first to the front. */
@@ -268,7 +268,7 @@ static int32_t tile_of_item(const struct numbering *n, uint64_t item)
     if (!(item >> STRAY_BIT))
         return tile_of_number(n, key_of(item));
     for (int k = 0; k < 3; k++)
-        v[k] = n->rank[n->mesh->tri[id_of(item)].v[k]];
+        v[k] = n->number[n->mesh->tri[id_of(item)].v[k]];
     return tile_of_triangle(n, v);
 }
 
@@ -307,10 +307,10 @@ static bool is_stray(const struct numbering *n, const struct tile_range *last, c
 static inline uint64_t key_triangle(const struct numbering *n, const struct tile_range *last, const int32_t *old,
                                     tri_triangle_id t)
 {
-    const int32_t *rank = n->rank;
-    const int32_t v[3] = {rank[old[0]], rank[old[1]], rank[old[2]]};
+    const int32_t *number = n->number;
+    const int32_t v[3] = {number[old[0]], number[old[1]], number[old[2]]};
     uint64_t item = most(most(item_of(v[0], 0, t), item_of(v[1], 1, t)), item_of(v[2], 2, t));
-    n->place[t] = rank[old[tri_next[first_of(item)]]];
+    n->place[t] = number[old[tri_next[first_of(item)]]];
     if (((v[0] < n->n_kept) | (v[1] < n->n_kept) | (v[2] < n->n_kept)) && is_stray(n, last, v, item))
         item |= UINT64_C(1) << STRAY_BIT;
     return item;
@@ -489,7 +489,7 @@ static void place_tile(void *context, size_t tile)
     n->triangles.at[tile] = down;
 }
 
-static void rank_triangles(struct numbering *n)
+static void number_triangles(struct numbering *n)
 {
     tri_execute(n->executor, n->triangles.shares, key_share, n);
     n->n_tri = add_up_counts(&n->triangles, n->n_tiles);
@@ -503,8 +503,8 @@ struct move {
     const struct numbering *n;
     struct tri_range batch;  /* of new places */
     bool down;               /* batches go down: what is below has not moved yet */
-    int32_t n_parked;        /* before this batch */
-    int32_t parked[BATCH_SHARES]; /* by each share */
+    int32_t n_aside;        /* before this batch */
+    int32_t aside[BATCH_SHARES]; /* by each share */
 };
 
 static struct tri_range batch_share(const struct move *m, size_t share)
@@ -515,21 +515,21 @@ static struct tri_range batch_share(const struct move *m, size_t share)
 
 static const struct tri_triangle *source_of(const struct numbering *n, uint64_t item)
 {
-    return (item >> PARKED_BIT ? parked_of(n) : n->mesh->tri) + id_of(item);
+    return (item >> ASIDE_BIT ? aside_of(n) : n->mesh->tri) + id_of(item);
 }
 
-static inline tri_link new_link(const int32_t *place, const int32_t *sub_rank, tri_link link)
+static inline tri_link new_link(const int32_t *place, const int32_t *sub_number, tri_link link)
 {
-    return link >= 0 ? new_code(place, link) : ~sub_rank[~link];
+    return link >= 0 ? new_code(place, link) : ~sub_number[~link];
 }
 
 static inline struct tri_triangle renamed(const struct numbering *n, const struct tri_triangle *t, int first)
 {
-    const int32_t *rank = n->rank, *place = n->place, *sub_rank = n->sub_rank;
+    const int32_t *number = n->number, *place = n->place, *sub_number = n->sub_number;
     int second = tri_next[first], third = tri_prev[first];
-    return (struct tri_triangle){{rank[t->v[first]], rank[t->v[second]], rank[t->v[third]]},
-                                 {new_link(place, sub_rank, t->n[first]), new_link(place, sub_rank, t->n[second]),
-                                  new_link(place, sub_rank, t->n[third])},
+    return (struct tri_triangle){{number[t->v[first]], number[t->v[second]], number[t->v[third]]},
+                                 {new_link(place, sub_number, t->n[first]), new_link(place, sub_number, t->n[second]),
+                                  new_link(place, sub_number, t->n[third])},
                                  t->region,
                                  0};
 }
@@ -550,14 +550,14 @@ static void gather_batch(void *context, size_t share)
     struct tri_range range = batch_share(m, share);
     struct tri_triangle *to = n->buffer - m->batch.first;
     const uint64_t *item = dealt_items(n);
-    int32_t parked = 0;
+    int32_t aside = 0;
     for (tri_triangle_id t = range.first; t < range.last; t++) {
-        parked += stands_here(m, t);
+        aside += stands_here(m, t);
         if (t + AHEAD < range.last)
             __builtin_prefetch(source_of(n, item[t + AHEAD]));
         to[t] = renamed(n, source_of(n, item[t]), first_of(item[t]));
     }
-    m->parked[share] = parked;
+    m->aside[share] = aside;
 }
 
 static void put_down(void *context, size_t share)
@@ -565,11 +565,11 @@ static void put_down(void *context, size_t share)
     const struct move *m = context;
     const struct numbering *n = m->n;
     struct tri_range range = batch_share(m, share);
-    int32_t parked = m->parked[share];
+    int32_t aside = m->aside[share];
     for (tri_triangle_id t = range.first; t < range.last; t++) {
         if (stands_here(m, t)) {
-            parked_of(n)[parked] = n->mesh->tri[t];
-            dealt_items(n)[n->place[t] >> 2] = UINT64_C(1) << PARKED_BIT | item_of(0, n->place[t] & 3, parked++);
+            aside_of(n)[aside] = n->mesh->tri[t];
+            dealt_items(n)[n->place[t] >> 2] = UINT64_C(1) << ASIDE_BIT | item_of(0, n->place[t] & 3, aside++);
         }
         n->mesh->tri[t] = n->buffer[t - m->batch.first];
     }
@@ -577,12 +577,12 @@ static void put_down(void *context, size_t share)
 
 static void move_batch(struct move *m)
 {
-    memset(m->parked, 0, sizeof m->parked);
+    memset(m->aside, 0, sizeof m->aside);
     tri_execute(m->n->executor, BATCH_SHARES, gather_batch, m);
     for (int share = 0; share < BATCH_SHARES; share++) {
-        int32_t count = m->parked[share];
-        m->parked[share] = m->n_parked;
-        m->n_parked += count;
+        int32_t count = m->aside[share];
+        m->aside[share] = m->n_aside;
+        m->n_aside += count;
     }
     tri_execute(m->n->executor, BATCH_SHARES, put_down, m);
 }
@@ -599,7 +599,7 @@ static void move_triangles(const struct numbering *n)
         m.batch = (struct tri_range){first, first + (left < n->batch ? left : n->batch)};
         move_batch(&m);
     }
-    assert((size_t)m.n_parked <= n->n_items / 2);
+    assert((size_t)m.n_aside <= n->n_items / 2);
 }
 
 /* --- subsegments move */
@@ -610,7 +610,7 @@ static void move_subs(struct numbering *n)
     for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
         if (mesh->sub[s].v[0] == TRI_NONE)
             continue;
-        struct tri_subsegment *to = &n->sub[n->sub_rank[s]];
+        struct tri_subsegment *to = &n->sub[n->sub_number[s]];
         *to = mesh->sub[s];
         for (int side = 0; side < 2; side++)
             if (to->side[side] != TRI_NONE)
@@ -640,14 +640,15 @@ static enum tri_status allocate(struct numbering *n, struct tri_error *error)
     deals = reserve_deal(&n->triangles, mesh->n_triangles, n->n_tiles) && deals;
     n->kept_tile = malloc(((size_t)n->n_kept + 1) * sizeof *n->kept_tile);
     n->order = tri_mesh_extra(mesh, (vertices + 1) * sizeof *n->order);
-    n->rank = tri_mesh_extra(mesh, ((size_t)mesh->n_vertices + 1) * sizeof *n->rank);
-    n->sub_rank = tri_mesh_extra(mesh, (subs + 1) * sizeof *n->sub_rank);
+    n->number = tri_mesh_extra(mesh, ((size_t)mesh->n_vertices + 1) * sizeof *n->number);
+    n->sub_number = tri_mesh_extra(mesh, (subs + 1) * sizeof *n->sub_number);
     n->sub = tri_mesh_extra(mesh, (subs + 1) * sizeof *n->sub);
     n->place = tri_mesh_extra(mesh, ((size_t)mesh->n_triangles + 1) * sizeof *n->place);
-    n->park = tri_mesh_extra(mesh, (for_vertices > for_items ? for_vertices : for_items) + sizeof(struct tri_triangle));
+    n->scratch = tri_mesh_extra(mesh, (for_vertices > for_items ? for_vertices : for_items) +
+                                          sizeof(struct tri_triangle));
     n->batch = mesh->n_triangles / BATCHES < BATCH ? mesh->n_triangles / BATCHES + 1 : BATCH;
     n->buffer = tri_mesh_extra(mesh, (size_t)n->batch * sizeof *n->buffer);
-    if (deals && n->kept_tile && n->order && n->rank && n->sub_rank && n->sub && n->place && n->park &&
+    if (deals && n->kept_tile && n->order && n->number && n->sub_number && n->sub && n->place && n->scratch &&
         n->buffer)
         return TRI_OK;
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for numbering %d triangles", (int)mesh->n_triangles);
@@ -657,11 +658,11 @@ static enum tri_status allocate(struct numbering *n, struct tri_error *error)
 static void renumber(struct numbering *n)
 {
     struct tri_mesh *mesh = n->mesh;
-    rank_vertices(n);
-    tri_mesh_gather_vertices(mesh, n->n_kept, n->order, n->n_new, n->park, n->executor);
+    number_vertices(n);
+    tri_mesh_gather_vertices(mesh, n->n_kept, n->order, n->n_new, n->scratch, n->executor);
     rename_subs(n);
-    rank_subs(n);
-    rank_triangles(n);
+    number_subs(n);
+    number_triangles(n);
     tri_mesh_extra_free(n->mesh, n->order); /* before the buffer's pages are asked for */
     n->order = NULL;
     move_triangles(n);
@@ -680,11 +681,11 @@ static void free_numbering(struct numbering *n)
     }
     free(n->kept_tile);
     tri_mesh_extra_free(n->mesh, n->order);
-    tri_mesh_extra_free(n->mesh, n->rank);
-    tri_mesh_extra_free(n->mesh, n->sub_rank);
+    tri_mesh_extra_free(n->mesh, n->number);
+    tri_mesh_extra_free(n->mesh, n->sub_number);
     tri_mesh_extra_free(n->mesh, n->sub);
     tri_mesh_extra_free(n->mesh, n->place);
-    tri_mesh_extra_free(n->mesh, n->park);
+    tri_mesh_extra_free(n->mesh, n->scratch);
     tri_mesh_extra_free(n->mesh, n->buffer);
 }
 

@@ -97,7 +97,7 @@ struct tri_check_source {
     const struct tri_check_mesh *arrays; /* the same in memory, or NULL */
     /* Bytes that the trial may use on top of what is used already; 0: no bound. It takes a byte for each vertex, what
      * subsegments, boundary edges and the input need, and shares out the rest; with too little it takes what it must.
-     * Half-edges that wait for their other side are parked in nameless files in the folder `scratch` (NULL: /tmp)
+     * Half-edges that wait for their other side are kept in nameless files in the folder `scratch` (NULL: /tmp)
      * where they are too many: few, if numbers are local; up to 3 for each triangle, 112 bytes each, if not. */
     double memory;
     const char *scratch;

@@ -32,7 +32,7 @@ static int count_bits(uint64_t x)
     return (int)(((x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fu) * 0x0101010101010101u >> 56);
 }
 
-static int32_t rank_of(const struct check_room *r, int64_t v)
+static int32_t number_of(const struct check_room *r, int64_t v)
 {
     uint64_t below = ((uint64_t)1 << (v & 63)) - 1;
     return r->before[v >> 6] + count_bits(r->marked[v >> 6] & below);
@@ -43,7 +43,7 @@ int32_t tri_check_local(const struct checker *c, int64_t v)
     if (c->whole != NULL)
         return (int32_t)v;
     const struct check_room *r = c->part.room;
-    return (r->marked[v >> 6] >> (v & 63) & 1) != 0 ? rank_of(r, v) : -1;
+    return (r->marked[v >> 6] >> (v & 63) & 1) != 0 ? number_of(r, v) : -1;
 }
 
 /* Arrays that every part needs. */
@@ -159,11 +159,11 @@ static void mark(struct check_room *r, const int64_t *corners, int64_t n)
     }
 }
 
-static void rank_corners(void *checker, const struct check_share *share)
+static void number_corners(void *checker, const struct check_share *share)
 {
     const struct checker *c = checker;
     for (int64_t h = share->first; h < share->end; h++)
-        c->part.room->triangles[h] = rank_of(c->part.room, given_corner(c, h));
+        c->part.room->triangles[h] = number_of(c->part.room, given_corner(c, h));
 }
 
 /* Step 2. */
@@ -185,7 +185,7 @@ static enum tri_status number(struct checker *c)
             return TRI_NO_MEMORY;
     }
     c->part.n_points = (int32_t)n;
-    tri_check_in_shares(c, c->part.n_half_edges, rank_corners, c);
+    tri_check_in_shares(c, c->part.n_half_edges, number_corners, c);
     return TRI_OK;
 }
 

@@ -34,7 +34,7 @@ enum tri_status tri_check_store_new(struct checker *c)
     if (c->source->memory <= 0)
         return TRI_OK;
     c->store->most = LEAST_ROOM + (int64_t)fmin(c->source->memory / 8 / sizeof(struct check_open), 0x1p40);
-    /* Should all half-edges be parked, a file is to fit, too. */
+    /* Should all half-edges be spilled, a file is to fit, too. */
     double files = 3 * (double)c->n_triangles / (double)c->store->most;
     while (c->store->bits < MOST_BITS && (double)(1 << c->store->bits) < files)
         c->store->bits++;
@@ -84,7 +84,7 @@ static const char *folder_of(const struct checker *c)
 
 static enum tri_status fail(struct checker *c)
 {
-    return tri_fail(c->error, TRI_CANNOT_WRITE, folder_of(c), 0, "cannot park half-edges there: %s", strerror(errno));
+    return tri_fail(c->error, TRI_CANNOT_WRITE, folder_of(c), 0, "cannot keep half-edges there: %s", strerror(errno));
 }
 
 static bool open_file(const struct checker *c, struct file *file)
@@ -125,7 +125,7 @@ static bool read_all(int descriptor, void *data, size_t n)
 }
 
 /* All that is in memory goes to the files. */
-static enum tri_status park(struct checker *c)
+static enum tri_status spill(struct checker *c)
 {
     struct check_store *s = c->store;
     struct check_open *at = s->here.at;
@@ -145,7 +145,7 @@ static enum tri_status park(struct checker *c)
 
 enum tri_status tri_check_store_add(struct checker *c, struct check_open e)
 {
-    enum tri_status status = c->store->here.n >= c->store->most ? park(c) : TRI_OK;
+    enum tri_status status = c->store->here.n >= c->store->most ? spill(c) : TRI_OK;
     return status == TRI_OK ? tri_check_append(&c->store->here, &e) : status;
 }
 
@@ -162,7 +162,7 @@ static enum tri_status fetch(struct checker *c, struct file *file)
     }
     here->n = file->n;
     if (!read_all(file->descriptor, here->at, (size_t)here->n * sizeof *here->at))
-        return tri_fail(c->error, TRI_CANNOT_READ, folder_of(c), 0, "cannot read what was parked there");
+        return tri_fail(c->error, TRI_CANNOT_READ, folder_of(c), 0, "cannot read what was kept there");
     (void)close(file->descriptor);
     *file = (struct file){-1, 0};
     return TRI_OK;
@@ -172,10 +172,10 @@ enum tri_status tri_check_store_drain(struct checker *c, enum tri_status (*take)
                                                                                  struct check_open *at, int64_t n))
 {
     struct check_store *s = c->store;
-    bool parked = false;
+    bool spilled = false;
     for (int k = 0; k < N_FILES; k++)
-        parked = parked || s->file[k].n > 0;
-    enum tri_status status = parked ? park(c) : take(c, s->here.at, s->here.n);
+        spilled = spilled || s->file[k].n > 0;
+    enum tri_status status = spilled ? spill(c) : take(c, s->here.at, s->here.n);
     for (int k = 0; k < N_FILES && status == TRI_OK; k++) {
         if (s->file[k].n == 0)
             continue;
