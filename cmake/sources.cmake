@@ -1,7 +1,7 @@
 # What is built from what: explicit lists, in the order in which data flows. No globs: a stray file is found by the test
 # `house_rules`, which also reads this file on its own.
 
-# Room triangle/, the sequential mesher. C11 only.
+# Folder triangle/, the sequential mesher. C11 only.
 set(PTRIANGLE_MESHER_SOURCES
     triangle/status.c
     triangle/predicates.c
@@ -51,7 +51,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/dropin/run.c
     triangle/dropin/triangulate.c)
 
-# Room triangle/check/, the judge of meshes, and its public door. Of the mesher it knows the predicates alone.
+# Folder triangle/check/, the judge of meshes, and its public door. Of the mesher it knows the predicates alone.
 set(PTRIANGLE_CHECK_SOURCES
     triangle/check/check.c
     triangle/check/survey.c
@@ -76,7 +76,7 @@ set(PTRIANGLE_CHECK_SOURCES
     triangle/check/quality.c
     triangle/api/judge.c)
 
-# Room triangle/, text files. The one C++ file wraps std::from_chars and std::to_chars.
+# Folder triangle/, text files. The one C++ file wraps std::from_chars and std::to_chars.
 set(PTRIANGLE_TEXT_SOURCES
     triangle/text/decimal.cpp
     triangle/text/names.c
@@ -96,7 +96,7 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/formats.c
     triangle/api/files.c)
 
-# Room triangle/, HDF5 files, for the programs alone. Without the library of that name the second list stands in.
+# Folder triangle/, HDF5 files, for the programs alone. Without the library of that name the second list stands in.
 set(PTRIANGLE_HDF5_SOURCES
     triangle/hdf5/file.c
     triangle/hdf5/items.c
@@ -113,7 +113,7 @@ set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c)
 set(PTRIANGLE_TEXT_NEEDS triangle/status.c triangle/pslg.c triangle/api/figure.c)
 set(PTRIANGLE_CHECK_NEEDS ${PTRIANGLE_TEXT_NEEDS} triangle/predicates.c)
 
-# Room sched/, the parallel schedule: compiled with OpenMP, as are the programs ptriangle and trianglecheck, which hand
+# Folder sched/, the parallel schedule: compiled with OpenMP, as are the programs ptriangle and trianglecheck, which hand
 # out threads (sched/threads.h), and nothing else.
 set(PTRIANGLE_SCHED_SOURCES
     sched/theory.c
@@ -165,8 +165,8 @@ set(PTRIANGLE_PUBLIC_HEADERS
     include/ptriangle/files.h
     include/ptriangle/check.h)
 
-# Room drivers/: what the executables share, then the executables, each from drivers/<name>.c. The second list of programs
-# needs the room sched/ and its library.
+# Folder drivers/: what the executables share, then the executables, each from drivers/<name>.c. The second list of programs
+# needs the folder sched/ and its library.
 set(PTRIANGLE_DRIVER_SOURCES)
 set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle)
 set(PTRIANGLE_JUDGE_SOURCES drivers/verdict.c sched/threads.c)

@@ -19,6 +19,8 @@ static const double BUFFERS = 3e7, PAGES = 3e7, COLUMNS_HELD = 260, COLUMNS_AWAY
                     COLUMNS_STATE = 520, SWEPT_BYTES = 1.1;
 /* The same a triangle, of a mesh that stays as a whole; of two states of it; and of the tiles in a checkpoint. */
 static const double PARKED_WORK = 6, PARKED_BYTES = 90, WHOLE_STATES = 120, TILES_BYTES = 26;
+/* The same a triangle of a rank's own, which are so many times the average; and of a state, of which there are two. */
+static const double RANK_BYTES = 62, RANK_WORK = 20, BUSIEST = 1.15, RANK_STATES = 32;
 /* Text that one thread writes in a second where a triangle takes it the usual time. */
 static const double TEXT_BYTES = 6.5e8, USUAL_SECONDS = 1.25e-7;
 
@@ -134,8 +136,22 @@ static bool is_swept(const struct run *run)
     return quality->min_angle <= TRI_EASY_ANGLE && quality->max_steiner < 0;
 }
 
+/* Of the rank that has most. */
+static struct needs needs_of_rank(const struct run *run, double grown)
+{
+    const double own = fmin(BUSIEST * grown / run->hooks->n_ranks, grown);
+    struct needs n = {.triangles = grown, .whole = own > TRI_MAX_TRIANGLES ? HUGE_VAL : own * RANK_BYTES};
+    n.held = n.whole + BUFFERS;
+    n.floor = fmin(n.held, BUFFERS + RANK_WORK * own + PAGES * fmax(run->hooks->threads, 1));
+    n.away = PARKED_BYTES * own;
+    n.checkpoint = n.states = RANK_STATES * grown;
+    return n;
+}
+
 static struct needs needs_of(const struct run *run, double grown, double bytes, bool sweeps)
 {
+    if (run->hooks->n_ranks > 0 && sweeps)
+        return needs_of_rank(run, grown);
     const double column = column_of(grown), pages = PAGES * fmax(run->hooks->threads, 1);
     const double work = sweeps ? COLUMNS_WORK * column + SWEPT_BYTES * grown : PARKED_WORK * grown;
     struct needs n = {.triangles = grown, .whole = grown > TRI_MAX_TRIANGLES ? HUGE_VAL : grown * bytes};

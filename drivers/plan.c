@@ -190,7 +190,10 @@ static void say_way(const struct console *console, const struct run *run, const 
     char whole[64] = "are too many for a mesh in memory";
     if (n->whole < HUGE_VAL)
         snprintf(whole, sizeof whole, "would take %s of memory", console_size(n->whole).text);
-    if (e->sweeps)
+    if (e->sweeps && run->hooks->n_ranks > 0)
+        console_say(console, "Sharing: about %.3g million triangles among %d tasks, up to %s of memory each.\n",
+                    millions(n->triangles), run->hooks->n_ranks, console_size(n->held).text);
+    else if (e->sweeps)
         console_say(console, "Sweeping: about %.3g million triangles %s, a few columns of them %s.\n",
                     millions(n->triangles), whole, console_size(n->held).text);
     if (n->held > left)
@@ -232,6 +235,8 @@ static void print_bytes(const char *what, double needed, double there, const cha
 
 static const char *way_of(const struct run *run, const struct estimate *e)
 {
+    if (run->hooks->n_ranks > 0 && e->sweeps)
+        return "shared by all tasks";
     return !run->plan.swept ? "all in memory" : e->sweeps ? "swept, a few columns in memory at a time"
                                                           : "all in memory, or in files as far as it does not fit";
 }

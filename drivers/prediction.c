@@ -52,16 +52,27 @@ double prediction_refine(const struct par_block_report *blocks, int32_t n_blocks
 
 double prediction_sequential(const struct par_report *report)
 {
-    double rest = report->seconds_total - report->seconds_refine - report->seconds_find -
-                  report->seconds_number;
+    double rest = report->seconds_total - report->seconds_refine - report->seconds_number;
+    for (int k = 0; k < PAR_SHARINGS; k++)
+        rest -= report->seconds_shared[k];
     return rest > 0 ? rest : 0;
 }
 
-double prediction_shared(const struct par_report *report, double seconds, int threads)
+double prediction_shared(const struct par_report *report, int threads)
+{
+    double sum = 0;
+    for (int k = 0; k < PAR_SHARINGS; k++) {
+        int shares = 1 << k, had = report->threads < shares ? report->threads : shares;
+        sum += report->seconds_shared[k] * had / (threads < shares ? threads : shares);
+    }
+    return sum;
+}
+
+double prediction_number(const struct par_report *report, int threads)
 {
     int had = report->threads < TRI_MOST_SHARES ? report->threads : TRI_MOST_SHARES;
     int have = threads < TRI_MOST_SHARES ? threads : TRI_MOST_SHARES;
-    return seconds * had / have;
+    return report->seconds_number * had / have;
 }
 
 static double percent(const struct par_report *report, double seconds)

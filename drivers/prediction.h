@@ -1,9 +1,9 @@
 /* What a run would have taken on other numbers of threads: a prediction from its own clock, never a measurement.
  *
  * Blocks of one phase are independent, phases follow one another. So the parallel part takes, on n threads, the sum
- * over the phases of the time that list scheduling of their blocks takes. Looking for bad triangles and numbering
- * are cut into equal shares; all else is taken for sequential, although some of it is not. List scheduling, largest
- * first, ends within 4/3 of the best schedule.
+ * over the phases of the time that list scheduling of their blocks takes. What other stages do in equal shares, and
+ * numbering, is shared out, to as many threads as there were shares; all else is taken for sequential. List scheduling,
+ * largest first, ends within 4/3 of the best schedule.
  * Not in the model: threads that share caches, memory bandwidth or a core's units, beyond what the measured run had of
  * it.
  * Source: R. L. Graham, "Bounds on Multiprocessing Timing Anomalies", SIAM J. Appl. Math. 17 (1969), theorem 2. */
@@ -23,8 +23,9 @@ double prediction_refine(const struct par_block_report *blocks, int32_t n_blocks
 /* Seconds of refinement that no number of threads would shorten. */
 double prediction_sequential(const struct par_report *report);
 
-/* Seconds on so many threads of what took so long in TRI_MOST_SHARES equal shares. */
-double prediction_shared(const struct par_report *report, double seconds, int threads);
+/* Seconds on so many threads of what stages did in shares; and of numbering, in TRI_MOST_SHARES of them. */
+double prediction_shared(const struct par_report *report, int threads);
+double prediction_number(const struct par_report *report, int threads);
 
 /* Share of the schedule in the time from the Delaunay triangulation to the merged mesh, in percent: all that is neither
  * pre-refinement nor the refinement of blocks; and what numbering takes after it, against the same. 0 where one

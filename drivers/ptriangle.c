@@ -89,7 +89,8 @@ static struct par_options options_of(struct program *p, const struct run *run)
     options.figure = &run->pslg;
     options.region_column = tri_switches_grid(s, &run->mesh, &run->pslg, &run->elements).regions;
     options.sweep = run->plan.swept;
-    if ((run->plan.swept || run->hooks->limits.memory > 0) && run->plan.memory < HUGE_VAL)
+    bool bounded = run->hooks->limits.memory > 0 || (run->plan.swept && !p->launch.carrier);
+    if (bounded && run->plan.memory < HUGE_VAL)
         options.memory = (int64_t)run->plan.memory;
     options.count_remaining = !run->arguments->switches.quiet || p->options.report;
     options.scratch = p->scratch;
@@ -136,6 +137,8 @@ static enum tri_status refine_into(struct program *p, struct run *run, const str
 {
     struct par_options options = options_of(p, run);
     struct par_relay relay = {.carrier = p->launch.carrier, .to = sink};
+    if (run->hooks->limits.memory > 0)
+        relay.room = relay.most_bytes = (size_t)waiting_bytes(&run->plan);
     const struct tri_sink relayed = par_relay_sink(&relay);
     options.carrier = p->launch.carrier;
     options.sink = options.carrier ? &relayed : sink;
@@ -368,6 +371,7 @@ static struct run_hooks hooks_of(struct program *p)
                               .streams = true,
                               .always_sweep = goes_on || p->launch.carrier || sweep_for_tests(),
                               .written_elsewhere = p->launch.rank > 0,
+                              .n_ranks = p->launch.carrier ? p->launch.carrier->n_ranks : 0,
                               .share = p->launch.carrier ? share : NULL, .agree = p->launch.carrier ? agree : NULL,
                               .whole_mesh = whole_mesh(o), .threads = p->threads, .user = p,
                               .limits = {.seconds = o->time_limit, .write_partial = o->write_partial,
@@ -434,10 +438,7 @@ static int carry_out(struct program *p, const struct arguments *arguments, struc
         help_full(PROGRAM, "on all cores", long_options_help);
         return EXIT_SUCCESS;
     }
-    const enum tri_status settled = settle_memory(&p->options, error);
-    if (!settled && p->launch.carrier && p->options.memory > 0)
-        tri_fail(error, TRI_BAD_INPUT, NULL, 0, "several tasks keep no bound on memory: leave out --memory");
-    else if (!settled && arguments->file)
+    if (!settle_memory(&p->options, error) && arguments->file)
         restart_open(&p->restart, &p->options, p->launch.carrier, error);
     if (error->status) {
         console_error(&(struct console){.program = PROGRAM}, error);

@@ -79,12 +79,12 @@ static json_t *predictions_of(const struct par_report *r)
     double sequential = prediction_sequential(r);
     for (int threads = 1; threads <= 256; threads *= 2) {
         double refine = prediction_refine(r->blocks, r->n_blocks, 0, threads);
-        double quality = sequential + refine + prediction_shared(r, r->seconds_find, threads);
+        double quality = sequential + refine + prediction_shared(r, threads);
         if (refine < 0)
             continue;
         json_array_append_new(list, json_pack("{s:i, s:o, s:o, s:o, s:o}", "threads", threads, "refine_seconds",
                                               real(refine), "quality_seconds", real(quality), "number_seconds",
-                                              real(prediction_shared(r, r->seconds_number, threads)),
+                                              real(prediction_number(r, threads)),
                                               "sequential_share", real(quality > 0 ? sequential / quality : 1)));
     }
     return list;

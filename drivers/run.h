@@ -76,6 +76,7 @@ struct run_hooks {
     bool streams;                   /* refine follows run->plan, and can write files meanwhile */
     bool always_sweep;              /* on ranks, and for tests: also what would fit in memory */
     bool written_elsewhere;         /* another rank reads and writes all files */
+    int n_ranks;                    /* that share the mesh; 0: it is all here */
     /* Several ranks, which call these together. share: after the first has read the input; all have it then. agree:
      * before anything gets its name, and by whoever fails, at whatever call the others are. Both return the same status
      * on all, with the same error. NULL: there is one. */

@@ -1,5 +1,6 @@
 /* Quantiles of the estimated work (triangle/estimate.h), first along x, then along y in each column. There are some 32
- * samples for a cell: enough for shares equal within a sixth, few enough to sort in no time. */
+ * samples for a cell: enough for shares equal within a sixth. They are sorted in runs, which are merged; columns are
+ * tasks. Samples that are alike are equal, so their order is the same however they are sorted. */
 #include "sched/partition.h"
 
 #include <assert.h>
@@ -9,7 +10,11 @@
 #include "triangle/estimate.h"
 #include "triangle/grow.h"
 
-enum { SAMPLES_PER_CELL = 32 };
+enum {
+    SAMPLES_PER_CELL = 32,
+    RUNS = 16, /* a power of two: each is sorted by a task */
+    FEW = 1024 /* samples are one run */
+};
 
 struct sample {
     struct tri_point q;
@@ -50,6 +55,45 @@ static int by_y(const void *left, const void *right)
     return a->q.x != b->q.x ? (a->q.x < b->q.x ? -1 : 1) : by_work(a, b);
 }
 
+/* Runs of samples, each in order, or to be sorted. */
+struct runs {
+    struct sample *from, *to;
+    int64_t n, runs;
+};
+
+static int64_t run_begin(const struct runs *r, size_t run) { return r->n * (int64_t)run / r->runs; }
+
+static void sort_run(void *context, size_t run)
+{
+    const struct runs *r = context;
+    int64_t begin = run_begin(r, run), end = run_begin(r, run + 1);
+    qsort(r->from + begin, (size_t)(end - begin), sizeof *r->from, by_x);
+}
+
+/* Two neighbours become one. */
+static void merge_runs(void *context, size_t pair)
+{
+    const struct runs *r = context;
+    int64_t a = run_begin(r, 2 * pair), middle = run_begin(r, 2 * pair + 1), end = run_begin(r, 2 * pair + 2);
+    for (int64_t at = a, b = middle; at < end; at++)
+        r->to[at] = b == end || (a < middle && by_x(&r->from[a], &r->from[b]) <= 0) ? r->from[a++] : r->from[b++];
+}
+
+/* scratch: as many. */
+static void sort_by_x(struct samples *s, struct sample *scratch, const struct tri_executor *executor)
+{
+    struct runs r = {s->item, scratch, s->n, s->n < FEW ? 1 : RUNS};
+    tri_execute(executor, (size_t)r.runs, sort_run, &r);
+    for (; r.runs > 1; r.runs /= 2) {
+        tri_execute(executor, (size_t)r.runs / 2, merge_runs, &r);
+        struct sample *merged = r.to;
+        r.to = r.from;
+        r.from = merged;
+    }
+    if (r.from != s->item && s->n > 0)
+        memcpy(s->item, r.from, (size_t)s->n * sizeof *s->item);
+}
+
 /* Sorted samples into n shares of equal work; cut[k] receives the index at which share k begins, cut[n] that of the
  * end. */
 static void cut_shares(const struct samples *s, int32_t n, int64_t *cut)
@@ -87,31 +131,42 @@ static void place_bounds(double *bounds, int32_t n_shares, const struct samples 
     }
 }
 
-/* Rows of a block column from the samples first .. end - 1, which lie in it. */
-static void cut_rows(struct par_partition *p, const struct samples *s, int64_t first, int64_t end, int32_t column,
-                     struct sample *scratch, int64_t *cut)
+/* Columns that are cut into rows. */
+struct cutting {
+    struct par_partition *p;
+    const struct samples *s;
+    const int64_t *column;  /* [n_columns] the first sample of each column of cells; the last: the end */
+    struct sample *scratch; /* [2 * s->n] those of each block column, which has two columns of cells */
+    int64_t *cut;           /* [n_columns][n_rows] */
+};
+
+static void cut_rows(void *context, size_t k)
 {
-    struct samples inside = {scratch, end - first, end - first};
-    for (int64_t i = 0; i < inside.n; i++)
-        scratch[i] = s->item[first + i];
-    if (inside.n > 0)
-        qsort(scratch, (size_t)inside.n, sizeof *scratch, by_y);
-    cut_shares(&inside, p->n_rows - 1, cut);
-    place_bounds(p->y + (size_t)column * (size_t)p->n_rows, p->n_rows - 1, &inside, cut, false, p->low.y, p->high.y);
+    const struct cutting *c = context;
+    const size_t before = k > 0 ? k - 1 : 0, after = k + 1 < (size_t)c->p->n_columns ? k + 1 : k;
+    const size_t rows = (size_t)c->p->n_rows;
+    const int64_t first = c->column[before], n = c->column[after] - first;
+    struct samples inside = {c->scratch + (k > 0 ? first + c->column[k] : 0), n, n};
+    if (n > 0) {
+        memcpy(inside.item, c->s->item + first, (size_t)n * sizeof *inside.item);
+        qsort(inside.item, (size_t)n, sizeof *inside.item, by_y);
+    }
+    cut_shares(&inside, c->p->n_rows - 1, c->cut + k * rows);
+    place_bounds(c->p->y + k * rows, c->p->n_rows - 1, &inside, c->cut + k * rows, false, c->p->low.y, c->p->high.y);
 }
 
-static bool cut_plane(struct par_partition *p, struct samples *s)
+static bool cut_plane(struct par_partition *p, struct samples *s, const struct tri_executor *executor)
 {
-    int64_t *columns = malloc((size_t)p->n_columns * sizeof *columns), *rows = malloc((size_t)p->n_rows * sizeof *rows);
-    struct sample *scratch = malloc(((size_t)s->n + 1) * sizeof *scratch);
-    int32_t last = p->n_columns - 1;
+    const size_t n_columns = (size_t)p->n_columns;
+    int64_t *columns = malloc(n_columns * sizeof *columns);
+    int64_t *rows = malloc(n_columns * (size_t)p->n_rows * sizeof *rows);
+    struct sample *scratch = malloc((2 * (size_t)s->n + 1) * sizeof *scratch);
     if (columns && rows && scratch) {
-        if (s->n > 0)
-            qsort(s->item, (size_t)s->n, sizeof *s->item, by_x);
-        cut_shares(s, last, columns);
-        place_bounds(p->x, last, s, columns, true, p->low.x, p->high.x);
-        for (int32_t k = 0; k <= last; k++)
-            cut_rows(p, s, columns[k > 0 ? k - 1 : 0], columns[k < last ? k + 1 : last], k, scratch, rows);
+        struct cutting cutting = {p, s, columns, scratch, rows};
+        sort_by_x(s, scratch, executor);
+        cut_shares(s, p->n_columns - 1, columns);
+        place_bounds(p->x, p->n_columns - 1, s, columns, true, p->low.x, p->high.x);
+        tri_execute(executor, n_columns, cut_rows, &cutting);
     }
     bool done = columns && rows && scratch;
     free(columns);
@@ -120,16 +175,38 @@ static bool cut_plane(struct par_partition *p, struct samples *s)
     return done;
 }
 
-static void find_box(struct par_partition *p, const struct tri_mesh *mesh)
+struct boxing {
+    const struct tri_mesh *mesh;
+    struct tri_point low[TRI_MOST_SHARES], high[TRI_MOST_SHARES];
+};
+
+static void widen(struct tri_point *low, struct tri_point *high, struct tri_point from, struct tri_point to)
 {
-    p->low = p->high = mesh->xy[0];
-    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++) {
-        struct tri_point q = mesh->xy[v];
-        p->low.x = q.x < p->low.x ? q.x : p->low.x;
-        p->low.y = q.y < p->low.y ? q.y : p->low.y;
-        p->high.x = q.x > p->high.x ? q.x : p->high.x;
-        p->high.y = q.y > p->high.y ? q.y : p->high.y;
-    }
+    low->x = from.x < low->x ? from.x : low->x;
+    low->y = from.y < low->y ? from.y : low->y;
+    high->x = to.x > high->x ? to.x : high->x;
+    high->y = to.y > high->y ? to.y : high->y;
+}
+
+static void box_share(void *context, size_t share)
+{
+    struct boxing *b = context;
+    const struct tri_range range = tri_share(share, b->mesh->n_vertices);
+    struct tri_point low = b->mesh->xy[range.first], high = low;
+    for (tri_vertex_id v = range.first; v < range.last; v++)
+        widen(&low, &high, b->mesh->xy[v], b->mesh->xy[v]);
+    b->low[share] = low;
+    b->high[share] = high;
+}
+
+static void find_box(struct par_partition *p, const struct tri_mesh *mesh, const struct tri_executor *executor)
+{
+    struct boxing boxing = {.mesh = mesh};
+    tri_execute(executor, tri_shares(mesh->n_vertices), box_share, &boxing);
+    p->low = boxing.low[0];
+    p->high = boxing.high[0];
+    for (size_t share = 1; share < tri_shares(mesh->n_vertices); share++)
+        widen(&p->low, &p->high, boxing.low[share], boxing.high[share]);
 }
 
 /* As many columns as make cells about square on average, in pairs. */
@@ -153,13 +230,14 @@ enum tri_status par_partition_make(struct par_partition *p, const struct tri_mes
     struct samples s = {0};
     *p = (struct par_partition){.n_columns = 3, .n_rows = 3, .estimate = estimate};
     if (mesh->n_vertices > 0) {
-        find_box(p, mesh);
+        find_box(p, mesh, executor);
         choose_numbers(p, cell_triangles);
     }
     p->x = malloc((size_t)p->n_columns * sizeof *p->x);
     p->y = malloc((size_t)p->n_columns * (size_t)p->n_rows * sizeof *p->y);
     double grain = estimate / par_cells(p) / SAMPLES_PER_CELL;
-    bool done = p->x && p->y && tri_sample_work(mesh, options, grain, executor, add_sample, &s) && cut_plane(p, &s);
+    bool done = p->x && p->y && tri_sample_work(mesh, options, grain, executor, add_sample, &s) &&
+                cut_plane(p, &s, executor);
     free(s.item);
     if (done)
         return TRI_OK;
@@ -201,6 +279,7 @@ void par_partition_coarsen(struct par_partition *p)
     merge_cells(p->x, p->n_columns, p->x);
     p->n_columns = columns;
     p->n_rows = rows;
+    assert(columns >= 3 && columns % 2 == 1 && rows >= 3 && rows % 2 == 1);
 }
 
 void par_partition_free(struct par_partition *p)
@@ -252,17 +331,24 @@ int32_t par_block_at(const struct par_partition *p, int phase, struct tri_point 
     assert(phase >= 0 && phase < PAR_PHASES);
     int32_t column = block_over(cell_at(p->x, p->n_columns, q.x), 1 - (phase >> 1));
     int32_t row = block_over(cell_at(rows_of(p, column), p->n_rows, q.y), 1 - (phase & 1));
+    assert(column < p->n_columns && row < p->n_rows);
     return column * p->n_rows + row;
 }
 
 int32_t par_owner_of(const struct par_partition *p, int phase, const struct tri_mesh *mesh, tri_triangle_id t)
 {
+    struct par_locator locator = PAR_LOST;
+    return par_locate_owner(&locator, p, phase, mesh, t);
+}
+
+int32_t par_locate_owner(struct par_locator *locator, const struct par_partition *p, int phase,
+                         const struct tri_mesh *mesh, tri_triangle_id t)
+{
     const tri_vertex_id *v = mesh->tri[t].v;
-    int32_t block = par_block_at(p, phase, mesh->xy[v[0]]);
-    for (int k = 1; k < 3 && block != TRI_NONE; k++)
-        if (par_block_at(p, phase, mesh->xy[v[k]]) != block)
-            block = TRI_NONE;
-    return block;
+    assert(tri_is_live(&mesh->tri[t]));
+    int32_t block = par_locate(locator, p, phase, mesh->xy[v[0]]);
+    bool owns = tri_fence_holds(&locator->fence, mesh->xy[v[1]]) && tri_fence_holds(&locator->fence, mesh->xy[v[2]]);
+    return owns ? block : TRI_NONE;
 }
 
 double par_cell_size(const struct par_partition *p, struct tri_point q)

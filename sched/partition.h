@@ -65,8 +65,29 @@ struct tri_fence par_fence(const struct par_partition *partition, int32_t column
  * O(log blocks). */
 int32_t par_block_at(const struct par_partition *partition, int phase, struct tri_point q);
 
-/* The block of a phase that holds all corners of triangle t, or TRI_NONE. O(log blocks). */
+/* The same for places of one phase that mostly lie in the same block as the last: then O(1). Starts as PAR_LOST. */
+struct par_locator {
+    struct tri_fence fence;
+    int32_t block;
+};
+
+static const struct par_locator PAR_LOST = {{1, 1, 0, 0}, TRI_NONE};
+
+static inline int32_t par_locate(struct par_locator *locator, const struct par_partition *partition, int phase,
+                                 struct tri_point q)
+{
+    if (!tri_fence_holds(&locator->fence, q)) {
+        locator->block = par_block_at(partition, phase, q);
+        locator->fence = par_fence(partition, locator->block / partition->n_rows,
+                                   locator->block % partition->n_rows);
+    }
+    return locator->block;
+}
+
+/* The block of a phase that holds all corners of triangle t, or TRI_NONE. O(log blocks); or O(1). */
 int32_t par_owner_of(const struct par_partition *partition, int phase, const struct tri_mesh *mesh, tri_triangle_id t);
+int32_t par_locate_owner(struct par_locator *locator, const struct par_partition *partition, int phase,
+                         const struct tri_mesh *mesh, tri_triangle_id t);
 
 /* The smaller side of the cell that holds q. O(log blocks). */
 double par_cell_size(const struct par_partition *partition, struct tri_point q);

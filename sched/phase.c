@@ -3,7 +3,9 @@
 
 #include <assert.h>
 #include <float.h>
+#include <stdatomic.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "sched/theory.h"
 #include "triangle/clock.h"
@@ -88,9 +90,9 @@ static bool is_active(void *user, const double p[2])
 }
 
 /* The block that has its turn now and owns triangle t. */
-static int32_t owner_now(const struct phase *p, tri_triangle_id t)
+static int32_t owner_now(const struct phase *p, struct par_locator *locator, tri_triangle_id t)
 {
-    int32_t block = par_owner_of(p->partition, p->phase, p->state->mesh, t);
+    int32_t block = par_locate_owner(locator, p->partition, p->phase, p->state->mesh, t);
     if (p->state->share)
         return block == TRI_NONE || p->state->share->is_mine[block] ? block : TRI_NONE;
     bool mine = p->only == TRI_NONE || block == TRI_NONE || block / p->partition->n_rows == p->only;
@@ -102,9 +104,10 @@ static void assign_share(void *context, size_t share)
     const struct phase *p = context;
     const struct tri_mesh *mesh = p->state->mesh;
     const struct tri_range range = tri_share_of(share, TRI_MOST_SHARES, p->state->worklist.n);
+    struct par_locator locator = PAR_LOST;
     for (int32_t i = range.first; i < range.last; i++) {
         tri_triangle_id t = p->state->worklist.item[i];
-        p->block_of[i] = tri_is_live(&mesh->tri[t]) ? owner_now(p, t) : GONE;
+        p->block_of[i] = tri_is_live(&mesh->tri[t]) ? owner_now(p, &locator, t) : GONE;
         p->work[i] = p->block_of[i] >= 0 ? tri_work_of(mesh, p->state->quality, t) : 0;
     }
 }
@@ -121,52 +124,125 @@ static int32_t expect(int phase, double work)
     return expected < 1e7 ? (int32_t)expected : 10000000;
 }
 
-/* Counting sort of the worklist by block; what no block of this phase takes stays in the worklist, what has gone is
- * dropped. */
+/* Counting sort of the worklist by block, in shares. Blocks are counted from 1; what no block of this phase takes
+ * comes before all of them, and stays in the worklist; what has gone is dropped. */
+struct dealing {
+    struct phase *p;
+    size_t shares, bins;
+    int32_t *at;   /* [shares][bins] how many; then where the next one goes */
+    double *work;  /* [shares][bins] */
+    int32_t *kept; /* what stays, and its keys */
+    uint64_t *key;
+    int32_t n_kept;
+};
+
+static struct tri_range dealt_share(const struct dealing *d, size_t share)
+{
+    return tri_share_of(share, d->shares, d->p->state->worklist.n);
+}
+
+static void count_share(void *context, size_t share)
+{
+    const struct dealing *d = context;
+    const struct phase *p = d->p;
+    int32_t *count = d->at + share * d->bins;
+    double *work = d->work + share * d->bins;
+    const struct tri_range range = dealt_share(d, share);
+    for (int32_t i = range.first; i < range.last; i++)
+        if (p->block_of[i] != GONE) {
+            count[p->block_of[i] + 1]++;
+            work[p->block_of[i] + 1] += p->work[i];
+        }
+}
+
+static void deal_share(void *context, size_t share)
+{
+    const struct dealing *d = context;
+    const struct phase *p = d->p;
+    const struct par_keys *key = &p->state->key;
+    int32_t *at = d->at + share * d->bins;
+    const struct tri_range range = dealt_share(d, share);
+    for (int32_t i = range.first; i < range.last; i++) {
+        if (p->block_of[i] == GONE)
+            continue;
+        int32_t to = at[p->block_of[i] + 1]++;
+        if (p->block_of[i] != TRI_NONE) {
+            p->worklist[to - d->n_kept] = p->state->worklist.item[i];
+            continue;
+        }
+        d->kept[to] = p->state->worklist.item[i];
+        if (key->n > 0)
+            d->key[to] = key->item[i];
+    }
+}
+
+/* Counts become places. Adds up the work of all shares in that of the first; returns how many blocks have any. */
+static int32_t add_up_shares(struct dealing *d)
+{
+    int32_t sum = 0, used = 0;
+    for (size_t bin = 0; bin < d->bins; bin++) {
+        int32_t before = sum;
+        for (size_t share = 0; share < d->shares; share++) {
+            int32_t count = d->at[share * d->bins + bin];
+            d->at[share * d->bins + bin] = sum;
+            sum += count;
+            d->work[bin] += share > 0 ? d->work[share * d->bins + bin] : 0;
+        }
+        d->n_kept = bin == 0 ? sum : d->n_kept;
+        used += bin > 0 && sum > before;
+    }
+    return used;
+}
+
+static bool make_tasks(const struct dealing *d, int32_t used)
+{
+    struct phase *p = d->p;
+    p->tasks = calloc((size_t)used + 1, sizeof *p->tasks);
+    for (size_t bin = 1; p->tasks && bin < d->bins; bin++) {
+        int32_t end = d->at[(d->shares - 1) * d->bins + bin], begin = d->at[(d->shares - 1) * d->bins + bin - 1];
+        if (end > begin)
+            p->tasks[p->n_tasks++] = (struct task){
+                .block = (int32_t)bin - 1, .worklist = p->worklist + begin - d->n_kept, .n_worklist = end - begin,
+                .expected = expect(p->phase, d->work[bin]), .pausing = true};
+    }
+    assert(!p->tasks || p->n_tasks == used);
+    return p->tasks;
+}
+
+static bool deal_all(struct dealing *d)
+{
+    struct par_state *state = d->p->state;
+    tri_execute(&state->executor, d->shares, count_share, d);
+    int32_t used = add_up_shares(d);
+    d->kept = malloc(((size_t)d->n_kept + 1) * sizeof *d->kept);
+    d->key = state->key.n > 0 ? malloc(((size_t)d->n_kept + 1) * sizeof *d->key) : NULL;
+    if (!d->kept || (state->key.n > 0 && !d->key))
+        return false;
+    tri_execute(&state->executor, d->shares, deal_share, d);
+    if (!make_tasks(d, used))
+        return false;
+    free(state->worklist.item);
+    free(state->key.item);
+    state->worklist = (struct par_worklist){d->kept, d->n_kept, d->n_kept};
+    state->key = (struct par_keys){d->key, d->key ? d->n_kept : 0, d->key ? d->n_kept : 0};
+    d->kept = NULL;
+    d->key = NULL;
+    return true;
+}
+
+/* Few enough shares for counts not to outgrow what is counted. */
 static bool deal_worklists(struct phase *p)
 {
-    struct par_worklist *worklist = &p->state->worklist;
-    struct par_keys *key = &p->state->key;
-    int32_t n_blocks = par_blocks(p->partition), kept = 0, used = 0;
-    int32_t *start = calloc((size_t)n_blocks + 1, sizeof *start);
-    double *work = calloc((size_t)n_blocks + 1, sizeof *work);
-    if (!start || !work) {
-        free(start);
-        free(work);
-        return false;
-    }
-    for (int32_t i = 0; i < worklist->n; i++)
-        if (p->block_of[i] >= 0) {
-            start[p->block_of[i] + 1]++;
-            work[p->block_of[i]] += p->work[i];
-        }
-    for (int32_t b = 0; b < n_blocks; b++) {
-        used += start[b + 1] > 0;
-        start[b + 1] += start[b];
-    }
-    p->tasks = calloc((size_t)used + 1, sizeof *p->tasks);
-    if (p->tasks)
-        for (int32_t b = 0; b < n_blocks; b++)
-            if (start[b + 1] > start[b])
-                p->tasks[p->n_tasks++] = (struct task){
-                    .block = b, .worklist = p->worklist + start[b], .n_worklist = start[b + 1] - start[b],
-                    .expected = expect(p->phase, work[b]), .pausing = true};
-    for (int32_t i = 0; i < worklist->n; i++) {
-        tri_triangle_id triangle = worklist->item[i];
-        if (p->block_of[i] >= 0)
-            p->worklist[start[p->block_of[i]]++] = triangle;
-        else if (p->block_of[i] == TRI_NONE) {
-            if (key->n > 0)
-                key->item[kept] = key->item[i];
-            worklist->item[kept++] = triangle;
-        }
-    }
-    assert(kept <= worklist->n && p->n_tasks <= used);
-    worklist->n = kept;
-    key->n = key->n > 0 ? kept : 0;
-    free(start);
-    free(work);
-    return p->tasks;
+    size_t n = (size_t)p->state->worklist.n, bins = (size_t)par_blocks(p->partition) + 1, most = n / bins + 1;
+    struct dealing d = {.p = p, .bins = bins, .shares = most < TRI_MOST_SHARES ? most : TRI_MOST_SHARES};
+    d.at = calloc(d.shares * bins, sizeof *d.at);
+    d.work = calloc(d.shares * bins, sizeof *d.work);
+    bool memory = d.at && d.work && deal_all(&d);
+    free(d.at);
+    free(d.work);
+    free(d.kept);
+    free(d.key);
+    return memory;
 }
 
 /* Is a fence large enough for the paper's margin? */
@@ -248,10 +324,18 @@ static int32_t more_for(const struct task *task)
     return (int32_t)fmin(more, 2 * inserted + 256);
 }
 
+static enum tri_status reserve_room(const struct phase *p, struct tri_error *error)
+{
+    int64_t expected = 0;
+    for (int32_t i = 0; i < p->n_tasks; i++)
+        expected += p->tasks[i].expected;
+    return par_room_reserve(&p->state->spare, p->state->mesh, expected, error);
+}
+
 /* Room for the paused tasks, in canonical order. */
 static enum tri_status deal_room(struct phase *p, bool first, struct tri_error *error)
 {
-    enum tri_status status = TRI_OK;
+    enum tri_status status = first ? reserve_room(p, error) : TRI_OK;
     for (int32_t i = 0; !status && i < p->n_tasks; i++) {
         struct task *task = &p->tasks[i];
         if (!task->pausing || task->asked.n > 0)
@@ -336,12 +420,16 @@ static bool run_tasks(struct phase *p)
 {
     double began = tri_seconds();
     bool waiting = false;
+    struct par_report *report = p->state->report;
+    double shared[PAR_SHARINGS]; /* blocks are no equal shares */
+    memcpy(shared, report->seconds_shared, sizeof shared);
     tri_execute(&p->state->executor, (size_t)p->n_tasks, run_next, p);
+    memcpy(report->seconds_shared, shared, sizeof shared);
     for (int32_t i = 0; i < p->n_tasks; i++)
         waiting |= p->tasks[i].pausing;
     double seconds = tri_seconds() - began;
-    p->state->report->seconds_refine += seconds;
-    p->state->report->phase_seconds[p->phase] += seconds;
+    report->seconds_refine += seconds;
+    report->phase_seconds[p->phase] += seconds;
     return waiting;
 }
 
@@ -407,20 +495,6 @@ void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *a
     sum->hit_cap |= add->hit_cap;
 }
 
-static bool add_key(struct par_keys *keys, uint64_t key)
-{
-    if (!tri_grow(&keys->item, &keys->capacity, keys->n + 1, sizeof *keys->item))
-        return false;
-    keys->item[keys->n++] = key;
-    return true;
-}
-
-/* What a phase has left. */
-struct leftovers {
-    struct par_worklist item;
-    struct par_keys key;
-};
-
 uint64_t par_key_of(const struct par_partition *partition, int round, int phase, int32_t block)
 {
     int32_t column = block / partition->n_rows, row = block % partition->n_rows;
@@ -428,28 +502,67 @@ uint64_t par_key_of(const struct par_partition *partition, int round, int phase,
     return (uint64_t)round << 56 | (uint64_t)(place + 1) << 32;
 }
 
-static uint64_t key_of_left(const struct phase *p, int32_t block, int32_t n)
+/* What a phase has left. */
+struct leftovers {
+    const struct phase *p;
+    _Atomic(uint64_t) *seen; /* bits of triangles */
+    int32_t *before;         /* [n_tasks + 1] left by the tasks before each */
+    int32_t *item;           /* [before[n_tasks]] */
+    uint64_t *key;           /* [before[n_tasks]] */
+};
+
+static bool is_new(const struct leftovers *left, tri_triangle_id triangle)
 {
-    return par_key_of(p->partition, p->state->round, p->phase, block) | (uint32_t)n;
+    const uint64_t bit = (uint64_t)1 << triangle % 64;
+    return !(atomic_fetch_or_explicit(&left->seen[triangle / 64], bit, memory_order_relaxed) & bit);
 }
 
 /* A triangle goes back once, however often it was left: one with three encroached walls would count threefold, and
- * ninefold after the next phase. */
-static bool gather_left(const struct phase *p, struct leftovers *left)
+ * ninefold after the next phase. Two blocks do not leave the same one: each looks at what has two corners in its box,
+ * and boxes of one phase are disjoint. So who comes first does not matter. */
+static void drop_repeated(void *context, size_t index)
 {
-    static const struct par_worklist none;
-    struct par_triangle_set seen;
-    bool memory = par_triangle_set_of(&seen, &none, p->state->mesh->n_triangles);
-    for (int32_t i = 0; i < p->n_tasks; i++) {
-        const struct task *task = &p->tasks[i];
-        int32_t before = left->item.n;
-        memory = memory && !task->lost;
-        for (int32_t k = 0; memory && k < task->left.n; k++)
-            memory = par_worklist_add_new(&left->item, &seen, task->left.item[k]);
-        while (memory && left->key.n < left->item.n)
-            memory = add_key(&left->key, key_of_left(p, task->block, left->key.n - before));
+    const struct leftovers *left = context;
+    struct par_worklist *own = &left->p->tasks[index].left;
+    int32_t n = 0;
+    for (int32_t k = 0; k < own->n; k++)
+        if (is_new(left, own->item[k]))
+            own->item[n++] = own->item[k];
+    own->n = n;
+}
+
+static void gather_own(void *context, size_t index)
+{
+    const struct leftovers *left = context;
+    const struct phase *p = left->p;
+    const struct par_worklist *own = &p->tasks[index].left;
+    const uint64_t key = par_key_of(p->partition, p->state->round, p->phase, p->tasks[index].block);
+    for (int32_t k = 0, at = left->before[index]; k < own->n; k++, at++) {
+        left->item[at] = own->item[k];
+        left->key[at] = key | (uint32_t)k;
     }
-    free(seen.word);
+}
+
+static bool gather_left(struct leftovers *left)
+{
+    const struct phase *p = left->p;
+    const size_t n = (size_t)p->n_tasks;
+    bool memory = true;
+    left->seen = calloc((size_t)p->state->mesh->n_triangles / 64 + 1, sizeof *left->seen);
+    left->before = malloc((n + 1) * sizeof *left->before);
+    if (!left->seen || !left->before)
+        return false;
+    tri_execute(&p->state->executor, n, drop_repeated, left);
+    left->before[0] = 0;
+    for (size_t i = 0; i < n; i++) {
+        memory = memory && !p->tasks[i].lost;
+        left->before[i + 1] = left->before[i] + p->tasks[i].left.n;
+    }
+    left->item = malloc(((size_t)left->before[n] + 1) * sizeof *left->item);
+    left->key = malloc(((size_t)left->before[n] + 1) * sizeof *left->key);
+    memory = memory && left->item && left->key;
+    if (memory)
+        tri_execute(&p->state->executor, n, gather_own, left);
     return memory;
 }
 
@@ -468,10 +581,12 @@ bool par_merge_worklist(struct par_state *state, const int32_t *item, const uint
         free(keys);
         return false;
     }
+    assert(state->key.n == 0 || state->key.n == list->n);
     for (int32_t i = 0, at = 0; at < sum; at++) {
         bool old = k == n || (i < list->n && key_of(state, i) < key[k]);
         items[at] = old ? list->item[i] : item[k];
         keys[at] = old ? key_of(state, i) : key[k];
+        assert(at == 0 || keys[at - 1] < keys[at]);
         i += old;
         k += !old;
     }
@@ -502,12 +617,14 @@ static bool gather_given_up(const struct phase *p)
 
 static bool take_back(struct phase *p)
 {
-    struct leftovers left = {{0}, {0}};
-    bool memory = gather_left(p, &left) &&
-                  par_merge_worklist(p->state, left.item.item, left.key.item, left.item.n) && gather_changes(p) &&
+    struct leftovers left = {.p = p};
+    bool memory = gather_left(&left) &&
+                  par_merge_worklist(p->state, left.item, left.key, left.before[p->n_tasks]) && gather_changes(p) &&
                   gather_given_up(p);
-    free(left.item.item);
-    free(left.key.item);
+    free(left.seen);
+    free(left.before);
+    free(left.item);
+    free(left.key);
     return memory;
 }
 
@@ -571,6 +688,7 @@ enum tri_status par_phase(struct par_state *state, const struct par_partition *p
 {
     size_t n = (size_t)state->worklist.n + 1;
     struct phase p = {.state = state, .partition = partition, .phase = phase, .only = only};
+    assert(phase >= 0 && phase < PAR_PHASES && (only == TRI_NONE || only % 2 == 1 - phase / 2));
     p.block_of = malloc(n * sizeof *p.block_of);
     p.work = malloc(n * sizeof *p.work);
     p.worklist = malloc(n * sizeof *p.worklist);

@@ -45,6 +45,13 @@ enum par_stage {
     PAR_FINISHED /* nothing is left but to hand it out */
 };
 
+/* How near a mesh is to its end. */
+enum par_end {
+    PAR_UNFINISHED, /* it is being refined, or is as blocks have left it */
+    PAR_NUMBERED,   /* its numbers are those in which it is handed out */
+    PAR_DELIVERED   /* it has been handed out */
+};
+
 /* What the phases of a schedule hand on. */
 struct par_state {
     struct tri_mesh *mesh;
@@ -64,11 +71,10 @@ struct par_state {
     int round, phase;        /* of that, the second from 0 */
     struct par_share *share; /* NULL: all blocks are done here, with all that they may look at */
     int32_t n_kept;          /* vertices there were before */
-    bool may_number;         /* nothing is refined after this schedule */
+    bool may_number;         /* nothing is refined after this schedule, and what it makes is to be numbered */
     struct par_partition cells; /* of the last schedule of the whole mesh, and the tiles by which it is numbered */
-    bool numbered;           /* and nothing was */
+    enum par_end end;
     int64_t gone;            /* triangles that have been handed out, and are no more */
-    bool delivered;          /* all have */
     bool stays;              /* a mesh that does not fit in memory is not swept, or no more */
     struct par_park *park;   /* bounds the memory of the mesh; NULL: nobody does */
 };

@@ -117,6 +117,15 @@ static void deal(struct par_ranges *to, struct par_ranges *spare, struct par_ran
     spare->dealt++;
 }
 
+static enum tri_status reserve(struct tri_mesh *shared, enum par_kind kind, int32_t more, struct tri_error *error)
+{
+    switch (kind) {
+    case PAR_VERTICES: return tri_mesh_reserve_vertices(shared, more, error);
+    case PAR_TRIANGLES: return tri_mesh_reserve_triangles(shared, more, error);
+    default: return tri_mesh_reserve_subs(shared, more, error);
+    }
+}
+
 /* Nothing is taken or counted before there is room for it in the lists: no range is ever lost. */
 static enum tri_status extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
                               enum par_kind kind, int32_t need, struct tri_error *error)
@@ -134,9 +143,7 @@ static enum tri_status extend(struct par_room *room, struct par_room *spare, str
     need = need < LEAST_RANGE ? LEAST_RANGE : need;
     if (!reserve_deal(to, from))
         return no_memory(error);
-    enum tri_status status = kind == PAR_VERTICES ? tri_mesh_reserve_vertices(shared, need, error)
-                             : kind == PAR_TRIANGLES  ? tri_mesh_reserve_triangles(shared, need, error)
-                                                  : tri_mesh_reserve_subs(shared, need, error);
+    enum tri_status status = reserve(shared, kind, need, error);
     if (status)
         return status;
     int32_t *used = counts_of(shared, kind).used;
@@ -154,17 +161,38 @@ static int32_t left_of(const struct par_room *room, enum par_kind kind)
     return left;
 }
 
+/* Of this kind, what comes with so many triangles. */
+static int64_t wanted_of(enum par_kind kind, int64_t triangles)
+{
+    switch (kind) {
+    case PAR_VERTICES: return triangles / 2 + triangles / 64 + 16;
+    case PAR_TRIANGLES: return triangles;
+    default: return triangles / 16 + 64;
+    }
+}
+
 enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
                                 int32_t triangles, struct tri_error *error)
 {
-    const int32_t wanted[PAR_KINDS] = {
-        [PAR_VERTICES] = triangles / 2 + triangles / 64 + 16,
-        [PAR_TRIANGLES] = triangles,
-        [PAR_SUBS] = triangles / 16 + 64,
-    };
     enum tri_status status = TRI_OK;
     for (enum par_kind kind = PAR_VERTICES; !status && kind < PAR_KINDS; kind++)
-        status = extend(room, spare, shared, kind, wanted[kind] - left_of(room, kind), error);
+        status = extend(room, spare, shared, kind, (int32_t)wanted_of(kind, triangles) - left_of(room, kind), error);
+    return status;
+}
+
+enum tri_status par_room_reserve(const struct par_room *spare, struct tri_mesh *shared, int64_t triangles,
+                                 struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    if (shared->bound || shared->storage)
+        return TRI_OK;
+    for (enum par_kind kind = PAR_VERTICES; !status && kind < PAR_KINDS; kind++) {
+        int64_t need = wanted_of(kind, triangles);
+        for (int32_t i = 0; i < spare->ranges[kind].n; i++)
+            need -= spare->ranges[kind].item[i].end - spare->ranges[kind].item[i].next;
+        if (need > 0)
+            status = reserve(shared, kind, need < INT32_MAX ? (int32_t)need : INT32_MAX, error);
+    }
     return status;
 }
 
@@ -210,12 +238,26 @@ static void mark_free(struct tri_mesh *mesh, enum par_kind kind, int32_t at)
     }
 }
 
-void par_room_mark(const struct par_room *spare, struct tri_mesh *shared)
+/* Gaps of one kind. */
+struct marking {
+    const struct par_ranges *gaps;
+    struct tri_mesh *mesh;
+    enum par_kind kind;
+};
+
+static void mark_gap(void *context, size_t gap)
 {
-    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++)
-        for (int32_t i = 0; i < spare->ranges[kind].n; i++)
-            for (int32_t at = spare->ranges[kind].item[i].next; at < spare->ranges[kind].item[i].end; at++)
-                mark_free(shared, kind, at);
+    const struct marking *m = context;
+    for (int32_t at = m->gaps->item[gap].next; at < m->gaps->item[gap].end; at++)
+        mark_free(m->mesh, m->kind, at);
+}
+
+void par_room_mark(const struct par_room *spare, struct tri_mesh *shared, const struct tri_executor *executor)
+{
+    for (enum par_kind kind = PAR_VERTICES; kind < PAR_KINDS; kind++) {
+        struct marking marking = {&spare->ranges[kind], shared, kind};
+        tri_execute(executor, (size_t)spare->ranges[kind].n, mark_gap, &marking);
+    }
 }
 
 /* --- closing: what lies above the new end of an array goes into the gaps below it */

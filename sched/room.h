@@ -55,11 +55,17 @@ void par_view_end(struct par_view *view);
 enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
                                 int32_t triangles, struct tri_error *error);
 
+/* Sees to it that the shared arrays have about the capacity for so many more triangles at once, `spare` used up: what
+ * grows step by step is copied again and again. Does nothing where memory is bounded or arrays are elsewhere. As
+ * par_room_extend. */
+enum tri_status par_room_reserve(const struct par_room *spare, struct tri_mesh *shared, int64_t triangles,
+                                 struct tri_error *error);
+
 /* Moves what is unused to `spare`, and frees the room. Cannot fail. */
 void par_room_return(struct par_room *room, struct par_room *spare);
 
 /* Marks what `spare` lists as free in the shared arrays, as par_number wants it; spare is as before. O(gaps). */
-void par_room_mark(const struct par_room *spare, struct tri_mesh *shared);
+void par_room_mark(const struct par_room *spare, struct tri_mesh *shared, const struct tri_executor *executor);
 
 /* The same for one subsegment. */
 void par_room_mark_sub(struct tri_mesh *shared, tri_sub_id s);

@@ -145,7 +145,6 @@ static enum tri_status prerefine_graded(struct par_state *state, const struct tr
     struct tri_refine_report report;
     double least = smallest_cell(partition);
     struct coarse_test test = {partition, 1.0 / 16, least * least / 16, state->mesh->unit};
-    coarse.conforming = false;
     coarse.urgent = is_too_long;
     coarse.urgent_user = &test;
     coarse.max_steiner = (int64_t)(partition->estimate / 400);
@@ -190,14 +189,35 @@ static enum tri_status refine_rest(struct par_state *state, const struct tri_ref
     return status;
 }
 
+/* How long stages work in shares: the executor of a struct par_state. */
+struct timed {
+    struct tri_executor executor;
+    double *seconds; /* [PAR_SHARINGS] */
+};
+
+_Static_assert(1 << (PAR_SHARINGS - 1) == TRI_MOST_SHARES, "the last ones have most shares");
+
+static void run_timed(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
+{
+    const struct timed *timed = self;
+    double began = tri_seconds();
+    int sharing = 0;
+    while (sharing + 1 < PAR_SHARINGS && n_tasks >> (sharing + 1) > 0)
+        sharing++;
+    timed->executor.run(timed->executor.self, n_tasks, task, context);
+    timed->seconds[sharing] += tri_seconds() - began;
+}
+
 /* Numbers that depend on the mesh alone; what is free in its arrays is gone then. */
 static enum tri_status number_mesh(struct par_state *state, struct tri_error *error)
 {
+    const struct timed *timed = state->executor.self; /* what it does in shares is told as numbering */
     double began = tri_seconds();
     par_tell(state, PAR_NUMBERING);
     enum tri_status status = par_park_expect(state->park, state->mesh, par_number_bytes(state->mesh), error);
-    status = status ? status : par_number(state->mesh, &state->cells, state->n_kept, &state->executor, error);
-    state->numbered = true;
+    status = status ? status : par_number(state->mesh, &state->cells, state->n_kept, &timed->executor, error);
+    assert(status || (state->mesh->n_vertices >= state->n_kept && tri_mesh_is_sound(state->mesh)));
+    state->end = PAR_NUMBERED;
     state->report->seconds_number += tri_seconds() - began;
     return status;
 }
@@ -208,7 +228,7 @@ static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, st
     enum tri_status status = TRI_OK;
     double began = tri_seconds();
     if (numbering) {
-        par_room_mark(&state->spare, state->mesh);
+        par_room_mark(&state->spare, state->mesh, &state->executor);
         state->report->seconds_merge += tri_seconds() - began;
         status = number_mesh(state, error);
         if (!status) {
@@ -279,7 +299,7 @@ static enum tri_status refine_on_ranks(struct par_state *state, const struct par
 {
     struct par_tiles tiles = par_tiles_of(state, partition);
     enum tri_status status = par_refine_on_ranks(state, partition, &tiles, error);
-    state->delivered = true;
+    state->end = PAR_DELIVERED;
     par_tiles_free(&tiles);
     return status;
 }
@@ -366,12 +386,15 @@ static enum tri_status leave_memory(struct par_state *state, const struct par_pa
     const struct par_options *options = state->options;
     enum tri_status status = TRI_OK;
     bool can_sweep = state->may_number && (options->sink->begin || !options->scratch);
+    bool swept = false;
     state->stays = true;
     if (can_sweep)
-        status = try_to_sweep(state, partition, &state->delivered, error);
-    if (state->delivered)
+        status = try_to_sweep(state, partition, &swept, error);
+    if (swept) {
         state->report->way = PAR_SWEPT;
-    if (status || state->delivered)
+        state->end = PAR_DELIVERED;
+    }
+    if (status || swept)
         return status;
     if (!options->scratch)
         return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
@@ -386,7 +409,7 @@ static enum tri_status finish_schedule(struct par_state *state, const struct tri
 {
     double last = tri_seconds();
     if (!status && state->worklist.n > 0) { /* in the order of the worklist, which ids do not show in */
-        par_room_mark(&state->spare, state->mesh);
+        par_room_mark(&state->spare, state->mesh, &state->executor);
         status = refine_rest(state, quality, false, error);
     }
     state->report->seconds_last += tri_seconds() - last;
@@ -435,7 +458,7 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         status = refine_on_ranks(state, partition, error);
     else if (!status && top && !state->stays && is_too_much(state, partition->estimate))
         status = leave_memory(state, partition, error);
-    if (status || state->delivered)
+    if (status || state->end == PAR_DELIVERED)
         return status;
     state->n_schedules++;
     state->round = state->phase = 0;
@@ -607,7 +630,7 @@ static enum tri_status refine_by_schedule(struct par_state *state, const struct 
 /* Hands out a mesh that is finished, tile by tile if it is numbered. */
 static enum tri_status hand_out(struct par_state *state, struct tri_error *error)
 {
-    struct par_tiles tiles = par_tiles_of(state, state->numbered ? &state->cells : NULL);
+    struct par_tiles tiles = par_tiles_of(state, state->end == PAR_NUMBERED ? &state->cells : NULL);
     enum tri_status status = par_park_expect(state->park, state->mesh, par_tiles_whole_bytes(&tiles), error);
     if (status)
         return status;
@@ -625,9 +648,9 @@ static enum tri_status hand_out(struct par_state *state, struct tri_error *error
 static enum tri_status deliver(struct par_state *state, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    if (state->delivered)
+    if (state->end == PAR_DELIVERED)
         return TRI_OK;
-    if (state->report->levels > 0 && !state->options->by_block && !state->numbered)
+    if (state->report->levels > 0 && !state->options->by_block && state->end != PAR_NUMBERED)
         status = number_mesh(state, error);
     state->stage = PAR_FINISHED;
     status = status ? status : come_to_border(state, false, error);
@@ -635,11 +658,10 @@ static enum tri_status deliver(struct par_state *state, struct tri_error *error)
     return !status && state->options->sink ? hand_out(state, error) : status;
 }
 
-/* A bound on memory that somebody keeps: on ranks each has its own part, and a sink without a scratch directory gets a
- * sweep and no more. */
+/* A bound on memory that somebody keeps: a sink without a scratch directory gets a sweep and no more. */
 static bool is_bounded(const struct par_options *options)
 {
-    return options->memory > 0 && !options->carrier && (options->scratch || !options->sink);
+    return options->memory > 0 && (options->scratch || !options->sink);
 }
 
 static void clean_up(struct par_state *state)
@@ -680,9 +702,11 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
                            const struct par_options *options, struct par_report *report, struct tri_error *error)
 {
     double began = tri_seconds();
+    assert(tri_mesh_is_sound(mesh));
     *report = (struct par_report){.threads = par_threads(options->threads, false)};
+    struct timed timed = {par_executor(&report->threads), report->seconds_shared};
     struct par_state state = {.mesh = mesh, .quality = quality, .options = options, .report = report,
-                              .executor = par_executor(&report->threads),
+                              .executor = {run_timed, &timed},
                               .n_kept = mesh->n_vertices};
     bool sequential = must_be_sequential(quality, options);
     bool can_sweep = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE;
@@ -692,12 +716,13 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     if (status)
         return status;
     if (state.park)
-        state.executor = par_park_executor(state.park, state.executor);
+        timed.executor = par_park_executor(state.park, timed.executor);
     if (checkpoint_of(&state))
         status = par_state_begin(options->checkpoint, &state, error);
     status = status ? status : refine_and_deliver(&state, quality, sequential, error);
     status = par_park_status(state.park, status, error);
     clean_up(&state);
+    assert(options->sink || tri_mesh_is_sound(mesh));
     report->seconds_total = tri_seconds() - began;
     return status;
 }

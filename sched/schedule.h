@@ -42,7 +42,8 @@ struct par_options {
                                 it would not fit, it is swept from left to right: few columns are there at a time, and
                                 *mesh is not a mesh afterwards, to be freed and no more. What does not fit then, lies in
                                 files in `scratch` (sched/sweep/park.h). The tiles are the same for any bound. Without a
-                                sink: TRI_NO_MEMORY as soon as it would not fit */
+                                sink: TRI_NO_MEMORY as soon as it would not fit. On ranks each has a bound of its own,
+                                and keeps it by files */
     const char *scratch;     /* directory for these files; NULL: with a sink, the bound decides on the sweep alone, and
                                 a mesh that cannot be swept is TRI_TOO_LARGE */
     struct par_checkpoint *checkpoint; /* where the state of the run is kept, and taken from (sched/sweep/state.h);
@@ -60,6 +61,8 @@ struct par_options {
     void (*progress)(void *user, int round, int phase, int64_t triangles);
     void *progress_user;
 };
+
+enum { PAR_SHARINGS = 7 }; /* no stage has more than TRI_MOST_SHARES shares */
 
 enum par_way { /* how a mesh was carried through */
     PAR_IN_MEMORY,
@@ -97,9 +100,11 @@ struct par_report {
     int64_t parked;               /* most bytes of files in `scratch` at a time; 0: all was in memory */
     int64_t pauses;               /* times a block waited for room */
     double seconds_prerefine, seconds_partition, seconds_room, seconds_merge, seconds_last, seconds_total;
-    double seconds_find;          /* bad triangles, and the block of each; in equal shares */
+    double seconds_find;          /* bad triangles, and the block of each */
     double seconds_deal;         /* dealing them to blocks */
     double seconds_number;        /* par_number, after all others; nearly all in equal shares */
+    double seconds_shared[PAR_SHARINGS]; /* of all these but number and refine: what ran in 2^k or more equal shares,
+                                            but less than 2^(k + 1) */
     double seconds_refine;        /* wall time of the phases' parallel parts */
     double phase_seconds[4];      /* refine, by phase, over all rounds */
     struct par_block_report *blocks; /* [n_blocks] in canonical order; owned by the report */

@@ -1,6 +1,7 @@
 /* Threads are tried by making them, and letting them wait for each other, so that all are there at once. */
 #include "sched/threads.h"
 
+#include <assert.h>
 #include <signal.h>
 
 #ifdef _OPENMP
@@ -86,6 +87,7 @@ int par_threads(int asked, bool wary)
 static void run_in_parallel(void *self, size_t n_tasks, void (*task)(void *context, size_t index), void *context)
 {
     int threads = threads_wanted(*(int *)self);
+    assert(threads >= 1);
     threads = n_tasks < (size_t)threads ? (int)n_tasks : threads;
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
     for (size_t i = 0; i < n_tasks; i++)

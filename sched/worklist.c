@@ -10,13 +10,10 @@
 #include "triangle/census.h"
 #include "triangle/grow.h"
 
-bool par_worklist_add(struct par_worklist *triangles, tri_triangle_id triangle)
+bool par_worklist_grow(struct par_worklist *triangles)
 {
     assert(triangles->n >= 0 && triangles->n <= triangles->capacity);
-    if (!tri_grow(&triangles->item, &triangles->capacity, triangles->n + 1, sizeof *triangles->item))
-        return false;
-    triangles->item[triangles->n++] = triangle;
-    return true;
+    return tri_grow(&triangles->item, &triangles->capacity, triangles->n + 1, sizeof *triangles->item);
 }
 
 static int ascending(const void *left, const void *right)
@@ -57,15 +54,6 @@ bool par_triangle_set_of(struct par_triangle_set *set, const struct par_worklist
         set->word[triangles->item[i] / 64] |= (uint64_t)1 << triangles->item[i] % 64;
     }
     return set->word;
-}
-
-bool par_worklist_add_new(struct par_worklist *triangles, struct par_triangle_set *set, tri_triangle_id triangle)
-{
-    uint64_t bit = (uint64_t)1 << triangle % 64;
-    if (set->word[triangle / 64] & bit)
-        return true;
-    set->word[triangle / 64] |= bit;
-    return par_worklist_add(triangles, triangle);
 }
 
 struct finding {
@@ -144,6 +132,7 @@ enum tri_status par_worklist_fill(struct par_worklist *worklist, struct tri_mesh
         largest2 = f.radius2[share] > largest2 ? f.radius2[share] : largest2;
     free(worklist->item);
     *worklist = (struct par_worklist){f.found, gather(&f, n), n + 1};
+    assert(worklist->n <= n && largest2 >= 0);
     *radius = sqrt(largest2);
     return TRI_OK;
 }

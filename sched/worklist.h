@@ -10,8 +10,17 @@ struct par_worklist {
     int32_t n, capacity;
 };
 
+/* Room for one more. False: no memory. */
+bool par_worklist_grow(struct par_worklist *triangles);
+
 /* Amortised O(1). False: no memory. */
-bool par_worklist_add(struct par_worklist *triangles, tri_triangle_id triangle);
+static inline bool par_worklist_add(struct par_worklist *triangles, tri_triangle_id triangle)
+{
+    if (triangles->n == triangles->capacity && !par_worklist_grow(triangles))
+        return false;
+    triangles->item[triangles->n++] = triangle;
+    return true;
+}
 
 /* Brings ids in ascending order, each once; returns how many are left. */
 int32_t par_sort_unique(int32_t *item, int32_t n);
@@ -26,9 +35,6 @@ struct par_triangle_set {
 
 /* The triangles of a list, out of n_triangles; false: no memory. To be freed by free(set->word). O(n_triangles). */
 bool par_triangle_set_of(struct par_triangle_set *set, const struct par_worklist *triangles, int32_t n_triangles);
-
-/* Adds a triangle to the list unless it is in the set, which is that of the list. False: no memory. */
-bool par_worklist_add_new(struct par_worklist *triangles, struct par_triangle_set *set, tri_triangle_id triangle);
 
 /* The worklist becomes all triangles that violate the bounds, in the order of their numbers; *radius, the largest
  * circumradius among them. known: the worklist is that already, for the mesh as it was after the last call; then only

@@ -84,9 +84,9 @@ done
 # 2. drivers/ -> sched/ -> triangle/, never back; only sched/ knows threads. The folders in triangle/ may
 # include the mesher, the mesher none of them, and they none of each other, but for api/, the door to all, and
 # hdf5/, whose files are outputs of text/.
-refuse '#[[:space:]]*include[[:space:]]*"(sched|drivers|tests)/' 'includes an upper room' \
+refuse '#[[:space:]]*include[[:space:]]*"(sched|drivers|tests)/' 'includes an upper folder' \
     triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp
-refuse '#[[:space:]]*include[[:space:]]*"(drivers|tests)/' 'includes an upper room' sched/*.[ch] sched/*/*.[ch]
+refuse '#[[:space:]]*include[[:space:]]*"(drivers|tests)/' 'includes an upper folder' sched/*.[ch] sched/*/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|text|hdf5|dropin|check)/' 'includes a folder of the mesher' \
     triangle/*.[ch]
 refuse '#[[:space:]]*include[[:space:]]*"triangle/(api|hdf5|dropin|check)/' 'includes another folder' triangle/text/*.[ch]

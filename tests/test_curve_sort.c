@@ -13,7 +13,7 @@ static struct loose insert_all(const struct tri_mesh *mesh)
 {
     int32_t n = mesh->n_vertices;
     struct loose loose = {.tri = malloc((2 * (size_t)n + 8) * sizeof *loose.tri), .n = 2 * n + 8, .n_live = 4};
-    struct tri_inserter inserter = {.xy = mesh->xy, .tri = loose.tri, .block = {0, n}, .last = 0};
+    struct tri_inserter inserter = {.xy = mesh->xy, .tri = loose.tri, .stretch = {0, n}, .last = 0};
     assert_non_null(loose.tri);
     for (int32_t t = 0; t < loose.n; t++)
         loose.tri[t] = (struct tri_triangle){.v = {TRI_NONE}};

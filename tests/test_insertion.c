@@ -1,4 +1,4 @@
-/* Insertion into blocks of vertices: what a block owns it inserts, what it does not own stays untouched. */
+/* Insertion into stretches of vertices: what a stretch owns it inserts, what it does not own stays untouched. */
 #include "support.h"
 
 #include "triangle/insertion.h"
@@ -82,15 +82,15 @@ static void assert_delaunay(const struct trial *t, const bool *inserted)
     }
 }
 
-/* Inserts what the block owns, from triangle `entry`; returns how many of its vertices it did not own. */
-static int32_t insert_block(struct trial *t, struct tri_range block, int32_t entry, bool *inserted)
+/* Inserts what the stretch owns, from triangle `entry`; returns how many of its vertices it did not own. */
+static int32_t insert_stretch(struct trial *t, struct tri_range stretch, int32_t entry, bool *inserted)
 {
-    struct tri_inserter inserter = {.xy = t->xy, .tri = t->tri, .block = block, .last = entry};
+    struct tri_inserter inserter = {.xy = t->xy, .tri = t->tri, .stretch = stretch, .last = entry};
     size_t bytes = (2 * (size_t)t->n + 4) * sizeof *t->tri;
     struct tri_triangle *before = malloc(bytes);
     int32_t not_owned = 0;
     assert_non_null(before);
-    for (int32_t v = block.first; v < block.last; v++) {
+    for (int32_t v = stretch.first; v < stretch.last; v++) {
         if (inserted[v])
             continue;
         memcpy(before, t->tri, bytes);
@@ -110,10 +110,10 @@ static int32_t insert_block(struct trial *t, struct tri_range block, int32_t ent
     return not_owned;
 }
 
-/* A triangle that a block owns; TRI_NONE: there is none. */
-static int32_t any_owned(const struct trial *t, struct tri_range block)
+/* A triangle that a stretch owns; TRI_NONE: there is none. */
+static int32_t any_owned(const struct trial *t, struct tri_range stretch)
 {
-    const struct tri_inserter inserter = {.xy = t->xy, .tri = t->tri, .block = block};
+    const struct tri_inserter inserter = {.xy = t->xy, .tri = t->tri, .stretch = stretch};
     for (int32_t i = 0; i < 2 * t->n + 4; i++)
         if (!is_free(&t->tri[i]) && tri_inserter_owns(&inserter, &t->tri[i]))
             return i;
@@ -130,7 +130,7 @@ static void test_one_block_inserts_all(void **state)
         bool inserted[60] = {false};
         for (int32_t v = 0; v < t.n; v++)
             inserted[v] = v == t.first[0] || v == t.first[1] || v == t.first[2] || is_twin(&t, v);
-        assert_int_equal(insert_block(&t, (struct tri_range){0, t.n}, 2 * t.n, inserted), 0);
+        assert_int_equal(insert_stretch(&t, (struct tri_range){0, t.n}, 2 * t.n, inserted), 0);
         assert_linked(&t);
         assert_delaunay(&t, inserted);
         end(&t);
@@ -157,7 +157,7 @@ static void test_two_blocks_and_the_rest(void **state)
     tri_insert_first(t.xy, t.tri, 2 * N, t.first);
     const struct tri_range all = {0, N}, half[2] = {{0, N / 2}, {N / 2, N}};
     for (int32_t v = 5; v < N; v += 5) { /* a few first, so that there is something to own */
-        struct tri_inserter inserter = {.xy = t.xy, .tri = t.tri, .block = all, .last = any_owned(&t, all)};
+        struct tri_inserter inserter = {.xy = t.xy, .tri = t.tri, .stretch = all, .last = any_owned(&t, all)};
         if (!inserted[v])
             assert_int_equal(tri_insert(&inserter, v, 2 * v), TRI_INSERTED);
         inserted[v] = true;
@@ -167,11 +167,11 @@ static void test_two_blocks_and_the_rest(void **state)
     for (int32_t v = 0; v < N; v++)
         waiting += !inserted[v];
     for (int k = 0; k < 2; k++)
-        left += insert_block(&t, half[k], any_owned(&t, half[k]), inserted);
+        left += insert_stretch(&t, half[k], any_owned(&t, half[k]), inserted);
     assert_linked(&t);
     assert_delaunay(&t, inserted);
     assert_true(left > 0 && left < waiting);
-    assert_int_equal(insert_block(&t, all, any_owned(&t, all), inserted), 0);
+    assert_int_equal(insert_stretch(&t, all, any_owned(&t, all), inserted), 0);
     assert_linked(&t);
     assert_delaunay(&t, inserted);
     end(&t);

@@ -171,7 +171,7 @@ static int64_t run_phase(struct tri_mesh *mesh, const struct tri_refine_options 
     state.worklist = bad_triangles(mesh, quality);
     if (par_phase(&state, p, phase, TRI_NONE, &error) != TRI_OK)
         fail_msg("%s", error.text);
-    par_room_mark(&state.spare, mesh); /* triangles that nobody has used yet hold anything */
+    par_room_mark(&state.spare, mesh, NULL); /* triangles that nobody has used yet hold anything */
     assert_changes_are_owned(mesh, old, n_old, p, phase);
     assert_worklist_holds_all_that_is_bad(mesh, quality, &state.worklist, &report.total);
     *pauses += report.pauses;
@@ -240,7 +240,7 @@ static void test_four_phases_in_turn(void **state)
         phases.worklist = bad_triangles(&mesh, &quality);
         for (int phase = 0; phase < PAR_PHASES; phase++) {
             assert_int_equal(par_phase(&phases, &partition, phase, TRI_NONE, NULL), TRI_OK);
-            par_room_mark(&phases.spare, &mesh);
+            par_room_mark(&phases.spare, &mesh, NULL);
             assert_worklist_holds_all_that_is_bad(&mesh, &quality, &phases.worklist, &report.total);
         }
         print_message("  %-16s %d left of %lld inserted\n", trials[i].file ? trials[i].file : "square",

@@ -57,15 +57,19 @@ static void test_shares(void **state)
     assert_true(is_near(prediction_overhead(&report), 5));
     assert_true(is_near(prediction_numbering(&report), 0));
     report.seconds_number = 2; /* comes after what the shares are shares of, and is shared out itself */
-    report.seconds_find = 0.25;
+    report.seconds_shared[0] = 0.0625;
+    report.seconds_shared[3] = 0.1875;
     report.seconds_total += 2;
     report.threads = 2;
     assert_true(is_near(prediction_sequential(&report), 1.25));
     assert_true(is_near(prediction_overhead(&report), 5));
     assert_true(is_near(prediction_numbering(&report), 20));
-    assert_true(is_near(prediction_shared(&report, report.seconds_number, 1), 4));
-    assert_true(is_near(prediction_shared(&report, report.seconds_number, 8), 0.5));
-    assert_true(is_near(prediction_shared(&report, report.seconds_number, 256), 4.0 / TRI_MOST_SHARES));
+    assert_true(is_near(prediction_number(&report, 1), 4));
+    assert_true(is_near(prediction_number(&report, 8), 0.5));
+    assert_true(is_near(prediction_number(&report, 256), 4.0 / TRI_MOST_SHARES));
+    assert_true(is_near(prediction_shared(&report, 1), 0.0625 + 0.375));
+    assert_true(is_near(prediction_shared(&report, 4), 0.0625 + 0.09375));
+    assert_true(is_near(prediction_shared(&report, 64), 0.0625 + 0.375 / 8));
     report.levels = 0; /* one sequential call has no schedule */
     assert_true(is_near(prediction_overhead(&report), 0));
     assert_true(is_near(prediction_numbering(&report), 0));

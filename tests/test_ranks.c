@@ -117,7 +117,8 @@ static void refine_to(struct member *m)
 static void refine_and_relay(struct member *m)
 {
     const struct tri_sink to = {&m->stream, begin_stream, take_tile, NULL};
-    struct par_relay relay = {.carrier = &m->carrier, .to = &to, .most_bytes = 10000};
+    struct par_relay relay = {.carrier = &m->carrier, .to = &to, .most_bytes = 10000,
+                              .room = m->carrier.n_ranks % 2 ? 30000 : 0};
     const struct tri_sink sink = par_relay_sink(&relay);
     m->options.sink = &sink;
     m->options.figure = &m->start->pslg;
@@ -185,6 +186,10 @@ static void new_members(struct member *member, const struct start *start, const 
         member[p].stream.first_rank = p == 0;
         member[p].stream.fail_at = p == fails ? relayed ? 8 : 2 : 0;
         member[p].relayed = relayed;
+        if (relayed && p % 2 == 0) { /* all of its mesh leaves memory at once */
+            member[p].options.memory = 1;
+            member[p].options.scratch = ".";
+        }
     }
 }
 

@@ -250,14 +250,14 @@ static void test_closing_keeps_the_mesh(void **state)
             } else if (action == 1) {
                 assert_int_equal(par_room_extend(&view[who].room, &spare, &mesh, 1 + support_below(&random, 300), NULL),
                                  TRI_OK);
-                par_room_mark(&view[who].room, &mesh); /* so that the mesh can be looked at */
+                par_room_mark(&view[who].room, &mesh, NULL); /* so that the mesh can be looked at */
             } else {
                 vertices += refine_in_view(&mesh, &view[who], support_below(&random, 60), 2e-4);
             }
         }
         for (int32_t who = 0; who < ROOMS; who++)
             par_room_return(&view[who].room, &spare);
-        par_room_mark(&spare, &mesh);
+        par_room_mark(&spare, &mesh, NULL);
         struct support_places places = support_places(&mesh);
         assert_true(vertices > mesh.n_input || seed > 0);
         if (seed % 2) {

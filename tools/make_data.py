@@ -949,6 +949,8 @@ FOUND = [
          "-pc: that coordinate counts as 0, for the judge, too", ()),
     Case("regress/below_dxf.poly", None, "outline from a drawing, nearly a rectangle",
          "-q20: no angle below; two triangles stayed so without need", ()),
+    Case("regress/drifted_chain.poly", None, "a figure 2000 times as high as wide, with segments ulps beside each other",
+         "-q33: angles kept but at small ones; once 145 were not, beside a subsegment that could not be split", ()),
     Case("regress/bundle_levels.poly", None, "segments side by side, their ends nearer to each other than they are",
          "-a0.00065D: some thousand triangles; once each new point in the bundle asked for more, without end", ()),
 ]

@@ -57,7 +57,7 @@ static void kill_concavities(struct flood *f)
 
 enum { UNSEEN, WAITING, SEEN };
 
-/* Triangles by depth: those of the depth that is being flooded on the stack, those behind its walls in `next`. */
+/* Triangles by depth: those of the depth that is being flooded on the stack, those behind its barriers in `next`. */
 struct dive {
     const struct tri_mesh *mesh;
     uint8_t *state;         /* [n_triangles] */
@@ -94,7 +94,7 @@ static void cross(struct dive *d, tri_halfedge code)
         visit(d, tri_of(other));
 }
 
-/* Triangles at the hull, at depth 0, or behind a wall. Those at depth 0 are on the stack first. */
+/* Triangles at the hull, at depth 0, or behind a barrier. Those at depth 0 are on the stack first. */
 static void enter(struct dive *d, bool keep_hull)
 {
     const struct tri_mesh *mesh = d->mesh;
@@ -105,10 +105,10 @@ static void enter(struct dive *d, bool keep_hull)
                 if (link >= 0 || tri_across(mesh, tri_code(t, e)) != TRI_NONE)
                     continue;
                 const struct tri_parent *parent = &mesh->parents[mesh->sub[~link].parent];
-                bool wall = parent->odd || (keep_hull && parent->segment == TRI_NONE);
-                if (pass == 0 && !wall)
+                bool barrier = parent->odd || (keep_hull && parent->segment == TRI_NONE);
+                if (pass == 0 && !barrier)
                     visit(d, t);
-                if (pass == 1 && wall)
+                if (pass == 1 && barrier)
                     put_off(d, t);
             }
 }

@@ -21,13 +21,13 @@ struct tri_carve_options {
  * subsegments in the order of their input segments, hull edges last, each with a parent of its own. O(triangles), and
  * what it takes to locate the points (locate.h).
  *
- * even_odd: what has an even depth goes, too. The depth of a triangle is the least number of walls on a way to it from
- * outside; a wall is a subsegment along which an odd number of input segments run. So rings may lie in rings, and where
- * two polygons share a border, each with a segment of its own there, that is none. THEOREM. Where walls are closed
- * rings, whatever they cross (at each vertex an even number of walls ends), this is the even-odd rule: any closed way
- * crosses an even number of them, so that all ways to a triangle have the same parity. Otherwise: a wall with one
- * triangle's component on both sides changes nothing (a dangling one), nor does one between two components of one depth
- * (across a ring). With keep_hull, hull edges along which no segment runs are walls. */
+ * even_odd: what has an even depth goes, too. The depth of a triangle is the least number of barriers on a way to it
+ * from outside; a barrier is a subsegment along which an odd number of input segments run. So rings may lie in rings,
+ * and where two polygons share a border, each with a segment of its own there, that is none. THEOREM. Where barriers
+ * are closed rings, whatever they cross (at each vertex an even number of barriers ends), this is the even-odd rule:
+ * any closed way crosses an even number of them, so that all ways to a triangle have the same parity. Otherwise: a
+ * barrier with one triangle's component on both sides changes nothing (a dangling one), nor does one between two
+ * components of one depth (across a ring). With keep_hull, hull edges along which no segment runs are barriers. */
 enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_carve_options *options,
                           struct tri_error *error);
 

@@ -1,16 +1,16 @@
-/* Incremental Delaunay triangulation in biased randomised Hilbert order, by blocks of the curve.
+/* Incremental Delaunay triangulation in biased randomised Hilbert order, by stretches of the curve.
  *
  * Rounds of geometrically growing random samples, each along the Hilbert curve (Amenta, Choi & Rote 2003): the next
  * point lies near the last one, so location is a walk of few steps, and no order of input makes cavities large on
  * average.
  *
- * Vertices are numbered along the curve, and the curve is cut into leaves of equally many. Within a round, blocks of
- * leaves insert at the same time what they can (triangle/insertion.h); what lies at their borders waits for blocks of
- * WIDER times as many leaves, and what is left at last for one block that has all. Borders of blocks with m vertices
- * each are crossed by some n / sqrt(m) triangles: so each step leaves half of what the one before left, and one block
- * alone gets some sqrt(n). The triangulation is that of the set of points, whatever the order (cocircular ties are
- * broken by coordinates); rounds, leaves and blocks follow from the number of points alone; and at the end triangles
- * are sorted. So the mesh depends on the points alone. */
+ * Vertices are numbered along the curve, and the curve is cut into leaves of equally many. Within a round, stretches
+ * of leaves insert at the same time what they can (triangle/insertion.h); what lies at their borders waits for
+ * stretches of WIDER times as many leaves, and what is left at last for one stretch that has all. Borders of stretches
+ * with m vertices each are crossed by some n / sqrt(m) triangles: so each step leaves half of what the one before
+ * left, and one stretch alone gets some sqrt(n). The triangulation is that of the set of points, whatever the order
+ * (cocircular ties are broken by coordinates); rounds, leaves and stretches follow from the number of points alone;
+ * and at the end triangles are sorted. So the mesh depends on the points alone. */
 #include "triangle/delaunay.h"
 
 #include <assert.h>
@@ -27,7 +27,7 @@ enum {
     LEAF = 1 << 15,    /* vertices */
     MOST_LEAVES = 256,
     WIDER = 4,
-    LEAST_SHARE = 16   /* a block inserts in a round at least, about, one point for so many vertices of a leaf */
+    LEAST_SHARE = 16   /* a stretch inserts in a round at least, about, one point for so many vertices of a leaf */
 };
 
 _Static_assert(INT64_C(8) * 8 * 8 * 8 * 8 * 8 * 8 * FIRST_ROUND >= TRI_MAX_VERTICES && ROUND_GROWTH == 8,
@@ -39,8 +39,8 @@ struct leaf {
     int32_t n_waiting;              /* in the round that runs: the first so many of these still do */
     int32_t n_inserted;             /* in that round */
     int32_t near;                   /* a triangle near the leaf, when all is quiet */
-    int32_t entry;                  /* a triangle that the block of the leaf owns; TRI_NONE: go on where others ended */
-    enum tri_status status;         /* of the block that begins here */
+    int32_t entry;                  /* a triangle of the stretch of the leaf; TRI_NONE: go on where others ended */
+    enum tri_status status;         /* of the stretch that begins here */
 };
 
 struct builder {
@@ -50,9 +50,9 @@ struct builder {
     int32_t *waiting;         /* [n_vertices] */
     struct leaf *leaf;
     int32_t n_leaves, n_rounds;
-    int32_t least;            /* points that a block should insert in a round */
+    int32_t least;            /* points that a stretch should insert in a round */
     int32_t first[3];         /* corners of the first triangle */
-    int32_t round, width;     /* what runs: a round, in blocks of so many leaves */
+    int32_t round, width;     /* what runs: a round, in stretches of so many leaves */
 };
 
 /* --- duplicates */
@@ -148,22 +148,22 @@ static void arrange_leaf(void *context, size_t index)
     leaf->near = 2 * b->mesh->n_vertices;
 }
 
-/* --- a phase: all blocks of some width */
+/* --- a phase: all stretches of some width */
 
-static struct tri_range block_of(const struct builder *b, int32_t leaf)
+static struct tri_range stretch_of(const struct builder *b, int32_t leaf)
 {
     int32_t first = leaf - leaf % b->width, last = first + b->width < b->n_leaves ? first + b->width : b->n_leaves;
     return (struct tri_range){b->leaf[first].range.first, b->leaf[last - 1].range.last};
 }
 
-/* Where the block can begin with the points of a leaf: with the first of them whose triangle it owns. Nothing is
- * inserted meanwhile. A block that owns all can begin anywhere. */
+/* Where the stretch can begin with the points of a leaf: with the first of them whose triangle it owns. Nothing is
+ * inserted meanwhile. A stretch that owns all can begin anywhere. */
 static void seek_entry(void *context, size_t index)
 {
     const struct builder *b = context;
     struct leaf *leaf = &b->leaf[index];
-    struct tri_inserter all = {b->mesh->xy, b->tri, {0, b->mesh->n_vertices}, .last = leaf->near}, block = all;
-    block.block = block_of(b, (int32_t)index);
+    struct tri_inserter all = {b->mesh->xy, b->tri, {0, b->mesh->n_vertices}, .last = leaf->near}, own = all;
+    own.stretch = stretch_of(b, (int32_t)index);
     leaf->entry = TRI_NONE;
     if (b->width >= b->n_leaves) {
         leaf->entry = index == 0 ? leaf->near : TRI_NONE;
@@ -171,7 +171,7 @@ static void seek_entry(void *context, size_t index)
     }
     for (int32_t i = 0; leaf->entry == TRI_NONE && i < leaf->n_waiting; i++) {
         tri_triangle_id t = tri_inserter_locate(&all, b->mesh->xy[b->waiting[leaf->round[b->round] + i]]);
-        leaf->entry = tri_inserter_owns(&block, &b->tri[t]) ? t : TRI_NONE;
+        leaf->entry = tri_inserter_owns(&own, &b->tri[t]) ? t : TRI_NONE;
     }
 }
 
@@ -198,11 +198,11 @@ static enum tri_status insert_leaf(const struct builder *b, struct leaf *leaf, s
     return TRI_OK;
 }
 
-static void insert_block(void *context, size_t index)
+static void insert_stretch(void *context, size_t index)
 {
     const struct builder *b = context;
     int32_t first = (int32_t)index * b->width;
-    struct tri_inserter inserter = {b->mesh->xy, b->tri, block_of(b, first), .last = TRI_NONE};
+    struct tri_inserter inserter = {b->mesh->xy, b->tri, stretch_of(b, first), .last = TRI_NONE};
     enum tri_status status = TRI_OK;
     uint32_t step = 0;
     for (int32_t i = first; !status && i < b->n_leaves && i < first + b->width; i++) {
@@ -217,9 +217,9 @@ static void insert_block(void *context, size_t index)
 
 static enum tri_status run_phase(struct builder *b, struct tri_error *error)
 {
-    size_t n_blocks = (size_t)((b->n_leaves + b->width - 1) / b->width);
+    size_t n_stretches = (size_t)((b->n_leaves + b->width - 1) / b->width);
     tri_execute(b->executor, (size_t)b->n_leaves, seek_entry, b);
-    tri_execute(b->executor, n_blocks, insert_block, b);
+    tri_execute(b->executor, n_stretches, insert_stretch, b);
     for (int32_t i = 0; i < b->n_leaves; i += b->width) {
         if (b->leaf[i].status == TRI_STOPPED)
             return tri_fail_stopped(error);

@@ -1,4 +1,4 @@
-/* How work in independent pieces is run: the one thing that this room asks of whoever owns threads.
+/* How work in independent pieces is run: the one thing that this folder asks of whoever owns threads.
  *
  * triangle/ knows no threads. What can be done in pieces is cut into numbered tasks and handed to a caller's executor;
  * a NULL executor stands for doing one task after another. No result may depend on the order in which tasks run. */

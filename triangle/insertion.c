@@ -37,7 +37,7 @@ static bool grow(struct tri_inserter *b)
 
 static inline bool holds(const struct tri_inserter *b, tri_vertex_id v)
 {
-    return (uint32_t)(v - b->block.first) < (uint32_t)(b->block.last - b->block.first) || v == TRI_GHOST;
+    return (uint32_t)(v - b->stretch.first) < (uint32_t)(b->stretch.last - b->stretch.first) || v == TRI_GHOST;
 }
 
 bool tri_inserter_owns(const struct tri_inserter *b, const struct tri_triangle *t)
@@ -87,8 +87,8 @@ static inline bool in_disk(const struct tri_inserter *b, const struct tri_triang
 }
 
 /* A walk by visibility: the triangle contains q, or is a ghost beyond the hull edge that the walk leaves through. Exact
- * orientations: the walk cannot cycle in a Delaunay triangulation. Of a neighbour of what the block owns it is the
- * corner across the edge that tells whether the block owns it, too. */
+ * orientations: the walk cannot cycle in a Delaunay triangulation. Of a neighbour of what the stretch owns it is the
+ * corner across the edge that tells whether the stretch owns it, too. */
 static inline tri_triangle_id locate(struct tri_inserter *b, struct tri_point q)
 {
     tri_triangle_id t = b->last;

@@ -32,14 +32,14 @@
 #include "triangle/grow.h"
 #include "triangle/predicates.h"
 
-/* A place in one of the two chains: those of the left one come first. Place i and place i + 1 are joined by wall i.
- * While triangles are made their corners are places, and their links codes, ~i for wall i, or ~(places + i) for the
+/* A place in one of the two chains: those of the left one come first. Place i and place i + 1 are joined by border i.
+ * While triangles are made their corners are places, and their links codes, ~i for border i, or ~(places + i) for the
  * piece of a string that starts at place i. */
 struct tri_recovery_place {
     tri_vertex_id vertex;
-    tri_link outer;      /* wall: the mesh's link on its outer side */
-    int32_t twin;       /* wall: which other one is the same edge, or TRI_NONE; before that, the code of its triangle */
-    int32_t inner;      /* wall: link on its inner side */
+    tri_link outer;      /* border: the mesh's link on its outer side */
+    int32_t twin;       /* border: which other one is the same edge, or TRI_NONE; before that, its triangle's code */
+    int32_t inner;      /* border: link on its inner side */
     int32_t prev, next; /* string: neighbours */
     int32_t above;      /* string: link above the piece to next */
 };
@@ -120,7 +120,7 @@ static bool make_room(struct tri_recovery *r)
 
 static int32_t n_places(const struct tri_recovery *r) { return r->n_crossed + 4; }
 
-static void set_wall(struct tri_recovery *r, const struct tri_mesh *mesh, int32_t i, tri_triangle_id t, int e)
+static void set_border(struct tri_recovery *r, const struct tri_mesh *mesh, int32_t i, tri_triangle_id t, int e)
 {
     assert(i >= 0 && i < n_places(r));
     r->at[i].outer = mesh->tri[t].n[e];
@@ -134,28 +134,28 @@ static void list_places(struct tri_recovery *r, const struct tri_mesh *mesh)
     int k = tri_edge(r->crossed[0]);
     const tri_vertex_id *v = mesh->tri[t].v;
     r->at[left].vertex = r->at[right].vertex = v[k];
-    set_wall(r, mesh, left, t, tri_next[k]);
+    set_border(r, mesh, left, t, tri_next[k]);
     r->at[++left] = (struct tri_recovery_place){.vertex = v[tri_prev[k]]};
     r->at[--right] = (struct tri_recovery_place){.vertex = v[tri_next[k]]};
-    set_wall(r, mesh, right, t, tri_prev[k]);
+    set_border(r, mesh, right, t, tri_prev[k]);
     for (int32_t i = 1; i < r->n_crossed; i++) {
         int f = tri_edge(r->crossed[i]);
         t = tri_of(r->crossed[i]);
         v = mesh->tri[t].v;
         bool last = i + 1 == r->n_crossed, is_left = !last && mesh->tri[t].n[tri_next[f]] == r->crossed[i + 1];
         if (last || is_left) {
-            set_wall(r, mesh, left, t, tri_prev[f]);
+            set_border(r, mesh, left, t, tri_prev[f]);
             r->at[++left] = (struct tri_recovery_place){.vertex = v[f]};
         }
         if (!is_left) {
             r->at[--right] = (struct tri_recovery_place){.vertex = v[f]};
-            set_wall(r, mesh, right, t, tri_next[f]);
+            set_border(r, mesh, right, t, tri_next[f]);
         }
     }
     assert(left == r->n_left - 1 && right == r->n_left);
 }
 
-/* Frees the triangles, and finds walls that are the two sides of one edge. */
+/* Frees the triangles, and finds borders that are the two sides of one edge. */
 static void clear_triangles(struct tri_recovery *r, struct tri_mesh *mesh)
 {
     r->n_free = 0;

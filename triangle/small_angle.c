@@ -278,7 +278,7 @@ static double cost_across(const struct tri_mesh *mesh, tri_vertex_id u, tri_vert
 }
 
 /* About so many points it takes to fill the space that a triangle of the input lies in. Where other vertices lie
- * between its two walls, as on the wall that closes its end, no edge bridges it: so the apexes across each edge count,
+ * between its two sides, as on the one that closes its end, no edge bridges it: so the apexes across each edge count,
  * too. */
 static double demand_of(const struct tri_mesh *mesh, tri_triangle_id triangle)
 {

@@ -21,7 +21,8 @@
 
 #include "triangle/predicates.h"
 
-/* Resolutions that a split point may lie off its parent's line. */
+/* Resolutions, those of the parent's largest coordinate, that a split point may lie off its line: where coordinates are
+ * finer than at an end, a part from a point near that end is as far off. */
 static const double ASTRAY = 4;
 
 /* May a boundary subsegment from `from` to `to`, the mesh on its left, be split at p? */
@@ -53,5 +54,6 @@ bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s
     bool on_line = choice < TRI_PLACES; /* else on the subsegment, which lies inside by now */
     struct tri_point exact = on_line ? tri_onto_line(a, b, between) : between;
     *p = tri_place_beside(exact, choice % TRI_PLACES);
-    return is_allowed(mesh, s, *p) && (on_line || tri_line_distance(a, b, *p) <= ASTRAY * tri_resolution(*p));
+    double astray = ASTRAY * fmax(tri_resolution(a), tri_resolution(b));
+    return is_allowed(mesh, s, *p) && (on_line || tri_line_distance(a, b, *p) <= astray);
 }

@@ -28,6 +28,7 @@ enum tri_status par_borrow(struct par_ranks *r, struct tri_error *error)
 enum tri_status par_ask(struct par_ranks *r, const struct par_worklist *vertices, struct tri_error *error)
 {
     for (int32_t i = 0; i < vertices->n; i++) {
+        assert(vertices->item[i] >= 0 && vertices->item[i] < r->state->mesh->n_vertices);
         int h = par_owner_at(&r->territory, r->state->mesh->xy[vertices->item[i]]);
         int32_t number = h == r->territory.rank ? 0 : par_map_get(&r->borrowed[h].vertex_at, vertices->item[i]);
         if (number == TRI_NONE)
@@ -48,6 +49,7 @@ static void list_set(struct par_worklist *list, const struct par_triangle_set *s
         for (int bit = 0; set->word[w] != 0 && bit < 64; bit++)
             if (set->word[w] >> bit & 1)
                 list->item[n++] = 64 * w + bit;
+    assert(n <= list->n);
     list->n = n;
 }
 
@@ -77,6 +79,7 @@ static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3])
 {
     const struct tri_mesh *mesh = r->state->mesh;
     int n = 0, guess = owner[0];
+    assert(tri_is_live(&mesh->tri[t]));
     for (int k = 0; k < 3; k++) {
         struct tri_point q = mesh->xy[mesh->tri[t].v[k]];
         if (par_is_own(&r->territory, q))
@@ -121,6 +124,7 @@ static bool give_entries(struct par_ranks *r, struct par_message *message)
     struct par_state *state = r->state;
     bool memory = true, *keep = malloc((size_t)state->worklist.n + 1);
     int owner[3] = {0};
+    assert(state->key.n == state->worklist.n);
     for (int32_t i = 0; keep && i < state->worklist.n; i++) {
         tri_triangle_id t = state->worklist.item[i];
         keep[i] = par_has_own(r, t);
@@ -183,6 +187,7 @@ static bool remove_vertices(struct par_ranks *r, uint64_t *word)
     for (int32_t w = 0; memory && w <= mesh->n_vertices / 64; w++)
         for (int bit = 0; memory && word[w] != 0 && bit < 64; bit++)
             if (word[w] >> bit & 1) {
+                assert(64 * w + bit >= r->n_common); /* these all ranks keep */
                 mesh->on[64 * w + bit] = TRI_VERTEX_NONE;
                 memory = par_release(r->state, PAR_VERTICES, 64 * w + bit);
             }
@@ -274,6 +279,7 @@ static bool keep_own_entries(struct par_ranks *r)
 enum tri_status par_keep_own(struct par_ranks *r, struct tri_error *error)
 {
     struct par_worklist all = {0};
+    assert(r->straddlers.n == 0);
     uint64_t *word = calloc((size_t)r->state->mesh->n_vertices / 64 + 1, sizeof *word);
     bool memory = word && keep_own_entries(r);
     for (tri_triangle_id t = 0; memory && t < r->state->mesh->n_triangles; t++)

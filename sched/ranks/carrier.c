@@ -10,6 +10,7 @@
 
 bool par_bytes_reserve(struct par_bytes *bytes, size_t more)
 {
+    assert(bytes->n <= bytes->capacity);
     if (bytes->n + more <= bytes->capacity)
         return true;
     size_t capacity = bytes->n + more + bytes->capacity / 2;
@@ -112,6 +113,8 @@ static void share_error(struct par_carrier *carrier, int from, int64_t *all, str
 
 enum tri_status par_agree(struct par_carrier *carrier, enum tri_status status, struct tri_error *error)
 {
+    assert(carrier->rank >= 0 && carrier->rank < carrier->n_ranks);
+    assert(carrier->ended == (carrier->status != TRI_OK));
     if (carrier->ended)
         return carrier->status;
     int from = first_to_fail(carrier, status, carrier->of_each);

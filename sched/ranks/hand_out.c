@@ -56,6 +56,7 @@ static int64_t count_triangles(const struct handing *h)
     int64_t n = h->mesh->n_triangles - unused(&r->state->spare.ranges[PAR_TRIANGLES]);
     for (int32_t i = 0; i < r->straddlers.n; i++)
         n -= !is_own(h, last_tile(h, h->mesh->tri[r->straddlers.item[i]].v, 3));
+    assert(n >= 0);
     return n;
 }
 
@@ -94,6 +95,7 @@ static int64_t count_subs(struct handing *h)
 static bool tell_number(struct handing *h, tri_vertex_id v, int p)
 {
     const struct numbered_place place = {h->mesh->xy[v], h->tiles->number[v]};
+    assert(place.number >= h->tiles->n_kept && place.number < h->tiles->n_vertices);
     if (par_map_get(&h->told[p], v) != TRI_NONE)
         return true;
     return par_map_put(&h->told[p], v, 0) && par_bytes_add(&h->ranks->out[p], &place, sizeof place);
@@ -204,9 +206,14 @@ static enum tri_status prepare(struct handing *h, int64_t count[3], struct tri_e
                  ? (territory->start[rank + 1] - 1) / territory->n_rows + 1 : h->first;
     h->first_tile = par_first_block(territory, rank);
     h->end_tile = par_first_block(territory, rank + 1);
+    assert(h->first <= h->end && h->first_tile <= h->end_tile);
     h->column = calloc((size_t)(h->end - h->first) + 1, sizeof(struct par_column *));
     h->told = calloc((size_t)territory->n_ranks, sizeof *h->told);
-    par_room_mark(&h->ranks->state->spare, h->mesh);
+    const size_t bytes = par_tiles_bytes(h->tiles) + par_tiles_whole_bytes(h->tiles); /* the second for the sink */
+    enum tri_status status = par_park_expect(h->ranks->state->park, h->mesh, bytes, error);
+    if (status)
+        return status;
+    par_room_mark(&h->ranks->state->spare, h->mesh, &h->ranks->state->executor);
     if (!h->column || !h->told || !par_tiles_reserve(h->tiles))
         return no_memory(error);
     count[0] = count_vertices(h);
@@ -288,9 +295,12 @@ enum tri_status par_hand_out_on_ranks(struct par_ranks *r, struct par_tiles *til
     for (int k = 0; !status && k < 3; k++)
         base[k] = tiles->first[k][rank] + (k == 0 && rank == 0 ? tiles->n_kept : 0);
     status = status ? status : number_columns(&h, base, error);
+    assert(status || tiles->n_vertices == tiles->first[0][rank + 1]); /* as many as have been counted */
     status = exchange_numbers(&h, status, error);
     if (!status)
         status = hand_out(&h, base, error);
+    assert(status || tiles->n_triangles == tiles->first[1][rank + 1]);
+    assert(status || tiles->n_segments == tiles->first[2][rank + 1]);
     clean_up(&h);
     free(first);
     return par_agree(r->carrier, status, error);

@@ -32,6 +32,7 @@ static bool join(const struct par_ranks *r, int w, struct par_worklist *ring, tr
 static bool join_corners(const struct par_ranks *r, int w, struct par_worklist *ring, tri_triangle_id t)
 {
     const tri_vertex_id *v = r->state->mesh->tri[t].v;
+    assert(tri_is_live(&r->state->mesh->tri[t]));
     return join(r, w, ring, v[0], t) && join(r, w, ring, v[1], t) && join(r, w, ring, v[2], t);
 }
 
@@ -53,6 +54,7 @@ static bool tell_around(const struct par_ranks *r, int w, tri_vertex_id v, tri_t
     const struct tri_mesh *mesh = r->state->mesh;
     tri_triangle_id at = t;
     bool memory = true;
+    assert(t != TRI_NONE && par_is_own(&r->territory, mesh->xy[v])); /* so all triangles around it are here */
     do {
         memory = memory && tell_of(&r->lent[w], at) && join_corners(r, w, next, at);
         at = turn(mesh, at, v, true);
@@ -131,6 +133,7 @@ static bool lend_entries(struct par_ranks *r, struct par_message *message)
 {
     struct par_state *state = r->state;
     bool memory = true, *keep = malloc((size_t)state->worklist.n + 1);
+    assert(state->key.n == state->worklist.n);
     for (int32_t i = 0; keep && i < state->worklist.n; i++) {
         int w = taker_of(r, i);
         keep[i] = w < 0;

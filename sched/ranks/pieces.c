@@ -198,7 +198,7 @@ enum tri_status par_pieces_write(const struct par_ranks *r, const char *path, ui
                                  struct tri_error *error)
 {
     struct sorting s;
-    par_room_mark(&r->state->spare, r->state->mesh);
+    par_room_mark(&r->state->spare, r->state->mesh, &r->state->executor);
     enum tri_status status = sort_all(&s, r) ? TRI_OK : par_ranks_no_memory(error);
     status = status ? status : write_file(&s, path, run, hash, error);
     free_sorting(&s);

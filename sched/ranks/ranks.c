@@ -37,6 +37,7 @@ static bool init_shift(struct par_ranks *r)
 {
     struct par_shift *s = &r->shift;
     size_t n = (size_t)blocks_of(s);
+    assert(!s->worker && !s->block_of);
     s->worker = malloc(n * sizeof *s->worker);
     s->is_mine = calloc(n, sizeof *s->is_mine);
     s->is_border = calloc(n, sizeof *s->is_border);
@@ -222,6 +223,7 @@ static enum tri_status refine_step(struct par_ranks *r, const struct par_partiti
 {
     struct par_state *state = r->state;
     bool any;
+    assert(!state->share && r->stand.phase >= 0 && r->stand.phase < PAR_PHASES);
     r->shift = (struct par_shift){.partition = partition, .phase = r->stand.phase, .step = r->stand.step,
                                   .n_steps = steps_of(r, partition)};
     enum tri_status status = share_blocks(r, &any, error);

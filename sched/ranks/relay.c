@@ -71,51 +71,16 @@ static size_t unpack(const struct par_relay *relay, const char *bytes, struct tr
     return at;
 }
 
-/* --- the sink */
+/* --- pieces */
 
-static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
-{
-    struct par_relay *relay = user;
-    struct tri_stream one = *stream;
-    relay->n_attributes = stream->n_attributes;
-    one.n_ranks = 1; /* to whoever takes them, all tiles are of one process */
-    one.first_vertex = one.first_triangle = one.first_segment = NULL;
-    if (relay->carrier->rank > 0 || !relay->to->begin)
-        return TRI_OK;
-    return relay->to->begin(relay->to->user, &one, error);
-}
-
-static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
-{
-    struct par_relay *relay = user;
-    if (relay->carrier->rank == 0)
-        return relay->to->take(relay->to->user, tile, error);
-    return pack(relay, tile) ? TRI_OK : no_memory(error);
-}
-
-struct tri_sink par_relay_sink(struct par_relay *relay)
-{
-    return (struct tri_sink){.user = relay, .begin = begin, .take = take};
-}
-
-/* --- turns */
-
-/* Whole tiles from `at` on, about as many bytes as are good. */
-static size_t piece_of(const struct par_relay *relay, size_t at)
+/* Whole tiles that have not been sent, about as many bytes as are good. */
+static size_t next_piece(const struct par_relay *relay)
 {
     size_t most = relay->most_bytes > 0 ? relay->most_bytes : MOST_BYTES, n = 0;
     struct tri_tile tile;
-    while (at + n < relay->tiles.n && n < most)
-        n += unpack(relay, relay->tiles.at + at + n, &tile);
+    while (relay->sent + n < relay->tiles.n && n < most)
+        n += unpack(relay, relay->tiles.at + relay->sent + n, &tile);
     return n;
-}
-
-static int64_t pieces_of(const struct par_relay *relay)
-{
-    int64_t pieces = 0;
-    for (size_t at = 0; at < relay->tiles.n; at += piece_of(relay, at))
-        pieces++;
-    return pieces;
 }
 
 static enum tri_status hand_on(struct par_relay *relay, const struct par_bytes *piece, struct tri_error *error)
@@ -129,56 +94,102 @@ static enum tri_status hand_on(struct par_relay *relay, const struct par_bytes *
     return status;
 }
 
-/* One rank's next piece goes to rank 0. */
-static enum tri_status move_piece(struct par_relay *relay, int turn, size_t *at, struct par_bytes *out,
-                                  struct par_bytes *in, enum tri_status status, struct tri_error *error)
+/* Of the rank whose turn it is the next piece goes to rank 0. ends: this one has no more tiles to come. Collective. */
+static enum tri_status step(struct par_relay *relay, bool ends, struct tri_error *error)
 {
-    const struct par_carrier *carrier = relay->carrier;
-    if (!status && carrier->rank == turn) {
-        size_t n = piece_of(relay, *at);
-        if (!par_bytes_add(&out[0], relay->tiles.at + *at, n))
-            status = no_memory(error);
-        *at += n;
+    const int rank = relay->carrier->rank, turn = relay->turn;
+    enum tri_status status = TRI_OK;
+    int64_t last = 0;
+    if (rank == turn) {
+        const size_t n = next_piece(relay);
+        status = par_bytes_add(&relay->out[0], relay->tiles.at + relay->sent, n) ? TRI_OK : no_memory(error);
+        relay->sent += n;
+        last = ends && relay->sent == relay->tiles.n;
     }
-    status = par_swap(relay->carrier, PAR_MOVE_TILES, out, in, status, error);
-    if (!status && carrier->rank == 0)
-        status = hand_on(relay, &in[turn], error);
-    free(in[turn].at);
-    in[turn] = (struct par_bytes){0};
+    status = par_gather(relay->carrier, &last, 1, relay->told, status, error);
+    status = par_swap(relay->carrier, PAR_MOVE_TILES, relay->out, relay->in, status, error);
+    if (status)
+        return status;
+    relay->turn += relay->told[turn] != 0;
+    if (rank == 0)
+        status = hand_on(relay, &relay->in[turn], error);
+    free(relay->in[turn].at);
+    relay->in[turn] = (struct par_bytes){0};
     return status;
 }
 
-static enum tri_status take_turns(struct par_relay *relay, struct par_bytes *out, struct par_bytes *in,
-                                  const int64_t *pieces, struct tri_error *error)
+/* Until all that is kept has been sent. */
+static enum tri_status send_all(struct par_relay *relay, bool ends, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    size_t at = 0;
-    for (int turn = 1; turn < relay->carrier->n_ranks; turn++)
-        for (int64_t i = 0; i < pieces[turn] && !relay->carrier->ended; i++)
-            status = move_piece(relay, turn, &at, out, in, status, error);
-    if (!status && relay->carrier->rank == 0 && relay->to->end)
+    while (!status && relay->turn < relay->carrier->rank)
+        status = step(relay, false, error);
+    while (!status && (relay->sent < relay->tiles.n || (ends && relay->turn == relay->carrier->rank)))
+        status = step(relay, ends, error);
+    relay->tiles.n = relay->sent = 0;
+    return status;
+}
+
+/* --- the sink */
+
+static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
+{
+    struct par_relay *relay = user;
+    struct tri_stream one = *stream;
+    const size_t n = (size_t)relay->carrier->n_ranks;
+    relay->n_attributes = stream->n_attributes;
+    relay->turn = 1;
+    relay->out = calloc(n, sizeof *relay->out);
+    relay->in = calloc(n, sizeof *relay->in);
+    relay->told = calloc(n, sizeof *relay->told);
+    if (!relay->out || !relay->in || !relay->told)
+        return no_memory(error);
+    one.n_ranks = 1; /* to whoever takes them, all tiles are of one process */
+    one.first_vertex = one.first_triangle = one.first_segment = NULL;
+    if (relay->carrier->rank > 0 || !relay->to->begin)
+        return TRI_OK;
+    return relay->to->begin(relay->to->user, &one, error);
+}
+
+static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
+{
+    struct par_relay *relay = user;
+    if (relay->carrier->rank == 0)
+        return relay->to->take(relay->to->user, tile, error);
+    if (!pack(relay, tile))
+        return no_memory(error);
+    return relay->room == 0 || relay->tiles.n < relay->room ? TRI_OK : send_all(relay, false, error);
+}
+
+static enum tri_status end(void *user, struct tri_error *error)
+{
+    struct par_relay *relay = user;
+    const struct par_carrier *carrier = relay->carrier;
+    enum tri_status status = carrier->rank > 0 ? send_all(relay, true, error) : TRI_OK;
+    while (!status && relay->turn < carrier->n_ranks)
+        status = step(relay, false, error);
+    if (!status && carrier->rank == 0 && relay->to->end)
         status = relay->to->end(relay->to->user, error);
-    return par_agree(relay->carrier, status, error);
+    return status;
+}
+
+struct tri_sink par_relay_sink(struct par_relay *relay)
+{
+    return (struct tri_sink){.user = relay, .begin = begin, .take = take, .end = end};
 }
 
 enum tri_status par_relay_finish(struct par_relay *relay, enum tri_status status, struct tri_error *error)
 {
-    size_t n = (size_t)relay->carrier->n_ranks;
-    struct par_bytes *out = calloc(n, sizeof *out), *in = calloc(n, sizeof *in);
-    int64_t mine = relay->carrier->rank > 0 ? pieces_of(relay) : 0, *pieces = calloc(n, sizeof *pieces);
-    if (!status && !(out && in && pieces))
-        status = no_memory(error);
-    status = par_gather(relay->carrier, &mine, 1, pieces, status, error);
-    if (!status)
-        status = take_turns(relay, out, in, pieces, error);
-    for (size_t p = 0; out && p < n; p++)
-        free(out[p].at);
-    for (size_t p = 0; in && p < n; p++)
-        free(in[p].at);
-    free(out);
-    free(in);
-    free(pieces);
+    for (int p = 0; p < relay->carrier->n_ranks; p++) {
+        if (relay->out)
+            free(relay->out[p].at);
+        if (relay->in)
+            free(relay->in[p].at);
+    }
+    free(relay->out);
+    free(relay->in);
+    free(relay->told);
     free(relay->tiles.at);
-    relay->tiles = (struct par_bytes){0};
-    return status;
+    *relay = (struct par_relay){.carrier = relay->carrier};
+    return par_agree(relay->carrier, status, error);
 }

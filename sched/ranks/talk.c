@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sched/sweep/spool.h"
 #include "triangle/grow.h"
 
 /* --- maps */
@@ -207,31 +208,32 @@ bool par_message_add_entry(struct par_message *m, uint64_t key, int32_t triangle
 /* --- writing */
 
 /* Of what stands before it at the end of a message. */
-static uint64_t hash_of(const char *bytes, size_t n)
-{
-    uint64_t hash = n, word;
-    for (size_t i = 0; i < n; i += sizeof word) {
-        word = 0;
-        memcpy(&word, bytes + i, n - i < sizeof word ? n - i : sizeof word);
-        hash = (hash ^ word) * 0x9e3779b97f4a7c15ull;
-        hash ^= hash >> 29;
-    }
-    return hash;
-}
+static uint64_t hash_of(const char *bytes, size_t n) { return par_hash(n, bytes, n); }
 
 struct writer {
     struct par_bytes *to;
     bool lost;
 };
 
+enum { LONGEST = 10, AHEAD = 1 << 12 }; /* bytes of a number; so many are reserved at once */
+
 static void put(struct writer *w, uint64_t n)
 {
-    unsigned char byte[10];
-    int k = 0;
+    struct par_bytes *to = w->to;
+    w->lost = w->lost || (to->capacity - to->n < LONGEST && !par_bytes_reserve(to, AHEAD));
+    if (w->lost)
+        return;
     for (; n >= 128; n >>= 7)
-        byte[k++] = (unsigned char)(n & 127) | 128;
-    byte[k++] = (unsigned char)n;
-    w->lost = w->lost || !par_bytes_add(w->to, byte, (size_t)k);
+        to->at[to->n++] = (char)((n & 127) | 128);
+    to->at[to->n++] = (char)n;
+}
+
+static void put_byte(struct writer *w, unsigned char byte)
+{
+    struct par_bytes *to = w->to;
+    w->lost = w->lost || (to->capacity == to->n && !par_bytes_reserve(to, AHEAD));
+    if (!w->lost)
+        to->at[to->n++] = (char)byte;
 }
 
 static void put_signed(struct writer *w, int64_t n) { put(w, n < 0 ? 2 * ~(uint64_t)n + 1 : 2 * (uint64_t)n); }
@@ -311,7 +313,7 @@ static void put_triangle(struct writer *w, const struct par_message *m, int32_t 
         bool is_first = (flags & ((1 << parent) - 1)) == 0;
         flags |= is_first && t->next[parent] == first + i - 1 ? LAST_IS_PARENT : 0;
     }
-    put_bytes(w, &(unsigned char){(unsigned char)flags}, 1);
+    put_byte(w, (unsigned char)flags);
     put_links(w, t, first + i, flags & LAST_IS_PARENT);
     for (int k = 0; k < 3; k++) {
         if (parent == 3 || (k == parent && !(flags & NEW_APEX)))

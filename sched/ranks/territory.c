@@ -1,6 +1,7 @@
 /* From places and boxes to tiles, and from tiles to ranks. */
 #include "sched/ranks/territory.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 static struct tri_fence box_of_tile(const struct par_territory *t, int32_t column, int32_t row)
@@ -13,6 +14,7 @@ static void find_boxes(struct par_territory *t, int rank)
 {
     int32_t n = t->n_rows, start = t->start[rank], end = t->start[rank + 1], first = start / n, last = (end - 1) / n;
     struct tri_fence *box = t->boxes[rank].item;
+    assert(0 <= start && start <= end);
     box[0] = box[1] = box[2] = (struct tri_fence){HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     for (int32_t column = first; start < end && column <= last; column++) {
         int32_t bottom = column == first ? start % n : 0, top = column == last ? (end - 1) % n : n - 1;
@@ -35,6 +37,7 @@ bool par_territory_init(struct par_territory *t, const struct par_partition *par
         return false;
     for (int p = 0; p <= n; p++)
         t->start[p] = carrier->share ? (int32_t)(carrier->share[p] * (double)tiles) : (int32_t)(p * tiles / n);
+    assert(t->start[0] == 0 && t->start[n] == tiles);
     for (int p = 0; p < n; p++)
         find_boxes(t, p);
     return true;
@@ -58,6 +61,7 @@ int par_owner_of_tile(const struct par_territory *t, int32_t tile)
         else
             high = mid;
     }
+    assert(t->start[low] <= tile && tile < t->start[low + 1]);
     return low;
 }
 
@@ -103,6 +107,7 @@ bool par_owners_in(const struct par_territory *t, const struct tri_fence *box, i
         *first = *first >= 0 ? *first : par_owner_of_tile(t, c * t->n_rows + row);
         *last = par_owner_of_tile(t, c * t->n_rows + end - 1);
     }
+    assert(*first <= *last && *last < t->n_ranks); /* they come in order, as tiles do */
     return *first >= 0;
 }
 

@@ -64,12 +64,23 @@ struct numbering {
     int32_t n_tiles;
     int32_t *kept_tile; /* [n_kept] */
     struct deal vertices, triangles; /* new vertices; all triangles */
-    int32_t *order;    /* [n_vertices - n_kept] the new vertices, one after the other; then ends of fans */
-    int32_t *number;     /* [n_vertices] first the tile of a new vertex, then the new number of each */
     int32_t n_new;
+    /* Memory that serves twice, by two names: the first until vertices have been put in order, and numbered; of a
+     * triangle until its tile is sorted. */
+    union {
+        int32_t *order;   /* [n_vertices - n_kept] the new vertices, one after the other */
+        int32_t *fan_end; /* of the triangles that start at each */
+    };
+    union {
+        int32_t *tile_of; /* [n_vertices] of a new vertex; TRI_NONE: the id is free */
+        int32_t *number;  /* the new one of each */
+    };
+    union {
+        int32_t *second;  /* [n_triangles] the new number of the second corner; TRI_NONE: the id is free */
+        int32_t *place;   /* where it goes; TRI_NONE */
+    };
     int32_t *sub_number; /* [n_subs] */
     struct tri_subsegment *sub; /* [n_subs] */
-    int32_t *place;    /* [n_triangles] first the second corner of a triangle, then where it goes; TRI_NONE: free */
     size_t n_items;    /* the larger of n_triangles and n_subs */
     void *scratch;     /* [3 * n_items] items: by tile, in the end in their new order; as they lie; what is aside */
     struct tri_triangle *buffer; /* [batch] */
@@ -105,22 +116,26 @@ static int32_t add_up_counts(struct deal *d, int32_t n_tiles)
         }
     }
     d->start[n_tiles] = sum;
+    assert(sum <= d->n);
     return sum;
 }
 
 /* The tile of places that mostly lie in the same one as the last. */
 struct tile_finder {
-    struct tri_fence fence;
-    int32_t tile;
+    struct par_locator locator;
+    int32_t block, tile;
 };
+
+static const struct tile_finder LOST = {{{1, 1, 0, 0}, TRI_NONE}, TRI_NONE, TRI_NONE};
 
 static int32_t find_tile(struct tile_finder *f, const struct par_partition *p, struct tri_point q)
 {
-    if (!tri_fence_holds(&f->fence, q)) {
-        int32_t block = par_block_at(p, 0, q), column = block / p->n_rows, row = block % p->n_rows;
-        f->fence = par_fence(p, column, row);
-        f->tile = column / 2 * (p->n_rows / 2) + row / 2;
+    int32_t block = par_locate(&f->locator, p, 0, q);
+    if (block != f->block) {
+        f->block = block;
+        f->tile = block / p->n_rows / 2 * (p->n_rows / 2) + block % p->n_rows / 2;
     }
+    assert(tri_fence_holds(&f->locator.fence, q));
     return f->tile;
 }
 
@@ -148,12 +163,12 @@ static void count_vertices(void *context, size_t share)
     const struct tri_mesh *mesh = n->mesh;
     struct tri_range range = share_of(&n->vertices, share);
     int32_t *count = n->vertices.at + share * (size_t)n->n_tiles;
-    struct tile_finder finder = {.fence = {1, 1, 0, 0}};
+    struct tile_finder finder = LOST;
     for (int32_t i = range.first; i < range.last; i++) {
         tri_vertex_id v = n->n_kept + i;
-        n->number[v] = TRI_NONE;
+        n->tile_of[v] = TRI_NONE;
         if (mesh->on[v] != TRI_VERTEX_NONE)
-            count[n->number[v] = find_tile(&finder, n->partition, mesh->xy[v])]++;
+            count[n->tile_of[v] = find_tile(&finder, n->partition, mesh->xy[v])]++;
     }
 }
 
@@ -163,8 +178,8 @@ static void deal_vertices(void *context, size_t share)
     struct tri_range range = share_of(&n->vertices, share);
     int32_t *at = n->vertices.at + share * (size_t)n->n_tiles;
     for (tri_vertex_id v = n->n_kept + range.first; v < n->n_kept + range.last; v++)
-        if (n->number[v] != TRI_NONE)
-            n->order[at[n->number[v]]++] = v;
+        if (n->tile_of[v] != TRI_NONE)
+            n->order[at[n->tile_of[v]]++] = v;
 }
 
 static void number_tile(void *context, size_t tile)
@@ -180,7 +195,7 @@ static void find_kept(void *context, size_t share)
 {
     const struct numbering *n = context;
     struct tri_range range = tri_share(share, n->n_kept);
-    struct tile_finder finder = {.fence = {1, 1, 0, 0}};
+    struct tile_finder finder = LOST;
     for (tri_vertex_id v = range.first; v < range.last; v++) {
         n->number[v] = v;
         n->kept_tile[v] = find_tile(&finder, n->partition, n->mesh->xy[v]);
@@ -310,7 +325,7 @@ static inline uint64_t key_triangle(const struct numbering *n, const struct tile
     const int32_t *number = n->number;
     const int32_t v[3] = {number[old[0]], number[old[1]], number[old[2]]};
     uint64_t item = most(most(item_of(v[0], 0, t), item_of(v[1], 1, t)), item_of(v[2], 2, t));
-    n->place[t] = number[old[tri_next[first_of(item)]]];
+    n->second[t] = number[old[tri_next[first_of(item)]]];
     if (((v[0] < n->n_kept) | (v[1] < n->n_kept) | (v[2] < n->n_kept)) && is_stray(n, last, v, item))
         item |= UINT64_C(1) << STRAY_BIT;
     return item;
@@ -327,7 +342,7 @@ static void key_share(void *context, size_t share)
     for (tri_triangle_id t = range.first; t < range.last; t++) {
         if (!tri_is_live(&tri[t])) {
             items[t] = FREE;
-            n->place[t] = TRI_NONE;
+            n->second[t] = TRI_NONE;
             continue;
         }
         uint64_t item = key_triangle(n, &last, tri[t].v, t);
@@ -384,7 +399,7 @@ static void sort_fan(uint64_t *item, uint64_t *scratch, int32_t count)
 
 static uint64_t by_second(const struct numbering *n, uint64_t item)
 {
-    return item_of(n->place[id_of(item)], first_of(item), id_of(item));
+    return item_of(n->second[id_of(item)], first_of(item), id_of(item));
 }
 
 /* A tile that is being sorted. Most of its triangles start at one of its own new vertices: they are sorted by counting.
@@ -476,7 +491,7 @@ static void place_tile(void *context, size_t tile)
     int32_t first = n->triangles.start[tile], own = n->vertices.start[tile], down = 0;
     struct sorting s = {.item = dealt_items(n) + first, .sorted = items_of(n) + first, .first = first,
                         .count = n->triangles.start[tile + 1] - first, .first_own = n->n_kept + own,
-                        .n_own = n->vertices.start[tile + 1] - own, .end = n->order + own};
+                        .n_own = n->vertices.start[tile + 1] - own, .end = n->fan_end + own};
     count_fans(&s);
     fill_fans(n, &s);
     sort_others(n, &s);

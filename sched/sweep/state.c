@@ -92,7 +92,7 @@ static struct head head_of(const struct par_state *state, const struct par_tiles
     const struct tri_mesh *m = state->mesh;
     const bool lists = tiles || state->amid;
     struct head h = {.word = STATE, .odd = odd, .stage = state->stage, .amid = state->amid, .round = state->round,
-                     .phase = state->phase, .numbered = state->numbered,
+                     .phase = state->phase, .numbered = state->end == PAR_NUMBERED,
                      .n_vertices = m->n_vertices, .n_triangles = m->n_triangles, .n_subs = m->n_subs,
                      .n_worklist = lists ? state->worklist.n : 0, .n_keys = lists ? state->key.n : 0,
                      .n_schedules = state->n_schedules, .radius = state->radius};
@@ -275,7 +275,7 @@ static void set_counts(const struct head *h, struct par_state *state, struct par
     state->amid = h->amid != 0;
     state->round = (int)h->round;
     state->phase = (int)h->phase;
-    state->numbered = h->numbered != 0;
+    state->end = h->numbered != 0 ? PAR_NUMBERED : PAR_UNFINISHED;
     state->radius = h->radius;
     for (int k = 0; k < PAR_KINDS; k++)
         state->spare.ranges[k].n = (int32_t)h->n_spare[k];

@@ -1,6 +1,8 @@
 /* Columns in turn: refine, look for what is left behind, hand out. */
 #include "sched/sweep/sweep.h"
 
+#include <assert.h>
+
 #include "sched/sweep/ahead.h"
 #include "sched/sweep/remain.h"
 #include "sched/sweep/state.h"
@@ -47,6 +49,7 @@ static enum tri_status refine_columns(struct par_state *state, const struct par_
                                       struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
+    assert(odd % 2 == 1);
     for (int phase = 0; !status && phase < PAR_PHASES; phase++) {
         int32_t column = phase < 2 ? odd : odd - 1;
         par_tell(state, phase + 1);

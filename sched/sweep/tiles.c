@@ -47,6 +47,7 @@ static int32_t find_tile(struct place_finder *f, const struct par_partition *p, 
         f->tile = par_block_at(p, 0, q);
         f->fence = par_fence(p, f->tile / p->n_rows, f->tile % p->n_rows);
     }
+    assert(tri_fence_holds(&f->fence, q));
     return f->tile;
 }
 
@@ -221,6 +222,7 @@ static bool know_kept(struct par_tiles *tiles)
 bool par_tiles_reserve(struct par_tiles *tiles)
 {
     int32_t before = tiles->capacity, now = tiles->mesh->vertex_capacity;
+    assert(tiles->n_kept <= tiles->mesh->n_vertices && tiles->mesh->n_vertices <= now);
     if (!know_kept(tiles))
         return false;
     if (now <= before)
@@ -439,7 +441,7 @@ enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct
 enum tri_status par_tiles_hand_out(struct par_column *c, struct par_room *spare, struct tri_error *error)
 {
     struct par_tiles *tiles = c->tiles;
-    par_room_mark(spare, tiles->mesh);
+    par_room_mark(spare, tiles->mesh, tiles->executor);
     enum tri_status status = hand_out_column(c, error);
     if (!status && !let_go(c, spare))
         status = no_memory(error);
@@ -452,7 +454,7 @@ enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, struct
                                  struct tri_error *error)
 {
     struct par_column *c;
-    par_room_mark(spare, tiles->mesh);
+    par_room_mark(spare, tiles->mesh, tiles->executor);
     enum tri_status status = par_tiles_number(tiles, column, &c, error);
     status = status ? status : par_tiles_hand_out(c, spare, error);
     par_column_free(c);

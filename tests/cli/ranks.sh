@@ -98,6 +98,14 @@ check "three ranks" test "$(grep -c '"waiting_seconds"' report.json)" -eq 3
 program 0 -Qpq30a0.01 section.poly --output one.h5 --report report.json
 check "one process has no ranks" grep -q '"ranks": null' report.json
 
+# --- a bound on the memory of each task
+fresh letter.poly
+program 0 -Qpq30a0.001 letter --output one
+ranks 0 3 -Qpq30a0.001 letter --output two --memory 400M
+check "the same bytes within a bound" same_but_for_comments one.ele two.ele
+ranks 1 2 -Qpq20a0.000001 letter --output two --memory 100M
+check "refused in one line" test "$(grep -c 'million triangles, which take .* GB of memory' .err)" -eq 1
+
 # --- memory that runs out in one task, wherever: exit code 1, one line, no file; or all files
 fresh letter.poly
 program 0 -Qpq30a0.01 letter --output one

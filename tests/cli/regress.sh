@@ -267,6 +267,9 @@ few 10000 -pq33 thin_comb # each bar is a narrow space that no edge of the trian
 fresh regress/bundle_levels.poly # circles in a bundle of segments whose ends are not level
 few 10000 -pD bundle_levels
 few 10000 -pa0.00065D bundle_levels
+fresh regress/drifted_chain.poly # split points an ulp inside, again and again, where coordinates get finer
+run 0 -pq33 drifted_chain
+judge drifted_chain.1 --poly drifted_chain.poly --min-angle 33
 fresh regress/below_dxf.poly # two triangles stayed below the bound without need
 run 0 -pq20 below_dxf
 says 'All triangles keep the bounds.'

@@ -57,24 +57,27 @@ static void judge_areas(const struct outcome *o, struct bounds *b, struct verdic
 }
 
 /* Where vertices ran away triangles are given up, beside small angles and dear spaces at any bound: there the checker
- * finds the reason itself. Elsewhere none are up to the angle that theory promises (Ruppert 1995: 20.7 degrees), and
- * few above; with -D more, beside spaces too dear to fill, whose circles ask for edges that are no features. */
+ * finds the reason itself. Elsewhere none are up to the angle that theory promises (Ruppert 1995: 20.7 degrees), very
+ * few up to 25, and few above; with -D more, beside spaces too dear to fill, whose circles ask for edges that are no
+ * features. */
 static int64_t may_run_away(const struct outcome *o, int64_t count, struct verdict *verdict)
 {
-    const double PROMISED = 20.7, LIKELY = 25, FEW = o->options.quality.conforming ? 0.1 : 0.02;
-    double angle = o->options.quality.min_angle;
+    const double PROMISED = 20.7, LIKELY = 25;
+    double angle = o->options.quality.min_angle, few = angle > LIKELY ? 0.02 : 1e-4;
     if (angle <= PROMISED)
         return 0;
-    if (count > 20 + (angle > LIKELY ? FEW * o->mesh.n_triangles : 0))
+    if (o->options.quality.conforming)
+        few = 0.1;
+    if (count > 20 + few * o->mesh.n_triangles)
         judge_fault(verdict, "angle limit", "%lld of %d triangles given up at %g degrees", (long long)count,
                     (int)o->mesh.n_triangles, angle);
     return count;
 }
 
 /* The counts that the programs print. A point for a triangle beside a flat one may see the flat one from behind, and is
- * not inserted then; and its height is a feature that nothing can resolve: where there are flat triangles, a few around
- * each may be left. */
-enum { AROUND = 10 };
+ * not inserted then; and its height is a feature that nothing can resolve, so that the subsegments beside it stay as
+ * long as they are: where there are flat triangles, some around each may be left. */
+enum { AROUND = 20 };
 
 static void judge_angles(const struct outcome *o, const struct bounds *b, const struct tri_check_report *report,
                          struct verdict *verdict)
@@ -98,13 +101,11 @@ static void judge_angles(const struct outcome *o, const struct bounds *b, const 
         return;
     int64_t unexplained = report->n_small - report->n_small_explained, beside = AROUND * b->too_flat;
     int64_t ran_away = may_run_away(o, count[TRI_EXCUSE_LIMIT], verdict);
-    int64_t unresolved = count[TRI_EXCUSE_PRECISION] + count[TRI_EXCUSE_LIMIT] - ran_away;
-    int64_t flat = unresolved < beside ? unresolved : beside;
     unexplained -= ran_away;
-    if (unexplained > count[TRI_EXCUSE_NARROW_GAP] + flat)
+    if (unexplained > count[TRI_EXCUSE_NARROW_GAP] + beside)
         judge_fault(verdict, "angle",
                     "%lld small angles without a reason (input angle %lld, gap %lld, precision %lld)",
-                    (long long)(unexplained - count[TRI_EXCUSE_NARROW_GAP] - flat),
+                    (long long)(unexplained - count[TRI_EXCUSE_NARROW_GAP] - beside),
                     (long long)count[TRI_EXCUSE_INPUT_ANGLE], (long long)count[TRI_EXCUSE_NARROW_GAP],
                     (long long)count[TRI_EXCUSE_PRECISION]);
 }

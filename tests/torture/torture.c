@@ -28,7 +28,7 @@ static const char usage[] =
     "  --out DIR         write the figures of failures there\n"
     "  --minimise        make them small first\n"
     "  --ignore A,B,..   these kinds of faults are no failure\n"
-    "  --seconds S       processor time for a case (20)\n"
+    "  --seconds S       processor time for a case (60)\n"
     "  --verbose         name all cases\n"
     "Prints a line for each failure and a table of them. Exit code 1: there were some.\n";
 
@@ -312,7 +312,7 @@ static void run_all(struct torture *t)
 
 int main(int argc, char **argv)
 {
-    struct torture t = {.seed = 1, .count = 500, .seconds = 20, .given.switches = "p"};
+    struct torture t = {.seed = 1, .count = 500, .seconds = 60, .given.switches = "p"};
     t.range.families = t.families;
     t.verdict = mmap(NULL, sizeof *t.verdict, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (t.verdict == MAP_FAILED || !take_arguments(&t, argc, argv)) {
