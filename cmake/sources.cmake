@@ -88,6 +88,7 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/write.c
     triangle/text/layouts.c
     triangle/text/stream.c
+    triangle/text/tile_store.c
     triangle/text/grouping.c
     triangle/text/boundary.c
     triangle/text/vtu.c

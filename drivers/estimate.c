@@ -19,6 +19,8 @@ static const double BUFFERS = 3e7, PAGES = 3e7, COLUMNS_HELD = 260, COLUMNS_AWAY
                     COLUMNS_STATE = 520, SWEPT_BYTES = 1.1;
 /* The same a triangle, of a mesh that stays as a whole; of two states of it; and of the tiles in a checkpoint. */
 static const double PARKED_WORK = 6, PARKED_BYTES = 90, WHOLE_STATES = 120, TILES_BYTES = 26;
+/* And of tiles that wait until all are there (triangle/text/tile_store.h). */
+static const double KEPT_BYTES = 46;
 /* The same a triangle of a rank's own, which are so many times the average; and of a state, of which there are two. */
 static const double RANK_BYTES = 62, RANK_WORK = 20, BUSIEST = 1.15, RANK_STATES = 32;
 /* Text that one thread writes in a second where a triangle takes it the usual time. */
@@ -158,6 +160,7 @@ static struct needs needs_of(const struct run *run, double grown, double bytes, 
     n.held = sweeps ? BUFFERS + COLUMNS_HELD * column + SWEPT_BYTES * grown : n.whole;
     n.floor = fmin(n.held, BUFFERS + work + pages);
     n.away = sweeps ? COLUMNS_AWAY * column : PARKED_BYTES * grown;
+    n.kept = run->hooks->exports.n > 0 ? KEPT_BYTES * grown : 0;
     n.states = WHOLE_STATES * grown;
     n.checkpoint = sweeps ? TILES_BYTES * grown + COLUMNS_STATE * column : n.states;
     return n;

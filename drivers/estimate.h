@@ -13,6 +13,7 @@ struct needs {
     double away;       /* of these files */
     double checkpoint; /* of the folder of checkpoints where it is handed out as it is made, */
     double states;     /* and where it is in memory as a whole */
+    double kept;       /* of files in which tiles wait until they can be written */
     double files;      /* of the output */
 };
 

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "drivers/disk_needs.h"
@@ -18,10 +19,65 @@
  * are asked for as well, of which an estimate knows least. Less than the last is not worth looking for. */
 static const double MARGIN = 1.15, STRICT_MARGIN = 1.5, STEEP_MARGIN = 2.5, WORTH_A_LOOK = 1e8;
 
+/* Measured: bytes at the peak of triangulating, of the process, a point, a segment, and of a mesh that is rebuilt, a
+ * point and a triangle; and the share of them that is sure. */
+static const double PROCESS_BYTES = 1.2e7, POINT_BYTES = 182, SEGMENT_BYTES = 135, REBUILT_POINT_BYTES = 100,
+                    ELEMENT_BYTES = 48, SURE_SHARE = 0.75;
+
+static bool is_strict(const struct run *run) { return run->hooks->limits.memory > 0; }
+
 double plan_memory_left(const struct run *run)
 {
     double allowed = run->hooks->limits.memory, left = resources_memory();
     return allowed > 0 ? fmin(left, fmax(allowed - resources_memory_used(), 0)) : left;
+}
+
+/* --- the input */
+
+static double size_of(const char *name)
+{
+    struct stat status;
+    return stat(name, &status) == 0 ? (double)status.st_size : 0;
+}
+
+enum tri_status plan_check_files(const struct run *run, const struct file_names *files, struct tri_error *error)
+{
+    for (int i = 0; i < files->n; i++) {
+        const double size = size_of(files->name[i]);
+        if (size < WORTH_A_LOOK && !is_strict(run))
+            continue;
+        const double left = plan_memory_left(run);
+        if (size > left)
+            return tri_fail(error, TRI_NO_MEMORY, files->name[i], 0,
+                            "has %.3g GB of text, which is read into memory; %.3g GB are left", 1e-9 * size,
+                            1e-9 * left);
+    }
+    return TRI_OK;
+}
+
+/* At its peak, what has been read included. */
+static double input_bytes(const struct run *run)
+{
+    const struct tri_pslg *p = &run->pslg;
+    const double points = (run->elements.n > 0 ? REBUILT_POINT_BYTES : POINT_BYTES) + 16.0 * p->n_attributes;
+    return PROCESS_BYTES + points * p->n_points + SEGMENT_BYTES * p->n_segments + ELEMENT_BYTES * run->elements.n;
+}
+
+enum tri_status plan_check_input(const struct run *run, const struct console *console, struct tri_error *error)
+{
+    const double needed = input_bytes(run);
+    if (needed < WORTH_A_LOOK && !is_strict(run))
+        return TRI_OK;
+    const double all = resources_memory_used() + plan_memory_left(run);
+    if ((is_strict(run) ? needed : SURE_SHARE * needed) > all)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
+                        "to triangulate the input, %.3g million points and %.3g million segments, takes about %.3g GB "
+                        "of memory; there are %.3g GB", 1e-6 * run->pslg.n_points, 1e-6 * run->pslg.n_segments,
+                        1e-9 * needed, 1e-9 * all);
+    if (needed > all)
+        console_warn(console, "to triangulate the input may take about %.3g GB of memory; there are %.3g GB.\n",
+                     1e-9 * needed, 1e-9 * all);
+    return TRI_OK;
 }
 
 /* --- what asks for the whole mesh */
@@ -58,8 +114,6 @@ const char *plan_obstacle(const struct run *run)
 }
 
 /* --- refusals and warnings */
-
-static bool is_strict(const struct run *run) { return run->hooks->limits.memory > 0; }
 
 static double millions(double triangles) { return fmin(1e-6 * triangles, 1e9); }
 
@@ -136,7 +190,7 @@ static void list_places(struct disk_place places[DISK_PLACES], const struct run 
     places[0] = (struct disk_place){"the files", run->hooks->first_file ? run->hooks->first_file
                                                                        : run->arguments->output, n->files};
     places[1] = (struct disk_place){"what does not fit in memory", limits->scratch,
-                                    run->plan.swept && n->held > left ? n->away : 0};
+                                    run->plan.swept ? (n->held > left ? n->away : 0) + n->kept : 0};
     const double states = run->plan.swept ? n->checkpoint : n->states;
     places[2] = (struct disk_place){"the checkpoint", limits->checkpoint, limits->checkpoint ? states : 0};
 }

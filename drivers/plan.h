@@ -12,6 +12,14 @@ const char *plan_obstacle(const struct run *run);
 /* Bytes of memory that the process may still take: what is left of the system's and of --memory. */
 double plan_memory_left(const struct run *run);
 
+/* Can these files be read, of which each is in memory as text for a while? A name that is no file takes nothing.
+ * TRI_NO_MEMORY, with figures. */
+enum tri_status plan_check_files(const struct run *run, const struct file_names *files, struct tri_error *error);
+
+/* Can what has been read be triangulated, which takes place in memory whatever comes then? TRI_NO_MEMORY beyond doubt,
+ * or where a bound that was asked for (--memory) would hardly be kept; else at most a warning. */
+enum tri_status plan_check_input(const struct run *run, const struct console *console, struct tri_error *error);
+
 /* Decides, and says a line where the mesh is swept. The run is to be refused, with what it needs and what there is,
  * where memory or disk cannot do beyond doubt: TRI_TOO_LARGE, TRI_NO_MEMORY, TRI_CANNOT_WRITE; where they hardly can,
  * there is a warning. */

@@ -189,6 +189,7 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
     int64_t unused = mesh->n_vertices - before.vertices;
     status = status ? status : streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
     status = status ? status : streams_open_text(&p->streams, run, set, error);
+    status = status ? status : streams_open_exports(&p->streams, run, p->scratch, set, error);
     if (!status)
         status = p->launch.carrier ? refine_behind_queue(p, run, &streams, mesh, quality, error)
                                    : refine_into(p, run, &streams, mesh, quality, error);
@@ -359,8 +360,10 @@ static enum tri_status name_streams(struct program *p, struct run_hooks *hooks, 
 /* What of the long options asks for the whole mesh in memory. */
 static const char *whole_mesh(const struct long_options *o)
 {
-    return o->blocks ? "--blocks" : o->by_block ? "--numbering blocks" : o->write_partial ? "--write-partial"
-           : o->n_exports > 0 ? o->exports[0] : NULL;
+    for (int i = 0; i < o->n_exports; i++)
+        if (tri_format_of(o->exports[i])->neighbors)
+            return o->exports[i];
+    return o->blocks ? "--blocks" : o->by_block ? "--numbering blocks" : o->write_partial ? "--write-partial" : NULL;
 }
 
 static struct run_hooks hooks_of(struct program *p)

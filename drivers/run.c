@@ -121,6 +121,22 @@ static void add_hint(const struct runner *r)
                  " files)");
 }
 
+/* Once the .poly has been read it is known whether the .node is, too. */
+static struct file_names files_read(const struct runner *r)
+{
+    const struct tri_switches *s = &r->run.arguments->switches;
+    struct file_names read = {0};
+    if (s->segments)
+        read.name[read.n++] = r->names.poly;
+    if (!r->run.points_in_poly)
+        read.name[read.n++] = r->names.node;
+    if (s->mesh)
+        read.name[read.n++] = r->names.ele;
+    if (s->mesh && s->area_lists)
+        read.name[read.n++] = r->names.area;
+    return read;
+}
+
 static enum tri_status read_input(struct runner *r)
 {
     const struct tri_switches *s = &r->run.arguments->switches;
@@ -132,7 +148,9 @@ static enum tri_status read_input(struct runner *r)
                                        .stop = interrupt_stop(),
                                        .warn = warn_of_input,
                                        .warn_user = r};
-    enum tri_status status = read_pslg(r, &r->names, &options);
+    const struct file_names files = files_read(r);
+    enum tri_status status = plan_check_files(&r->run, &files, r->error);
+    status = status ? status : read_pslg(r, &r->names, &options);
     if (!status && s->mesh)
         status = read_mesh(r, &r->names, &options);
     console_series_end(&r->console, &r->input_warnings, "of this kind");
@@ -149,6 +167,8 @@ static enum tri_status get_input(struct runner *r)
     enum tri_status status = hooks->written_elsewhere ? TRI_OK : read_input(r);
     if (hooks->share)
         status = hooks->share(hooks->user, &r->run, status, r->error);
+    else if (!status)
+        status = plan_check_input(&r->run, &r->console, r->error);
     end_stage(r, RUN_READ);
     return status;
 }
@@ -473,16 +493,7 @@ static enum tri_status write_output(struct runner *r, const struct mesh_files *f
 static enum tri_status check_files(const struct runner *r, const struct mesh_files *files)
 {
     const struct run *run = &r->run;
-    const struct tri_switches *s = &run->arguments->switches;
-    struct file_names read = {0};
-    if (s->segments)
-        read.name[read.n++] = r->names.poly;
-    if (!run->points_in_poly)
-        read.name[read.n++] = r->names.node;
-    if (s->mesh)
-        read.name[read.n++] = r->names.ele;
-    if (s->mesh && s->area_lists)
-        read.name[read.n++] = r->names.area;
+    const struct file_names read = files_read(r);
     return mesh_files_check(files, &run->hooks->further, &read, r->error);
 }
 

@@ -83,6 +83,23 @@ enum tri_status streams_open_text(struct streams *streams, const struct run *run
     return tri_text_stream_new(&streams->text, o, &streams->text_sink, error);
 }
 
+enum tri_status streams_open_exports(struct streams *streams, const struct run *run, const char *folder,
+                                     struct tri_output_set *set, struct tri_error *error)
+{
+    const struct file_names *names = &run->hooks->exports;
+    enum tri_status status = TRI_OK;
+    streams->markers = !run->arguments->switches.no_markers;
+    streams->executor = run->hooks->executor;
+    for (int i = 0; !status && i < names->n; i++) {
+        streams->format[i] = tri_format_of(names->name[i]);
+        status = interrupt_open(set, names->name[i], &streams->export[i], error);
+    }
+    streams->n_exports = names->n;
+    if (status || names->n == 0)
+        return status;
+    return tri_tile_store_new(&streams->store, folder, &streams->store_sink, error);
+}
+
 void streams_close(struct streams *streams)
 {
     for (int i = 0; i < streams->n; i++) {
@@ -91,7 +108,9 @@ void streams_close(struct streams *streams)
         free(s->xdmf);
     }
     tri_text_stream_free(streams->text);
+    tri_tile_store_free(streams->store);
     streams->text = NULL;
+    streams->store = NULL;
     streams->n = 0;
 }
 
@@ -135,6 +154,8 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
         status = status ? status : s->sink.begin(s->sink.user, stream, error);
     }
     status = status ? status : begin_text(streams, stream, error);
+    if (!status && streams->store)
+        status = streams->store_sink.begin(streams->store_sink.user, stream, error);
     streams->begun = true;
     streams->vertices = streams->triangles = streams->segments = 0;
     return status;
@@ -150,9 +171,20 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
     }
     if (!status && streams->text)
         status = streams->text_sink.take(streams->text_sink.user, tile, error);
+    if (!status && streams->store)
+        status = streams->store_sink.take(streams->store_sink.user, tile, error);
     streams->vertices += tile->n_vertices;
     streams->triangles += tile->n_triangles;
     streams->segments += tile->n_segments;
+    return status;
+}
+
+static enum tri_status write_exports(struct streams *streams, struct tri_error *error)
+{
+    struct tri_grid grid;
+    enum tri_status status = tri_tile_store_grid(streams->store, streams->markers, &grid, error);
+    for (int i = 0; !status && i < streams->n_exports; i++)
+        status = streams->format[i]->write(streams->export[i], &grid, streams->executor, error);
     return status;
 }
 
@@ -166,7 +198,7 @@ static enum tri_status end(void *user, struct tri_error *error)
     }
     if (!status && streams->text)
         status = streams->text_sink.end(streams->text_sink.user, error);
-    return status;
+    return status || !streams->store ? status : write_exports(streams, error);
 }
 
 struct tri_sink streams_sink(struct streams *streams) { return (struct tri_sink){streams, begin, take, end}; }

@@ -7,7 +7,9 @@
 #include "drivers/run.h"
 #include "ptriangle/tiles.h"
 #include "triangle/hdf5/write.h"
+#include "triangle/text/formats.h"
 #include "triangle/text/stream.h"
+#include "triangle/text/tile_store.h"
 
 enum { STREAMS_MOST = 4 };
 
@@ -25,6 +27,13 @@ struct streams {
     struct tri_text_options text_options;
     struct tri_text_stream *text; /* .node, .ele and .poly; NULL: none of them */
     struct tri_sink text_sink;
+    int n_exports;
+    struct tri_output *export[MESH_FILES_MOST_NAMES]; /* in other formats, at the end: */
+    const struct tri_format *format[MESH_FILES_MOST_NAMES];
+    struct tri_tile_store *store;  /* NULL: none of them */
+    struct tri_sink store_sink;
+    bool markers;                  /* are written */
+    const struct tri_executor *executor;
     bool begun;
     int64_t vertices, triangles, segments; /* taken so far */
 };
@@ -49,6 +58,10 @@ enum tri_status streams_open(struct streams *streams, const struct file_names *n
 /* And those of Triangle's files that the run asks for. */
 enum tri_status streams_open_text(struct streams *streams, const struct run *run, struct tri_output_set *set,
                                   struct tri_error *error);
+
+/* And those in formats that are written when all of the mesh is there; until then it lies in files in this folder. */
+enum tri_status streams_open_exports(struct streams *streams, const struct run *run, const char *folder,
+                                     struct tri_output_set *set, struct tri_error *error);
 void streams_close(struct streams *streams);
 
 /* Hands everything to all of them. If it is told of the beginning a second time, they begin again. */

@@ -104,10 +104,10 @@ static void test_too_many_groups_are_one(void **state)
 {
     (void)state;
     struct tri_grouping groups;
-    assert_int_equal(tri_group(&groups, TRI_MOST_GROUPS, place, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_group(&groups, TRI_MOST_GROUPS, place, &(struct tri_grid){0}, NULL), TRI_OK);
     assert_int_equal(groups.n, TRI_MOST_GROUPS);
     tri_grouping_free(&groups);
-    assert_int_equal(tri_group(&groups, TRI_MOST_GROUPS + 1, place, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_group(&groups, TRI_MOST_GROUPS + 1, place, &(struct tri_grid){0}, NULL), TRI_OK);
     assert_true(groups.n == 1 && groups.value[0] == 0 && groups.first[1] == TRI_MOST_GROUPS + 1 && !groups.order);
     tri_grouping_free(&groups);
 }

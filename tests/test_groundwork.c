@@ -64,8 +64,8 @@ static void assert_incidence(const struct tri_mesh *mesh)
 static void test_parents_at_each_vertex(void **state)
 {
     (void)state;
-    static const int32_t spokes[] = {3, 16, 17, 60};
-    for (int k = 0; k < 4; k++) {
+    static const int32_t spokes[] = {3, 16, 17, 60, 2500}; /* the last: by merging */
+    for (int k = 0; k < 5; k++) {
         struct tri_mesh mesh = wheel(spokes[k]);
         assert_int_equal(mesh.n_parents, 2 * spokes[k]);
         assert_incidence(&mesh);

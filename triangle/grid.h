@@ -34,6 +34,7 @@ struct tri_grid {
     int32_t n_columns;    /* attributes of a triangle */
     int n_nodes;          /* of a triangle: 3, or 6: behind the corners the nodes amid the edges opposite to them */
     const struct tri_pslg *figure; /* holes and regions that go with it; NULL: none */
+    const struct tri_storage *storage; /* whose extras take what grows with the mesh beside it; NULL: malloc */
     void (*point)(const void *user, int64_t i, struct tri_grid_point *point);
     double (*attribute)(const void *user, int64_t i, int32_t k);
     void (*triangle)(const void *user, int64_t i, int64_t nodes[6]);

@@ -37,3 +37,37 @@ for switches in q20a0.000003 q33a0.000004 q20a0.000003S200000; do # swept, parke
     done
 done
 check "some runs are kept within ($kept), others refused ($refused)" test $kept -ge 6 -a $refused -ge 3
+
+# --- what is triangulated alone, or read again, is in memory: it fits, or is refused before
+rm -f ./*
+awk 'BEGIN { n = 100000; print n, 2, 0, 0; srand(1); for (i = 1; i <= n; i++) print i, rand(), rand() }' >p.node
+awk 'BEGIN { n = 200; print n * n, 2, 0, 0; for (i = 0; i < n * n; i++) print i + 1, i % n, int(i / n)
+    print 2 * n * (n - 1), 0
+    for (i = 1; i <= n * n; i++) { if (i % n) print ++s, i, i + 1; if (i + n <= n * n) print ++s, i, i + n }
+    print 0 }' >g.poly
+program 0 -Q p --output q
+kept=0
+refused=0
+for input in "-Qe p" "-Qp g.poly" "-QrI q"; do
+    for budget in 15 40; do
+        what="ptriangle $input --memory ${budget}000000"
+        # shellcheck disable=SC2086
+        "$python" "$data/../tests/cli/peak.py" "$budget"000000 "$bin/ptriangle" $input --output out \
+            --memory "$budget"000000 --threads 2 >.out 2>.err
+        found=$?
+        checks=$((checks + 1))
+        case $found in
+        0) kept=$((kept + 1)) ;;
+        1)
+            refused=$((refused + 1))
+            complains ' takes about [0-9.e-]+ GB of memory; there are [0-9.e-]+ GB$| GB of text, which is read into memory; '
+            check "no file" sh -c '! ls out* .tri-* 2>/dev/null'
+            ;;
+        *) fault "exit code $found: $(head -n 1 .err)" ;;
+        esac
+        rm -f out.*
+    done
+done
+check "with much memory runs are kept within ($kept), with little refused ($refused)" test $kept -eq 3 -a $refused -eq 3
+program 1 p --output out --memory 1M
+complains '^p\.node: has .* GB of text, which is read into memory; '

@@ -55,9 +55,24 @@ check "nothing is left" sh -c '! ls -A | grep -q "^\.tri-"'
 
 rm -f .whole .swept
 
+# --- formats that are written when all tiles are there
+fresh letter.poly section.poly
+for case in "-pq30a0.002 letter" "-pq20Aaa0.01 section" "-pq33a0.005B letter"; do
+    # shellcheck disable=SC2086
+    program 0 -Q $case --output whole.vtu --output whole.msh
+    # shellcheck disable=SC2086
+    PTRIANGLE_TEST_SWEEP=1 program 0 -Q $case --output swept.vtu --output swept.msh --scratch .
+    check "the same .vtu" cmp whole.vtu swept.vtu
+    check "the same .msh" cmp whole.msh swept.msh
+done
+wrote swept.msh swept.vtu whole.msh whole.vtu
+PTRIANGLE_TEST_SWEEP=1 program 1 -Qpq30a0.002 letter --output swept.vtu --output y.h5 --scratch nowhere
+complains 'nowhere: cannot park'
+rm -f swept* whole*
+
 # --- what cannot be swept stays in memory, and what cannot stay there is refused
 fresh square.poly
-for words in "-e" "-n" "-v" "-o2" "-j" "--blocks b" "--write-partial" "--output square.vtu"; do
+for words in "-e" "-n" "-v" "-o2" "-j" "--blocks b" "--write-partial" "--output square.2dm"; do
     # shellcheck disable=SC2086
     program 1 -pqa square.poly --max-area 1e-9 --output x $words
     complains 'where it must be in memory as a whole, as for |less would do but for '

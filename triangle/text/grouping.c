@@ -69,7 +69,9 @@ enum tri_status tri_group(struct tri_grouping *g, int64_t n, double (*value)(con
         return TRI_OK;
     }
     accumulate(g);
-    g->order = malloc((size_t)n * sizeof *g->order);
+    g->storage = grid->storage;
+    const size_t bytes = (size_t)n * sizeof *g->order;
+    g->order = g->storage ? g->storage->extra(g->storage->user, bytes) : malloc(bytes);
     if (!g->order)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to group %lld items", (long long)n);
     memcpy(next, g->first, (size_t)g->n * sizeof *next);
@@ -80,7 +82,10 @@ enum tri_status tri_group(struct tri_grouping *g, int64_t n, double (*value)(con
 
 void tri_grouping_free(struct tri_grouping *g)
 {
-    free(g->order);
+    if (g->order && g->storage)
+        g->storage->extra_free(g->storage->user, g->order);
+    else
+        free(g->order);
     g->order = NULL;
 }
 

@@ -11,6 +11,7 @@ struct tri_grouping {
     double value[TRI_MOST_GROUPS];
     int64_t first[TRI_MOST_GROUPS + 1];   /* where each begins in `order` */
     int64_t *order;                       /* the items; NULL: as they are, in one group */
+    const struct tri_storage *storage;    /* of the grid: `order` is an extra of it; NULL: it is malloc'ed */
 };
 
 /* Groups n items; more than TRI_MOST_GROUPS values, or none that is a number, make one group of value 0. TRI_NO_MEMORY.

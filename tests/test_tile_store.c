@@ -1,0 +1,198 @@
+/* A mesh that was kept in files tile by tile makes the files of one that was there as a whole, byte for byte. */
+#include "triangle/text/tile_store.h"
+
+#include <dirent.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+#include <cmocka.h>
+
+#include "tests/allocations.h"
+#include "tests/lattice_tiles.h"
+#include "triangle/text/formats.h"
+
+/* The last has whole numbers for attributes, by which its triangles are grouped. */
+static const struct lattice SMALL = {5, 1, 2, 2, false, false}, PLAIN = {11, 3, 0, 0, true, true},
+                            LARGE = {230, 37, 1, 1, true, false};
+static const char *const names[] = {"x.vtu", "x.msh"};
+enum { FILES = 2 };
+
+/* --- the lattice as a grid */
+
+static void point(const void *user, int64_t i, struct tri_grid_point *point)
+{
+    lattice_point(user, i, point->at);
+    point->marker = lattice_point_marker(i);
+}
+
+static double attribute(const void *user, int64_t i, int32_t k)
+{
+    (void)user;
+    return lattice_attribute(i, k);
+}
+
+static void triangle(const void *user, int64_t i, int64_t nodes[6]) { lattice_corners(user, i, nodes); }
+
+static double column(const void *user, int64_t i, int32_t k) { return lattice_column(user, lattice_region(i), k); }
+
+static void segment(const void *user, int64_t i, struct tri_grid_edge *segment)
+{
+    lattice_ends(user, i, segment->ends);
+    segment->marker = lattice_segment_marker(i);
+}
+
+static struct tri_grid grid_of(const struct lattice *l, bool markers)
+{
+    return (struct tri_grid){.user = l, .has_markers = markers, .n_points = lattice_points(l),
+                             .n_triangles = lattice_triangles(l), .n_segments = lattice_segments(l),
+                             .n_attributes = l->n_attributes, .n_columns = l->n_columns, .n_nodes = 3,
+                             .point = point, .attribute = attribute, .triangle = triangle, .column = column,
+                             .segment = segment};
+}
+
+/* --- files */
+
+static enum tri_status write_all(const struct tri_grid *grid, struct tri_error *error)
+{
+    struct tri_output_set set;
+    struct tri_output *output;
+    enum tri_status status = TRI_OK;
+    tri_outputs_begin(&set);
+    for (int i = 0; i < FILES && !status; i++) {
+        status = tri_output_open(&set, names[i], &output, error);
+        status = status ? status : tri_format_of(names[i])->write(output, grid, NULL, error);
+    }
+    status = status ? status : tri_outputs_commit(&set, error);
+    tri_outputs_abort(&set);
+    return status;
+}
+
+/* The sink is told of the beginning, and of a mesh that counts no more, a few times. */
+static enum tri_status write_kept(const struct lattice *lattice, bool markers, int void_meshes, const char *folder,
+                                  struct tri_error *error)
+{
+    struct tri_tile_store *store;
+    struct tri_sink sink;
+    struct tri_grid grid;
+    enum tri_status status = tri_tile_store_new(&store, folder, &sink, error);
+    for (int i = 0; i < void_meshes && !status; i++)
+        status = lattice_hand_out(&SMALL, &sink, error);
+    status = status ? status : lattice_hand_out(lattice, &sink, error);
+    status = status ? status : tri_tile_store_grid(store, markers, &grid, error);
+    status = status ? status : write_all(&grid, error);
+    tri_tile_store_free(store);
+    return status;
+}
+
+static char *bytes_of(const char *name, size_t *n)
+{
+    FILE *file = fopen(name, "rb");
+    assert_non_null(file);
+    assert_int_equal(fseek(file, 0, SEEK_END), 0);
+    *n = (size_t)ftell(file);
+    rewind(file);
+    char *bytes = malloc(*n + 1);
+    assert_int_equal(fread(bytes, 1, *n, file), *n);
+    fclose(file);
+    return bytes;
+}
+
+static int n_files(void)
+{
+    int n = -2;
+    DIR *directory = opendir(".");
+    while (readdir(directory))
+        n++;
+    closedir(directory);
+    return n;
+}
+
+static int remove_files(void **state)
+{
+    (void)state;
+    for (int i = 0; i < FILES; i++)
+        remove(names[i]);
+    assert_int_equal(n_files(), 0);
+    return 0;
+}
+
+static void compare(const struct lattice *lattice, bool markers, int void_meshes)
+{
+    const struct tri_grid grid = grid_of(lattice, markers);
+    char *wanted[FILES];
+    size_t size[FILES], n;
+    assert_int_equal(write_all(&grid, NULL), TRI_OK);
+    for (int i = 0; i < FILES; i++)
+        wanted[i] = bytes_of(names[i], &size[i]);
+    assert_int_equal(write_kept(lattice, markers, void_meshes, ".", NULL), TRI_OK);
+    for (int i = 0; i < FILES; i++) {
+        char *found = bytes_of(names[i], &n);
+        assert_int_equal(n, size[i]);
+        assert_memory_equal(found, wanted[i], n);
+        free(found);
+        free(wanted[i]);
+    }
+}
+
+static void test_same_bytes(void **state)
+{
+    (void)state;
+    const struct lattice *all[] = {&SMALL, &PLAIN, &LARGE};
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 2; k++)
+            compare(all[i], k == 0, k);
+}
+
+static void test_no_place(void **state)
+{
+    (void)state;
+    struct rlimit before, limit;
+    struct tri_error error;
+    assert_int_equal(write_kept(&SMALL, true, 0, "nowhere", &error), TRI_CANNOT_WRITE);
+    assert_string_equal(error.file, "nowhere");
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    for (rlim_t size = 0; size < 2000000; size = 2 * size + 7) {
+        limit = (struct rlimit){size, before.rlim_max};
+        assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+        enum tri_status status = write_kept(&LARGE, true, 0, ".", &error);
+        assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+        assert_int_not_equal(status, TRI_OK);
+        assert_int_equal(n_files(), 0);
+    }
+}
+
+static void test_no_memory(void **state)
+{
+    (void)state;
+    enum tri_status status = TRI_NO_MEMORY;
+    const int64_t held = atomic_load(&support_held);
+    for (int64_t k = 1; status && k < 200; k++) {
+        if (k == 2 || (k > 3 && k < 11)) /* the lattice's own */
+            continue;
+        atomic_store(&support_calls, 0);
+        atomic_store(&support_fail_at, k);
+        status = write_kept(&SMALL, true, 0, ".", NULL);
+        atomic_store(&support_fail_at, INT64_MAX);
+        assert_int_equal(atomic_load(&support_held), held);
+        assert_true(status == TRI_OK || n_files() == 0);
+    }
+    assert_int_equal(status, TRI_OK);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_teardown(test_same_bytes, remove_files),
+        cmocka_unit_test_teardown(test_no_place, remove_files),
+        cmocka_unit_test_teardown(test_no_memory, remove_files),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

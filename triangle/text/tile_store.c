@@ -1,0 +1,250 @@
+/* One file for each kind of array, to which tiles are appended, and which is mapped at the end.
+ *
+ * INVARIANT: no more is in memory of the files than the rows that have been asked for since pages were let go, which
+ * happens whenever somebody asks for a row whose number is a multiple of CHUNK: for writers go through all rows of a
+ * kind, once and about in their order. */
+#define _DEFAULT_SOURCE /* madvise */
+
+#include "triangle/text/tile_store.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+enum kind { POINTS, POINT_MARKERS, ATTRIBUTES, CORNERS, REGIONS, ENDS, SEGMENT_MARKERS, KINDS };
+enum { EXTRAS = 4, SHEETS = KINDS + EXTRAS, CHUNK = 1 << 15 };
+
+struct sheet {
+    int file;       /* -1: none */
+    size_t bytes;
+    void *at;       /* mapping; NULL: not mapped */
+};
+
+struct tri_tile_store {
+    const char *folder;
+    struct sheet sheet[SHEETS]; /* kinds, then extras */
+    struct tri_storage storage; /* gives the extras */
+    double *columns;            /* [n_regions][n_columns] */
+    int32_t n_attributes, n_columns;
+    int64_t n_points, n_triangles, n_segments;
+};
+
+/* --- files */
+
+static int open_file(const char *folder)
+{
+    static const char name[] = "/ptriangle-XXXXXX";
+    char *path = malloc(strlen(folder) + sizeof name);
+    errno = ENOMEM;
+    if (!path)
+        return -1;
+    strcpy(path, folder);
+    strcat(path, name);
+    int file = mkstemp(path);
+    if (file >= 0)
+        unlink(path);
+    free(path);
+    return file;
+}
+
+static enum tri_status cannot_write(const struct tri_tile_store *s, struct tri_error *error)
+{
+    return tri_fail(error, TRI_CANNOT_WRITE, s->folder, 0, "cannot keep the mesh there until it can be written: %s",
+                    strerror(errno));
+}
+
+static bool append(struct tri_tile_store *s, enum kind kind, const void *bytes, size_t n)
+{
+    struct sheet *sheet = &s->sheet[kind];
+    const char *at = bytes;
+    if (sheet->file < 0)
+        sheet->file = open_file(s->folder);
+    while (sheet->file >= 0 && n > 0) {
+        ssize_t done = pwrite(sheet->file, at, n, (off_t)sheet->bytes);
+        if (done < 0 && errno == EINTR)
+            continue;
+        if (done <= 0)
+            return false;
+        at += done;
+        n -= (size_t)done;
+        sheet->bytes += (size_t)done;
+    }
+    return sheet->file >= 0;
+}
+
+static bool map(struct sheet *sheet)
+{
+    if (sheet->at || sheet->bytes == 0)
+        return true;
+    void *at = mmap(NULL, sheet->bytes, PROT_READ | PROT_WRITE, MAP_SHARED, sheet->file, 0);
+    sheet->at = at != MAP_FAILED ? at : NULL;
+    return sheet->at;
+}
+
+static void empty(struct sheet *sheet)
+{
+    if (sheet->at)
+        munmap(sheet->at, sheet->bytes);
+    if (sheet->file >= 0)
+        close(sheet->file);
+    *sheet = (struct sheet){.file = -1};
+}
+
+/* --- room beside the arrays */
+
+/* Disk space is taken before it is used. */
+static bool make_extra(struct sheet *sheet, const char *folder, size_t bytes)
+{
+    sheet->file = open_file(folder);
+    sheet->bytes = bytes;
+    return sheet->file >= 0 && posix_fallocate(sheet->file, 0, (off_t)bytes) == 0 && map(sheet);
+}
+
+static void *extra(void *user, size_t bytes)
+{
+    struct tri_tile_store *s = user;
+    for (int k = KINDS; k < SHEETS; k++)
+        if (s->sheet[k].file < 0) {
+            if (!make_extra(&s->sheet[k], s->folder, bytes + 1))
+                empty(&s->sheet[k]);
+            return s->sheet[k].at;
+        }
+    return NULL;
+}
+
+static void extra_free(void *user, void *extra)
+{
+    struct tri_tile_store *s = user;
+    for (int k = KINDS; extra && k < SHEETS; k++)
+        if (s->sheet[k].at == extra)
+            empty(&s->sheet[k]);
+}
+
+/* --- the sink */
+
+static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
+{
+    struct tri_tile_store *s = user;
+    const size_t n = (size_t)stream->n_regions * (size_t)stream->n_columns;
+    for (int k = 0; k < SHEETS; k++)
+        empty(&s->sheet[k]);
+    free(s->columns);
+    s->columns = malloc((n + 1) * sizeof *s->columns);
+    if (!s->columns)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory for %d regions", (int)stream->n_regions);
+    if (n > 0)
+        memcpy(s->columns, stream->regions, n * sizeof *s->columns);
+    s->n_attributes = stream->n_attributes;
+    s->n_columns = stream->n_columns;
+    s->n_points = s->n_triangles = s->n_segments = 0;
+    return TRI_OK;
+}
+
+static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
+{
+    struct tri_tile_store *s = user;
+    const size_t v = (size_t)tile->n_vertices, t = (size_t)tile->n_triangles, g = (size_t)tile->n_segments;
+    bool done = append(s, POINTS, tile->points, v * sizeof *tile->points);
+    done = done && append(s, POINT_MARKERS, tile->point_markers, v * sizeof *tile->point_markers);
+    done = done && append(s, ATTRIBUTES, tile->attributes, v * (size_t)s->n_attributes * sizeof *tile->attributes);
+    done = done && append(s, CORNERS, tile->corners, t * sizeof *tile->corners);
+    done = done && append(s, REGIONS, tile->regions, t * sizeof *tile->regions);
+    done = done && append(s, ENDS, tile->ends, g * sizeof *tile->ends);
+    done = done && append(s, SEGMENT_MARKERS, tile->segment_markers, g * sizeof *tile->segment_markers);
+    s->n_points += tile->n_vertices;
+    s->n_triangles += tile->n_triangles;
+    s->n_segments += tile->n_segments;
+    return done ? TRI_OK : cannot_write(s, error);
+}
+
+/* --- the grid */
+
+static const struct tri_tile_store *look_at(const void *user, int64_t i)
+{
+    const struct tri_tile_store *s = user;
+    for (int k = 0; i % CHUNK == 0 && k < SHEETS; k++)
+        if (s->sheet[k].at)
+            madvise(s->sheet[k].at, s->sheet[k].bytes, MADV_DONTNEED);
+    return s;
+}
+
+static void point(const void *user, int64_t i, struct tri_grid_point *point)
+{
+    const struct tri_tile_store *s = look_at(user, i);
+    const double(*points)[2] = s->sheet[POINTS].at;
+    const int32_t *markers = s->sheet[POINT_MARKERS].at;
+    *point = (struct tri_grid_point){{points[i][0], points[i][1]}, markers[i]};
+}
+
+static double attribute(const void *user, int64_t i, int32_t k)
+{
+    const struct tri_tile_store *s = look_at(user, i);
+    const double *attributes = s->sheet[ATTRIBUTES].at;
+    return attributes[i * s->n_attributes + k];
+}
+
+static void triangle(const void *user, int64_t i, int64_t nodes[6])
+{
+    const struct tri_tile_store *s = look_at(user, i);
+    const int64_t(*corners)[3] = s->sheet[CORNERS].at;
+    memcpy(nodes, corners[i], sizeof corners[i]);
+}
+
+static double column(const void *user, int64_t i, int32_t k)
+{
+    const struct tri_tile_store *s = look_at(user, i);
+    const int32_t *regions = s->sheet[REGIONS].at;
+    return s->columns[(int64_t)regions[i] * s->n_columns + k];
+}
+
+static void segment(const void *user, int64_t i, struct tri_grid_edge *segment)
+{
+    const struct tri_tile_store *s = look_at(user, i);
+    const int64_t(*ends)[2] = s->sheet[ENDS].at;
+    const int32_t *markers = s->sheet[SEGMENT_MARKERS].at;
+    *segment = (struct tri_grid_edge){{ends[i][0], ends[i][1]}, markers[i], {0}};
+}
+
+enum tri_status tri_tile_store_grid(struct tri_tile_store *s, bool markers, struct tri_grid *grid,
+                                    struct tri_error *error)
+{
+    *grid = (struct tri_grid){.user = s, .has_markers = markers, .n_points = s->n_points,
+                              .n_triangles = s->n_triangles, .n_segments = s->n_segments,
+                              .n_attributes = s->n_attributes, .n_columns = s->n_columns, .n_nodes = 3,
+                              .storage = &s->storage, .point = point, .attribute = attribute, .triangle = triangle,
+                              .column = column, .segment = segment};
+    for (int k = 0; k < KINDS; k++)
+        if (!map(&s->sheet[k]))
+            return cannot_write(s, error);
+    return TRI_OK;
+}
+
+/* --- the store */
+
+enum tri_status tri_tile_store_new(struct tri_tile_store **store, const char *folder, struct tri_sink *sink,
+                                   struct tri_error *error)
+{
+    struct tri_tile_store *s = calloc(1, sizeof *s);
+    *store = s;
+    if (!s)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory to write files");
+    s->folder = folder;
+    s->storage = (struct tri_storage){.extra = extra, .extra_free = extra_free, .user = s};
+    for (int k = 0; k < SHEETS; k++)
+        s->sheet[k].file = -1;
+    *sink = (struct tri_sink){s, begin, take, NULL};
+    return TRI_OK;
+}
+
+void tri_tile_store_free(struct tri_tile_store *s)
+{
+    if (!s)
+        return;
+    for (int k = 0; k < SHEETS; k++)
+        empty(&s->sheet[k]);
+    free(s->columns);
+    free(s);
+}
