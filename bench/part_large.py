@@ -98,22 +98,41 @@ def _counted(settings, run):
     return ended, int(found.group(1)) if ended.code == 0 and found else None, 0, "counted alone"
 
 
+REASONS = {"input_angle": "at small angles of the input", "narrow_gap": "between segments too near to each other",
+           "protected": "for protected segments", "limit": "where vertices ran away",
+           "precision": "at features too fine for the coordinates"}
+
+
+def _told(report):
+    """How many triangles stay below the bounds, and what the program says of them and of what was parked."""
+    with open(report, encoding="utf-8") as file:
+        schedule = json.load(file)["schedule"]
+    below = schedule["below_bounds"] or {}
+    words = [f"{n:,} below the bounds {REASONS[reason]}" for reason, n in below.items() if n]
+    parked = schedule["parked_bytes"]
+    return sum(below.values()), words + ([f"{parked / 1e9:.2f} GB parked"] if parked else [])
+
+
 def _judged(settings, run):
+    """No more triangles may be below the bounds than the program gives a reason for."""
     d, path = run.domain, os.path.join(settings.scratch, "large.h5")
+    report = os.path.join(settings.scratch, "large.json")
     bound = f"{int(run.memory / 1e6)}M"
     try:
         ended = execute([settings.program("ptriangle"), "-Q", "-p", d.path, "--min-angle", repr(d.angle), "--max-area",
                          repr(d.area), "--memory", bound, "--threads", str(settings.threads), "--output", path,
-                         "--scratch", settings.scratch], LIMIT, settings.scratch)
+                         "--report", report, "--scratch", settings.scratch], LIMIT, settings.scratch)
         if ended.code != 0:
             return ended, None, 0, ended.errors
+        below, words = _told(report)
         said = execute([settings.program("trianglecheck"), path, "--json", "--no-markers", "--memory", bound, "--poly",
-                        d.path, "--min-angle", repr(d.angle), "--max-area", repr(d.area)], LIMIT, settings.scratch)
+                        d.path, "--min-angle", repr(d.angle), "--max-bad", str(below), "--max-area", repr(d.area)],
+                       LIMIT, settings.scratch)
         verdict = json.loads(said.output)
         faults = "; ".join(f"{c['name']}: {c['count']}" for c in verdict["checks"] if c["state"] == "failed")
-        return ended, verdict["triangles"], os.path.getsize(path), faults or "no fault"
+        return ended, verdict["triangles"], os.path.getsize(path), faults or "; ".join(["no fault", *words])
     finally:
-        for name in (path, path.removesuffix(".h5") + ".xdmf"):
+        for name in (path, path.removesuffix(".h5") + ".xdmf", report):
             if os.path.exists(name):
                 os.remove(name)
 
@@ -125,7 +144,7 @@ def _measure_bounded(settings, run):
     if lacking:
         return (f"{d.name} `-{d.switches}`", "", bound, "left out: " + lacking, "", "", "", ""), {}
     ended, triangles, size, verdict = (_judged if run.disk else _counted)(settings, run)
-    if triangles is None or verdict not in ("no fault", "counted alone"):
+    if triangles is None or not verdict.startswith(("no fault", "counted alone")):
         settings.fail(f"{d.name} -{d.switches} within {bound}: {verdict or ended.errors}")
     say(f"  {d.name} -{d.switches}, {bound}: {triangles} triangles, {ended.wall:.1f} s, {verdict}")
     line = (f"{d.name} `-{d.switches}`", f"{triangles or 0:,}", bound, f"{ended.wall:.1f} s",

@@ -11,9 +11,11 @@
  * of the numbering against that of refining; triangles against the least number that area bounds ask for. */
 static const double LEAST_BYTES = 44, LOOP_BYTES = 52, SCHEDULE_BYTES = 74, NUMBERING = 0.55, AREA_FACTOR = 1.14;
 /* Measured, of a mesh that is handed out as it is made: bytes of buffers and libraries; for pages of files on their
- * way, a thread; and, for each root of (triangles * triangles in a cell), of the columns' mesh, on disk with room to
- * grow, of what numbers and hands them out, and of the state of a checkpoint, of which there are two. */
-static const double BUFFERS = 1.5e7, PAGES = 4.8e7, COLUMNS_MESH = 290, COLUMNS_WORK = 115, COLUMNS_STATE = 520;
+ * way, a thread; for each root of (triangles * triangles in a cell), of all columns in memory, of those of the mesh
+ * on disk with room to grow, of what numbers and hands them out, and of the state of a checkpoint, of which there are
+ * two; and, for each triangle to come, of the coarse mesh and what is told of blocks. */
+static const double BUFFERS = 3e7, PAGES = 3e7, COLUMNS_HELD = 260, COLUMNS_AWAY = 290, COLUMNS_WORK = 140,
+                    COLUMNS_STATE = 520, SWEPT_BYTES = 1.1;
 /* The same a triangle, of a mesh that stays as a whole; of two states of it; and of the tiles in a checkpoint. */
 static const double PARKED_WORK = 6, PARKED_BYTES = 90, WHOLE_STATES = 120, TILES_BYTES = 26;
 /* And of tiles that wait until all are there (triangle/text/tile_store.h). */
@@ -69,7 +71,8 @@ static double exports_of(const struct run *run, double vertices, double triangle
     const struct tri_switches *s = &run->arguments->switches;
     double index = vertices > INT32_MAX ? 8 : 4, nodes = s->second_order ? 6 : 3;
     double row = vertices * (28 + 8 * run->mesh.n_attributes) + triangles * (nodes * index + 4);
-    double h5 = vertices * (16 + 8 * run->mesh.n_attributes) + triangles * 3 * index; /* what else it has deflates */
+    double marker = s->no_markers ? 0 : 4;
+    double h5 = vertices * (16 + marker + 8 * run->mesh.n_attributes) + triangles * 3 * index; /* the rest deflates */
     return run->hooks->exports.n * row + run->hooks->n_streamed * h5;
 }
 
@@ -153,11 +156,11 @@ static struct needs needs_of(const struct run *run, double grown, double bytes, 
     if (run->hooks->n_ranks > 0 && sweeps)
         return needs_of_rank(run, grown);
     const double column = column_of(run, grown), pages = PAGES * fmax(run->hooks->threads, 1);
-    const double work = sweeps ? COLUMNS_WORK * column : PARKED_WORK * grown;
+    const double work = sweeps ? COLUMNS_WORK * column + SWEPT_BYTES * grown : PARKED_WORK * grown;
     struct needs n = {.triangles = grown, .whole = grown > TRI_MAX_TRIANGLES ? HUGE_VAL : grown * bytes};
-    n.held = sweeps ? BUFFERS + work + COLUMNS_MESH * column : n.whole;
+    n.held = sweeps ? BUFFERS + COLUMNS_HELD * column + SWEPT_BYTES * grown : n.whole;
     n.floor = fmin(n.held, BUFFERS + work + pages);
-    n.away = sweeps ? COLUMNS_MESH * column : PARKED_BYTES * grown;
+    n.away = sweeps ? COLUMNS_AWAY * column : PARKED_BYTES * grown;
     n.kept = run->hooks->exports.n > 0 ? KEPT_BYTES * grown : 0;
     n.states = WHOLE_STATES * grown;
     n.checkpoint = sweeps ? TILES_BYTES * grown + COLUMNS_STATE * column : n.states;

@@ -15,9 +15,9 @@
 #include "drivers/disk_needs.h"
 #include "drivers/resources.h"
 
-/* A mesh in memory may take so much more than expected, and more where it must not; less than the third is not worth
- * looking for. */
-static const double MARGIN = 1.15, STRICT_MARGIN = 1.5, WORTH_A_LOOK = 1e8;
+/* A mesh in memory may take so much more than expected; more where it must not; and most where angles above 31 degrees
+ * are asked for as well, of which an estimate knows least. Less than the last is not worth looking for. */
+static const double MARGIN = 1.15, STRICT_MARGIN = 1.5, STEEP_MARGIN = 2.5, WORTH_A_LOOK = 1e8;
 
 /* Measured: bytes at the peak of triangulating, of the process, a point, a segment, and of a mesh that is rebuilt, a
  * point and a triangle; and the share of them that is sure. */
@@ -130,17 +130,17 @@ static enum tri_status fail_memory(const struct needs *n, bool sure, double need
                                    struct tri_error *error)
 {
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                    "the %sbounds ask for %s %.3g million triangles, which take %.3g GB of memory; %.3g GB are left"
-                    "%s%s",
-                    sure ? "area " : "", sure ? "at least" : "about", millions(n->triangles), 1e-9 * needed,
-                    1e-9 * left, *obstacle ? "; less would do but for " : "", obstacle);
+                    "the %sbounds ask for %s %.3g million triangles, which take %s of memory; %s are left%s%s",
+                    sure ? "area " : "", sure ? "at least" : "about", millions(n->triangles),
+                    console_size(needed).text, console_size(left).text, *obstacle ? "; less would do but for " : "",
+                    obstacle);
 }
 
 static void warn_of_memory(const struct console *console, double needed, double left)
 {
     if (needed > left)
-        console_warn(console, "the bounds may take about %.3g GB of memory; %.3g GB are left.\n", 1e-9 * needed,
-                     1e-9 * left);
+        console_warn(console, "the bounds may take about %s of memory; %s are left.\n",
+                     console_size(needed).text, console_size(left).text);
 }
 
 static void warn_of_triangles(const struct console *console)
@@ -211,12 +211,12 @@ static enum tri_status check_disk(const struct run *run, const struct estimate *
     if (place)
         return tri_fail(error, TRI_CANNOT_WRITE, place->path, 0,
                         "the area bounds ask for at least %.3g million triangles; %s and what else comes onto that "
-                        "disk take %.3g GB, and %.3g GB are left there", millions(e->least.triangles), place->what,
-                        1e-9 * needed, 1e-9 * disk_left(place));
+                        "disk take %s, and %s are left there", millions(e->least.triangles), place->what,
+                        console_size(needed).text, console_size(disk_left(place)).text);
     place = sum_of(likely) > WORTH_A_LOOK ? disk_too_small(likely, &needed) : NULL;
     if (place)
-        console_warn(console, "%s: %s and what else comes onto that disk may take about %.3g GB; %.3g GB are left.\n",
-                     place->path, place->what, 1e-9 * needed, 1e-9 * disk_left(place));
+        console_warn(console, "%s: %s and what else comes onto that disk may take about %s; %s are left.\n",
+                     place->path, place->what, console_size(needed).text, console_size(disk_left(place)).text);
     return TRI_OK;
 }
 
@@ -233,7 +233,8 @@ static enum tri_status check_scratch(const char *folder, struct tri_error *error
 
 static bool fits(const struct run *run, const struct estimate *e, double left)
 {
-    double margin = is_strict(run) ? STRICT_MARGIN : MARGIN;
+    bool steep = run->options.quality.min_angle > TRI_EASY_ANGLE;
+    double margin = !is_strict(run) ? MARGIN : steep ? STEEP_MARGIN : STRICT_MARGIN;
     return fmax(e->likely.triangles, e->least.triangles) <= TRI_MAX_TRIANGLES && margin * e->likely.whole <= left;
 }
 
@@ -242,16 +243,16 @@ static void say_way(const struct console *console, const struct run *run, const 
     const struct needs *n = &e->likely;
     char whole[64] = "are too many for a mesh in memory";
     if (n->whole < HUGE_VAL)
-        snprintf(whole, sizeof whole, "would take %.3g GB of memory", 1e-9 * n->whole);
+        snprintf(whole, sizeof whole, "would take %s of memory", console_size(n->whole).text);
     if (e->sweeps && run->hooks->n_ranks > 0)
-        console_say(console, "Sharing: about %.3g million triangles among %d tasks, up to %.3g GB of memory each.\n",
-                    millions(n->triangles), run->hooks->n_ranks, 1e-9 * n->held);
+        console_say(console, "Sharing: about %.3g million triangles among %d tasks, up to %s of memory each.\n",
+                    millions(n->triangles), run->hooks->n_ranks, console_size(n->held).text);
     else if (e->sweeps)
-        console_say(console, "Sweeping: about %.3g million triangles %s, a few columns of them %.3g GB.\n",
-                    millions(n->triangles), whole, 1e-9 * n->held);
+        console_say(console, "Sweeping: about %.3g million triangles %s, a few columns of them %s.\n",
+                    millions(n->triangles), whole, console_size(n->held).text);
     if (n->held > left)
-        console_say(console, "Parking: what does not fit in memory goes to %s, about %.3g GB.\n",
-                    run->hooks->limits.scratch, 1e-9 * n->away);
+        console_say(console, "Parking: what does not fit in memory goes to %s, about %s.\n",
+                    run->hooks->limits.scratch, console_size(n->away).text);
 }
 
 static enum tri_status check_stream_all(const struct run *run, const struct estimate *e, double left,
@@ -277,11 +278,12 @@ enum tri_status plan_make(struct run_plan *plan, const struct run *run, const st
     return status;
 }
 
-static void print_bytes(const char *what, double needed, double left)
+/* there: what there is, which is `left`, or all there is. */
+static void print_bytes(const char *what, double needed, double there, const char *left)
 {
     printf("  %s: %.0f MB", what, ceil(1e-6 * needed));
-    if (left < HUGE_VAL)
-        printf(" (%.0f MB left)", floor(1e-6 * left));
+    if (there < HUGE_VAL)
+        printf(" (%.0f MB %s)", floor(1e-6 * there), left);
     putchar('\n');
 }
 
@@ -304,11 +306,12 @@ void plan_print(const struct run *run, const struct estimate *e)
            1e-6 * e->vertices);
     if (run->options.refine)
         printf("  Way: %s\n", way_of(run, e));
-    print_bytes("Memory", resources_memory_used() + more, left);
-    print_bytes("Disk", n->files, disk_left(&places[0]));
+    const double used = resources_memory_used();
+    print_bytes("Memory", used + more, used + left, "in all");
+    print_bytes("Disk", n->files, disk_left(&places[0]), "left");
     if (places[1].bytes > 0)
-        print_bytes("Disk for what does not fit in memory", places[1].bytes, disk_left(&places[1]));
+        print_bytes("Disk for what does not fit in memory", places[1].bytes, disk_left(&places[1]), "left");
     if (places[2].bytes > 0)
-        print_bytes("Disk for the checkpoint", places[2].bytes, disk_left(&places[2]));
+        print_bytes("Disk for the checkpoint", places[2].bytes, disk_left(&places[2]), "left");
     printf("  Time: %.2g s on %d thread%s\n", e->seconds, threads, threads > 1 ? "s" : "");
 }

@@ -175,9 +175,9 @@ static void tell_of_parking(const struct program *p, bool quiet)
 {
     const struct console console = {.program = PROGRAM, .quiet = quiet};
     if (p->schedule.parked > 0)
-        console_say(&console, "%s parked: %.3g GB in %s.\n",
+        console_say(&console, "%s parked: %s in %s.\n",
                     p->schedule.way == PAR_SWEPT ? "What did not fit in memory was" : "The mesh was not swept, and was",
-                    1e-9 * (double)p->schedule.parked, p->scratch);
+                    console_size((double)p->schedule.parked).text, p->scratch);
 }
 
 /* Refines, and writes what is finished meanwhile. */
@@ -333,11 +333,15 @@ static char *scratch_of(const struct long_options *options, const struct argumen
     return folder;
 }
 
-/* Bytes that the process may take; 0: whatever there is. */
-static double memory_of(const struct long_options *options)
+/* A share of the memory there is becomes a number of bytes. One of something unknown is no bound, and refused. */
+static enum tri_status settle_memory(struct long_options *options, struct tri_error *error)
 {
-    double total = options->memory_share > 0 ? resources_memory_total() : 0;
-    return options->memory_share > 0 ? options->memory_share * (total < HUGE_VAL ? total : 0) : options->memory;
+    const double total = options->memory_share > 0 ? resources_memory_total() : 0;
+    if (total == HUGE_VAL)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--memory: the system does not tell how much memory there is; "
+                        "give a size such as 4G");
+    options->memory = options->memory_share > 0 ? options->memory_share * total : options->memory;
+    return TRI_OK;
 }
 
 /* HDF5 files, and the texts beside them, are checked as all files are. */
@@ -376,7 +380,7 @@ static struct run_hooks hooks_of(struct program *p)
                               .whole_mesh = whole_mesh(o), .threads = p->threads,
                               .cell_triangles = par_triangles_in_cell, .user = p,
                               .limits = {.seconds = o->time_limit, .write_partial = o->write_partial,
-                                         .dry_run = o->dry_run, .memory = memory_of(o), .scratch = p->scratch,
+                                         .dry_run = o->dry_run, .memory = o->memory, .scratch = p->scratch,
                                          .checkpoint = o->resume ? o->resume : o->checkpoint}};
     for (int i = 0; i < o->n_exports; i++)
         add_further(&hooks.exports, o->exports[i]);
@@ -439,7 +443,7 @@ static int carry_out(struct program *p, const struct arguments *arguments, struc
         help_full(PROGRAM, "on all cores", long_options_help);
         return EXIT_SUCCESS;
     }
-    if (arguments->file)
+    if (!settle_memory(&p->options, error) && arguments->file)
         restart_open(&p->restart, &p->options, p->launch.carrier, error);
     if (error->status) {
         console_error(&(struct console){.program = PROGRAM}, error);

@@ -141,10 +141,12 @@ static enum tri_status check_manifest(struct par_ranks *r, struct par_manifest *
                                       struct tri_error *error)
 {
     struct par_checkpoint *c = r->state->options->checkpoint;
-    enum tri_status status = r->carrier->rank == 0 ? par_checkpoint_take(c, r->run, error) : TRI_OK;
-    *m = c->manifest;
-    if (!status && par_checkpoint_has_state(c) && m->kind != PAR_RANKS_STATE)
+    enum tri_status status = TRI_OK;
+    if (par_checkpoint_has_state(c) && !par_checkpoint_has_ranks(c))
         status = tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "is the checkpoint of one task");
+    else if (r->carrier->rank == 0)
+        status = par_checkpoint_take(c, r->run, error);
+    *m = c->manifest;
     status = par_spread(r->carrier, PAR_MOVE_INPUT, m, sizeof *m, status, error);
     *from = (struct state){.n_ranks = (m->state_bytes - (int64_t)sizeof(struct common)) /
                                       (int64_t)sizeof(struct writer)};

@@ -29,7 +29,7 @@ for switches in q20a0.000003 q33a0.000004 q20a0.000003S200000; do # swept, parke
         0) kept=$((kept + 1)) && check "the same bytes" cmp whole.h5 out.h5 ;;
         1)
             refused=$((refused + 1))
-            complains 'which take [0-9.e-]+ GB of memory; [0-9.e-]+ GB are left'
+            complains 'which take [0-9.]+ [kMG]B of memory; [0-9.]+ [kMG]B are left'
             check "no file" sh -c '! ls out* .tri-* 2>/dev/null'
             ;;
         *) fault "exit code $found: $(head -n 1 .err)" ;;
