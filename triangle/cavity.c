@@ -72,7 +72,7 @@ static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh
         while (edge.link >= 0) {
             const struct tri_triangle *t = &tri[edge.link >> 2];
             int e = edge.link & 3;
-            int32_t apex = t->v[e], corners[3] = {a, apex, edge.end};
+            tri_vertex_id apex = t->v[e], corners[3] = {a, apex, edge.end};
             struct tri_relative rapex = tri_relative(&xy[apex], p);
             double left = tri_cross(ra, rapex), right = tri_cross(rapex, edge.rend);
             double det = ra.l * right + edge.rend.l * left - rapex.l * edge.area2;
@@ -337,7 +337,8 @@ tri_sub_id tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, tr
                                  int32_t n_left)
 {
     const struct tri_subsegment old = mesh->sub[s];
-    int32_t second = mesh->n_subs++, ends[2] = {0, n_left};
+    tri_sub_id second = mesh->n_subs++;
+    const int32_t ends[2] = {0, n_left};
     assert(mesh->n_subs <= mesh->sub_capacity && s >= 0 && s != second);
     assert(n_left >= 0 && n_left <= c->n_edges && (n_left == 0) == (old.side[0] == TRI_NONE));
     assert(c->n_edges == c->n_tri + (tri_is_boundary(&old) ? 1 : 2)); /* Euler: a disk on each side */
@@ -356,7 +357,7 @@ tri_sub_id tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, tr
             continue;
         fill_chain(c, mesh, v, first, end);
         /* Seen from the left the chain runs from v[1] to v[0], from the right the other way. */
-        int32_t at_start = side == 0 ? second : s, at_end = side == 0 ? s : second;
+        tri_sub_id at_start = side == 0 ? second : s, at_end = side == 0 ? s : second;
         mesh->tri[c->edge[first].triangle].n[2] = ~at_start;
         mesh->sub[at_start].side[side] = tri_code(c->edge[first].triangle, 2);
         mesh->tri[c->edge[end - 1].triangle].n[1] = ~at_end;
