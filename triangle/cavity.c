@@ -21,15 +21,14 @@ void tri_cavity_free(struct tri_cavity *cavity)
     *cavity = (struct tri_cavity){0};
 }
 
+/* Edges, those that wait among them, beyond the triangles: two, and one that says where the last one ends. */
+enum { MORE_EDGES = 3 };
+
 static bool grow(struct tri_cavity *c)
 {
-    int32_t capacity = c->capacity ? 2 * c->capacity : 256;
-    size_t n = (size_t)capacity + 4;
-    if (!tri_resize(&c->tri, n, sizeof *c->tri) || !tri_resize(&c->edge, n, sizeof *c->edge) ||
-        !tri_resize(&c->wall, n, sizeof *c->wall) || !tri_resize(&c->pending, n, sizeof *c->pending))
-        return false;
-    c->capacity = capacity;
-    return true;
+    const struct tri_growing arrays[] = {{&c->tri, sizeof *c->tri}, {&c->edge, sizeof *c->edge},
+                                         {&c->wall, sizeof *c->wall}, {&c->pending, sizeof *c->pending}};
+    return tri_grow_together(arrays, 4, &c->capacity, c->capacity + 1, MORE_EDGES);
 }
 
 static bool owns(const struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t)

@@ -26,15 +26,14 @@ void tri_inserter_free(struct tri_inserter *b)
     free(b->pending);
 }
 
+/* A cavity has two edges more than triangles. */
+enum { MORE_EDGES = 2 };
+
 static bool grow(struct tri_inserter *b)
 {
-    int32_t capacity = b->capacity ? 2 * b->capacity : 256;
-    size_t n = (size_t)capacity + 4;
-    if (!tri_resize(&b->cavity, n, sizeof *b->cavity) || !tri_resize(&b->edge, n, sizeof *b->edge) ||
-        !tri_resize(&b->pending, n, sizeof *b->pending))
-        return false;
-    b->capacity = capacity;
-    return true;
+    const struct tri_growing arrays[] = {
+        {&b->cavity, sizeof *b->cavity}, {&b->edge, sizeof *b->edge}, {&b->pending, sizeof *b->pending}};
+    return tri_grow_together(arrays, 3, &b->capacity, b->capacity + 1, MORE_EDGES);
 }
 
 static inline bool holds(const struct tri_inserter *b, tri_vertex_id v)

@@ -109,20 +109,16 @@ static bool cross(struct tri_recovery *r, const struct tri_mesh *mesh, tri_trian
     return true;
 }
 
+enum { MORE_PLACES = 4 }; /* than triangles that are crossed: a and b stand in both chains */
+
+static int32_t n_places(const struct tri_recovery *r) { return r->n_crossed + MORE_PLACES; }
+
 static bool make_room(struct tri_recovery *r)
 {
-    if (r->n_crossed <= r->room)
-        return true;
-    int32_t room = r->n_crossed + r->n_crossed / 2;
-    size_t places = (size_t)room + 4; /* a and b stand in both chains */
-    if (!tri_resize(&r->pool, (size_t)room, sizeof *r->pool) || !tri_resize(&r->at, places, sizeof *r->at) ||
-        !tri_resize(&r->gap[0], places, sizeof *r->gap[0]) || !tri_resize(&r->gap[1], places, sizeof *r->gap[1]))
-        return false;
-    r->room = room;
-    return true;
+    const struct tri_growing arrays[] = {{&r->pool, sizeof *r->pool}, {&r->at, sizeof *r->at},
+                                         {&r->gap[0], sizeof *r->gap[0]}, {&r->gap[1], sizeof *r->gap[1]}};
+    return tri_grow_together(arrays, 4, &r->room, r->n_crossed, MORE_PLACES);
 }
-
-static int32_t n_places(const struct tri_recovery *r) { return r->n_crossed + 4; }
 
 static void set_border(struct tri_recovery *r, const struct tri_mesh *mesh, int32_t i, tri_triangle_id t, int e)
 {
