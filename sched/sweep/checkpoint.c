@@ -141,8 +141,8 @@ static enum tri_status check_names(const char *path, struct tri_error *error)
         return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "cannot be used: %s", strerror(errno));
     for (const struct dirent *entry; !status && (entry = readdir(directory));)
         if (is_foreign(path, entry->d_name))
-            status = tri_fail(error, TRI_BAD_INPUT, path, 0, "holds a file %s, but no checkpoint: choose another folder",
-                              entry->d_name);
+            status = tri_fail(error, TRI_BAD_INPUT, path, 0,
+                              "holds a file %s, but no checkpoint: choose another folder", entry->d_name);
     closedir(directory);
     return status;
 }
