@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "sched/schedule.h"
+#include "sched/sweep/checkpoint.h"
 #include "trials.h"
 
 static const char DIRECTORY[] = "state";
