@@ -14,6 +14,12 @@
 
 enum { GONE = -2 }; /* in phase.block_of: the triangle is no more */
 
+enum progress {
+    TASK_NEW,    /* waits for its first room */
+    TASK_PAUSED, /* waits for more room, or for what others hold */
+    TASK_ENDED
+};
+
 /* A block at work. Every field is its own while the phase runs; others read it before and after. */
 struct task {
     int32_t block;
@@ -27,12 +33,12 @@ struct task {
     struct tri_refine_options options;
     struct tri_refine_report report;
     struct tri_refiner *refiner;
-    struct par_worklist left;  /* what gate and fence left */
-    struct par_worklist given_up;
-    struct par_worklist changed, asked; /* where others hold a part of the block: made by it, waited for */
+    struct par_ids left;  /* what gate and fence left */
+    struct par_ids given_up;
+    struct par_ids changed, asked; /* where others hold a part of the block: made by it, waited for */
     bool lost;              /* no memory for one of these lists */
     struct tri_part part;
-    bool pausing;
+    enum progress progress;
     int pauses;             /* so far */
     enum tri_status status;
     struct tri_error error;
@@ -57,14 +63,14 @@ struct phase {
 static void leave_triangle(void *user, tri_triangle_id triangle)
 {
     struct task *task = user;
-    if (!par_worklist_add(&task->left, triangle))
+    if (!par_ids_add(&task->left, triangle))
         task->lost = true;
 }
 
 static void note_given_up(void *user, tri_triangle_id triangle)
 {
     struct task *task = user;
-    if (!par_worklist_add(&task->given_up, triangle))
+    if (!par_ids_add(&task->given_up, triangle))
         task->lost = true;
 }
 
@@ -72,14 +78,14 @@ static void note_changes(void *user, const tri_triangle_id *triangle, int32_t n)
 {
     struct task *task = user;
     for (int32_t i = 0; i < n; i++)
-        if (!par_worklist_add(&task->changed, triangle[i]))
+        if (!par_ids_add(&task->changed, triangle[i]))
             task->lost = true;
 }
 
 static void ask_for(void *user, const tri_vertex_id edge[2])
 {
     struct task *task = user;
-    if (!par_worklist_add(&task->asked, edge[0]) || !par_worklist_add(&task->asked, edge[1]))
+    if (!par_ids_add(&task->asked, edge[0]) || !par_ids_add(&task->asked, edge[1]))
         task->lost = true;
 }
 
@@ -203,7 +209,7 @@ static bool make_tasks(const struct dealing *d, int32_t used)
         if (end > begin)
             p->tasks[p->n_tasks++] = (struct task){
                 .block = (int32_t)bin - 1, .worklist = p->worklist + begin - d->n_kept, .n_worklist = end - begin,
-                .expected = expect(p->phase, d->work[bin]), .pausing = true};
+                .expected = expect(p->phase, d->work[bin])};
     }
     assert(!p->tasks || p->n_tasks == used);
     return p->tasks;
@@ -223,7 +229,7 @@ static bool deal_all(struct dealing *d)
         return false;
     free(state->worklist.item);
     free(state->key.item);
-    state->worklist = (struct par_worklist){d->kept, d->n_kept, d->n_kept};
+    state->worklist = (struct par_ids){d->kept, d->n_kept, d->n_kept};
     state->key = (struct par_keys){d->key, d->key ? d->n_kept : 0, d->key ? d->n_kept : 0};
     d->kept = NULL;
     d->key = NULL;
@@ -332,19 +338,19 @@ static enum tri_status reserve_room(const struct phase *p, struct tri_error *err
     return par_room_reserve(&p->state->spare, p->state->mesh, expected, error);
 }
 
-/* Room for the paused tasks, in canonical order. */
-static enum tri_status deal_room(struct phase *p, bool first, struct tri_error *error)
+/* Room for the tasks that wait for it, in canonical order. */
+static enum tri_status deal_room(struct phase *p, struct tri_error *error)
 {
-    enum tri_status status = first ? reserve_room(p, error) : TRI_OK;
+    enum tri_status status = TRI_OK;
     for (int32_t i = 0; !status && i < p->n_tasks; i++) {
         struct task *task = &p->tasks[i];
-        if (!task->pausing || task->asked.n > 0)
+        if (task->progress == TASK_ENDED || task->asked.n > 0)
             continue;
-        int32_t more = first ? task->expected : more_for(task);
+        int32_t more = task->progress == TASK_NEW ? task->expected : more_for(task);
         if (p->state->options->tight_room > 0)
             more = p->state->options->tight_room;
-        task->pauses += !first;
-        p->state->report->pauses += !first;
+        task->pauses += task->progress == TASK_PAUSED;
+        p->state->report->pauses += task->progress == TASK_PAUSED;
         status = par_room_extend(&task->view.room, &p->state->spare, p->state->mesh, more, error);
     }
     return status;
@@ -353,13 +359,13 @@ static enum tri_status deal_room(struct phase *p, bool first, struct tri_error *
 /* What tasks wait for, if that is not room, all at once. */
 static enum tri_status fetch_more(struct phase *p, struct tri_error *error)
 {
-    struct par_worklist asked = {0};
+    struct par_ids asked = {0};
     bool memory = true;
     for (int32_t i = 0; i < p->n_tasks; i++) {
         struct task *task = &p->tasks[i];
         memory = memory && !task->lost;
         for (int32_t k = 0; memory && k < task->asked.n; k++)
-            memory = par_worklist_add(&asked, task->asked.item[k]);
+            memory = par_ids_add(&asked, task->asked.item[k]);
     }
     enum tri_status status = memory ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a phase");
     if (!status && asked.n > 0)
@@ -388,7 +394,7 @@ static bool watch_owners(struct phase *p)
 static void run_task(struct phase *p, struct task *task)
 {
     double began = tri_seconds();
-    assert(task->pausing);
+    assert(task->progress != TASK_ENDED);
     task->owners = (struct tri_owners){p->mark, task->block + 1};
     task->options.owners = p->mark ? &task->owners : NULL;
     par_view_begin(&task->view, p->state->mesh);
@@ -399,8 +405,8 @@ static void run_task(struct phase *p, struct task *task)
     if (!task->status)
         task->status = tri_refiner_run(task->refiner, &task->error);
     par_view_end(&task->view);
-    task->pausing = task->status == TRI_NO_ROOM;
-    if (!task->pausing) {
+    task->progress = task->status == TRI_NO_ROOM ? TASK_PAUSED : TASK_ENDED;
+    if (task->progress == TASK_ENDED) {
         tri_refiner_free(task->refiner);
         task->refiner = NULL;
     }
@@ -411,11 +417,11 @@ static void run_next(void *context, size_t index)
 {
     struct phase *p = context;
     struct task *task = &p->tasks[p->order[index]];
-    if (task->pausing)
+    if (task->progress != TASK_ENDED)
         run_task(p, task);
 }
 
-/* Runs every task that is not done; returns whether any waits for room. */
+/* Runs every task that has not ended; returns whether any waits for room. */
 static bool run_tasks(struct phase *p)
 {
     double began = tri_seconds();
@@ -426,20 +432,20 @@ static bool run_tasks(struct phase *p)
     tri_execute(&p->state->executor, (size_t)p->n_tasks, run_next, p);
     memcpy(report->seconds_shared, shared, sizeof shared);
     for (int32_t i = 0; i < p->n_tasks; i++)
-        waiting |= p->tasks[i].pausing;
+        waiting |= p->tasks[i].progress == TASK_PAUSED;
     double seconds = tri_seconds() - began;
     report->seconds_refine += seconds;
     report->phase_seconds[p->phase] += seconds;
     return waiting;
 }
 
-struct ranked {
+struct queued {
     int32_t expected, task;
 };
 
 static int by_expected(const void *left, const void *right)
 {
-    const struct ranked *a = left, *b = right;
+    const struct queued *a = left, *b = right;
     if (a->expected != b->expected)
         return a->expected > b->expected ? -1 : 1;
     return (a->task > b->task) - (a->task < b->task);
@@ -449,19 +455,19 @@ static int by_expected(const void *left, const void *right)
 static bool order_tasks(struct phase *p)
 {
     unsigned draw = p->state->options->shuffle;
-    struct ranked *ranked = malloc(((size_t)p->n_tasks + 1) * sizeof *ranked);
+    struct queued *queue = malloc(((size_t)p->n_tasks + 1) * sizeof *queue);
     p->order = malloc(((size_t)p->n_tasks + 1) * sizeof *p->order);
-    if (ranked && p->order) {
+    if (queue && p->order) {
         for (int32_t i = 0; i < p->n_tasks; i++) {
             draw = draw * 1664525u + 1013904223u;
-            ranked[i] = (struct ranked){p->state->options->shuffle ? (int32_t)(draw >> 8) : p->tasks[i].expected, i};
+            queue[i] = (struct queued){p->state->options->shuffle ? (int32_t)(draw >> 8) : p->tasks[i].expected, i};
         }
-        qsort(ranked, (size_t)p->n_tasks, sizeof *ranked, by_expected);
+        qsort(queue, (size_t)p->n_tasks, sizeof *queue, by_expected);
         for (int32_t i = 0; i < p->n_tasks; i++)
-            p->order[i] = ranked[i].task;
+            p->order[i] = queue[i].task;
     }
-    bool done = ranked && p->order;
-    free(ranked);
+    bool done = queue && p->order;
+    free(queue);
     return done;
 }
 
@@ -525,7 +531,7 @@ static bool is_new(const struct leftovers *left, tri_triangle_id triangle)
 static void drop_repeated(void *context, size_t index)
 {
     const struct leftovers *left = context;
-    struct par_worklist *own = &left->p->tasks[index].left;
+    struct par_ids *own = &left->p->tasks[index].left;
     int32_t n = 0;
     for (int32_t k = 0; k < own->n; k++)
         if (is_new(left, own->item[k]))
@@ -537,7 +543,7 @@ static void gather_own(void *context, size_t index)
 {
     const struct leftovers *left = context;
     const struct phase *p = left->p;
-    const struct par_worklist *own = &p->tasks[index].left;
+    const struct par_ids *own = &p->tasks[index].left;
     const uint64_t key = par_key_of(p->partition, p->state->round, p->phase, p->tasks[index].block);
     for (int32_t k = 0, at = left->before[index]; k < own->n; k++, at++) {
         left->item[at] = own->item[k];
@@ -575,7 +581,7 @@ static uint64_t key_of(const struct par_state *state, int32_t i)
 
 bool par_merge_worklist(struct par_state *state, const int32_t *item, const uint64_t *key, int32_t n)
 {
-    struct par_worklist *list = &state->worklist;
+    struct par_ids *list = &state->worklist;
     int32_t sum = list->n + n, k = 0, *items = malloc(((size_t)sum + 1) * sizeof *items);
     uint64_t *keys = malloc(((size_t)sum + 1) * sizeof *keys);
     if (!items || !keys) {
@@ -594,7 +600,7 @@ bool par_merge_worklist(struct par_state *state, const int32_t *item, const uint
     }
     free(state->worklist.item);
     free(state->key.item);
-    state->worklist = (struct par_worklist){items, sum, sum};
+    state->worklist = (struct par_ids){items, sum, sum};
     state->key = (struct par_keys){keys, sum, sum};
     return true;
 }
@@ -604,7 +610,7 @@ static bool gather_changes(const struct phase *p)
     bool memory = true;
     for (int32_t i = 0; i < p->n_tasks; i++)
         for (int32_t k = 0; memory && k < p->tasks[i].changed.n; k++)
-            memory = par_worklist_add(&p->state->share->changed, p->tasks[i].changed.item[k]);
+            memory = par_ids_add(&p->state->share->changed, p->tasks[i].changed.item[k]);
     return memory;
 }
 
@@ -613,7 +619,7 @@ static bool gather_given_up(const struct phase *p)
     bool memory = true;
     for (int32_t i = 0; i < p->n_tasks; i++)
         for (int32_t k = 0; memory && k < p->tasks[i].given_up.n; k++)
-            memory = par_worklist_add(&p->state->remaining, p->tasks[i].given_up.item[k]);
+            memory = par_ids_add(&p->state->remaining, p->tasks[i].given_up.item[k]);
     return memory;
 }
 
@@ -653,7 +659,8 @@ static enum tri_status collect(struct phase *p, struct tri_error *error)
     return status || memory ? status : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for bad triangles");
 }
 
-static enum tri_status run_phase(struct phase *p, struct tri_error *error)
+/* The worklist, dealt to tasks that can begin. */
+static enum tri_status begin_tasks(struct phase *p, struct tri_error *error)
 {
     struct par_report *report = p->state->report;
     double began = tri_seconds();
@@ -667,21 +674,38 @@ static enum tri_status run_phase(struct phase *p, struct tri_error *error)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks of a phase");
     report->seconds_find += assigned - began;
     report->seconds_deal += tri_seconds() - assigned;
-    enum tri_status status = TRI_OK;
-    for (bool first = true, waiting = true; waiting && !status; first = false) {
+    return TRI_OK;
+}
+
+/* Gives room and runs, again and again, until no task waits. */
+static enum tri_status run_to_end(struct phase *p, struct tri_error *error)
+{
+    double *seconds_room = &p->state->report->seconds_room, reserving = tri_seconds();
+    enum tri_status status = reserve_room(p, error);
+    *seconds_room += tri_seconds() - reserving;
+    for (bool waiting = true; waiting && !status;) {
         double dealing = tri_seconds();
-        status = deal_room(p, first, error);
+        status = deal_room(p, error);
         if (!status && !watch_owners(p))
             status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the owners of triangles");
-        report->seconds_room += tri_seconds() - dealing;
+        *seconds_room += tri_seconds() - dealing;
         waiting = !status && run_tasks(p);
         status = status ? status : fetch_more(p, error);
     }
     free(p->mark);
     p->mark = NULL;
+    return status;
+}
+
+static enum tri_status run_phase(struct phase *p, struct tri_error *error)
+{
+    enum tri_status status = begin_tasks(p, error);
+    if (status)
+        return status;
+    status = run_to_end(p, error);
     double merging = tri_seconds();
     enum tri_status collected = collect(p, error);
-    report->seconds_merge += tri_seconds() - merging;
+    p->state->report->seconds_merge += tri_seconds() - merging;
     return status ? status : collected;
 }
 

@@ -34,9 +34,9 @@ struct par_keys {
 struct par_share {
     const bool *is_mine;   /* [blocks] */
     const bool *is_border; /* [blocks] others hold a part of it: what is not here of that is TRI_BEYOND */
-    struct par_worklist changed; /* triangles made by such blocks, some of them several times */
+    struct par_ids changed; /* triangles made by such blocks, some of them several times */
     /* Brings what lies around these vertices, which blocks wait for. */
-    enum tri_status (*more)(void *user, const struct par_worklist *asked, struct tri_error *error);
+    enum tri_status (*more)(void *user, const struct par_ids *asked, struct tri_error *error);
     void *user;
 };
 
@@ -61,9 +61,9 @@ struct par_state {
     const struct tri_refine_options *quality;
     const struct par_options *options;
     struct tri_executor executor;
-    struct par_worklist worklist;   /* triangles that may be bad, in canonical order; some may have gone since */
+    struct par_ids worklist; /* triangles that may be bad, in canonical order; some may have gone since */
     struct par_keys key;     /* [worklist.n] ascending; n == 0: no block has had any */
-    struct par_worklist remaining; /* where bad triangles are counted as they leave (sched/sweep/remain.h) */
+    struct par_ids remaining; /* where bad triangles are counted as they leave (sched/sweep/remain.h) */
     bool counts_remaining;   /* so it is now */
     struct par_room spare;   /* unused ranges of the arrays */
     double radius;           /* largest circumradius in the worklist when it was last filled */

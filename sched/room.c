@@ -126,7 +126,11 @@ static enum tri_status reserve(struct tri_mesh *shared, enum par_kind kind, int3
     }
 }
 
-/* Nothing is taken or counted before there is room for it in the lists: no range is ever lost. */
+/* A range too short for an insertion, one triangle, is dealt as well, and comes back with the others: it counts for
+ * nothing, and the view passes it over. To sort such out would take a second list of what is free, which marking and
+ * closing gaps would have to look through, too.
+ *
+ * Nothing is taken or counted before there is room for it in the lists: no range is ever lost. */
 static enum tri_status extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
                               enum par_kind kind, int32_t need, struct tri_error *error)
 {

@@ -149,7 +149,7 @@ static enum tri_status prerefine_graded(struct par_state *state, const struct tr
     coarse.urgent = is_too_long;
     coarse.urgent_user = &test;
     coarse.max_steiner = (int64_t)(partition->estimate / 400);
-    struct par_worklist long_ones;
+    struct par_ids long_ones;
     double began = tri_seconds();
     enum tri_status status = fill_worklist(state, quality, false, error);
     if (status)
@@ -329,7 +329,7 @@ static void note_size(struct par_state *state)
 /* What a sweep that cannot go on has to be undone with. */
 struct before {
     struct tri_mesh mesh;
-    struct par_worklist worklist;
+    struct par_ids worklist;
     struct par_report report;
 };
 
@@ -337,7 +337,7 @@ static enum tri_status remember(const struct par_state *state, struct before *be
 {
     *before = (struct before){.report = *state->report};
     for (int32_t i = 0; i < state->worklist.n; i++)
-        if (!par_worklist_add(&before->worklist, state->worklist.item[i]))
+        if (!par_ids_add(&before->worklist, state->worklist.item[i]))
             return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for a copy of the worklist");
     return tri_mesh_copy(&before->mesh, state->mesh, error);
 }
@@ -345,7 +345,7 @@ static enum tri_status remember(const struct par_state *state, struct before *be
 /* The mesh as it was, and the worklist. What the sink has taken it forgets when it is told of the beginning again. */
 static void go_back(struct par_state *state, struct before *before)
 {
-    struct par_worklist worklist = state->worklist;
+    struct par_ids worklist = state->worklist;
     struct par_report *report = state->report;
     int64_t live = report->most_live;
     tri_mesh_swap(state->mesh, &before->mesh);

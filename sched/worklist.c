@@ -10,10 +10,10 @@
 #include "triangle/census.h"
 #include "triangle/grow.h"
 
-bool par_worklist_grow(struct par_worklist *triangles)
+bool par_ids_grow(struct par_ids *ids)
 {
-    assert(triangles->n >= 0 && triangles->n <= triangles->capacity);
-    return tri_grow(&triangles->item, &triangles->capacity, triangles->n + 1, sizeof *triangles->item);
+    assert(ids->n >= 0 && ids->n <= ids->capacity);
+    return tri_grow(&ids->item, &ids->capacity, ids->n + 1, sizeof *ids->item);
 }
 
 static int ascending(const void *left, const void *right)
@@ -33,12 +33,12 @@ int32_t par_sort_unique(int32_t *item, int32_t n)
     return kept;
 }
 
-int32_t par_worklist_find(const struct par_worklist *list, int32_t item)
+int32_t par_ids_find(const struct par_ids *ids, int32_t id)
 {
-    int32_t low = 0, high = list->n;
+    int32_t low = 0, high = ids->n;
     while (low < high) {
         int32_t middle = low + (high - low) / 2;
-        if (list->item[middle] < item)
+        if (ids->item[middle] < id)
             low = middle + 1;
         else
             high = middle;
@@ -46,7 +46,7 @@ int32_t par_worklist_find(const struct par_worklist *list, int32_t item)
     return low;
 }
 
-bool par_triangle_set_of(struct par_triangle_set *set, const struct par_worklist *triangles, int32_t n_triangles)
+bool par_triangle_set_of(struct par_triangle_set *set, const struct par_ids *triangles, int32_t n_triangles)
 {
     set->word = calloc((size_t)n_triangles / 64 + 1, sizeof *set->word);
     for (int32_t i = 0; set->word && i < triangles->n; i++) {
@@ -59,7 +59,7 @@ bool par_triangle_set_of(struct par_triangle_set *set, const struct par_worklist
 struct finding {
     struct tri_mesh *mesh;
     const struct tri_refine_options *bounds;
-    const struct par_worklist *worklist; /* to choose from; or, when filling, the worklist as it was, or NULL */
+    const struct par_ids *worklist; /* to choose from; or, when filling, the worklist as it was, or NULL */
     tri_triangle_id *found;       /* [n_triangles or worklist.n] each share's own behind one another, with gaps */
     int32_t n[TRI_MOST_SHARES];
     double radius2[TRI_MOST_SHARES];
@@ -82,7 +82,7 @@ static int32_t gather(const struct finding *f, int32_t n)
  * triangle when it was filled: who has a higher number was born since. */
 static int32_t find_newborn(const struct finding *f, struct tri_range range, tri_triangle_id *found)
 {
-    int32_t n = 0, next = par_worklist_find(f->worklist, range.first);
+    int32_t n = 0, next = par_ids_find(f->worklist, range.first);
     for (tri_triangle_id t = range.first; t < range.last; t++) {
         bool was_bad = next < f->worklist->n && f->worklist->item[next] == t;
         next += was_bad;
@@ -118,7 +118,7 @@ static void fill_share(void *context, size_t share)
         f->mesh->tri[t].state = 0;
 }
 
-enum tri_status par_worklist_fill(struct par_worklist *worklist, struct tri_mesh *mesh,
+enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mesh,
                                   const struct tri_refine_options *quality, bool known,
                                   const struct tri_executor *executor, double *radius, struct tri_error *error)
 {
@@ -131,7 +131,7 @@ enum tri_status par_worklist_fill(struct par_worklist *worklist, struct tri_mesh
     for (size_t share = 0; share < tri_shares(n); share++)
         largest2 = f.radius2[share] > largest2 ? f.radius2[share] : largest2;
     free(worklist->item);
-    *worklist = (struct par_worklist){f.found, gather(&f, n), n + 1};
+    *worklist = (struct par_ids){f.found, gather(&f, n), n + 1};
     assert(worklist->n <= n && largest2 >= 0);
     *radius = sqrt(largest2);
     return TRI_OK;
@@ -147,13 +147,13 @@ static void filter_share(void *context, size_t share)
     }
 }
 
-bool par_worklist_filter(const struct par_worklist *worklist, const struct tri_mesh *mesh,
-                     const struct tri_refine_options *bounds, const struct tri_executor *executor,
-                     struct par_worklist *found)
+bool par_worklist_filter(const struct par_ids *worklist, const struct tri_mesh *mesh,
+                         const struct tri_refine_options *bounds, const struct tri_executor *executor,
+                         struct par_ids *found)
 {
     struct finding f = {(struct tri_mesh *)mesh, bounds, worklist, malloc(((size_t)worklist->n + 1) * sizeof *f.found),
                         {0}, {0}};
-    *found = (struct par_worklist){f.found, 0, worklist->n};
+    *found = (struct par_ids){f.found, 0, worklist->n};
     if (!f.found)
         return false;
     tri_execute(executor, tri_shares(worklist->n), filter_share, &f);

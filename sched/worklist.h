@@ -1,24 +1,25 @@
-/* Triangles that may be bad: what a schedule works off. */
+/* Lists of ids, and one of them: triangles that may be bad, which a schedule works off. */
 #ifndef SCHED_WORKLIST_H
 #define SCHED_WORKLIST_H
 
 #include "triangle/executor.h"
 #include "triangle/refine.h"
 
-struct par_worklist {
-    tri_triangle_id *item;
+/* Ids of one kind: triangles, vertices or subsegments; whoever has the list says which. */
+struct par_ids {
+    int32_t *item;
     int32_t n, capacity;
 };
 
 /* Room for one more. False: no memory. */
-bool par_worklist_grow(struct par_worklist *triangles);
+bool par_ids_grow(struct par_ids *ids);
 
 /* Amortised O(1). False: no memory. */
-static inline bool par_worklist_add(struct par_worklist *triangles, tri_triangle_id triangle)
+static inline bool par_ids_add(struct par_ids *ids, int32_t id)
 {
-    if (triangles->n == triangles->capacity && !par_worklist_grow(triangles))
+    if (ids->n == ids->capacity && !par_ids_grow(ids))
         return false;
-    triangles->item[triangles->n++] = triangle;
+    ids->item[ids->n++] = id;
     return true;
 }
 
@@ -26,7 +27,7 @@ static inline bool par_worklist_add(struct par_worklist *triangles, tri_triangle
 int32_t par_sort_unique(int32_t *item, int32_t n);
 
 /* Of a list in ascending order the place of the first item that is not less than this. */
-int32_t par_worklist_find(const struct par_worklist *list, int32_t item);
+int32_t par_ids_find(const struct par_ids *ids, int32_t id);
 
 /* A set of triangles, as bits. */
 struct par_triangle_set {
@@ -34,20 +35,20 @@ struct par_triangle_set {
 };
 
 /* The triangles of a list, out of n_triangles; false: no memory. To be freed by free(set->word). O(n_triangles). */
-bool par_triangle_set_of(struct par_triangle_set *set, const struct par_worklist *triangles, int32_t n_triangles);
+bool par_triangle_set_of(struct par_triangle_set *set, const struct par_ids *triangles, int32_t n_triangles);
 
 /* The worklist becomes all triangles that violate the bounds, in the order of their numbers; *radius, the largest
  * circumradius among them. known: the worklist is that already, for the mesh as it was after the last call; then only
  * triangles born since are judged. (Where options.conforming counts, a triangle may have become bad or good with the
  * one across its subsegment, which was born since: that one is here.) All begin a new life, see struct
  * tri_triangle.state. TRI_NO_MEMORY: the worklist is as before. O(triangles). */
-enum tri_status par_worklist_fill(struct par_worklist *worklist, struct tri_mesh *mesh,
+enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mesh,
                                   const struct tri_refine_options *quality, bool known,
                                   const struct tri_executor *executor, double *radius, struct tri_error *error);
 
 /* *found receives those that violate other bounds, in the same order. False: no memory, and *found is empty. */
-bool par_worklist_filter(const struct par_worklist *worklist, const struct tri_mesh *mesh,
-                     const struct tri_refine_options *bounds, const struct tri_executor *executor,
-                     struct par_worklist *found);
+bool par_worklist_filter(const struct par_ids *worklist, const struct tri_mesh *mesh,
+                         const struct tri_refine_options *bounds, const struct tri_executor *executor,
+                         struct par_ids *found);
 
 #endif

@@ -47,9 +47,9 @@ static struct par_partition cut(const struct tri_mesh *mesh, const struct tri_re
     return partition;
 }
 
-static struct par_worklist bad_triangles(const struct tri_mesh *mesh, const struct tri_refine_options *quality)
+static struct par_ids bad_triangles(const struct tri_mesh *mesh, const struct tri_refine_options *quality)
 {
-    struct par_worklist triangles = {malloc(((size_t)mesh->n_triangles + 1) * sizeof(int32_t)), 0,
+    struct par_ids triangles = {malloc(((size_t)mesh->n_triangles + 1) * sizeof(int32_t)), 0,
                                      mesh->n_triangles + 1};
     assert_non_null(triangles.item);
     triangles.n = tri_find_work(mesh, quality, 0, mesh->n_triangles, triangles.item);
@@ -66,7 +66,7 @@ static bool is_in(void *user, const double p[2])
 static int64_t run_one_by_one(struct tri_mesh *mesh, const struct tri_refine_options *quality,
                               const struct par_partition *p, int phase, bool backwards)
 {
-    struct par_worklist worklist = bad_triangles(mesh, quality);
+    struct par_ids worklist = bad_triangles(mesh, quality);
     int32_t n = par_blocks(p), *block_of = malloc(((size_t)worklist.n + 1) * sizeof *block_of);
     int32_t *mine = malloc(((size_t)worklist.n + 1) * sizeof *mine);
     int64_t inserted = 0;
@@ -137,10 +137,10 @@ static bool is_listed_across(const struct tri_mesh *mesh, const bool *listed, in
 
 /* Whatever is bad now is in the worklist, for the phases to come; but for what was given up for good. */
 static void assert_worklist_holds_all_that_is_bad(const struct tri_mesh *mesh, const struct tri_refine_options *quality,
-                                              const struct par_worklist *worklist,
+                                                  const struct par_ids *worklist,
                                                   const struct tri_refine_report *report)
 {
-    struct par_worklist bad = bad_triangles(mesh, quality);
+    struct par_ids bad = bad_triangles(mesh, quality);
     bool *listed = calloc((size_t)mesh->n_triangles + 1, sizeof *listed);
     int64_t missing = 0;
     assert_non_null(listed);

@@ -108,7 +108,7 @@ static void test_what_is_told_is_read(void **state)
         struct par_message told = {0}, heard;
         struct par_bytes bytes = {0};
         for (int32_t i = 0; part == 2 && i < 40; i += 1 + i % 3) { /* as if these were no more */
-            assert_true(par_worklist_add(&told.gone, i));
+            assert_true(par_ids_add(&told.gone, i));
             pair.teller.triangle.item[i] = TRI_NONE;
         }
         assert_true(tell(&pair, part * (n / parts), part < parts - 1 ? (part + 1) * (n / parts) : n, &told, &bytes));

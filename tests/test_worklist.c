@@ -7,9 +7,9 @@
 static void test_slots_grow(void **state)
 {
     (void)state;
-    struct par_worklist triangles = {0};
+    struct par_ids triangles = {0};
     for (int32_t i = 0; i < 1000; i++)
-        assert_true(par_worklist_add(&triangles, 3 * i));
+        assert_true(par_ids_add(&triangles, 3 * i));
     assert_int_equal(triangles.n, 1000);
     for (int32_t i = 0; i < 1000; i++)
         assert_int_equal(triangles.item[i], 3 * i);
@@ -19,9 +19,9 @@ static void test_slots_grow(void **state)
 static void test_a_set_holds_what_is_listed(void **state)
 {
     (void)state;
-    struct par_worklist triangles = {0};
+    struct par_ids triangles = {0};
     struct par_triangle_set set;
-    assert_true(par_worklist_add(&triangles, 63) && par_worklist_add(&triangles, 5));
+    assert_true(par_ids_add(&triangles, 63) && par_ids_add(&triangles, 5));
     assert_true(par_triangle_set_of(&set, &triangles, 200));
     for (int32_t i = 0; i < 200; i++)
         assert_int_equal(set.word[i / 64] >> i % 64 & 1, i == 63 || i == 5);
@@ -43,7 +43,7 @@ static struct tri_mesh queue_encroached(struct tri_refine_options *quality)
     return mesh;
 }
 
-static void assert_holds_all_bad(const struct par_worklist *worklist, const struct tri_mesh *mesh,
+static void assert_holds_all_bad(const struct par_ids *worklist, const struct tri_mesh *mesh,
                                  const struct tri_refine_options *quality, double radius)
 {
     int32_t *all = malloc((size_t)mesh->n_triangles * sizeof *all);
@@ -66,7 +66,7 @@ static void test_fill(void **state)
     (void)state;
     struct tri_refine_options quality;
     struct tri_mesh mesh = queue_encroached(&quality);
-    struct par_worklist worklist = {0};
+    struct par_ids worklist = {0};
     double radius;
     assert_int_equal(par_worklist_fill(&worklist, &mesh, &quality, false, &support_backwards, &radius, NULL), TRI_OK);
     assert_holds_all_bad(&worklist, &mesh, &quality, radius);
@@ -82,7 +82,7 @@ static void test_fill_again(void **state)
     (void)state;
     struct tri_refine_options quality;
     struct tri_mesh mesh = queue_encroached(&quality);
-    struct par_worklist worklist = {0};
+    struct par_ids worklist = {0};
     struct tri_refine_report report;
     double radius;
     assert_int_equal(par_worklist_fill(&worklist, &mesh, &quality, false, NULL, &radius, NULL), TRI_OK);
@@ -101,7 +101,7 @@ static void test_filter(void **state)
     (void)state;
     struct tri_refine_options quality, stricter;
     struct tri_mesh mesh = queue_encroached(&quality);
-    struct par_worklist worklist = {0}, found = {0};
+    struct par_ids worklist = {0}, found = {0};
     double radius;
     stricter = tri_refine_defaults();
     stricter.min_angle = 10;

@@ -25,7 +25,7 @@ enum tri_status par_borrow(struct par_ranks *r, struct tri_error *error)
     return status;
 }
 
-enum tri_status par_ask(struct par_ranks *r, const struct par_worklist *vertices, struct tri_error *error)
+enum tri_status par_ask(struct par_ranks *r, const struct par_ids *vertices, struct tri_error *error)
 {
     for (int32_t i = 0; i < vertices->n; i++) {
         assert(vertices->item[i] >= 0 && vertices->item[i] < r->state->mesh->n_vertices);
@@ -42,7 +42,7 @@ enum tri_status par_ask(struct par_ranks *r, const struct par_worklist *vertices
 /* --- giving back */
 
 /* A list becomes that of the set made of it: each once, in ascending order. */
-static void list_set(struct par_worklist *list, const struct par_triangle_set *set, int32_t n_triangles)
+static void list_set(struct par_ids *list, const struct par_triangle_set *set, int32_t n_triangles)
 {
     int32_t n = 0;
     for (int32_t w = 0; w <= (n_triangles - 1) / 64; w++)
@@ -63,12 +63,12 @@ static bool note_gone(const struct par_ranks *r, struct par_talk *talk, const st
     bool memory = true;
     for (int32_t i = 0; memory && i < talk->triangle.n; i++)
         if (is_in(changed, talk->triangle.item[i])) {
-            memory = par_worklist_add(&message->gone, i);
+            memory = par_ids_add(&message->gone, i);
             talk->triangle.item[i] = TRI_NONE;
         }
     for (int32_t i = 0; memory && i < talk->sub.n; i++)
         if (mesh->sub[talk->sub.item[i]].v[1] != talk->sub_end.item[i]) {
-            memory = par_worklist_add(&message->gone_subs, i);
+            memory = par_ids_add(&message->gone_subs, i);
             talk->sub.item[i] = TRI_NONE;
         }
     return memory;
@@ -94,7 +94,7 @@ static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3])
     return n;
 }
 
-static bool add_new(struct par_ranks *r, const struct par_worklist *changed)
+static bool add_new(struct par_ranks *r, const struct par_ids *changed)
 {
     bool memory = true;
     int owner[3] = {0};
@@ -151,7 +151,7 @@ static bool write_to(struct par_ranks *r, int h, struct par_message *message, in
            par_message_write(message, talk, r->state->mesh->n_attributes, &r->out[h]);
 }
 
-static bool give_all(struct par_ranks *r, struct par_worklist *changed, const struct par_triangle_set *set,
+static bool give_all(struct par_ranks *r, struct par_ids *changed, const struct par_triangle_set *set,
                      struct par_message *message, int32_t *first)
 {
     bool memory = true;
@@ -209,7 +209,7 @@ static bool remove_one(struct par_ranks *r, tri_triangle_id t, uint64_t *word)
 }
 
 /* Of these triangles those without an own corner go, those with some of them are straddlers. */
-static bool sort_out(struct par_ranks *r, const struct par_worklist *triangles, uint64_t *word, bool adds)
+static bool sort_out(struct par_ranks *r, const struct par_ids *triangles, uint64_t *word, bool adds)
 {
     bool memory = true;
     for (int32_t i = 0; memory && i < triangles->n; i++) {
@@ -219,7 +219,7 @@ static bool sort_out(struct par_ranks *r, const struct par_worklist *triangles, 
         if (!par_has_own(r, t))
             memory = remove_one(r, t, word);
         else if (adds && par_has_foreign(r, t))
-            memory = par_worklist_add(&r->straddlers, t);
+            memory = par_ids_add(&r->straddlers, t);
     }
     return memory;
 }
@@ -233,7 +233,7 @@ static void forget_changed(struct par_ranks *r, const struct par_triangle_set *c
     r->straddlers.n = kept;
 }
 
-static bool drop_all(struct par_ranks *r, const struct par_worklist *changed, const struct par_triangle_set *set)
+static bool drop_all(struct par_ranks *r, const struct par_ids *changed, const struct par_triangle_set *set)
 {
     uint64_t *word = calloc((size_t)r->state->mesh->n_vertices / 64 + 1, sizeof *word);
     bool memory = word;
@@ -246,7 +246,7 @@ static bool drop_all(struct par_ranks *r, const struct par_worklist *changed, co
     return memory;
 }
 
-enum tri_status par_give_back(struct par_ranks *r, struct par_worklist *changed, struct tri_error *error)
+enum tri_status par_give_back(struct par_ranks *r, struct par_ids *changed, struct tri_error *error)
 {
     size_t n = (size_t)r->carrier->n_ranks;
     struct par_message *message = calloc(n, sizeof *message);
@@ -278,12 +278,12 @@ static bool keep_own_entries(struct par_ranks *r)
 
 enum tri_status par_keep_own(struct par_ranks *r, struct tri_error *error)
 {
-    struct par_worklist all = {0};
+    struct par_ids all = {0};
     assert(r->straddlers.n == 0);
     uint64_t *word = calloc((size_t)r->state->mesh->n_vertices / 64 + 1, sizeof *word);
     bool memory = word && keep_own_entries(r);
     for (tri_triangle_id t = 0; memory && t < r->state->mesh->n_triangles; t++)
-        memory = par_worklist_add(&all, t);
+        memory = par_ids_add(&all, t);
     memory = memory && sort_out(r, &all, word, true); /* all vertices stay: all ranks have them */
     free(all.item);
     free(word);

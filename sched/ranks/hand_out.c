@@ -141,7 +141,7 @@ static int compare_places(const void *left, const void *right)
 /* The vertices of own triangles that lie in earlier tiles of others learn their numbers. */
 static void take_numbers(struct handing *h, struct par_bytes *told)
 {
-    const struct par_worklist *straddlers = &h->ranks->straddlers;
+    const struct par_ids *straddlers = &h->ranks->straddlers;
     size_t n = told->n / sizeof(struct numbered_place);
     if (n == 0)
         return;

@@ -73,7 +73,7 @@ static bool find_straddlers(struct par_ranks *r)
 {
     bool memory = true;
     for (tri_triangle_id t = 0; memory && t < r->state->mesh->n_triangles; t++)
-        memory = !par_has_foreign(r, t) || par_worklist_add(&r->straddlers, t);
+        memory = !par_has_foreign(r, t) || par_ids_add(&r->straddlers, t);
     return memory;
 }
 

@@ -20,16 +20,16 @@ static bool tell_of(struct par_talk *talk, tri_triangle_id t)
 }
 
 /* An own vertex around which rank w has to know all, with a triangle there, joins the ring. */
-static bool join(const struct par_ranks *r, int w, struct par_worklist *ring, tri_vertex_id v, tri_triangle_id t)
+static bool join(const struct par_ranks *r, int w, struct par_ids *ring, tri_vertex_id v, tri_triangle_id t)
 {
     struct par_map *surrounded = &r->lent[w].surrounded;
     struct tri_point q = r->state->mesh->xy[v];
     if (par_map_get(surrounded, v) != TRI_NONE || !par_is_own(&r->territory, q) || worker_at(r, q) != w)
         return true;
-    return par_map_put(surrounded, v, t) && par_worklist_add(ring, v);
+    return par_map_put(surrounded, v, t) && par_ids_add(ring, v);
 }
 
-static bool join_corners(const struct par_ranks *r, int w, struct par_worklist *ring, tri_triangle_id t)
+static bool join_corners(const struct par_ranks *r, int w, struct par_ids *ring, tri_triangle_id t)
 {
     const tri_vertex_id *v = r->state->mesh->tri[t].v;
     assert(tri_is_live(&r->state->mesh->tri[t]));
@@ -49,7 +49,7 @@ static tri_triangle_id turn(const struct tri_mesh *mesh, tri_triangle_id t, tri_
 
 /* Tells of all triangles around an own vertex, of which `t` is one; their corners join the next ring. */
 static bool tell_around(const struct par_ranks *r, int w, tri_vertex_id v, tri_triangle_id t,
-                        struct par_worklist *next)
+                        struct par_ids *next)
 {
     const struct tri_mesh *mesh = r->state->mesh;
     tri_triangle_id at = t;
@@ -67,12 +67,12 @@ static bool tell_around(const struct par_ranks *r, int w, tri_vertex_id v, tri_t
 }
 
 /* So many rings, the first of which is given. Frees it. */
-static bool tell_rings(const struct par_ranks *r, int w, struct par_worklist *ring, int32_t rings)
+static bool tell_rings(const struct par_ranks *r, int w, struct par_ids *ring, int32_t rings)
 {
     const struct par_map *surrounded = &r->lent[w].surrounded;
     bool memory = true;
     for (int32_t n = 0; memory && n < rings && ring->n > 0; n++) {
-        struct par_worklist next = {0};
+        struct par_ids next = {0};
         for (int32_t i = 0; memory && i < ring->n; i++)
             memory = tell_around(r, w, ring->item[i], par_map_get(surrounded, ring->item[i]), &next);
         free(ring->item);
@@ -81,7 +81,7 @@ static bool tell_rings(const struct par_ranks *r, int w, struct par_worklist *ri
     for (int32_t i = 0; memory && i < ring->n; i++) /* around these not all has been told */
         memory = par_map_put(&r->lent[w].surrounded, ring->item[i], TRI_NONE);
     free(ring->item);
-    *ring = (struct par_worklist){0};
+    *ring = (struct par_ids){0};
     return memory;
 }
 
@@ -107,7 +107,7 @@ static int taker_of(const struct par_ranks *r, int32_t i)
 
 static bool tell_surroundings(const struct par_ranks *r)
 {
-    struct par_worklist *ring = calloc((size_t)r->carrier->n_ranks, sizeof *ring);
+    struct par_ids *ring = calloc((size_t)r->carrier->n_ranks, sizeof *ring);
     bool memory = ring;
     for (int32_t i = 0; memory && i < r->state->worklist.n; i++) {
         int w = taker_of(r, i);
@@ -199,7 +199,7 @@ static bool is_bad_list(const struct par_bytes *bytes, const struct par_talk *ta
 }
 
 /* The vertices that rank w has asked for, with a triangle at each, are the first ring. */
-static bool begin_ring(struct par_ranks *r, int w, struct par_worklist *ring)
+static bool begin_ring(struct par_ranks *r, int w, struct par_ids *ring)
 {
     const int32_t *number = (const int32_t *)(const void *)r->in[w].at;
     const struct tri_mesh *mesh = r->state->mesh;
@@ -226,7 +226,7 @@ enum tri_status par_lend_more(struct par_ranks *r, struct tri_error *error)
     bool memory = message && first, bad = false;
     r->rings *= 2;
     for (int w = 0; memory && w < r->carrier->n_ranks; w++) {
-        struct par_worklist ring = {0};
+        struct par_ids ring = {0};
         first[w] = r->lent[w].triangle.n;
         bad = bad || is_bad_list(&r->in[w], &r->lent[w]);
         memory = bad || begin_ring(r, w, &ring);
@@ -291,7 +291,7 @@ static enum tri_status take_back(struct par_ranks *r, int w, struct tri_error *e
         status = par_paste(r, talk, &message, false, error);
     for (int32_t i = first; !status && memory && i < talk->triangle.n; i++)
         memory = !par_has_foreign(r, talk->triangle.item[i]) ||
-                 par_worklist_add(&r->straddlers, talk->triangle.item[i]);
+                 par_ids_add(&r->straddlers, talk->triangle.item[i]);
     memory = memory && (status || (remove_lone_subs(r, talk) && par_merge_entries(r->state, &message, talk)));
     par_message_free(&message);
     return status || memory ? status : par_ranks_no_memory(error);

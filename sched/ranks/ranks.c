@@ -152,7 +152,7 @@ static enum tri_status lend(struct par_ranks *r, struct tri_error *error)
 }
 
 /* *any: somebody has asked for more, and has got it. Collective. */
-static enum tri_status lend_more(struct par_ranks *r, const struct par_worklist *asked, bool *any,
+static enum tri_status lend_more(struct par_ranks *r, const struct par_ids *asked, bool *any,
                                  enum tri_status status, struct tri_error *error)
 {
     int64_t n = asked->n, sum;
@@ -176,7 +176,7 @@ static enum tri_status lend_more(struct par_ranks *r, const struct par_worklist 
 }
 
 /* What blocks at borders wait for, as struct par_share has it. */
-static enum tri_status fetch(void *user, const struct par_worklist *asked, struct tri_error *error)
+static enum tri_status fetch(void *user, const struct par_ids *asked, struct tri_error *error)
 {
     bool any;
     return lend_more(user, asked, &any, TRI_OK, error);
@@ -185,14 +185,14 @@ static enum tri_status fetch(void *user, const struct par_worklist *asked, struc
 /* Until nobody asks for more. Collective. */
 static enum tri_status serve(struct par_ranks *r, enum tri_status status, struct tri_error *error)
 {
-    static const struct par_worklist nothing;
+    static const struct par_ids nothing;
     bool any = true;
     while (any)
         status = lend_more(r, &nothing, &any, status, error);
     return status;
 }
 
-static enum tri_status give_back(struct par_ranks *r, struct par_worklist *changed, enum tri_status status,
+static enum tri_status give_back(struct par_ranks *r, struct par_ids *changed, enum tri_status status,
                                  struct tri_error *error)
 {
     status = status ? status : par_give_back(r, changed, error);
@@ -271,7 +271,7 @@ static enum tri_status refine_round(struct par_ranks *r, const struct par_partit
 
 struct last_call {
     struct par_ranks *ranks;
-    struct par_worklist changed, asked;
+    struct par_ids changed, asked;
     bool lost;
 };
 
@@ -279,14 +279,14 @@ static void note_changes(void *user, const tri_triangle_id *triangle, int32_t n)
 {
     struct last_call *call = user;
     for (int32_t i = 0; i < n; i++)
-        call->lost = !par_worklist_add(&call->changed, triangle[i]) || call->lost;
+        call->lost = !par_ids_add(&call->changed, triangle[i]) || call->lost;
 }
 
 static void ask_for(void *user, const tri_vertex_id edge[2])
 {
     struct last_call *call = user;
     for (int k = 0; k < 2; k++)
-        call->lost = !par_worklist_add(&call->asked, edge[k]) || call->lost;
+        call->lost = !par_ids_add(&call->asked, edge[k]) || call->lost;
 }
 
 /* Goes on whenever there is more of the mesh. */

@@ -61,7 +61,7 @@ struct par_ranks {
     struct par_state *state;
     struct par_carrier *carrier;
     struct par_territory territory;
-    struct par_worklist straddlers;
+    struct par_ids straddlers;
     int32_t n_common;  /* vertices that all ranks have by the same numbers */
     struct par_shift shift;
     struct par_talk *lent, *borrowed; /* [n_ranks] */
@@ -113,10 +113,10 @@ enum tri_status par_take_back(struct par_ranks *ranks, struct tri_error *error);
 enum tri_status par_borrow(struct par_ranks *ranks, struct tri_error *error);
 
 /* out[h]: of rank h's vertices those around which more has to be known. */
-enum tri_status par_ask(struct par_ranks *ranks, const struct par_worklist *vertices, struct tri_error *error);
+enum tri_status par_ask(struct par_ranks *ranks, const struct par_ids *vertices, struct tri_error *error);
 
 /* out[h]: what has become of it, given the triangles made. It is dropped here. */
-enum tri_status par_give_back(struct par_ranks *ranks, struct par_worklist *changed, struct tri_error *error);
+enum tri_status par_give_back(struct par_ranks *ranks, struct par_ids *changed, struct tri_error *error);
 
 /* Drops all triangles without an own corner: the first thing to do. */
 enum tri_status par_keep_own(struct par_ranks *ranks, struct tri_error *error);

@@ -42,21 +42,21 @@ void par_map_free(struct par_map *map)
 
 bool par_talk_add_vertex(struct par_talk *talk, tri_vertex_id v)
 {
-    return par_map_put(&talk->vertex_at, v, talk->vertex.n) && par_worklist_add(&talk->vertex, v);
+    return par_map_put(&talk->vertex_at, v, talk->vertex.n) && par_ids_add(&talk->vertex, v);
 }
 
 bool par_talk_add_triangle(struct par_talk *talk, tri_triangle_id t)
 {
-    return par_map_put(&talk->triangle_at, t, talk->triangle.n) && par_worklist_add(&talk->triangle, t);
+    return par_map_put(&talk->triangle_at, t, talk->triangle.n) && par_ids_add(&talk->triangle, t);
 }
 
 bool par_talk_add_sub(struct par_talk *talk, const struct tri_mesh *mesh, tri_sub_id s)
 {
-    return par_map_put(&talk->sub_at, s, talk->sub.n) && par_worklist_add(&talk->sub, s) &&
-           par_worklist_add(&talk->sub_end, mesh->sub[s].v[1]);
+    return par_map_put(&talk->sub_at, s, talk->sub.n) && par_ids_add(&talk->sub, s) &&
+           par_ids_add(&talk->sub_end, mesh->sub[s].v[1]);
 }
 
-static int32_t number_of(const struct par_map *map, const struct par_worklist *list, int32_t id)
+static int32_t number_of(const struct par_map *map, const struct par_ids *list, int32_t id)
 {
     int32_t number = par_map_get(map, id);
     return number != TRI_NONE && list->item[number] == id ? number : TRI_NONE;
@@ -70,21 +70,21 @@ int32_t par_talk_number(const struct par_talk *talk, tri_triangle_id t)
 /* Deep before wide: who comes next lies beside the last one that had anybody beside it. */
 bool par_talk_sort(struct par_talk *talk, const struct tri_mesh *mesh, int32_t first)
 {
-    struct par_worklist stack = {0}, sorted = {0};
+    struct par_ids stack = {0}, sorted = {0};
     int32_t n = talk->triangle.n;
     bool memory = true;
     for (int32_t i = first; memory && i < n; i++) {
-        memory = par_worklist_add(&stack, talk->triangle.item[i]);
+        memory = par_ids_add(&stack, talk->triangle.item[i]);
         while (memory && stack.n > 0) {
             tri_triangle_id t = stack.item[--stack.n];
             int32_t number = par_talk_number(talk, t);
             if (number < first)
                 continue;
             talk->triangle.item[number] = TRI_NONE; /* has had its turn */
-            memory = par_worklist_add(&sorted, t);
+            memory = par_ids_add(&sorted, t);
             for (int e = 0; memory && e < 3; e++)
                 if (mesh->tri[t].n[e] >= 0)
-                    memory = par_worklist_add(&stack, tri_of(mesh->tri[t].n[e]));
+                    memory = par_ids_add(&stack, tri_of(mesh->tri[t].n[e]));
         }
         while (i + 1 < n && talk->triangle.item[i + 1] == TRI_NONE)
             i++;
@@ -244,7 +244,7 @@ static void put_bytes(struct writer *w, const void *item, size_t n)
 }
 
 /* What lies between one and the next: none comes twice. */
-static void put_ascending(struct writer *w, const struct par_worklist *list)
+static void put_ascending(struct writer *w, const struct par_ids *list)
 {
     for (int32_t i = 0, last = -1; i < list->n; last = list->item[i++])
         put(w, (uint64_t)(list->item[i] - last - 1));
@@ -435,7 +435,7 @@ static void get_bytes(struct reader *r, void *item, size_t n)
     r->at += n;
 }
 
-static void get_ascending(struct reader *r, struct par_worklist *list, int32_t n, int32_t end)
+static void get_ascending(struct reader *r, struct par_ids *list, int32_t n, int32_t end)
 {
     for (int32_t last = -1; !r->bad && list->n < n; last = list->item[list->n++])
         list->item[list->n] = last + 1 + get_below(r, (int64_t)end - last - 1);

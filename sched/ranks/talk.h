@@ -32,8 +32,8 @@ static inline int32_t par_map_get(const struct par_map *map, int32_t key)
 
 /* One side of a talk. */
 struct par_talk {
-    struct par_worklist vertex, triangle, sub; /* ids here; of triangles and subsegments that are no more TRI_NONE */
-    struct par_worklist sub_end;               /* where each subsegment ended when it was told */
+    struct par_ids vertex, triangle, sub; /* ids here; of triangles and subsegments that are no more TRI_NONE */
+    struct par_ids sub_end;               /* where each subsegment ended when it was told */
     struct par_map vertex_at, triangle_at, sub_at; /* their numbers */
     struct par_map surrounded;                 /* vertices of which all triangles have been told */
 };
@@ -77,7 +77,7 @@ struct par_told_entry { /* of the worklist */
 };
 
 struct par_message {
-    struct par_worklist gone, gone_subs; /* numbers of triangles and subsegments that are no more */
+    struct par_ids gone, gone_subs; /* numbers of triangles and subsegments that are no more */
     struct par_told_vertex *vertex;
     double *attribute;
     struct par_told_triangle *triangle;

@@ -28,7 +28,7 @@ static double right_end(const struct tri_mesh *mesh, tri_triangle_id t)
 
 bool par_ahead_make(struct par_ahead *ahead, const struct par_state *state, const struct par_partition *partition)
 {
-    const struct par_worklist *list = &state->worklist;
+    const struct par_ids *list = &state->worklist;
     int32_t n_odd = (partition->n_columns - 1) / 2;
     size_t n = (size_t)list->n + 1;
     assert(state->key.n == 0);

@@ -65,7 +65,7 @@ bool par_finds_deal(struct par_finds *finds, const struct tri_executor *executor
     return finds->item;
 }
 
-void par_finds_to_runs(struct par_worklist *list)
+void par_finds_to_runs(struct par_ids *list)
 {
     int32_t n = 0;
     for (int32_t i = 0, first = 0; i < list->n; i++) {
@@ -82,7 +82,7 @@ void par_finds_to_runs(struct par_worklist *list)
     list->n = n;
 }
 
-bool par_finds_add_runs(const struct par_worklist *runs, struct par_ranges *to)
+bool par_finds_add_runs(const struct par_ids *runs, struct par_ranges *to)
 {
     if (!par_ranges_reserve(to, to->n + to->dealt + runs->n / 2))
         return false;

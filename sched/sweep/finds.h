@@ -21,7 +21,7 @@ struct par_runs {
 };
 
 struct par_finds {
-    struct par_worklist found[PAR_FIND_SHARES]; /* by each share, in the order of ids */
+    struct par_ids found[PAR_FIND_SHARES]; /* by each share, in the order of ids */
     struct par_runs runs[PAR_FIND_SHARES];      /* the rows of these */
     int32_t n_rows;
     int32_t *count; /* [shares][n_rows] of what a share has found in a row; then where the next one goes */
@@ -44,7 +44,7 @@ static inline struct tri_range par_finds_share(size_t share, int32_t n)
 struct par_finder {
     struct par_finds *finds;
     size_t share;
-    struct par_worklist list;
+    struct par_ids list;
     struct par_runs runs;
     struct par_run last; /* the run of the last ones, which has not been counted */
     bool no_memory;
@@ -77,7 +77,7 @@ static inline void par_find(struct par_finder *f, int32_t item, int32_t row)
     f->last.n++;
     if (f->list.n < f->list.capacity)
         f->list.item[f->list.n++] = item;
-    else if (!par_worklist_add(&f->list, item))
+    else if (!par_ids_add(&f->list, item))
         f->no_memory = true;
 }
 
@@ -93,11 +93,12 @@ static inline bool par_finder_end(struct par_finder *f)
 /* Deals what has been found to the rows. False: no memory. */
 bool par_finds_deal(struct par_finds *finds, const struct tri_executor *executor);
 
-/* Replaces a list of ids, ascending, by its runs, first and end of each; short ones are left out. */
-void par_finds_to_runs(struct par_worklist *list);
+/* Replaces a list of ids, ascending, by its runs: first and end of one, then of the next. Short ones are left out, so
+ * that the runs take no more room than the ids did: no memory is asked for, and each share does it by itself. */
+void par_finds_to_runs(struct par_ids *list);
 
-/* Adds runs to ranges; false: no memory. */
-bool par_finds_add_runs(const struct par_worklist *runs, struct par_ranges *to);
+/* Adds runs, as par_finds_to_runs leaves them, to ranges; false: no memory. */
+bool par_finds_add_runs(const struct par_ids *runs, struct par_ranges *to);
 
 /* The same with those of all shares. */
 bool par_finds_give(const struct par_finds *finds, struct par_ranges *to);

@@ -16,13 +16,13 @@ static struct tri_refine_report report_of(const struct par_state *state)
 
 bool par_remain_begin(struct par_state *state)
 {
-    struct par_worklist *list = &state->remaining;
+    struct par_ids *list = &state->remaining;
     tri_triangle_id *found = malloc(((size_t)state->mesh->n_triangles + 1) * sizeof *found);
     const int32_t n = found ? tri_find_hopeless(state->mesh, state->quality, found) : 0;
     bool memory = found;
     list->n = 0;
     for (int32_t i = 0; memory && i < n; i++)
-        memory = par_worklist_add(list, found[i]);
+        memory = par_ids_add(list, found[i]);
     free(found);
     memset(state->report->remain, 0, sizeof state->report->remain);
     state->report->remain_known = memory;
@@ -40,7 +40,7 @@ void par_remain_count(struct par_state *state, double x)
 {
     const struct tri_mesh *mesh = state->mesh;
     const struct tri_refine_report report = report_of(state);
-    struct par_worklist *list = &state->remaining;
+    struct par_ids *list = &state->remaining;
     int32_t n = par_sort_unique(list->item, list->n), kept = 0;
     for (int32_t i = 0; i < n; i++) {
         const tri_triangle_id t = list->item[i];

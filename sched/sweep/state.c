@@ -294,7 +294,7 @@ static void set_counts(const struct head *h, struct par_state *state, struct par
  * triangles are not marked yet. */
 static bool is_state_sound(const struct par_state *state)
 {
-    const struct par_worklist *list = &state->worklist;
+    const struct par_ids *list = &state->worklist;
     bool sound = state->mesh->n_vertices >= state->n_kept && (state->key.n == 0 || state->key.n == list->n);
     for (int32_t i = 0; sound && i < list->n; i++)
         sound = list->item[i] >= 0 && list->item[i] < state->mesh->n_triangles;

@@ -27,7 +27,7 @@ struct par_column {
     int64_t first_vertex;           /* the number of the first one in it */
     double begin, end;              /* all triangles left of the end are final */
     struct par_finds vertices, triangles, subs;
-    struct par_worklist straddling[PAR_FIND_SHARES]; /* triangles that reach beyond it, with a numbered corner */
+    struct par_ids straddling[PAR_FIND_SHARES]; /* triangles that reach beyond it, with a numbered corner */
     bool no_memory[PAR_FIND_SHARES];
 };
 
@@ -161,7 +161,7 @@ static void find_triangles(void *context, size_t share)
             par_final_make(&mesh->tri[t], number);
             par_find(&finder, t, row);
         } else if (row == LATER && has_number(c, v, number)) {
-            memory = par_worklist_add(&c->straddling[share], t) && memory;
+            memory = par_ids_add(&c->straddling[share], t) && memory;
         }
     }
     c->no_memory[share] = !par_finder_end(&finder) || !memory || c->no_memory[share];
@@ -304,26 +304,26 @@ static bool reserve_jobs(struct par_tiles *tiles)
 /* --- what has been handed out goes */
 
 /* Numbered corners of triangles that stay. */
-static bool corners_that_stay(const struct par_column *c, struct par_worklist *stay)
+static bool corners_that_stay(const struct par_column *c, struct par_ids *stay)
 {
     const struct par_tiles *tiles = c->tiles;
     bool memory = true;
-    *stay = (struct par_worklist){0};
+    *stay = (struct par_ids){0};
     for (int s = 0; s < PAR_FIND_SHARES; s++)
         for (int32_t i = 0; i < c->straddling[s].n; i++)
             for (int k = 0; k < 3; k++) {
                 tri_vertex_id v = tiles->mesh->tri[c->straddling[s].item[i]].v[k];
                 if (v >= tiles->n_kept && tiles->number[v] >= 0)
-                    memory = memory && par_worklist_add(stay, v);
+                    memory = memory && par_ids_add(stay, v);
             }
     stay->n = par_sort_unique(stay->item, stay->n);
     return memory;
 }
 
 /* Of a list of vertices, ascending, those that do not stay go; they are left in it. */
-static void let_vertices_go(struct par_tiles *tiles, const struct par_worklist *stay, struct par_worklist *list)
+static void let_vertices_go(struct par_tiles *tiles, const struct par_ids *stay, struct par_ids *list)
 {
-    int32_t left = 0, k = list->n > 0 ? par_worklist_find(stay, list->item[0]) : 0;
+    int32_t left = 0, k = list->n > 0 ? par_ids_find(stay, list->item[0]) : 0;
     for (int32_t i = 0; i < list->n; i++) {
         tri_vertex_id v = list->item[i];
         while (k < stay->n && stay->item[k] < v)
@@ -339,7 +339,7 @@ static void let_vertices_go(struct par_tiles *tiles, const struct par_worklist *
 
 struct leaving {
     struct par_column *column;
-    const struct par_worklist *stay;
+    const struct par_ids *stay;
 };
 
 /* What a share has found, triangles having gone when they were handed out. */
@@ -347,7 +347,7 @@ static void leave(void *context, size_t share)
 {
     const struct leaving *l = context;
     struct par_column *c = l->column;
-    struct par_worklist *subs = &c->subs.found[share];
+    struct par_ids *subs = &c->subs.found[share];
     let_vertices_go(c->tiles, l->stay, &c->vertices.found[share]);
     for (int32_t i = 0; i < subs->n; i++)
         par_room_mark_sub(c->tiles->mesh, subs->item[i]);
@@ -358,7 +358,7 @@ static void leave(void *context, size_t share)
 
 static bool let_go(struct par_column *c, struct par_room *spare)
 {
-    struct par_worklist stay, *held = &c->tiles->held;
+    struct par_ids stay, *held = &c->tiles->held;
     if (!corners_that_stay(c, &stay)) {
         free(stay.item);
         return false;
@@ -472,5 +472,5 @@ void par_tiles_free(struct par_tiles *tiles)
     tiles->job = NULL;
     tiles->number = NULL;
     tiles->kept_tile = NULL;
-    tiles->held = (struct par_worklist){0};
+    tiles->held = (struct par_ids){0};
 }

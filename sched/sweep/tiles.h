@@ -34,7 +34,7 @@ struct par_tiles {
     int32_t *kept_tile;           /* [n_kept] column * n_rows + row of those that keep theirs */
     int32_t capacity;
     int64_t n_vertices, n_triangles, n_segments; /* handed out so far */
-    struct par_worklist held;         /* numbered vertices that triangles beyond the last column still have */
+    struct par_ids held;          /* numbered vertices that triangles beyond the last column still have */
     int32_t n_threads;            /* of the executor; 0: one */
     int32_t n_jobs;
     struct par_tile_job *job;     /* [n_jobs] tiles on their way */
