@@ -4,7 +4,6 @@
 
 #include <math.h>
 
-#include "sched/cells.h"
 #include "triangle/census.h"
 #include "triangle/clock.h"
 
@@ -125,10 +124,12 @@ static double seconds_of(const struct run *run, double triangles, double disk)
 
 /* --- all together */
 
-/* The root that what a sweep holds grows with: so many triangles are in a column, to the order. */
-static double column_of(double triangles)
+/* The root that what a sweep holds grows with: so many triangles are in a column, to the order. Without cells the
+ * mesh is one column. */
+static double column_of(const struct run *run, double triangles)
 {
-    return sqrt(triangles * par_triangles_in_cell(triangles));
+    double (*cell_triangles)(double triangles) = run->hooks->cell_triangles;
+    return sqrt(triangles * (cell_triangles ? cell_triangles(triangles) : triangles));
 }
 
 /* As schedules go: above TRI_EASY_ANGLE there are two, and a limit on new points makes it one call. */
@@ -154,7 +155,7 @@ static struct needs needs_of(const struct run *run, double grown, double bytes, 
 {
     if (run->hooks->n_ranks > 0 && sweeps)
         return needs_of_rank(run, grown);
-    const double column = column_of(grown), pages = PAGES * fmax(run->hooks->threads, 1);
+    const double column = column_of(run, grown), pages = PAGES * fmax(run->hooks->threads, 1);
     const double work = sweeps ? COLUMNS_WORK * column + SWEPT_BYTES * grown : PARKED_WORK * grown;
     struct needs n = {.triangles = grown, .whole = grown > TRI_MAX_TRIANGLES ? HUGE_VAL : grown * bytes};
     n.held = sweeps ? BUFFERS + COLUMNS_HELD * column + SWEPT_BYTES * grown : n.whole;

@@ -106,7 +106,7 @@ const char *plan_obstacle(const struct run *run)
         return "";
     if (!run->options.refine)
         return "no bounds";
-    if (run->n_loose > 0)
+    if (run->report.loose > 0)
         return "segments that are no edges of the mesh";
     if (hooks->whole_mesh)
         return hooks->whole_mesh;

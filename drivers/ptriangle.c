@@ -19,6 +19,7 @@
 #include "drivers/run.h"
 #include "drivers/shared_input.h"
 #include "drivers/streams.h"
+#include "sched/cells.h"
 #include "sched/ranks/relay.h"
 #include "sched/schedule.h"
 #include "sched/sweep/queue.h"
@@ -376,7 +377,8 @@ static struct run_hooks hooks_of(struct program *p)
                               .written_elsewhere = p->launch.rank > 0,
                               .n_ranks = p->launch.carrier ? p->launch.carrier->n_ranks : 0,
                               .share = p->launch.carrier ? share : NULL, .agree = p->launch.carrier ? agree : NULL,
-                              .whole_mesh = whole_mesh(o), .threads = p->threads, .user = p,
+                              .whole_mesh = whole_mesh(o), .threads = p->threads,
+                              .cell_triangles = par_triangles_in_cell, .user = p,
                               .limits = {.seconds = o->time_limit, .write_partial = o->write_partial,
                                          .dry_run = o->dry_run, .memory = o->memory, .scratch = p->scratch,
                                          .checkpoint = o->resume ? o->resume : o->checkpoint}};

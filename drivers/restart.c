@@ -23,7 +23,7 @@ static enum tri_status open_directory(struct restart *restart, const struct long
     if (!restart->follows)
         return par_checkpoint_open(&restart->checkpoint, directory, resume, par_hash(0, version, sizeof version),
                                    error);
-    restart->checkpoint.directory = directory;
+    restart->checkpoint = par_checkpoint_closed(directory);
     return TRI_OK;
 }
 

@@ -17,7 +17,6 @@
 #include "drivers/summary.h"
 #include "triangle/census.h"
 #include "triangle/clock.h"
-#include "triangle/quality.h"
 #include "triangle/text/names.h"
 
 /* A run and its clock. */
@@ -108,7 +107,7 @@ static enum tri_status read_mesh(struct runner *r, const struct tri_names *names
     return tri_read_area(names->area, options, &run->elements, r->error);
 }
 
-/* Who names a file of another kind gets a word on what is read. */
+/* Where the file that was named is there, but not of a kind that is read, the error says which kinds are. */
 static void add_hint(const struct runner *r)
 {
     const char *file = r->run.arguments->file;
@@ -188,14 +187,12 @@ static void say_carving(const struct runner *r)
                     s->regions && s->area_lists ? " and " : "", s->area_lists ? "area bounds" : "");
 }
 
-static void count_loose(struct runner *r)
+static void warn_of_loose(const struct runner *r)
 {
-    struct run *run = &r->run;
-    for (int32_t k = 0; run->arguments->switches.segments && k < run->pslg.n_segments; k++)
-        run->n_loose += !run->is_edge[k];
-    if (run->n_loose > 0)
+    const int32_t loose = r->run.report.loose;
+    if (loose > 0)
         console_warn(&r->console, "%ld segments are no edges of the mesh. They are copied, but not kept by the mesh.\n",
-                     (long)run->n_loose);
+                     (long)loose);
 }
 
 /* There is a mesh. */
@@ -205,7 +202,7 @@ static void say_built(struct runner *r)
     end_stage(r, s->mesh ? RUN_DELAUNAY : RUN_HOLES);
     if (s->mesh) {
         say_milliseconds(r, "Mesh reconstruction", r->run.seconds[RUN_DELAUNAY]);
-        count_loose(r);
+        warn_of_loose(r);
     } else if (s->segments) {
         say_milliseconds(r, "Hole", r->run.seconds[RUN_HOLES]);
     }
@@ -448,8 +445,8 @@ static enum tri_status tell(struct runner *r)
     if (status)
         return status;
     say_milliseconds(r, "Total running", run->total_seconds);
-    run->counts.interior += run->n_loose; /* as Triangle counts */
-    run->counts.subsegments += run->n_loose;
+    run->counts.interior += run->report.loose; /* as Triangle counts */
+    run->counts.subsegments += run->report.loose;
     summary_counts(&r->console, s, &run->pslg, run->elements.n, &run->counts);
     if (s->verbosity > 0)
         summary_shapes(&r->console, &run->mesh, &run->report, run->hooks->executor);

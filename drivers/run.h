@@ -38,7 +38,6 @@ struct run {
     struct tri_pslg pslg;
     struct tri_elements elements; /* -r: the triangles */
     bool *is_edge;                /* [n_segments] -r: is the segment an edge of the mesh? Else NULL */
-    int32_t n_loose;              /* segments that are not */
     int32_t base;                 /* 0 or 1 */
     bool points_in_poly;
     struct run_plan plan; /* once refinement begins */
@@ -84,6 +83,8 @@ struct run_hooks {
     enum tri_status (*agree)(void *user, enum tri_status status, struct tri_error *error);
     const char *whole_mesh;         /* what of the program's own options asks for a mesh in memory; NULL: nothing */
     int threads;                    /* to refine with, for estimates */
+    /* Triangles in a cell of the schedule, where the mesh ends with about so many; NULL: there are no cells. */
+    double (*cell_triangles)(double triangles);
     struct file_names exports;      /* the mesh in other formats .. */
     bool exports_alone;             /* .. and in no others */
     const char *first_file;         /* of those that take most of the disk; NULL: they have the arguments' base name */

@@ -188,21 +188,10 @@ static bool parse_size(const char *text, double *bytes, double *share)
     return *end == '\0' || unit != NULL || (*end == '%' && value <= 100);
 }
 
-/* Applies one option; false: not an option, or no value for it. */
-static bool apply(struct settings *s, int option)
+/* Applies an option without value; false: it is none. */
+static bool apply_flag(struct settings *s, int option)
 {
     switch (option) {
-    case 'p':
-        s->input = optarg;
-        return true;
-    case 'q':
-        return parse_real(optarg, &s->check.min_angle);
-    case 'b':
-        return parse_count(optarg, &s->check.max_bad);
-    case 'a':
-        return parse_real(optarg, &s->check.max_area);
-    case SMALL_INPUT_ANGLE:
-        return parse_real(optarg, &s->check.small_input_angle);
     case 'D':
         s->check.delaunay = TRI_CHECK_CONFORMING;
         return true;
@@ -228,18 +217,11 @@ static bool apply(struct settings *s, int option)
     case KEEP_HULL:
         s->check.border = TRI_CHECK_BORDER_HULL;
         return true;
-    case THREADS:
-        return parse_count(optarg, &s->threads) && s->threads > 0;
     case NO_MARKERS:
         s->ignore_markers = true;
         return true;
     case NO_REGIONS:
         s->ignore_regions = true;
-        return true;
-    case MEMORY:
-        return parse_size(optarg, &s->memory, &s->memory_share);
-    case SCRATCH:
-        s->scratch = optarg;
         return true;
     case JSON:
         s->json = true;
@@ -249,6 +231,33 @@ static bool apply(struct settings *s, int option)
         return true;
     default:
         return false;
+    }
+}
+
+/* Applies one option; false: not an option, or no value for it. */
+static bool apply(struct settings *s, int option)
+{
+    switch (option) {
+    case 'p':
+        s->input = optarg;
+        return true;
+    case 'q':
+        return parse_real(optarg, &s->check.min_angle);
+    case 'b':
+        return parse_count(optarg, &s->check.max_bad);
+    case 'a':
+        return parse_real(optarg, &s->check.max_area);
+    case SMALL_INPUT_ANGLE:
+        return parse_real(optarg, &s->check.small_input_angle);
+    case THREADS:
+        return parse_count(optarg, &s->threads) && s->threads > 0;
+    case MEMORY:
+        return parse_size(optarg, &s->memory, &s->memory_share);
+    case SCRATCH:
+        s->scratch = optarg;
+        return true;
+    default:
+        return apply_flag(s, option);
     }
 }
 

@@ -67,7 +67,8 @@ static void sort_run(void *context, size_t run)
 {
     const struct runs *r = context;
     int64_t begin = run_begin(r, run), end = run_begin(r, run + 1);
-    qsort(r->from + begin, (size_t)(end - begin), sizeof *r->from, by_x);
+    if (begin < end)
+        qsort(r->from + begin, (size_t)(end - begin), sizeof *r->from, by_x);
 }
 
 /* Two neighbours become one. */

@@ -495,6 +495,8 @@ void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *a
     sum->hit_cap |= add->hit_cap;
 }
 
+void par_forget_deferred(struct par_report *report) { report->total.gated = report->total.fenced = 0; }
+
 uint64_t par_key_of(const struct par_partition *partition, int round, int phase, int32_t block)
 {
     int32_t column = block / partition->n_rows, row = block % partition->n_rows;

@@ -10,12 +10,15 @@
 #include "sched/partition.h"
 #include "sched/worklist.h"
 #include "sched/room.h"
-#include "sched/sweep/park.h"
 
+struct par_park;
 struct par_state;
 
 /* Tells of the phase that begins. */
 void par_tell(const struct par_state *state, int phase);
+
+/* All that gates and fences have kept back has had its turn: the total says nothing of it any more. */
+void par_forget_deferred(struct par_report *report);
 
 void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add);
 

@@ -11,6 +11,7 @@
 #include "sched/phase.h"
 #include "sched/ranks/ranks.h"
 #include "sched/sweep/numbering.h"
+#include "sched/sweep/park.h"
 #include "sched/sweep/remain.h"
 #include "sched/sweep/state.h"
 #include "sched/sweep/sweep.h"
@@ -414,7 +415,7 @@ static enum tri_status finish_schedule(struct par_state *state, const struct tri
     }
     state->report->seconds_last += tri_seconds() - last;
     enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number, error);
-    state->report->total.gated = state->report->total.fenced = 0; /* all of them have had their turn */
+    par_forget_deferred(state->report);
     return status ? status : closed;
 }
 

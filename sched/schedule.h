@@ -8,9 +8,8 @@
 #ifndef SCHED_SCHEDULE_H
 #define SCHED_SCHEDULE_H
 
+#include "ptriangle/tiles.h"
 #include "sched/partition.h"
-#include "sched/sweep/checkpoint.h"
-#include "sched/sweep/tiles.h"
 #include "triangle/executor.h"
 #include "triangle/generate.h"
 #include "triangle/refine.h"
@@ -18,6 +17,9 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+struct par_carrier;
+struct par_checkpoint;
 
 enum { PAR_NUMBERING = PAR_PHASES + 1 }; /* told as a phase, see progress */
 

@@ -97,8 +97,14 @@ refuse '#[[:space:]]*include[[:space:]]*"(triangle|sched|drivers)/' 'is public, 
 refuse '#[[:space:]]*pragma[[:space:]]+omp|<(omp|pthread|threads)\.h>' 'knows threads' \
     triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp
 
-# One mesh on several ranks stands above the sweep, and beside it: sched/schedule.c chooses between them.
+# The sweep and the ranks stand above the headers of the schedule: only sched/*.c, which choose between them, include both.
+refuse '#[[:space:]]*include[[:space:]]*"sched/(sweep|ranks)/' 'includes what stands above it' sched/*.h
 refuse '#[[:space:]]*include[[:space:]]*"sched/ranks/' 'includes what stands above it' sched/sweep/*.[ch]
+
+# The sequential program knows no schedule: what it shares with the parallel one gets it by hooks (drivers/run.h).
+# shellcheck disable=SC2046 # one word a file
+refuse '#[[:space:]]*include[[:space:]]*"sched/' 'is part of triangle, and knows the schedule' drivers/triangle.c \
+    $(sed -n '/^set(PTRIANGLE_RUN_SOURCES/,/)/p' cmake/sources.cmake | grep -oE 'drivers/[a-z_]+' | sed 's/$/.c/; p; s/c$/h/')
 
 # One file runs anything in parallel: all else hands tasks to an executor.
 others=$(ls sched/*.[ch] sched/*/*.[ch] drivers/*.[ch] | grep -vx sched/threads.c | tr '\n' ' ')
@@ -116,7 +122,7 @@ others=$(ls triangle/*.[ch] triangle/*/*.[ch] sched/*.[ch] sched/*/*.[ch] | grep
 # shellcheck disable=SC2086 # one word a file
 refuse '#[[:space:]]*include[[:space:]]*[<"](ptriangle/)?mpi\.h' 'knows MPI' $others
 
-# The judge knows nothing of the judged but input, status codes and predicates: nobody is judge of his own cause.
+# The judge knows nothing of the judged but input, predicates and tools: nobody is judge of his own cause.
 for file in triangle/check/*.[ch]; do
     strange=$("$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -I . -I include -MM -x c "$file" | tr ' \\' '\n\n' | grep '^triangle/' |
         grep -vE '^triangle/(check/[a-z_]+\.[ch]|(pslg|status|predicates|expansion|point|arithmetic|executor|grow)\.h)$')
@@ -125,7 +131,7 @@ done
 
 # The schedule drives refinement by its hooks: how triangles are judged and points inserted is the mesher's own affair.
 # (api/ and dropin/ are the doors of the library, of which sched/ has its own.)
-hooks='mesh|owners|fence|refine|census|estimate|generate|numbering|executor|api/mesh|dropin/(triangle|io)'
+hooks='mesh|owners|fence|refine|census|estimate|generate|executor|api/mesh|dropin/(triangle|io)'
 tools='clock|degrees|grow|hilbert|radix|point|status|stop'
 strange=$(grep -E '^sched/.*#[[:space:]]*include[[:space:]]*"triangle/' "$code" |
     grep -vE '"triangle/('"$hooks|$tools"')\.h"' | head -n 3)

@@ -5,9 +5,11 @@
 
 #include <dirent.h>
 #include <stdio.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "sched/schedule.h"
+#include "sched/sweep/checkpoint.h"
 #include "trials.h"
 
 static const char DIRECTORY[] = "state";
@@ -118,8 +120,15 @@ static void open_it(struct par_checkpoint *c, bool resume)
 
 static void remove_all(void)
 {
-    struct par_checkpoint c = {.directory = DIRECTORY, .lock = -1};
-    par_checkpoint_close(&c, true);
+    DIR *directory = opendir(DIRECTORY);
+    for (const struct dirent *entry; directory && (entry = readdir(directory));) {
+        char path[512];
+        snprintf(path, sizeof path, "%s/%s", DIRECTORY, entry->d_name);
+        unlink(path); /* but for . and .. */
+    }
+    if (directory)
+        closedir(directory);
+    rmdir(DIRECTORY);
 }
 
 /* The end is asked for once so many tiles have been taken. */
@@ -224,6 +233,81 @@ static void test_other_runs_are_refused(void **state)
     assert_int_equal(par_checkpoint_open(&second, DIRECTORY, true, 7, &error), TRI_OK); /* without a state */
     assert_false(par_checkpoint_has_state(&second));
     par_checkpoint_close(&second, true);
+}
+
+static void make_file(const char *name, const char *text)
+{
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s", DIRECTORY, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static long length_of_file(const char *name)
+{
+    char path[512];
+    struct stat about;
+    snprintf(path, sizeof path, "%s/%s", DIRECTORY, name);
+    assert_int_equal(stat(path, &about), 0);
+    return (long)about.st_size;
+}
+
+static bool has_file(const char *name)
+{
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s", DIRECTORY, name);
+    return access(path, F_OK) == 0;
+}
+
+/* Without a manifest nothing of these names is a run's. */
+static void test_files_of_others_are_refused(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"tiles", "state-0", "state-1", "piece-0-0", "piece-1-12", "manifest-new"};
+    remove_all();
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        struct par_checkpoint c;
+        struct tri_error error;
+        assert_int_equal(mkdir(DIRECTORY, 0777), 0);
+        make_file(names[i], "precious");
+        assert_int_equal(par_checkpoint_open(&c, DIRECTORY, false, 7, &error), TRI_BAD_INPUT);
+        assert_non_null(strstr(error.text, names[i]));
+        assert_int_equal(length_of_file(names[i]), 8);
+        assert_false(has_file("manifest"));
+        remove_all();
+    }
+}
+
+/* And with one only those of exactly these names are; the directory is whose who made it. */
+static void test_files_of_others_stay(void **state)
+{
+    (void)state;
+    static const char *const others[] = {"piece-3.poly", "piece-notes.txt", "piece-2-1", "piece-0-", "piece-0-1x",
+                                         "piece-1", "state-2", "tiles.txt"};
+    enum { N = sizeof others / sizeof *others };
+    struct par_checkpoint c;
+    remove_all();
+    assert_int_equal(mkdir(DIRECTORY, 0777), 0);
+    for (int i = 0; i < N; i++)
+        make_file(others[i], "precious");
+    make_file("manifest-new", ""); /* of a run that was killed at once */
+    open_it(&c, false);
+    make_file("piece-0-1", "");
+    make_file("piece-1-12", "");
+    make_file("state-1", "");
+    par_checkpoint_close(&c, true);
+    for (int i = 0; i < N; i++)
+        assert_true(has_file(others[i]));
+    static const char *const own[] = {"manifest", "manifest-new", "tiles", "state-1", "piece-0-1", "piece-1-12"};
+    for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+        assert_false(has_file(own[i]));
+    remove_all();
+    assert_int_equal(mkdir(DIRECTORY, 0777), 0); /* not made by a run: it stays, though it is empty */
+    open_it(&c, false);
+    par_checkpoint_close(&c, true);
+    assert_int_equal(rmdir(DIRECTORY), 0);
 }
 
 /* Flips a byte of a file, or flips it back. */
@@ -462,6 +546,8 @@ int main(void)
         cmocka_unit_test(test_stopped_at_any_time),
         cmocka_unit_test(test_nobody_takes_tiles),
         cmocka_unit_test(test_other_runs_are_refused),
+        cmocka_unit_test(test_files_of_others_are_refused),
+        cmocka_unit_test(test_files_of_others_stay),
         cmocka_unit_test(test_damage_is_found),
         cmocka_unit_test(test_whole_meshes_go_on),
         cmocka_unit_test(test_a_finished_mesh_is_kept),

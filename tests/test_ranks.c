@@ -9,6 +9,7 @@
 #include "sched/ranks/ranks.h"
 #include "sched/ranks/relay.h"
 #include "sched/schedule.h"
+#include "sched/sweep/checkpoint.h"
 
 static const struct trial trials[] = {
     {"letter.poly", 30, 20000, 500, false, false, 0},

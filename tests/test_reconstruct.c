@@ -260,9 +260,12 @@ static void segments_that_are_edges(void **state)
     in.pslg.markers = (int32_t *)calloc(6, sizeof(int32_t));
     in.pslg.markers[1] = 3;
     bool is_edge[8];
-    struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){.use_segments = true, .is_edge = is_edge});
+    int32_t loose;
+    struct tri_reconstruct_options both = {.use_segments = true, .is_edge = is_edge, .loose = &loose};
+    struct tri_mesh mesh = rebuild(&in, &both);
     static const bool expected[8] = {false, true, true, true, true, true, false, true}; /* 5, 7: could be none */
     assert_memory_equal(is_edge, expected, sizeof expected);
+    assert_int_equal(loose, 2);
     assert_int_equal(mesh.n_subs, 5);
     assert_int_equal(mesh.n_parents, 5);
     assert_memory_equal(mesh.sub[0].v, ((int32_t[]){4, 0}), sizeof mesh.sub[0].v);
@@ -275,8 +278,10 @@ static void segments_that_are_edges(void **state)
     static const int32_t markers[6] = {-7, 3, 1, 1, -7, 0};
     assert_memory_equal(mesh.vertex_markers, markers, sizeof markers);
     tri_mesh_free(&mesh);
-    mesh = rebuild(&in, &(struct tri_reconstruct_options){.is_edge = is_edge});
+    both.use_segments = false;
+    mesh = rebuild(&in, &both);
     assert_int_equal(mesh.n_subs, 4);
+    assert_int_equal(loose, 0);
     for (int k = 0; k < 8; k++)
         assert_false(is_edge[k]);
     tri_mesh_free(&mesh);

@@ -45,7 +45,8 @@
 #include "triangle/predicates.h"
 #include "triangle/recover.h"
 
-enum { BESIDE = 3, HUB = 16 };
+enum { BESIDE = 3 };
+enum { HUB = 16 }; /* triangles around a vertex: with more it may be a hub */
 
 /* In resolutions: a vertex so near to a piece is on it for all that coordinates tell; a new one keeps so far from
  * others. */

@@ -88,11 +88,12 @@ static enum tri_status make(struct tri_mesh *mesh, const struct tri_pslg *pslg, 
 }
 
 static enum tri_status rebuild(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_options *options,
-                               struct tri_error *error)
+                               struct tri_report *report, struct tri_error *error)
 {
     const struct tri_reconstruct_options how = {.use_segments = options->use_segments, .refine = options->refine,
                                                 .stop = options->stop, .executor = options->executor,
-                                                .base = options->base, .is_edge = options->is_edge};
+                                                .base = options->base, .is_edge = options->is_edge,
+                                                .loose = &report->loose};
     announce(options, TRI_STAGE_REBUILD);
     return tri_reconstruct(mesh, pslg, options->elements, &how, error);
 }
@@ -113,7 +114,7 @@ enum tri_status tri_generate(struct tri_mesh *mesh, const struct tri_pslg *pslg,
 {
     *mesh = (struct tri_mesh){0};
     *report = (struct tri_report){0};
-    enum tri_status status = options->elements ? rebuild(mesh, pslg, options, error)
+    enum tri_status status = options->elements ? rebuild(mesh, pslg, options, report, error)
                                                : make(mesh, pslg, options, report, error);
     if (status)
         return status;

@@ -37,8 +37,6 @@ static uint64_t hilbert_of(uint32_t x, uint32_t y, int bits)
     return key;
 }
 
-uint64_t tri_hilbert(uint32_t x, uint32_t y) { return hilbert_of(x, y, BITS); }
-
 /* Four levels in one step: the same with four bits of each and ranks of 8 bits. Made where many points share the cost
  * of it. */
 enum { MANY = 1024 };

@@ -6,9 +6,6 @@
 #include "triangle/executor.h"
 #include "triangle/mesh.h"
 
-/* Position of cell (x, y), 0 <= x, y < 2^18, on the curve through the 2^18 x 2^18 cells. */
-uint64_t tri_hilbert(uint32_t x, uint32_t y);
-
 /* Sorts the ids order[n] of points by position on the curve over the bounding box of those points; points of one cell
  * by their positions on a curve over their own box, or, if they are a few, by coordinates; equal points by id, so that
  * duplicates are neighbours. But for the ids of equal points the result depends on the points alone, not on the order

@@ -78,15 +78,18 @@ struct tri_region {
     double max_area; /* <= 0: none */
 };
 
-/* Where the arrays are that grow with refinement, if not in memory from malloc. reserve: the array has at least so many
- * bytes afterwards, what is in it stays; NULL: there is no room. An array starts at a page. fill: its first bytes
- * become these, of which no more than a little is in memory then; false: there is no room. extra: so many bytes for
- * what is larger than memory when the mesh is, until they are freed. */
+/* The arrays that grow with refinement. */
 enum tri_array { TRI_XY, TRI_ON, TRI_MARKERS, TRI_FEATURE, TRI_ATTRIBUTES, TRI_TRIANGLES, TRI_SUBS, TRI_ARRAYS };
 
+/* Where these arrays are, if not in memory from malloc. */
 struct tri_storage {
+    /* Gives the array room for at least so many bytes, and keeps what is in it. Returns where it begins, at a page;
+     * NULL: there is no room. */
     void *(*reserve)(void *user, enum tri_array array, size_t bytes);
+    /* Copies so many bytes to the beginning of the array, of which no more than a little is in memory at a time. False:
+     * there is no room. */
     bool (*fill)(void *user, enum tri_array array, const void *from, size_t bytes);
+    /* Returns so many bytes for a work array that grows with the mesh, until extra_free; NULL: there is no room. */
     void *(*extra)(void *user, size_t bytes);
     void (*extra_free)(void *user, void *extra);
     void *user;
@@ -94,10 +97,11 @@ struct tri_storage {
 
 struct tri_mesh;
 
-/* Who watches over the memory that these arrays take. allows: may they take so many bytes? Else they leave, to a
- * storage (tri_mesh_move); or it is an error. */
+/* A bound on the memory that these arrays take. */
 struct tri_bound {
+    /* Asked before they grow: may they take so many bytes? */
     bool (*allows)(void *user, const struct tri_mesh *mesh, size_t bytes);
+    /* Called if not: moves them to a storage (tri_mesh_move), or returns the error of the call that wanted more. */
     enum tri_status (*leave)(void *user, struct tri_mesh *mesh, struct tri_error *error);
     void *user;
 };

@@ -540,6 +540,19 @@ static enum tri_status build(struct matcher *m)
     return status ? status : tri_refine_prepare(mesh, m->options->executor, m->error);
 }
 
+static void tell_edges(const struct matcher *m)
+{
+    int32_t loose = 0;
+    for (int32_t k = 0; k < m->pslg->n_segments; k++) {
+        const bool is_edge = k < m->n_segments && (m->edge_of[k] != TRI_NONE || !names_edge(m, k));
+        loose += k < m->n_segments && !is_edge;
+        if (m->options->is_edge)
+            m->options->is_edge[k] = is_edge;
+    }
+    if (m->options->loose)
+        *m->options->loose = loose;
+}
+
 enum tri_status tri_reconstruct(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_elements *elements,
                                 const struct tri_reconstruct_options *options, struct tri_error *error)
 {
@@ -551,8 +564,8 @@ enum tri_status tri_reconstruct(struct tri_mesh *mesh, const struct tri_pslg *ps
     status = status ? status : tri_mesh_init(mesh, error);
     mesh->stop = options->stop;
     status = status ? status : build(&m);
-    for (int32_t k = 0; !status && options->is_edge && k < pslg->n_segments; k++)
-        options->is_edge[k] = k < m.n_segments && (m.edge_of[k] != TRI_NONE || !names_edge(&m, k));
+    if (!status)
+        tell_edges(&m);
     free(m.edge_of);
     if (status)
         tri_mesh_free(mesh);

@@ -18,6 +18,7 @@ struct tri_reconstruct_options {
     int32_t base;      /* of the numbers in errors: of the first triangle and the first vertex */
     bool *is_edge;     /* [n_segments] receives whether the segment is an edge of the mesh, or nothing that
                           could be one; NULL: not asked for */
+    int32_t *loose;    /* receives how many are not, with use_segments; NULL: not asked for */
 };
 
 /* Makes *mesh of the points of the PSLG and these triangles, ready for tri_refine.

@@ -72,14 +72,6 @@ void tri_edge_list_free(struct tri_edge_list *list)
     *list = (struct tri_edge_list){0};
 }
 
-void tri_middle_nodes(const struct tri_mesh *mesh, const struct tri_edge_list *edges, tri_triangle_id t,
-                      int32_t nodes[3])
-{
-    assert(edges->number);
-    for (int e = 0; e < 3; e++)
-        nodes[e] = mesh->n_vertices + edges->number[3 * (size_t)t + (size_t)e];
-}
-
 double tri_blend_attribute(const struct tri_mesh *mesh, const struct tri_blend *blend, int32_t attribute)
 {
     double corner[3];

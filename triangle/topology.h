@@ -41,11 +41,6 @@ enum tri_status tri_edge_list_make(struct tri_edge_list *list, const struct tri_
                                    struct tri_error *error);
 void tri_edge_list_free(struct tri_edge_list *list);
 
-/* Second-order triangles: the node amid edge i is node n_vertices + i. Those opposite the corners of t, in their
- * order. */
-void tri_middle_nodes(const struct tri_mesh *mesh, const struct tri_edge_list *edges, tri_triangle_id t,
-                      int32_t nodes[3]);
-
 /* A place, and how attributes are interpolated there: that of corner 0, plus weight[k - 1] times the way to that of
  * corner k. The weights may lie outside 0 .. 1: extrapolation. */
 struct tri_blend {

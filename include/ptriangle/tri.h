@@ -225,7 +225,7 @@ int64_t tri_mesh_count(const struct tri_mesh *mesh, enum tri_count what);
 
 enum tri_reason { /* why a triangle does not keep the bounds */
     TRI_REASON_INPUT_ANGLE, /* at, or across from, a small angle between segments */
-    TRI_REASON_CHANNEL,     /* between two segments so near to each other that filling the space would cost too much */
+    TRI_REASON_NARROW_GAP,  /* between two segments so near to each other that filling the space would cost too much */
     TRI_REASON_PROTECTED,   /* settings.protect */
     TRI_REASON_LIMIT,       /* settings.most_new_points, or points for angles would have run away */
     TRI_REASON_PRECISION,   /* nearer to each other than coordinates can resolve */

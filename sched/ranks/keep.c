@@ -6,6 +6,7 @@
 
 #include "sched/ranks/pieces.h"
 #include "sched/room.h"
+#include "sched/sweep/checkpoint.h"
 #include "triangle/clock.h"
 
 static const uint64_t STATE = UINT64_C(0x3174617473746972); /* a version as well */

@@ -417,7 +417,7 @@ static enum tri_status add_up(struct par_ranks *r, enum tri_status status, struc
     report->total = r->before;
     par_add_done(r, sum);
     report->deferred += sum[3];
-    report->total.gated = report->total.fenced = 0;
+    par_forget_deferred(report);
     return TRI_OK;
 }
 

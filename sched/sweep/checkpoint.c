@@ -1,6 +1,8 @@
 /* Files are those of the machine that wrote them: arrays as they lie in memory. */
 #include "sched/sweep/checkpoint.h"
 
+#include <assert.h>
+#include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -12,7 +14,7 @@
 
 #include "sched/sweep/spool.h"
 
-static const uint64_t MANIFEST = UINT64_C(0x326863697274706b); /* a version, too */
+static const uint64_t MANIFEST = UINT64_C(0x336863697274706b); /* a version, too */
 
 static const char *const state_name[2] = {"state-0", "state-1"};
 static const char piece_prefix[] = "piece-";
@@ -90,6 +92,61 @@ static enum tri_status write_manifest(struct par_checkpoint *c, struct par_manif
     return TRI_OK;
 }
 
+/* The same run's, without a state. */
+static struct par_manifest manifest_of_none(const struct par_manifest *m, int64_t kind)
+{
+    return (struct par_manifest){.of = m->of, .run = m->run, .kind = kind, .made_directory = m->made_directory};
+}
+
+/* --- whose files they are */
+
+/* "piece-0-12" */
+static bool is_piece(const char *name)
+{
+    const char *rest = name + sizeof piece_prefix - 1;
+    if (strncmp(name, piece_prefix, sizeof piece_prefix - 1) != 0 || (rest[0] != '0' && rest[0] != '1') ||
+        rest[1] != '-' || !isdigit((unsigned char)rest[2]))
+        return false;
+    rest += 2;
+    return rest[strspn(rest, "0123456789")] == 0;
+}
+
+/* A new manifest that has not got its name, or has been begun. */
+static bool is_fresh_manifest(const char *directory)
+{
+    struct par_manifest m;
+    int file = open_in(directory, fresh_name, O_RDONLY);
+    off_t length = file >= 0 ? lseek(file, 0, SEEK_END) : -1;
+    bool is = length == 0 || (length == sizeof m && par_read_at(file, &m, sizeof m, 0) && is_manifest(&m));
+    if (file >= 0)
+        close(file);
+    return is;
+}
+
+/* Would a file of that name, in a directory without a manifest, be written over or removed, though no run has made it?
+ * Whatever runs make comes after the first manifest, and goes before the last one. */
+static bool is_foreign(const char *directory, const char *name)
+{
+    if (strcmp(name, fresh_name) == 0)
+        return !is_fresh_manifest(directory);
+    return strcmp(name, tiles_name) == 0 || strcmp(name, state_name[0]) == 0 || strcmp(name, state_name[1]) == 0 ||
+           is_piece(name);
+}
+
+static enum tri_status check_names(const char *path, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    DIR *directory = opendir(path);
+    if (!directory)
+        return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "cannot be used: %s", strerror(errno));
+    for (const struct dirent *entry; !status && (entry = readdir(directory));)
+        if (is_foreign(path, entry->d_name))
+            status = tri_fail(error, TRI_BAD_INPUT, path, 0,
+                              "holds a file %s, but no checkpoint: choose another folder", entry->d_name);
+    closedir(directory);
+    return status;
+}
+
 /* --- opening and closing */
 
 bool par_checkpoint_is_there(const char *directory)
@@ -112,31 +169,35 @@ static enum tri_status check_run(const struct par_checkpoint *c, bool resume, ui
     struct par_manifest m;
     if (!resume && par_checkpoint_is_there(c->directory))
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "holds the checkpoint of a run already");
-    enum tri_status status = resume ? read_manifest(&m, c->directory, error) : TRI_OK;
+    enum tri_status status = resume ? read_manifest(&m, c->directory, error) : check_names(c->directory, error);
     if (!status && resume && m.of != of)
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "holds a checkpoint of another version of the program");
     return status;
 }
 
+/* The lock, and then, of a run that goes on, what no other process changes any more. */
+static enum tri_status take(struct par_checkpoint *c, bool resume, struct tri_error *error)
+{
+    if (take_directory(c))
+        return resume ? read_manifest(&c->manifest, c->directory, error) : TRI_OK;
+    if (c->lock >= 0)
+        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "another process works on this checkpoint");
+    return cannot_write(c->directory, tiles_name, error);
+}
+
 enum tri_status par_checkpoint_open(struct par_checkpoint *c, const char *directory, bool resume, uint64_t of,
                                     struct tri_error *error)
 {
-    *c = (struct par_checkpoint){.directory = directory, .lock = -1};
+    *c = par_checkpoint_closed(directory);
     if (strlen(directory) > PAR_CHECKPOINT_PATH - 32)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "the name of the directory for checkpoints is too long");
-    if (!resume && mkdir(directory, 0777) != 0 && errno != EEXIST)
+    bool made = !resume && mkdir(directory, 0777) == 0;
+    if (!resume && !made && errno != EEXIST)
         return tri_fail(error, TRI_CANNOT_WRITE, directory, 0, "cannot be made: %s", strerror(errno));
     enum tri_status status = check_run(c, resume, of, error);
-    if (status)
-        return status;
-    if (!take_directory(c)) {
-        bool held = c->lock >= 0;
-        status = held ? tri_fail(error, TRI_BAD_INPUT, directory, 0, "another process works on this checkpoint")
-                      : cannot_write(directory, tiles_name, error);
-    }
-    status = status || !resume ? status : read_manifest(&c->manifest, directory, error);
     if (!status && !resume)
-        status = write_manifest(c, (struct par_manifest){.of = of}, error);
+        status = write_manifest(c, (struct par_manifest){.of = of, .made_directory = made}, error);
+    status = status ? status : take(c, resume, error);
     path_of(c->tiles_path, directory, tiles_name);
     c->spool = (struct par_spool){.file = c->lock, .path = c->tiles_path, .length = c->manifest.tiles_bytes};
     if (status)
@@ -160,7 +221,7 @@ static void remove_pieces(const char *path)
     DIR *directory = opendir(path);
     char piece[PAR_CHECKPOINT_PATH];
     for (const struct dirent *entry; directory && (entry = readdir(directory));)
-        if (strncmp(entry->d_name, piece_prefix, sizeof piece_prefix - 1) == 0 && strlen(entry->d_name) < 32) {
+        if (is_piece(entry->d_name)) {
             path_of(piece, path, entry->d_name);
             unlink(piece);
         }
@@ -168,21 +229,36 @@ static void remove_pieces(const char *path)
         closedir(directory);
 }
 
+static void remove_in(const char *directory, const char *name)
+{
+    char path[PAR_CHECKPOINT_PATH];
+    path_of(path, directory, name);
+    unlink(path);
+}
+
+/* The manifest says of all the others that they are a run's: it goes last, and names no state as soon as that goes. */
+static void remove_all(struct par_checkpoint *c)
+{
+    const struct par_manifest m = c->manifest;
+    (void)write_manifest(c, manifest_of_none(&m, m.kind), NULL);
+    remove_pieces(c->directory);
+    remove_in(c->directory, state_name[0]);
+    remove_in(c->directory, state_name[1]);
+    remove_in(c->directory, tiles_name);
+    remove_in(c->directory, fresh_name);
+    remove_in(c->directory, manifest_name);
+    if (m.made_directory)
+        rmdir(c->directory);
+}
+
 void par_checkpoint_close(struct par_checkpoint *c, bool remove)
 {
-    const char *const names[] = {manifest_name, fresh_name, state_name[0], state_name[1], tiles_name};
-    for (size_t i = 0; remove && i < sizeof names / sizeof *names; i++) { /* the manifest first: then no run is left */
-        char path[PAR_CHECKPOINT_PATH];
-        path_of(path, c->directory, names[i]);
-        unlink(path);
-    }
-    if (remove) {
-        remove_pieces(c->directory);
-        rmdir(c->directory);
-    }
+    assert(!remove || c->lock >= 0);
+    if (remove)
+        remove_all(c);
     if (c->lock >= 0)
         close(c->lock);
-    c->lock = -1;
+    c->lock = c->spool.file = -1;
 }
 
 /* --- what it is of */
@@ -193,6 +269,7 @@ enum tri_status par_checkpoint_take(struct par_checkpoint *c, uint64_t run, stru
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
                         "is the checkpoint of another run: of another input, or with other switches");
     c->manifest.run = run;
+    assert(c->lock >= 0);
     if (ftruncate(c->spool.file, (off_t)c->spool.length) != 0)
         return cannot_write(c->directory, tiles_name, error);
     return TRI_OK;
@@ -200,8 +277,7 @@ enum tri_status par_checkpoint_take(struct par_checkpoint *c, uint64_t run, stru
 
 enum tri_status par_checkpoint_forget(struct par_checkpoint *c, enum par_state_kind kind, struct tri_error *error)
 {
-    const struct par_manifest none = {.of = c->manifest.of, .run = c->manifest.run, .kind = kind};
-    enum tri_status status = write_manifest(c, none, error);
+    enum tri_status status = write_manifest(c, manifest_of_none(&c->manifest, kind), error);
     if (status)
         return status;
     c->spool.length = 0;

@@ -7,7 +7,11 @@
  *
  * INVARIANT: whenever the process dies, the manifest, if there is one, describes a state and a beginning of the tiles
  * that are whole on the disk. For a state is written into the file that the manifest does not name, tiles and state are
- * synced, and then a new manifest takes the name of the old one. */
+ * synced, and then a new manifest takes the name of the old one.
+ *
+ * WHOSE FILES: the directory may hold other files. A manifest is made before any of the files above, and removed after
+ * them: with one, files of these names are a run's; where there are some without one they are somebody else's, and the
+ * directory is refused. */
 #ifndef SCHED_SWEEP_CHECKPOINT_H
 #define SCHED_SWEEP_CHECKPOINT_H
 
@@ -32,6 +36,7 @@ struct par_manifest {
     uint64_t state_hash;
     int64_t tiles_bytes;
     int64_t triangles;     /* so far */
+    int64_t made_directory; /* by the run: it goes with it */
 };
 
 struct par_checkpoint {
@@ -47,9 +52,16 @@ struct par_checkpoint {
     const struct tri_stop *stop; /* asked between steps alone */
 };
 
+/* One that is not open. */
+static inline struct par_checkpoint par_checkpoint_closed(const char *directory)
+{
+    return (struct par_checkpoint){.directory = directory, .lock = -1, .spool = {.file = -1}};
+}
+
 /* Makes the directory unless it is there, and takes it: for a new run, or, resume, for one that goes on with what is in
- * it. `of`: a hash of whatever else must be the same then. TRI_BAD_INPUT: there is a run in it already, or, resume,
- * there is none, it is another program's, or damaged; another process works on it. TRI_CANNOT_WRITE. */
+ * it. `of`: a hash of whatever else must be the same then. TRI_BAD_INPUT: there is a run in it already, or files
+ * that are named as a run's are, or, resume, there is none, it is another program's, or damaged; another process works
+ * on it. Then nothing in it has changed. TRI_CANNOT_WRITE. */
 enum tri_status par_checkpoint_open(struct par_checkpoint *checkpoint, const char *directory, bool resume, uint64_t of,
                                     struct tri_error *error);
 
@@ -71,7 +83,8 @@ static inline bool par_checkpoint_has_ranks(const struct par_checkpoint *c)
     return par_checkpoint_has_state(c) && c->manifest.kind == PAR_RANKS_STATE;
 }
 
-/* Frees what it holds; with `remove` also the files, and the directory if nothing else is in it. */
+/* Frees what it holds; with `remove`, which wants an open one, also the run's files, and the directory if the run has
+ * made it and nothing else is in it. */
 void par_checkpoint_close(struct par_checkpoint *checkpoint, bool remove);
 
 /* --- for who writes states */

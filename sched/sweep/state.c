@@ -289,6 +289,21 @@ static void set_counts(const struct head *h, struct par_state *state, struct par
     state->gone = h->tiles_triangles;
 }
 
+#ifndef NDEBUG
+/* Do the lists of what has been read name triangles that are there, by keys that ascend? Links are not looked at: free
+ * triangles are not marked yet. */
+static bool is_state_sound(const struct par_state *state)
+{
+    const struct par_worklist *list = &state->worklist;
+    bool sound = state->mesh->n_vertices >= state->n_kept && (state->key.n == 0 || state->key.n == list->n);
+    for (int32_t i = 0; sound && i < list->n; i++)
+        sound = list->item[i] >= 0 && list->item[i] < state->mesh->n_triangles;
+    for (int32_t i = 1; sound && i < state->key.n; i++)
+        sound = state->key.item[i - 1] < state->key.item[i];
+    return sound;
+}
+#endif
+
 /* Nothing that counts changes before all has been read. */
 static enum tri_status get(struct par_state_file *f, void *user, struct tri_error *error)
 {
@@ -309,6 +324,7 @@ static enum tri_status get(struct par_state_file *f, void *user, struct tri_erro
     if (f->way == PAR_READ && !f->failed) {
         set_counts(&h, state, cargo->tiles);
         *cargo->odd = (int32_t)h.odd;
+        assert(is_state_sound(state));
     }
     return TRI_OK;
 }

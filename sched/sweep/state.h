@@ -38,7 +38,8 @@ void par_state_end(struct par_checkpoint *checkpoint, struct par_state *state);
 enum tri_status par_state_border(struct par_checkpoint *checkpoint, struct par_state *state, bool surely,
                                  struct tri_error *error);
 
-/* The step at hand may be long, and may be stopped: what the last state has counts then. Or not, or no more. */
+/* Is whoever asks for the end heard within the step at hand, too, and not only at the next border? A step that is
+ * stopped is lost: the run goes on from the last state. */
 void par_state_may_stop(struct par_checkpoint *checkpoint, struct par_state *state, bool may);
 
 /* --- a sweep */

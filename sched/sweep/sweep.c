@@ -4,6 +4,7 @@
 #include <assert.h>
 
 #include "sched/sweep/ahead.h"
+#include "sched/sweep/park.h"
 #include "sched/sweep/remain.h"
 #include "sched/sweep/state.h"
 #include "triangle/clock.h"
@@ -127,7 +128,7 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
     *done = !status && !left;
     state->report->rounds++;
     state->report->deferred += state->report->total.fenced;
-    state->report->total.gated = state->report->total.fenced = 0; /* all of them have had their turn */
+    par_forget_deferred(state->report);
     par_tiles_free(&tiles);
     return status;
 }

@@ -27,7 +27,7 @@ struct par_tiles {
     const struct tri_pslg *figure; /* its points are handed out as they came, bit by bit; NULL: the mesh's are */
     int32_t n_kept;               /* vertices that there were before refinement */
     bool region_column;           /* the attribute of a triangle's region is handed out, unless the mesh has columns */
-    bool kept_elsewhere;          /* somebody else hands these out */
+    bool kept_elsewhere;          /* the vertices that keep their numbers are handed out by another rank */
     int32_t n_ranks, rank;        /* see struct tri_stream; 0: one */
     const int64_t *first[3];
     int64_t *number;              /* [capacity] of each vertex; -1: none yet */
@@ -40,12 +40,7 @@ struct par_tiles {
     struct par_tile_job *job;     /* [n_jobs] tiles on their way */
 };
 
-/* Triangles to expect, to the order: the same, however the mesh is carried through. */
-double par_tiles_expected(const struct par_tiles *tiles);
-
-/* Tells the sink what is to come, about so many triangles, and hands out the vertices that there were before: the
- * caller's points by the caller's numbers. TRI_NO_MEMORY, or what the sink says. */
-enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct tri_error *error);
+/* --- columns (tiles.c) */
 
 /* Numbers, and hands out, the tiles of an odd column. Every triangle whose corners lie in it and before it must be
  * final, and columns before it have had their turn. What has been handed out is gone from the mesh, its ids are added
@@ -75,6 +70,17 @@ enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct
 enum tri_status par_tiles_hand_out(struct par_column *numbered, struct par_room *spare, struct tri_error *error);
 void par_column_free(struct par_column *column);
 
+void par_tiles_free(struct par_tiles *tiles);
+
+/* --- before and after them, and a mesh in memory as a whole (stream.c) */
+
+/* Triangles to expect, to the order: the same, however the mesh is carried through. */
+double par_tiles_expected(const struct par_tiles *tiles);
+
+/* Tells the sink what is to come, about so many triangles, and hands out the vertices that there were before: the
+ * caller's points by the caller's numbers. TRI_NO_MEMORY, or what the sink says. */
+enum tri_status par_tiles_begin(struct par_tiles *tiles, double estimate, struct tri_error *error);
+
 /* Tells the sink that all columns have had their turn. */
 enum tri_status par_tiles_end(struct par_tiles *tiles, struct tri_error *error);
 
@@ -89,7 +95,5 @@ static inline size_t par_tiles_whole_bytes(const struct par_tiles *tiles)
     const size_t n = (size_t)tiles->mesh->n_triangles, most = (size_t)1 << 16;
     return 200 * (n < most ? n : most);
 }
-
-void par_tiles_free(struct par_tiles *tiles);
 
 #endif

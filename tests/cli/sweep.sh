@@ -93,6 +93,25 @@ program 0 -pq30a0.01 square.poly --output x.h5 --scratch nowhere
 wrote x.h5 x.xdmf
 rm -f x.h5 x.xdmf
 
+# --- a folder for checkpoints that holds other files
+fresh letter.poly
+mkdir x
+cp letter.poly x/piece-3.poly
+echo precious >x/tiles
+echo p >x/piece-notes.txt
+program 1 -Qpq30a0.01 x/piece-3.poly --output o --checkpoint x
+complains '^x: holds a file tiles, but no checkpoint: choose another folder$'
+check "all files are there" test "$(cat x/tiles x/piece-notes.txt | tr '\n' ' ')" = "precious p "
+rm x/tiles
+program 0 -Qpq30a0.01 x/piece-3.poly --output o --checkpoint x
+check "they stay" test "$(ls x | tr '\n' ' ')" = "piece-3.poly piece-notes.txt "
+rm x/*
+program 1 -Qpq30a0.01 x/absent.poly --checkpoint x
+check "the folder stays" test -d x
+program 1 -Qpq30a0.01 absent.poly --checkpoint y
+check "one of its own does not" test ! -e y
+rm -rf x o.*
+
 # --- a checkpoint after each column; stopped, killed, and on again
 fresh letter.poly
 program 0 -Qpq30a0.002 letter --output whole.h5

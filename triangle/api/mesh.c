@@ -171,7 +171,7 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
 }
 
 static enum tri_status generate(struct tri_api_mesh *m, const struct tri_api_figure *figure,
-                                const struct tri_settings *s, const struct tri_api_way *way, bool *is_edge,
+                                const struct tri_settings *s, const struct tri_api_way *way,
                                 struct tri_error *error)
 {
     const struct tri_pslg *pslg = &figure->pslg;
@@ -187,7 +187,6 @@ static enum tri_status generate(struct tri_api_mesh *m, const struct tri_api_fig
                                                                      Delaunay then */
     how.refine_call = refine;
     how.refine_user = (void *)&refiner; /* which only reads it */
-    how.is_edge = is_edge;
     how.executor = way->executor;
     how.stop = s->stop ? &stop : NULL;
     return tri_generate(&m->mesh, pslg, &how, &m->report, error);
@@ -196,15 +195,8 @@ static enum tri_status generate(struct tri_api_mesh *m, const struct tri_api_fig
 static enum tri_status make(struct tri_api_mesh *m, const struct tri_api_figure *figure, const struct tri_settings *s,
                             const struct tri_api_way *way, struct tri_error *error)
 {
-    size_t n = figure->elements.n > 0 ? (size_t)figure->pslg.n_segments : 0;
-    bool *is_edge = malloc(n + 1);
-    if (!is_edge)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %zu segments", n);
     note_sizes(m, figure);
-    enum tri_status status = generate(m, figure, s, way, n > 0 ? is_edge : NULL, error);
-    for (size_t k = 0; m->mesh.regions && k < n; k++)
-        m->loose += !is_edge[k];
-    free(is_edge);
+    enum tri_status status = generate(m, figure, s, way, error);
     if (!m->mesh.regions) /* empty */
         return status;
     enum tri_status settled = settle(m, status ? NULL : error);
@@ -236,17 +228,12 @@ enum tri_status tri_api_mesh_new(struct tri_mesh **mesh, const struct tri_figure
 static enum tri_status stream(struct tri_api_figure *figure, const struct tri_settings *settings,
                               const struct tri_api_way *given, struct tri_error *error)
 {
-    size_t n = figure->elements.n > 0 ? (size_t)figure->pslg.n_segments : 0;
     struct tri_api_mesh m = {0};
     struct tri_api_way way = *given;
-    bool *is_edge = malloc(n + 1);
-    if (!is_edge)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %zu segments", n);
     note_sizes(&m, figure);
     way.figure = &figure->pslg;
     way.has_attributes = m.has_attributes;
-    enum tri_status status = generate(&m, figure, settings, &way, n > 0 ? is_edge : NULL, error);
-    free(is_edge);
+    enum tri_status status = generate(&m, figure, settings, &way, error);
     tri_mesh_free(&m.mesh);
     return status;
 }
@@ -319,7 +306,7 @@ int64_t tri_mesh_count(const struct tri_mesh *mesh, enum tri_count what)
     switch (what) {
     case TRI_COUNT_DUPLICATES: return report->duplicates;
     case TRI_COUNT_CROSSINGS: return report->constrain.crossings;
-    case TRI_COUNT_SKIPPED_SEGMENTS: return report->constrain.skipped + m->loose;
+    case TRI_COUNT_SKIPPED_SEGMENTS: return report->constrain.skipped + report->loose;
     case TRI_COUNT_NEW_POINTS: return report->quality.inserted_free;
     case TRI_COUNT_NEW_POINTS_ON_SEGMENTS: return report->quality.inserted_on_segments;
     case TRI_COUNT_GATED: return report->quality.gated;
@@ -329,7 +316,7 @@ int64_t tri_mesh_count(const struct tri_mesh *mesh, enum tri_count what)
 }
 
 _Static_assert((int)TRI_REASONS == (int)TRI_EXCUSES && (int)TRI_REASON_INPUT_ANGLE == (int)TRI_EXCUSE_INPUT_ANGLE &&
-                   (int)TRI_REASON_CHANNEL == (int)TRI_EXCUSE_NARROW_GAP &&
+                   (int)TRI_REASON_NARROW_GAP == (int)TRI_EXCUSE_NARROW_GAP &&
                    (int)TRI_REASON_PROTECTED == (int)TRI_EXCUSE_PROTECTED &&
                    (int)TRI_REASON_LIMIT == (int)TRI_EXCUSE_LIMIT &&
                    (int)TRI_REASON_PRECISION == (int)TRI_EXCUSE_PRECISION &&

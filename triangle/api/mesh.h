@@ -8,7 +8,6 @@
 struct tri_api_mesh {
     struct tri_mesh mesh; /* first: what callers point to. No free numbers, points in the order of the caller */
     struct tri_report report;
-    int64_t loose;        /* segments of a figure with triangles that are no edges */
     bool has_areas;       /* bounds of sizes came with the figure .. */
     bool has_attributes;  /* .. and attributes of triangles or regions did */
     double *places;       /* [n_vertices][2] in the caller's coordinates; NULL: they are mesh.xy */

@@ -183,6 +183,10 @@ void tri_check_orientation(struct checker *c);      /* of the part */
 enum tri_status tri_check_pair(struct checker *c);
 void tri_check_note_vertices(struct checker *c); /* what pairing has seen of them, into c->state */
 enum tri_status tri_check_keep_open(struct checker *c); /* puts half-edges without other side into the store */
+struct check_open tri_check_open(const struct checker *c, int32_t h); /* half-edge h of the part, in full */
+/* Are the neighbours those that are given: in the part, or of a half-edge matched across parts? */
+void tri_check_neighbors(struct checker *c);
+void tri_check_matched_neighbor(struct checker *c, const struct check_open *a, const struct check_open *b);
 void tri_check_pairs(struct checker *c); /* neighbours given, Delaunay, circles of segments, attributes: in the part */
 /* The same of two half-edges that have been matched across parts, or of one that has no other side (b is NULL). */
 void tri_check_matched(struct checker *c, const struct check_open *a, const struct check_open *b);

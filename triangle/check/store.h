@@ -15,14 +15,7 @@ enum tri_status tri_check_store_add(struct checker *c, struct check_open e);
 enum tri_status tri_check_store_drain(struct checker *c, enum tri_status (*take)(struct checker *c,
                                                                                  struct check_open *at, int64_t n));
 
-/* The half-edge h of the part, in full. */
-struct check_open tri_check_open(const struct checker *c, int32_t h);
-
 /* At the end of the array. */
 enum tri_status tri_check_append(struct check_opens *opens, const struct check_open *e);
-
-/* edges.c, for delaunay.c: neighbours given, in the part, or of a half-edge matched across parts */
-void tri_check_neighbors(struct checker *c);
-void tri_check_matched_neighbor(struct checker *c, const struct check_open *a, const struct check_open *b);
 
 #endif

@@ -2,7 +2,6 @@
 #include <stdio.h>
 
 #include "triangle/dropin/io.h"
-#include "triangle/quality.h"
 
 /* The client's test for u, if it has one: found by the linker. */
 extern __attribute__((weak)) int triunsuitable(REAL *origin, REAL *destination, REAL *apex, REAL area);
@@ -78,10 +77,8 @@ static void warn_of_switch(void *user, const char *text, bool misread)
 static void warn_of_input(const struct io_run *run)
 {
     const struct tri_report *report = &run->report;
-    int loose = 0;
-    for (int32_t k = 0; run->input.is_edge && k < run->input.pslg.n_segments; k++)
-        loose += !run->input.is_edge[k];
-    warn_number(run, loose, "segments are no edges of the mesh: they are passed on, but the mesh does not keep them");
+    warn_number(run, report->loose,
+                "segments are no edges of the mesh: they are passed on, but the mesh does not keep them");
     warn_number(run, report->duplicates, "points lie where a point of lower number lies, and are not used");
     warn_number(run, report->constrain.skipped, "segments name no point, or the same point twice, and are skipped");
     warn_number(run, report->holes_between, "hole points lie on segments, and empty nothing");
