@@ -18,7 +18,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/flip.c
     triangle/overlap.c
     triangle/constrain.c
-    triangle/sweep_order.c
+    triangle/sweep_line.c
     triangle/locate.c
     triangle/carve.c
     triangle/chain.c

@@ -19,9 +19,9 @@ static enum tri_status no_memory(struct tri_error *error)
 
 bool par_ranges_reserve(struct par_ranges *ranges, int32_t need)
 {
-    int32_t capacity = ranges->capacity; /* both arrays grow alike */
-    return tri_grow(&ranges->below, &capacity, need, sizeof *ranges->below) &&
-           tri_grow(&ranges->item, &ranges->capacity, need, sizeof *ranges->item);
+    const struct tri_growing arrays[] = {{&ranges->below, sizeof *ranges->below},
+                                         {&ranges->item, sizeof *ranges->item}};
+    return tri_grow_together(arrays, 2, &ranges->capacity, need, 0);
 }
 
 /* How many items of a kind there are in a mesh, and how many there can be. */

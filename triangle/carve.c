@@ -85,7 +85,8 @@ static void put_off(struct dive *d, tri_triangle_id t)
 
 static void cross(struct dive *d, tri_halfedge code)
 {
-    int32_t link = *tri_link_at(d->mesh, code), other = tri_across(d->mesh, code);
+    tri_link link = *tri_link_at(d->mesh, code);
+    tri_halfedge other = tri_across(d->mesh, code);
     if (other == TRI_NONE)
         return;
     if (link < 0 && d->mesh->parents[d->mesh->sub[~link].parent].odd)

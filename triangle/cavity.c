@@ -21,15 +21,14 @@ void tri_cavity_free(struct tri_cavity *cavity)
     *cavity = (struct tri_cavity){0};
 }
 
+/* Edges, those that wait among them, beyond the triangles: two, and one that says where the last one ends. */
+enum { MORE_EDGES = 3 };
+
 static bool grow(struct tri_cavity *c)
 {
-    int32_t capacity = c->capacity ? 2 * c->capacity : 256;
-    size_t n = (size_t)capacity + 4;
-    if (!tri_resize(&c->tri, n, sizeof *c->tri) || !tri_resize(&c->edge, n, sizeof *c->edge) ||
-        !tri_resize(&c->wall, n, sizeof *c->wall) || !tri_resize(&c->pending, n, sizeof *c->pending))
-        return false;
-    c->capacity = capacity;
-    return true;
+    const struct tri_growing arrays[] = {{&c->tri, sizeof *c->tri}, {&c->edge, sizeof *c->edge},
+                                         {&c->wall, sizeof *c->wall}, {&c->pending, sizeof *c->pending}};
+    return tri_grow_together(arrays, 4, &c->capacity, c->capacity + 1, MORE_EDGES);
 }
 
 static bool owns(const struct tri_cavity *c, const struct tri_mesh *mesh, tri_triangle_id t)
@@ -72,7 +71,7 @@ static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh
         while (edge.link >= 0) {
             const struct tri_triangle *t = &tri[edge.link >> 2];
             int e = edge.link & 3;
-            int32_t apex = t->v[e], corners[3] = {a, apex, edge.end};
+            tri_vertex_id apex = t->v[e], corners[3] = {a, apex, edge.end};
             struct tri_relative rapex = tri_relative(&xy[apex], p);
             double left = tri_cross(ra, rapex), right = tri_cross(rapex, edge.rend);
             double det = ra.l * right + edge.rend.l * left - rapex.l * edge.area2;
@@ -337,7 +336,8 @@ tri_sub_id tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, tr
                                  int32_t n_left)
 {
     const struct tri_subsegment old = mesh->sub[s];
-    int32_t second = mesh->n_subs++, ends[2] = {0, n_left};
+    tri_sub_id second = mesh->n_subs++;
+    const int32_t ends[2] = {0, n_left};
     assert(mesh->n_subs <= mesh->sub_capacity && s >= 0 && s != second);
     assert(n_left >= 0 && n_left <= c->n_edges && (n_left == 0) == (old.side[0] == TRI_NONE));
     assert(c->n_edges == c->n_tri + (tri_is_boundary(&old) ? 1 : 2)); /* Euler: a disk on each side */
@@ -356,7 +356,7 @@ tri_sub_id tri_cavity_fill_split(struct tri_cavity *c, struct tri_mesh *mesh, tr
             continue;
         fill_chain(c, mesh, v, first, end);
         /* Seen from the left the chain runs from v[1] to v[0], from the right the other way. */
-        int32_t at_start = side == 0 ? second : s, at_end = side == 0 ? s : second;
+        tri_sub_id at_start = side == 0 ? second : s, at_end = side == 0 ? s : second;
         mesh->tri[c->edge[first].triangle].n[2] = ~at_start;
         mesh->sub[at_start].side[side] = tri_code(c->edge[first].triangle, 2);
         mesh->tri[c->edge[end - 1].triangle].n[1] = ~at_end;

@@ -21,12 +21,13 @@ enum { MANY = -2 };
 
 struct chains {
     struct tri_mesh *mesh;
-    int32_t *at; /* [n_vertices][2] the subsegments that end at each; TRI_NONE: none; first MANY: more than two */
+    tri_sub_id *at; /* [n_vertices][2] the subsegments that end at each; TRI_NONE: none; first MANY: more than two */
 };
 
 /* One of them: from a vertex to another, the subsegments at these. */
 struct chain {
-    int32_t first, last, from, to;
+    tri_sub_id first, last;
+    tri_vertex_id from, to;
 };
 
 static void list_ends(struct chains *c)
@@ -36,7 +37,7 @@ static void list_ends(struct chains *c)
         c->at[i] = TRI_NONE;
     for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2; k++) {
-            int32_t *at = &c->at[2 * (size_t)mesh->sub[s].v[k]];
+            tri_sub_id *at = &c->at[2 * (size_t)mesh->sub[s].v[k]];
             at[at[0] == TRI_NONE ? 0 : 1] = at[1] == TRI_NONE ? s : MANY;
         }
 }
@@ -56,7 +57,7 @@ static bool is_between(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_
 
 static bool is_joint(const struct chains *c, tri_vertex_id v)
 {
-    const int32_t *at = &c->at[2 * (size_t)v];
+    const tri_sub_id *at = &c->at[2 * (size_t)v];
     const struct tri_mesh *mesh = c->mesh;
     if (at[0] < 0 || at[1] < 0)
         return false;
@@ -68,7 +69,7 @@ static bool is_joint(const struct chains *c, tri_vertex_id v)
 /* The subsegment behind joint v for who comes by s. */
 static tri_sub_id beyond(const struct chains *c, tri_vertex_id v, tri_sub_id s)
 {
-    const int32_t *at = &c->at[2 * (size_t)v];
+    const tri_sub_id *at = &c->at[2 * (size_t)v];
     assert((at[0] == s) != (at[1] == s));
     return at[at[0] == s];
 }
@@ -88,7 +89,8 @@ static struct chain follow(const struct chains *c, tri_sub_id s, tri_vertex_id f
 
 static bool is_straight(const struct chains *c, const struct chain *chain)
 {
-    int32_t s = chain->first, v = other_end(c->mesh, s, chain->from);
+    tri_sub_id s = chain->first;
+    tri_vertex_id v = other_end(c->mesh, s, chain->from);
     for (; v != chain->to; v = other_end(c->mesh, s, v)) {
         if (!is_between(c->mesh, chain->from, chain->to, v))
             return false;
@@ -100,7 +102,8 @@ static bool is_straight(const struct chains *c, const struct chain *chain)
 /* All subsegments of a parent run its way. */
 static void turn(struct tri_subsegment *s)
 {
-    int32_t v = s->v[0], side = s->side[0];
+    tri_vertex_id v = s->v[0];
+    tri_halfedge side = s->side[0];
     s->v[0] = s->v[1];
     s->v[1] = v;
     s->side[0] = s->side[1];
@@ -110,7 +113,9 @@ static void turn(struct tri_subsegment *s)
 static void unite(const struct chains *c, const struct chain *chain)
 {
     struct tri_mesh *mesh = c->mesh;
-    int32_t s = chain->first, v = chain->from, parent = mesh->sub[s].parent;
+    tri_sub_id s = chain->first;
+    tri_vertex_id v = chain->from;
+    tri_parent_id parent = mesh->sub[s].parent;
     mesh->parents[parent].v[0] = chain->from;
     mesh->parents[parent].v[1] = chain->to;
     mesh->parents[parent].guard = mesh->xy[chain->from];
@@ -127,9 +132,9 @@ static void unite(const struct chains *c, const struct chain *chain)
 }
 
 /* Parents without a subsegment go. */
-static void number_parents(struct tri_mesh *mesh, int32_t *number)
+static void number_parents(struct tri_mesh *mesh, tri_parent_id *number)
 {
-    int32_t n = 0;
+    tri_parent_id n = 0;
     for (tri_parent_id p = 0; p < mesh->n_parents; p++)
         number[p] = TRI_NONE;
     for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
@@ -168,7 +173,7 @@ enum tri_status tri_unite_chains(struct tri_mesh *mesh, struct tri_error *error)
 {
     size_t n = 2 * (size_t)mesh->n_vertices;
     struct chains c = {mesh, malloc(n * sizeof *c.at + 1)};
-    int32_t *number = malloc((size_t)mesh->n_parents * sizeof *number + 1);
+    tri_parent_id *number = malloc((size_t)mesh->n_parents * sizeof *number + 1);
     if (c.at && number) {
         list_ends(&c);
         unite_all(&c);

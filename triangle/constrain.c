@@ -60,7 +60,7 @@ struct layer {
     struct tri_cavity cavity;
     struct tri_recovery recovery;
     struct tri_flips flips;
-    int32_t *corner; /* [corner_capacity] */
+    tri_triangle_id *corner; /* [corner_capacity] a triangle at each vertex */
     int32_t corner_capacity;
     struct tri_course *course; /* [course_capacity] of each subsegment */
     int32_t course_capacity;
@@ -122,7 +122,8 @@ static bool along_left(const struct tri_mesh *mesh, tri_triangle_id t, int k, st
 
 /* The search for the triangle at a vertex through which the ray to q leaves, a triangle a step. */
 struct rotation {
-    int32_t vertex, start, t;
+    tri_vertex_id vertex;
+    tri_triangle_id start, t;
     struct tri_point q;
     bool clockwise;
 };
@@ -185,7 +186,8 @@ static bool set_course(struct layer *l, tri_sub_id s, struct tri_course course)
 static bool mark_edge(struct layer *l, tri_triangle_id t, int e, struct tri_course course)
 {
     struct tri_mesh *mesh = l->mesh;
-    int32_t link = mesh->tri[t].n[e], from = mesh->tri[t].v[tri_next[e]], to = mesh->tri[t].v[tri_prev[e]];
+    tri_link link = mesh->tri[t].n[e];
+    tri_vertex_id from = mesh->tri[t].v[tri_next[e]], to = mesh->tri[t].v[tri_prev[e]];
     if (link < 0) {
         assert(~link < mesh->n_subs);
         l->course[~link] = tri_course_both(l->course[~link], course);
@@ -275,12 +277,12 @@ static bool keep_corners(struct layer *l, tri_vertex_id v)
 static bool take_up(struct layer *l, tri_sub_id s)
 {
     struct tri_mesh *mesh = l->mesh;
-    int32_t left = mesh->sub[s].side[0], right = mesh->sub[s].side[1];
+    tri_halfedge left = mesh->sub[s].side[0], right = mesh->sub[s].side[1];
     assert(left != TRI_NONE && right != TRI_NONE);
     assert(*tri_link_at(mesh, left) == ~s && *tri_link_at(mesh, right) == ~s);
     *tri_link_at(mesh, left) = right;
     *tri_link_at(mesh, right) = left;
-    int32_t last = --mesh->n_subs;
+    tri_sub_id last = --mesh->n_subs;
     mesh->sub[s] = mesh->sub[last];
     l->course[s] = l->course[last];
     for (int side = 0; s != last && side < 2; side++)
@@ -314,11 +316,12 @@ static tri_sub_id sub_under(const struct tri_mesh *mesh, tri_triangle_id t, stru
 
 /* The triangle with *p in it, off the hull; rounding may have put *p on or beyond that: then it moves to a neighbouring
  * place. TRI_NONE where there is none. */
-static int32_t find_place(const struct layer *l, int32_t near, struct tri_point *p)
+static tri_triangle_id find_place(const struct layer *l, tri_vertex_id near, struct tri_point *p)
 {
     for (int i = 0; i < TRI_PLACES; i++) {
         struct tri_point q = tri_place_beside(*p, i);
-        int32_t t = locate(l->mesh, l->corner[near], q), s = t == TRI_NONE ? TRI_NONE : sub_under(l->mesh, t, q);
+        tri_triangle_id t = locate(l->mesh, l->corner[near], q);
+        tri_sub_id s = t == TRI_NONE ? TRI_NONE : sub_under(l->mesh, t, q);
         if (t != TRI_NONE && (s == TRI_NONE || !tri_is_boundary(&l->mesh->sub[s]))) {
             *p = q;
             return t;
@@ -440,7 +443,10 @@ static struct tri_point crossing_of(const struct layer *l, const struct tri_piec
 static enum tri_status cross(struct layer *l, const struct tri_piece *piece, tri_sub_id s)
 {
     assert(s >= 0 && s < l->mesh->n_subs && !tri_is_boundary(&l->mesh->sub[s])); /* no piece leaves the hull */
-    int32_t first = l->n_pieces, near = l->mesh->sub[s].v[0], on, t;
+    const int32_t first = l->n_pieces;
+    const tri_vertex_id near = l->mesh->sub[s].v[0];
+    tri_sub_id on;
+    tri_triangle_id t;
     if (!push_piece(l, piece->from, piece->to, piece->course) || !take_apart(l, s))
         return no_memory(l);
     struct tri_point p = crossing_of(l, &l->piece[first], &l->piece[first + 1]);
@@ -472,9 +478,9 @@ static enum tri_status cross(struct layer *l, const struct tri_piece *piece, tri
 
 /* What a piece meets first. */
 struct meeting {
-    int32_t end;    /* the vertex on it, or its own end; TRI_NONE where a subsegment is across it */
+    tri_vertex_id end; /* the vertex on it, or its own end; TRI_NONE where a subsegment is across it */
     tri_sub_id across; /* that subsegment, else TRI_NONE */
-    int32_t beside; /* the nearest to it of the vertices passed that are within rounding of it, or TRI_NONE */
+    tri_vertex_id beside; /* the nearest to it of the vertices passed that are within rounding of it, or TRI_NONE */
     double distance;
 };
 
@@ -507,7 +513,7 @@ static struct meeting look_ahead(const struct layer *l, const struct tri_piece *
     if (t == TRI_NONE)
         return met;
     int e = corner_of(&mesh->tri[t], piece->from);
-    int32_t right = mesh->tri[t].v[tri_next[e]], left = mesh->tri[t].v[tri_prev[e]];
+    tri_vertex_id right = mesh->tri[t].v[tri_next[e]], left = mesh->tri[t].v[tri_prev[e]];
     double at_right = tri_orient2d(pa, pb, mesh->xy[right]), at_left = tri_orient2d(pa, pb, mesh->xy[left]);
     if (at_right == 0 || at_left == 0) {
         met.end = at_right == 0 ? right : left;
@@ -523,7 +529,7 @@ static struct meeting look_ahead(const struct layer *l, const struct tri_piece *
         }
         t = tri_of(link);
         e = tri_edge(link);
-        int32_t o = mesh->tri[t].v[e];
+        tri_vertex_id o = mesh->tri[t].v[e];
         double side = o == piece->to ? 0 : tri_orient2d(pa, pb, mesh->xy[o]);
         if (side == 0) {
             met.end = o;
@@ -637,7 +643,7 @@ static int32_t list_segments(struct layer *l, struct tri_piece *piece)
     const int32_t *twin = l->mesh->twin, *markers = pslg->segment_markers;
     int32_t n = 0;
     for (int32_t k = 0; k < pslg->n_segments; k++) {
-        int32_t a = pslg->segments[2 * k], b = pslg->segments[2 * k + 1];
+        tri_vertex_id a = pslg->segments[2 * k], b = pslg->segments[2 * k + 1];
         bool valid = a >= 0 && a < pslg->n_points && b >= 0 && b < pslg->n_points;
         if (valid && twin) {
             a = twin[a];
@@ -654,7 +660,8 @@ static int32_t list_segments(struct layer *l, struct tri_piece *piece)
 static bool is_edge(void *context, const struct tri_piece *piece)
 {
     struct layer *l = context;
-    int32_t a = piece->from, b = piece->to, t = find_exit(l, &a, &b);
+    tri_vertex_id a = piece->from, b = piece->to;
+    tri_triangle_id t = find_exit(l, &a, &b);
     return t != TRI_NONE && (l->mesh->tri[t].v[0] == b || l->mesh->tri[t].v[1] == b || l->mesh->tri[t].v[2] == b);
 }
 

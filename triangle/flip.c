@@ -37,8 +37,9 @@ static tri_triangle_id flip(struct tri_flips *f, tri_triangle_id t, int e)
     int g = tri_edge(near->n[e]);
     struct tri_triangle *far = &mesh->tri[u];
     assert(near->n[e] >= 0 && far->n[g] == tri_code(t, e));
-    int32_t n = near->v[e], r = near->v[tri_next[e]], s = near->v[tri_prev[e]], o = far->v[g];
-    int32_t nr = near->n[tri_prev[e]], sn = near->n[tri_next[e]], ro = far->n[tri_next[g]], os = far->n[tri_prev[g]];
+    tri_vertex_id n = near->v[e], r = near->v[tri_next[e]], s = near->v[tri_prev[e]], o = far->v[g];
+    tri_link nr = near->n[tri_prev[e]], sn = near->n[tri_next[e]];
+    tri_link ro = far->n[tri_next[g]], os = far->n[tri_prev[g]];
     assert(far->v[tri_next[g]] == s && far->v[tri_prev[g]] == r && n != o);
     near->v[0] = n, near->v[1] = r, near->v[2] = o;
     near->n[0] = ro, near->n[1] = tri_code(u, 2), near->n[2] = nr;
@@ -80,7 +81,8 @@ bool tri_flip_legalise(struct tri_flips *f)
 {
     struct tri_mesh *mesh = f->mesh;
     while (f->n_touched > 0) {
-        int32_t code = f->touched[--f->n_touched], t = tri_of(code);
+        tri_halfedge code = f->touched[--f->n_touched];
+        tri_triangle_id t = tri_of(code);
         int e = tri_edge(code);
         if (mesh->tri[t].n[e] < 0 || !is_illegal(f, t, e) || !is_convex(mesh, t, e))
             continue;
@@ -97,7 +99,7 @@ bool tri_flip_legalise(struct tri_flips *f)
  * triangles which has the lower number. */
 struct suspicion {
     struct tri_flips *flips;
-    int32_t *suspect; /* [n_triangles] each share's behind one another, with gaps */
+    tri_triangle_id *suspect; /* [n_triangles] each share's behind one another, with gaps */
     int32_t n[TRI_MOST_SHARES];
 };
 
@@ -134,7 +136,7 @@ static enum tri_status flip_suspects(const struct suspicion *s, struct tri_error
     enum tri_status status = tri_stop_is_asked(f->mesh->stop) ? tri_fail_stopped(error) : TRI_OK;
     uint32_t step = 0;
     for (size_t share = 0; share < tri_shares(f->mesh->n_triangles); share++) {
-        const int32_t *suspect = s->suspect + tri_share(share, f->mesh->n_triangles).first;
+        const tri_triangle_id *suspect = s->suspect + tri_share(share, f->mesh->n_triangles).first;
         for (int32_t i = 0; !status && i < s->n[share]; i++)
             if (tri_stop_is_due(f->mesh->stop, &step))
                 status = tri_fail_stopped(error);

@@ -45,4 +45,27 @@ static inline bool tri_grow(void *array, int32_t *capacity, int32_t need, size_t
     return true;
 }
 
+/* An array among those that grow together: the address of the pointer, and the size of an item. */
+struct tri_growing {
+    void *array;
+    size_t item;
+};
+
+/* The same for n arrays that are filled side by side; each gets room for `over` more items besides. False: no memory,
+ * and *capacity is as before; no item is lost. */
+static inline bool tri_grow_together(const struct tri_growing *array, int n, int32_t *capacity, int32_t need,
+                                     int32_t over)
+{
+    if (need <= *capacity)
+        return true;
+    if (need > INT32_MAX / 2)
+        return false;
+    const int32_t wanted = need + need / 2 + 64;
+    for (int i = 0; i < n; i++)
+        if (!tri_resize(array[i].array, (size_t)wanted + (size_t)over, array[i].item))
+            return false;
+    *capacity = wanted;
+    return true;
+}
+
 #endif

@@ -9,12 +9,14 @@
 
 /* An edge of the cavity: the code of its triangle outside, and the corner at which it starts. */
 struct tri_inserter_edge {
-    int32_t outer, a;
+    tri_halfedge outer;
+    tri_vertex_id a;
 };
 
 /* An edge behind which the search has not looked yet; it starts where the last edge ended. */
 struct tri_inserter_pending {
-    int32_t link, end;
+    tri_link link;
+    tri_vertex_id end;
 };
 
 void tri_inserter_free(struct tri_inserter *b)
@@ -24,15 +26,14 @@ void tri_inserter_free(struct tri_inserter *b)
     free(b->pending);
 }
 
+/* A cavity has two edges more than triangles. */
+enum { MORE_EDGES = 2 };
+
 static bool grow(struct tri_inserter *b)
 {
-    int32_t capacity = b->capacity ? 2 * b->capacity : 256;
-    size_t n = (size_t)capacity + 4;
-    if (!tri_resize(&b->cavity, n, sizeof *b->cavity) || !tri_resize(&b->edge, n, sizeof *b->edge) ||
-        !tri_resize(&b->pending, n, sizeof *b->pending))
-        return false;
-    b->capacity = capacity;
-    return true;
+    const struct tri_growing arrays[] = {
+        {&b->cavity, sizeof *b->cavity}, {&b->edge, sizeof *b->edge}, {&b->pending, sizeof *b->pending}};
+    return tri_grow_together(arrays, 3, &b->capacity, b->capacity + 1, MORE_EDGES);
 }
 
 static inline bool holds(const struct tri_inserter *b, tri_vertex_id v)
@@ -52,7 +53,7 @@ void tri_insert_first(const struct tri_point *xy, struct tri_triangle *tri, tri_
 {
     bool left = tri_orient2d(xy[v[0]], xy[v[1]], xy[v[2]]) > 0;
     assert(tri_orient2d(xy[v[0]], xy[v[1]], xy[v[2]]) != 0);
-    const int32_t c[] = {v[left ? 0 : 1], v[left ? 1 : 0], v[2]};
+    const tri_vertex_id c[] = {v[left ? 0 : 1], v[left ? 1 : 0], v[2]};
     tri[triangle] = (struct tri_triangle){
         {c[0], c[1], c[2]}, {tri_code(triangle + 1, 0), tri_code(triangle + 2, 0), tri_code(triangle + 3, 0)}, 0, 0};
     for (int e = 0; e < 3; e++) {
@@ -151,11 +152,12 @@ static enum tri_insertion explore(struct tri_inserter *b, struct tri_point q, tr
 /* Replaces the cavity by the fan of v. */
 static void fill(struct tri_inserter *b, tri_vertex_id v, tri_triangle_id fresh)
 {
-    int32_t before = TRI_NONE, first = TRI_NONE;
+    tri_triangle_id before = TRI_NONE, first = TRI_NONE;
     assert(b->n_edges == b->n_cavity + 2 && b->n_edges >= 3); /* Euler: a disk without a vertex inside */
     for (int32_t i = 0; i < b->n_edges; i++) {
         tri_triangle_id triangle = i < b->n_cavity ? b->cavity[i] : fresh++;
-        int32_t outer = b->edge[i].outer, end = b->edge[i + 1 < b->n_edges ? i + 1 : 0].a;
+        tri_halfedge outer = b->edge[i].outer;
+        tri_vertex_id end = b->edge[i + 1 < b->n_edges ? i + 1 : 0].a;
         struct tri_triangle *t = &b->tri[triangle];
         tri_link link = before == TRI_NONE ? TRI_NONE : tri_code(before, 1);
         *t = (struct tri_triangle){{v, b->edge[i].a, end}, {outer, TRI_NONE, link}, 0, 0};

@@ -1,9 +1,9 @@
 /* Walks first: each from where the last one ended, the points in order along a Hilbert curve. In triangulations whose
  * triangles are long and thin no order of the points keeps walks short; so they may take as many steps in all as there
- * are triangles, and the points that are left are found by a sweep.
+ * are triangles, and the points that are left are found by a plane sweep.
  *
- * THE SWEEP goes over the subsegments from left to right, their order along the sweep line in a tree (Shamos & Hoey
- * 1976). They do not cross, so the one below a point, and the triangle above that, tell the face. */
+ * THE PLANE SWEEP goes over the subsegments from left to right, their order along the sweep line in a tree (Shamos &
+ * Hoey 1976). They do not cross, so the one below a point, and the triangle above that, tell the face. */
 #include "triangle/locate.h"
 
 #include <assert.h>
@@ -12,7 +12,7 @@
 #include "triangle/heap_sort.h"
 #include "triangle/hilbert.h"
 #include "triangle/predicates.h"
-#include "triangle/sweep_order.h"
+#include "triangle/sweep_line.h"
 
 enum { NOT_FOUND = -2 };
 
@@ -49,7 +49,7 @@ static tri_triangle_id walk_to(struct walk *w, struct tri_point q)
     return NOT_FOUND;
 }
 
-/* --- the sweep */
+/* --- the plane sweep */
 
 struct event {
     struct tri_point at;
@@ -61,7 +61,7 @@ struct sweep {
     struct event *event; /* [2 * n_subs + points] */
     int32_t n_events;
     int32_t *start; /* [n_subs] work space: subsegments that start at one place */
-    struct sweep_order order;
+    struct tri_sweep_line order;
 };
 
 /* At one place the subsegments come first. */
@@ -117,7 +117,7 @@ static void pass_ends(struct sweep *w, const struct event *event, int32_t n)
     assert(n > 0);
     for (int32_t i = 0; i < n; i++) {
         if (event[i].code & 1)
-            tri_sweep_order_remove(&w->order, event[i].code >> 1);
+            tri_sweep_line_remove(&w->order, event[i].code >> 1);
         else
             w->start[n_start++] = event[i].code >> 1;
     }
@@ -125,7 +125,7 @@ static void pass_ends(struct sweep *w, const struct event *event, int32_t n)
     assert(n_start <= w->mesh->n_subs);
     below = find_below(w, event->at, &next);
     for (int32_t i = 0; i < n_start; i++) {
-        tri_sweep_order_insert(&w->order, w->start[i], below);
+        tri_sweep_line_insert(&w->order, w->start[i], below);
         below = w->start[i];
     }
 }
@@ -182,14 +182,14 @@ static enum tri_status sweep_for(const struct tri_mesh *mesh, const struct tri_p
     size_t n_subs = (size_t)mesh->n_subs;
     w.event = malloc((2 * n_subs + (size_t)n) * sizeof *w.event);
     w.start = malloc((n_subs + 1) * sizeof *w.start);
-    bool room = tri_sweep_order_init(&w.order, mesh->n_subs) == TRI_OK && w.event && w.start;
+    bool room = tri_sweep_line_init(&w.order, mesh->n_subs) == TRI_OK && w.event && w.start;
     if (room) {
         list_events(&w, points, n, faces);
         sweep(&w, faces);
     }
     free(w.event);
     free(w.start);
-    tri_sweep_order_clear(&w.order);
+    tri_sweep_line_clear(&w.order);
     return room ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the places of %d points", (int)n);
 }
 

@@ -451,7 +451,8 @@ void tri_mesh_compact(struct tri_mesh *mesh)
 
 static bool edge_is_mutual(const struct tri_mesh *mesh, tri_triangle_id t, int e)
 {
-    int32_t link = mesh->tri[t].n[e], from = mesh->tri[t].v[tri_next[e]], to = mesh->tri[t].v[tri_prev[e]];
+    tri_link link = mesh->tri[t].n[e];
+    tri_vertex_id from = mesh->tri[t].v[tri_next[e]], to = mesh->tri[t].v[tri_prev[e]];
     if (link >= 0) {
         if (tri_of(link) >= mesh->n_triangles || tri_edge(link) > 2)
             return false;

@@ -37,8 +37,11 @@
  * piece of a string that starts at place i. */
 struct tri_recovery_place {
     tri_vertex_id vertex;
-    tri_link outer;      /* border: the mesh's link on its outer side */
-    int32_t twin;       /* border: which other one is the same edge, or TRI_NONE; before that, its triangle's code */
+    tri_link outer;     /* border: the mesh's link on its outer side */
+    union {
+        tri_halfedge code; /* border, until the triangles are freed: as its triangle sees it */
+        int32_t twin;      /* from then on: which other border is the same edge, or TRI_NONE */
+    };
     int32_t inner;      /* border: link on its inner side */
     int32_t prev, next; /* string: neighbours */
     int32_t above;      /* string: link above the piece to next */
@@ -83,7 +86,8 @@ static bool cross(struct tri_recovery *r, const struct tri_mesh *mesh, tri_trian
                   tri_vertex_id b)
 {
     const tri_vertex_id *v = mesh->tri[t].v;
-    int32_t code = tri_code(t, v[0] == a ? 0 : v[1] == a ? 1 : 2), o = a;
+    tri_halfedge code = tri_code(t, v[0] == a ? 0 : v[1] == a ? 1 : 2);
+    tri_vertex_id o = a;
     assert(a != b && tri_apex(mesh, code) == a);
     r->n_crossed = 0;
     r->n_left = 1;
@@ -105,32 +109,29 @@ static bool cross(struct tri_recovery *r, const struct tri_mesh *mesh, tri_trian
     return true;
 }
 
+enum { MORE_PLACES = 4 }; /* than triangles that are crossed: a and b stand in both chains */
+
+static int32_t n_places(const struct tri_recovery *r) { return r->n_crossed + MORE_PLACES; }
+
 static bool make_room(struct tri_recovery *r)
 {
-    if (r->n_crossed <= r->room)
-        return true;
-    int32_t room = r->n_crossed + r->n_crossed / 2;
-    size_t places = (size_t)room + 4; /* a and b stand in both chains */
-    if (!tri_resize(&r->pool, (size_t)room, sizeof *r->pool) || !tri_resize(&r->at, places, sizeof *r->at) ||
-        !tri_resize(&r->gap[0], places, sizeof *r->gap[0]) || !tri_resize(&r->gap[1], places, sizeof *r->gap[1]))
-        return false;
-    r->room = room;
-    return true;
+    const struct tri_growing arrays[] = {{&r->pool, sizeof *r->pool}, {&r->at, sizeof *r->at},
+                                         {&r->gap[0], sizeof *r->gap[0]}, {&r->gap[1], sizeof *r->gap[1]}};
+    return tri_grow_together(arrays, 4, &r->room, r->n_crossed, MORE_PLACES);
 }
-
-static int32_t n_places(const struct tri_recovery *r) { return r->n_crossed + 4; }
 
 static void set_border(struct tri_recovery *r, const struct tri_mesh *mesh, int32_t i, tri_triangle_id t, int e)
 {
     assert(i >= 0 && i < n_places(r));
     r->at[i].outer = mesh->tri[t].n[e];
-    r->at[i].twin = tri_code(t, e);
+    r->at[i].code = tri_code(t, e);
 }
 
 /* Fills both chains. Edge f of a triangle that is entered through it starts left of ab and ends right of it. */
 static void list_places(struct tri_recovery *r, const struct tri_mesh *mesh)
 {
-    int32_t left = 0, right = n_places(r) - 1, t = tri_of(r->crossed[0]);
+    int32_t left = 0, right = n_places(r) - 1;
+    tri_triangle_id t = tri_of(r->crossed[0]);
     int k = tri_edge(r->crossed[0]);
     const tri_vertex_id *v = mesh->tri[t].v;
     r->at[left].vertex = r->at[right].vertex = v[k];
@@ -165,7 +166,7 @@ static void clear_triangles(struct tri_recovery *r, struct tri_mesh *mesh)
     }
     for (int32_t i = 0; i < n_places(r) - 1; i++)
         if (i != r->n_left - 1)
-            mesh->tri[tri_of(r->at[i].twin)].n[tri_edge(r->at[i].twin)] = i;
+            mesh->tri[tri_of(r->at[i].code)].n[tri_edge(r->at[i].code)] = i;
     for (int32_t i = 0; i < n_places(r) - 1; i++) {
         const struct tri_triangle *beyond = r->at[i].outer >= 0 ? &mesh->tri[tri_of(r->at[i].outer)] : NULL;
         bool inside = i != r->n_left - 1 && beyond && !tri_is_live(beyond);

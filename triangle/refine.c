@@ -65,7 +65,7 @@ struct tri_refiner {
     enum tri_excuse excuse; /* of the last refusal */
     bool in_hand;     /* `hand` was being treated when there was no room */
     struct tri_entry hand;
-    int32_t *encroached; /* stack of subsegments to test for encroachment (conforming only) */
+    tri_sub_id *encroached; /* stack of subsegments to test for encroachment (conforming only) */
     int32_t n_encroached, encroached_capacity;
     uint32_t step_of_stop; /* see tri_stop_is_due */
 };
@@ -219,7 +219,7 @@ static tri_vertex_id add_vertex(struct tri_refiner *r, struct tri_point p, int32
 }
 
 /* The corners of the cavity's triangle that holds the new point, for interpolation. */
-static const int32_t *corners_around(const struct tri_refiner *r, struct tri_point p)
+static const tri_vertex_id *corners_around(const struct tri_refiner *r, struct tri_point p)
 {
     for (int32_t i = 0; i < r->cavity.n_tri; i++) {
         const tri_vertex_id *v = r->mesh->tri[r->cavity.tri[i]].v;
@@ -244,7 +244,7 @@ static enum outcome insert_free(struct tri_refiner *r, struct tri_point p, tri_t
     if (make_room(r))
         return FAILED;
     tri_vertex_id v = add_vertex(r, p, TRI_VERTEX_FREE, 0);
-    const int32_t *corner = r->mesh->tri[triangle].v;
+    const tri_vertex_id *corner = r->mesh->tri[triangle].v;
     r->mesh->feature[v] = tri_feature_inside(r->mesh, corner[tri_next[shape->shortest]],
                                              corner[tri_prev[shape->shortest]], p, r->sized);
     if (r->mesh->n_attributes)
@@ -336,7 +336,7 @@ static enum outcome split_at(struct tri_refiner *r, tri_sub_id s, double fractio
     tri_vertex_id v = add_vertex(r, r->cavity.p, old.parent, old.marker ? old.marker : boundary ? 1 : 0);
     m->feature[v] = tri_feature_on_segment(m, &r->cavity, s, r->sized);
     tri_interpolate_edge(m, old.v[0], old.v[1], fraction, v);
-    int32_t second = tri_cavity_fill_split(&r->cavity, m, v, s, n_left);
+    tri_sub_id second = tri_cavity_fill_split(&r->cavity, m, v, s, n_left);
     tell_changes(r);
     r->report->inserted_on_segments++;
     bool room = judge_fan(r) && queue_walls(r);
@@ -376,7 +376,7 @@ static bool encroaches(const struct tri_refiner *r, int32_t i, bool *beyond)
 /* The subsegment to split instead of inserting the new point: one that hides it, else the first that it encroaches. */
 static tri_sub_id find_encroached(const struct tri_refiner *r)
 {
-    int32_t found = TRI_NONE;
+    tri_sub_id found = TRI_NONE;
     for (int32_t i = 0; i < r->cavity.n_wall; i++) {
         bool beyond;
         if (!encroaches(r, r->cavity.wall[i], &beyond))
@@ -556,7 +556,7 @@ static bool split_encroached(struct tri_refiner *r)
         const struct tri_subsegment *sub = &r->mesh->sub[s];
         if (sub->side[0] == TRI_BEYOND || sub->side[1] == TRI_BEYOND)
             return wait_for_more(r, sub->v) != FAILED;
-        int32_t beside = tri_of(sub->side[sub->side[0] == TRI_NONE]);
+        tri_triangle_id beside = tri_of(sub->side[sub->side[0] == TRI_NONE]);
         assert(s >= 0 && tri_is_live(&r->mesh->tri[beside]));
         r->n_encroached--;
         double fraction;

@@ -93,7 +93,7 @@ enum tri_corner tri_corner_between(const struct tri_mesh *mesh, tri_parent_id p,
 }
 
 /* The parents that vertex v lies on: its own, or those that end there. */
-static const int32_t *parents_of(const struct tri_mesh *mesh, tri_vertex_id v, int32_t *n)
+static const tri_parent_id *parents_of(const struct tri_mesh *mesh, tri_vertex_id v, int32_t *n)
 {
     *n = 0;
     if (mesh->on[v] >= 0) {
@@ -126,8 +126,8 @@ static int list_neighbours(const struct tri_mesh *mesh, tri_vertex_id hub, const
 }
 
 /* The parents at u that bound spaces in which triangle u, v, w may lie: at a hub the next ones around it, else all. */
-static const int32_t *parents_beside(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v, tri_vertex_id w,
-                                     tri_parent_id beside[8], int32_t *n)
+static const tri_parent_id *parents_beside(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v,
+                                           tri_vertex_id w, tri_parent_id beside[8], int32_t *n)
 {
     const tri_parent_id *incident = parents_of(mesh, u, n);
     if (*n <= TRI_MANY_PARENTS)
@@ -152,7 +152,7 @@ static bool are_joined(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_
     int32_t nu, nv;
     const tri_parent_id *pu = parents_of(mesh, u, &nu), *pv = parents_of(mesh, v, &nv);
     for (int32_t i = 0; i < (nu < nv ? nu : nv); i++) {
-        const int32_t *ends = mesh->parents[(nu < nv ? pu : pv)[i]].v;
+        const tri_vertex_id *ends = mesh->parents[(nu < nv ? pu : pv)[i]].v;
         if ((ends[0] == u && ends[1] == v) || (ends[0] == v && ends[1] == u))
             return true;
     }
@@ -161,9 +161,10 @@ static bool are_joined(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_
 
 tri_vertex_id tri_common_end(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id v)
 {
-    const int32_t *ends = mesh->parents[parent].v, on = mesh->on[v];
+    const tri_vertex_id *ends = mesh->parents[parent].v;
+    const int32_t on = mesh->on[v];
     for (int k = 0; k < 2; k++) {
-        const int32_t *others = on >= 0 ? mesh->parents[on].v : NULL;
+        const tri_vertex_id *others = on >= 0 ? mesh->parents[on].v : NULL;
         if (others ? others[0] == ends[k] || others[1] == ends[k] : are_joined(mesh, ends[k], v))
             return ends[k];
     }
@@ -212,7 +213,8 @@ struct gap {
 /* The spaces between two parents that the edge uv bridges and the triangle with apex w lies in. */
 static struct gap gap_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v, tri_vertex_id w)
 {
-    int32_t nu, nv, beside[2][8];
+    int32_t nu, nv;
+    tri_parent_id beside[2][8];
     const tri_parent_id *pu = parents_beside(mesh, u, v, w, beside[0], &nu);
     const tri_parent_id *pv = parents_beside(mesh, v, u, w, beside[1], &nv);
     struct gap gap = {0, false};

@@ -6,9 +6,9 @@
 
 #include <cmocka.h>
 
-#include "triangle/sweep_order.h"
+#include "triangle/sweep_line.h"
 
-static int depth(const struct sweep_order *order, int32_t s)
+static int depth(const struct tri_sweep_line *order, int32_t s)
 {
     int n = 0;
     for (; s >= 0; s = order->node[s].up)
@@ -20,23 +20,23 @@ static void order_is_kept_and_balanced(void **state)
 {
     (void)state;
     enum { N = 5000 };
-    struct sweep_order order;
-    assert_int_equal(tri_sweep_order_init(&order, N), TRI_OK);
+    struct tri_sweep_line order;
+    assert_int_equal(tri_sweep_line_init(&order, N), TRI_OK);
     for (int32_t s = 0; s < N; s++)
-        tri_sweep_order_insert(&order, s, s - 1); /* from bottom to top: the worst case of a plain tree */
+        tri_sweep_line_insert(&order, s, s - 1); /* from bottom to top: the worst case of a plain tree */
     for (int32_t s = 0; s < N; s += 2)
-        tri_sweep_order_remove(&order, s);
+        tri_sweep_line_remove(&order, s);
     int32_t above = -1;
     for (int32_t s = 1; s < N; s += 2) {
-        above = tri_sweep_order_above(&order, above);
+        above = tri_sweep_line_above(&order, above);
         assert_int_equal(above, s);
         assert_true(depth(&order, s) < 60);
     }
-    assert_int_equal(tri_sweep_order_above(&order, above), -1);
+    assert_int_equal(tri_sweep_line_above(&order, above), -1);
     for (int32_t s = N - 1; s >= 0; s -= 2)
-        tri_sweep_order_remove(&order, s);
+        tri_sweep_line_remove(&order, s);
     assert_int_equal(order.root, -1);
-    tri_sweep_order_clear(&order);
+    tri_sweep_line_clear(&order);
 }
 
 int main(void)

@@ -1,8 +1,8 @@
-/* The order of the sweep, a threaded treap. Seidel & Aragon 1996.
+/* The sweep line as a threaded treap. Seidel & Aragon 1996.
  *
  * INVARIANT: next[0] and next[1] are the neighbours in the in-order walk of the tree, and a parent's priority is never
  * below its children's. */
-#include "triangle/sweep_order.h"
+#include "triangle/sweep_line.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -15,21 +15,21 @@ static uint32_t priority(int32_t s)
     return x ^ x >> 13;
 }
 
-enum tri_status tri_sweep_order_init(struct sweep_order *order, int32_t n)
+enum tri_status tri_sweep_line_init(struct tri_sweep_line *order, int32_t n)
 {
     order->root = -1;
     order->node = malloc(((size_t)n + 1) * sizeof *order->node);
     return order->node == NULL ? TRI_NO_MEMORY : TRI_OK;
 }
 
-void tri_sweep_order_clear(struct sweep_order *order)
+void tri_sweep_line_clear(struct tri_sweep_line *order)
 {
     free(order->node);
     order->node = NULL;
 }
 
 /* Makes `child` (or -1) the child of `parent` (or the root, if -1) that `old` was. */
-static void replace_child(struct sweep_order *o, int32_t parent, int32_t old, int32_t child)
+static void replace_child(struct tri_sweep_line *o, int32_t parent, int32_t old, int32_t child)
 {
     if (child >= 0)
         o->node[child].up = parent;
@@ -43,9 +43,9 @@ static void replace_child(struct sweep_order *o, int32_t parent, int32_t old, in
 }
 
 /* Lifts s above its parent. */
-static void rotate_up(struct sweep_order *o, int32_t s)
+static void rotate_up(struct tri_sweep_line *o, int32_t s)
 {
-    struct sweep_node *node = o->node;
+    struct tri_sweep_line_node *node = o->node;
     int32_t parent = node[s].up;
     int side = node[parent].down[1] == s;
     int32_t moved = node[s].down[!side];
@@ -57,7 +57,7 @@ static void rotate_up(struct sweep_order *o, int32_t s)
         node[moved].up = parent;
 }
 
-int32_t tri_sweep_order_above(const struct sweep_order *o, int32_t s)
+int32_t tri_sweep_line_above(const struct tri_sweep_line *o, int32_t s)
 {
     if (s >= 0)
         return o->node[s].next[1];
@@ -67,7 +67,7 @@ int32_t tri_sweep_order_above(const struct sweep_order *o, int32_t s)
     return s;
 }
 
-static void thread(struct sweep_order *o, int32_t below, int32_t above)
+static void thread(struct tri_sweep_line *o, int32_t below, int32_t above)
 {
     if (below >= 0)
         o->node[below].next[1] = above;
@@ -75,11 +75,11 @@ static void thread(struct sweep_order *o, int32_t below, int32_t above)
         o->node[above].next[0] = below;
 }
 
-void tri_sweep_order_insert(struct sweep_order *o, int32_t s, int32_t below)
+void tri_sweep_line_insert(struct tri_sweep_line *o, int32_t s, int32_t below)
 {
-    struct sweep_node *node = o->node;
-    int32_t above = tri_sweep_order_above(o, below);
-    node[s] = (struct sweep_node){-1, {-1, -1}, {below, above}};
+    struct tri_sweep_line_node *node = o->node;
+    int32_t above = tri_sweep_line_above(o, below);
+    node[s] = (struct tri_sweep_line_node){-1, {-1, -1}, {below, above}};
     thread(o, below, s);
     thread(o, s, above);
     if (below >= 0 && node[below].down[1] < 0) { /* room above it? else its successor has room below */
@@ -96,9 +96,9 @@ void tri_sweep_order_insert(struct sweep_order *o, int32_t s, int32_t below)
         rotate_up(o, s);
 }
 
-void tri_sweep_order_remove(struct sweep_order *o, int32_t s)
+void tri_sweep_line_remove(struct tri_sweep_line *o, int32_t s)
 {
-    struct sweep_node *node = o->node;
+    struct tri_sweep_line_node *node = o->node;
     while (node[s].down[0] >= 0 && node[s].down[1] >= 0) {
         int32_t a = node[s].down[0], b = node[s].down[1];
         rotate_up(o, priority(a) > priority(b) ? a : b);
