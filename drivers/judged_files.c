@@ -96,7 +96,7 @@ static enum tri_status read_arrays(struct judged_files *f, const struct judged_n
 static enum tri_status read_input(struct judged_files *f, const char *path, const struct tri_executor *executor,
                                   struct tri_error *error)
 {
-    struct tri_read_options options = {.default_base = f->base, .executor = executor,
+    struct tri_read_options options = {.default_base = f->base, .may_be_empty = true, .executor = executor,
                                        .regions_if_any = (f->source.given >> TRI_CHECK_ATTRIBUTES & 1) != 0};
     int32_t base;
     bool points_in_poly;

@@ -45,13 +45,36 @@ enum tri_status launch_join(struct launch *launch, struct tri_error *error)
     return status;
 }
 
+/* Who has failed says so to all. */
+static int agree_on_failure(struct launch *launch, int code, struct tri_error *error)
+{
+    if (code != EXIT_SUCCESS && !error->status)
+        tri_fail(error, TRI_INTERNAL, NULL, 0, "task %d has failed", launch->rank);
+    enum tri_status agreed = par_agree(launch->carrier, code == EXIT_SUCCESS ? TRI_OK : error->status, error);
+    return code == EXIT_SUCCESS && agreed ? EXIT_FAILURE : code;
+}
+
+/* All come here, whatever they have agreed on before: so they can be asked once more. */
+int launch_agree(struct launch *launch, int code, struct tri_error *error)
+{
+    enum { FIRST_STOP = 124 };
+    struct par_carrier *carrier = launch->carrier;
+    if (!carrier)
+        return code;
+    code = agree_on_failure(launch, code, error);
+    const int64_t mine = code;
+    bool told = carrier->gather(carrier->self, &mine, 1, carrier->of_each);
+    for (int p = 0; told && p < carrier->n_ranks; p++)
+        if (carrier->of_each[p] >= FIRST_STOP)
+            return (int)carrier->of_each[p];
+    return code;
+}
+
 int launch_leave(struct launch *launch, int code, struct tri_error *error)
 {
     if (!launch->carrier)
         return code;
-    if (code != EXIT_SUCCESS && !error->status)
-        tri_fail(error, TRI_INTERNAL, NULL, 0, "task %d has failed", launch->rank);
-    enum tri_status agreed = par_agree(launch->carrier, code == EXIT_SUCCESS ? TRI_OK : error->status, error);
+    code = agree_on_failure(launch, code, error);
     launch_end(launch);
-    return code == EXIT_SUCCESS && agreed ? EXIT_FAILURE : code;
+    return code;
 }

@@ -14,8 +14,11 @@ struct launch {
  * there are several, and they cannot find together. */
 enum tri_status launch_join(struct launch *launch, struct tri_error *error);
 
-/* The last thing that is done: the tasks agree on the exit code, which is returned. error: why this one has failed,
- * where that is known. */
+/* The tasks agree on the exit code, which is returned: where some were asked to end, and have, that of the first of
+ * these. error: why this one has failed, where that is known. */
+int launch_agree(struct launch *launch, int code, struct tri_error *error);
+
+/* The last thing that is done: the tasks learn whether one has failed, and part. Returns the exit code. */
 int launch_leave(struct launch *launch, int code, struct tri_error *error);
 
 /* By whether there is MPI: how tasks become ranks, and cease to be. */

@@ -214,6 +214,8 @@ static enum tri_status refine(void *user, struct run *run, struct tri_output_set
         status = help_others(p, run, mesh, quality, error);
     } else if (run->plan.swept) {
         status = sweep(p, run, set, mesh, quality, error);
+    } else if (p->launch.rank > 0) {
+        status = TRI_OK; /* the first rank makes the whole, and keeps its checkpoints as one task does */
     } else {
         struct par_options options = options_of(p, run);
         status = refine_with(p, run, &options, mesh, quality, error);
@@ -453,7 +455,7 @@ static int carry_out(struct program *p, const struct arguments *arguments, struc
     int64_t room;
     struct par_carrier one = par_carrier_alone(&room);
     p->launch.carrier = alone ? &one : p->launch.carrier;
-    int code = run_program(p, arguments, error);
+    int code = launch_agree(&p->launch, run_program(p, arguments, error), error);
     p->launch.carrier = alone ? NULL : p->launch.carrier;
     restart_close(&p->restart, PROGRAM, arguments, code);
     return code;

@@ -413,6 +413,7 @@ static void tell_of_input(const struct runner *r)
 {
     summary_duplicates(&r->console, r->run.plan.swept ? r->twin : r->run.mesh.twin, &r->run.pslg);
     summary_segments(&r->console, &r->run.report.constrain);
+    summary_holes(&r->console, &r->run.report);
 }
 
 /* --- output */

@@ -17,6 +17,12 @@ void summary_segments(const struct console *console, const struct tri_constrain_
                      report->bent);
 }
 
+void summary_holes(const struct console *console, const struct tri_report *report)
+{
+    if (report->holes_between > 0)
+        console_warn(console, "hole points on segments, which empty nothing: %" PRId32 ".\n", report->holes_between);
+}
+
 void summary_duplicates(const struct console *console, const int32_t *twin, const struct tri_pslg *pslg)
 {
     struct console_series series = {0};

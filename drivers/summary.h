@@ -11,6 +11,9 @@
 /* What went otherwise than the input asks: crossings, segments bent. */
 void summary_segments(const struct console *console, const struct tri_constrain_report *report);
 
+/* A warning of hole points that empty nothing. */
+void summary_holes(const struct console *console, const struct tri_report *report);
+
 /* A warning for each point that has a twin of lower index: twin[n_points] is the first one at its place; NULL: there
  * are none. */
 void summary_duplicates(const struct console *console, const int32_t *twin, const struct tri_pslg *pslg);

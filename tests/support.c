@@ -3,6 +3,7 @@
 
 #include <dirent.h>
 #include <stdio.h>
+#include <unistd.h>
 
 #include "triangle/estimate.h"
 #include "triangle/delaunay.h"
@@ -541,3 +542,16 @@ static void run_backwards(void *self, size_t n_tasks, void (*task)(void *context
 }
 
 const struct tri_executor support_backwards = {run_backwards, NULL};
+
+void support_remove_directory(const char *path)
+{
+    DIR *directory = opendir(path);
+    for (const struct dirent *entry; directory && (entry = readdir(directory));) {
+        char name[512];
+        snprintf(name, sizeof name, "%s/%s", path, entry->d_name);
+        unlink(name); /* but for . and .. */
+    }
+    if (directory)
+        closedir(directory);
+    rmdir(path);
+}

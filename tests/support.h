@@ -146,4 +146,7 @@ bool support_is_hidden(const struct tri_mesh *mesh, struct tri_point p, struct t
  * triangle is visible from a point in its interior. O(triangles * vertices * subsegments) where naive. */
 void support_assert_cdt(const struct tri_mesh *mesh, bool naive);
 
+/* The files in it, and then itself, if it is there. */
+void support_remove_directory(const char *path);
+
 #endif

@@ -136,7 +136,7 @@ static void test_tangles_equal_naive_twin(void **state)
     (void)state;
     for (int which = 0; which < 8; which++)
         for (uint64_t seed = 0; seed < 25; seed++) {
-            struct tri_carve_options options = {which & 1, which & 2, which & 4, false};
+            struct tri_carve_options options = {which & 1, which & 2, which & 4, false, NULL};
             struct tri_pslg pslg = support_tangle(seed % 2 ? SUPPORT_RANDOM : SUPPORT_LATTICE, 25, 30, seed);
             if (seed % 3)
                 memmove(pslg.segments, pslg.segments + 8, (size_t)(pslg.n_segments -= 4) * 8); /* an open hull */
@@ -246,6 +246,36 @@ static void test_far_places_are_outside(void **state)
             tri_mesh_free(&mesh);
             tri_pslg_free(&pslg);
         }
+}
+
+/* Exactly on a segment, at its end, or at a vertex through which it is led: no face is meant. */
+static void test_holes_between_faces_empty_nothing(void **state)
+{
+    (void)state;
+    static const struct {
+        double x, y;
+        int32_t between, triangles;
+    } cases[] = {{0, 2, 1, 6}, {4, 4, 1, 6}, {2, 1, 1, 6}, {2, 4, 1, 6}, {1, 2, 0, 2}, {3, 3, 0, 4}, {1, 1, 0, 2}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct tri_pslg pslg = support_pslg(7, 5, 1, 0);
+        static const double points[7][2] = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {2, 0}, {2, 4}, {1, 2}};
+        for (int k = 0; k < 7; k++) /* two rooms; no segment ends at the last point */
+            support_add_point(&pslg, points[k][0], points[k][1]);
+        for (int k = 0; k < 4; k++)
+            support_add_segment(&pslg, k, (k + 1) % 4);
+        support_add_segment(&pslg, 4, 5);
+        memcpy(pslg.holes, (double[]){cases[i].x, cases[i].y}, 2 * sizeof(double));
+        pslg.n_holes = 1;
+        int32_t between = -1;
+        const struct tri_carve_options options = {.between = &between};
+        struct tri_constrain_report report;
+        struct tri_mesh mesh = support_constrained(&pslg, &report);
+        assert_int_equal(tri_carve(&mesh, &pslg, &options, NULL), TRI_OK);
+        assert_int_equal(between, cases[i].between);
+        assert_int_equal(mesh.n_triangles, cases[i].triangles);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+    }
 }
 
 static void test_boundary_markers(void **state)
@@ -460,6 +490,7 @@ int main(void)
         cmocka_unit_test(test_nested_rings),
         cmocka_unit_test(test_hole_points_in_odd_places),
         cmocka_unit_test(test_far_places_are_outside),
+        cmocka_unit_test(test_holes_between_faces_empty_nothing),
         cmocka_unit_test(test_boundary_markers),
         cmocka_unit_test(test_rings_keep_the_even_odd_rule),
         cmocka_unit_test(test_depths_equal_naive_twin),

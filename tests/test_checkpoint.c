@@ -3,7 +3,6 @@
  * byte. */
 #include "support.h"
 
-#include <dirent.h>
 #include <stdio.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -120,15 +119,7 @@ static void open_it(struct par_checkpoint *c, bool resume)
 
 static void remove_all(void)
 {
-    DIR *directory = opendir(DIRECTORY);
-    for (const struct dirent *entry; directory && (entry = readdir(directory));) {
-        char path[512];
-        snprintf(path, sizeof path, "%s/%s", DIRECTORY, entry->d_name);
-        unlink(path); /* but for . and .. */
-    }
-    if (directory)
-        closedir(directory);
-    rmdir(DIRECTORY);
+    support_remove_directory(DIRECTORY);
 }
 
 /* The end is asked for once so many tiles have been taken. */

@@ -2,7 +2,8 @@
 # Installs what building needs and this machine lacks, through apt; where there is no apt, says what is needed.
 # Usage: tools/setup.sh [build|tests|ci|ports]
 #   build  C and C++ compiler, make, CMake          (what the programs need), and cairo (for meshplot), jansson (for
-#          ptriangle --report) and HDF5 (for .h5 files), which can be done without
+#          ptriangle --report), HDF5 (for .h5 files) and pkg-config (for programs that call the libraries), which can
+#          be done without
 #   tests  and cmocka, GMP, pkg-config              (what tools/test.sh needs)
 #   ci     and clang with its OpenMP library, its fuzzer and clang-tidy, cppcheck, valgrind, gcovr, MPI, Python (what
 #          .ci/run needs)
@@ -74,6 +75,7 @@ list_missing() {
     links cairo/cairo.h cairo >/dev/null 2>&1 || wished=libcairo2-dev
     links jansson.h jansson >/dev/null 2>&1 || wished="${wished:+$wished }libjansson-dev"
     hdf5 >/dev/null 2>&1 || wished="${wished:+$wished }libhdf5-dev"
+    [ "$wanted" != build ] || command -v pkg-config >/dev/null || wished="${wished:+$wished }pkg-config"
     need build-essential compilers
     need cmake command -v cmake
     [ "$wanted" = build ] && return

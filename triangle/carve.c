@@ -170,13 +170,57 @@ static enum tri_status locate(const struct tri_mesh *mesh, const double *places,
     return status;
 }
 
-static enum tri_status kill_holes(struct flood *f, const struct tri_pslg *pslg, struct tri_error *error)
+static bool is_at(struct tri_point p, struct tri_point q) { return p.x == q.x && p.y == q.y; }
+
+/* Does a subsegment end at corner k of triangle t? */
+static bool ends_sub(const struct tri_mesh *mesh, tri_triangle_id t, int k)
+{
+    tri_vertex_id v = mesh->tri[t].v[k];
+    tri_triangle_id at = t;
+    do {
+        const tri_vertex_id *corner = mesh->tri[at].v;
+        int e = corner[0] == v ? 0 : corner[1] == v ? 1 : 2;
+        tri_link beyond = mesh->tri[at].n[tri_next[e]];
+        assert(corner[e] == v);
+        if (beyond < 0)
+            return true;
+        at = tri_of(beyond);
+    } while (at != t);
+    return false;
+}
+
+/* Does q lie on a subsegment? The triangle is what tri_locate_faces tells of it, which then has q on its boundary. */
+static bool is_between_faces(const struct tri_mesh *mesh, tri_triangle_id t, struct tri_point q)
+{
+    const tri_vertex_id *v = mesh->tri[t].v;
+    bool on_sub = false;
+    for (int k = 0; k < 3; k++)
+        if (is_at(mesh->xy[v[k]], q))
+            return ends_sub(mesh, t, k);
+    for (int e = 0; e < 3; e++) {
+        double side = tri_orient2d(mesh->xy[v[tri_next[e]]], mesh->xy[v[tri_prev[e]]], q);
+        if (side < 0)
+            return false;
+        on_sub = on_sub || (side == 0 && mesh->tri[t].n[e] < 0);
+    }
+    return on_sub;
+}
+
+static enum tri_status kill_holes(struct flood *f, const struct tri_pslg *pslg, int32_t *between,
+                                  struct tri_error *error)
 {
     int32_t *faces;
     enum tri_status status = locate(f->mesh, pslg->holes, pslg->n_holes, 2, &faces, error);
-    for (int32_t k = 0; !status && k < pslg->n_holes; k++)
-        if (faces[k] != TRI_NONE)
+    *between = 0;
+    for (int32_t k = 0; !status && k < pslg->n_holes; k++) {
+        const double *at = &pslg->holes[2 * (size_t)k];
+        if (faces[k] == TRI_NONE)
+            continue;
+        if (is_between_faces(f->mesh, faces[k], tri_to_units(f->mesh, at[0], at[1])))
+            ++*between;
+        else
             kill_from(f, faces[k]);
+    }
     free(faces);
     return status;
 }
@@ -337,6 +381,7 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
     assert(mesh->n_subs == mesh->n_parents); /* one each */
     struct flood f = {mesh, malloc(n * sizeof *f.stack), calloc(n, 1)};
     enum tri_status status = TRI_OK;
+    int32_t between = 0;
     if (!f.stack || !f.dead)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)mesh->n_triangles);
     tri_mark_vertices(mesh);
@@ -346,12 +391,14 @@ enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, co
         else if (!options->keep_hull)
             kill_concavities(&f);
         if (!status && !options->ignore_holes)
-            status = kill_holes(&f, pslg, error);
+            status = kill_holes(&f, pslg, &between, error);
         if (!status && options->spread_regions)
             status = spread_regions(&f, pslg, error);
         if (!status)
             remove_dead(&f);
     }
+    if (options->between)
+        *options->between = between;
     free(f.stack);
     free(f.dead);
     return status ? status : order_subs(mesh, pslg->n_segments, error);

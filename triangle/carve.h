@@ -13,11 +13,14 @@ struct tri_carve_options {
     bool ignore_holes;  /* (-O) */
     bool spread_regions;
     bool even_odd;      /* segments tell what is inside: see below */
+    int32_t *between;   /* told: hole points that lie between faces; NULL: nobody asks */
 };
 
 /* Removes what is reachable from outside the hull, or from a hole point, without crossing a segment; then gives every
  * triangle the last region whose point reaches it (mesh->regions[k + 1] is region k of the PSLG). Points outside the
- * mesh are ignored. Segment markers pass to vertices that have none. Triangles and subsegments are compact afterwards,
+ * mesh are ignored. So are holes between faces: exactly on a subsegment or at an end of one, as it runs in the mesh (a
+ * segment may lead through a vertex that lies nearly on it). Which face is meant is not known there, and nothing is
+ * taken in doubt. Segment markers pass to vertices that have none. Triangles and subsegments are compact afterwards,
  * subsegments in the order of their input segments, hull edges last, each with a parent of its own. O(triangles), and
  * what it takes to locate the points (locate.h).
  *

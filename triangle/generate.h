@@ -60,6 +60,7 @@ struct tri_options {
 
 struct tri_report {
     int32_t duplicates; /* points that have a twin of lower index; 0 with elements */
+    int32_t holes_between; /* hole points on segments, which empty nothing (carve.h) */
     int32_t loose;      /* with elements: segments that are no edges of them, see struct tri_reconstruct_options */
     struct tri_constrain_report constrain;
     struct tri_refine_report quality;

@@ -343,12 +343,13 @@ enum tri_status par_state_begin(struct par_checkpoint *c, struct par_state *stat
     int32_t odd;
     c->stop = state->mesh->stop;
     c->last = tri_seconds();
+    if (par_checkpoint_has_ranks(c)) /* whose hash of the same run is another one */
+        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
+                        "is the checkpoint of several tasks, and this mesh is to be made as a whole");
     enum tri_status status = par_checkpoint_take(c, par_state_run(state), error);
     state->stays = c->manifest.kind == PAR_WHOLE_STATE;
     if (status || !par_checkpoint_has_state(c))
         return status;
-    if (par_checkpoint_has_ranks(c))
-        return tri_fail(error, TRI_BAD_INPUT, c->directory, 0, "is the checkpoint of several tasks");
     if (!state->stays && !state->options->sink)
         return tri_fail(error, TRI_BAD_INPUT, c->directory, 0,
                         "is the checkpoint of a sweep, and this mesh is to be made as a whole");

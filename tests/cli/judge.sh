@@ -31,6 +31,8 @@ printf '4 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n1 0\n1 1 2\n0\n' >open.poly
 run 0 -pj open
 header open.1.node "0 2 0 1"
 judge open.1 --poly open.poly --jettisoned
+run 0 -pr open.1
+judge open.2 --poly open.1.poly -r
 
 # --- the mesh may end along the hull if that is said
 fresh letter.poly
@@ -99,9 +101,21 @@ check "exit code" test $? -eq 2
 check "exit code" test $? -eq 2
 complains "/nowhere: cannot make a scratch file there"
 
+# --- subsegments with a vertex in their circle are counted once, as the mesher does, whatever side it is on
+fresh regress/flat_on_both_sides.poly
+run 0 -pq33D flat_on_both_sides
+matches "^5 subsegments keep a vertex in the diametral circle"
+denies "^FAIL  diametral circles: 5," flat_on_both_sides.1 -D
+part_by_part flat_on_both_sides.1 -D
+
 # --- HDF5, where this build writes it
 fresh section.poly
 if "$bin/ptriangle" -pq30aAQ --output section.h5 section.poly >.out 2>&1 && [ -f section.h5 ]; then
     judge section.h5 --poly section.poly -q 30
     part_by_part section.h5 --poly section.poly -q 33
+    cp section.h5 damaged.h5 # the address of the first group, in the superblock
+    printf '\377' | dd of=damaged.h5 bs=1 seek=60 conv=notrunc 2>/dev/null
+    "$bin/trianglecheck" damaged.h5 >.out 2>.err
+    check "exit code" test $? -eq 2
+    check "one line" test "$(wc -l <.err)" -eq 1
 fi

@@ -186,10 +186,94 @@ while [ "$found" -eq 124 ] && [ $tries -lt 40 ]; do
     tries=$((tries + 1))
 done
 check "the same bytes by whoever goes on" same_but_for_comments one.node two.node
-PTRIANGLE_TEST_SWEEP=1 timeout 100 "$bin/ptriangle" -Qpq30a0.001 letter --output two --checkpoint swept --every 0 \
-    --time-limit 0.1 >.out 2>.err
-[ ! -e swept/state-0 ] || ranks 1 2 -Qpq30a0.001 letter --output two --resume swept
-rm -rf swept
+
+# --- whose checkpoint it is comes before of what run: one task's, swept or as a whole, is not for several
+leave_state() { # N WORDS...: stopped with a state, unless it is finished before
+    n=$1
+    shift
+    limit=0.1
+    until [ -e kept/state-0 ] || [ -e three.node ]; do
+        rm -rf kept
+        limit=$(echo "$limit" | awk '{ print $1 * 1.3 }')
+        if [ "$n" -gt 1 ]; then
+            timeout 100 "$MPIEXEC" -n "$n" "$bin/ptriangle" "$@" --output three --checkpoint kept --every 0 \
+                --time-limit "$limit" >.out 2>.err
+        else
+            timeout 100 "$bin/ptriangle" "$@" --output three --checkpoint kept --every 0 --time-limit "$limit" \
+                >.out 2>.err
+        fi
+    done
+}
+for sweep in "" 1; do
+    [ -z "$sweep" ] || export PTRIANGLE_TEST_SWEEP=1
+    leave_state 1 -Qpq30a0.001 letter
+    unset PTRIANGLE_TEST_SWEEP
+    if [ -e kept ]; then
+        ranks 1 2 -Qpq30a0.001 letter --output two --resume kept
+        complains 'kept: is the checkpoint of one task$'
+    fi
+    rm -rf kept three.*
+done
+leave_state 2 -Qpq30a0.001 letter
+if [ -e kept ]; then
+    program 1 -Qpq30a0.001e letter --output two --resume kept
+    complains '^kept: is the checkpoint of several tasks, and this mesh is to be made as a whole$'
+fi
+rm -rf kept three.*
+
+# --- what wants the whole mesh: the first task keeps it as one does; nobody touches what another has as standard input
+echo precious >.stdin
+for output in "-e --output two" "--output two.vtu" "--output two.msh"; do
+    # shellcheck disable=SC2086 # several words
+    program 0 -Qpq30a0.01 letter $output
+    mkdir one
+    mv two* one/
+    # shellcheck disable=SC2086
+    with_one 1 'exec <>.stdin' 0 -Qpq30a0.01 letter $output --checkpoint state --every 0
+    for file in one/*; do
+        grep -av '^#' "$file" >.one
+        grep -av '^#' "${file#one/}" >.two
+        check "the same but for the command: $output, $file" cmp .one .two
+    done
+    check "the standard input is whole" test "$(cat .stdin)" = precious
+    check "no checkpoint is left" test ! -e state
+    rm -rf one two*
+done
+program 0 -Qpq30a0.001e letter --output one
+goes_on="-Qpq30a0.001e letter --output two --checkpoint state --resume state --every 0 --time-limit"
+found=124
+tries=0
+while [ "$found" -eq 124 ] && [ $tries -lt 40 ]; do
+    limit=$(awk -v n=$tries 'BEGIN { print 0.1 * 1.3 ^ n }')
+    what="the whole, try $tries"
+    if [ $((tries % 2)) -eq 0 ]; then
+        # shellcheck disable=SC2086
+        timeout 100 "$MPIEXEC" -n 2 "$bin/ptriangle" $goes_on "$limit" >.out 2>.err
+    else
+        # shellcheck disable=SC2086
+        timeout 100 "$bin/ptriangle" $goes_on "$limit" >.out 2>.err
+    fi
+    found=$?
+    tries=$((tries + 1))
+done
+check "exit code $found: $(head -n 3 .err)" test "$found" -eq 0
+for suffix in node ele edge poly; do
+    check "the same .$suffix by whoever goes on" same_but_for_comments one.$suffix two.$suffix
+done
+rm -rf state two.*
+
+# --- one task alone is asked to end: all have its exit code
+what="two ranks, one of them with a limit"
+checks=$((checks + 1))
+timeout 100 "$MPIEXEC" -n 2 sh -c 'rank=${OMPI_COMM_WORLD_RANK:-$PMI_RANK}
+    [ "$rank" -eq 0 ] || set -- "$@" --time-limit 0.001
+    "$0" "$@"
+    echo $? >".code$rank"' "$bin/ptriangle" -Qpq30a0.001 letter --output two --checkpoint state \
+    >.out 2>.err
+check "the first one's" test "$(cat .code0)" -eq 124
+check "the other's" test "$(cat .code1)" -eq 124
+check "the checkpoint stays, as after any stop" test -e state/manifest
+rm -rf state
 
 # --- one error, no file
 fresh letter.poly

@@ -232,6 +232,14 @@ everywhere same_place -pq32D
 everywhere marker_bend -pc
 everywhere marker_precincts -pc
 everywhere hole_on_segment -pcq24a0.26
+everywhere hole_at_vertex -p
+run 0 -p hole_at_vertex
+counts 5 3 7 5 0 5
+matches "hole points on segments, which empty nothing: 1"
+everywhere hole_in_chain -p -pc
+run 0 -p hole_in_chain
+counts 16 18 33 12 6 18
+matches "hole points on segments, which empty nothing: 1"
 everywhere slit -p -pq20
 run 0 -p slit
 counts 4 2 5 4 0 4

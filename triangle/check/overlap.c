@@ -208,16 +208,19 @@ static bool is_near(const struct sweep *w, int32_t s, struct tri_point p, double
     return det * det <= distance * distance * (x * x + y * y);
 }
 
-/* Notes that the point of a hole or region is on that side of edge s, -1: outermost. */
-static void note_point(struct sweep *w, const struct check_query *q, int32_t s, int side, bool vague)
+/* Notes that the point of a hole or region is on that side of edge s, -1: outermost. A hole on an inner subsegment need
+ * not empty anything. */
+static void note_point(struct sweep *w, struct check_query *q, int32_t s, int side, bool vague)
 {
     int32_t f = s < 0 ? 2 * w->n_edges : 2 * s + side;
-    if (q->kind == TRI_CHECK_HOLES)
+    if (q->kind == TRI_CHECK_HOLES) {
         w->emptied[f] = 1;
-    else if (q->kind == TRI_CHECK_REGIONS && vague)
+        q->inside = q->inside && !vague;
+    } else if (q->kind == TRI_CHECK_REGIONS && vague) {
         w->vague[f] = 1;
-    else if (q->kind == TRI_CHECK_REGIONS && q->id > w->region[f])
+    } else if (q->kind == TRI_CHECK_REGIONS && q->id > w->region[f]) {
         w->region[f] = q->id;
+    }
 }
 
 /* On an edge, a lost vertex is as lost as inside; a hole or what is missing of a segment is where it should be. Within
@@ -239,14 +242,23 @@ static void answer(struct sweep *w, int32_t number)
         note_point(w, q, s, ABOVE, vague);
 }
 
-/* A point at a vertex is in every face there. */
-static void note_all(struct sweep *w, const struct event *event, int32_t n)
+/* A point at a vertex is in every face there, and within rounding of edges that pass it, beyond them. The edges that
+ * end there are no longer in the order, those that start not yet. */
+static void note_all(struct sweep *w, const struct event *event, int32_t n, int32_t below)
 {
+    int32_t above = tri_check_order_above(&w->order, below);
     for (int32_t i = 0; i < n; i++) {
-        for (int32_t j = 0; event[i].code < 0 && j < n; j++) {
+        if (event[i].code >= 0)
+            continue;
+        struct check_query *q = &w->c->queries[~event[i].code];
+        for (int32_t j = 0; j < n; j++) {
             for (int side = 0; event[j].code >= 0 && side < 2; side++)
-                note_point(w, &w->c->queries[~event[i].code], event[j].code >> 1, side, true);
+                note_point(w, q, event[j].code >> 1, side, true);
         }
+        if (is_near(w, below, q->at, q->tolerance))
+            note_point(w, q, below, BELOW, true);
+        if (is_near(w, above, q->at, q->tolerance))
+            note_point(w, q, above, ABOVE, true);
     }
 }
 
@@ -280,8 +292,10 @@ static bool process(struct sweep *w, const struct event *event, int32_t n)
     }
     if (witness >= 0) { /* queries at a vertex of the boundary are not inside */
         int32_t below;
-        note_all(w, event, n);
-        return remove_ending(w, event->at, n_ending, witness, &below) && insert_starting(w, n_starting, below);
+        if (!remove_ending(w, event->at, n_ending, witness, &below))
+            return false;
+        note_all(w, event, n, below);
+        return insert_starting(w, n_starting, below);
     }
     for (int32_t i = 0; i < n; i++)
         answer(w, ~event[i].code);
@@ -440,6 +454,14 @@ static enum tri_status sweep(struct checker *c, const struct check_pieces *missi
     return status;
 }
 
+static bool has_hole_inside(const struct checker *c)
+{
+    bool found = false;
+    for (int32_t i = 0; i < c->n_queries; i++)
+        found = found || (c->queries[i].kind == TRI_CHECK_HOLES && c->queries[i].inside);
+    return found;
+}
+
 enum tri_status tri_check_overlap(struct checker *c)
 {
     static const struct check_pieces none;
@@ -453,6 +475,8 @@ enum tri_status tri_check_overlap(struct checker *c)
         tri_check_begin(c, TRI_CHECK_OVERLAP);
         status = sweep(c, &none, false, !again, &good);
     }
+    if (status == TRI_OK && good && !again && has_hole_inside(c))
+        status = sweep(c, &none, true, false, &good);
     again = again && good;
     if (status == TRI_OK && again)
         status = sweep(c, &missing, true, true, &good);

@@ -25,12 +25,17 @@ static bool is_not_delaunay(const struct checker *c, int64_t i)
                         check_place(c, check_apex(c, h)), check_place(c, check_apex(c, c->part.link[h]))) > 0;
 }
 
+static bool sees_flat(const struct checker *c, int32_t h)
+{
+    return tri_dot(check_place(c, check_org(c, h)), check_place(c, check_dest(c, h)),
+                   check_place(c, check_apex(c, h))) < 0;
+}
+
+/* A subsegment counts once, also where vertices on both sides lie in its circle. */
 static bool is_encroached(const struct checker *c, int64_t i)
 {
-    int32_t h = (int32_t)i;
-    return c->part.link[h] >= 0 && check_is_constrained(c, h) &&
-           tri_dot(check_place(c, check_org(c, h)), check_place(c, check_dest(c, h)),
-                   check_place(c, check_apex(c, h))) < 0;
+    int32_t h = (int32_t)i, back = c->part.link[h];
+    return back >= 0 && check_is_constrained(c, h) && sees_flat(c, h) && (h < back || !sees_flat(c, back));
 }
 
 static bool differs(const struct checker *c, int64_t i)
@@ -101,10 +106,13 @@ static void judge_circle(struct checker *c, const struct check_open *a, const st
         tell_circle(c, a, b);
 }
 
-static void judge_diametral(struct checker *c, const struct check_open *a)
+static bool is_flat(const struct check_open *a) { return tri_dot(a->at[0], a->at[1], a->at[2]) < 0; }
+
+static void judge_diametral(struct checker *c, const struct check_open *a, const struct check_open *b)
 {
     bool constrained = a->constrained || !check_is_listed(c); /* then the boundary is what there is */
-    if (is_conforming(c) && constrained && tri_dot(a->at[0], a->at[1], a->at[2]) < 0)
+    bool first = b == NULL || a->half_edge < b->half_edge;
+    if (is_conforming(c) && constrained && is_flat(a) && (first || !is_flat(b)))
         tell_encroached(c, a);
 }
 
@@ -116,7 +124,7 @@ static void judge_side(struct checker *c, const struct check_open *a, const stru
         if (b != NULL)
             judge_circle(c, a, b);
         if (b == NULL || a->constrained)
-            judge_diametral(c, a);
+            judge_diametral(c, a, b);
     }
     if (b != NULL && a->half_edge < b->half_edge && check_wants_regions(c) && !a->constrained &&
         a->attribute != b->attribute)

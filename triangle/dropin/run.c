@@ -81,6 +81,7 @@ static void warn_of_input(const struct io_run *run)
                 "segments are no edges of the mesh: they are passed on, but the mesh does not keep them");
     warn_number(run, report->duplicates, "points lie where a point of lower number lies, and are not used");
     warn_number(run, report->constrain.skipped, "segments name no point, or the same point twice, and are skipped");
+    warn_number(run, report->holes_between, "hole points lie on segments, and empty nothing");
     if (report->quality.hit_limit && run->how.quality.conforming)
         warn(run, "the limit of S was reached before the mesh was conforming");
 }

@@ -154,6 +154,7 @@ enum tri_status tri_h5_open(const char *path, struct tri_h5 **h5, struct tri_err
     *h5 = new_mesh(path);
     if (!*h5)
         return tri_fail(error, TRI_NO_MEMORY, path, 0, "no memory to read the file");
+    (void)H5dont_atexit(); /* before all else: at the end of the process HDF5 would print about what is damaged */
     H5E_BEGIN_TRY
     {
         status = open_file(*h5, error);
