@@ -90,9 +90,10 @@ static void merge_spokes(struct tri_point hub, const struct spoke *from, struct 
  * does without memory. False where there is none. */
 static bool sort_by_merging(const struct tri_mesh *mesh, tri_vertex_id hub, tri_parent_id *parent, int32_t n)
 {
-    struct spoke *all = malloc(2 * (size_t)n * sizeof *all), *from = all, *to = all + n;
+    struct spoke *all = malloc(2 * (size_t)n * sizeof *all);
     if (!all)
         return false;
+    struct spoke *from = all, *to = all + n;
     for (int32_t i = 0; i < n; i++)
         from[i] = (struct spoke){tri_far_end(mesh, parent[i], hub), parent[i]};
     for (int32_t width = 1; width < n; width *= 2) {

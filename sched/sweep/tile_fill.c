@@ -169,7 +169,7 @@ static void count_fans(struct fans *f, int64_t n_input)
             continue;
         }
         f->end[own]++;
-        if ((final_corner(t, 1) < n_input) | (final_corner(t, 2) < n_input))
+        if (final_corner(t, 1) < n_input || final_corner(t, 2) < n_input)
             f->has_input[own] = true;
     }
     for (int32_t v = 0, sum = f->others; v < n; v++) {

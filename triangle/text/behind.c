@@ -19,7 +19,8 @@ int tri_behind_start(struct tri_behind *behind, struct tri_output *output, uint6
     memset(&behind->control, 0, sizeof behind->control);
     behind->control.aio_fildes = is_aligned(place, data, size) ? tri_output_direct(output) : output->file;
     behind->control.aio_offset = (off_t)place;
-    behind->control.aio_buf = (void *)(uintptr_t)data; /* is read alone */
+    behind->data = data;
+    behind->control.aio_buf = (void *)data; /* is read alone */
     behind->control.aio_nbytes = size;
     behind->control.aio_sigevent.sigev_notify = SIGEV_NONE;
     behind->under_way = aio_write(&behind->control) == 0;
@@ -37,6 +38,6 @@ int tri_behind_wait(struct tri_behind *behind, const struct tri_output *output)
     const ssize_t written = aio_return(&behind->control);
     const size_t done = fault == 0 && written > 0 ? (size_t)written : 0;
     behind->under_way = false;
-    return tri_output_write_at(output, (uint64_t)control->aio_offset + done,
-                               (const char *)(uintptr_t)control->aio_buf + done, control->aio_nbytes - done);
+    return tri_output_write_at(output, (uint64_t)control->aio_offset + done, behind->data + done,
+                               control->aio_nbytes - done);
 }

@@ -14,6 +14,7 @@ enum { TRI_BEHIND_BYTES = 4096 }; /* a place, a size and an address that are mul
 /* At most one piece at a time. All 0: nothing is under way. May not move while something is. */
 struct tri_behind {
     bool under_way;
+    const char *data; /* lent */
     struct aiocb control;
 };
 
