@@ -115,7 +115,7 @@ if "$bin/ptriangle" -pq30aAQ --output section.h5 section.poly >.out 2>&1 && [ -f
     part_by_part section.h5 --poly section.poly -q 33
     cp section.h5 damaged.h5 # the address of the first group, in the superblock
     printf '\377' | dd of=damaged.h5 bs=1 seek=60 conv=notrunc 2>/dev/null
-    "$bin/trianglecheck" damaged.h5 >.out 2>.err
+    ASAN_OPTIONS=detect_leaks=0 "$bin/trianglecheck" damaged.h5 >.out 2>.err # HDF5 itself leaves something behind there
     check "exit code" test $? -eq 2
     check "one line" test "$(wc -l <.err)" -eq 1
 fi
