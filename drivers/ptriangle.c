@@ -24,6 +24,7 @@
 #include "sched/schedule.h"
 #include "sched/sweep/queue.h"
 #include "sched/threads.h"
+#include "triangle/census.h"
 #include "triangle/estimate.h"
 #include "triangle/text/names.h"
 #include "triangle/text/write.h"
@@ -262,6 +263,16 @@ static enum tri_status write_streams(struct program *p, const struct run *run, s
     return status;
 }
 
+/* A report tells how many triangles stay below the bounds however the mesh was made. */
+static void count_remaining(struct program *p, const struct run *run)
+{
+    if (!p->refined || p->schedule.remain_known || run->plan.swept)
+        return;
+    const struct tri_executor executor = par_executor(&p->threads);
+    tri_count_bad(&run->mesh, &run->options.quality, &run->report.quality, &executor, p->schedule.remain);
+    p->schedule.remain_known = true;
+}
+
 static enum tri_status write_further(void *user, const struct run *run, struct tri_output_set *set,
                                      struct tri_error *error)
 {
@@ -274,6 +285,7 @@ static enum tri_status write_further(void *user, const struct run *run, struct t
         status = blocks_write(p->options.blocks, set, &p->schedule, &run->mesh, error);
     if (status || !p->options.report)
         return status;
+    count_remaining(p, run);
     return report_write(p->options.report, set, run, p->refined ? &p->schedule : NULL, &p->ranks, p->threads,
                         error);
 }

@@ -97,8 +97,8 @@ struct par_report {
     int64_t deferred, left_over;  /* refused by fences in all phases; bad triangles that sequential calls got at last */
     enum par_way way;
     int64_t most_live;            /* triangles in the mesh at a time, with the room that blocks have been dealt */
-    int64_t remain[TRI_EXCUSES];  /* triangles that stay below the bounds, by reason, of a mesh that was handed out; */
-    bool remain_known;            /* where they have been counted */
+    int64_t remain[TRI_EXCUSES];  /* triangles that stay below the bounds, by reason */
+    bool remain_known;            /* where they have been counted: of a mesh that was handed out */
     int64_t parked;               /* most bytes of files in `scratch` at a time; 0: all was in memory */
     int64_t pauses;               /* times a block waited for room */
     double seconds_prerefine, seconds_partition, seconds_room, seconds_merge, seconds_last, seconds_total;

@@ -16,8 +16,10 @@ PTRIANGLE_TEST_BLOCK=60 program 0 -pcOq25DQ --report report.json graded_1899
 check "worklist come back in numbers" awk '/"worklist":/ { gsub(/,/, ""); for (i = 1; i < NF; i++) if ($i == "\"worklist\":") n += $(i + 1) }
     END { exit !(n > 0 && n < 50000) }' report.json
 fresh regress/tangle.poly # what one stage makes bad for the next is in somebody's list
-PTRIANGLE_TEST_BLOCK=250 program 0 -pcq34a1.79824924 tangle
+PTRIANGLE_TEST_BLOCK=250 program 0 -pcq34a1.79824924 --report report.json tangle
 check "all bad triangles have had their turn" grep -q 'below the bounds: [0-9]* at small angles of the input\.$' .out
+below=$(sed -n 's/^\([0-9]*\) triangles stay below the bounds.*/\1/p' .out)
+check "the report tells of them" test "$(grep -A1 below_bounds report.json | grep -c "\"input_angle\": $below,$")" = 1
 
 # --- long options
 fresh letter.poly
