@@ -184,8 +184,10 @@ static bool tell_from(struct telling *telling, struct par_message *m, struct par
             continue;
         memory = par_talk_add_triangle(talk, t) && tell_triangle(m, talk, mesh, n_common, t);
         for (int e = 0; memory && e < 3; e++)
-            if (mesh->tri[t].n[e] >= 0)
+            if (mesh->tri[t].n[e] >= 0) {
+                __builtin_prefetch(&mesh->tri[tri_of(mesh->tri[t].n[e])]);
                 memory = par_ids_add(&telling->stack, tri_of(mesh->tri[t].n[e]));
+            }
     }
     return memory;
 }
