@@ -5,7 +5,8 @@
  * rank that owns the first of its tiles, and whoever owns another of them lends and gets back. Four phases follow each
  * other. Each takes as long as its busiest rank refines (list scheduling on its threads: prediction.h), then as long as
  * the busiest one packs and unpacks, then as long as the slowest one's messages are under way; agreements take some
- * latencies in proportion to the logarithm of the number of ranks. Then each rank numbers and hands out what it owns.
+ * latencies in proportion to the logarithm of the number of ranks, and whoever waits for one sleeps and looks again,
+ * half a millisecond late at most. Then each rank numbers and hands out what it owns.
  *
  * Not in the model: links of the network that are shared, threads and ranks that share caches and memory, files. Nor
  * may ranks begin a phase while others, elsewhere in the plane, still refine for the last one, which would be quicker.
@@ -22,6 +23,7 @@ struct replay_how {
     int times;             /* the mesh is so many copies of the measured one, in each direction; >= 1 */
     double latency;        /* seconds of a message */
     double bandwidth;      /* bytes a second that a rank sends and receives */
+    double lateness;       /* seconds, on average, that a rank which waits notices an agreement too late */
     double pair_bytes;     /* lent and given back for a block and one more rank that owns a part of it */
     double pair_seconds;   /* of a processor, for packing and unpacking these, of both ranks */
 };
