@@ -1,6 +1,7 @@
 /* Runs that are stopped at any time, or whose tiles nobody takes any more, and go on: the mesh is that of a run that
  * was never stopped, whether it is swept, or stays as a whole, in memory or parked. Files that are damaged, byte by
  * byte. */
+#include "full.h"
 #include "support.h"
 
 #include <stdio.h>
@@ -172,7 +173,7 @@ static void test_nobody_takes_tiles(void **state)
     (void)state;
     int64_t tiles;
     uint64_t wanted = whole(&tiles);
-    for (int64_t at = 1; at < tiles; at += tiles / 7) {
+    for (int64_t at = 1; at < tiles; at += every(3) * tiles / 7) {
         struct par_checkpoint c;
         remove_all();
         open_it(&c, false);
@@ -330,7 +331,7 @@ static void test_damage_is_found(void **state)
     leave_state();
     for (int k = 0; k < 3; k++) {
         long n = length_of(names[k]);
-        for (long at = 0; at < n; at += n < 100 ? 3 : n / 7) {
+        for (long at = 0; at < n; at += every(3) * (n < 100 ? 3 : n / 7)) {
             struct par_checkpoint c;
             flip(names[k], at);
             enum tri_status status = par_checkpoint_open(&c, DIRECTORY, true, 7, NULL);
@@ -475,7 +476,7 @@ static void go_on_until_done(const struct way *way, const struct whole_run *want
 static void test_whole_meshes_go_on(void **state)
 {
     (void)state;
-    for (int i = 0; i < N_WAYS; i++) {
+    for (int i = 0; i < N_WAYS; i += every(2)) {
         struct whole_run wanted = whole_run_of(&ways[i], NULL);
         assert_int_equal(refine_whole(&wanted), TRI_OK);
         assert_int_equal(wanted.was, ways[i].expected);
@@ -515,7 +516,7 @@ static void test_calls_go_on(void **state)
 static void test_a_finished_mesh_is_kept(void **state)
 {
     (void)state;
-    for (int i = 0; i < N_WAYS; i++) {
+    for (int i = 0; i < N_WAYS; i += every(2)) {
         if (!ways[i].has_sink)
             continue;
         struct whole_run wanted = whole_run_of(&ways[i], NULL);
