@@ -264,6 +264,26 @@ static void test_ranks_hand_out_what_one_process_does(void **state)
 }
 
 /* A disk that is full on one rank: all say so, in its words. */
+/* A block leaves a triangle beside a subsegment, with a corner outside its box, where a rank owns that which lends it
+ * nothing. */
+static void test_a_block_leaves_what_reaches_beyond_its_box(void **state)
+{
+    (void)state;
+    static const struct trial trial = {"section.poly", 25, 0, 60, true, false, 0};
+    struct start start = trials_start_of(&trial);
+    struct par_options options = small_blocks(&trial, 1);
+    struct member alone = new_member(&start, &options), member[MOST_RANKS];
+    refine_to(&alone);
+    for (int n_ranks = 5; n_ranks <= MOST_RANKS; n_ranks += 2) {
+        run_ranks(member, &start, &options, n_ranks, NULL, -1, false);
+        compare(&alone, member, n_ranks);
+        for (int p = 0; p < n_ranks; p++)
+            free_member(&member[p]);
+    }
+    free_member(&alone);
+    tri_pslg_free(&start.pslg);
+}
+
 static void test_an_error_of_one_is_an_error_of_all(void **state)
 {
     (void)state;
@@ -469,6 +489,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_all_get_what_the_first_has),
         cmocka_unit_test(test_ranks_hand_out_what_one_process_does),
+        cmocka_unit_test(test_a_block_leaves_what_reaches_beyond_its_box),
         cmocka_unit_test(test_an_error_of_one_is_an_error_of_all),
         cmocka_unit_test(test_other_ranks_go_on),
         cmocka_unit_test(test_what_does_not_fit_is_refused),

@@ -127,7 +127,19 @@ static bool is_of_border(const struct par_ranks *r, uint64_t key)
            r->shift.is_border[block];
 }
 
-/* What such a block left goes to all who own a corner of it. */
+#ifndef NDEBUG
+/* An own corner, or one of another rank's that knows the triangle: the others need not have its entry. */
+static bool is_known_to_owner(const struct par_ranks *r, tri_triangle_id t, const int *owner, int n)
+{
+    bool is = par_has_own(r, t);
+    for (int k = 0; k < n; k++)
+        is = is || par_talk_number(&r->borrowed[owner[k]], t) != TRI_NONE;
+    return is;
+}
+#endif
+
+/* What such a block left goes to those who own a corner of it and know it. A block may leave a triangle beside a
+ * subsegment of which one corner lies outside its box: that one's owner may know nothing of the block. */
 static bool give_entries(struct par_ranks *r, struct par_message *message)
 {
     struct par_state *state = r->state;
@@ -140,9 +152,12 @@ static bool give_entries(struct par_ranks *r, struct par_message *message)
         if (!is_of_border(r, state->key.item[i]))
             continue;
         int n = owners_of(r, t, owner, &has_own);
-        for (int k = 0; k < n; k++)
-            memory = memory && par_message_add_entry(&message[owner[k]], state->key.item[i],
-                                                     par_talk_number(&r->borrowed[owner[k]], t));
+        assert(is_known_to_owner(r, t, owner, n));
+        for (int k = 0; k < n; k++) {
+            int32_t number = par_talk_number(&r->borrowed[owner[k]], t);
+            if (number != TRI_NONE)
+                memory = memory && par_message_add_entry(&message[owner[k]], state->key.item[i], number);
+        }
     }
     if (keep)
         par_worklist_keep(state, keep);

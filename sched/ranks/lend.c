@@ -119,16 +119,7 @@ static bool tell_surroundings(const struct par_ranks *r)
     return memory;
 }
 
-static bool has_corner_of(const struct par_ranks *r, tri_triangle_id t, int rank)
-{
-    const struct tri_mesh *mesh = r->state->mesh;
-    bool has = false;
-    for (int k = 0; k < 3; k++)
-        has = has || par_owner_at(&r->territory, mesh->xy[mesh->tri[t].v[k]]) == rank;
-    return has;
-}
-
-/* Who has a corner of its own there has the entry, too. */
+/* Whether the taker has an entry already is not known here: it finds the same key. */
 static bool lend_entries(struct par_ranks *r, struct par_message *message)
 {
     struct par_state *state = r->state;
@@ -137,7 +128,8 @@ static bool lend_entries(struct par_ranks *r, struct par_message *message)
     for (int32_t i = 0; keep && i < state->worklist.n; i++) {
         int w = taker_of(r, i);
         keep[i] = w < 0;
-        if (w >= 0 && !has_corner_of(r, state->worklist.item[i], w))
+        assert(w < 0 || par_talk_number(&r->lent[w], state->worklist.item[i]) != TRI_NONE);
+        if (w >= 0)
             memory = memory && par_message_add_entry(&message[w], state->key.item[i],
                                                      par_talk_number(&r->lent[w], state->worklist.item[i]));
     }

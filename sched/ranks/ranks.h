@@ -4,8 +4,10 @@
  * Every rank has made the coarse mesh, and owns some tiles (territory.h).
  *
  * INVARIANT. Between phases a rank's mesh is the triangles of the true one that have a corner in its tiles, and no
- * others; links to others are TRI_BEYOND. Its worklist is the true one's entries among them. Triangles that have
- * corners of other ranks, too (straddlers), are in the mesh of each of these.
+ * others; links to others are TRI_BEYOND. Triangles that have corners of other ranks, too (straddlers), are in the mesh
+ * of each of these. Its worklist holds entries of the true one among them, and each entry of the true one is with at
+ * least one of the ranks that own a corner of its triangle: a block that takes it has all corners in its box, so that
+ * each of them either works on the block or lends to it.
  *
  * A block that lies in the tiles of one rank asks for nothing: all triangles that it may change are here, and so are
  * those that share an edge with one of them. A block over the tiles of several ranks (at a border) is done by the one
