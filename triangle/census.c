@@ -116,6 +116,7 @@ static bool is_beside_protected(const struct tri_criterion *c, const struct tri_
     return false;
 }
 
+/* TRI_EXCUSES: none of its own. */
 static enum tri_excuse excuse_for(const struct tri_criterion *c, tri_triangle_id triangle,
                                   const struct tri_shape *shape, enum tri_badness badness,
                                   const struct tri_refine_report *report)
@@ -135,10 +136,37 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, tri_triangle_id
         return TRI_EXCUSE_PROTECTED;
     if (report->hit_cap && badness == TRI_BAD_ANGLE)
         return TRI_EXCUSE_LIMIT;
-    if (report->gated + report->fenced > 0)
-        return TRI_EXCUSE_DEFERRED;
+    return TRI_EXCUSES;
+}
+
+/* Of edges that are equally short the one with the first reason, so that it does not matter at which corner a triangle
+ * begins: numbering may change that. */
+static enum tri_excuse first_excuse_for(const struct tri_criterion *c, tri_triangle_id triangle,
+                                        const struct tri_shape *shape, enum tri_badness badness,
+                                        const struct tri_refine_report *report)
+{
+    enum tri_excuse first = TRI_EXCUSES;
+    for (int k = 0; k < 3; k++) {
+        struct tri_shape seen = *shape;
+        seen.shortest = k;
+        if (shape->l[k] > shape->l[shape->shortest])
+            continue;
+        const enum tri_excuse excuse = excuse_for(c, triangle, &seen, badness, report);
+        first = excuse < first ? excuse : first;
+    }
+    return first;
+}
+
+void tri_settle_counts(const struct tri_refine_report *report, const int64_t found[TRI_EXCUSES + 1],
+                       int64_t count[TRI_EXCUSES])
+{
     bool protected_more = report->given_up[TRI_EXCUSE_PROTECTED] > report->given_up[TRI_EXCUSE_PRECISION];
-    return protected_more ? TRI_EXCUSE_PROTECTED : TRI_EXCUSE_PRECISION; /* behind a protected one that is far away */
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        count[k] = found[k];
+    if (report->gated + report->fenced > 0)
+        count[TRI_EXCUSE_DEFERRED] += found[TRI_EXCUSES];
+    else /* behind a protected one that is far away, if any is */
+        count[protected_more ? TRI_EXCUSE_PROTECTED : TRI_EXCUSE_PRECISION] += found[TRI_EXCUSES];
 }
 
 static enum tri_excuse excuse_for_circle(const struct tri_mesh *mesh, const struct tri_refine_options *options,
@@ -174,11 +202,11 @@ void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_refine_o
 struct counting {
     struct tri_criterion criterion;
     const struct tri_refine_report *report;
-    int64_t count[TRI_MOST_SHARES][TRI_EXCUSES];
+    int64_t count[TRI_MOST_SHARES][TRI_EXCUSES + 1];
 };
 
 static void count_triangle(const struct tri_criterion *c, const struct tri_refine_report *report, tri_triangle_id t,
-                           int64_t count[TRI_EXCUSES])
+                           int64_t count[TRI_EXCUSES + 1])
 {
     const struct tri_mesh *mesh = c->mesh;
     if (!tri_is_live(&mesh->tri[t]))
@@ -186,7 +214,7 @@ static void count_triangle(const struct tri_criterion *c, const struct tri_refin
     struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
     enum tri_badness badness = tri_judge(c, &mesh->tri[t], &shape);
     if (badness != TRI_GOOD)
-        count[excuse_for(c, t, &shape, badness, report)]++;
+        count[first_excuse_for(c, t, &shape, badness, report)]++;
 }
 
 static void count_share(void *context, size_t share)
@@ -199,7 +227,7 @@ static void count_share(void *context, size_t share)
 
 void tri_count_bad_among(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                          const struct tri_refine_report *report, const tri_triangle_id *triangle, int32_t n,
-                         int64_t count[TRI_EXCUSES])
+                         int64_t count[TRI_EXCUSES + 1])
 {
     const struct tri_criterion c = tri_criterion_for(mesh, options);
     for (int32_t i = 0; i < n; i++)
@@ -213,9 +241,8 @@ void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options 
     struct counting c = {tri_criterion_for(mesh, options), report, {{0}}};
     size_t shares = tri_shares(mesh->n_triangles);
     tri_execute(options->unsuitable ? NULL : executor, shares, count_share, &c);
-    for (int k = 0; k < TRI_EXCUSES; k++) {
-        count[k] = 0;
-        for (size_t i = 0; i < shares; i++)
-            count[k] += c.count[i][k];
-    }
+    for (size_t i = 1; i < shares; i++)
+        for (int k = 0; k <= TRI_EXCUSES; k++)
+            c.count[0][k] += c.count[i][k];
+    tri_settle_counts(report, c.count[0], count);
 }

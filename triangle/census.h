@@ -35,10 +35,15 @@ void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options 
                    const struct tri_refine_report *report, const struct tri_executor *executor,
                    int64_t count[TRI_EXCUSES]);
 
-/* The same of n triangles alone, each of which is listed once; adds to the counts. */
+/* The same of n triangles alone, each of which is listed once; adds to the counts. The last is of those that have no
+ * reason of their own. */
 void tri_count_bad_among(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                          const struct tri_refine_report *report, const tri_triangle_id *triangle, int32_t n,
-                         int64_t count[TRI_EXCUSES]);
+                         int64_t count[TRI_EXCUSES + 1]);
+
+/* Counts with a reason for all, by the report of the whole run. */
+void tri_settle_counts(const struct tri_refine_report *report, const int64_t found[TRI_EXCUSES + 1],
+                       int64_t count[TRI_EXCUSES]);
 
 /* found[n_triangles] receives the triangles that violate the bounds though there is nothing to do at them: what
  * tri_find_work leaves out. Returns how many. A size test is asked. O(triangles). */

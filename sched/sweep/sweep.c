@@ -121,6 +121,8 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
     int32_t odd;
     enum tri_status status = begin_sweep(state, &tiles, &ahead, &odd, error);
     status = status ? status : sweep_columns(state, &tiles, &ahead, odd, &left, error);
+    if (state->counts_remaining)
+        par_remain_settle(state);
     state->counts_remaining = false;
     par_ahead_free(&ahead);
     if (!status && left && state->options->checkpoint)
