@@ -8,7 +8,6 @@
 #include "sched/theory.h"
 
 #include "triangle/census.h"
-#include "triangle/criterion.h"
 #include "triangle/grow.h"
 
 bool par_ids_grow(struct par_ids *ids)

@@ -2,9 +2,8 @@
 #ifndef TRIANGLE_CENSUS_H
 #define TRIANGLE_CENSUS_H
 
+#include "triangle/criterion.h"
 #include "triangle/refine.h"
-
-struct tri_criterion;
 
 #ifdef __cplusplus
 extern "C" {

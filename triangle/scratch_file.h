@@ -2,7 +2,7 @@
 #ifndef TRIANGLE_SCRATCH_FILE_H
 #define TRIANGLE_SCRATCH_FILE_H
 
-/* A new, empty file in the folder, open to read and to write, for the caller to close; -1: none, and errno tells why. */
+/* A new, empty file in the folder, open to read and to write. -1: none, and errno tells why. */
 int tri_scratch_file(const char *folder);
 
 #endif
