@@ -583,7 +583,8 @@ int run_arguments(const struct arguments *arguments, const struct run_hooks *hoo
 {
     const struct tri_switches *s = &arguments->switches;
     struct tri_error error = {0};
-    struct runner r = {.run = {.hooks = hooks, .arguments = arguments, .options = tri_switches_options(s)}, .unused = -1,
+    struct runner r = {.run = {.hooks = hooks, .arguments = arguments, .options = tri_switches_options(s)},
+                       .unused = -1,
                        .console = {hooks->program, s->quiet, s->verbosity}, .error = &error};
     enum tri_status status = TRI_OK;
     if (s->help)

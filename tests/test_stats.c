@@ -53,7 +53,7 @@ static void test_refined(void **state)
     struct tri_options options = tri_defaults();
     struct tri_report report;
     options.refine = true;
-    options.quality.min_angle = 25;
+    options.quality.max_area = 0.1;
     struct tri_mesh mesh = support_generate(&pslg, &options, &report);
     struct tri_counts counts = counted(&mesh), again;
     assert_true(report.duplicates > 0 && mesh.n_vertices > 500);
@@ -187,7 +187,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_counts), cmocka_unit_test(test_unused), cmocka_unit_test(test_refined),
-        cmocka_unit_test(test_shapes), cmocka_unit_test(test_against_judge), cmocka_unit_test(test_right_angles), cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_shapes), cmocka_unit_test(test_against_judge), cmocka_unit_test(test_right_angles),
+        cmocka_unit_test(test_empty),
     };
     return cmocka_run_group_tests_name("stats", tests, NULL, NULL);
 }
