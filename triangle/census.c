@@ -55,7 +55,7 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_r
                     fmin(1e-6 * triangles, 1e9), TRI_MAX_TRIANGLES / 1000000);
 }
 
-bool tri_needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
+static bool needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
 {
     const struct tri_triangle *t = &c->mesh->tri[triangle];
     if (!tri_is_live(t))
@@ -81,9 +81,21 @@ int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_optio
     int32_t n = 0;
     assert(first >= 0 && last <= mesh->n_triangles);
     for (tri_triangle_id triangle = first; triangle < last; triangle++)
-        if (tri_needs_work(&c, triangle))
+        if (needs_work(&c, triangle))
             found[n++] = triangle;
     return n;
+}
+
+int32_t tri_find_work_among(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                            const tri_triangle_id *triangle, int32_t n, tri_triangle_id *found)
+{
+    const struct tri_criterion c = tri_criterion_for(mesh, options);
+    int32_t n_found = 0;
+    assert(n >= 0);
+    for (int32_t i = 0; i < n; i++)
+        if (needs_work(&c, triangle[i]))
+            found[n_found++] = triangle[i];
+    return n_found;
 }
 
 int32_t tri_find_hopeless(const struct tri_mesh *mesh, const struct tri_refine_options *options,
@@ -93,7 +105,7 @@ int32_t tri_find_hopeless(const struct tri_mesh *mesh, const struct tri_refine_o
     int32_t n = 0;
     for (tri_triangle_id triangle = 0; triangle < mesh->n_triangles; triangle++) {
         const struct tri_triangle *t = &mesh->tri[triangle];
-        if (!tri_is_live(t) || tri_needs_work(&c, triangle))
+        if (!tri_is_live(t) || needs_work(&c, triangle))
             continue;
         struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
         if (tri_judge(&c, t, &shape) != TRI_GOOD)
