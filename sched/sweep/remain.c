@@ -25,7 +25,6 @@ bool par_remain_begin(struct par_state *state)
         memory = par_ids_add(list, found[i]);
     free(found);
     memset(state->remained, 0, sizeof state->remained);
-    state->report->remain_known = memory;
     return memory;
 }
 
@@ -56,6 +55,7 @@ void par_remain_settle(struct par_state *state)
 {
     const struct tri_refine_report report = report_of(state);
     tri_settle_counts(&report, state->remained, state->report->remain);
+    state->report->remain_known = true;
 }
 
 void par_remain_count_all(struct par_state *state)

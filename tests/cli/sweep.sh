@@ -154,6 +154,18 @@ killed_and_on 0.05 -Qpq30a0.002 letter --output out.h5
 check "the same bytes" cmp whole.h5 out.h5
 wrote out.h5 out.xdmf
 
+# --- what has been counted before a stop counts
+fresh nasty/spike.poly
+program 0 -pq30a0.0005 spike --output whole.h5
+grep 'below the bounds' .out >.expected
+killed_and_on 0.05 -pq30a0.0005 spike --output out.h5
+check "the same bytes" cmp whole.h5 out.h5
+check "bad triangles are told of" test -s .expected
+grep 'below the bounds' .out | cmp -s - .expected || fault "bad triangles: $(cat .expected .out)"
+fresh letter.poly
+program 0 -Qpq30a0.002 letter --output whole.h5
+ls >.before
+
 # --- the line that goes on
 rm -f out.*
 ls >.before
