@@ -36,6 +36,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/criterion.c
     triangle/inside.c
     triangle/refine.c
+    triangle/pause.c
     triangle/census.c
     triangle/estimate.c
     triangle/stats.c

@@ -13,6 +13,7 @@
 
 struct par_park;
 struct par_state;
+struct tri_pause;
 
 /* Tells of the phase that begins. */
 void par_tell(const struct par_state *state, int phase);
@@ -70,8 +71,9 @@ struct par_state {
     struct par_report *report;
     int32_t n_schedules;     /* begun so far; the last is the one that works */
     enum par_stage stage;
-    bool amid;               /* in the phases of this stage's schedule: `cells` are its blocks before the first round */
+    bool amid;               /* in this stage's schedule: `cells` are its blocks before the first round */
     int round, phase;        /* of that, the second from 0 */
+    struct tri_pause *paused; /* where a sequential call goes on that a checkpoint's state is amid; else NULL */
     struct par_share *share; /* NULL: all blocks are done here, with all that they may look at */
     int32_t n_kept;          /* vertices there were before */
     bool may_number;         /* nothing is refined after this schedule, and what it makes is to be numbered */

@@ -20,6 +20,7 @@
 #include "triangle/census.h"
 #include "triangle/clock.h"
 #include "triangle/estimate.h"
+#include "triangle/pause.h"
 
 /* Coarse triangles that a cell has after pre-refinement: enough for seams to be narrow, few enough for pre-refinement
  * to take a few thousandths of the time. (docs/performance.md) */
@@ -173,19 +174,38 @@ static enum tri_status prerefine_graded(struct par_state *state, const struct tr
     return status;
 }
 
-/* One sequential call of the same loop, for what the worklist holds (all: for the whole mesh). */
-static enum tri_status refine_rest(struct par_state *state, const struct tri_refine_options *quality, bool all,
+/* Ranks keep states of their own. */
+static struct par_checkpoint *checkpoint_of(const struct par_state *state)
+{
+    return state->options->carrier ? NULL : state->options->checkpoint;
+}
+
+/* To its end. top: the mesh is the whole one, and a state may be kept between any two points. */
+static enum tri_status run_refiner(struct par_state *state, struct tri_refiner *refiner, bool top,
                                    struct tri_error *error)
 {
+    struct par_checkpoint *checkpoint = top ? checkpoint_of(state) : NULL;
+    return checkpoint ? par_state_call(checkpoint, state, refiner, error) : tri_refiner_run(refiner, error);
+}
+
+/* One sequential call of the same loop, for what the worklist holds (all: for the whole mesh). */
+static enum tri_status refine_rest(struct par_state *state, const struct tri_refine_options *quality, bool all,
+                                   bool top, struct tri_error *error)
+{
     struct tri_refine_options options = *quality;
-    struct tri_refine_report report;
+    struct tri_refine_report report = {0};
+    struct tri_refiner *refiner = NULL;
     if (!all) {
         options.worklist = state->worklist.item;
         options.n_worklist = state->worklist.n;
         if (state->worklist.n == 0)
             return TRI_OK;
     }
-    enum tri_status status = tri_refine(state->mesh, &options, &report, error);
+    enum tri_status status = tri_refine_check(state->mesh, &options, NULL, error);
+    status = status ? status : tri_refiner_new(&refiner, state->mesh, &options, &report, error);
+    status = status ? status : run_refiner(state, refiner, top, error);
+    tri_refiner_free(refiner);
+    assert(tri_mesh_is_sound(state->mesh));
     par_add_up(&state->report->total, &report);
     return status;
 }
@@ -244,12 +264,6 @@ static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, st
     return status;
 }
 
-/* Ranks keep states of their own. */
-static struct par_checkpoint *checkpoint_of(const struct par_state *state)
-{
-    return state->options->carrier ? NULL : state->options->checkpoint;
-}
-
 /* Between two steps of what cannot be undone: a state may be kept here. */
 static enum tri_status come_to_border(struct par_state *state, bool surely, struct tri_error *error)
 {
@@ -290,7 +304,6 @@ static enum tri_status run_rounds(struct par_state *state, struct par_partition 
             break;
         par_partition_coarsen(partition);
     }
-    state->amid = false;
     state->report->deferred += state->report->total.fenced; /* finish_schedule clears it in the total */
     return status;
 }
@@ -411,8 +424,9 @@ static enum tri_status finish_schedule(struct par_state *state, const struct tri
     double last = tri_seconds();
     if (!status && state->worklist.n > 0) { /* in the order of the worklist, which ids do not show in */
         par_room_mark(&state->spare, state->mesh, &state->executor);
-        status = refine_rest(state, quality, false, error);
+        status = refine_rest(state, quality, false, top, error);
     }
+    state->amid = false;
     state->report->seconds_last += tri_seconds() - last;
     enum tri_status closed = leave_no_gaps(state, !status && top && state->may_number, error);
     par_forget_deferred(state->report);
@@ -438,10 +452,13 @@ static enum tri_status report_schedule(struct par_state *state, const struct par
 static enum tri_status run_and_finish(struct par_state *state, const struct tri_refine_options *quality,
                                       struct par_partition *partition, bool top, struct tri_error *error)
 {
-    enum tri_status status = run_rounds(state, partition, error);
-    note_size(state);
-    if (top)
-        state->report->left_over += state->worklist.n;
+    enum tri_status status = TRI_OK;
+    if (!state->paused) { /* else the rounds are over */
+        status = run_rounds(state, partition, error);
+        note_size(state);
+        if (top)
+            state->report->left_over += state->worklist.n;
+    }
     return finish_schedule(state, quality, top, status, error);
 }
 
@@ -558,7 +575,7 @@ static enum tri_status refine_level(struct par_state *state, const struct tri_re
     if (estimate >= cell * (level == 0 ? FEWEST_CELLS : FEWEST_COARSE_CELLS))
         return schedule_level(state, quality, level, estimate, cell, error);
     double began = tri_seconds();
-    enum tri_status status = refine_rest(state, quality, true, error);
+    enum tri_status status = refine_rest(state, quality, true, level == 0, error);
     *(level > 0 ? &state->report->seconds_prerefine : &state->report->seconds_last) += tri_seconds() - began;
     return status;
 }
@@ -571,6 +588,8 @@ static enum tri_status refine_stage(struct par_state *state, const struct tri_re
         return TRI_OK;
     if (state->amid)
         return go_on(state, quality, error);
+    if (state->paused)
+        return refine_rest(state, quality, true, true, error);
     const bool begun = state->stage < stage;
     state->stage = stage;
     enum tri_status status = begun ? come_to_border(state, false, error) : TRI_OK;
@@ -596,7 +615,7 @@ static bool must_be_sequential(const struct tri_refine_options *quality, const s
            quality->deferred || (quality->unsuitable && !options->size_test_in_parallel);
 }
 
-/* A last call for angles that no schedule serves. It may be long, and keeps no state. */
+/* A last call for angles that no schedule serves. */
 static enum tri_status refine_beyond(struct par_state *state, const struct tri_refine_options *quality,
                                      struct tri_error *error)
 {
@@ -604,10 +623,8 @@ static enum tri_status refine_beyond(struct par_state *state, const struct tri_r
     if (state->stage > PAR_BEYOND || quality->min_angle <= TRI_USUAL_ANGLE)
         return TRI_OK;
     state->stage = PAR_BEYOND;
-    enum tri_status status = come_to_border(state, true, error);
-    let_stop(state, true);
-    status = status ? status : refine_rest(state, quality, true, error);
-    let_stop(state, false);
+    enum tri_status status = state->paused ? TRI_OK : come_to_border(state, false, error);
+    status = status ? status : refine_rest(state, quality, true, true, error);
     state->report->seconds_last += tri_seconds() - last;
     return status;
 }
@@ -674,6 +691,7 @@ static void clean_up(struct par_state *state)
     if (checkpoint_of(state))
         par_state_end(checkpoint_of(state), state);
     par_park_close(state->park, state->mesh);
+    par_state_drop_pause(state);
     if (report->way != PAR_IN_MEMORY)
         tri_mesh_drop(state->mesh);
     free(state->worklist.item);
@@ -692,7 +710,7 @@ static enum tri_status refine_and_deliver(struct par_state *state, const struct 
     if (!sequential)
         status = refine_by_schedule(state, quality, error);
     else if (state->stage < PAR_FINISHED)
-        status = refine_rest(state, quality, true, error);
+        status = refine_rest(state, quality, true, true, error);
     if (sequential)
         state->report->seconds_last += tri_seconds() - began;
     state->quality = quality; /* all that was asked for */

@@ -8,6 +8,7 @@
 #include "sched/theory.h"
 
 #include "triangle/census.h"
+#include "triangle/criterion.h"
 #include "triangle/grow.h"
 
 bool par_ids_grow(struct par_ids *ids)
@@ -82,14 +83,13 @@ static int32_t gather(const struct finding *f, int32_t n)
  * triangle when it was filled: who has a higher number was born since. */
 static int32_t find_newborn(const struct finding *f, struct tri_range range, tri_triangle_id *found)
 {
+    const struct tri_criterion criterion = tri_criterion_for(f->mesh, f->bounds);
     int32_t n = 0, next = par_ids_find(f->worklist, range.first);
     for (tri_triangle_id t = range.first; t < range.last; t++) {
         bool was_bad = next < f->worklist->n && f->worklist->item[next] == t;
         next += was_bad;
         assert(next == f->worklist->n || f->worklist->item[next] > t); /* in order, and each once */
-        if (f->mesh->tri[t].state != 0)
-            n += tri_find_work(f->mesh, f->bounds, t, t + 1, found + n);
-        else if (was_bad)
+        if (f->mesh->tri[t].state != 0 ? tri_needs_work(&criterion, t) : was_bad)
             found[n++] = t;
     }
     return n;
@@ -140,11 +140,11 @@ enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mes
 static void filter_share(void *context, size_t share)
 {
     struct finding *f = context;
+    const struct tri_criterion criterion = tri_criterion_for(f->mesh, f->bounds);
     struct tri_range range = tri_share(share, f->worklist->n);
-    for (int32_t i = range.first; i < range.last; i++) {
-        tri_triangle_id triangle = f->worklist->item[i];
-        f->n[share] += tri_find_work(f->mesh, f->bounds, triangle, triangle + 1, &f->found[range.first + f->n[share]]);
-    }
+    for (int32_t i = range.first; i < range.last; i++)
+        if (tri_needs_work(&criterion, f->worklist->item[i]))
+            f->found[range.first + f->n[share]++] = f->worklist->item[i];
 }
 
 bool par_worklist_filter(const struct par_ids *worklist, const struct tri_mesh *mesh,

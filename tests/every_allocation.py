@@ -1,7 +1,7 @@
 """For each k the k-th allocation of a program fails: it must end with exit code 1 and one line on standard error, and
 touch no file; or, where it can do without, with the very files of a run that lacked nothing.
 
-Usage: every_allocation.py BIN_FOLDER DATA_FOLDER SHIM WORK_FOLDER fast | all | NUMBER...
+Usage: every_allocation.py BIN_FOLDER DATA_FOLDER SHIM WORK_FOLDER few | all | NUMBER...
 Of the cases below a few small ones, all, or those; see failing_malloc.c for the shim.
 """
 
@@ -11,14 +11,14 @@ import subprocess
 import sys
 
 # program, arguments, inputs in data/
-FAST = [
+FEW = [
     ("triangle", "-pq30a0.5e letter", ["letter.poly"]),
     ("ptriangle", "-pq letter --threads 2 --report report.json", ["letter.poly"]),
     ("ptriangle", "-pq30a0.3 section --threads 2 --dry-run", ["section.poly"]),
     ("ptriangle", "-pA section --output x.vtu --output x.msh --output x.2dm --output fort.14", ["section.poly"]),
     ("trianglecheck", "square.1 --poly square.poly --quiet", ["square.poly", "mesh:square -pq"]),
 ]
-ALL = FAST + [
+ALL = FEW + [
     ("triangle", "letter.node", ["letter.poly", "mesh:letter -p", "rename:letter.1.node:letter.node"]),
     ("triangle", "-pqaAenvgo2 section", ["section.poly"]),
     ("triangle", "-pqDjC letter", ["letter.poly"]),
@@ -37,7 +37,7 @@ ALL = FAST + [
 ]
 
 LONGEST = 60  # seconds of one run
-MOST, MOST_FAST = 80, 60  # runs of a case in each mode
+MOST, MOST_OF_FEW = 80, 60  # runs of a case in each mode
 
 
 def prepare(folder, inputs, bin_folder, data):
@@ -147,9 +147,9 @@ def try_case(case, most, bin_folder, data, shim, work):
 
 def main():
     bin_folder, data, shim, work = sys.argv[1:5]
-    named = {"fast": FAST, "all": ALL}
+    named = {"few": FEW, "all": ALL}
     cases = named.get(sys.argv[5]) or [ALL[int(i)] for i in sys.argv[5:]]
-    most = MOST_FAST if cases is FAST else MOST
+    most = MOST_OF_FEW if cases is FEW else MOST
     faults, runs = [], 0
     for case in cases:
         if os.path.exists(f"{bin_folder}/{case[0]}"):

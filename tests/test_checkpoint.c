@@ -1,6 +1,7 @@
 /* Runs that are stopped at any time, or whose tiles nobody takes any more, and go on: the mesh is that of a run that
  * was never stopped, whether it is swept, or stays as a whole, in memory or parked. Files that are damaged, byte by
  * byte. */
+#include "full.h"
 #include "support.h"
 
 #include <stdio.h>
@@ -172,7 +173,7 @@ static void test_nobody_takes_tiles(void **state)
     (void)state;
     int64_t tiles;
     uint64_t wanted = whole(&tiles);
-    for (int64_t at = 1; at < tiles; at += tiles / 7) {
+    for (int64_t at = 1; at < tiles; at += every(3) * tiles / 7) {
         struct par_checkpoint c;
         remove_all();
         open_it(&c, false);
@@ -330,7 +331,7 @@ static void test_damage_is_found(void **state)
     leave_state();
     for (int k = 0; k < 3; k++) {
         long n = length_of(names[k]);
-        for (long at = 0; at < n; at += n < 100 ? 3 : n / 7) {
+        for (long at = 0; at < n; at += every(3) * (n < 100 ? 3 : n / 7)) {
             struct par_checkpoint c;
             flip(names[k], at);
             enum tri_status status = par_checkpoint_open(&c, DIRECTORY, true, 7, NULL);
@@ -386,6 +387,7 @@ struct whole_run {
     int64_t memory;
     int threads;
     int told, most_told;
+    int asked, most_asked; /* the second: 0: any number */
     struct taker taker;
     uint64_t hash;
     enum par_way was;
@@ -401,8 +403,8 @@ static void count_phases(void *user, int round, int phase, int64_t triangles)
 
 static bool is_told_enough(void *user)
 {
-    const struct whole_run *r = user;
-    return r->told >= r->most_told;
+    struct whole_run *r = user;
+    return r->told >= r->most_told || (r->most_asked > 0 && ++r->asked > r->most_asked);
 }
 
 static uint64_t hash_of_mesh(const struct tri_mesh *m)
@@ -474,7 +476,7 @@ static void go_on_until_done(const struct way *way, const struct whole_run *want
 static void test_whole_meshes_go_on(void **state)
 {
     (void)state;
-    for (int i = 0; i < N_WAYS; i++) {
+    for (int i = 0; i < N_WAYS; i += every(2)) {
         struct whole_run wanted = whole_run_of(&ways[i], NULL);
         assert_int_equal(refine_whole(&wanted), TRI_OK);
         assert_int_equal(wanted.was, ways[i].expected);
@@ -482,11 +484,39 @@ static void test_whole_meshes_go_on(void **state)
     }
 }
 
+/* Stopped again and again amid the call of one that has no schedule, or what comes after it. */
+static void test_calls_go_on(void **state)
+{
+    (void)state;
+    for (int i = 0; i < N_WAYS; i++) {
+        enum tri_status status = TRI_STOPPED;
+        struct whole_run wanted = whole_run_of(&ways[i], NULL);
+        assert_int_equal(refine_whole(&wanted), TRI_OK);
+        int rounds = 0, with_state = 0;
+        remove_all();
+        for (; status == TRI_STOPPED && rounds < 1000; rounds++) {
+            struct par_checkpoint c;
+            open_it(&c, rounds > 0);
+            struct whole_run r = whole_run_of(&ways[i], &c);
+            with_state += par_checkpoint_has_state(&c);
+            r.most_asked = 3 + rounds;
+            r.threads = rounds % 3 + 1;
+            status = refine_whole(&r);
+            if (!status)
+                assert_true(r.hash == wanted.hash && r.taker.n == wanted.taker.n);
+            par_checkpoint_close(&c, status == TRI_OK);
+        }
+        print_message("  %s: %d runs, %d of them from a state\n", ways[i].trial.file, rounds, with_state);
+        assert_int_equal(status, TRI_OK);
+        assert_true(with_state > 0);
+    }
+}
+
 /* A state after each step changes nothing, and whoever fails to take a tile finds all of the mesh again. */
 static void test_a_finished_mesh_is_kept(void **state)
 {
     (void)state;
-    for (int i = 0; i < N_WAYS; i++) {
+    for (int i = 0; i < N_WAYS; i += every(2)) {
         if (!ways[i].has_sink)
             continue;
         struct whole_run wanted = whole_run_of(&ways[i], NULL);
@@ -541,6 +571,7 @@ int main(void)
         cmocka_unit_test(test_files_of_others_stay),
         cmocka_unit_test(test_damage_is_found),
         cmocka_unit_test(test_whole_meshes_go_on),
+        cmocka_unit_test(test_calls_go_on),
         cmocka_unit_test(test_a_finished_mesh_is_kept),
         cmocka_unit_test(test_a_sweep_is_not_taken_for_a_whole),
     };

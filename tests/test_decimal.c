@@ -13,6 +13,8 @@
 
 #include <cmocka.h>
 
+#include "full.h"
+
 #define LENGTH(array) (sizeof(array) / sizeof *(array))
 
 static uint64_t random_bits(void)
@@ -88,9 +90,9 @@ static void print_real_ties(void **state)
 static void print_real_random(void **state)
 {
     (void)state;
-    for (int i = 0; i < 700000; i++)
+    for (int i = 0; i < 700000 / every(5); i++)
         check_real(double_of(random_bits()));
-    for (int i = 0; i < 300000; i++) { /* of everyday size, and of few digits */
+    for (int i = 0; i < 300000 / every(5); i++) { /* of everyday size, and of few digits */
         const double value = (double)(random_bits() >> 11) * 0x1p-53;
         check_real(ldexp(value, (int)(random_bits() % 70) - 20));
         check_real((double)(int64_t)(random_bits() % 2000001 - 1000000) / 1000);

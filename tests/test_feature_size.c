@@ -1,5 +1,6 @@
 /* Nothing runs away: what vertices know of the features around them, and how many triangles that leaves, over all
  * inputs and bounds. */
+#include "full.h"
 #include "support.h"
 
 #include "triangle/feature_size.h"
@@ -103,11 +104,11 @@ static void test_no_bound_runs_away(void **state)
 {
     (void)state;
     static const char *const folders[] = {"", "nasty", "regress"};
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0, tried = 0; i < 3; i++) {
         char **names = support_names(folders[i]);
         for (char **name = names; *name; name++) {
             struct tri_pslg pslg;
-            if (!support_read(*name, &pslg))
+            if (tried++ % every(16) || !support_read(*name, &pslg))
                 continue;
             if (pslg.n_segments > 0 && pslg.n_segments < 200)
                 check_bounds(*name, &pslg, 800);

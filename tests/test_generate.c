@@ -3,6 +3,7 @@
  *
  * This program is linked with --wrap for malloc, calloc, realloc and free: see allocations.h. */
 #include "allocations.h"
+#include "full.h"
 #include "support.h"
 
 #ifdef SUPPORT_WRAP
@@ -68,7 +69,7 @@ static void test_every_allocation_may_fail(void **state)
             options.spread_regions = options.quality.region_areas = true;
             options.quality.conforming = seed == 1;
             options.keep_hull = seed == 2;
-            fail_each(&pslg, &options, ever_after, 1);
+            fail_each(&pslg, &options, ever_after, every(4));
             tri_pslg_free(&pslg);
         }
 }
@@ -79,7 +80,7 @@ static void test_every_allocation_may_fail_on_points(void **state)
     for (int kind = 0; kind < SUPPORT_KINDS; kind++) {
         struct tri_pslg pslg = support_points((enum support_kind)kind, 3000, 1);
         struct tri_options options = tri_defaults();
-        fail_each(&pslg, &options, kind % 2, 1);
+        fail_each(&pslg, &options, kind % 2, every(4));
         tri_pslg_free(&pslg);
     }
 }

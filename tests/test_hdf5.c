@@ -15,6 +15,7 @@
 #include <cmocka.h>
 
 #include "tests/allocations.h"
+#include "tests/full.h"
 #include "tests/lattice_tiles.h"
 #include "triangle/hdf5/array.h"
 #include "triangle/hdf5/read.h"
@@ -165,7 +166,7 @@ static void test_what_is_written_is_read(void **state)
 {
     (void)state;
     const struct lattice *all[] = {&SMALL, &WHOLE, &PLAIN, &LARGE};
-    for (int i = 0; i < 8; i++) {
+    for (int i = 0; i < 8; i += every(3)) {
         struct tri_error error;
         assert_int_equal(write_lattice(all[i / 2], i % 2, 0, &error), TRI_OK);
         compare(all[i / 2], i % 2);
@@ -178,7 +179,7 @@ static void test_wide_numbers(void **state)
     (void)state;
     const int64_t narrow[] = {1, 601, 50000, 131072, 262144, 300000, 601 * 601 - 1};
     struct tri_error error;
-    for (size_t i = 0; i < sizeof narrow / sizeof *narrow; i++) {
+    for (size_t i = 0; i < sizeof narrow / sizeof *narrow; i += (size_t)every(3)) {
         assert_int_equal(write_lattice(&LARGE, true, narrow[i], &error), TRI_OK);
         compare(&LARGE, true);
     }
@@ -223,7 +224,7 @@ static void test_same_mesh_same_bytes(void **state)
 {
     (void)state;
     const int64_t narrow[] = {0, 100000, 262144};
-    for (int i = 0; i < 9; i++) {
+    for (int i = 0; i < 9; i += every(4)) {
         struct lattice lattice = i / 3 ? LARGE : SMALL, other = lattice;
         struct tri_error error;
         size_t n, m;
@@ -245,7 +246,7 @@ static void test_around_a_chunk(void **state)
 {
     (void)state;
     struct tri_error error;
-    for (int32_t side = 511; side <= 513; side++) {
+    for (int32_t side = 511; side <= 513; side += every(2)) {
         const struct lattice lattice = {side, 100, 0, 1, true, side == 513};
         assert_int_equal(write_lattice(&lattice, true, 0, &error), TRI_OK);
         compare(&lattice, true);
@@ -295,7 +296,7 @@ static void test_full_disk(void **state)
     signal(SIGXFSZ, SIG_IGN);
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
     const rlim_t sizes[] = {0, 100, 3000, 1 << 20, 5 << 20, 9 << 20, 12 << 20, 17 << 20};
-    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i += (size_t)every(3)) {
         limit = (struct rlimit){sizes[i], before.rlim_max};
         assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
         enum tri_status status = write_lattice(&LARGE, true, i % 2 ? 200000 : 0, &error);

@@ -1,5 +1,6 @@
 /* However a mesh is scrambled, numbering it gives the same bytes: those of the same mesh. */
 #include "allocations.h"
+#include "full.h"
 #include "support.h"
 #include "sched/sweep/numbering.h"
 #include "tile_order.h"
@@ -142,7 +143,7 @@ static void assert_is_whole(const struct tri_mesh *mesh)
 static void test_any_scrambling_comes_out_the_same(void **state)
 {
     (void)state;
-    for (uint64_t seed = 0; seed < 12; seed++) {
+    for (uint64_t seed = 0; seed < 12; seed += (uint64_t)every(5)) {
         struct support_random random = {seed};
         struct tri_mesh mesh = refined(seed, seed < 2 ? 1e-4 : 1e-3);
         struct support_places places = support_places(&mesh), after;

@@ -1,4 +1,5 @@
 /* Against a stable sort that is plainly right, over all sizes that are treated differently. */
+#include "full.h"
 #include "support.h"
 #include "triangle/radix.h"
 
@@ -54,7 +55,7 @@ static void test_sorts_stably(void **state)
     struct support_random random = {1};
     uint64_t *items = malloc(300000 * sizeof *items);
     assert_non_null(items);
-    for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++)
+    for (size_t s = 0; s < (is_full() ? 10 : 9); s++)
         for (size_t r = 0; r < sizeof ranges / sizeof *ranges; r++)
             for (int spread = 0; spread < 5; spread++) {
                 if (sizes[s] > 1000 && r != 1 && spread != (int)r % 5)

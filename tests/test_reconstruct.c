@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "allocations.h"
+#include "full.h"
 #include "support.h"
 #include "triangle/reconstruct.h"
 #include "triangle/topology.h"
@@ -170,13 +171,13 @@ static void what_was_meshed_comes_back(void **state)
         double area;
     } files[] = {{"letter.poly", 0.1}, {"box_hole.poly", 0.05}, {"section.poly", 0.5}, {"cracked_plate.poly", 0.01},
                  {"koch_lake.poly", 0.001}, {"base0.poly", 0.01}};
-    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+    for (size_t i = 0; i < sizeof files / sizeof *files; i += (size_t)every(3)) {
         struct tri_pslg pslg;
         assert_true(support_read(files[i].name, &pslg));
         round_trip(&pslg, 20, files[i].area);
         tri_pslg_free(&pslg);
     }
-    for (uint64_t seed = 1; seed <= 8; seed++) {
+    for (uint64_t seed = 1; seed <= 8; seed += (uint64_t)every(5)) {
         struct tri_pslg pslg = support_tangle(seed % 2 ? SUPPORT_RANDOM : SUPPORT_LATTICE, 60, 12, seed);
         round_trip(&pslg, 0, 0.01);
         tri_pslg_free(&pslg);
@@ -492,7 +493,7 @@ static void garbage(void **state)
 {
     (void)state;
     struct support_random random = {17};
-    int32_t good = 0, runs = 1500;
+    int32_t good = 0, runs = 1500 / every(5);
     for (int32_t i = 0; i < runs; i++)
         good += treat_garbage(&random, i % 4 == 0 ? 0.2 : 0);
     assert_true(good > runs / 2 && good < runs);

@@ -4,6 +4,7 @@
  * Blocks are made small, so that small inputs have many. This program is linked with --wrap for malloc, calloc,
  * realloc and free: see allocations.h. */
 #include "allocations.h"
+#include "full.h"
 #include "support.h"
 
 #include <pthread.h>
@@ -115,7 +116,7 @@ static void compare_with_sequential(const struct trial *trial, const struct star
 static void test_bounds_and_size_are_those_of_the_sequential_loop(void **state)
 {
     (void)state;
-    for (int i = 0; i < N_TRIALS; i++) {
+    for (int i = 0; i < N_TRIALS; i += every(6)) {
         struct start start = trials_start_of(&trials[i]);
         struct par_options options = small_blocks(trials[i].block, 2);
         struct par_report report;
@@ -147,7 +148,7 @@ static void test_any_number_of_threads_and_order_of_blocks_make_one_mesh(void **
         int threads;
         unsigned shuffle;
     } runs[] = {{3, 1}, {8, 0}, {2, 4711}};
-    for (int i = 0; i < N_TRIALS; i++) {
+    for (int i = 0; i < N_TRIALS; i += every(6)) {
         struct start start = trials_start_of(&trials[i]);
         struct par_options options = small_blocks(trials[i].block, 1);
         struct par_report first_report, report;
@@ -175,7 +176,7 @@ static void test_room_moves_ids_alone(void **state)
 {
     (void)state;
     static const int32_t rooms[] = {1, 50};
-    for (int i = 0; i < N_USUAL; i++) {
+    for (int i = 0; i < N_USUAL; i += every(4)) {
         struct start start = trials_start_of(&trials[i]);
         struct par_options options = small_blocks(trials[i].block, 2);
         struct par_report report, tight;
@@ -321,7 +322,7 @@ static void test_budgets_hand_out_the_same_tiles(void **state)
 {
     (void)state;
     int n_ways[3] = {0}, begun_again = 0;
-    for (int i = 0; i < N_TRIALS; i++) {
+    for (int i = 0; i < N_TRIALS; i += every(6)) {
         struct start start = trials_start_of(&trials[i]);
         struct par_options options = small_blocks(trials[i].block, 2);
         struct par_report report, tight_report;
@@ -357,7 +358,8 @@ static void test_budgets_hand_out_the_same_tiles(void **state)
         tri_mesh_free(&tight);
         tri_pslg_free(&start.pslg);
     }
-    assert_true(n_ways[PAR_SWEPT] >= 4 && n_ways[PAR_PARKED] >= 4 && begun_again >= 2);
+    assert_true(n_ways[PAR_SWEPT] >= 1 && n_ways[PAR_PARKED] >= 1);
+    assert_true(!is_full() || (n_ways[PAR_SWEPT] >= 4 && n_ways[PAR_PARKED] >= 4 && begun_again >= 2));
 }
 
 /* A run from the figure on, in which the caller's points have other numbers while the mesh is made. */
@@ -420,7 +422,7 @@ static void test_a_stream_has_the_numbers_of_the_mesh(void **state)
 {
     (void)state;
     enum { SCHEDULE, SEQUENTIAL, BY_BLOCK, WAYS };
-    for (int i = 0; i < N_USUAL; i++)
+    for (int i = 0; i < N_USUAL; i += every(4))
         for (int way = 0; way < WAYS; way++) {
             struct start start = trials_start_of(&trials[i]);
             struct whole_run run = {.start = &start, .options = small_blocks(trials[i].block, 2)};
@@ -626,7 +628,7 @@ static void test_default_blocks_cost_no_triangles(void **state)
 {
     (void)state;
     static const double angles[] = {20, 33};
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; k += every(2)) {
         struct start start = square(1000, angles[k], 5e-6);
         struct par_options options = par_defaults();
         struct par_report report;
@@ -1024,7 +1026,7 @@ static void test_every_allocation_may_fail_on_the_way_to_a_sink(void **state)
         options.memory = 1000;
         options.scratch = ".";
         while (fail_streaming_once(&start, &options, k))
-            k += 1 + k / 12; /* the later, the more alike */
+            k += 1 + k * every(4) / 12; /* the later, the more alike */
         assert_true(k > 30);
         tri_pslg_free(&start.pslg);
     }

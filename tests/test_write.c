@@ -304,9 +304,9 @@ static void tables_in_any_order(void **state)
     (void)state;
     const struct {
         size_t n_rows, max_bytes;
-    } cases[] = {{0, 8},        {1, 8},           {8191, 8},     {8192, 8},  {8193, 8},
-                 {8192 * 63, 8}, {8192 * 63 + 1, 8}, {8192 * 256, 8}, {8192 * 256 + 1, 8},
-                 {100000, 300}, {3, 400000},      {70, 300000}};
+    } cases[] = {{0, 8},          {1, 8},            {32767, 8},         {32768, 8},     {32769, 8},
+                 {32768 * 15, 8}, {32768 * 15 + 1, 8}, {32768 * 64, 8}, {32768 * 64 + 1, 8},
+                 {100000, 300},   {3, 400000},       {70, 300000}};
     for (size_t i = 0; i < LENGTH(cases); i++) {
         size_t max_bytes = cases[i].max_bytes, n_tasks = 0;
         const struct tri_executor backwards = {run_backwards, &n_tasks};
@@ -319,9 +319,9 @@ static void tables_in_any_order(void **state)
         assert_int_equal(tri_write_table(b, cases[i].n_rows, max_bytes, row_of_words, &max_bytes, &backwards, NULL),
                          TRI_OK);
         assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
-        size_t rows = max_bytes < 65536 ? 65536 / max_bytes : 1, chunks = (cases[i].n_rows + rows - 1) / rows;
-        assert_int_equal(n_tasks >= chunks, chunks >= 64 || chunks == 0); /* few are not worth waking threads */
-        assert_true(chunks >= 64 || n_tasks == 0);
+        size_t rows = max_bytes < 262144 ? 262144 / max_bytes : 1, chunks = (cases[i].n_rows + rows - 1) / rows;
+        assert_int_equal(n_tasks >= chunks, chunks >= 16 || chunks == 0); /* few are not worth waking threads */
+        assert_true(chunks >= 16 || n_tasks == 0);
         char *const text = contents(in_directory("a")), *const other = contents(in_directory("b"));
         assert_string_equal(text, other);
         const char *at = text;

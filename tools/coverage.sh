@@ -1,12 +1,12 @@
 #!/bin/sh
-# Runs the fast tests in a build that counts lines (preset coverage), prints how many lines of triangle/ and sched/ they
+# Runs the tests in a build that counts lines (preset coverage), prints how many lines of triangle/ and sched/ they
 # reach, file by file, and fails where that is below 95% of all or 80% of a file. Needs gcovr (Debian: gcovr; PyPI: gcovr).
-# Usage: tools/coverage.sh [CTEST_OPTION...]     default: -L 'fast|ranks'
+# Usage: tools/coverage.sh [CTEST_OPTION...]     default: -L 'full|ranks'
 set -eu
 cd "$(dirname "$0")/.."
 folder=${PTRIANGLE_BUILD:-build}/coverage
 least=80 # per cent of a file, whose rest is failing reads and writes mostly; of all of them 95
-[ $# -gt 0 ] || set -- -L 'fast|ranks'
+[ $# -gt 0 ] || set -- -L 'full|ranks'
 command -v gcovr >/dev/null || {
     echo "coverage: gcovr is missing (Debian: apt-get install gcovr; or pip install gcovr)" >&2
     exit 2
@@ -15,7 +15,7 @@ tools/build.sh coverage
 find "$folder" -name '*.gcda' -delete
 # The clients outside the tree would have to link gcov's runtime as well, which crashes where memory is short.
 ctest --test-dir "$folder" --output-on-failure --no-tests=error --parallel "$(nproc 2>/dev/null || echo 2)" \
-    -E '^(client|readme|clients_python|every_allocation_fast)$' "$@"
+    -E '^(client|readme|clients_python|every_allocation_few)$' "$@"
 gcovr --root . --filter triangle/ --filter sched/ --gcov-ignore-parse-errors "$folder" 2>/dev/null |
     tee "$folder/coverage.txt"
 awk -v least="$least" '

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Builds and runs the tests; installs what is missing first.
 # Usage: tools/test.sh [PRESET [CTEST_OPTION...]]     default: debug, all tests
-#   tools/test.sh asan -L fast
+#   tools/test.sh asan -L full
 set -eu
 cd "$(dirname "$0")/.."
 preset=${1:-debug}

@@ -55,7 +55,7 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_r
                     fmin(1e-6 * triangles, 1e9), TRI_MAX_TRIANGLES / 1000000);
 }
 
-static bool needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
+bool tri_needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
 {
     const struct tri_triangle *t = &c->mesh->tri[triangle];
     if (!tri_is_live(t))
@@ -81,7 +81,7 @@ int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_optio
     int32_t n = 0;
     assert(first >= 0 && last <= mesh->n_triangles);
     for (tri_triangle_id triangle = first; triangle < last; triangle++)
-        if (needs_work(&c, triangle))
+        if (tri_needs_work(&c, triangle))
             found[n++] = triangle;
     return n;
 }
@@ -93,7 +93,7 @@ int32_t tri_find_hopeless(const struct tri_mesh *mesh, const struct tri_refine_o
     int32_t n = 0;
     for (tri_triangle_id triangle = 0; triangle < mesh->n_triangles; triangle++) {
         const struct tri_triangle *t = &mesh->tri[triangle];
-        if (!tri_is_live(t) || needs_work(&c, triangle))
+        if (!tri_is_live(t) || tri_needs_work(&c, triangle))
             continue;
         struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
         if (tri_judge(&c, t, &shape) != TRI_GOOD)

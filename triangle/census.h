@@ -4,6 +4,8 @@
 
 #include "triangle/refine.h"
 
+struct tri_criterion;
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -18,9 +20,11 @@ double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_opti
 enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                                  const struct tri_executor *executor, struct tri_error *error);
 
-/* found[last - first] receives the triangles from first to last - 1 at which there is something for the loop to do (an
- * angle that is bad and not hopeless, a bad size; an encroached subsegment if conforming), in order; returns how
- * many. */
+/* Is there something for the loop to do at the triangle: an angle that is bad and not hopeless, a bad size; an
+ * encroached subsegment if conforming? criterion: tri_criterion_for, which costs more than the answer. */
+bool tri_needs_work(const struct tri_criterion *criterion, tri_triangle_id triangle);
+
+/* found[last - first] receives the triangles from first to last - 1 that need work, in order; returns how many. */
 int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id first,
                       tri_triangle_id last, tri_triangle_id *found);
 

@@ -32,7 +32,9 @@
  *
  * Rounding puts the point level with v an ulp beside its place. Where h, the distance of v from e, is so small that
  * this leaves v in a circle (h^2 < ulp * length), only shorter parts help: length * ulp / h^2 of them. That is done
- * where MOST_PARTS are enough.
+ * where MOST_PARTS are enough. Halving makes parts at most twice as short as that asks for: no edge of theirs is 16
+ * times shorter than it would be without rounding, which is no feature. With more of them the triangles on their other
+ * sides would have edges too short to be refined (feature_size.c), and would be given up.
  *
  * What stays: where v is nearer to e than the shortest edge, so that it lies on e as far as coordinates tell, or level
  * with an end of e up to rounding, and h too small to mend that. And where rounding leaves no room for the split point
@@ -54,7 +56,7 @@ bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subs
 /* A unit in the last place of the largest coordinate, in shortest edges. */
 static const double ULP = 0x1p-7;
 
-enum { NARROW = 8, MOST_PARTS = 64 }; /* see the rule; most parts that rounding may ask for */
+enum { NARROW = 8, MOST_PARTS = 8 }; /* see the rule; the parts that rounding may ask for */
 
 static double distance(struct tri_point a, struct tri_point b) { return sqrt(tri_distance2(a, b)); }
 

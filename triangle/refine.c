@@ -19,6 +19,7 @@
 
 #include <assert.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "triangle/bad_queue.h"
 #include "triangle/cavity.h"
@@ -29,6 +30,7 @@
 #include "triangle/grow.h"
 #include "triangle/inside.h"
 #include "triangle/interpolate.h"
+#include "triangle/pause.h"
 #include "triangle/predicates.h"
 #include "triangle/quality.h"
 #include "triangle/small_angle.h"
@@ -589,7 +591,7 @@ static bool work_off(struct tri_refiner *r)
     for (;;) {
         if (must_stop(r))
             return false;
-        if (!split_encroached(r))
+        if (!r->in_hand && !split_encroached(r)) /* after a pause the triangle in hand goes on first, as without one */
             return false;
         if (!r->in_hand && !next_entry(r))
             return true;
@@ -790,6 +792,50 @@ void tri_refiner_free(struct tri_refiner *r)
     tri_bad_queue_free(&r->queue);
     free(r->encroached);
     free(r);
+}
+
+void tri_refiner_show(const struct tri_refiner *r, struct tri_pause *pause)
+{
+    memset(pause, 0, sizeof *pause);
+    pause->report = *r->report;
+    pause->bounds = r->criterion.bounds;
+    pause->beyond = r->beyond;
+    pause->back = r->back;
+    pause->stage = (int32_t)r->stage;
+    pause->step = (int32_t)r->step;
+    pause->limit = r->limit;
+    pause->next_listed = r->next_listed;
+    pause->n_worklist = r->n_worklist;
+    pause->in_hand = r->in_hand;
+    pause->hand = r->hand;
+    memcpy(&pause->queue, &r->queue, sizeof r->queue);
+    pause->encroached = r->encroached;
+    pause->n_encroached = r->n_encroached;
+    pause->encroached_capacity = r->encroached_capacity;
+}
+
+void tri_refiner_go_on(struct tri_refiner *r, struct tri_pause *pause)
+{
+    assert(r->step == NOT_BEGUN && r->n_encroached == 0 && !r->encroached);
+    *r->report = pause->report;
+    r->criterion.bounds = pause->bounds;
+    r->beyond = pause->beyond;
+    r->back = pause->back;
+    r->stage = (enum stage)pause->stage;
+    r->step = (enum step)pause->step;
+    r->limit = pause->limit;
+    r->next_listed = pause->next_listed;
+    r->n_worklist = pause->n_worklist;
+    r->in_hand = pause->in_hand != 0;
+    r->hand = pause->hand;
+    tri_bad_queue_free(&r->queue);
+    r->queue = pause->queue;
+    r->encroached = pause->encroached;
+    r->n_encroached = pause->n_encroached;
+    r->encroached_capacity = pause->encroached_capacity;
+    pause->queue = (struct tri_bad_queue){0};
+    pause->encroached = NULL;
+    pause->n_encroached = pause->encroached_capacity = 0;
 }
 
 enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,

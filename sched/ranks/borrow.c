@@ -74,16 +74,20 @@ static bool note_gone(const struct par_ranks *r, struct par_talk *talk, const st
     return memory;
 }
 
-/* The other ranks that own corners of a triangle, each once; returns how many. The first is looked for at owner[0]. */
-static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3])
+/* The other ranks that own corners of a triangle, each once; returns how many. The first is looked for at owner[0].
+ * *has_own: this rank owns some, too. */
+static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3], bool *has_own)
 {
     const struct tri_mesh *mesh = r->state->mesh;
     int n = 0, guess = owner[0];
     assert(tri_is_live(&mesh->tri[t]));
+    *has_own = false;
     for (int k = 0; k < 3; k++) {
         struct tri_point q = mesh->xy[mesh->tri[t].v[k]];
-        if (par_is_own(&r->territory, q))
+        if (par_is_own(&r->territory, q)) {
+            *has_own = true;
             continue;
+        }
         int p = par_owns(&r->territory, guess, q) ? guess : par_owner_at(&r->territory, q);
         bool is_told = false;
         for (int i = 0; i < n; i++)
@@ -94,12 +98,17 @@ static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3])
     return n;
 }
 
-static bool add_new(struct par_ranks *r, const struct par_ids *changed)
+/* Where a triangle is to be afterwards. */
+enum place { HERE, WITH_OTHERS, BOTH };
+
+/* place[i] receives that of triangle i of the list. */
+static bool add_new(struct par_ranks *r, const struct par_ids *changed, unsigned char *place)
 {
-    bool memory = true;
+    bool memory = true, has_own;
     int owner[3] = {0};
     for (int32_t i = 0; memory && i < changed->n; i++) {
-        int n = owners_of(r, changed->item[i], owner);
+        int n = owners_of(r, changed->item[i], owner, &has_own);
+        place[i] = n == 0 ? HERE : has_own ? BOTH : WITH_OTHERS;
         for (int k = 0; memory && k < n; k++)
             memory = par_talk_add_triangle(&r->borrowed[owner[k]], changed->item[i]);
     }
@@ -122,7 +131,7 @@ static bool is_of_border(const struct par_ranks *r, uint64_t key)
 static bool give_entries(struct par_ranks *r, struct par_message *message)
 {
     struct par_state *state = r->state;
-    bool memory = true, *keep = malloc((size_t)state->worklist.n + 1);
+    bool memory = true, has_own, *keep = malloc((size_t)state->worklist.n + 1);
     int owner[3] = {0};
     assert(state->key.n == state->worklist.n);
     for (int32_t i = 0; keep && i < state->worklist.n; i++) {
@@ -130,7 +139,7 @@ static bool give_entries(struct par_ranks *r, struct par_message *message)
         keep[i] = par_has_own(r, t);
         if (!is_of_border(r, state->key.item[i]))
             continue;
-        int n = owners_of(r, t, owner);
+        int n = owners_of(r, t, owner, &has_own);
         for (int k = 0; k < n; k++)
             memory = memory && par_message_add_entry(&message[owner[k]], state->key.item[i],
                                                      par_talk_number(&r->borrowed[owner[k]], t));
@@ -142,29 +151,27 @@ static bool give_entries(struct par_ranks *r, struct par_message *message)
     return memory;
 }
 
-static bool write_to(struct par_ranks *r, int h, struct par_message *message, int32_t first)
+static bool write_to(struct par_ranks *r, int h, const struct par_message *message)
 {
-    struct par_talk *talk = &r->borrowed[h];
-    if (message->gone.n + message->gone_subs.n + message->n_entries == 0 && talk->triangle.n == first)
+    if (message->gone.n + message->gone_subs.n + message->n_entries + message->n_triangles == 0)
         return true;
-    return par_message_tell(message, talk, r->state->mesh, r->n_common, first) &&
-           par_message_write(message, talk, r->state->mesh->n_attributes, &r->out[h]);
+    return par_message_write(message, &r->borrowed[h], r->state->mesh->n_attributes, &r->out[h]);
 }
 
-static bool give_all(struct par_ranks *r, struct par_ids *changed, const struct par_triangle_set *set,
-                     struct par_message *message, int32_t *first)
+static bool give_all(struct par_ranks *r, const struct par_ids *changed, const struct par_triangle_set *set,
+                     unsigned char *place, struct par_message *message, int32_t *first)
 {
     bool memory = true;
     for (int h = 0; memory && h < r->carrier->n_ranks; h++) {
         memory = note_gone(r, &r->borrowed[h], set, &message[h]);
         first[h] = r->borrowed[h].triangle.n;
     }
-    memory = memory && add_new(r, changed);
+    memory = memory && add_new(r, changed, place);
     for (int h = 0; memory && h < r->carrier->n_ranks; h++)
-        memory = par_talk_sort(&r->borrowed[h], r->state->mesh, first[h]);
+        memory = par_message_tell(&message[h], &r->borrowed[h], r->state->mesh, r->n_common, first[h]);
     memory = memory && give_entries(r, message);
     for (int h = 0; memory && h < r->carrier->n_ranks; h++)
-        memory = write_to(r, h, &message[h], first[h]);
+        memory = write_to(r, h, &message[h]);
     return memory;
 }
 
@@ -194,32 +201,59 @@ static bool remove_vertices(struct par_ranks *r, uint64_t *word)
     return memory;
 }
 
-static bool remove_one(struct par_ranks *r, tri_triangle_id t, uint64_t *word)
+static bool leave_sub(struct par_state *state, tri_sub_id s, tri_halfedge code)
 {
-    struct tri_mesh *mesh = r->state->mesh;
-    const struct tri_triangle old = mesh->tri[t];
-    bool memory = par_remove_triangle(r->state, t);
-    for (int k = 0; memory && k < 3; k++) {
-        if (old.v[k] >= r->n_common)
-            mark(word, old.v[k], true);
-        if (old.n[k] < 0 && old.n[k] != TRI_BEYOND && par_is_lone(&mesh->sub[~old.n[k]]))
-            memory = par_remove_sub(r->state, ~old.n[k]);
-    }
-    return memory;
+    struct tri_subsegment *sub = &state->mesh->sub[s];
+    for (int side = 0; side < 2; side++)
+        if (sub->side[side] == code)
+            sub->side[side] = TRI_BEYOND;
+    return !par_is_lone(sub) || par_remove_sub(state, s);
 }
 
-/* Of these triangles those without an own corner go, those with some of them are straddlers. */
-static bool sort_out(struct par_ranks *r, const struct par_ids *triangles, uint64_t *word, bool adds)
+/* Its neighbours are cut off afterwards, all at once. */
+static bool drop_triangle(struct par_ranks *r, tri_triangle_id t, uint64_t *word)
+{
+    struct tri_triangle *triangle = &r->state->mesh->tri[t];
+    bool memory = true;
+    assert(tri_is_live(triangle) && !par_has_own(r, t));
+    for (int k = 0; memory && k < 3; k++) {
+        if (triangle->v[k] >= r->n_common)
+            mark(word, triangle->v[k], true);
+        if (triangle->n[k] < 0 && triangle->n[k] != TRI_BEYOND)
+            memory = leave_sub(r->state, ~triangle->n[k], tri_code(t, k));
+    }
+    triangle->v[0] = TRI_NONE;
+    return memory && par_release(r->state, PAR_TRIANGLES, t);
+}
+
+/* A triangle that stays beside one that has gone shares an edge without an own end with it: it is a straddler. */
+static void cut_off(struct par_ranks *r)
+{
+    struct tri_mesh *mesh = r->state->mesh;
+    for (int32_t i = 0; i < r->straddlers.n; i++) {
+        tri_link *link = mesh->tri[r->straddlers.item[i]].n;
+        assert(tri_is_live(&mesh->tri[r->straddlers.item[i]]));
+        for (int e = 0; e < 3; e++)
+            if (link[e] >= 0 && !tri_is_live(&mesh->tri[tri_of(link[e])]))
+                link[e] = TRI_BEYOND;
+    }
+}
+
+static bool put_in_place(struct par_ranks *r, tri_triangle_id t, enum place place, uint64_t *word)
+{
+    if (place == WITH_OTHERS)
+        return drop_triangle(r, t, word);
+    return place == HERE || par_ids_add(&r->straddlers, t);
+}
+
+/* What is borrowed, and has not changed. */
+static bool drop_borrowed(struct par_ranks *r, const struct par_ids *triangles, uint64_t *word)
 {
     bool memory = true;
     for (int32_t i = 0; memory && i < triangles->n; i++) {
         tri_triangle_id t = triangles->item[i];
-        if (t == TRI_NONE || !tri_is_live(&r->state->mesh->tri[t]))
-            continue;
-        if (!par_has_own(r, t))
-            memory = remove_one(r, t, word);
-        else if (adds && par_has_foreign(r, t))
-            memory = par_ids_add(&r->straddlers, t);
+        if (t != TRI_NONE && tri_is_live(&r->state->mesh->tri[t]) && !par_has_own(r, t))
+            memory = drop_triangle(r, t, word);
     }
     return memory;
 }
@@ -233,14 +267,18 @@ static void forget_changed(struct par_ranks *r, const struct par_triangle_set *c
     r->straddlers.n = kept;
 }
 
-static bool drop_all(struct par_ranks *r, const struct par_ids *changed, const struct par_triangle_set *set)
+static bool drop_all(struct par_ranks *r, const struct par_ids *changed, const struct par_triangle_set *set,
+                     const unsigned char *place)
 {
     uint64_t *word = calloc((size_t)r->state->mesh->n_vertices / 64 + 1, sizeof *word);
     bool memory = word;
     forget_changed(r, set);
-    memory = memory && sort_out(r, changed, word, true);
+    for (int32_t i = 0; memory && i < changed->n; i++)
+        memory = put_in_place(r, changed->item[i], place[i], word);
     for (int h = 0; memory && h < r->carrier->n_ranks; h++)
-        memory = sort_out(r, &r->borrowed[h].triangle, word, false);
+        memory = drop_borrowed(r, &r->borrowed[h].triangle, word);
+    if (memory)
+        cut_off(r);
     memory = memory && remove_vertices(r, word);
     free(word);
     return memory;
@@ -251,17 +289,24 @@ enum tri_status par_give_back(struct par_ranks *r, struct par_ids *changed, stru
     size_t n = (size_t)r->carrier->n_ranks;
     struct par_message *message = calloc(n, sizeof *message);
     int32_t *first = calloc(n, sizeof *first);
+    unsigned char *place = malloc((size_t)changed->n + 1);
     struct par_triangle_set set;
-    bool memory = par_triangle_set_of(&set, changed, r->state->mesh->n_triangles) && message && first;
+    bool memory = par_triangle_set_of(&set, changed, r->state->mesh->n_triangles) && message && first && place;
     if (memory)
         list_set(changed, &set, r->state->mesh->n_triangles);
-    memory = memory && give_all(r, changed, &set, message, first) && drop_all(r, changed, &set);
+    memory = memory && give_all(r, changed, &set, place, message, first) && drop_all(r, changed, &set, place);
     for (size_t h = 0; message && h < n; h++)
         par_message_free(&message[h]);
     free(message);
     free(first);
+    free(place);
     free(set.word);
     return memory ? TRI_OK : par_ranks_no_memory(error);
+}
+
+static enum place place_of(const struct par_ranks *r, tri_triangle_id t)
+{
+    return !par_has_own(r, t) ? WITH_OTHERS : par_has_foreign(r, t) ? BOTH : HERE;
 }
 
 static bool keep_own_entries(struct par_ranks *r)
@@ -278,14 +323,15 @@ static bool keep_own_entries(struct par_ranks *r)
 
 enum tri_status par_keep_own(struct par_ranks *r, struct tri_error *error)
 {
-    struct par_ids all = {0};
+    const struct tri_mesh *mesh = r->state->mesh;
     assert(r->straddlers.n == 0);
-    uint64_t *word = calloc((size_t)r->state->mesh->n_vertices / 64 + 1, sizeof *word);
+    uint64_t *word = calloc((size_t)mesh->n_vertices / 64 + 1, sizeof *word);
     bool memory = word && keep_own_entries(r);
-    for (tri_triangle_id t = 0; memory && t < r->state->mesh->n_triangles; t++)
-        memory = par_ids_add(&all, t);
-    memory = memory && sort_out(r, &all, word, true); /* all vertices stay: all ranks have them */
-    free(all.item);
+    for (tri_triangle_id t = 0; memory && t < mesh->n_triangles; t++)
+        if (tri_is_live(&mesh->tri[t]))
+            memory = put_in_place(r, t, place_of(r, t), word); /* all vertices stay: all ranks have them */
+    if (memory)
+        cut_off(r);
     free(word);
     return memory ? TRI_OK : par_ranks_no_memory(error);
 }

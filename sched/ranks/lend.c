@@ -148,22 +148,20 @@ static bool lend_entries(struct par_ranks *r, struct par_message *message)
     return memory;
 }
 
-static bool sort_told(struct par_ranks *r, const int32_t *first)
+static bool tell_all(struct par_ranks *r, struct par_message *message, const int32_t *first)
 {
     bool memory = true;
     for (int w = 0; memory && w < r->carrier->n_ranks; w++)
-        memory = par_talk_sort(&r->lent[w], r->state->mesh, first[w]);
+        memory = par_message_tell(&message[w], &r->lent[w], r->state->mesh, r->n_common, first[w]);
     return memory;
 }
 
 static bool write_messages(struct par_ranks *r, struct par_message *message, const int32_t *first)
 {
-    const struct tri_mesh *mesh = r->state->mesh;
     bool memory = true;
     for (int w = 0; memory && w < r->carrier->n_ranks; w++)
         if (r->lent[w].triangle.n > first[w])
-            memory = par_message_tell(&message[w], &r->lent[w], mesh, r->n_common, first[w]) &&
-                     par_message_write(&message[w], &r->lent[w], mesh->n_attributes, &r->out[w]);
+            memory = par_message_write(&message[w], &r->lent[w], r->state->mesh->n_attributes, &r->out[w]);
     return memory;
 }
 
@@ -180,8 +178,8 @@ enum tri_status par_lend(struct par_ranks *r, struct tri_error *error)
     struct par_message *message = calloc(n, sizeof *message);
     int32_t *first = calloc(n, sizeof *first);
     r->rings = RINGS;
-    bool memory = message && first && tell_straddlers(r) && tell_surroundings(r) && sort_told(r, first) &&
-                  lend_entries(r, message) && write_messages(r, message, first);
+    bool memory = message && first && tell_straddlers(r) && tell_surroundings(r) &&
+                  tell_all(r, message, first) && lend_entries(r, message) && write_messages(r, message, first);
     free_messages(message, r->carrier->n_ranks);
     free(first);
     return memory ? TRI_OK : par_ranks_no_memory(error);
@@ -232,7 +230,7 @@ enum tri_status par_lend_more(struct par_ranks *r, struct tri_error *error)
         memory = bad || begin_ring(r, w, &ring);
         memory = tell_rings(r, w, &ring, memory ? r->rings : 0) && memory;
     }
-    memory = memory && sort_told(r, first) && write_messages(r, message, first);
+    memory = memory && tell_all(r, message, first) && write_messages(r, message, first);
     free_messages(message, r->carrier->n_ranks);
     free(first);
     if (bad)

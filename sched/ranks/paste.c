@@ -255,7 +255,8 @@ static bool paste_vertices(struct pasting *p)
         if (v == TRI_NONE) {
             int32_t *at = at_place(&p->ranks->places, p->mesh, told->xy);
             v = *at != TRI_NONE ? *at : append_vertex(p, i);
-            note(&p->ranks->places, at, v);
+            if (p->is_borrowed)
+                note(&p->ranks->places, at, v);
         }
         memory = par_talk_add_vertex(p->talk, v);
     }
@@ -384,7 +385,7 @@ static bool reserve(struct pasting *p, struct tri_error *error)
     return p->is_new && p->sub && !tri_mesh_reserve_vertices(p->mesh, m->n_vertices, error) &&
            !tri_mesh_reserve_triangles(p->mesh, m->n_triangles, error) &&
            !tri_mesh_reserve_subs(p->mesh, m->n_new_subs, error) &&
-           reserve_index(&p->ranks->places, p->mesh, m->n_vertices, true) &&
+           reserve_index(&p->ranks->places, p->mesh, p->is_borrowed ? m->n_vertices : 0, true) &&
            reserve_index(&p->ranks->triangles, p->mesh, p->is_borrowed ? m->n_triangles : 0, false);
 }
 

@@ -123,7 +123,6 @@ static bool tell_piece(const struct sorting *s, int32_t tile, struct par_talk *t
     bool memory = true;
     for (int32_t i = triangles->start[tile]; memory && i < triangles->start[tile + 1]; i++)
         memory = par_talk_add_triangle(talk, triangles->item[i]);
-    memory = memory && par_talk_sort(talk, state->mesh, 0);
     memory = memory && par_message_tell(message, talk, state->mesh, s->ranks->n_common, 0);
     for (int32_t i = entries->start[tile]; memory && i < entries->start[tile + 1]; i++) {
         int32_t entry = entries->item[i];

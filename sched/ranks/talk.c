@@ -67,36 +67,6 @@ int32_t par_talk_number(const struct par_talk *talk, tri_triangle_id t)
     return number_of(&talk->triangle_at, &talk->triangle, t);
 }
 
-/* Deep before wide: who comes next lies beside the last one that had anybody beside it. */
-bool par_talk_sort(struct par_talk *talk, const struct tri_mesh *mesh, int32_t first)
-{
-    struct par_ids stack = {0}, sorted = {0};
-    int32_t n = talk->triangle.n;
-    bool memory = true;
-    for (int32_t i = first; memory && i < n; i++) {
-        memory = par_ids_add(&stack, talk->triangle.item[i]);
-        while (memory && stack.n > 0) {
-            tri_triangle_id t = stack.item[--stack.n];
-            int32_t number = par_talk_number(talk, t);
-            if (number < first)
-                continue;
-            talk->triangle.item[number] = TRI_NONE; /* has had its turn */
-            memory = par_ids_add(&sorted, t);
-            for (int e = 0; memory && e < 3; e++)
-                if (mesh->tri[t].n[e] >= 0)
-                    memory = par_ids_add(&stack, tri_of(mesh->tri[t].n[e]));
-        }
-        while (i + 1 < n && talk->triangle.item[i + 1] == TRI_NONE)
-            i++;
-    }
-    talk->triangle.n = first;
-    for (int32_t i = 0; memory && i < sorted.n; i++)
-        memory = par_talk_add_triangle(talk, sorted.item[i]);
-    free(stack.item);
-    free(sorted.item);
-    return memory;
-}
-
 void par_talk_free(struct par_talk *talk)
 {
     free(talk->vertex.item);
@@ -187,13 +157,56 @@ static bool tell_triangle(struct par_message *m, struct par_talk *talk, const st
     return true;
 }
 
+/* The talk's triangles from number `first` on, on their way to numbers in another order. */
+struct telling {
+    tri_triangle_id *waiting; /* [n] by the old numbers; TRI_NONE: it has had its turn */
+    int32_t n, first;
+    struct par_ids stack;
+};
+
+static bool take_turn(struct telling *telling, const struct par_talk *talk, tri_triangle_id t)
+{
+    int32_t place = par_map_get(&talk->triangle_at, t) - telling->first;
+    if (place < 0 || place >= telling->n || telling->waiting[place] != t)
+        return false;
+    telling->waiting[place] = TRI_NONE;
+    return true;
+}
+
+/* Deep before wide: who comes next lies beside the last one that had anybody beside it. */
+static bool tell_from(struct telling *telling, struct par_message *m, struct par_talk *talk,
+                      const struct tri_mesh *mesh, int32_t n_common, tri_triangle_id seed)
+{
+    bool memory = par_ids_add(&telling->stack, seed);
+    while (memory && telling->stack.n > 0) {
+        tri_triangle_id t = telling->stack.item[--telling->stack.n];
+        if (!take_turn(telling, talk, t))
+            continue;
+        memory = par_talk_add_triangle(talk, t) && tell_triangle(m, talk, mesh, n_common, t);
+        for (int e = 0; memory && e < 3; e++)
+            if (mesh->tri[t].n[e] >= 0)
+                memory = par_ids_add(&telling->stack, tri_of(mesh->tri[t].n[e]));
+    }
+    return memory;
+}
+
 bool par_message_tell(struct par_message *m, struct par_talk *talk, const struct tri_mesh *mesh, int32_t n_common,
                       int32_t first)
 {
-    bool memory = tri_grow(&m->triangle, &m->triangle_capacity, talk->triangle.n - first, sizeof *m->triangle);
-    assert(m->n_triangles == 0);
-    for (int32_t i = first; memory && i < talk->triangle.n; i++)
-        memory = tell_triangle(m, talk, mesh, n_common, talk->triangle.item[i]);
+    struct telling telling = {.n = talk->triangle.n - first, .first = first};
+    assert(m->n_triangles == 0 && telling.n >= 0);
+    if (telling.n == 0)
+        return true;
+    telling.waiting = malloc((size_t)telling.n * sizeof *telling.waiting);
+    bool memory = telling.waiting && tri_grow(&m->triangle, &m->triangle_capacity, telling.n, sizeof *m->triangle);
+    if (memory)
+        memcpy(telling.waiting, talk->triangle.item + first, (size_t)telling.n * sizeof *telling.waiting);
+    talk->triangle.n = first;
+    for (int32_t i = 0; memory && i < telling.n; i++)
+        memory = telling.waiting[i] == TRI_NONE || tell_from(&telling, m, talk, mesh, n_common, telling.waiting[i]);
+    assert(!memory || talk->triangle.n == first + telling.n);
+    free(telling.waiting);
+    free(telling.stack.item);
     return memory;
 }
 

@@ -47,9 +47,6 @@ int32_t par_talk_number(const struct par_talk *talk, tri_triangle_id t);
 
 void par_talk_free(struct par_talk *talk);
 
-/* Numbers the triangles from `first` on anew, so that most lie beside the one before. False: no memory. */
-bool par_talk_sort(struct par_talk *talk, const struct tri_mesh *mesh, int32_t first);
-
 /* --- messages */
 
 struct par_told_vertex {
@@ -89,8 +86,8 @@ struct par_message {
 
 void par_message_free(struct par_message *message);
 
-/* Tells of the talk's triangles from number `first` on, which have just been added. False: no memory. n_common: so many
- * vertices were there from the start. */
+/* Tells of the talk's triangles from number `first` on, which have just been added, and numbers them anew: most lie
+ * beside the one before then. False: no memory. n_common: so many vertices were there from the start. */
 bool par_message_tell(struct par_message *message, struct par_talk *talk, const struct tri_mesh *mesh,
                       int32_t n_common, int32_t first);
 

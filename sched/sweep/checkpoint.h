@@ -46,6 +46,7 @@ struct par_checkpoint {
     int lock;                    /* the directory's, held by this process */
     int saved;                   /* states written by this process */
     double last;                 /* when the last was, or when the run began */
+    double cost;                 /* seconds that it took */
     struct par_spool spool;
     char tiles_path[PAR_CHECKPOINT_PATH];
     struct tri_sink sink;        /* of a sweep: the spool */

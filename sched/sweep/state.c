@@ -7,8 +7,9 @@
 #include "sched/phase.h"
 #include "triangle/clock.h"
 #include "triangle/grow.h"
+#include "triangle/pause.h"
 
-static const uint64_t STATE = UINT64_C(0x3365746174736974); /* a version, too */
+static const uint64_t STATE = UINT64_C(0x3465746174736974); /* a version, too */
 
 /* --- of which run */
 
@@ -56,7 +57,7 @@ struct cells {
 
 struct head {
     uint64_t word;
-    int64_t odd, stage, amid, round, phase, numbered; /* the first: 0, or the column of a sweep */
+    int64_t odd, stage, amid, paused, round, phase, numbered; /* the first: 0, or the column of a sweep */
     int64_t n_vertices, n_triangles, n_subs, n_worklist, n_keys, n_held, n_spare[PAR_KINDS];
     int64_t tiles_vertices, tiles_triangles, tiles_segments;
     int64_t n_schedules, rounds, levels, schedule, prerefined, pauses, most_live, deferred, left_over;
@@ -91,7 +92,8 @@ static struct head head_of(const struct par_state *state, const struct par_tiles
 {
     const struct tri_mesh *m = state->mesh;
     const bool lists = tiles || state->amid;
-    struct head h = {.word = STATE, .odd = odd, .stage = state->stage, .amid = state->amid, .round = state->round,
+    struct head h = {.word = STATE, .odd = odd, .stage = state->stage, .amid = state->amid,
+                     .paused = state->paused != NULL, .round = state->round,
                      .phase = state->phase, .numbered = state->end == PAR_NUMBERED,
                      .n_vertices = m->n_vertices, .n_triangles = m->n_triangles, .n_subs = m->n_subs,
                      .n_worklist = lists ? state->worklist.n : 0, .n_keys = lists ? state->key.n : 0,
@@ -132,6 +134,14 @@ static void carry_mesh(struct par_state_file *f, const struct head *h, struct tr
     par_carry(f, m->sub, (size_t)h->n_subs * sizeof *m->sub);
 }
 
+static void carry_pause(struct par_state_file *f, const struct tri_pause *pause)
+{
+    struct tri_pause_array array[TRI_PAUSE_ARRAYS];
+    tri_pause_arrays(pause, array);
+    for (int k = 0; k < TRI_PAUSE_ARRAYS; k++)
+        par_carry(f, array[k].at, array[k].bytes);
+}
+
 /* tiles: NULL, or those of a sweep. */
 static void carry_arrays(struct par_state_file *f, const struct head *h, struct par_state *state,
                          struct par_tiles *tiles)
@@ -165,6 +175,12 @@ static enum tri_status put(struct par_state_file *f, void *user, struct tri_erro
     struct head h = head_of(cargo->state, cargo->tiles, *cargo->odd);
     (void)error;
     par_carry_head(f, &h, sizeof h);
+    if (h.paused) {
+        struct tri_pause pause;
+        tri_pause_head(cargo->state->paused, &pause);
+        par_carry_head(f, &pause, sizeof pause);
+        carry_pause(f, cargo->state->paused);
+    }
     carry_arrays(f, &h, cargo->state, cargo->tiles);
     return TRI_OK;
 }
@@ -173,10 +189,12 @@ static enum tri_status save(struct par_checkpoint *c, const struct par_state *st
                             int32_t odd, struct tri_error *error)
 {
     struct cargo cargo = {(struct par_state *)state, (struct par_tiles *)tiles, &odd}; /* which it only reads */
+    const double began = tri_seconds();
     enum tri_status status =
         par_checkpoint_write(c, tiles ? PAR_SWEPT_STATE : PAR_WHOLE_STATE,
                              tiles ? tiles->n_triangles : state->mesh->n_triangles, put, &cargo, error);
     c->last = tri_seconds();
+    c->cost = c->last - began;
     return status;
 }
 
@@ -304,6 +322,29 @@ static bool is_state_sound(const struct par_state *state)
 }
 #endif
 
+/* Where in a call it goes on. Sets file->failed also where that cannot be. */
+static enum tri_status get_pause(struct par_state_file *f, const struct head *h, struct par_state *state,
+                                 struct tri_error *error)
+{
+    struct tri_pause pause;
+    par_carry_head(f, &pause, sizeof pause);
+    f->failed = f->failed || !tri_pause_is_head(&pause, h->n_triangles, h->n_subs);
+    if (f->failed)
+        return TRI_OK;
+    if (f->way == PAR_READ) {
+        par_state_drop_pause(state);
+        state->paused = malloc(sizeof *state->paused);
+        if (!state->paused || !tri_pause_reserve(&pause)) {
+            free(state->paused);
+            state->paused = NULL;
+            return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the state of a checkpoint");
+        }
+        *state->paused = pause;
+    }
+    carry_pause(f, &pause);
+    return TRI_OK;
+}
+
 /* Nothing that counts changes before all has been read. */
 static enum tri_status get(struct par_state_file *f, void *user, struct tri_error *error)
 {
@@ -312,8 +353,8 @@ static enum tri_status get(struct par_state_file *f, void *user, struct tri_erro
     struct head h = {0};
     par_carry_head(f, &h, sizeof h);
     f->failed = f->failed || !is_head(&h, state, cargo->tiles);
-    enum tri_status status = TRI_OK;
-    if (!f->failed && f->way == PAR_READ) {
+    enum tri_status status = !f->failed && h.paused ? get_pause(f, &h, state, error) : TRI_OK;
+    if (!f->failed && !status && f->way == PAR_READ) {
         status = reserve_mesh(&h, state->mesh, error);
         if (!status && !reserve_lists(&h, state, cargo->tiles))
             status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the state of a checkpoint");
@@ -377,6 +418,53 @@ enum tri_status par_state_border(struct par_checkpoint *c, struct par_state *sta
 void par_state_may_stop(struct par_checkpoint *c, struct par_state *state, bool may)
 {
     state->mesh->stop = may ? c->stop : NULL;
+}
+
+/* Asked by a refiner that may pause. It does not stay true: pauses end. */
+static bool is_pause_due(void *user)
+{
+    const struct par_checkpoint *c = user;
+    const double passed = tri_seconds() - c->last;
+    return tri_stop_is_asked(c->stop) || (passed >= c->seconds && passed >= 9 * c->cost);
+}
+
+/* The refiner has paused: the state is kept, and it goes on unless somebody asks for the end. */
+static enum tri_status save_call(struct par_checkpoint *c, struct par_state *state,
+                                 const struct tri_refiner *refiner, struct tri_error *error)
+{
+    struct tri_pause pause;
+    tri_refiner_show(refiner, &pause);
+    state->paused = &pause;
+    enum tri_status status = save(c, state, NULL, 0, error);
+    state->paused = NULL;
+    return status || !tri_stop_is_asked(c->stop) ? status : tri_fail_stopped(error);
+}
+
+enum tri_status par_state_call(struct par_checkpoint *c, struct par_state *state, struct tri_refiner *refiner,
+                               struct tri_error *error)
+{
+    const struct tri_stop pauses = {is_pause_due, c};
+    enum tri_status status;
+    if (state->paused)
+        tri_refiner_go_on(refiner, state->paused);
+    par_state_drop_pause(state);
+    do {
+        state->mesh->stop = &pauses;
+        status = tri_refiner_run(refiner, error);
+        state->mesh->stop = NULL;
+        if (status != TRI_STOPPED)
+            return status;
+        status = save_call(c, state, refiner, error);
+    } while (!status);
+    return status;
+}
+
+void par_state_drop_pause(struct par_state *state)
+{
+    if (state->paused)
+        tri_pause_free(state->paused);
+    free(state->paused);
+    state->paused = NULL;
 }
 
 /* --- a sweep */

@@ -2,7 +2,8 @@
  *
  * Between two columns of a sweep: what is in memory then, and which column is next. Between two phases of a schedule
  * whose mesh stays as a whole, in memory or parked, and before the calls beyond the schedule: all of the mesh, and
- * which phase of which round, or which call, is next. A run that gives up its sweep goes over to the second.
+ * which phase of which round, or which call, is next. Between two points of such a call also where it is
+ * (triangle/pause.h). A run that gives up its sweep goes over to the second.
  *
  * THEOREM. A run that goes on ends with the bytes of one that was never stopped. For what is still to come depends on
  * the mesh, the lists of what is left, the free ranges of the arrays, the cells and the counts alone: all of them are
@@ -18,6 +19,7 @@
 #include "sched/sweep/tiles.h"
 
 struct par_state;
+struct tri_refiner;
 
 /* When a run begins, with the mesh as it came. Where there is the state of a mesh as a whole, the mesh, the lists, the
  * cells and the counts become what they were, and what is to be done next. TRI_BAD_INPUT: it is another run's, or
@@ -41,6 +43,15 @@ enum tri_status par_state_border(struct par_checkpoint *checkpoint, struct par_s
 /* Is whoever asks for the end heard within the step at hand, too, and not only at the next border? A step that is
  * stopped is lost: the run goes on from the last state. */
 void par_state_may_stop(struct par_checkpoint *checkpoint, struct par_state *state, bool may);
+
+/* Runs a refiner of the whole mesh to its end, from where a state was amid such a call, and keeps states of it on the
+ * way: where it is time to, unless more than a tenth of the time would go into that, and where somebody asks for the
+ * end (TRI_STOPPED then). Also TRI_CANNOT_WRITE, or what the refiner says. */
+enum tri_status par_state_call(struct par_checkpoint *checkpoint, struct par_state *state,
+                               struct tri_refiner *refiner, struct tri_error *error);
+
+/* Frees state->paused, which may be NULL. */
+void par_state_drop_pause(struct par_state *state);
 
 /* --- a sweep */
 

@@ -49,8 +49,9 @@ judge letter.1 --poly letter.poly --no-markers
 
 # --- one verdict for any number of threads
 fresh letter.poly
-run 0 -pq30a0.0008n letter
-awk 'NR > 1 && NR % 1000 == 0 && NF == 4 && !/#/ { t = $2; $2 = $3; $3 = t } { print }' letter.1.ele >changed
+full && area=0.0008 || area=0.002
+run 0 -pq30a${area}n letter
+awk 'NR > 1 && NR % 300 == 0 && NF == 4 && !/#/ { t = $2; $2 = $3; $3 = t } { print }' letter.1.ele >changed
 for mesh in letter.1.ele changed; do
     mv $mesh letter.1.ele 2>/dev/null
     for threads in 1 2 5; do
@@ -81,6 +82,7 @@ part_by_part() { # part_by_part WORDS...: the verdict of trianglecheck WORDS
 }
 fresh section.poly letter.poly
 for switches in -pq30aA -pq30aAzo2n -pq30Dnj; do
+    every 3 || continue
     run 0 $switches section
     part_by_part section.1 --poly section.poly -q 30 --jettisoned
     part_by_part section.1 --poly letter.poly -q 33 -a 1 --json

@@ -5,6 +5,15 @@ faults=0
 checks=0
 what=""
 
+# With PTRIANGLE_TEST_FULL a test tries all of its cases, else those that half a minute has room for.
+full() { [ -n "${PTRIANGLE_TEST_FULL:-}" ]; }
+
+turn=-1
+every() { # every N: where not full, succeeds each N-th time
+    turn=$((turn + 1))
+    full || [ $((turn % $1)) -eq 0 ]
+}
+
 fault() {
     echo "cli: $what: $*"
     faults=$((faults + 1))

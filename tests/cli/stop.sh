@@ -50,6 +50,7 @@ ended() { # ended CODE: the job ends with it, one line tells of it, and nothing 
 for signal in HUP:1 INT:2 QUIT:3 TERM:15 ALRM:14 USR1:10 USR2:12 XCPU:24 VTALRM:26 PROF:27; do
     number=${signal#*:} # on Linux
     signal=${signal%:*}
+    every 3 || continue
     for program in triangle ptriangle; do
         [ -x "$bin/$program" ] || continue
         fresh letter.poly

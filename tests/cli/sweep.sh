@@ -12,13 +12,43 @@ if ! h5; then
     return
 fi
 rm -f .try.*
-sum() { cksum <"$1"; }
+
+# killed_and_on SECONDS WORDS...: runs with a checkpoint after each column, each a while longer than the one before;
+# every other is killed, the rest stop at the time limit, until one ends.
+killed_and_on() {
+    limit=$1
+    shift
+    what="ptriangle $*, killed and on"
+    longer=$(full && echo 1.3 || echo 1.8)
+    found=-1
+    rounds=0
+    until [ $found -eq 0 ] || [ $rounds -ge 60 ]; do # not until the file is there: a kill may fall between two renames
+        rounds=$((rounds + 1))
+        limit=$(echo "$limit $longer" | awk '{ print $1 * $2 }')
+        if [ $((rounds % 2)) -eq 0 ]; then
+            "$bin/ptriangle" "$@" --checkpoint state --resume state --every 0 --threads $((rounds % 3 + 1)) >.out 2>.err &
+            sleep "$limit"
+            kill -KILL $! 2>/dev/null
+            wait $! 2>/dev/null
+        else
+            "$bin/ptriangle" "$@" --checkpoint state --resume state --every 0 --time-limit "$limit" >.out 2>.err
+        fi
+        found=$?
+        case $found in
+        0 | 124 | 137) ;;
+        *) fault "exit code $found: $(head -n 1 .err)" && break ;;
+        esac
+    done
+    rm -rf state # a run may have been killed after its last rename
+    find . -name '.tri-*' -delete
+}
 export PTRIANGLE_TEST_BLOCK=600
 
 # --- swept and in memory, by any number of threads
 fresh letter.poly section.poly nasty/spike.poly
 for case in "-pq30a0.0001 spike" "-pq30Ya0.002 letter" "-pq20Aaa0.01 section" "-pq25a0.004D letter" \
     "-pq33a0.005YY letter"; do
+    every 2 || continue
     # shellcheck disable=SC2086 # several words
     program 0 $case --output whole.h5
     grep -o '^.*the bounds[.:]' .out >.expected # how many; which of two reasons a triangle has may differ
@@ -30,6 +60,7 @@ for case in "-pq30a0.0001 spike" "-pq30Ya0.002 letter" "-pq20Aaa0.01 section" "-
     done
 done
 for case in "-pq30a0.002 letter" "-pcq20a0.01BN letter" "-pPq20Aaa0.01 section" "-zpq30Da0.01E letter"; do
+    every 3 || continue
     rm -f whole* swept*
     # shellcheck disable=SC2086
     program 0 -Q $case --output whole --threads 2
@@ -59,6 +90,7 @@ rm -f .whole .swept
 # --- formats that are written when all tiles are there
 fresh letter.poly section.poly
 for case in "-pq30a0.002 letter" "-pq20Aaa0.01 section" "-pq33a0.005B letter"; do
+    every 3 || continue
     # shellcheck disable=SC2086
     program 0 -Q $case --output whole.vtu --output whole.msh
     # shellcheck disable=SC2086
@@ -118,32 +150,8 @@ fresh letter.poly
 program 0 -Qpq30a0.002 letter --output whole.h5
 ls >.before
 export PTRIANGLE_TEST_SWEEP=1
-limit=0.05
-rounds=0
-what="ptriangle --checkpoint"
-found=-1
-until [ $found -eq 0 ] || [ $rounds -ge 60 ]; do # not until the file is there: a kill may fall between two renames
-    rounds=$((rounds + 1))
-    limit=$(echo "$limit" | awk '{ print $1 * 1.4 }')
-    if [ $((rounds % 2)) -eq 0 ]; then
-        "$bin/ptriangle" -Qpq30a0.002 letter --output out.h5 --checkpoint state --resume state --every 0 \
-            --threads $((rounds % 3 + 1)) >.out 2>.err &
-        sleep "$limit"
-        kill -KILL $! 2>/dev/null
-        wait $! 2>/dev/null
-    else
-        "$bin/ptriangle" -Qpq30a0.002 letter --output out.h5 --checkpoint state --resume state --every 0 \
-            --time-limit "$limit" >.out 2>.err
-    fi
-    found=$?
-    case $found in
-    0 | 124 | 137) ;;
-    *) fault "exit code $found: $(head -n 1 .err)" && break ;;
-    esac
-done
+killed_and_on 0.05 -Qpq30a0.002 letter --output out.h5
 check "the same bytes" cmp whole.h5 out.h5
-rm -rf state # a run may have been killed after its last rename
-find . -name '.tri-*' -delete
 wrote out.h5 out.xdmf
 
 # --- the line that goes on
@@ -222,37 +230,14 @@ fresh letter.poly
 program 0 -pq33a0.0005e letter --output whole --checkpoint state --every 0
 silent_on 'checkpoint'
 ls >.before
-limit=0.05
-rounds=0
-found=-1
-what="ptriangle --checkpoint, a mesh as a whole"
-until [ $found -eq 0 ] || [ $rounds -ge 60 ]; do
-    rounds=$((rounds + 1))
-    limit=$(echo "$limit" | awk '{ print $1 * 1.3 }')
-    if [ $((rounds % 2)) -eq 0 ]; then
-        "$bin/ptriangle" -Qpq33a0.0005e letter --output out --checkpoint state --resume state --every 0 \
-            --threads $((rounds % 3 + 1)) >.out 2>.err &
-        sleep "$limit"
-        kill -KILL $! 2>/dev/null
-        wait $! 2>/dev/null
-    else
-        "$bin/ptriangle" -Qpq33a0.0005e letter --output out --checkpoint state --resume state --every 0 \
-            --time-limit "$limit" >.out 2>.err
-    fi
-    found=$?
-    case $found in
-    0 | 124 | 137) ;;
-    *) fault "exit code $found: $(head -n 1 .err)" && break ;;
-    esac
-done
+killed_and_on 0.05 -Qpq33a0.0005e letter --output out
 for suffix in node ele edge poly; do
     for which in whole out; do
         grep -v '^#' $which.$suffix >.$which
     done
     check "the same .$suffix" cmp .whole .out
 done
-rm -rf state .whole # a run may have been killed after its last rename
-find . -name '.tri-*' -delete
+rm -f .whole
 wrote out.edge out.ele out.node out.poly
 for words in "--every -1" "--every 5" "--checkpoint" "--resume="; do
     # shellcheck disable=SC2086

@@ -229,14 +229,14 @@ static int32_t triangles_of(const struct torture_case *as, const struct outcome 
 }
 
 /* The schedule's mesh has about as many triangles as that of one sequential call, in cells of its own choice nearly
- * as many; tiny cells have many seams. Just below the usual angle small edges spread as the order has it, and with -Y
- * from 28 degrees on, since nothing mends the angles beside the boundary; above it what is given up depends on the
- * order. */
+ * as many; tiny cells have many seams. Just below the usual angle small edges spread as the order has it. The sides of a
+ * narrow space are halved until their parts are about as long as it is wide, and order decides on the last halving:
+ * what such spaces take may be twice as much. */
 static void judge_schedule_size(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
-    double angle = first->options.quality.min_angle;
-    bool spreads = angle > 32 || (angle > 28 && first->switches.protect > 0);
-    const double OWN_CELLS = spreads ? 2 : 1.1, TINY_CELLS = spreads ? 10 : 2, FEW = 100;
+    bool spreads = first->options.quality.min_angle > 32;
+    const double OWN_CELLS = spreads ? 1.4 : 1.1, TINY_CELLS = spreads ? 8 : 2;
+    const double FEW = 100 + first->mesh.limits.gap_points;
     struct torture_case sequential = *first->of, by_itself = *first->of;
     sequential.block = 0;
     by_itself.block = -1;
@@ -251,18 +251,12 @@ static void judge_schedule_size(const struct outcome *first, const struct tri_ps
                     (int)first->mesh.n_triangles, (int)one_call);
 }
 
-/* Sizes and -D make points for each that is there for angles. */
-static bool asks_for_more(const struct outcome *o)
-{
-    return o->options.quality.conforming || tri_has_sizes(&o->options.quality);
-}
-
 /* Above the usual angle at most so many times the triangles at that, which is proved but for what sizes and -D ask for
- * (refine.c), and somewhat more then; up to it, at most so many times those at an angle that theory promises: some 16
- * squared by feature_size.c, 47 the most that was seen. Few triangles are not worth it. */
+ * (refine.c); up to it, at most so many times those at an angle that theory promises: some 16 squared by
+ * feature_size.c, 47 the most that was seen. Few triangles are not worth it. */
 static void judge_amount(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
-    const double PROMISED = 25, BEYOND = asks_for_more(first) ? 4 : 2.5, USUAL = 64;
+    const double PROMISED = 25, BEYOND = 2.5, USUAL = 64;
     enum { FEW = 20000 };
     struct outcome less = *first;
     double angle = first->options.quality.min_angle;

@@ -4,7 +4,9 @@
 #include "tests/torture/judge.h"
 #include "triangle/census.h"
 #include "triangle/disk.h"
+#include "triangle/predicates.h"
 #include "triangle/quality.h"
+#include "triangle/small_angle.h"
 
 /* Heights below this share of the largest coordinate are at the resolution of coordinates. */
 static const double RESOLUTION = 1e-12;
@@ -12,7 +14,7 @@ static const double RESOLUTION = 1e-12;
 /* A vertex that is level with an end of a subsegment up to rounding, an ulp, leaves the circles of parts not longer
  * than height^2 / ulp: where more of them than that are needed, the place is not resolved. From SHORTEST ulps on it is
  * not for rounding that the vertex lies in the circle. */
-enum { MOST_PARTS = 64, SHORTEST = 128 };
+enum { MOST_PARTS = 8, SHORTEST = 128 };
 
 struct bounds {
     const struct outcome *outcome;
@@ -56,20 +58,69 @@ static void judge_areas(const struct outcome *o, struct bounds *b, struct verdic
                     (long long)b->too_large, (int)b->worst_at, b->worst);
 }
 
+/* The point of a parent that is nearest to p. */
+static struct tri_point nearest_point(const struct tri_mesh *mesh, tri_parent_id parent, struct tri_point p)
+{
+    struct tri_point a = mesh->xy[mesh->parents[parent].v[0]], b = mesh->xy[mesh->parents[parent].v[1]];
+    double x = b.x - a.x, y = b.y - a.y, along = ((p.x - a.x) * x + (p.y - a.y) * y) / (x * x + y * y);
+    along = fmin(fmax(along, 0), 1);
+    return (struct tri_point){a.x + along * x, a.y + along * y};
+}
+
+/* Is the space between these two, which face each other across p at u and v, one that is not filled? */
+static bool is_unfilled(const struct tri_mesh *mesh, tri_parent_id near, tri_parent_id far, struct tri_point u,
+                        struct tri_point v, struct tri_point p)
+{
+    bool across = (u.x - p.x) * (v.x - p.x) + (u.y - p.y) * (v.y - p.y) < 0;
+    return across && (tri_corner_between(mesh, near, far) == TRI_SPIKE ||
+                      tri_filling_cost(mesh, near, far, u, v) > mesh->limits.dearest_gap);
+}
+
+/* Between the nearest parent and any other one. */
+static bool is_in_unfilled_space(const struct tri_mesh *mesh, int32_t t)
+{
+    const int32_t *v = mesh->tri[t].v;
+    struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]], at = a;
+    struct tri_point p = {a.x + ((b.x - a.x) + (c.x - a.x)) / 3, a.y + ((b.y - a.y) + (c.y - a.y)) / 3};
+    tri_parent_id near = TRI_NONE;
+    double least = INFINITY;
+    for (tri_parent_id i = 0; i < mesh->n_parents; i++) {
+        struct tri_point foot = nearest_point(mesh, i, p);
+        if (tri_distance2(p, foot) < least)
+            least = tri_distance2(p, foot), near = i, at = foot;
+    }
+    for (tri_parent_id i = 0; i < mesh->n_parents; i++)
+        if (i != near && is_unfilled(mesh, near, i, at, nearest_point(mesh, i, p), p))
+            return true;
+    return false;
+}
+
+/* Of the triangles given up where vertices ran away those that do not lie in a spike or a gap too dear to fill. No
+ * angle is promised there: points that sizes put there see only each other. */
+static int64_t outside_gaps(const struct outcome *o, const struct tri_refine_options *angles)
+{
+    int64_t n = 0;
+    for (int32_t t = 0; t < o->mesh.n_triangles; t++) {
+        int64_t count[TRI_EXCUSES] = {0};
+        tri_count_bad_among(&o->mesh, angles, &o->report.quality, &t, 1, count);
+        n += count[TRI_EXCUSE_LIMIT] > 0 && !is_in_unfilled_space(&o->mesh, t);
+    }
+    return n;
+}
+
 /* Where vertices ran away triangles are given up, beside small angles and dear spaces at any bound: there the checker
- * finds the reason itself. Elsewhere none are up to the angle that theory promises (Ruppert 1995: 20.7 degrees), very
- * few up to 25, and few above; with -D more, beside spaces too dear to fill, whose circles ask for edges that are no
- * features. */
-static int64_t may_run_away(const struct outcome *o, int64_t count, struct verdict *verdict)
+ * finds the reason itself. Elsewhere none are up to the angle that theory promises (Ruppert 1995: 20.7 degrees), next
+ * to none up to 25, and few above. */
+static int64_t may_run_away(const struct outcome *o, const struct tri_refine_options *angles, int64_t count,
+                            struct verdict *verdict)
 {
     const double PROMISED = 20.7, LIKELY = 25;
-    double angle = o->options.quality.min_angle, few = angle > LIKELY ? 0.02 : 1e-4;
+    double angle = angles->min_angle, few = 20 + (angle > LIKELY ? 0.02 * o->mesh.n_triangles : 0);
     if (angle <= PROMISED)
         return 0;
-    if (o->options.quality.conforming)
-        few = 0.1;
-    if (count > 20 + few * o->mesh.n_triangles)
-        judge_fault(verdict, "angle limit", "%lld of %d triangles given up at %g degrees", (long long)count,
+    int64_t outside = count > few ? outside_gaps(o, angles) : 0;
+    if (outside > few)
+        judge_fault(verdict, "angle limit", "%lld of %d triangles given up at %g degrees", (long long)outside,
                     (int)o->mesh.n_triangles, angle);
     return count;
 }
@@ -77,7 +128,7 @@ static int64_t may_run_away(const struct outcome *o, int64_t count, struct verdi
 /* The counts that the programs print. A point for a triangle beside a flat one may see the flat one from behind, and is
  * not inserted then; and its height is a feature that nothing can resolve, so that the subsegments beside it stay as
  * long as they are: where there are flat triangles, some around each may be left. */
-enum { AROUND = 20 };
+enum { AROUND = 10 };
 
 static void judge_angles(const struct outcome *o, const struct bounds *b, const struct tri_check_report *report,
                          struct verdict *verdict)
@@ -100,7 +151,7 @@ static void judge_angles(const struct outcome *o, const struct bounds *b, const 
     if (o->switches.protect > 0 || o->options.quality.min_angle > TRI_USUAL_ANGLE)
         return;
     int64_t unexplained = report->n_small - report->n_small_explained, beside = AROUND * b->too_flat;
-    int64_t ran_away = may_run_away(o, count[TRI_EXCUSE_LIMIT], verdict);
+    int64_t ran_away = may_run_away(o, &angles, count[TRI_EXCUSE_LIMIT], verdict);
     unexplained -= ran_away;
     if (unexplained > count[TRI_EXCUSE_NARROW_GAP] + beside)
         judge_fault(verdict, "angle",

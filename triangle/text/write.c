@@ -4,7 +4,9 @@
  * lengths of its chunks are known, and so their places in the file; whoever formats a chunk of the next wave first
  * writes the chunk that its buffer holds. So the bytes do not depend on who comes first, nobody waits for the disk
  * alone, and what is written is still in a cache. (Linux lets one thread at a time write into a file: writers that
- * format between writes keep out of each other's way.) A device or a pipe has no places: each wave is written in order.
+ * format between writes keep out of each other's way, and the fewer bytes a write has, the longer it takes for each:
+ * hence the size of a chunk, of which rows fill a third to a half.) A device or a pipe has no places: each wave is
+ * written in order.
  *
  * A table of few chunks takes a few milliseconds; threads that are woken for it go on spinning for longer than that
  * once it is done. So it is written chunk by chunk, without the executor. */
@@ -19,9 +21,9 @@
 #include "triangle/text/text.h"
 
 enum {
-    CHUNK_BYTES = 1 << 16,
-    WORTH_THREADS = 64, /* chunks; a table of fewer is written by one thread */
-    WAVE_CHUNKS = 256   /* at a time, where there is an executor */
+    CHUNK_BYTES = 1 << 18,
+    WORTH_THREADS = 16, /* chunks; a table of fewer is written by one thread */
+    WAVE_CHUNKS = 64    /* at a time, where there is an executor */
 };
 
 static char *put(char *at, const char *text, size_t length)
