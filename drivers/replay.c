@@ -39,7 +39,8 @@ struct replay_how replay_usual(int n_ranks, int threads, int times, double cell)
 {
     double side = sqrt(cell / CELL);
     return (struct replay_how){.n_ranks = n_ranks, .threads = threads, .times = times, .latency = 2e-6,
-                               .bandwidth = 1e10, .lateness = 2.5e-4, .pair_bytes = PAIR_BYTES * side, .pair_seconds = PAIR_SECONDS * side};
+                               .bandwidth = 1e10, .lateness = 2.5e-4, .pair_bytes = PAIR_BYTES * side,
+                               .pair_seconds = PAIR_SECONDS * side};
 }
 
 /* --- blocks */

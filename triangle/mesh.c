@@ -384,22 +384,22 @@ struct gathering {
     int32_t n;
 };
 
+/* Inlined where the length is known, so that a copy is no call. */
+static inline void gather_items(struct gathering g, struct tri_range range, size_t item)
+{
+    for (int32_t i = range.first; i < range.last; i++)
+        memcpy(g.scratch + (size_t)i * item, g.origin + (size_t)g.from[i] * item, item);
+}
+
 static void gather_share(void *context, size_t share)
 {
     const struct gathering *g = context;
     struct tri_range range = tri_share(share, g->n);
-    size_t item = g->item;
-    for (int32_t i = range.first; i < range.last; i++) {
-        const char *from = g->origin + (size_t)g->from[i] * item;
-        char *to = g->scratch + (size_t)i * item;
-        if (item == sizeof(int32_t)) /* lengths that the compiler knows */
-            memcpy(to, from, sizeof(int32_t));
-        else if (item == sizeof(double))
-            memcpy(to, from, sizeof(double));
-        else if (item == sizeof(struct tri_point))
-            memcpy(to, from, sizeof(struct tri_point));
-        else
-            memcpy(to, from, item);
+    switch (g->item) {
+    case sizeof(int32_t): gather_items(*g, range, sizeof(int32_t)); break;
+    case sizeof(double): gather_items(*g, range, sizeof(double)); break;
+    case sizeof(struct tri_point): gather_items(*g, range, sizeof(struct tri_point)); break;
+    default: gather_items(*g, range, g->item);
     }
 }
 

@@ -10,20 +10,23 @@
  * All memory is asked for before anything moves. Triangles move in place, batch by batch of their new places, down from
  * the last: those of a batch are gathered in a buffer; those that stand in their places, and belong to batches to
  * come, are set aside; then the batch is put down. So a triangle is set aside only if it moves down, or, where more of
- * them do than up, and batches go up from the first, only if it moves up: at most half of them, in the memory of the
- * items that were sorted, and in what nobody touches otherwise. */
+ * them do than up, and batches go up from the first, only if it moves up: at most half of them.
+ *
+ * A page that is touched for the first time costs as much as sorting what is in it: so memory serves several times, and
+ * who works on tiles has one room for all of them. */
 #include "sched/sweep/numbering.h"
 
 #include <assert.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "triangle/hilbert.h"
 #include "triangle/radix.h"
 
-/* What is sorted: a number or parent, and the triangle or subsegment that is sorted by it. A triangle tells also which
- * of its corners is the first, and whether its tile is another than that of its first corner. */
-enum { ID_BITS = 29, FIRST_BITS = 2, KEY_SHIFT = ID_BITS + FIRST_BITS, STRAY_BIT = 63 };
+/* A number with a corner, 31 bits: of a triangle its id or its place, with the corner that will be the first, or the
+ * largest number of its corners. An item is such a code, or the id of a subsegment, with what it is sorted by above. */
+enum { CORNER_BITS = 2, CODE_BITS = 31 };
 
 enum {
     FEW = 24,        /* are sorted by insertion */
@@ -32,21 +35,18 @@ enum {
     BATCH_SHARES = 32
 };
 
-_Static_assert(INT64_C(1) << ID_BITS == TRI_MAX_TRIANGLES, "ids fill their bits");
+_Static_assert(INT64_C(1) << CODE_BITS == (int64_t)TRI_MAX_TRIANGLES << CORNER_BITS, "codes fill their bits");
 
-static const uint64_t FREE = UINT64_MAX; /* the item of a number that is free */
+static uint64_t item_of(int32_t key, int32_t code) { return (uint64_t)key << CODE_BITS | (uint64_t)code; }
+static int32_t key_of(uint64_t item) { return (int32_t)(item >> CODE_BITS); }
+static int32_t code_of(uint64_t item) { return (int32_t)(item & ((UINT64_C(1) << CODE_BITS) - 1)); }
 
-static uint64_t item_of(int32_t key, int first, int32_t id)
-{
-    return (uint64_t)key << KEY_SHIFT | (uint64_t)first << ID_BITS | (uint64_t)id;
-}
+static int32_t code_with(int32_t number, int corner) { return number << CORNER_BITS | corner; }
+static int32_t number_in(int32_t pair) { return pair >> CORNER_BITS; }
+static int corner_in(int32_t pair) { return pair & 3; }
 
 static uint64_t least(uint64_t a, uint64_t b) { return a < b ? a : b; }
 static uint64_t most(uint64_t a, uint64_t b) { return a < b ? b : a; }
-
-static int32_t key_of(uint64_t item) { return (int32_t)(item >> KEY_SHIFT); }
-static int first_of(uint64_t item) { return (int)(item >> ID_BITS & 3); }
-static int32_t id_of(uint64_t item) { return (int32_t)(item & ((UINT64_C(1) << ID_BITS) - 1)); }
 
 /* Things of each tile: so many of each in each share of where they are now, then where the next one goes. */
 struct deal {
@@ -65,41 +65,75 @@ struct numbering {
     int32_t *kept_tile; /* [n_kept] */
     struct deal vertices, triangles; /* new vertices; all triangles */
     int32_t n_new;
-    /* Memory that serves twice, by two names: the first until vertices have been put in order, and numbered; of a
-     * triangle until its tile is sorted. */
+    /* Memory that serves several times, by several names: each until the next is needed. */
     union {
         int32_t *order;   /* [n_vertices - n_kept] the new vertices, one after the other */
         int32_t *fan_end; /* of the triangles that start at each */
+        struct tri_triangle *buffer; /* [batch] */
     };
     union {
         int32_t *tile_of; /* [n_vertices] of a new vertex; TRI_NONE: the id is free */
         int32_t *number;  /* the new one of each */
     };
     union {
-        int32_t *second;  /* [n_triangles] the new number of the second corner; TRI_NONE: the id is free */
-        int32_t *place;   /* where it goes; TRI_NONE */
+        int32_t *key;     /* [n_triangles] the largest number of a corner, and which; FREE_KEY: the id is free */
+        int32_t *place;   /* where it goes, and which corner will be the first; TRI_NONE */
     };
+    int32_t *dealt;      /* [n_triangles] ids with their first corners: tile by tile, in the end in their new order */
     int32_t *sub_number; /* [n_subs] */
     struct tri_subsegment *sub; /* [n_subs] */
-    size_t n_items;    /* the larger of n_triangles and n_subs */
-    void *scratch;     /* [3 * n_items] items: by tile, in the end in their new order; as they lie; what is aside */
-    struct tri_triangle *buffer; /* [batch] */
+    void *scratch;       /* what is sorted, vertices on their way, what is set aside */
     int32_t batch;
     int32_t n_tri, n_subs;            /* live ones */
 };
 
-static uint64_t *dealt_items(const struct numbering *n) { return n->scratch; } /* tile by tile, in the end sorted */
-static uint64_t *items_of(const struct numbering *n) { return dealt_items(n) + n->n_items; }
+/* A key says, too, that the triangle's tile is another than that of its first corner. */
+enum { FREE_KEY = TRI_NONE, STRAY_KEY = 1 << 30 };
 
-/* Of items in their new order: the triangle has been set aside, and the id is its place there. */
-enum { ASIDE_BIT = 63 };
+_Static_assert((int64_t)TRI_MAX_VERTICES << CORNER_BITS <= STRAY_KEY, "a key has a bit left");
 
-static struct tri_triangle *aside_of(const struct numbering *n)
-{
-    return (struct tri_triangle *)(void *)items_of(n);
-}
+/* While triangles are sorted: the new number of the second corner of each; and items of the tiles that are being
+ * sorted, behind these. */
+static int32_t *second_of(const struct numbering *n) { return n->scratch; }
+static uint64_t *items_of(const struct numbering *n) { return (uint64_t *)n->scratch + n->mesh->n_triangles / 2 + 1; }
+
+/* Of triangles in their new order: this one has been set aside, and the number is its place there. */
+static const int32_t ASIDE = INT32_MIN;
+
+static struct tri_triangle *aside_of(const struct numbering *n) { return n->scratch; }
 
 /* --- tiles */
+
+/* Tiles are taken one by one by as many hands as there is room for, each for the largest tile. There are more of them
+ * than threads: those that come first do all the work, and their room stays in the cache. */
+struct hands {
+    const struct numbering *n;
+    void (*work)(const struct numbering *n, size_t tile, uint64_t *room);
+    uint64_t *room;         /* [hands][each] */
+    size_t each;
+    atomic_size_t next;     /* tile */
+};
+
+static void take_tiles(void *context, size_t hand)
+{
+    struct hands *h = context;
+    for (size_t tile; (tile = atomic_fetch_add(&h->next, 1)) < (size_t)h->n->n_tiles;)
+        h->work(h->n, tile, h->room + hand * h->each);
+}
+
+/* Things of a deal, tile by tile, with room for two items of each. */
+static void work_on_tiles(const struct numbering *n, const struct deal *deal, uint64_t *room,
+                          void (*work)(const struct numbering *n, size_t tile, uint64_t *room))
+{
+    int32_t largest = 1;
+    for (int32_t tile = 0; tile < n->n_tiles; tile++) {
+        int32_t count = deal->start[tile + 1] - deal->start[tile];
+        largest = count > largest ? count : largest;
+    }
+    struct hands hands = {n, work, room, 2 * (size_t)largest, 0};
+    size_t most = (size_t)deal->n / (size_t)largest;
+    tri_execute(n->executor, most < (size_t)n->n_tiles ? most : (size_t)n->n_tiles, take_tiles, &hands);
+}
 
 static struct tri_range share_of(const struct deal *d, size_t share) { return tri_share_of(share, d->shares, d->n); }
 
@@ -182,11 +216,10 @@ static void deal_vertices(void *context, size_t share)
             n->order[at[n->tile_of[v]]++] = v;
 }
 
-static void number_tile(void *context, size_t tile)
+static void number_tile(const struct numbering *n, size_t tile, uint64_t *room)
 {
-    const struct numbering *n = context;
     int32_t first = n->vertices.start[tile], end = n->vertices.start[tile + 1];
-    tri_hilbert_order_coarse(n->mesh->xy, n->order + first, end - first, (uint64_t *)n->scratch + 2 * (size_t)first);
+    tri_hilbert_order_coarse(n->mesh->xy, n->order + first, end - first, room);
     for (int32_t i = first; i < end; i++)
         n->number[n->order[i]] = n->n_kept + i;
 }
@@ -208,7 +241,7 @@ static void number_vertices(struct numbering *n)
     tri_execute(n->executor, n->vertices.shares, count_vertices, n);
     n->n_new = add_up_counts(&n->vertices, n->n_tiles);
     tri_execute(n->executor, n->vertices.shares, deal_vertices, n);
-    tri_execute(n->executor, (size_t)n->n_tiles, number_tile, n);
+    work_on_tiles(n, &n->vertices, n->scratch, number_tile);
 }
 
 /* --- subsegments */
@@ -223,8 +256,8 @@ static void rename_subs(struct numbering *n)
 
 static void sort_subs(const struct numbering *n, int32_t limit)
 {
-    tri_radix_sort(items_of(n), items_of(n) + n->n_items, n->n_subs, KEY_SHIFT, KEY_SHIFT + tri_bits_of(limit),
-                   n->executor);
+    uint64_t *item = n->scratch;
+    tri_radix_sort(item, item + n->mesh->n_subs, n->n_subs, CODE_BITS, CODE_BITS + tri_bits_of(limit), n->executor);
 }
 
 static int32_t tile_of_sub(const struct numbering *n, const struct tri_subsegment *s)
@@ -237,33 +270,31 @@ static int32_t tile_of_sub(const struct numbering *n, const struct tri_subsegmen
 static void number_subs(struct numbering *n)
 {
     const struct tri_mesh *mesh = n->mesh;
-    uint64_t *item = items_of(n);
+    uint64_t *item = n->scratch;
     for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         if (mesh->sub[s].v[0] != TRI_NONE)
-            item[n->n_subs++] = item_of(mesh->sub[s].v[0], 0, s);
+            item[n->n_subs++] = item_of(mesh->sub[s].v[0], s);
     sort_subs(n, mesh->n_vertices);
     for (int32_t i = 0; i < n->n_subs; i++) {
-        tri_parent_id parent = mesh->sub[id_of(item[i])].parent;
+        tri_parent_id parent = mesh->sub[code_of(item[i])].parent;
         assert(parent >= 0 && parent < mesh->n_parents);
-        item[i] = item_of(parent, 0, id_of(item[i]));
+        item[i] = item_of(parent, code_of(item[i]));
     }
     sort_subs(n, mesh->n_parents);
     for (int32_t i = 0; i < n->n_subs; i++)
-        item[i] = item_of(tile_of_sub(n, &mesh->sub[id_of(item[i])]), 0, id_of(item[i]));
+        item[i] = item_of(tile_of_sub(n, &mesh->sub[code_of(item[i])]), code_of(item[i]));
     sort_subs(n, n->n_tiles);
     for (int32_t i = 0; i < n->n_subs; i++)
-        n->sub_number[id_of(item[i])] = i;
+        n->sub_number[code_of(item[i])] = i;
 }
 
-/* --- triangles. A place is the new number, and how far corners turn to bring the first to the front. */
-
-static int32_t place_of(int32_t number, int first) { return number << 2 | first; }
+/* --- triangles */
 
 static inline tri_halfedge new_code(const int32_t *place_of_triangle, tri_halfedge code)
 {
     static const uint8_t turned[4][4] = {{0, 1, 2}, {2, 0, 1}, {1, 2, 0}};
     int32_t place = place_of_triangle[tri_of(code)];
-    return (place & ~3) | turned[place & 3][tri_edge(code)];
+    return tri_code(number_in(place), turned[corner_in(place)][tri_edge(code)]);
 }
 
 /* The last tile of corners by their new numbers. */
@@ -277,27 +308,32 @@ static int32_t tile_of_triangle(const struct numbering *n, const tri_vertex_id v
     return last;
 }
 
-static int32_t tile_of_item(const struct numbering *n, uint64_t item)
+static int32_t tile_of_key(const struct numbering *n, tri_triangle_id t)
 {
     int32_t v[3];
-    if (!(item >> STRAY_BIT))
-        return tile_of_number(n, key_of(item));
+    if (!(n->key[t] & STRAY_KEY))
+        return tile_of_number(n, number_in(n->key[t]));
     for (int k = 0; k < 3; k++)
-        v[k] = n->number[n->mesh->tri[id_of(item)].v[k]];
+        v[k] = n->number[n->mesh->tri[t].v[k]];
     return tile_of_triangle(n, v);
 }
 
-/* The same for items that mostly are of the same tile as the last. */
+/* The same for triangles that mostly are of the same tile as the last. */
 struct tile_range {
     int32_t tile, first, count; /* numbers of its vertices */
 };
 
-static inline int32_t tile_after(const struct numbering *n, struct tile_range *last, uint64_t item)
+static bool is_within(const struct tile_range *range, int32_t number)
 {
-    uint64_t place = (item >> KEY_SHIFT) - (uint64_t)last->first; /* huge for a stray or an earlier number */
-    if (place >= (uint64_t)last->count) {
-        int32_t tile = tile_of_item(n, item);
-        if (item >> STRAY_BIT || key_of(item) < n->n_kept)
+    return (uint32_t)(number - range->first) < (uint32_t)range->count; /* a stray's is out of all ranges */
+}
+
+static inline int32_t tile_after(const struct numbering *n, struct tile_range *last, tri_triangle_id t)
+{
+    int32_t key = n->key[t];
+    if (!is_within(last, number_in(key))) {
+        int32_t tile = tile_of_key(n, t);
+        if ((key & STRAY_KEY) || number_in(key) < n->n_kept)
             return tile;
         const int32_t *start = n->vertices.start;
         *last = (struct tile_range){tile, n->n_kept + start[tile], start[tile + 1] - start[tile]};
@@ -307,28 +343,30 @@ static inline int32_t tile_after(const struct numbering *n, struct tile_range *l
 
 /* Is the triangle's tile another than that of its first corner? A new vertex with a smaller number is in no later
  * one. */
-static bool is_stray(const struct numbering *n, const struct tile_range *last, const tri_vertex_id v[3], uint64_t item)
+static bool is_stray(const struct numbering *n, const struct tile_range *last, const tri_vertex_id v[3],
+                     int32_t number)
 {
-    int32_t number = key_of(item);
-    bool same = (uint32_t)(number - last->first) < (uint32_t)last->count;
-    int32_t tile = same ? last->tile : tile_of_number(n, number);
+    int32_t tile = is_within(last, number) ? last->tile : tile_of_number(n, number);
     bool stray = false;
     for (int k = 0; k < 3; k++)
         stray |= v[k] < n->n_kept && n->kept_tile[v[k]] > tile;
     return stray;
 }
 
-/* The item of the corner with the largest number is the largest: no branch, which could not be predicted. */
-static inline uint64_t key_triangle(const struct numbering *n, const struct tile_range *last, const int32_t *old,
-                                    tri_triangle_id t)
+static inline int32_t greater(int32_t a, int32_t b) { return a < b ? b : a; }
+static inline int32_t lesser(int32_t a, int32_t b) { return a < b ? a : b; }
+
+/* No branch tells which corner has the largest number: it could not be predicted. */
+static inline void key_triangle(const struct numbering *n, const struct tile_range *last, const int32_t *old,
+                                tri_triangle_id t)
 {
     const int32_t *number = n->number;
     const int32_t v[3] = {number[old[0]], number[old[1]], number[old[2]]};
-    uint64_t item = most(most(item_of(v[0], 0, t), item_of(v[1], 1, t)), item_of(v[2], 2, t));
-    n->second[t] = number[old[tri_next[first_of(item)]]];
-    if (((v[0] < n->n_kept) | (v[1] < n->n_kept) | (v[2] < n->n_kept)) && is_stray(n, last, v, item))
-        item |= UINT64_C(1) << STRAY_BIT;
-    return item;
+    int32_t key = greater(greater(code_with(v[0], 0), code_with(v[1], 1)), code_with(v[2], 2));
+    second_of(n)[t] = number[old[tri_next[corner_in(key)]]];
+    if (lesser(lesser(v[0], v[1]), v[2]) < n->n_kept && is_stray(n, last, v, number_in(key)))
+        key |= STRAY_KEY;
+    n->key[t] = key;
 }
 
 static void key_share(void *context, size_t share)
@@ -337,17 +375,14 @@ static void key_share(void *context, size_t share)
     const struct tri_triangle *tri = n->mesh->tri;
     struct tri_range range = share_of(&n->triangles, share);
     struct tile_range last = {0};
-    uint64_t *items = items_of(n);
     int32_t *count = n->triangles.at + share * (size_t)n->n_tiles;
     for (tri_triangle_id t = range.first; t < range.last; t++) {
         if (!tri_is_live(&tri[t])) {
-            items[t] = FREE;
-            n->second[t] = TRI_NONE;
+            n->key[t] = FREE_KEY;
             continue;
         }
-        uint64_t item = key_triangle(n, &last, tri[t].v, t);
-        items[t] = item;
-        count[tile_after(n, &last, item)]++;
+        key_triangle(n, &last, tri[t].v, t);
+        count[tile_after(n, &last, t)]++;
     }
 }
 
@@ -356,12 +391,13 @@ static void deal_triangles(void *context, size_t share)
     const struct numbering *n = context;
     struct tri_range range = share_of(&n->triangles, share);
     struct tile_range last = {0};
-    const uint64_t *items = items_of(n);
-    uint64_t *dealt = dealt_items(n);
     int32_t *at = n->triangles.at + share * (size_t)n->n_tiles;
-    for (tri_triangle_id t = range.first; t < range.last; t++)
-        if (items[t] != FREE)
-            dealt[at[tile_after(n, &last, items[t])]++] = items[t] & ~(UINT64_C(1) << STRAY_BIT);
+    for (tri_triangle_id t = range.first; t < range.last; t++) {
+        if (n->key[t] == FREE_KEY)
+            continue;
+        n->dealt[at[tile_after(n, &last, t)]++] = code_with(t, corner_in(n->key[t]));
+        n->key[t] &= ~STRAY_KEY;
+    }
 }
 
 /* Items by key, those of one tile. */
@@ -373,8 +409,8 @@ static void sort_items(uint64_t *item, uint64_t *scratch, int32_t count)
         high = key_of(item[i]) > high ? key_of(item[i]) : high;
     }
     for (int32_t i = 0; i < count; i++)
-        item[i] -= (uint64_t)low << KEY_SHIFT;
-    tri_radix_sort(item, scratch, count, KEY_SHIFT, KEY_SHIFT + tri_bits_of(high - low), NULL);
+        item[i] -= (uint64_t)low << CODE_BITS;
+    tri_radix_sort(item, scratch, count, CODE_BITS, CODE_BITS + tri_bits_of(high - low), NULL);
 }
 
 static void insert_items(uint64_t *item, int32_t count)
@@ -388,43 +424,44 @@ static void insert_items(uint64_t *item, int32_t count)
     }
 }
 
-/* By the next corner, which is the key here, those that start at one. */
-static void sort_fan(uint64_t *item, uint64_t *scratch, int32_t count)
+static uint64_t by_second(const struct numbering *n, int32_t code)
 {
-    if (count <= FEW)
-        insert_items(item, count);
-    else
-        sort_items(item, scratch, count);
-}
-
-static uint64_t by_second(const struct numbering *n, uint64_t item)
-{
-    return item_of(n->second[id_of(item)], first_of(item), id_of(item));
+    return item_of(second_of(n)[number_in(code)], code);
 }
 
 /* A tile that is being sorted. Most of its triangles start at one of its own new vertices: they are sorted by counting.
- * The others come before them. Items go from one array to the other, and back. */
+ * The others come before them. */
 struct sorting {
-    uint64_t *item, *sorted;
+    const struct numbering *n;
+    int32_t *code;              /* [count] of its triangles, then in their new order */
+    uint64_t *item, *spare;     /* [count] */
     int32_t first, count;       /* of the triangles */
     int32_t first_own, n_own;   /* of the vertices */
     int32_t *end;               /* [n_own] of the fan at each */
     int32_t n_others;
 };
 
-static bool is_own(const struct sorting *s, uint64_t item)
+/* The first corner's new number. */
+static int32_t first_number(const struct sorting *s, int32_t code)
 {
-    return (uint32_t)(key_of(item) - s->first_own) < (uint32_t)s->n_own;
+    return number_in(s->n->key[number_in(code)]);
+}
+
+static bool is_own(const struct sorting *s, int32_t number)
+{
+    return (uint32_t)(number - s->first_own) < (uint32_t)s->n_own;
 }
 
 static void count_fans(struct sorting *s)
 {
     memset(s->end, 0, (size_t)s->n_own * sizeof *s->end);
-    for (int32_t i = 0; i < s->count; i++)
-        if (is_own(s, s->item[i]))
-            s->end[key_of(s->item[i]) - s->first_own]++;
+    for (int32_t i = 0; i < s->count; i++) {
+        int32_t number = first_number(s, s->code[i]);
+        if (is_own(s, number))
+            s->end[number - s->first_own]++;
         else
             s->n_others++;
+    }
     for (int32_t i = 0, sum = s->n_others; i < s->n_own; i++) {
         int32_t count = s->end[i];
         s->end[i] = sum; /* where it begins */
@@ -432,73 +469,86 @@ static void count_fans(struct sorting *s)
     }
 }
 
-static void fill_fans(const struct numbering *n, struct sorting *s)
+static void fill_fans(struct sorting *s)
 {
     int32_t other = 0;
-    for (int32_t i = 0; i < s->count; i++)
-        if (is_own(s, s->item[i]))
-            s->sorted[s->end[key_of(s->item[i]) - s->first_own]++] = by_second(n, s->item[i]);
+    for (int32_t i = 0; i < s->count; i++) {
+        int32_t code = s->code[i], number = first_number(s, code);
+        if (is_own(s, number))
+            s->item[s->end[number - s->first_own]++] = by_second(s->n, code);
         else
-            s->sorted[other++] = s->item[i];
-}
-
-static void sort_others(const struct numbering *n, struct sorting *s)
-{
-    uint64_t *item = s->sorted;
-    if (s->n_others > 0)
-        sort_items(item, s->item, s->n_others);
-    for (int32_t begin = 0, end; begin < s->n_others; begin = end) {
-        int32_t key = key_of(item[begin]);
-        for (end = begin; end < s->n_others && key_of(item[end]) == key; end++)
-            ;
-        for (int32_t i = begin; i < end; i++)
-            item[i] = by_second(n, item[i]);
-        sort_fan(item + begin, s->item, end - begin);
+            s->item[other++] = item_of(number, code);
     }
 }
 
-/* The first of four items in their order, without a branch that depends on it; all ones stand for the others. */
-static void sort_four(const uint64_t *item, int32_t count, uint64_t *to)
+static void take_codes(struct sorting *s, int32_t begin, int32_t end)
+{
+    for (int32_t i = begin; i < end; i++)
+        s->code[i] = code_of(s->item[i]);
+}
+
+/* By the next corner, those that start at one. */
+static void sort_fan(struct sorting *s, int32_t begin, int32_t end)
+{
+    if (end - begin <= FEW)
+        insert_items(s->item + begin, end - begin);
+    else
+        sort_items(s->item + begin, s->spare, end - begin);
+    take_codes(s, begin, end);
+}
+
+static void sort_others(struct sorting *s)
+{
+    uint64_t *item = s->item;
+    if (s->n_others > 0)
+        sort_items(item, s->spare, s->n_others);
+    for (int32_t begin = 0, end; begin < s->n_others; begin = end) {
+        int32_t number = key_of(item[begin]);
+        for (end = begin; end < s->n_others && key_of(item[end]) == number; end++)
+            item[end] = by_second(s->n, code_of(item[end]));
+        sort_fan(s, begin, end);
+    }
+}
+
+/* Four items in their order, without a branch that depends on it; all ones stand for those that are not there. */
+static void sort_four(const uint64_t *item, int32_t count, int32_t *to)
 {
     uint64_t a = item[0] | -(uint64_t)(count < 1), b = item[1] | -(uint64_t)(count < 2);
     uint64_t c = item[2] | -(uint64_t)(count < 3), d = item[3] | -(uint64_t)(count < 4);
     uint64_t low = least(a, b), high = most(a, b), low_too = least(c, d), high_too = most(c, d);
     uint64_t second = most(low, low_too), third = least(high, high_too);
-    to[0] = least(low, low_too);
-    to[1] = least(second, third);
-    to[2] = most(second, third);
-    to[3] = most(high, high_too);
+    to[0] = code_of(least(low, low_too));
+    to[1] = code_of(least(second, third));
+    to[2] = code_of(most(second, third));
+    to[3] = code_of(most(high, high_too));
 }
 
 /* Where four are written, fewer may be meant: the next fan overwrites the others. */
 static void sort_fans(struct sorting *s)
 {
-    memcpy(s->item, s->sorted, (size_t)s->n_others * sizeof *s->item);
     for (int32_t i = 0, begin = s->n_others; i < s->n_own; begin = s->end[i++]) {
         int32_t count = s->end[i] - begin;
-        if (count <= 4 && begin + 4 <= s->count) {
-            sort_four(s->sorted + begin, count, s->item + begin);
-            continue;
-        }
-        sort_fan(s->sorted + begin, s->item + begin, count);
-        memcpy(s->item + begin, s->sorted + begin, (size_t)count * sizeof *s->item);
+        if (count <= 4 && begin + 4 <= s->count)
+            sort_four(s->item + begin, count, s->code + begin);
+        else
+            sort_fan(s, begin, s->end[i]);
     }
 }
 
-static void place_tile(void *context, size_t tile)
+static void place_tile(const struct numbering *n, size_t tile, uint64_t *room)
 {
-    const struct numbering *n = context;
     int32_t first = n->triangles.start[tile], own = n->vertices.start[tile], down = 0;
-    struct sorting s = {.item = dealt_items(n) + first, .sorted = items_of(n) + first, .first = first,
+    struct sorting s = {.n = n, .code = n->dealt + first, .item = room, .first = first,
                         .count = n->triangles.start[tile + 1] - first, .first_own = n->n_kept + own,
                         .n_own = n->vertices.start[tile + 1] - own, .end = n->fan_end + own};
+    s.spare = room + s.count;
     count_fans(&s);
-    fill_fans(n, &s);
-    sort_others(n, &s);
+    fill_fans(&s);
+    sort_others(&s);
     sort_fans(&s);
     for (int32_t i = 0; i < s.count; i++) {
-        tri_triangle_id t = id_of(s.item[i]);
-        n->place[t] = place_of(first + i, first_of(s.item[i]));
+        tri_triangle_id t = number_in(s.code[i]);
+        n->place[t] = code_with(first + i, corner_in(s.code[i]));
         down += first + i < t;
     }
     n->triangles.at[tile] = down;
@@ -509,7 +559,7 @@ static void number_triangles(struct numbering *n)
     tri_execute(n->executor, n->triangles.shares, key_share, n);
     n->n_tri = add_up_counts(&n->triangles, n->n_tiles);
     tri_execute(n->executor, n->triangles.shares, deal_triangles, n);
-    tri_execute(n->executor, (size_t)n->n_tiles, place_tile, n);
+    work_on_tiles(n, &n->triangles, items_of(n), place_tile);
 }
 
 /* --- triangles move */
@@ -528,9 +578,9 @@ static struct tri_range batch_share(const struct move *m, size_t share)
     return (struct tri_range){m->batch.first + range.first, m->batch.first + range.last};
 }
 
-static const struct tri_triangle *source_of(const struct numbering *n, uint64_t item)
+static inline const struct tri_triangle *source_of(const struct numbering *n, int32_t code)
 {
-    return (item >> ASIDE_BIT ? aside_of(n) : n->mesh->tri) + id_of(item);
+    return (code < 0 ? aside_of(n) : n->mesh->tri) + number_in(code & ~ASIDE);
 }
 
 static inline tri_link new_link(const int32_t *place, const int32_t *sub_number, tri_link link)
@@ -553,7 +603,7 @@ static inline struct tri_triangle renamed(const struct numbering *n, const struc
 static bool stands_here(const struct move *m, tri_triangle_id t)
 {
     int32_t place = m->n->place[t];
-    return place != TRI_NONE && (m->down ? place >> 2 < m->batch.first : place >> 2 >= m->batch.last);
+    return place != TRI_NONE && (m->down ? number_in(place) < m->batch.first : number_in(place) >= m->batch.last);
 }
 
 /* Those that come soon are fetched already, so that the memory works on many at once. */
@@ -564,13 +614,13 @@ static void gather_batch(void *context, size_t share)
     const struct numbering *n = m->n;
     struct tri_range range = batch_share(m, share);
     struct tri_triangle *to = n->buffer - m->batch.first;
-    const uint64_t *item = dealt_items(n);
+    const int32_t *code = n->dealt;
     int32_t aside = 0;
     for (tri_triangle_id t = range.first; t < range.last; t++) {
         aside += stands_here(m, t);
         if (t + AHEAD < range.last)
-            __builtin_prefetch(source_of(n, item[t + AHEAD]));
-        to[t] = renamed(n, source_of(n, item[t]), first_of(item[t]));
+            __builtin_prefetch(source_of(n, code[t + AHEAD]));
+        to[t] = renamed(n, source_of(n, code[t]), corner_in(code[t]));
     }
     m->aside[share] = aside;
 }
@@ -584,7 +634,7 @@ static void put_down(void *context, size_t share)
     for (tri_triangle_id t = range.first; t < range.last; t++) {
         if (stands_here(m, t)) {
             aside_of(n)[aside] = n->mesh->tri[t];
-            dealt_items(n)[n->place[t] >> 2] = UINT64_C(1) << ASIDE_BIT | item_of(0, n->place[t] & 3, aside++);
+            n->dealt[number_in(n->place[t])] = ASIDE | code_with(aside++, corner_in(n->place[t]));
         }
         n->mesh->tri[t] = n->buffer[t - m->batch.first];
     }
@@ -614,7 +664,7 @@ static void move_triangles(const struct numbering *n)
         m.batch = (struct tri_range){first, first + (left < n->batch ? left : n->batch)};
         move_batch(&m);
     }
-    assert((size_t)m.n_aside <= n->n_items / 2);
+    assert(m.n_aside <= n->mesh->n_triangles / 2);
 }
 
 /* --- subsegments move */
@@ -645,26 +695,34 @@ static bool reserve_deal(struct deal *d, int32_t n, int32_t n_tiles)
     return d->at && d->start;
 }
 
+static size_t most_bytes(size_t a, size_t b) { return a < b ? b : a; }
+
+static size_t scratch_bytes(const struct tri_mesh *mesh, size_t vertices)
+{
+    const size_t two_items = 2 * sizeof(uint64_t);
+    const size_t for_vertices = vertices * most_bytes(tri_vertex_size(mesh), two_items);
+    const size_t for_triangles = (size_t)mesh->n_triangles * (sizeof(int32_t) + two_items) + two_items;
+    const size_t for_subs = (size_t)mesh->n_subs * two_items;
+    return most_bytes(most_bytes(for_vertices, for_triangles), for_subs) + sizeof(struct tri_triangle);
+}
+
 static enum tri_status allocate(struct numbering *n, struct tri_error *error)
 {
     const struct tri_mesh *mesh = n->mesh;
     size_t vertices = (size_t)(mesh->n_vertices - n->n_kept), subs = (size_t)mesh->n_subs;
-    n->n_items = (size_t)(mesh->n_triangles > mesh->n_subs ? mesh->n_triangles : mesh->n_subs);
-    size_t for_vertices = vertices * tri_vertex_size(mesh), for_items = 3 * n->n_items * sizeof(uint64_t);
     bool deals = reserve_deal(&n->vertices, mesh->n_vertices - n->n_kept, n->n_tiles);
     deals = reserve_deal(&n->triangles, mesh->n_triangles, n->n_tiles) && deals;
     n->kept_tile = malloc(((size_t)n->n_kept + 1) * sizeof *n->kept_tile);
-    n->order = tri_mesh_extra(mesh, (vertices + 1) * sizeof *n->order);
+    n->batch = mesh->n_triangles / BATCHES < BATCH ? mesh->n_triangles / BATCHES + 1 : BATCH;
+    n->order = tri_mesh_extra(mesh, most_bytes((vertices + 1) * sizeof *n->order,
+                                               (size_t)n->batch * sizeof *n->buffer));
     n->number = tri_mesh_extra(mesh, ((size_t)mesh->n_vertices + 1) * sizeof *n->number);
     n->sub_number = tri_mesh_extra(mesh, (subs + 1) * sizeof *n->sub_number);
     n->sub = tri_mesh_extra(mesh, (subs + 1) * sizeof *n->sub);
     n->place = tri_mesh_extra(mesh, ((size_t)mesh->n_triangles + 1) * sizeof *n->place);
-    n->scratch = tri_mesh_extra(mesh, (for_vertices > for_items ? for_vertices : for_items) +
-                                          sizeof(struct tri_triangle));
-    n->batch = mesh->n_triangles / BATCHES < BATCH ? mesh->n_triangles / BATCHES + 1 : BATCH;
-    n->buffer = tri_mesh_extra(mesh, (size_t)n->batch * sizeof *n->buffer);
-    if (deals && n->kept_tile && n->order && n->number && n->sub_number && n->sub && n->place && n->scratch &&
-        n->buffer)
+    n->dealt = tri_mesh_extra(mesh, ((size_t)mesh->n_triangles + 1) * sizeof *n->dealt);
+    n->scratch = tri_mesh_extra(mesh, scratch_bytes(mesh, vertices));
+    if (deals && n->kept_tile && n->order && n->number && n->sub_number && n->sub && n->place && n->dealt && n->scratch)
         return TRI_OK;
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for numbering %d triangles", (int)mesh->n_triangles);
 }
@@ -678,8 +736,6 @@ static void renumber(struct numbering *n)
     rename_subs(n);
     number_subs(n);
     number_triangles(n);
-    tri_mesh_extra_free(n->mesh, n->order); /* before the buffer's pages are asked for */
-    n->order = NULL;
     move_triangles(n);
     move_subs(n);
     mesh->n_triangles = n->n_tri;
@@ -700,8 +756,8 @@ static void free_numbering(struct numbering *n)
     tri_mesh_extra_free(n->mesh, n->sub_number);
     tri_mesh_extra_free(n->mesh, n->sub);
     tri_mesh_extra_free(n->mesh, n->place);
+    tri_mesh_extra_free(n->mesh, n->dealt);
     tri_mesh_extra_free(n->mesh, n->scratch);
-    tri_mesh_extra_free(n->mesh, n->buffer);
 }
 
 enum tri_status par_number(struct tri_mesh *mesh, const struct par_partition *partition, int32_t n_kept,

@@ -30,7 +30,7 @@ enum tri_status par_number(struct tri_mesh *mesh, const struct par_partition *pa
 /* What par_number takes beside the mesh, to the order. */
 static inline size_t par_number_bytes(const struct tri_mesh *mesh)
 {
-    return 30 * (size_t)mesh->n_triangles + 8 * (size_t)mesh->n_vertices + 28 * (size_t)mesh->n_subs;
+    return 28 * (size_t)mesh->n_triangles + 8 * (size_t)mesh->n_vertices + 28 * (size_t)mesh->n_subs;
 }
 
 #ifdef __cplusplus
