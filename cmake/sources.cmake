@@ -4,6 +4,7 @@
 # Folder triangle/, the sequential mesher. C11 only.
 set(PTRIANGLE_MESHER_SOURCES
     triangle/status.c
+    triangle/scratch_file.c
     triangle/predicates.c
     triangle/pslg.c
     triangle/mesh.c
@@ -112,8 +113,8 @@ set(PTRIANGLE_HDF5_SOURCES
 set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c)
 
 # What text and judge need of the mesher: all that their shared libraries have of it.
-set(PTRIANGLE_TEXT_NEEDS triangle/status.c triangle/pslg.c triangle/api/figure.c)
-set(PTRIANGLE_CHECK_NEEDS ${PTRIANGLE_TEXT_NEEDS} triangle/predicates.c)
+set(PTRIANGLE_TEXT_NEEDS triangle/status.c triangle/scratch_file.c triangle/pslg.c triangle/api/figure.c)
+set(PTRIANGLE_CHECK_NEEDS triangle/status.c triangle/pslg.c triangle/api/figure.c triangle/predicates.c)
 
 # Folder sched/, the parallel schedule: compiled with OpenMP, as are the programs ptriangle and trianglecheck, which hand
 # out threads (sched/threads.h), and nothing else.

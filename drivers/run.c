@@ -27,6 +27,7 @@ struct runner {
     struct console_series input_warnings;
     double begin, mark; /* when the run and the stage began */
     int32_t *twin;      /* [pslg.n_points] first one of the points at a place, where the mesh will be gone; else NULL */
+    int64_t unused;     /* vertices of the mesh before refinement that are in no triangle; -1: not counted */
     bool built;         /* there is a mesh: what stops now leaves one that is valid */
     struct tri_error *error;
 };
@@ -298,6 +299,15 @@ static enum tri_status begin_sweep(struct runner *r, const struct tri_mesh *mesh
     return keep_twins(r, mesh);
 }
 
+/* Where the mesh is still small. */
+static enum tri_status count_unused(struct runner *r, const struct tri_mesh *mesh, struct tri_error *error)
+{
+    struct tri_counts before;
+    enum tri_status status = tri_count_mesh(&before, mesh, r->run.hooks->executor, error);
+    r->unused = status ? -1 : mesh->n_vertices - before.vertices;
+    return status;
+}
+
 static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_refine_options *quality,
                               struct tri_refine_report *report, struct tri_error *error)
 {
@@ -308,7 +318,7 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
         return status;
     console_say(&r->console, "Adding vertices until the bounds are kept.\n");
     interrupt_stage("refining");
-    status = r->run.plan.swept ? begin_sweep(r, mesh) : TRI_OK;
+    status = r->run.plan.swept ? begin_sweep(r, mesh) : count_unused(r, mesh, error);
     if (!status)
         status = hooks->refine ? hooks->refine(hooks->user, &r->run, &outputs, mesh, quality, report, error)
                                : tri_refine(mesh, quality, report, error);
@@ -439,7 +449,9 @@ static enum tri_status tell(struct runner *r)
     struct run *run = &r->run;
     const struct tri_switches *s = &run->arguments->switches;
     enum tri_status status = TRI_OK;
-    if (!run->plan.swept)
+    if (!run->plan.swept && r->unused >= 0)
+        tri_count_refined(&run->counts, &run->mesh, r->unused);
+    else if (!run->plan.swept)
         status = tri_count_mesh(&run->counts, &run->mesh, run->hooks->executor, r->error);
     run->total_seconds = tri_seconds() - r->begin;
     if (status)
@@ -572,6 +584,7 @@ int run_arguments(const struct arguments *arguments, const struct run_hooks *hoo
     const struct tri_switches *s = &arguments->switches;
     struct tri_error error = {0};
     struct runner r = {.run = {.hooks = hooks, .arguments = arguments, .options = tri_switches_options(s)},
+                       .unused = -1,
                        .console = {hooks->program, s->quiet, s->verbosity}, .error = &error};
     enum tri_status status = TRI_OK;
     if (s->help)

@@ -1,22 +1,17 @@
-/* One file, unlinked as soon as it is there. */
+/* Rows one after the other, with nothing between. */
 #include "drivers/scratch.h"
 
 #include <errno.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "triangle/scratch_file.h"
+
 enum tri_status scratch_open(struct scratch *s, const char *folder, size_t width, struct tri_error *error)
 {
-    char name[4096];
-    *s = (struct scratch){-1, width, 0};
-    if (snprintf(name, sizeof name, "%s/ptriangle-XXXXXX", folder) >= (int)sizeof name)
-        return tri_fail(error, TRI_CANNOT_WRITE, "", 0, "the name of the folder for scratch files is too long");
-    s->file = mkstemp(name);
+    *s = (struct scratch){tri_scratch_file(folder), width, 0};
     if (s->file < 0)
         return tri_fail(error, TRI_CANNOT_WRITE, folder, 0, "cannot make a scratch file there: %s", strerror(errno));
-    (void)unlink(name);
     return TRI_OK;
 }
 

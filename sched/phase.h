@@ -66,6 +66,7 @@ struct par_state {
     struct par_keys key;     /* [worklist.n] ascending; n == 0: no block has had any */
     struct par_ids remaining; /* where bad triangles are counted as they leave (sched/sweep/remain.h) */
     bool counts_remaining;   /* so it is now */
+    int64_t remained[TRI_EXCUSES + 1]; /* those that have left (tri_count_bad_among) */
     struct par_room spare;   /* unused ranges of the arrays */
     double radius;           /* largest circumradius in the worklist when it was last filled */
     struct par_report *report;

@@ -8,7 +8,6 @@
 #include "sched/theory.h"
 
 #include "triangle/census.h"
-#include "triangle/criterion.h"
 #include "triangle/grow.h"
 
 bool par_ids_grow(struct par_ids *ids)
@@ -79,20 +78,36 @@ static int32_t gather(const struct finding *f, int32_t n)
     return filled;
 }
 
+/* Puts those of the worklist that are as old as it between n others of the range. All are in order, and so is what
+ * comes of them. */
+static int32_t add_old(const struct finding *f, struct tri_range range, tri_triangle_id *found, int32_t n)
+{
+    const struct tri_triangle *tri = f->mesh->tri;
+    int32_t begin = par_ids_find(f->worklist, range.first), end = par_ids_find(f->worklist, range.last), all = n;
+    for (int32_t i = begin; i < end; i++)
+        all += tri[f->worklist->item[i]].state == 0;
+    for (int32_t i = end - 1, at = all; i >= begin; i--) {
+        tri_triangle_id old = f->worklist->item[i];
+        assert(i == begin || f->worklist->item[i - 1] < old); /* in order, and each once */
+        if (tri[old].state != 0)
+            continue;
+        while (n > 0 && found[n - 1] > old)
+            found[--at] = found[--n];
+        found[--at] = old;
+    }
+    return all;
+}
+
 /* The bad ones of a range, where the worklist holds those that are as old as it is. A new life has begun for every
  * triangle when it was filled: who has a higher number was born since. */
 static int32_t find_newborn(const struct finding *f, struct tri_range range, tri_triangle_id *found)
 {
-    const struct tri_criterion criterion = tri_criterion_for(f->mesh, f->bounds);
-    int32_t n = 0, next = par_ids_find(f->worklist, range.first);
-    for (tri_triangle_id t = range.first; t < range.last; t++) {
-        bool was_bad = next < f->worklist->n && f->worklist->item[next] == t;
-        next += was_bad;
-        assert(next == f->worklist->n || f->worklist->item[next] > t); /* in order, and each once */
-        if (f->mesh->tri[t].state != 0 ? tri_needs_work(&criterion, t) : was_bad)
+    int32_t n = 0;
+    for (tri_triangle_id t = range.first; t < range.last; t++)
+        if (f->mesh->tri[t].state != 0)
             found[n++] = t;
-    }
-    return n;
+    n = tri_find_work_among(f->mesh, f->bounds, found, n, found);
+    return add_old(f, range, found, n);
 }
 
 static double largest_radius2(const struct tri_mesh *mesh, const tri_triangle_id *triangle, int32_t n)
@@ -140,11 +155,9 @@ enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mes
 static void filter_share(void *context, size_t share)
 {
     struct finding *f = context;
-    const struct tri_criterion criterion = tri_criterion_for(f->mesh, f->bounds);
     struct tri_range range = tri_share(share, f->worklist->n);
-    for (int32_t i = range.first; i < range.last; i++)
-        if (tri_needs_work(&criterion, f->worklist->item[i]))
-            f->found[range.first + f->n[share]++] = f->worklist->item[i];
+    f->n[share] = tri_find_work_among(f->mesh, f->bounds, f->worklist->item + range.first, range.last - range.first,
+                                      f->found + range.first);
 }
 
 bool par_worklist_filter(const struct par_ids *worklist, const struct tri_mesh *mesh,

@@ -45,6 +45,24 @@ static void test_counts(void **state)
     tri_mesh_free(&mesh);
 }
 
+/* Refinement takes no vertex from all its triangles: what was in none before is all that is in none after. */
+static void test_refined(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = support_points(SUPPORT_LATTICE, 500, 1);
+    struct tri_options options = tri_defaults();
+    struct tri_report report;
+    options.refine = true;
+    options.quality.max_area = 0.1;
+    struct tri_mesh mesh = support_generate(&pslg, &options, &report);
+    struct tri_counts counts = counted(&mesh), again;
+    assert_true(report.duplicates > 0 && mesh.n_vertices > 500);
+    tri_count_refined(&again, &mesh, report.duplicates);
+    assert_memory_equal(&again, &counts, sizeof counts);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
 /* Vertices that no triangle uses do not count; edges by Euler's formula for a disc. */
 static void test_unused(void **state)
 {
@@ -168,8 +186,9 @@ static void test_empty(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_counts), cmocka_unit_test(test_unused), cmocka_unit_test(test_shapes),
-        cmocka_unit_test(test_against_judge), cmocka_unit_test(test_right_angles), cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_counts), cmocka_unit_test(test_unused), cmocka_unit_test(test_refined),
+        cmocka_unit_test(test_shapes), cmocka_unit_test(test_against_judge), cmocka_unit_test(test_right_angles),
+        cmocka_unit_test(test_empty),
     };
     return cmocka_run_group_tests_name("stats", tests, NULL, NULL);
 }

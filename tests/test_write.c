@@ -264,7 +264,7 @@ static void rows_like_printf(void **state)
         struct tri_output *const output = open_one(&set, in_directory("a"));
         const int32_t v = values[i], nodes[] = {v, v / 3, INT32_MAX}, marker = v == INT32_MAX ? INT32_MIN : -v;
         const double xy[] = {v / 7.0, v * -1.2345678901234567e-308};
-        const long a = v + 1L, b = v / 3 + 1;
+        const long long a = v + 1LL, b = v / 3 + 1; /* where a long has 32 bits, too */
         char expected[1024];
         const struct array_grid arrays = {
             .points = xy, .attributes = xy, .markers = &marker, .nodes = nodes, .columns = xy, .neighbors = nodes,
@@ -278,10 +278,10 @@ static void rows_like_printf(void **state)
         assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
         snprintf(expected, sizeof expected,
                  "1  2  2  1\n%4d    %.17g  %.17g  %.17g  %.17g    %d\n"
-                 "1  3  2\n%4d    %4ld  %4ld  2147483648  %.17g  %.17g\n"
-                 "1  1\n%4d   %ld  %ld  %d\n"
-                 "1  3\n%4d    %ld  %ld  2147483648\n"
-                 "0  2  2  1\n1  1\n%4d    %4ld  %4ld    %4d\n0\n",
+                 "1  3  2\n%4d    %4lld  %4lld  2147483648  %.17g  %.17g\n"
+                 "1  1\n%4d   %lld  %lld  %d\n"
+                 "1  3\n%4d    %lld  %lld  2147483648\n"
+                 "0  2  2  1\n1  1\n%4d    %4lld  %4lld    %4d\n0\n",
                  1, xy[0], xy[1], xy[0], xy[1], marker, 1, a, b, xy[0], xy[1], 1, a, b, marker, 1, a, b, 1, a, b,
                  marker);
         assert_contents(in_directory("a"), expected);

@@ -55,7 +55,7 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_r
                     fmin(1e-6 * triangles, 1e9), TRI_MAX_TRIANGLES / 1000000);
 }
 
-bool tri_needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
+static bool needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
 {
     const struct tri_triangle *t = &c->mesh->tri[triangle];
     if (!tri_is_live(t))
@@ -81,9 +81,21 @@ int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_optio
     int32_t n = 0;
     assert(first >= 0 && last <= mesh->n_triangles);
     for (tri_triangle_id triangle = first; triangle < last; triangle++)
-        if (tri_needs_work(&c, triangle))
+        if (needs_work(&c, triangle))
             found[n++] = triangle;
     return n;
+}
+
+int32_t tri_find_work_among(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                            const tri_triangle_id *triangle, int32_t n, tri_triangle_id *found)
+{
+    const struct tri_criterion c = tri_criterion_for(mesh, options);
+    int32_t n_found = 0;
+    assert(n >= 0);
+    for (int32_t i = 0; i < n; i++)
+        if (needs_work(&c, triangle[i]))
+            found[n_found++] = triangle[i];
+    return n_found;
 }
 
 int32_t tri_find_hopeless(const struct tri_mesh *mesh, const struct tri_refine_options *options,
@@ -93,7 +105,7 @@ int32_t tri_find_hopeless(const struct tri_mesh *mesh, const struct tri_refine_o
     int32_t n = 0;
     for (tri_triangle_id triangle = 0; triangle < mesh->n_triangles; triangle++) {
         const struct tri_triangle *t = &mesh->tri[triangle];
-        if (!tri_is_live(t) || tri_needs_work(&c, triangle))
+        if (!tri_is_live(t) || needs_work(&c, triangle))
             continue;
         struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
         if (tri_judge(&c, t, &shape) != TRI_GOOD)
@@ -116,6 +128,7 @@ static bool is_beside_protected(const struct tri_criterion *c, const struct tri_
     return false;
 }
 
+/* TRI_EXCUSES: none of its own. */
 static enum tri_excuse excuse_for(const struct tri_criterion *c, tri_triangle_id triangle,
                                   const struct tri_shape *shape, enum tri_badness badness,
                                   const struct tri_refine_report *report)
@@ -135,10 +148,37 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, tri_triangle_id
         return TRI_EXCUSE_PROTECTED;
     if (report->hit_cap && badness == TRI_BAD_ANGLE)
         return TRI_EXCUSE_LIMIT;
-    if (report->gated + report->fenced > 0)
-        return TRI_EXCUSE_DEFERRED;
+    return TRI_EXCUSES;
+}
+
+/* Of edges that are equally short the one with the first reason, so that it does not matter at which corner a triangle
+ * begins: numbering may change that. */
+static enum tri_excuse first_excuse_for(const struct tri_criterion *c, tri_triangle_id triangle,
+                                        const struct tri_shape *shape, enum tri_badness badness,
+                                        const struct tri_refine_report *report)
+{
+    enum tri_excuse first = TRI_EXCUSES;
+    for (int k = 0; k < 3; k++) {
+        struct tri_shape seen = *shape;
+        seen.shortest = k;
+        if (shape->l[k] > shape->l[shape->shortest])
+            continue;
+        const enum tri_excuse excuse = excuse_for(c, triangle, &seen, badness, report);
+        first = excuse < first ? excuse : first;
+    }
+    return first;
+}
+
+void tri_settle_counts(const struct tri_refine_report *report, const int64_t found[TRI_EXCUSES + 1],
+                       int64_t count[TRI_EXCUSES])
+{
     bool protected_more = report->given_up[TRI_EXCUSE_PROTECTED] > report->given_up[TRI_EXCUSE_PRECISION];
-    return protected_more ? TRI_EXCUSE_PROTECTED : TRI_EXCUSE_PRECISION; /* behind a protected one that is far away */
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        count[k] = found[k];
+    if (report->gated + report->fenced > 0)
+        count[TRI_EXCUSE_DEFERRED] += found[TRI_EXCUSES];
+    else /* behind a protected one that is far away, if any is */
+        count[protected_more ? TRI_EXCUSE_PROTECTED : TRI_EXCUSE_PRECISION] += found[TRI_EXCUSES];
 }
 
 static enum tri_excuse excuse_for_circle(const struct tri_mesh *mesh, const struct tri_refine_options *options,
@@ -174,11 +214,11 @@ void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_refine_o
 struct counting {
     struct tri_criterion criterion;
     const struct tri_refine_report *report;
-    int64_t count[TRI_MOST_SHARES][TRI_EXCUSES];
+    int64_t count[TRI_MOST_SHARES][TRI_EXCUSES + 1];
 };
 
 static void count_triangle(const struct tri_criterion *c, const struct tri_refine_report *report, tri_triangle_id t,
-                           int64_t count[TRI_EXCUSES])
+                           int64_t count[TRI_EXCUSES + 1])
 {
     const struct tri_mesh *mesh = c->mesh;
     if (!tri_is_live(&mesh->tri[t]))
@@ -186,7 +226,7 @@ static void count_triangle(const struct tri_criterion *c, const struct tri_refin
     struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
     enum tri_badness badness = tri_judge(c, &mesh->tri[t], &shape);
     if (badness != TRI_GOOD)
-        count[excuse_for(c, t, &shape, badness, report)]++;
+        count[first_excuse_for(c, t, &shape, badness, report)]++;
 }
 
 static void count_share(void *context, size_t share)
@@ -199,7 +239,7 @@ static void count_share(void *context, size_t share)
 
 void tri_count_bad_among(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                          const struct tri_refine_report *report, const tri_triangle_id *triangle, int32_t n,
-                         int64_t count[TRI_EXCUSES])
+                         int64_t count[TRI_EXCUSES + 1])
 {
     const struct tri_criterion c = tri_criterion_for(mesh, options);
     for (int32_t i = 0; i < n; i++)
@@ -213,9 +253,8 @@ void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options 
     struct counting c = {tri_criterion_for(mesh, options), report, {{0}}};
     size_t shares = tri_shares(mesh->n_triangles);
     tri_execute(options->unsuitable ? NULL : executor, shares, count_share, &c);
-    for (int k = 0; k < TRI_EXCUSES; k++) {
-        count[k] = 0;
-        for (size_t i = 0; i < shares; i++)
-            count[k] += c.count[i][k];
-    }
+    for (size_t i = 1; i < shares; i++)
+        for (int k = 0; k <= TRI_EXCUSES; k++)
+            c.count[0][k] += c.count[i][k];
+    tri_settle_counts(report, c.count[0], count);
 }

@@ -2,9 +2,8 @@
 #ifndef TRIANGLE_CENSUS_H
 #define TRIANGLE_CENSUS_H
 
+#include "triangle/criterion.h"
 #include "triangle/refine.h"
-
-struct tri_criterion;
 
 #ifdef __cplusplus
 extern "C" {
@@ -20,13 +19,15 @@ double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_opti
 enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                                  const struct tri_executor *executor, struct tri_error *error);
 
-/* Is there something for the loop to do at the triangle: an angle that is bad and not hopeless, a bad size; an
- * encroached subsegment if conforming? criterion: tri_criterion_for, which costs more than the answer. */
-bool tri_needs_work(const struct tri_criterion *criterion, tri_triangle_id triangle);
-
-/* found[last - first] receives the triangles from first to last - 1 that need work, in order; returns how many. */
+/* found[last - first] receives the triangles from first to last - 1 at which there is something for the loop to do (an
+ * angle that is bad and not hopeless, a bad size; an encroached subsegment if conforming), in order; returns how
+ * many. To be told the bounds costs more than to judge a triangle. */
 int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id first,
                       tri_triangle_id last, tri_triangle_id *found);
+
+/* The same among these n triangles. found may be the array they are in. */
+int32_t tri_find_work_among(const struct tri_mesh *mesh, const struct tri_refine_options *options,
+                            const tri_triangle_id *triangle, int32_t n, tri_triangle_id *found);
 
 /* Counts the subsegments with a vertex of a triangle beside them in their diametral circle, which -D could not mend, by
  * place: at a small angle of the input, between segments near to each other, and so on. */
@@ -39,10 +40,15 @@ void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options 
                    const struct tri_refine_report *report, const struct tri_executor *executor,
                    int64_t count[TRI_EXCUSES]);
 
-/* The same of n triangles alone, each of which is listed once; adds to the counts. */
+/* The same of n triangles alone, each of which is listed once; adds to the counts. The last is of those that have no
+ * reason of their own. */
 void tri_count_bad_among(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                          const struct tri_refine_report *report, const tri_triangle_id *triangle, int32_t n,
-                         int64_t count[TRI_EXCUSES]);
+                         int64_t count[TRI_EXCUSES + 1]);
+
+/* Counts with a reason for all, by the report of the whole run. */
+void tri_settle_counts(const struct tri_refine_report *report, const int64_t found[TRI_EXCUSES + 1],
+                       int64_t count[TRI_EXCUSES]);
 
 /* found[n_triangles] receives the triangles that violate the bounds though there is nothing to do at them: what
  * tri_find_work leaves out. Returns how many. A size test is asked. O(triangles). */

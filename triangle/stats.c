@@ -17,11 +17,9 @@ const double tri_aspect_limits[TRI_ASPECT_BINS] = {1.1547, 1.5, 2,  2.5, 3,   4,
 
 static const double DEGREES = 57.295779513082320877;
 
-/* Vertices that refinement has made are all in use; others may lie outside, or be duplicates. */
 struct usage {
     const struct tri_mesh *mesh;
-    _Atomic(bool) *used; /* [n_doubtful] */
-    int32_t n_doubtful;
+    _Atomic(bool) *used; /* [n_vertices] */
 };
 
 /* Threads that meet at a vertex say the same. */
@@ -31,15 +29,14 @@ static void note_corners(void *context, size_t share)
     struct tri_range range = tri_share(share, u->mesh->n_triangles);
     for (tri_triangle_id t = range.first; t < range.last; t++)
         for (int k = 0; k < 3; k++)
-            if (u->mesh->tri[t].v[k] < u->n_doubtful)
-                atomic_store_explicit(&u->used[u->mesh->tri[t].v[k]], true, memory_order_relaxed);
+            atomic_store_explicit(&u->used[u->mesh->tri[t].v[k]], true, memory_order_relaxed);
 }
 
 static int64_t count_used(const struct usage *u, const struct tri_executor *executor)
 {
-    int64_t n = u->mesh->n_vertices - u->n_doubtful;
+    int64_t n = 0;
     tri_execute(executor, tri_shares(u->mesh->n_triangles), note_corners, (void *)u);
-    for (tri_vertex_id v = 0; v < u->n_doubtful; v++)
+    for (tri_vertex_id v = 0; v < u->mesh->n_vertices; v++)
         n += atomic_load_explicit(&u->used[v], memory_order_relaxed);
     return n;
 }
@@ -47,19 +44,25 @@ static int64_t count_used(const struct usage *u, const struct tri_executor *exec
 enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh *mesh,
                                const struct tri_executor *executor, struct tri_error *error)
 {
-    *counts = (struct tri_counts){.triangles = mesh->n_triangles, .subsegments = mesh->n_subs};
-    struct usage u = {mesh, NULL, mesh->incidence.n_vertices > 0 ? mesh->incidence.n_vertices : mesh->n_vertices};
-    u.used = calloc((size_t)u.n_doubtful + 1, sizeof *u.used);
+    struct usage u = {mesh, calloc((size_t)mesh->n_vertices + 1, sizeof *u.used)};
+    *counts = (struct tri_counts){0};
     if (!u.used)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to count %d vertices", (int)u.n_doubtful);
-    counts->vertices = count_used(&u, executor);
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to count %d vertices", (int)mesh->n_vertices);
+    tri_count_refined(counts, mesh, mesh->n_vertices - count_used(&u, executor));
     free((void *)u.used);
+    return TRI_OK;
+}
+
+void tri_count_refined(struct tri_counts *counts, const struct tri_mesh *mesh, int64_t unused)
+{
+    assert(unused >= 0 && unused <= mesh->n_vertices);
+    *counts = (struct tri_counts){
+        .vertices = mesh->n_vertices - unused, .triangles = mesh->n_triangles, .subsegments = mesh->n_subs};
     for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
         bool boundary = tri_is_boundary(&mesh->sub[s]);
         *(boundary ? &counts->exterior : &counts->interior) += 1;
     }
     counts->edges = (3 * counts->triangles + counts->exterior) / 2; /* every boundary edge is a subsegment */
-    return TRI_OK;
 }
 
 /* Extremes in the mesh's units: least, greatest. */

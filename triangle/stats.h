@@ -17,6 +17,10 @@ struct tri_counts {
 enum tri_status tri_count_mesh(struct tri_counts *counts, const struct tri_mesh *mesh,
                                const struct tri_executor *executor, struct tri_error *error);
 
+/* The same where refinement has made the mesh of one in which so many vertices were outside, or duplicates: it takes no
+ * vertex from all its triangles, and each that it makes has some. O(subsegments). */
+void tri_count_refined(struct tri_counts *counts, const struct tri_mesh *mesh, int64_t unused);
+
 enum { TRI_ASPECT_BINS = 16, TRI_ANGLE_BINS = 18 };
 
 /* Limits of the bins of aspect ratios: bin k holds what is above tri_aspect_limits[k], up to and including [k + 1]; the

@@ -20,11 +20,14 @@ void par_finds_free(struct par_finds *finds)
 {
     for (int s = 0; s < PAR_FIND_SHARES; s++) {
         free(finds->found[s].item);
+        free(finds->notes[s].item);
         free(finds->runs[s].item);
     }
     free(finds->count);
     free(finds->item);
     free(finds->start);
+    free(finds->piece);
+    free(finds->first_piece);
 }
 
 /* Counts become places: row by row, in each share by share. */
@@ -63,6 +66,49 @@ bool par_finds_deal(struct par_finds *finds, const struct tri_executor *executor
     if (finds->item)
         tri_execute(executor, PAR_FIND_SHARES, deal_share, finds);
     return finds->item;
+}
+
+static void count_pieces(const struct par_finds *finds)
+{
+    int32_t *count = finds->first_piece + 1;
+    for (size_t share = 0; share < PAR_FIND_SHARES; share++)
+        for (int32_t i = 0; i < finds->runs[share].n; i++)
+            count[finds->runs[share].item[i].row]++;
+    for (int32_t row = 1; row < finds->n_rows; row++)
+        count[row] += count[row - 1];
+}
+
+/* From the last to the first, so that each row's beginning is found where its end was. */
+static void sort_pieces(const struct par_finds *finds)
+{
+    int32_t *end = finds->first_piece + 1;
+    for (size_t share = PAR_FIND_SHARES; share-- > 0;) {
+        const struct par_runs *runs = &finds->runs[share];
+        int32_t at = finds->found[share].n;
+        for (int32_t i = runs->n; i-- > 0;) {
+            const struct par_run run = runs->item[i];
+            at -= run.n;
+            finds->piece[--end[run.row]] =
+                (struct par_piece){finds->found[share].item + at, finds->notes[share].item + at, run.n};
+        }
+        assert(at == 0 && finds->notes[share].n == finds->found[share].n);
+    }
+}
+
+bool par_finds_sort(struct par_finds *finds)
+{
+    int32_t n = 0, *first = finds->first_piece = calloc((size_t)finds->n_rows + 2, sizeof *first);
+    for (size_t share = 0; share < PAR_FIND_SHARES; share++)
+        n += finds->runs[share].n;
+    finds->piece = malloc(((size_t)n + 1) * sizeof *finds->piece);
+    if (!first || !finds->piece)
+        return false;
+    add_up(finds);
+    count_pieces(finds);
+    sort_pieces(finds);
+    memmove(first, first + 1, (size_t)finds->n_rows * sizeof *first);
+    first[finds->n_rows] = n;
+    return true;
 }
 
 void par_finds_to_runs(struct par_ids *list)

@@ -1,5 +1,6 @@
 /* What shares of the mesh find of one kind in a column of tiles: lists of ids, ascending, that are dealt to the tiles
- * and in the end become ranges of free ids. */
+ * and in the end become ranges of free ids. Ids may come with notes; these stay where they are, and each tile is told
+ * where its own lie. */
 #ifndef SCHED_SWEEP_FINDS_H
 #define SCHED_SWEEP_FINDS_H
 
@@ -15,6 +16,12 @@ struct par_run {
     int32_t row, n;
 };
 
+/* Ids of one row that a share has found one after the other, and their notes. */
+struct par_piece {
+    const int32_t *item, *note; /* [n] */
+    int32_t n;
+};
+
 struct par_runs {
     struct par_run *item;
     int32_t n, capacity;
@@ -22,12 +29,15 @@ struct par_runs {
 
 struct par_finds {
     struct par_ids found[PAR_FIND_SHARES]; /* by each share, in the order of ids */
-    struct par_runs runs[PAR_FIND_SHARES];      /* the rows of these */
+    struct par_ids notes[PAR_FIND_SHARES]; /* the same of each; none, or of all of them */
+    struct par_runs runs[PAR_FIND_SHARES]; /* the rows of these */
     int32_t n_rows;
     int32_t *count; /* [shares][n_rows] of what a share has found in a row; then where the next one goes */
     int32_t *item;  /* [n] row by row, each in the order of ids */
     int32_t *start; /* [n_rows + 1] */
     int32_t n;
+    struct par_piece *piece; /* row by row, each in the order of ids */
+    int32_t *first_piece;    /* [n_rows + 1] */
 };
 
 /* False: no memory. To be freed in any case. */
@@ -44,7 +54,7 @@ static inline struct tri_range par_finds_share(size_t share, int32_t n)
 struct par_finder {
     struct par_finds *finds;
     size_t share;
-    struct par_ids list;
+    struct par_ids list, notes;
     struct par_runs runs;
     struct par_run last; /* the run of the last ones, which has not been counted */
     bool no_memory;
@@ -68,6 +78,14 @@ static inline void par_finder_count(struct par_finder *f)
     f->last.n = 0;
 }
 
+static inline void par_finder_add(struct par_finder *f, struct par_ids *list, int32_t item)
+{
+    if (list->n < list->capacity)
+        list->item[list->n++] = item;
+    else if (!par_ids_add(list, item))
+        f->no_memory = true;
+}
+
 static inline void par_find(struct par_finder *f, int32_t item, int32_t row)
 {
     if (row != f->last.row) {
@@ -75,10 +93,14 @@ static inline void par_find(struct par_finder *f, int32_t item, int32_t row)
         f->last.row = row;
     }
     f->last.n++;
-    if (f->list.n < f->list.capacity)
-        f->list.item[f->list.n++] = item;
-    else if (!par_ids_add(&f->list, item))
-        f->no_memory = true;
+    par_finder_add(f, &f->list, item);
+}
+
+/* With a note; each has one then. */
+static inline void par_find_noted(struct par_finder *f, int32_t item, int32_t row, int32_t note)
+{
+    par_find(f, item, row);
+    par_finder_add(f, &f->notes, note);
 }
 
 /* False: no memory. */
@@ -86,12 +108,16 @@ static inline bool par_finder_end(struct par_finder *f)
 {
     par_finder_count(f);
     f->finds->found[f->share] = f->list;
+    f->finds->notes[f->share] = f->notes;
     f->finds->runs[f->share] = f->runs;
     return !f->no_memory;
 }
 
-/* Deals what has been found to the rows. False: no memory. */
+/* Deals what has been found to the rows: item and start. False: no memory. */
 bool par_finds_deal(struct par_finds *finds, const struct tri_executor *executor);
+
+/* The same, but ids with notes stay where they are: piece, first_piece and start. O(runs). False: no memory. */
+bool par_finds_sort(struct par_finds *finds);
 
 /* Replaces a list of ids, ascending, by its runs: first and end of one, then of the next. Short ones are left out, so
  * that the runs take no more room than the ids did: no memory is asked for, and each share does it by itself. */

@@ -26,6 +26,7 @@
 
 #include "sched/sweep/spool.h"
 #include "sched/threads.h"
+#include "triangle/scratch_file.h"
 
 enum { EXTRAS = 12, SHEETS = TRI_ARRAYS + EXTRAS, GRAIN = 1 << 18, LOOK_NANOSECONDS = 1000000 };
 
@@ -95,23 +96,6 @@ static bool allows(void *user, const struct tri_mesh *mesh, size_t bytes)
 
 /* --- files */
 
-/* Without a name. */
-static int open_file(const char *folder)
-{
-    const char name[] = "/ptriangle-XXXXXX";
-    char *path = malloc(strlen(folder) + sizeof name);
-    errno = ENOMEM;
-    if (!path)
-        return -1;
-    strcpy(path, folder);
-    strcat(path, name);
-    int file = mkstemp(path);
-    if (file >= 0)
-        unlink(path);
-    free(path);
-    return file;
-}
-
 static int64_t bytes_now(const struct par_park *park)
 {
     int64_t sum = 0;
@@ -133,7 +117,7 @@ static int extend_file(struct sheet *sheet, const char *folder, size_t size)
 {
     int fault;
     if (sheet->file < 0)
-        sheet->file = open_file(folder);
+        sheet->file = tri_scratch_file(folder);
     if (sheet->file < 0)
         return errno;
     fault = check_limit(size);

@@ -24,8 +24,7 @@ bool par_remain_begin(struct par_state *state)
     for (int32_t i = 0; memory && i < n; i++)
         memory = par_ids_add(list, found[i]);
     free(found);
-    memset(state->report->remain, 0, sizeof state->report->remain);
-    state->report->remain_known = memory;
+    memset(state->remained, 0, sizeof state->remained);
     return memory;
 }
 
@@ -47,9 +46,16 @@ void par_remain_count(struct par_state *state, double x)
         if (tri_is_live(&mesh->tri[t]) && !has_corner_left_of(mesh, t, x))
             list->item[kept++] = t;
         else if (tri_is_live(&mesh->tri[t]))
-            tri_count_bad_among(mesh, state->quality, &report, &t, 1, state->report->remain);
+            tri_count_bad_among(mesh, state->quality, &report, &t, 1, state->remained);
     }
     list->n = kept;
+}
+
+void par_remain_settle(struct par_state *state)
+{
+    const struct tri_refine_report report = report_of(state);
+    tri_settle_counts(&report, state->remained, state->report->remain);
+    state->report->remain_known = true;
 }
 
 void par_remain_count_all(struct par_state *state)

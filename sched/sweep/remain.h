@@ -16,6 +16,9 @@ bool par_remain_begin(struct par_state *state);
  * the last x have been counted. Those that are beside them are still there. */
 void par_remain_count(struct par_state *state, double x);
 
+/* Tells the report what has been counted. */
+void par_remain_settle(struct par_state *state);
+
 /* Counts those of a whole mesh that is finished. */
 void par_remain_count_all(struct par_state *state);
 

@@ -3,13 +3,14 @@
 
 #include <assert.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "sched/phase.h"
 #include "triangle/clock.h"
 #include "triangle/grow.h"
 #include "triangle/pause.h"
 
-static const uint64_t STATE = UINT64_C(0x3465746174736974); /* a version, too */
+static const uint64_t STATE = UINT64_C(0x3565746174736974); /* a version, too */
 
 /* --- of which run */
 
@@ -60,6 +61,7 @@ struct head {
     int64_t odd, stage, amid, paused, round, phase, numbered; /* the first: 0, or the column of a sweep */
     int64_t n_vertices, n_triangles, n_subs, n_worklist, n_keys, n_held, n_spare[PAR_KINDS];
     int64_t tiles_vertices, tiles_triangles, tiles_segments;
+    int64_t counts_remaining, n_remaining, remained[TRI_EXCUSES + 1];
     int64_t n_schedules, rounds, levels, schedule, prerefined, pauses, most_live, deferred, left_over;
     double radius, radius_measured, radius_lemma7, radius_theory;
     struct cells cells, first; /* of the schedule; of the first of the whole mesh, which is told of */
@@ -108,6 +110,9 @@ static struct head head_of(const struct par_state *state, const struct par_tiles
         h.first = cells_of(&state->report->partition);
         return h;
     }
+    h.counts_remaining = state->counts_remaining;
+    h.n_remaining = state->counts_remaining ? state->remaining.n : 0;
+    memcpy(h.remained, state->remained, sizeof h.remained);
     h.n_held = tiles->held.n;
     h.tiles_vertices = tiles->n_vertices;
     h.tiles_triangles = tiles->n_triangles;
@@ -154,6 +159,7 @@ static void carry_arrays(struct par_state_file *f, const struct head *h, struct 
     if (tiles) {
         par_carry(f, tiles->number, (size_t)h->n_vertices * sizeof *tiles->number);
         par_carry(f, tiles->held.item, (size_t)h->n_held * sizeof *tiles->held.item);
+        par_carry(f, state->remaining.item, (size_t)h->n_remaining * sizeof *state->remaining.item);
         return;
     }
     carry_cells(f, &h->cells, &state->cells);
@@ -222,6 +228,7 @@ static bool is_head(const struct head *h, const struct par_state *state, const s
     const struct tri_mesh *m = state->mesh;
     bool counts = is_count(h->n_vertices, m->n_vertices) && is_count(h->n_triangles, 0) &&
                   is_count(h->n_subs, m->n_subs) && is_count(h->n_worklist, 0) && is_count(h->n_held, 0) &&
+                  is_count(h->n_remaining, 0) &&
                   (h->n_keys == 0 || h->n_keys == h->n_worklist);
     for (int k = 0; k < PAR_KINDS; k++)
         counts = counts && is_count(h->n_spare[k], 0);
@@ -260,6 +267,8 @@ static bool reserve_lists(const struct head *h, struct par_state *state, struct 
     if (!tiles)
         return memory && reserve_cells(&h->cells, &state->cells) && reserve_cells(&h->first, &state->report->partition);
     return memory && par_tiles_reserve(tiles) &&
+           tri_grow(&state->remaining.item, &state->remaining.capacity, (int32_t)h->n_remaining,
+                    sizeof *state->remaining.item) &&
            tri_grow(&tiles->held.item, &tiles->held.capacity, (int32_t)h->n_held, sizeof *tiles->held.item);
 }
 
@@ -300,6 +309,9 @@ static void set_counts(const struct head *h, struct par_state *state, struct par
     get_report(h, state->report);
     if (!tiles)
         return;
+    state->counts_remaining = h->counts_remaining != 0;
+    state->remaining.n = (int32_t)h->n_remaining;
+    memcpy(state->remained, h->remained, sizeof state->remained);
     tiles->held.n = (int32_t)h->n_held;
     tiles->n_vertices = h->tiles_vertices;
     tiles->n_triangles = h->tiles_triangles;

@@ -106,8 +106,8 @@ static enum tri_status begin_sweep(struct par_state *state, struct par_tiles *ti
         status = par_tiles_begin(tiles, tiles->partition->estimate, error);
     if (*odd == 1)
         state->worklist.n = 0;
-    state->counts_remaining = state->options->count_remaining && *odd == 1; /* a sweep that goes on does not know */
-    if (!status && state->counts_remaining && !par_remain_begin(state))
+    state->counts_remaining = state->options->count_remaining && (*odd == 1 || state->counts_remaining);
+    if (!status && state->counts_remaining && *odd == 1 && !par_remain_begin(state))
         status = no_memory(error);
     return status;
 }
@@ -121,6 +121,8 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
     int32_t odd;
     enum tri_status status = begin_sweep(state, &tiles, &ahead, &odd, error);
     status = status ? status : sweep_columns(state, &tiles, &ahead, odd, &left, error);
+    if (!status && state->counts_remaining)
+        par_remain_settle(state);
     state->counts_remaining = false;
     par_ahead_free(&ahead);
     if (!status && left && state->options->checkpoint)

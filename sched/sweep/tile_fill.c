@@ -8,8 +8,9 @@
 #include <string.h>
 
 enum {
-    FEW = 24,  /* are sorted by insertion */
-    AHEAD = 24 /* triangles that come so soon are fetched already */
+    FEW = 24,   /* are sorted by insertion */
+    AHEAD = 24, /* triangles that come so soon are fetched already */
+    SOME = 64   /* fans */
 };
 
 /* --- final triangles */
@@ -40,13 +41,18 @@ static inline void put_corner(struct tri_triangle *triangle, int k, int64_t numb
 /* Without a branch, which could not be predicted. */
 static inline int64_t choose(bool yes, int64_t a, int64_t b) { return b ^ ((a ^ b) & -(int64_t)yes); }
 
-void par_final_make(struct tri_triangle *triangle, const int64_t number[3])
+/* A note: where in its tile the vertex is that the triangle starts at, and, in the lowest bit, whether a corner is one
+ * of the caller's points. TRI_NONE: that vertex is of an earlier tile. */
+int32_t par_final_make(struct tri_triangle *triangle, const int64_t number[3], int64_t first, int64_t n_input)
 {
     const int64_t a = number[0], b = number[1], c = number[2];
-    bool from_b = b > a, from_c = c > choose(from_b, b, a);
-    put_corner(triangle, 0, choose(from_c, c, choose(from_b, b, a)));
+    const bool from_b = b > a, from_c = c > choose(from_b, b, a);
+    const int64_t start = choose(from_c, c, choose(from_b, b, a));
+    put_corner(triangle, 0, start);
     put_corner(triangle, 1, choose(from_c, a, choose(from_b, c, b)));
     put_corner(triangle, 2, choose(from_c, b, choose(from_b, a, c)));
+    const bool has_input = (a < n_input) | (b < n_input) | (c < n_input);
+    return start >= first ? (int32_t)(2 * (start - first)) + has_input : TRI_NONE;
 }
 
 static int compare_finals(const void *left, const void *right)
@@ -132,9 +138,9 @@ static void show_numbers(int64_t *number, size_t n, const struct tri_mesh *mesh)
 struct fans {
     const struct tri_tile *tile;
     struct tri_triangle *tri;      /* of the mesh */
-    const int32_t *triangles;      /* [n_triangles] */
-    int32_t *own;                  /* [n_triangles] the vertex at which each starts, counted from the tile's first, */
-    int32_t *slot;                 /* [n_triangles] and in each slot a triangle */
+    const struct par_piece *piece; /* [n_pieces] */
+    int32_t n_pieces;
+    int32_t *slot;                 /* [n_triangles] in each a triangle */
     int32_t *end;                  /* [n_vertices] of each fan; before its slots are filled, the next free one */
     int32_t others;                /* triangles of no fan, which come before all of them */
     bool *has_input;               /* [n_vertices] a corner in the fan is one of the caller's points */
@@ -143,7 +149,7 @@ struct fans {
 /* What they take of 8 bytes. */
 static int64_t fans_words(const struct tri_tile *tile)
 {
-    return tile->n_triangles + tile->n_vertices * INT64_C(5) / 8 + 1;
+    return (tile->n_triangles * INT64_C(4) + tile->n_vertices * INT64_C(5)) / 8 + 1;
 }
 
 static int32_t *fan_words(int32_t **at, int32_t n)
@@ -153,25 +159,28 @@ static int32_t *fan_words(int32_t **at, int32_t n)
     return words;
 }
 
-/* Where each fan begins. Corners that are the caller's points are noticed. */
-static void count_fans(struct fans *f, int64_t n_input)
+static void count_piece(struct fans *f, const struct par_piece *piece)
 {
-    const int32_t n = f->tile->n_vertices;
-    memset(f->end, 0, (size_t)n * (sizeof *f->end + sizeof *f->has_input)); /* one lies behind the other */
-    for (int32_t i = 0; i < f->tile->n_triangles; i++) {
-        const struct tri_triangle *t = &f->tri[f->triangles[i]];
-        if (i + AHEAD < f->tile->n_triangles)
-            __builtin_prefetch(&f->tri[f->triangles[i + AHEAD]]);
-        const uint64_t own = (uint64_t)(final_corner(t, 0) - f->tile->first_vertex);
-        f->own[i] = own < (uint64_t)n ? (int32_t)own : TRI_NONE;
-        if (f->own[i] == TRI_NONE) {
+    for (int32_t i = 0; i < piece->n; i++) {
+        const int32_t own = piece->note[i] >> 1; /* TRI_NONE stays so */
+        assert(TRI_NONE <= own && own < f->tile->n_vertices);
+        if (own == TRI_NONE) {
             f->others++;
             continue;
         }
         f->end[own]++;
-        if (final_corner(t, 1) < n_input || final_corner(t, 2) < n_input)
+        if (piece->note[i] & 1)
             f->has_input[own] = true;
     }
+}
+
+/* Where each fan begins. */
+static void count_fans(struct fans *f)
+{
+    const int32_t n = f->tile->n_vertices;
+    memset(f->end, 0, (size_t)n * (sizeof *f->end + sizeof *f->has_input)); /* one lies behind the other */
+    for (int32_t p = 0; p < f->n_pieces; p++)
+        count_piece(f, &f->piece[p]);
     for (int32_t v = 0, sum = f->others; v < n; v++) {
         int32_t count = f->end[v];
         f->end[v] = sum;
@@ -179,11 +188,15 @@ static void count_fans(struct fans *f, int64_t n_input)
     }
 }
 
+/* Once slots are filled. */
+static int32_t begin_of(const struct fans *f, int32_t v) { return v > 0 ? f->end[v - 1] : f->others; }
+
 static void fill_slots(const struct fans *f)
 {
     int32_t other = 0;
-    for (int32_t i = 0; i < f->tile->n_triangles; i++)
-        f->slot[f->own[i] != TRI_NONE ? f->end[f->own[i]]++ : other++] = f->triangles[i];
+    for (const struct par_piece *p = f->piece; p < f->piece + f->n_pieces; p++)
+        for (int32_t i = 0; i < p->n; i++)
+            f->slot[p->note[i] != TRI_NONE ? f->end[p->note[i] >> 1]++ : other++] = p->item[i];
 }
 
 /* A fan of up to four, by the second corner, without a branch that depends on it: four are put, and those that are not
@@ -211,13 +224,13 @@ static bool put_many(const struct fans *f, const struct par_tile_copy *copy, int
     return sort_many(copy, first, n);
 }
 
-/* Triangles lie scattered: those that come soon are fetched already. */
-static bool put_fans(const struct fans *f, const struct par_tile_copy *copy, const struct tri_mesh *mesh)
+/* The fans of vertices first to end - 1. Triangles lie scattered: those that come soon are fetched already. */
+static bool put_fans(const struct fans *f, const struct par_tile_copy *copy, const struct tri_mesh *mesh, int32_t first,
+                     int32_t end)
 {
     const int32_t n = f->tile->n_triangles;
-    bool memory = put_many(f, copy, 0, f->others);
-    show_numbers(copy->corners[0], 3 * (size_t)f->others, mesh);
-    for (int32_t v = 0, begin = f->others; memory && v < f->tile->n_vertices; begin = f->end[v++]) {
+    bool memory = true;
+    for (int32_t v = first, begin = begin_of(f, v); memory && v < end; begin = f->end[v++]) {
         const int32_t count = f->end[v] - begin;
         for (int k = 0; begin + AHEAD < n && k < 3; k++)
             __builtin_prefetch(&f->tri[f->slot[begin + AHEAD - k]]);
@@ -231,24 +244,37 @@ static bool put_fans(const struct fans *f, const struct par_tile_copy *copy, con
     return memory;
 }
 
-static void free_triangles(const struct fans *f)
+static void free_triangles(const struct fans *f, int32_t first, int32_t end)
 {
-    for (int32_t i = 0; i < f->tile->n_triangles; i++)
-        f->tri[f->triangles[i]].v[0] = TRI_NONE;
+    for (int32_t i = first; i < end; i++)
+        f->tri[f->slot[i]].v[0] = TRI_NONE;
 }
 
-static bool fill_triangles(const struct par_tile_job *job, const struct tri_mesh *mesh, const int32_t *triangles)
+/* So few at a time that triangles are in the cache still when they are let go. */
+static bool put_all(const struct fans *f, const struct par_tile_copy *copy, const struct tri_mesh *mesh)
+{
+    const int32_t n = f->tile->n_vertices;
+    bool memory = put_many(f, copy, 0, f->others);
+    show_numbers(copy->corners[0], 3 * (size_t)f->others, mesh);
+    free_triangles(f, 0, f->others);
+    for (int32_t first = 0, end; memory && first < n; first = end) {
+        end = n - first > SOME ? first + SOME : n;
+        memory = put_fans(f, copy, mesh, first, end);
+        free_triangles(f, begin_of(f, first), begin_of(f, end));
+    }
+    return memory;
+}
+
+static bool fill_triangles(const struct par_tile_job *job, const struct tri_mesh *mesh, const struct par_tile_ids *ids)
 {
     const struct tri_tile *tile = &job->tile;
     int32_t *at = (int32_t *)(void *)job->scratch;
-    struct fans fans = {.tile = tile, .tri = mesh->tri, .triangles = triangles,
-                        .own = fan_words(&at, tile->n_triangles), .slot = fan_words(&at, tile->n_triangles),
+    struct fans fans = {.tile = tile, .tri = mesh->tri, .piece = ids->triangles,
+                        .n_pieces = ids->n_pieces, .slot = fan_words(&at, tile->n_triangles),
                         .end = fan_words(&at, tile->n_vertices), .has_input = (bool *)at};
-    count_fans(&fans, mesh->n_input);
+    count_fans(&fans);
     fill_slots(&fans);
-    bool memory = put_fans(&fans, &job->copy, mesh);
-    free_triangles(&fans);
-    return memory;
+    return put_all(&fans, &job->copy, mesh);
 }
 
 /* --- subsegments */
@@ -291,17 +317,20 @@ static bool fill_subs(const struct par_tile_job *job, const struct tri_mesh *mes
 /* --- all */
 
 bool par_tile_fill(struct par_tile_job *job, const struct tri_mesh *mesh, const int64_t *number,
-                   const int32_t *vertices, const int32_t *triangles, const int32_t *subs)
+                   const struct par_tile_ids *ids)
 {
+    const int32_t *vertices = ids->vertices;
     struct tri_tile *tile = &job->tile;
     if (!par_tile_job_reserve(job, fans_words(tile)) ||
         !par_tile_copy_reserve(&job->copy, mesh, tile->n_vertices, tile->n_triangles, tile->n_segments))
         return false;
     par_tile_copy_show(&job->copy, tile);
     for (int32_t i = 0; i < tile->n_vertices; i++) {
-        if (i + AHEAD < tile->n_vertices)
+        if (i + AHEAD < tile->n_vertices) {
             __builtin_prefetch(&mesh->xy[vertices[i + AHEAD]]);
+            __builtin_prefetch(&mesh->vertex_markers[vertices[i + AHEAD]]);
+        }
         par_tile_copy_vertex(&job->copy, mesh, vertices[i], i);
     }
-    return fill_triangles(job, mesh, triangles) && fill_subs(job, mesh, number, subs);
+    return fill_triangles(job, mesh, ids) && fill_subs(job, mesh, number, ids->subs);
 }

@@ -158,8 +158,8 @@ static void find_triangles(void *context, size_t share)
         const int64_t number[3] = {numbers[v[0]], numbers[v[1]], numbers[v[2]]};
         int32_t row = last_row(c, &hint, v, number, 3);
         if (row >= 0) {
-            par_final_make(&mesh->tri[t], number);
-            par_find(&finder, t, row);
+            const int64_t first = c->first_vertex + c->vertices.start[row];
+            par_find_noted(&finder, t, row, par_final_make(&mesh->tri[t], number, first, mesh->n_input));
         } else if (row == LATER && has_number(c, v, number)) {
             memory = par_ids_add(&c->straddling[share], t) && memory;
         }
@@ -270,9 +270,10 @@ static enum tri_status fill_tile(void *context, int32_t row, int32_t slot, struc
     const struct par_column *c = context;
     struct par_tile_job *job = &c->tiles->job[slot];
     job->tile = tile_of(c, row);
-    bool memory = par_tile_fill(job, c->tiles->mesh, c->tiles->number, c->vertices.item + c->vertices.start[row],
-                                c->triangles.item + c->triangles.start[row], c->subs.item + c->subs.start[row]);
-    return memory ? TRI_OK : no_memory(error);
+    const int32_t *first = c->triangles.first_piece + row;
+    const struct par_tile_ids ids = {c->vertices.item + c->vertices.start[row], c->triangles.piece + first[0],
+                                     first[1] - first[0], c->subs.item + c->subs.start[row]};
+    return par_tile_fill(job, c->tiles->mesh, c->tiles->number, &ids) ? TRI_OK : no_memory(error);
 }
 
 static enum tri_status take_tile(void *context, int32_t row, int32_t slot, struct tri_error *error)
@@ -406,8 +407,7 @@ static enum tri_status hand_out_column(struct par_column *c, struct tri_error *e
     const struct tri_executor *executor = c->tiles->executor;
     tri_execute(executor, PAR_FIND_SHARES, find_triangles, c);
     tri_execute(executor, PAR_FIND_SHARES, find_subs, c);
-    if (!memory_has_lasted(c) || !par_finds_deal(&c->triangles, executor) ||
-        !par_finds_deal(&c->subs, executor))
+    if (!memory_has_lasted(c) || !par_finds_sort(&c->triangles) || !par_finds_deal(&c->subs, executor))
         return no_memory(error);
     struct par_pipeline pipeline = pipeline_of(c);
     pipeline.make = fill_tile;
@@ -441,7 +441,6 @@ enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct
 enum tri_status par_tiles_hand_out(struct par_column *c, struct par_room *spare, struct tri_error *error)
 {
     struct par_tiles *tiles = c->tiles;
-    par_room_mark(spare, tiles->mesh, tiles->executor);
     enum tri_status status = hand_out_column(c, error);
     if (!status && !let_go(c, spare))
         status = no_memory(error);

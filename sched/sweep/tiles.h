@@ -62,8 +62,8 @@ static inline size_t par_tiles_bytes(const struct par_tiles *tiles)
 bool par_tiles_reserve(struct par_tiles *tiles);
 
 /* The same in two steps, in each of which columns come from left to right. Number: its vertices, from
- * tiles->n_vertices on; ids that are free have been marked (par_room_mark), and *numbered is to be freed in any case.
- * Hand out: by then all corners of its triangles have their numbers, or are vertices of later tiles. */
+ * tiles->n_vertices on; ids that are free have been marked (par_room_mark) and stay so; *numbered is to be freed in any
+ * case. Hand out: by then all corners of its triangles have their numbers, or are vertices of later tiles. */
 struct par_column;
 enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct par_column **numbered,
                                  struct tri_error *error);

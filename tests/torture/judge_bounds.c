@@ -101,7 +101,7 @@ static int64_t outside_gaps(const struct outcome *o, const struct tri_refine_opt
 {
     int64_t n = 0;
     for (int32_t t = 0; t < o->mesh.n_triangles; t++) {
-        int64_t count[TRI_EXCUSES] = {0};
+        int64_t count[TRI_EXCUSES + 1] = {0};
         tri_count_bad_among(&o->mesh, angles, &o->report.quality, &t, 1, count);
         n += count[TRI_EXCUSE_LIMIT] > 0 && !is_in_unfilled_space(&o->mesh, t);
     }

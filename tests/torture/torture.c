@@ -73,7 +73,9 @@ static void set_limits(double seconds)
     alarm((unsigned)(seconds * WAIT_FACTOR) + 1); /* for those that wait for each other */
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
 #ifndef SANITIZED
-    setrlimit(RLIMIT_AS, &(struct rlimit){(rlim_t)4 << 30, (rlim_t)4 << 30});
+    const uint64_t most = UINT64_C(4) << 30;
+    if (SIZE_MAX > most) /* else there is no more */
+        setrlimit(RLIMIT_AS, &(struct rlimit){(rlim_t)most, (rlim_t)most});
 #endif
 }
 

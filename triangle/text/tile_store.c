@@ -14,6 +14,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "triangle/scratch_file.h"
+
 enum kind { POINTS, POINT_MARKERS, ATTRIBUTES, CORNERS, REGIONS, ENDS, SEGMENT_MARKERS, KINDS };
 enum { EXTRAS = 4, SHEETS = KINDS + EXTRAS, CHUNK = 1 << 15 };
 
@@ -34,22 +36,6 @@ struct tri_tile_store {
 
 /* --- files */
 
-static int open_file(const char *folder)
-{
-    static const char name[] = "/ptriangle-XXXXXX";
-    char *path = malloc(strlen(folder) + sizeof name);
-    errno = ENOMEM;
-    if (!path)
-        return -1;
-    strcpy(path, folder);
-    strcat(path, name);
-    int file = mkstemp(path);
-    if (file >= 0)
-        unlink(path);
-    free(path);
-    return file;
-}
-
 static enum tri_status cannot_write(const struct tri_tile_store *s, struct tri_error *error)
 {
     return tri_fail(error, TRI_CANNOT_WRITE, s->folder, 0, "cannot keep the mesh there until it can be written: %s",
@@ -61,7 +47,7 @@ static bool append(struct tri_tile_store *s, enum kind kind, const void *bytes, 
     struct sheet *sheet = &s->sheet[kind];
     const char *at = bytes;
     if (sheet->file < 0)
-        sheet->file = open_file(s->folder);
+        sheet->file = tri_scratch_file(s->folder);
     while (sheet->file >= 0 && n > 0) {
         ssize_t done = pwrite(sheet->file, at, n, (off_t)sheet->bytes);
         if (done < 0 && errno == EINTR)
@@ -98,7 +84,7 @@ static void empty(struct sheet *sheet)
 /* Disk space is taken before it is used. */
 static bool make_extra(struct sheet *sheet, const char *folder, size_t bytes)
 {
-    sheet->file = open_file(folder);
+    sheet->file = tri_scratch_file(folder);
     sheet->bytes = bytes;
     return sheet->file >= 0 && posix_fallocate(sheet->file, 0, (off_t)bytes) == 0 && map(sheet);
 }

@@ -1,0 +1,8 @@
+/* Files that are scratch alone: they have no name, and go with whoever has them open, however that ends. */
+#ifndef TRIANGLE_SCRATCH_FILE_H
+#define TRIANGLE_SCRATCH_FILE_H
+
+/* A new, empty file in the folder, open to read and to write. -1: none, and errno tells why. */
+int tri_scratch_file(const char *folder);
+
+#endif
