@@ -375,9 +375,6 @@ static enum tri_status name_streams(struct program *p, struct run_hooks *hooks, 
 /* What of the long options asks for the whole mesh in memory. */
 static const char *whole_mesh(const struct long_options *o)
 {
-    for (int i = 0; i < o->n_exports; i++)
-        if (tri_format_of(o->exports[i])->neighbors)
-            return o->exports[i];
     return o->blocks ? "--blocks" : o->by_block ? "--numbering blocks" : o->write_partial ? "--write-partial" : NULL;
 }
 

@@ -959,6 +959,8 @@ FOUND = [
          "-q33: angles kept but at small ones; once 145 were not, beside a subsegment that could not be split", ()),
     Case("regress/spike_levels.poly", None, "spike 8e-9 wide at its mouth, on a house in a triangle",
          "-q25D: at most 1,000 triangles; its sides were cut into parts too short to mend the angles beside them", ()),
+    Case("regress/flat_hole.poly", None, "a hole that is a sliver: its short side lies nearly along the long ones",
+         "-q33: no angle below beside it; the triangle at the short side was taken for one in the sliver, and stayed", ()),
     Case("regress/bundle_levels.poly", None, "segments side by side, their ends nearer to each other than they are",
          "-a0.00065D: some thousand triangles; once each new point in the bundle asked for more, without end", ()),
 ]

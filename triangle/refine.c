@@ -13,6 +13,10 @@
  * Angles may be given up; sizes are not: a triangle that is too large and cannot have that point gets another
  * (inside.c). For -D, subsegments whose diametral circle is not empty are split before anything else (disk.c).
  *
+ * COST. A triangle costs what its cavity has. That is O(1) on average, but where a wall must not be split (-Y): all
+ * vertices that see it from nearby share circumdisks, so that each of n points there, and each triangle given up, may
+ * cost n. (Between a wall 4e5 long and features of 1e-5: 50 triangles a point, 1,180 a search, for 4,000 points.)
+ *
  * Termination: for angles by the rules in small_angle.c; the points for sizes and for circles that come on top are
  * finitely many whatever the others do, see inside.c and disk.c. */
 #include "triangle/refine.h"

@@ -204,6 +204,21 @@ static bool is_beside(const struct tri_mesh *mesh, const struct tri_parent *p, t
     return along >= 0 && along <= x * x + y * y;
 }
 
+/* Does triangle u, v, w go round the end u of the parent, so that no more than its corner touches the space on either
+ * side? A triangle does not cross a parent. So one with v on one side of it and w on the other has its backward
+ * direction between them at u, if that is an end, and cannot be if it is not. What lies nearer to the parent's line
+ * than an edge may be short counts as on it: split points lie beside it by rounding. */
+static bool goes_round(const struct tri_mesh *mesh, const struct tri_parent *p, tri_vertex_id u, tri_vertex_id v,
+                       tri_vertex_id w)
+{
+    if (!is_end(p, u))
+        return false;
+    struct tri_point o = mesh->xy[u], far = mesh->xy[p->v[p->v[0] == u]], a = mesh->xy[v], b = mesh->xy[w];
+    double x = far.x - o.x, y = far.y - o.y, near2 = mesh->limits.shortest2 * (x * x + y * y);
+    double left = x * (a.y - o.y) - y * (a.x - o.x), right = x * (b.y - o.y) - y * (b.x - o.x);
+    return (left > 0) != (right > 0) && left * left > near2 && right * right > near2;
+}
+
 /* What an edge bridges: the cost of filling the dearest space, 0 where there is none; is there a spike among them? */
 struct gap {
     double cost;
@@ -225,6 +240,8 @@ static struct gap gap_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_
                 continue;
             if (!is_beside(mesh, p, v) && !is_beside(mesh, q, u))
                 continue; /* one behind the other, as in a smooth curve */
+            if (goes_round(mesh, p, u, v, w) || goes_round(mesh, q, v, u, w))
+                continue;
             double cost = tri_filling_cost(mesh, pu[i], pv[k], mesh->xy[u], mesh->xy[v]);
             gap.cost = cost > gap.cost ? cost : gap.cost;
             gap.spike |= tri_corner_between(mesh, pu[i], pv[k]) == TRI_SPIKE;

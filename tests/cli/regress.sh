@@ -282,6 +282,10 @@ few 10000 -pq33 thin_comb # each bar is a narrow space that no edge of the trian
 fresh regress/bundle_levels.poly # circles in a bundle of segments whose ends are not level
 few 10000 -pD bundle_levels
 few 10000 -pa0.00065D bundle_levels
+fresh regress/flat_hole.poly # beside it there is nothing small: the sliver itself is empty
+run 0 -pq33 flat_hole
+says "All triangles keep the bounds."
+judge flat_hole.1 --poly flat_hole.poly --min-angle 33
 fresh regress/spike_levels.poly # circles that rounding keeps from being empty, but in parts that are no features
 few 1000 -pq25D spike_levels
 fresh regress/drifted_chain.poly # split points an ulp inside, again and again, where coordinates get finer

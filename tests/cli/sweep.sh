@@ -92,20 +92,23 @@ fresh letter.poly section.poly
 for case in "-pq30a0.002 letter" "-pq20Aaa0.01 section" "-pq33a0.005B letter"; do
     every 3 || continue
     # shellcheck disable=SC2086
-    program 0 -Q $case --output whole.vtu --output whole.msh
+    program 0 -Q $case --output whole.vtu --output whole.msh --output whole.2dm --output whole.14
     # shellcheck disable=SC2086
-    PTRIANGLE_TEST_SWEEP=1 program 0 -Q $case --output swept.vtu --output swept.msh --scratch .
+    PTRIANGLE_TEST_SWEEP=1 program 0 -Q $case --output swept.vtu --output swept.msh --output swept.2dm \
+        --output swept.14 --scratch .
     check "the same .vtu" cmp whole.vtu swept.vtu
     check "the same .msh" cmp whole.msh swept.msh
+    check "the same .2dm" cmp whole.2dm swept.2dm
+    check "the same .14" cmp whole.14 swept.14
 done
-wrote swept.msh swept.vtu whole.msh whole.vtu
+wrote swept.14 swept.2dm swept.msh swept.vtu whole.14 whole.2dm whole.msh whole.vtu
 PTRIANGLE_TEST_SWEEP=1 program 1 -Qpq30a0.002 letter --output swept.vtu --output y.h5 --scratch nowhere
 complains 'nowhere: cannot park'
 rm -f swept* whole*
 
 # --- what cannot be swept stays in memory, and what cannot stay there is refused
 fresh square.poly
-for words in "-e" "-n" "-v" "-o2" "-j" "--blocks b" "--write-partial" "--output square.2dm"; do
+for words in "-e" "-n" "-v" "-o2" "-j" "--blocks b" "--write-partial"; do
     # shellcheck disable=SC2086
     program 1 -pqa square.poly --max-area 1e-9 --output x $words
     complains 'where it must be in memory as a whole, as for |less would do but for '

@@ -1,9 +1,11 @@
 /* Chains of boundary edges.
  *
  * Edges of one triangle are listed with the triangle on their left, sorted by their first node, and get the markers of
- * the segments they are. At every node as many of them arrive as leave; so a walk along unused edges ends where it
- * began: a loop. Where loops touch at a node a walk takes the first edge that leaves it. A loop is cut where the marker
- * changes. */
+ * the segments they are. Where nobody knows neighbours, as in a mesh that is not in memory, the boundary is among the
+ * segments: one pass over the triangles tells which sides of them have one.
+ *
+ * At every node as many of them arrive as leave; so a walk along unused edges ends where it began: a loop. Where loops
+ * touch at a node a walk takes the first edge that leaves it. A loop is cut where the marker changes. */
 #include "triangle/text/boundary.h"
 
 #include <assert.h>
@@ -43,6 +45,8 @@ static int64_t count_sides(const struct tri_grid *grid)
     return n;
 }
 
+static void sort_sides(struct builder *b) { qsort(b->sides, (size_t)b->n, sizeof *b->sides, compare); }
+
 static void list_sides(struct builder *b)
 {
     int64_t n = 0;
@@ -55,7 +59,7 @@ static void list_sides(struct builder *b)
                 b->sides[n++] = (struct side){nodes[(k + 1) % 3], nodes[(k + 2) % 3], 0, false};
     }
     assert(n == b->n);
-    qsort(b->sides, (size_t)n, sizeof *b->sides, compare);
+    sort_sides(b);
 }
 
 /* The first side that is not before (from, to). */
@@ -73,10 +77,67 @@ static int64_t find(const struct builder *b, int64_t from, int64_t to)
     return low;
 }
 
+static bool has_side(const struct builder *b, int64_t i, int64_t from, int64_t to)
+{
+    return i < b->n && b->sides[i].from == from && b->sides[i].to == to;
+}
+
+/* Which sides of segments have a triangle: `used`. on_segment: a byte for each point. */
+static void use_sides(struct builder *b, const char *on_segment)
+{
+    for (int64_t t = 0; t < b->grid->n_triangles; t++) {
+        int64_t nodes[6];
+        b->grid->triangle(b->grid->user, t, nodes);
+        for (int k = 0; k < 3; k++) {
+            const int64_t from = nodes[(k + 1) % 3], to = nodes[(k + 2) % 3];
+            const int64_t i = on_segment[from] && on_segment[to] ? find(b, from, to) : b->n;
+            if (has_side(b, i, from, to))
+                b->sides[i].used = true;
+        }
+    }
+}
+
+/* Only sides with a triangle, and none beyond, stay. */
+static void keep_boundary(struct builder *b)
+{
+    int64_t n = 0;
+    for (int64_t i = 0; i < b->n; i++) {
+        const struct side side = b->sides[i];
+        const int64_t beyond = find(b, side.to, side.from);
+        b->loop[i] = side.used && !(has_side(b, beyond, side.to, side.from) && b->sides[beyond].used);
+    }
+    for (int64_t i = 0; i < b->n; i++)
+        if (b->loop[i])
+            b->sides[n++] = (struct side){b->sides[i].from, b->sides[i].to, 0, false};
+    b->n = n;
+}
+
+/* False: no memory. */
+static bool list_sides_of_segments(struct builder *b)
+{
+    char *on_segment = calloc((size_t)b->grid->n_points + 1, 1);
+    int64_t n = 0;
+    if (!on_segment)
+        return false;
+    for (int64_t s = 0; s < b->grid->n_segments; s++) {
+        struct tri_grid_edge segment;
+        b->grid->segment(b->grid->user, s, &segment);
+        for (int k = 0; k < 2; k++) {
+            b->sides[n++] = (struct side){segment.ends[k], segment.ends[1 - k], 0, false};
+            on_segment[segment.ends[k]] = 1;
+        }
+    }
+    sort_sides(b);
+    use_sides(b, on_segment);
+    keep_boundary(b);
+    free(on_segment);
+    return true;
+}
+
 static void mark_side(struct builder *b, int64_t from, int64_t to, int32_t marker)
 {
     int64_t i = find(b, from, to);
-    if (i < b->n && b->sides[i].from == from && b->sides[i].to == to)
+    if (has_side(b, i, from, to))
         b->sides[i].marker = marker;
 }
 
@@ -166,16 +227,19 @@ static void add_loop(struct builder *b, int64_t n)
 
 enum tri_status tri_boundary_make(struct tri_boundary *boundary, const struct tri_grid *grid, struct tri_error *error)
 {
-    struct builder b = {.grid = grid, .n = count_sides(grid), .boundary = boundary};
+    const bool known = grid->neighbors != NULL;
+    struct builder b = {.grid = grid, .n = known ? count_sides(grid) : 2 * grid->n_segments, .boundary = boundary};
     const size_t n = (size_t)b.n + 1;
     b.sides = malloc(n * sizeof *b.sides);
     b.loop = malloc(n * sizeof *b.loop);
     *boundary = (struct tri_boundary){0, malloc(n * sizeof *boundary->pieces), malloc(2 * n * sizeof *boundary->nodes)};
     bool enough = b.sides && b.loop && boundary->pieces && boundary->nodes;
-    if (enough) {
+    if (enough && known)
         list_sides(&b);
+    else if (enough)
+        enough = list_sides_of_segments(&b);
+    if (enough)
         mark_sides(&b);
-    }
     for (int64_t i = 0; enough && i < b.n; i++)
         if (!b.sides[i].used)
             add_loop(&b, walk(&b, i));
