@@ -67,8 +67,8 @@ def _bounded(settings):
     runs = [Bounded(square(settings, AREA), 0, 0), Bounded(square(settings, AREA), 1e9, 0),
             Bounded(square(settings, AREA), 1e9, 3e9), Bounded(square(settings, 1.73e-9), 4e9, 0),
             Bounded(square(settings, 1.73e-9), 4e9, 22e9)]
-    runs += [Bounded(d, 4e9, 12e9) for d in shared_coasts(settings, 30, 0.0005)[-1:]]
-    runs.append(Bounded(square(settings, 6.85e-10), 6e9, 0))
+    runs += [Bounded(d, 4e9, 12e9) for d in shared_coasts(settings, 30, 0.00047)[-1:]]
+    runs.append(Bounded(square(settings, 6.85e-10), 8e9, 0))
     return [Bounded(r.domain, r.memory / scale, r.disk / scale) for r in runs]
 
 

@@ -15,7 +15,7 @@ static const double LEAST_BYTES = 44, LOOP_BYTES = 52, SCHEDULE_BYTES = 74, NUMB
  * on disk with room to grow, of what numbers and hands them out, and of the state of a checkpoint, of which there are
  * two; and, for each triangle to come, of the coarse mesh and what is told of blocks. */
 static const double BUFFERS = 3e7, PAGES = 3e7, COLUMNS_HELD = 260, COLUMNS_AWAY = 290, COLUMNS_WORK = 140,
-                    COLUMNS_STATE = 520, SWEPT_BYTES = 1.1;
+                    COLUMNS_STATE = 520, SWEPT_BYTES = 1.3;
 /* The same a triangle, of a mesh that stays as a whole; of two states of it; and of the tiles in a checkpoint. */
 static const double PARKED_WORK = 6, PARKED_BYTES = 90, WHOLE_STATES = 120, TILES_BYTES = 26;
 /* And of tiles that wait until all are there (triangle/text/tile_store.h). */
