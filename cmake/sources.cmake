@@ -178,7 +178,8 @@ set(PTRIANGLE_JUDGED_SOURCES # reading of meshes that are there, for the judge a
     drivers/scratch.c
     drivers/judged_text.c
     drivers/judged_h5.c
-    drivers/judged_files.c)
+    drivers/judged_files.c
+    drivers/one_line.c)
 set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed
 set(PTRIANGLE_PETSC_EXAMPLES poisson) # likewise, where PETSc is found
 set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
@@ -195,6 +196,7 @@ set(PTRIANGLE_PLOT_SOURCES
 set(PTRIANGLE_RUN_SOURCES
     drivers/arguments.c
     drivers/console.c
+    drivers/one_line.c
     drivers/help.c
     drivers/interrupt.c
     drivers/mesh_files.c

@@ -10,6 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "drivers/one_line.h"
+
 void console_open(void)
 {
     for (int file = 0; file <= STDERR_FILENO; file++)
@@ -87,28 +89,16 @@ static bool are_one_place(int a, int b)
     return fstat(a, &at_a) == 0 && fstat(b, &at_b) == 0 && at_a.st_dev == at_b.st_dev && at_a.st_ino == at_b.st_ino;
 }
 
-/* Names of files may hold anything; an error is one line. */
-static void print_line(FILE *stream, const char *text)
-{
-    for (const char *at = text; *at; at++)
-        if (*at == '\n')
-            fputs("\\n", stream);
-        else if ((unsigned char)*at < 0x20 || *at == 0x7f)
-            fprintf(stream, "\\x%02x", (unsigned)*at);
-        else
-            fputc(*at, stream);
-}
-
 static void print_error(FILE *stream, const char *before, const struct tri_error *error)
 {
     fputs(before, stream);
     if (error->file[0])
-        print_line(stream, error->file);
+        one_line_put(stream, error->file);
     if (error->file[0] && error->line > 0)
         fprintf(stream, ":%ld: ", error->line);
     else if (error->file[0])
         fputs(": ", stream);
-    print_line(stream, error->text);
+    one_line_put(stream, error->text);
     fputc('\n', stream);
 }
 

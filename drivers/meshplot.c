@@ -13,6 +13,7 @@
 #include <cairo-svg.h>
 
 #include "drivers/judged_files.h"
+#include "drivers/one_line.h"
 #include "drivers/plot_part.h"
 #include "drivers/resources.h"
 #include "triangle/pslg.h"
@@ -70,9 +71,7 @@ static int fail(int code, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    fputs(PTRIANGLE_NAME ": ", stderr);
-    vfprintf(stderr, format, arguments);
-    fputc('\n', stderr);
+    one_line_complain(PTRIANGLE_NAME, format, arguments);
     va_end(arguments);
     return code;
 }

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "drivers/judged_files.h"
+#include "drivers/one_line.h"
 #include "drivers/resources.h"
 #include "drivers/verdict.h"
 #include "sched/threads.h"
@@ -71,9 +72,7 @@ static int fail(const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    fputs(PTRIANGLE_NAME ": ", stderr);
-    vfprintf(stderr, format, arguments);
-    fputc('\n', stderr);
+    one_line_complain(PTRIANGLE_NAME, format, arguments);
     va_end(arguments);
     return TROUBLE;
 }

@@ -37,6 +37,17 @@ for program in triangle ptriangle trianglecheck meshplot; do
     check "--version" sh -c '"$1" --version | grep -qE "^$2 [0-9]+\.[0-9]+\.[0-9]+$"' sh "$bin/$program" $program
     check "--help" sh -c '"$1" --help | grep -qi "^usage: $2 "' sh "$bin/$program" $program
 done
+what='a newline in a name'
+"$bin/trianglecheck" 'no
+y' >.out 2>.err
+complains '^trianglecheck: no\\ny'
+check "one line" sh -c 'test "$(wc -l <.err)" -eq 1'
+if [ -x "$bin/meshplot" ]; then
+    "$bin/meshplot" 'no
+y.h5' -o a.png >.out 2>.err
+    complains '^meshplot: no\\ny'
+    check "one line" sh -c 'test "$(wc -l <.err)" -eq 1'
+fi
 
 fresh nasty/truncated.poly nasty/rubbish.poly nasty/nan.node nasty/identical.node nasty/region_no_value.poly \
     nasty/badindex.poly
