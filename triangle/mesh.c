@@ -243,7 +243,7 @@ enum tri_status tri_mesh_move(struct tri_mesh *mesh, const struct tri_storage *s
 {
     struct tri_mesh there;
     if (!copy_arrays(&there, mesh, storage))
-        return no_memory(error, "triangles elsewhere", mesh->n_triangles);
+        return no_memory(error, "triangles of a second copy", mesh->n_triangles);
     tri_mesh_swap(mesh, &there);
     tri_mesh_drop(&there);
     return TRI_OK;
