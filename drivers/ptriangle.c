@@ -176,9 +176,9 @@ static void tell_of_parking(const struct program *p, bool quiet)
 {
     const struct console console = {.program = PROGRAM, .quiet = quiet};
     if (p->schedule.parked > 0)
-        console_say(&console, "%s parked: %s in %s.\n",
+        console_say(&console, "%s parked in %s: %s.\n",
                     p->schedule.way == PAR_SWEPT ? "What did not fit in memory was" : "The mesh was not swept, and was",
-                    console_size((double)p->schedule.parked).text, p->scratch);
+                    p->scratch, console_size((double)p->schedule.parked).text);
 }
 
 /* Refines, and writes what is finished meanwhile. */
