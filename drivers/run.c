@@ -299,7 +299,7 @@ static enum tri_status begin_sweep(struct runner *r, const struct tri_mesh *mesh
     return keep_twins(r, mesh);
 }
 
-/* Where the mesh is still small. */
+/* Counts the vertices of no triangle while the mesh is small: refinement makes none (tri_count_refined). */
 static enum tri_status count_unused(struct runner *r, const struct tri_mesh *mesh, struct tri_error *error)
 {
     struct tri_counts before;

@@ -265,17 +265,17 @@ static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, st
 }
 
 /* Between two steps of what cannot be undone: a state may be kept here. */
-static enum tri_status come_to_border(struct par_state *state, bool surely, struct tri_error *error)
+static enum tri_status come_to_border(struct par_state *state, struct tri_error *error)
 {
     struct par_checkpoint *checkpoint = checkpoint_of(state);
-    return checkpoint ? par_state_border(checkpoint, state, surely, error) : TRI_OK;
+    return checkpoint ? par_state_border(checkpoint, state, false, error) : TRI_OK;
 }
 
-/* May what comes now be stopped, though not all that has been done is in a state? */
-static void let_stop(struct par_state *state, bool may)
+/* What comes now may be stopped, though not all that has been done is in a state. */
+static void let_stop(struct par_state *state)
 {
     if (checkpoint_of(state))
-        par_state_may_stop(checkpoint_of(state), state, may);
+        par_state_let_stop(checkpoint_of(state), state);
 }
 
 static enum tri_status run_phases(struct par_state *state, const struct par_partition *partition,
@@ -283,7 +283,7 @@ static enum tri_status run_phases(struct par_state *state, const struct par_part
 {
     enum tri_status status = TRI_OK;
     for (; !status && state->phase < PAR_PHASES && state->worklist.n > 0; state->phase++) {
-        status = state->amid ? come_to_border(state, false, error) : TRI_OK;
+        status = state->amid ? come_to_border(state, error) : TRI_OK;
         par_tell(state, state->phase + 1);
         status = status ? status : par_phase(state, partition, state->phase, TRI_NONE, error);
     }
@@ -592,7 +592,7 @@ static enum tri_status refine_stage(struct par_state *state, const struct tri_re
         return refine_rest(state, quality, true, true, error);
     const bool begun = state->stage < stage;
     state->stage = stage;
-    enum tri_status status = begun ? come_to_border(state, false, error) : TRI_OK;
+    enum tri_status status = begun ? come_to_border(state, error) : TRI_OK;
     return status ? status : refine_level(state, quality, 0, error);
 }
 
@@ -623,7 +623,7 @@ static enum tri_status refine_beyond(struct par_state *state, const struct tri_r
     if (state->stage > PAR_BEYOND || quality->min_angle <= TRI_USUAL_ANGLE)
         return TRI_OK;
     state->stage = PAR_BEYOND;
-    enum tri_status status = state->paused ? TRI_OK : come_to_border(state, false, error);
+    enum tri_status status = state->paused ? TRI_OK : come_to_border(state, error);
     status = status ? status : refine_rest(state, quality, true, true, error);
     state->report->seconds_last += tri_seconds() - last;
     return status;
@@ -671,8 +671,8 @@ static enum tri_status deliver(struct par_state *state, struct tri_error *error)
     if (state->report->levels > 0 && !state->options->by_block && state->end != PAR_NUMBERED)
         status = number_mesh(state, error);
     state->stage = PAR_FINISHED;
-    status = status ? status : come_to_border(state, false, error);
-    let_stop(state, true);
+    status = status ? status : come_to_border(state, error);
+    let_stop(state);
     return !status && state->options->sink ? hand_out(state, error) : status;
 }
 

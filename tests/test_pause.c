@@ -130,7 +130,7 @@ static void test_goes_on_elsewhere(void **state)
     compare(NULL, &options);
 }
 
-/* Whatever byte of a head is another one, nothing is read or written where it should not be. */
+/* Counts that point beyond what there is are refused. */
 static void test_heads_that_cannot_be(void **state)
 {
     (void)state;
@@ -149,13 +149,17 @@ static void test_heads_that_cannot_be(void **state)
     assert_true(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs));
     int32_t *const counts[] = {&head.queue.n_nodes, &head.queue.first[7], &head.queue.last[7], &head.queue.count[7],
                                &head.queue.next, &head.queue.n_batch, &head.queue.free_node, &head.n_encroached,
-                               &head.next_listed};
+                               &head.next_listed, &head.limit, &head.stage, &head.step};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
         const int32_t old = *counts[i];
         *counts[i] = -5;
         assert_false(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs));
         *counts[i] = old;
     }
+    const int32_t limit = head.limit;
+    head.limit = TRI_BUCKETS + 1;
+    assert_false(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs));
+    head.limit = limit;
     head.queue.head = head.queue.tail - TRI_WINDOW - 1;
     assert_false(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs));
     tri_refiner_free(refiner);

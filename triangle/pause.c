@@ -35,8 +35,7 @@ static bool is_node(const struct tri_bad_queue *q, int32_t node) { return node >
 static bool is_queue(const struct tri_bad_queue *q)
 {
     bool is = q->n_nodes >= 0 && is_node(q, q->free_node) && q->tail - q->head <= TRI_WINDOW && q->n_cold >= 0 &&
-              q->n_cold <= INT32_MAX && q->next >= 0 &&
-              q->next <= q->n_batch && q->n_batch <= TRI_BATCH;
+              q->n_cold <= INT32_MAX && q->next >= 0 && q->next <= q->n_batch && q->n_batch <= TRI_BATCH;
     for (int b = 0; is && b < TRI_BUCKETS; b++)
         is = is_node(q, q->first[b]) && is_node(q, q->last[b]) && q->count[b] >= 0 && q->count[b] <= q->n_nodes;
     return is;
@@ -44,7 +43,8 @@ static bool is_queue(const struct tri_bad_queue *q)
 
 bool tri_pause_is_head(const struct tri_pause *h, int64_t n_triangles, int64_t n_subs)
 {
-    return is_queue(&h->queue) && h->next_listed >= 0 && h->next_listed <= h->n_worklist && h->n_encroached >= 0 &&
+    return is_queue(&h->queue) && h->stage >= 0 && h->step >= 0 && h->limit >= 0 && h->limit <= TRI_BUCKETS &&
+           h->next_listed >= 0 && h->next_listed <= h->n_worklist && h->n_encroached >= 0 &&
            (!h->in_hand || (h->hand.t >= 0 && h->hand.t < n_triangles)) && (h->n_encroached == 0 || n_subs > 0) &&
            h->report.inserted_free >= 0 && h->report.inserted_on_segments >= 0;
 }

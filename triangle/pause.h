@@ -3,6 +3,8 @@
 #ifndef TRIANGLE_PAUSE_H
 #define TRIANGLE_PAUSE_H
 
+#include <stdbool.h>
+
 #include "triangle/bad_queue.h"
 #include "triangle/quality.h"
 #include "triangle/refine.h"

@@ -252,6 +252,8 @@ static bool paste_vertices(struct pasting *p)
     for (int32_t i = 0; memory && i < p->message->n_vertices; i++) {
         const struct par_told_vertex *told = &p->message->vertex[i];
         tri_vertex_id v = told->common;
+        /* A new vertex that comes back need not be noted: it was made within one block, whose triangles no other block
+         * changes (triangle/refine.h), so one rank alone tells of it. */
         if (v == TRI_NONE) {
             int32_t *at = at_place(&p->ranks->places, p->mesh, told->xy);
             v = *at != TRI_NONE ? *at : append_vertex(p, i);

@@ -427,10 +427,7 @@ enum tri_status par_state_border(struct par_checkpoint *c, struct par_state *sta
     return status || !asked ? status : tri_fail_stopped(error);
 }
 
-void par_state_may_stop(struct par_checkpoint *c, struct par_state *state, bool may)
-{
-    state->mesh->stop = may ? c->stop : NULL;
-}
+void par_state_let_stop(struct par_checkpoint *c, struct par_state *state) { state->mesh->stop = c->stop; }
 
 /* Asked by a refiner that may pause. It does not stay true: pauses end. */
 static bool is_pause_due(void *user)

@@ -40,9 +40,9 @@ void par_state_end(struct par_checkpoint *checkpoint, struct par_state *state);
 enum tri_status par_state_border(struct par_checkpoint *checkpoint, struct par_state *state, bool surely,
                                  struct tri_error *error);
 
-/* Is whoever asks for the end heard within the step at hand, too, and not only at the next border? A step that is
+/* Whoever asks for the end is heard within the step at hand, too, and not only at the next border. A step that is
  * stopped is lost: the run goes on from the last state. */
-void par_state_may_stop(struct par_checkpoint *checkpoint, struct par_state *state, bool may);
+void par_state_let_stop(struct par_checkpoint *checkpoint, struct par_state *state);
 
 /* Runs a refiner of the whole mesh to its end, from where a state was amid such a call, and keeps states of it on the
  * way: where it is time to, unless more than a tenth of the time would go into that, and where somebody asks for the

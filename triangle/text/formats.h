@@ -23,7 +23,6 @@ struct tri_format {
     const char *suffix; /* of the files' names */
     const char *name;   /* whose format */
     bool second_order;  /* it can hold second-order triangles */
-    bool neighbors;     /* its writer asks the grid for them */
     tri_write_call *write;
 };
 
