@@ -38,7 +38,8 @@ for switches in q20a0.000003 q33a0.000004 q20a0.000003S200000; do # swept, parke
     done
 done
 full && least=3 || least=1
-check "some runs are kept within ($kept), others refused ($refused)" test $kept -ge $((2 * least)) -a $refused -ge $least
+check "some runs are kept within ($kept), others refused ($refused)" \
+    test $kept -ge $((2 * least)) -a $refused -ge $least
 
 # --- what is triangulated alone, or read again, is in memory: it fits, or is refused before
 rm -f ./*

@@ -26,7 +26,8 @@ killed_and_on() {
         rounds=$((rounds + 1))
         limit=$(echo "$limit $longer" | awk '{ print $1 * $2 }')
         if [ $((rounds % 2)) -eq 0 ]; then
-            "$bin/ptriangle" "$@" --checkpoint state --resume state --every 0 --threads $((rounds % 3 + 1)) >.out 2>.err &
+            "$bin/ptriangle" "$@" --checkpoint state --resume state --every 0 --threads $((rounds % 3 + 1)) \
+                >.out 2>.err &
             sleep "$limit"
             kill -KILL $! 2>/dev/null
             wait $! 2>/dev/null
