@@ -16,8 +16,9 @@
 #include "drivers/resources.h"
 
 /* A mesh in memory may take so much more than expected; more where it must not; and most where angles above 31 degrees
- * are asked for as well, of which an estimate knows least. Less than the last is not worth looking for. */
-static const double MARGIN = 1.15, STRICT_MARGIN = 1.5, STEEP_MARGIN = 2.5, WORTH_A_LOOK = 1e8;
+ * or diametral circles without vertices are asked for as well, of which an estimate knows least. Less than the last is
+ * not worth looking for. */
+static const double MARGIN = 1.15, STRICT_MARGIN = 1.5, STEEP_MARGIN = 2.5, CONFORMING_MARGIN = 4, WORTH_A_LOOK = 1e8;
 
 /* Measured: bytes at the peak of triangulating, of the process, a point, a segment, and of a mesh that is rebuilt, a
  * point and a triangle; and the share of them that is sure. */
@@ -231,10 +232,17 @@ static enum tri_status check_scratch(const char *folder, struct tri_error *error
 
 /* --- all together */
 
+static double margin_of(const struct run *run)
+{
+    const struct tri_refine_options *quality = &run->options.quality;
+    if (!is_strict(run))
+        return MARGIN;
+    return quality->conforming ? CONFORMING_MARGIN : quality->min_angle > TRI_EASY_ANGLE ? STEEP_MARGIN : STRICT_MARGIN;
+}
+
 static bool fits(const struct run *run, const struct estimate *e, double left)
 {
-    bool steep = run->options.quality.min_angle > TRI_EASY_ANGLE;
-    double margin = !is_strict(run) ? MARGIN : steep ? STEEP_MARGIN : STRICT_MARGIN;
+    const double margin = margin_of(run);
     return fmax(e->likely.triangles, e->least.triangles) <= TRI_MAX_TRIANGLES && margin * e->likely.whole <= left;
 }
 
