@@ -130,7 +130,7 @@ static void test_goes_on_elsewhere(void **state)
     compare(NULL, &options);
 }
 
-/* Counts that point beyond what there is are refused. */
+/* Counts and places of a head that are out of their ranges. */
 static void test_heads_that_cannot_be(void **state)
 {
     (void)state;
@@ -156,10 +156,16 @@ static void test_heads_that_cannot_be(void **state)
         assert_false(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs));
         *counts[i] = old;
     }
-    const int32_t limit = head.limit;
-    head.limit = TRI_BUCKETS + 1;
-    assert_false(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs));
-    head.limit = limit;
+    const struct {
+        int32_t *at, most;
+    } most[] = {{&head.limit, TRI_BUCKETS}, {&head.stage, TRI_PAUSE_LAST_STAGE}, {&head.step, TRI_PAUSE_LAST_STEP},
+                {&head.n_worklist, mesh.n_triangles}};
+    for (size_t i = 0; i < sizeof most / sizeof *most; i++) {
+        const int32_t old = *most[i].at;
+        *most[i].at = most[i].most + 1;
+        assert_false(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs));
+        *most[i].at = old;
+    }
     head.queue.head = head.queue.tail - TRI_WINDOW - 1;
     assert_false(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs));
     tri_refiner_free(refiner);

@@ -27,7 +27,7 @@ void tri_refiner_show(const struct tri_refiner *refiner, struct tri_pause *pause
  * becomes what it was. */
 void tri_refiner_go_on(struct tri_refiner *refiner, struct tri_pause *pause);
 
-enum { TRI_PAUSE_ARRAYS = 4 };
+enum { TRI_PAUSE_ARRAYS = 4, TRI_PAUSE_LAST_STAGE = 4, TRI_PAUSE_LAST_STEP = 2 }; /* as refine.c has them */
 
 struct tri_pause_array {
     void *at;

@@ -52,6 +52,9 @@ enum stage { EASY_STAGE, USUAL_STAGE, BEYOND_STAGE, BACK_STAGE, LAST_STAGE };
 
 enum step { NOT_BEGUN, FIRST_PASS, SECOND_PASS };
 
+_Static_assert((int)LAST_STAGE == (int)TRI_PAUSE_LAST_STAGE && (int)SECOND_PASS == (int)TRI_PAUSE_LAST_STEP,
+               "pause.c compares with them");
+
 struct tri_refiner {
     struct tri_mesh *mesh;
     const struct tri_refine_options *options;
@@ -756,7 +759,7 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
 {
     struct tri_refiner *r = calloc(1, sizeof *r);
     *refiner = r;
-    *report = (struct tri_refine_report){0};
+    memset(report, 0, sizeof *report); /* all its bytes: a pause shows them */
     if (!r || !tri_bad_queue_init(&r->queue)) {
         free(r);
         *refiner = NULL;
@@ -801,7 +804,7 @@ void tri_refiner_free(struct tri_refiner *r)
 void tri_refiner_show(const struct tri_refiner *r, struct tri_pause *pause)
 {
     memset(pause, 0, sizeof *pause);
-    pause->report = *r->report;
+    memcpy(&pause->report, r->report, sizeof pause->report);
     pause->bounds = r->criterion.bounds;
     pause->beyond = r->beyond;
     pause->back = r->back;
