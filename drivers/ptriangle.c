@@ -268,8 +268,11 @@ static void count_remaining(struct program *p, const struct run *run)
 {
     if (!p->refined || p->schedule.remain_known || run->plan.swept)
         return;
-    const struct tri_executor executor = par_executor(&p->threads);
-    tri_count_bad(&run->mesh, &run->options.quality, &run->report.quality, &executor, p->schedule.remain);
+    if (run->remain_known)
+        memcpy(p->schedule.remain, run->remain, sizeof run->remain);
+    else
+        tri_count_bad(&run->mesh, &run->options.quality, &run->report.quality, run->hooks->executor,
+                      p->schedule.remain);
     p->schedule.remain_known = true;
 }
 

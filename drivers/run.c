@@ -366,10 +366,12 @@ static void tell_of_quality(struct runner *r)
     say_milliseconds(r, run->plan.swept ? "Quality and output" : "Quality", run->seconds[RUN_QUALITY]);
     if (report->hit_limit && run->options.quality.conforming)
         console_warn(&r->console, "the limit of -S was reached before the mesh was conforming.\n");
-    if (!r->console.quiet && !run->plan.swept) /* a pass over all triangles */
-        summary_bounds(&r->console, &run->mesh, &run->options.quality, report, run->hooks->executor);
-    else if (run->remain_known)
+    if (!r->console.quiet && !run->plan.swept) { /* a pass over all triangles */
+        summary_bounds(&r->console, &run->mesh, &run->options.quality, report, run->hooks->executor, run->remain);
+        run->remain_known = true;
+    } else if (run->remain_known) {
         summary_remaining(&r->console, run->remain, &run->options.quality, report);
+    }
 }
 
 /* --- a run that is stopped */

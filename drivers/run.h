@@ -44,8 +44,8 @@ struct run {
     struct tri_mesh mesh;
     struct tri_report report;
     struct tri_counts counts;
-    int64_t remain[TRI_EXCUSES]; /* of a swept or parked mesh: triangles that stay below the bounds */
-    bool remain_known;
+    int64_t remain[TRI_EXCUSES]; /* triangles that stay below the bounds, */
+    bool remain_known;           /* where they have been counted */
     double seconds[RUN_STAGES];
     double total_seconds;
     const char *stopped; /* what stopped the run, of which this is the mesh so far: "SIGTERM"; NULL: nothing */

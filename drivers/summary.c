@@ -72,10 +72,10 @@ static void say_reasons(const struct console *console, const int64_t count[TRI_E
 
 void summary_bounds(const struct console *console, const struct tri_mesh *mesh,
                     const struct tri_refine_options *options, const struct tri_refine_report *report,
-                    const struct tri_executor *executor)
+                    const struct tri_executor *executor, int64_t remain[TRI_EXCUSES])
 {
-    int64_t count[TRI_EXCUSES];
     if (options->conforming) {
+        int64_t count[TRI_EXCUSES];
         tri_count_encroached(mesh, options, report, count);
         int64_t n = sum_of(count);
         if (n > 0)
@@ -83,8 +83,8 @@ void summary_bounds(const struct console *console, const struct tri_mesh *mesh,
                         n == 1 ? " keeps" : "s keep");
         say_reasons(console, count, options, report);
     }
-    tri_count_bad(mesh, options, report, executor, count);
-    summary_remaining(console, count, options, report);
+    tri_count_bad(mesh, options, report, executor, remain);
+    summary_remaining(console, remain, options, report);
 }
 
 void summary_remaining(const struct console *console, const int64_t count[TRI_EXCUSES],

@@ -18,10 +18,10 @@ void summary_holes(const struct console *console, const struct tri_report *repor
  * are none. */
 void summary_duplicates(const struct console *console, const int32_t *twin, const struct tri_pslg *pslg);
 
-/* One line: how many triangles stay below the bounds, and why. */
+/* One line: how many triangles stay below the bounds, and why. They are counted into remain. */
 void summary_bounds(const struct console *console, const struct tri_mesh *mesh,
                     const struct tri_refine_options *options, const struct tri_refine_report *report,
-                    const struct tri_executor *executor);
+                    const struct tri_executor *executor, int64_t remain[TRI_EXCUSES]);
 
 /* The same of triangles that have been counted. */
 void summary_remaining(const struct console *console, const int64_t count[TRI_EXCUSES],

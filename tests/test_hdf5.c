@@ -1,6 +1,5 @@
 /* HDF5 files: what is written is what is read, in chunks and without, narrow and wide; the same tiles give the same
  * bytes; whatever fails, nothing remains. */
-#include <dirent.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -15,6 +14,7 @@
 #include <cmocka.h>
 
 #include "tests/allocations.h"
+#include "tests/files.h"
 #include "tests/full.h"
 #include "tests/lattice_tiles.h"
 #include "triangle/hdf5/array.h"
@@ -126,24 +126,13 @@ static void compare(const struct lattice *l, bool markers)
     tri_h5_free(h5);
 }
 
-static int n_files(void)
-{
-    int n = 0;
-    DIR *directory = opendir(".");
-    assert_non_null(directory);
-    for (struct dirent *entry; (entry = readdir(directory));)
-        n += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
-    closedir(directory);
-    return n;
-}
-
 static int remove_files(void **state)
 {
     (void)state;
     remove("x.h5");
     remove("x.xdmf");
     remove("y");
-    assert_int_equal(n_files(), 0);
+    assert_int_equal(files_here(), 0);
     return 0;
 }
 
@@ -303,7 +292,7 @@ static void test_full_disk(void **state)
         assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
         assert_int_equal(status, TRI_CANNOT_WRITE);
         assert_non_null(strstr(error.text, "File too large"));
-        assert_int_equal(n_files(), 0);
+        assert_int_equal(files_here(), 0);
     }
 }
 
@@ -352,7 +341,7 @@ static void test_no_memory(void **state)
         status = write_lattice(&SMALL, true, 10, &error);
         atomic_store(&support_fail_at, INT64_MAX);
         assert_int_equal(atomic_load(&support_held), held);
-        assert_true(status == TRI_OK || n_files() == 0);
+        assert_true(status == TRI_OK || files_here() == 0);
         assert_true(k < 100);
     }
     compare(&SMALL, true);
@@ -381,7 +370,7 @@ static void test_stop(void **state)
     assert_int_equal(lattice_hand_out(&LARGE, &sink, &error), TRI_STOPPED);
     tri_h5_writer_free(writer);
     tri_outputs_abort(&set);
-    assert_int_equal(n_files(), 0);
+    assert_int_equal(files_here(), 0);
 }
 
 /* --- files that are no meshes */

@@ -1,5 +1,4 @@
 /* Files without a name: each its own, gone with its descriptor; and what is told where there is none. */
-#include <dirent.h>
 #include <errno.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,27 +12,17 @@
 #include <cmocka.h>
 
 #include "tests/allocations.h"
+#include "tests/files.h"
 #include "triangle/scratch_file.h"
-
-static int names_here(void)
-{
-    int n = 0;
-    DIR *directory = opendir(".");
-    assert_non_null(directory);
-    while (readdir(directory))
-        n++;
-    closedir(directory);
-    return n;
-}
 
 static void test_each_is_its_own(void **state)
 {
     (void)state;
     char found[2];
     struct stat about;
-    const int before = names_here(), first = tri_scratch_file("."), second = tri_scratch_file("./");
+    const int before = files_here(), first = tri_scratch_file("."), second = tri_scratch_file("./");
     assert_true(first >= 0 && second >= 0);
-    assert_int_equal(names_here(), before);
+    assert_int_equal(files_here(), before);
     assert_int_equal(pwrite(first, "ab", 2, 0), 2);
     assert_int_equal(pread(first, found, 2, 0), 2);
     assert_memory_equal(found, "ab", 2);

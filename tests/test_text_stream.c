@@ -1,7 +1,6 @@
 /* Text files of a stream of tiles are byte for byte those of the mesh in memory, whatever the estimate was. */
 #include "triangle/text/stream.h"
 
-#include <dirent.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -15,6 +14,7 @@
 #include <cmocka.h>
 
 #include "tests/allocations.h"
+#include "tests/files.h"
 #include "tests/lattice_tiles.h"
 
 static const struct lattice SMALL = {5, 1, 2, 2, false, false}, PLAIN = {11, 3, 0, 0, true, true},
@@ -140,22 +140,12 @@ static char *bytes_of(const char *name)
     return bytes;
 }
 
-static int n_files(void)
-{
-    int n = -2;
-    DIR *directory = opendir(".");
-    while (readdir(directory))
-        n++;
-    closedir(directory);
-    return n;
-}
-
 static int remove_files(void **state)
 {
     (void)state;
     for (int i = 0; i < 3; i++)
         remove(names[i]);
-    assert_int_equal(n_files(), 0);
+    assert_int_equal(files_here(), 0);
     return 0;
 }
 
@@ -201,7 +191,7 @@ static void test_full_disk(void **state)
         enum tri_status status = write_stream(&LARGE, options, 1, &error);
         assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
         assert_int_equal(status, TRI_CANNOT_WRITE);
-        assert_int_equal(n_files(), 0);
+        assert_int_equal(files_here(), 0);
     }
 }
 
@@ -219,7 +209,7 @@ static void test_no_memory(void **state)
         status = write_stream(&SMALL, options, 1e9, NULL);
         atomic_store(&support_fail_at, INT64_MAX);
         assert_int_equal(atomic_load(&support_held), held);
-        assert_true(status == TRI_OK || n_files() == 0);
+        assert_true(status == TRI_OK || files_here() == 0);
         assert_true(k < 200);
     }
 }

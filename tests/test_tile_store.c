@@ -1,7 +1,6 @@
 /* A mesh that was kept in files tile by tile makes the files of one that was there as a whole, byte for byte. */
 #include "triangle/text/tile_store.h"
 
-#include <dirent.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -15,6 +14,7 @@
 #include <cmocka.h>
 
 #include "tests/allocations.h"
+#include "tests/files.h"
 #include "tests/lattice_tiles.h"
 #include "triangle/text/formats.h"
 
@@ -104,22 +104,12 @@ static char *bytes_of(const char *name, size_t *n)
     return bytes;
 }
 
-static int n_files(void)
-{
-    int n = -2;
-    DIR *directory = opendir(".");
-    while (readdir(directory))
-        n++;
-    closedir(directory);
-    return n;
-}
-
 static int remove_files(void **state)
 {
     (void)state;
     for (int i = 0; i < FILES; i++)
         remove(names[i]);
-    assert_int_equal(n_files(), 0);
+    assert_int_equal(files_here(), 0);
     return 0;
 }
 
@@ -165,7 +155,7 @@ static void test_no_place(void **state)
         enum tri_status status = write_kept(&LARGE, true, 0, ".", &error);
         assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
         assert_int_not_equal(status, TRI_OK);
-        assert_int_equal(n_files(), 0);
+        assert_int_equal(files_here(), 0);
     }
 }
 
@@ -182,7 +172,7 @@ static void test_no_memory(void **state)
         status = write_kept(&SMALL, true, 0, ".", NULL);
         atomic_store(&support_fail_at, INT64_MAX);
         assert_int_equal(atomic_load(&support_held), held);
-        assert_true(status == TRI_OK || n_files() == 0);
+        assert_true(status == TRI_OK || files_here() == 0);
     }
     assert_int_equal(status, TRI_OK);
 }
