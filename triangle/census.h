@@ -2,7 +2,6 @@
 #ifndef TRIANGLE_CENSUS_H
 #define TRIANGLE_CENSUS_H
 
-#include "triangle/criterion.h"
 #include "triangle/refine.h"
 
 #ifdef __cplusplus
