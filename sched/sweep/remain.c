@@ -34,20 +34,24 @@ static bool has_corner_left_of(const struct tri_mesh *mesh, tri_triangle_id t, d
     return mesh->xy[v[0]].x < x || mesh->xy[v[1]].x < x || mesh->xy[v[2]].x < x;
 }
 
-/* Those to come stay in front, those to count go behind them. */
+/* Those to come stay in front, those to count go behind them, and are counted by one call. */
 void par_remain_count(struct par_state *state, double x)
 {
     const struct tri_mesh *mesh = state->mesh;
     const struct tri_refine_report report = report_of(state);
     struct par_ids *list = &state->remaining;
-    int32_t n = par_sort_unique(list->item, list->n), kept = 0;
+    int32_t n = par_sort_unique(list->item, list->n), live = 0, kept = 0;
     for (int32_t i = 0; i < n; i++) {
         const tri_triangle_id t = list->item[i];
-        if (tri_is_live(&mesh->tri[t]) && !has_corner_left_of(mesh, t, x))
+        if (!tri_is_live(&mesh->tri[t]))
+            continue;
+        list->item[live++] = t;
+        if (!has_corner_left_of(mesh, t, x)) {
+            list->item[live - 1] = list->item[kept];
             list->item[kept++] = t;
-        else if (tri_is_live(&mesh->tri[t]))
-            tri_count_bad_among(mesh, state->quality, &report, &t, 1, state->remained);
+        }
     }
+    tri_count_bad_among(mesh, state->quality, &report, list->item + kept, live - kept, state->remained);
     list->n = kept;
 }
 
