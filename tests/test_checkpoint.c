@@ -4,6 +4,7 @@
 #include "full.h"
 #include "support.h"
 
+#include <stdatomic.h>
 #include <stdio.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -386,8 +387,8 @@ struct whole_run {
     struct par_checkpoint *checkpoint;
     int64_t memory;
     int threads;
-    int told, most_told;
-    int asked, most_asked; /* the second: 0: any number */
+    atomic_int told, asked; /* whether to stop is asked by all threads */
+    int most_told, most_asked; /* the second: 0: any number */
     struct taker taker;
     uint64_t hash;
     enum par_way was;
