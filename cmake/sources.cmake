@@ -18,6 +18,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/recover.c
     triangle/flip.c
     triangle/overlap.c
+    triangle/bundle.c
     triangle/constrain.c
     triangle/sweep_line.c
     triangle/locate.c
@@ -36,6 +37,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/bad_queue.c
     triangle/criterion.c
     triangle/inside.c
+    triangle/entry_set.c
     triangle/refine.c
     triangle/pause.c
     triangle/census.c

@@ -599,6 +599,27 @@ static void test_what_is_left_does_not_multiply(void **state)
     tri_pslg_free(&start.pslg);
 }
 
+/* Long walls beyond fences, and thousands of triangles on this side of them whose points all lead to the same wall: each
+ * searched all the others in vain, a thousand times as many triangles as there are. */
+static void test_fans_at_a_fence_are_searched_once(void **state)
+{
+    (void)state;
+    if (!is_full())
+        return;
+    struct par_report report;
+    struct start start = {.options = support_quality(26, 0)};
+    struct par_options options = small_blocks(4000, 2);
+    start.options.keep_hull = true;
+    assert_true(support_read("regress/wide_fans.poly", &start.pslg));
+    struct tri_mesh mesh = refine(&start, &options, &report);
+    print_message("  %d triangles, %lld searched in vain\n", (int)mesh.n_triangles,
+                  (long long)report.total.searched_in_vain);
+    assert_true(report.total.searched_in_vain < 20 * (int64_t)mesh.n_triangles);
+    par_report_free(&report);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&start.pslg);
+}
+
 static void test_nothing_is_deferred_with_the_margin(void **state)
 {
     (void)state;
@@ -1066,6 +1087,7 @@ int main(void)
         cmocka_unit_test(test_nothing_is_deferred_with_the_margin),
         cmocka_unit_test(test_schedules_are_told_apart),
         cmocka_unit_test(test_what_is_left_does_not_multiply),
+        cmocka_unit_test(test_fans_at_a_fence_are_searched_once),
         cmocka_unit_test(test_default_blocks_cost_no_triangles),
         cmocka_unit_test(test_a_size_test_runs_in_parallel_only_where_allowed),
         cmocka_unit_test(test_limits_and_gates_go_the_sequential_way),

@@ -963,6 +963,12 @@ FOUND = [
          "-q33: no angle below beside it; the triangle at the short side was taken for one in the sliver, and stayed", ()),
     Case("regress/bundle_levels.poly", None, "segments side by side, their ends nearer to each other than they are",
          "-a0.00065D: some thousand triangles; once each new point in the bundle asked for more, without end", ()),
+    Case("regress/near_path.poly", None, "a path to and fro through points that rounding keeps from lying on one line",
+         "-pc: one chain, in as many steps as vertices; once n * n", ()),
+    Case("regress/side_ulp_off.poly", None, "a segment along 200 vertices, its end an ulp off their line",
+         "-pc: the same", ()),
+    Case("regress/wide_fans.poly", None, "segments nearly on one line, two decimals, in a figure of long walls",
+         "-cq31 in blocks: about as many steps as triangles; each triangle of a fan at a fence searched all others", ()),
 ]
 
 

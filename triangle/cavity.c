@@ -77,8 +77,10 @@ static enum tri_search explore(struct tri_cavity *c, const struct tri_mesh *mesh
             double det = ra.l * right + edge.rend.l * left - rapex.l * edge.area2;
             if (!in_circle(mesh, p, corners, ra.l, edge.rend.l, rapex.l, det))
                 break;
-            if (c->fence && !tri_fence_holds(c->fence, xy[apex]))
+            if (c->fence && !tri_fence_holds(c->fence, xy[apex])) {
+                c->n_tri = n_tri;
                 return TRI_SEARCH_FENCED;
+            }
             if (n_tri == c->capacity && !grow(c))
                 return TRI_SEARCH_NO_MEMORY;
             assert(t->v[tri_next[e]] == edge.end && t->v[tri_prev[e]] == a);

@@ -14,6 +14,7 @@ struct tri_constrain_report {
     int32_t crossings; /* vertices made where segments cross */
     int32_t bent;      /* times a segment runs through a vertex within rounding of it, or of a crossing */
     int32_t skipped;   /* segments with an end outside the points, or two equal ends */
+    int64_t looked_at; /* triangles, in search of what segments meet */
 };
 
 /* Makes every segment of the PSLG (whose points are the mesh's first vertices) a chain of subsegments, whose vertices

@@ -16,6 +16,7 @@
 
 #include <assert.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "triangle/heap_sort.h"
 #include "triangle/predicates.h"
@@ -29,6 +30,7 @@ struct sharing {
     const struct tri_point *xy;
     const struct tri_piece *piece;
     int32_t n;
+    int32_t *by_mark;             /* [n] by the first marked along them, or NULL: they are in that order */
     int32_t *suspect, n_suspects; /* [n] */
     int32_t *stop, n_stops;       /* [2 n_suspects] vertices, cluster by cluster */
     struct reach *reach;          /* [n] */
@@ -251,6 +253,8 @@ static int32_t find_free(const struct sharing *s, int32_t k)
 
 static void take_marked(struct sharing *s, int32_t i)
 {
+    if (s->piece[i].course.marked == TRI_NONE)
+        return;
     for (int32_t k = s->reach[i].first; (k = find_free(s, k)) < s->reach[i].last; s->next[k] = k + 1)
         s->marked[k] = s->piece[i].course.marked;
 }
@@ -289,8 +293,7 @@ static bool paint(struct sharing *s)
         s->marked[k] = TRI_NONE;
     take_back(s);
     for (int32_t i = 0; i < s->n; i++)
-        if (s->piece[i].course.marked != TRI_NONE)
-            take_marked(s, i);
+        take_marked(s, s->by_mark ? s->by_mark[i] : i);
     find_odd(s);
     take_back(s);
     for (int32_t i = 0; i < s->n; i++)
@@ -300,6 +303,7 @@ static bool paint(struct sharing *s)
 
 static void free_sharing(struct sharing *s)
 {
+    free(s->by_mark);
     free(s->suspect);
     free(s->stop);
     free(s->reach);
@@ -309,17 +313,51 @@ static void free_sharing(struct sharing *s)
     free(s->result);
 }
 
+/* What has been painted takes the place of the pieces. */
+static void exchange(struct sharing *s, struct tri_piece **piece, int32_t *n)
+{
+    struct tri_piece *old = *piece;
+    *piece = s->result;
+    *n = s->n_results;
+    s->result = old;
+}
+
 bool tri_share_overlaps(const struct tri_mesh *mesh, struct tri_piece **piece, int32_t *n, tri_is_edge *is_edge,
                         void *context)
 {
     struct sharing s = {.xy = mesh->xy, .piece = *piece, .n = *n};
     bool room = *n < 2 || (list_suspects(&s, is_edge, context) && (s.n_suspects < 2 || cut_clusters(&s)));
-    if (room && s.n_stops > 0 && (room = paint(&s))) {
-        struct tri_piece *old = *piece;
-        *piece = s.result;
-        *n = s.n_results;
-        s.result = old;
+    if (room && s.n_stops > 0 && (room = paint(&s)))
+        exchange(&s, piece, n);
+    free_sharing(&s);
+    return room;
+}
+
+static bool is_marked_before(const void *context, int32_t a, int32_t b)
+{
+    const struct tri_piece *piece = context;
+    return piece[a].course.marked != piece[b].course.marked ? piece[a].course.marked < piece[b].course.marked : a < b;
+}
+
+bool tri_share_stops(const tri_vertex_id *stop, int32_t n_stops, int32_t (*reach)[2], struct tri_piece **piece,
+                     int32_t *n)
+{
+    struct sharing s = {.piece = *piece, .n = *n, .n_stops = n_stops};
+    s.stop = malloc((size_t)n_stops * sizeof *s.stop);
+    s.reach = malloc((size_t)*n * sizeof *s.reach);
+    s.by_mark = malloc((size_t)*n * sizeof *s.by_mark);
+    bool room = s.stop && s.reach && s.by_mark;
+    if (room)
+        memcpy(s.stop, stop, (size_t)n_stops * sizeof *s.stop);
+    for (int32_t i = 0; room && i < *n; i++) {
+        assert(0 <= reach[i][0] && reach[i][0] < reach[i][1] && reach[i][1] < n_stops);
+        s.reach[i] = (struct reach){reach[i][0], reach[i][1]};
+        s.by_mark[i] = i;
     }
+    if (room)
+        tri_heap_sort(s.by_mark, *n, is_marked_before, *piece);
+    if (room && (room = paint(&s)))
+        exchange(&s, piece, n);
     free_sharing(&s);
     return room;
 }

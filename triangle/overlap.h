@@ -36,4 +36,9 @@ typedef bool tri_is_edge(void *context, const struct tri_piece *piece);
 bool tri_share_overlaps(const struct tri_mesh *mesh, struct tri_piece **piece, int32_t *n, tri_is_edge *is_edge,
                         void *context);
 
+/* The same for (*piece)[*n] that overlap in whatever way: piece i runs from stop[reach[i][0]] to stop[reach[i][1]], the
+ * first before the second, through all stops between. O((*n + n_stops) log *n). */
+bool tri_share_stops(const tri_vertex_id *stop, int32_t n_stops, int32_t (*reach)[2], struct tri_piece **piece,
+                     int32_t *n);
+
 #endif

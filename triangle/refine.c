@@ -17,6 +17,14 @@
  * vertices that see it from nearby share circumdisks, so that each of n points there, and each triangle given up, may
  * cost n. (Between a wall 4e5 long and features of 1e-5: 50 triangles a point, 1,180 a search, for 4,000 points.)
  *
+ * FENCES. The walls beyond a fence stay coarse while its own side is refined, so that such fans of n triangles come to
+ * lie there; each asks for a point, searches all of them, is led to a wall, and finds that the cavity of its split lies
+ * beyond the fence. RULE: where such searches have gone through more than WIDE triangles, these are all deferred as
+ * they are (wall_off). THEOREM: then n triangles of a fan cost n together, where they cost n each; and what is deferred
+ * is as it was before, so all that is said of calls with fences holds. Proof: the first of them that is asked defers
+ * the others, which are not asked before they have changed; deferred triangles are found again by whoever comes later,
+ * with other fences or none.
+ *
  * Termination: for angles by the rules in small_angle.c; the points for sizes and for circles that come on top are
  * finitely many whatever the others do, see inside.c and disk.c. */
 #include "triangle/refine.h"
@@ -30,6 +38,7 @@
 #include "triangle/census.h"
 #include "triangle/criterion.h"
 #include "triangle/disk.h"
+#include "triangle/entry_set.h"
 #include "triangle/feature_size.h"
 #include "triangle/grow.h"
 #include "triangle/inside.h"
@@ -72,6 +81,9 @@ struct tri_refiner {
     int32_t next_listed, n_worklist;
     enum stage stage;
     enum tri_excuse excuse; /* of the last refusal */
+    struct tri_entry_set walled_off; /* triangles that are deferred as they are, see FENCES */
+    tri_triangle_id *searched; /* [n_searched] the cavity before a split was searched, if that is wide */
+    int32_t n_searched, searched_capacity;
     bool in_hand;     /* `hand` was being treated when there was no room */
     struct tri_entry hand;
     tri_sub_id *encroached; /* stack of subsegments to test for encroachment (conforming only) */
@@ -79,7 +91,7 @@ struct tri_refiner {
     uint32_t step_of_stop; /* see tri_stop_is_due */
 };
 
-enum { WORKLIST_CHUNK = 1 << 16 };
+enum { WORKLIST_CHUNK = 1 << 16, WIDE = 64 };
 
 /* Beyond this lies no point that the predicates can carry: the triangle's area has been rounded to nothing. */
 static const double FARTHEST = TRI_LARGEST_COORDINATE / 2;
@@ -272,10 +284,37 @@ static enum outcome defer(struct tri_refiner *r, tri_triangle_id triangle, int64
     return DEFERRED;
 }
 
-/* The fence does. */
+static bool wall_off(struct tri_refiner *r, const tri_triangle_id *triangle, int32_t n)
+{
+    for (int32_t i = 0; n > WIDE && i < n; i++) {
+        struct tri_entry entry = {triangle[i], r->mesh->tri[triangle[i]].state};
+        if (!tri_entry_set_add(&r->walled_off, entry))
+            return false;
+    }
+    return true;
+}
+
+/* The fence does, after a search. */
 static enum outcome defer_fenced(struct tri_refiner *r, tri_triangle_id triangle)
 {
+    if (!wall_off(r, r->cavity.tri, r->cavity.n_tri) || !wall_off(r, r->searched, r->n_searched))
+        return FAILED;
+    r->report->searched_in_vain += r->cavity.n_tri + r->n_searched;
     return defer(r, triangle, &r->report->fenced);
+}
+
+/* Keeps the triangles of a wide cavity while another is searched. */
+static bool keep_searched(struct tri_refiner *r)
+{
+    int32_t n = r->cavity.n_tri;
+    r->n_searched = 0;
+    if (!r->options->fence || n <= WIDE)
+        return true;
+    if (!tri_grow(&r->searched, &r->searched_capacity, n, sizeof *r->searched))
+        return false;
+    memcpy(r->searched, r->cavity.tri, (size_t)n * sizeof *r->searched);
+    r->n_searched = n;
+    return true;
 }
 
 /* Nothing has been changed; the same is tried again when there is more of the mesh. */
@@ -427,7 +466,7 @@ static enum outcome find_cavity(struct tri_refiner *r, tri_triangle_id triangle,
             return defer(r, triangle, &r->report->gated);
     }
     if (r->options->fence && !tri_fence_holds(r->options->fence, p)) /* then its cavity reaches beyond, too */
-        return defer_fenced(r, triangle);
+        return defer(r, triangle, &r->report->fenced);
     switch (tri_cavity_search(&r->cavity, r->mesh, p, triangle)) {
     case TRI_SEARCH_FOUND: return DONE;
     case TRI_SEARCH_FENCED: return defer_fenced(r, triangle);
@@ -452,7 +491,8 @@ static enum outcome propose(struct tri_refiner *r, tri_triangle_id triangle, con
         return insert_free(r, p, triangle, shape);
     if (tri_is_flat(r->mesh, shape))
         return refuse(r, TRI_EXCUSE_PRECISION);
-    outcome = split(r, s, triangle);
+    outcome = keep_searched(r) ? split(r, s, triangle) : FAILED;
+    r->n_searched = 0;
     return outcome == DONE ? AGAIN : outcome;
 }
 
@@ -533,6 +573,8 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
         if (badness == TRI_GOOD)
             return DONE;
+        if (tri_entry_set_holds(&r->walled_off, entry))
+            return defer(r, entry.t, &r->report->fenced);
         r->sized = badness == TRI_BAD_SIZE;
         if (badness == TRI_BAD_ANGLE && is_hopeless(r, entry.t, &shape)) {
             if (!tri_is_too_large(&r->criterion, t, &shape))
@@ -797,12 +839,15 @@ void tri_refiner_free(struct tri_refiner *r)
         return;
     tri_cavity_free(&r->cavity);
     tri_bad_queue_free(&r->queue);
+    tri_entry_set_free(&r->walled_off);
+    free(r->searched);
     free(r->encroached);
     free(r);
 }
 
 void tri_refiner_show(const struct tri_refiner *r, struct tri_pause *pause)
 {
+    assert(r->walled_off.n == 0 && !r->options->fence);
     memset(pause, 0, sizeof *pause);
     memcpy(&pause->report, r->report, sizeof pause->report);
     pause->bounds = r->criterion.bounds;

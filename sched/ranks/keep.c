@@ -9,7 +9,7 @@
 #include "sched/sweep/checkpoint.h"
 #include "triangle/clock.h"
 
-static const uint64_t STATE = UINT64_C(0x3174617473746972); /* a version as well */
+static const uint64_t STATE = UINT64_C(0x3274617473746972); /* a version as well */
 
 /* The state's file: this, then struct writer of each rank. */
 struct common {

@@ -1,0 +1,303 @@
+/* Pieces that are exactly on one line are shared by overlap.c. Where coordinates are rounded, n of them along n vertices
+ * would each be led through all that lie beside it.
+ *
+ * RULE. The longest piece that has not been looked at yet is a carrier. Its stops are the vertices within ALONG
+ * resolutions of its line, along it and for as many triangles again beyond its ends; where two are within APART of each
+ * other along the line, the first alone is one. The pieces from stop to stop run through all the stops between them.
+ * Where some of them overlap, they are cut there, and one of each elementary piece is left (tri_share_stops).
+ *
+ * THEOREM (distance). A piece is cut at vertices within 2 ALONG resolutions of its own line, those of its larger end.
+ * Proof: its ends are within ALONG of the carrier's line, and so is all of the piece; the stop is on the other side of
+ * that line by no more than ALONG. Of the vertices between two ends none has a larger coordinate than both.
+ *
+ * COST. A carrier costs what it crosses, as laying it does, and what it shares is not looked at again. So if n segments
+ * lie along a line as well as rounding lets them, the first carriers share all but a few, in O(n log n). Each piece is
+ * in the list of that end which has fewer, so that no vertex of many pieces is asked for all of them by each carrier.
+ */
+#include "triangle/bundle.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "triangle/crossing.h"
+#include "triangle/grow.h"
+#include "triangle/heap_sort.h"
+#include "triangle/predicates.h"
+
+/* In resolutions. */
+static const double ALONG = 1.25, APART = 2;
+
+struct bundles {
+    const struct tri_mesh *mesh;
+    struct tri_piece *piece; /* [n]; from == to: it has been shared */
+    int32_t n, n_vertices;
+    int32_t *first, *incident; /* pieces incident[first[v] .. first[v + 1] - 1] are listed at v */
+    struct tri_point a, b;     /* the carrier's ends */
+    tri_vertex_id *stop;       /* [n_vertices] the first n_stops, along the carrier */
+    int32_t *place;            /* [n_vertices] among the stops, or TRI_NONE */
+    int32_t n_stops;
+    int32_t *member;           /* [n] the pieces from stop to stop */
+    int32_t (*reach)[2];       /* [n] of each of them */
+    int32_t n_members;
+    struct tri_piece *result;
+    int32_t n_results, result_capacity;
+    int64_t looked_at;
+};
+
+/* --- pieces by vertex */
+
+static tri_vertex_id listed_at(const struct bundles *b, const int32_t *degree, int32_t i)
+{
+    tri_vertex_id from = b->piece[i].from, to = b->piece[i].to;
+    return degree[from] <= degree[to] ? from : to;
+}
+
+static void list_pieces(struct bundles *b, int32_t *degree)
+{
+    for (int32_t i = 0; i < b->n; i++) {
+        degree[b->piece[i].from]++;
+        degree[b->piece[i].to]++;
+    }
+    for (int32_t i = 0; i < b->n; i++)
+        b->first[listed_at(b, degree, i)]++;
+    for (tri_vertex_id v = 0; v < b->n_vertices; v++)
+        b->first[v + 1] += b->first[v];
+    for (int32_t i = b->n - 1; i >= 0; i--)
+        b->incident[--b->first[listed_at(b, degree, i)]] = i;
+}
+
+/* --- stops */
+
+static double along(const struct bundles *b, tri_vertex_id v)
+{
+    struct tri_point q = b->mesh->xy[v];
+    return (b->b.x - b->a.x) * (q.x - b->a.x) + (b->b.y - b->a.y) * (q.y - b->a.y);
+}
+
+static void try_stop(struct bundles *b, tri_vertex_id v)
+{
+    if (v >= b->n_vertices || b->place[v] != TRI_NONE)
+        return;
+    struct tri_point q = b->mesh->xy[v];
+    if (tri_line_distance(b->a, b->b, q) > ALONG * tri_resolution(q))
+        return;
+    b->place[v] = b->n_stops;
+    b->stop[b->n_stops++] = v;
+}
+
+/* From one end through triangle t to the other, and as far again. A vertex on the line counts as on its right. */
+static void walk(struct bundles *b, tri_triangle_id t, tri_vertex_id from, tri_vertex_id to)
+{
+    const struct tri_mesh *mesh = b->mesh;
+    const struct tri_point p = mesh->xy[from], q = mesh->xy[to];
+    const tri_vertex_id *v = mesh->tri[t].v;
+    int e = v[0] == from ? 0 : v[1] == from ? 1 : 2;
+    for (int k = 0; k < 3; k++)
+        try_stop(b, v[k]);
+    if (tri_orient2d(p, q, mesh->xy[v[tri_prev[e]]]) <= 0)
+        return; /* along the hull */
+    for (int64_t step = 0, end = INT64_MAX; step < end; step++) {
+        tri_halfedge code = tri_across(mesh, tri_code(t, e));
+        if (code == TRI_NONE)
+            return;
+        t = tri_of(code);
+        e = tri_edge(code);
+        tri_vertex_id o = mesh->tri[t].v[e];
+        b->looked_at++;
+        try_stop(b, o);
+        if (o == to)
+            end = 2 * step + 2;
+        e = tri_orient2d(p, q, mesh->xy[o]) > 0 ? tri_next[e] : tri_prev[e];
+    }
+}
+
+static bool is_before(const void *context, int32_t v, int32_t w)
+{
+    const struct bundles *b = context;
+    double at_v = along(b, v), at_w = along(b, w);
+    return at_v != at_w ? at_v < at_w : v < w;
+}
+
+/* In their order, each APART from the one before. */
+static void sort_stops(struct bundles *b)
+{
+    double x = b->b.x - b->a.x, y = b->b.y - b->a.y, length = sqrt(x * x + y * y);
+    int32_t kept = 0;
+    tri_heap_sort(b->stop, b->n_stops, is_before, b);
+    for (int32_t k = 0; k < b->n_stops; k++) {
+        tri_vertex_id v = b->stop[k];
+        double apart = APART * length * tri_resolution(b->mesh->xy[v]);
+        b->place[v] = TRI_NONE;
+        if (kept > 0 && along(b, v) - along(b, b->stop[kept - 1]) <= apart)
+            continue;
+        b->place[v] = kept;
+        b->stop[kept++] = v;
+    }
+    b->n_stops = kept;
+}
+
+static void forget_stops(struct bundles *b)
+{
+    for (int32_t k = 0; k < b->n_stops; k++)
+        b->place[b->stop[k]] = TRI_NONE;
+    b->n_stops = 0;
+}
+
+/* --- bundles */
+
+static bool is_lower(const void *context, int32_t i, int32_t k)
+{
+    (void)context;
+    return i < k;
+}
+
+/* The pieces from stop to stop, in their order; how many elementary pieces they cover, each as often as it is. */
+static int64_t find_members(struct bundles *b)
+{
+    int64_t sum = 0;
+    b->n_members = 0;
+    for (int32_t k = 0; k < b->n_stops; k++)
+        for (int32_t i = b->first[b->stop[k]]; i < b->first[b->stop[k] + 1]; i++) {
+            const struct tri_piece *piece = &b->piece[b->incident[i]];
+            if (piece->from != piece->to && b->place[piece->from] != TRI_NONE && b->place[piece->to] != TRI_NONE)
+                b->member[b->n_members++] = b->incident[i];
+        }
+    tri_heap_sort(b->member, b->n_members, is_lower, NULL);
+    for (int32_t m = 0; m < b->n_members; m++) {
+        int32_t p = b->place[b->piece[b->member[m]].from], q = b->place[b->piece[b->member[m]].to];
+        b->reach[m][0] = p < q ? p : q;
+        b->reach[m][1] = p < q ? q : p;
+        sum += b->reach[m][1] - b->reach[m][0];
+    }
+    return sum;
+}
+
+/* What the members are shared out to takes their place. */
+static bool keep(struct bundles *b, const struct tri_piece *shared, int32_t n)
+{
+    if (!tri_grow(&b->result, &b->result_capacity, b->n_results + n, sizeof *b->result))
+        return false;
+    memcpy(b->result + b->n_results, shared, (size_t)n * sizeof *shared);
+    b->n_results += n;
+    for (int32_t m = 0; m < b->n_members; m++)
+        b->piece[b->member[m]].to = b->piece[b->member[m]].from;
+    return true;
+}
+
+static bool share(struct bundles *b)
+{
+    int64_t sum = find_members(b);
+    int32_t n = b->n_members;
+    if (n < 2)
+        return true;
+    struct tri_piece *shared = malloc((size_t)n * sizeof *shared);
+    for (int32_t m = 0; shared && m < n; m++)
+        shared[m] = b->piece[b->member[m]];
+    bool room = shared && tri_share_stops(b->stop, b->n_stops, b->reach, &shared, &n);
+    if (room && n < sum) /* else they do not overlap */
+        room = keep(b, shared, n);
+    free(shared);
+    return room;
+}
+
+/* --- carriers */
+
+static bool is_longer(const void *context, int32_t i, int32_t k)
+{
+    const struct bundles *b = context;
+    const struct tri_point *xy = b->mesh->xy;
+    double li = tri_distance2(xy[b->piece[i].from], xy[b->piece[i].to]);
+    double lk = tri_distance2(xy[b->piece[k].from], xy[b->piece[k].to]);
+    return li != lk ? li > lk : i < k;
+}
+
+/* Is it worth while to walk along the piece? */
+static bool leave(const struct bundles *b, tri_exit *exit, void *context, tri_triangle_id *t, tri_vertex_id *from,
+                  tri_vertex_id *to)
+{
+    *t = exit(context, from, to);
+    const tri_vertex_id *v = *t == TRI_NONE ? NULL : b->mesh->tri[*t].v;
+    return v && v[0] != *to && v[1] != *to && v[2] != *to;
+}
+
+static bool carry(struct bundles *b, int32_t carrier, tri_exit *exit, void *context)
+{
+    tri_vertex_id from = b->piece[carrier].from, to = b->piece[carrier].to;
+    tri_triangle_id t;
+    if (from == to || !leave(b, exit, context, &t, &from, &to))
+        return true;
+    b->a = b->mesh->xy[from];
+    b->b = b->mesh->xy[to];
+    walk(b, t, from, to);
+    tri_vertex_id back_from = to, back_to = from;
+    if (leave(b, exit, context, &t, &back_from, &back_to))
+        walk(b, t, back_from, back_to);
+    sort_stops(b);
+    bool room = share(b);
+    forget_stops(b);
+    return room;
+}
+
+static bool carry_all(struct bundles *b, tri_exit *exit, void *context)
+{
+    int32_t *order = malloc((size_t)b->n * sizeof *order);
+    bool room = order;
+    for (int32_t i = 0; room && i < b->n; i++)
+        order[i] = i;
+    if (room)
+        tri_heap_sort(order, b->n, is_longer, b);
+    for (int32_t i = 0; room && i < b->n; i++)
+        room = carry(b, order[i], exit, context);
+    free(order);
+    return room;
+}
+
+static bool begin(struct bundles *b)
+{
+    size_t vertices = (size_t)b->n_vertices, n = (size_t)b->n;
+    b->first = calloc(vertices + 1, sizeof *b->first);
+    b->incident = malloc(n * sizeof *b->incident);
+    b->stop = malloc(vertices * sizeof *b->stop);
+    b->place = calloc(vertices, sizeof *b->place);
+    b->member = malloc(n * sizeof *b->member);
+    b->reach = malloc(n * sizeof *b->reach);
+    if (!b->first || !b->incident || !b->stop || !b->place || !b->member || !b->reach)
+        return false;
+    list_pieces(b, b->place); /* which holds degrees until here */
+    for (size_t v = 0; v < vertices; v++)
+        b->place[v] = TRI_NONE;
+    return true;
+}
+
+/* The pieces that no bundle has taken follow what has come of those. */
+static bool add_others(struct bundles *b)
+{
+    if (!tri_grow(&b->result, &b->result_capacity, b->n_results + b->n, sizeof *b->result))
+        return false;
+    for (int32_t i = 0; i < b->n; i++)
+        if (b->piece[i].from != b->piece[i].to)
+            b->result[b->n_results++] = b->piece[i];
+    return true;
+}
+
+bool tri_share_bundles(const struct tri_mesh *mesh, int32_t n_vertices, struct tri_piece **piece, int32_t *n,
+                       tri_exit *exit, void *context, int64_t *looked_at)
+{
+    struct bundles b = {.mesh = mesh, .piece = *piece, .n = *n, .n_vertices = n_vertices};
+    bool room = *n < 2 || (begin(&b) && carry_all(&b, exit, context) && add_others(&b));
+    if (room && *n > 1) {
+        *piece = b.result;
+        *n = b.n_results;
+        b.result = b.piece;
+    }
+    *looked_at += b.looked_at;
+    free(b.first);
+    free(b.incident);
+    free(b.stop);
+    free(b.place);
+    free(b.member);
+    free(b.reach);
+    free(b.result);
+    return room;
+}
