@@ -599,8 +599,8 @@ static void test_what_is_left_does_not_multiply(void **state)
     tri_pslg_free(&start.pslg);
 }
 
-/* Long walls beyond fences, and thousands of triangles on this side of them whose points all lead to the same wall: each
- * searched all the others in vain, a thousand times as many triangles as there are. */
+/* Long walls beyond fences, and thousands of triangles on this side whose points all lead to the same wall: each
+ * searched all the others in vain, hundreds of times as many triangles as there are. */
 static void test_fans_at_a_fence_are_searched_once(void **state)
 {
     (void)state;

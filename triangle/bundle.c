@@ -1,5 +1,5 @@
-/* Pieces that are exactly on one line are shared by overlap.c. Where coordinates are rounded, n of them along n vertices
- * would each be led through all that lie beside it.
+/* Pieces that are exactly on one line are shared by overlap.c. Where coordinates are rounded, each of n along n
+ * vertices would be led through all that lie beside it.
  *
  * RULE. The longest piece that has not been looked at yet is a carrier. Its stops are the vertices within ALONG
  * resolutions of its line, along it and for as many triangles again beyond its ends; where two are within APART of each
@@ -12,8 +12,7 @@
  *
  * COST. A carrier costs what it crosses, as laying it does, and what it shares is not looked at again. So if n segments
  * lie along a line as well as rounding lets them, the first carriers share all but a few, in O(n log n). Each piece is
- * in the list of that end which has fewer, so that no vertex of many pieces is asked for all of them by each carrier.
- */
+ * listed at that end which has fewer, so that no vertex of many pieces is asked for all of them by each carrier. */
 #include "triangle/bundle.h"
 
 #include <assert.h>
@@ -213,25 +212,25 @@ static bool is_longer(const void *context, int32_t i, int32_t k)
 }
 
 /* Is it worth while to walk along the piece? */
-static bool leave(const struct bundles *b, tri_exit *exit, void *context, tri_triangle_id *t, tri_vertex_id *from,
+static bool leave(const struct bundles *b, tri_exit *find_exit, void *context, tri_triangle_id *t, tri_vertex_id *from,
                   tri_vertex_id *to)
 {
-    *t = exit(context, from, to);
+    *t = find_exit(context, from, to);
     const tri_vertex_id *v = *t == TRI_NONE ? NULL : b->mesh->tri[*t].v;
     return v && v[0] != *to && v[1] != *to && v[2] != *to;
 }
 
-static bool carry(struct bundles *b, int32_t carrier, tri_exit *exit, void *context)
+static bool carry(struct bundles *b, int32_t carrier, tri_exit *find_exit, void *context)
 {
     tri_vertex_id from = b->piece[carrier].from, to = b->piece[carrier].to;
     tri_triangle_id t;
-    if (from == to || !leave(b, exit, context, &t, &from, &to))
+    if (from == to || !leave(b, find_exit, context, &t, &from, &to))
         return true;
     b->a = b->mesh->xy[from];
     b->b = b->mesh->xy[to];
     walk(b, t, from, to);
     tri_vertex_id back_from = to, back_to = from;
-    if (leave(b, exit, context, &t, &back_from, &back_to))
+    if (leave(b, find_exit, context, &t, &back_from, &back_to))
         walk(b, t, back_from, back_to);
     sort_stops(b);
     bool room = share(b);
@@ -239,7 +238,7 @@ static bool carry(struct bundles *b, int32_t carrier, tri_exit *exit, void *cont
     return room;
 }
 
-static bool carry_all(struct bundles *b, tri_exit *exit, void *context)
+static bool carry_all(struct bundles *b, tri_exit *find_exit, void *context)
 {
     int32_t *order = malloc((size_t)b->n * sizeof *order);
     bool room = order;
@@ -248,7 +247,7 @@ static bool carry_all(struct bundles *b, tri_exit *exit, void *context)
     if (room)
         tri_heap_sort(order, b->n, is_longer, b);
     for (int32_t i = 0; room && i < b->n; i++)
-        room = carry(b, order[i], exit, context);
+        room = carry(b, order[i], find_exit, context);
     free(order);
     return room;
 }
@@ -282,10 +281,10 @@ static bool add_others(struct bundles *b)
 }
 
 bool tri_share_bundles(const struct tri_mesh *mesh, int32_t n_vertices, struct tri_piece **piece, int32_t *n,
-                       tri_exit *exit, void *context, int64_t *looked_at)
+                       tri_exit *find_exit, void *context, int64_t *looked_at)
 {
     struct bundles b = {.mesh = mesh, .piece = *piece, .n = *n, .n_vertices = n_vertices};
-    bool room = *n < 2 || (begin(&b) && carry_all(&b, exit, context) && add_others(&b));
+    bool room = *n < 2 || (begin(&b) && carry_all(&b, find_exit, context) && add_others(&b));
     if (room && *n > 1) {
         *piece = b.result;
         *n = b.n_results;

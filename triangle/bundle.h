@@ -12,6 +12,6 @@ typedef tri_triangle_id tri_exit(void *context, tri_vertex_id *from, tri_vertex_
  * courses need not increase afterwards. *looked_at grows by the triangles walked through. false: out of memory; then
  * (*piece)[*n] has lost some. */
 bool tri_share_bundles(const struct tri_mesh *mesh, int32_t n_vertices, struct tri_piece **piece, int32_t *n,
-                       tri_exit *exit, void *context, int64_t *looked_at);
+                       tri_exit *find_exit, void *context, int64_t *looked_at);
 
 #endif
