@@ -182,6 +182,7 @@ set(PTRIANGLE_JUDGED_SOURCES # reading of meshes that are there, for the judge a
     drivers/judged_text.c
     drivers/judged_h5.c
     drivers/judged_files.c
+    drivers/judged_words.c
     drivers/one_line.c)
 set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed
 set(PTRIANGLE_PETSC_EXAMPLES poisson) # likewise, where PETSc is found
