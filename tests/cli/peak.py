@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Runs a program and says how much memory it had at most: peak.py BYTES COMMAND...
 
-Exit code: that of the program; 99: it took more than 1.05 times the bytes and 2 MB, for what libraries and the stacks of
-threads take unasked, which is said on standard error."""
+Exit code: that of the program; 99: it took more than 1.05 times the bytes and 2 MB, for what libraries and the stacks
+of threads take unasked, which is said on standard error."""
 import os
 import sys
 
