@@ -130,6 +130,9 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/sweep/tiles.c
     sched/sweep/stream.c
     sched/sweep/queue.c
+    sched/sweep/deal.c
+    sched/sweep/sort_triangles.c
+    sched/sweep/move_triangles.c
     sched/sweep/numbering.c
     sched/sweep/park.c
     sched/sweep/spool.c
