@@ -4,8 +4,8 @@
 
 #include "sched/ranks/carrier.h"
 
-/* Collective. *carrier: the ranks of a copy of the MPI_Comm at `comm`; par_mpi_carrier_free frees both. All ranks return
- * the same status: TRI_NO_MEMORY, if one of them has none. */
+/* Collective. *carrier: the ranks of a copy of the MPI_Comm at `comm`; par_mpi_carrier_free frees both. All ranks
+ * return the same status: TRI_NO_MEMORY, if one of them has none. */
 enum tri_status par_mpi_carrier_new(struct par_carrier **carrier, const void *comm, struct tri_error *error);
 
 /* Collective, after the same exchanges on all ranks, whatever came of them. */
