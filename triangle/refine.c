@@ -678,7 +678,7 @@ static bool refine_worklist(struct tri_refiner *r)
     }
     if (!work_off(r))
         return false;
-    while (r->next_listed < r->n_worklist)
+    while (tri_has_sizes(r->options) && r->next_listed < r->n_worklist)
         if (!queue_bad(r, listed(r, r->next_listed++), true) || !work_off(r))
             return false;
     return true;
