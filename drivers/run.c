@@ -13,6 +13,7 @@
 #include "drivers/interrupt.h"
 #include "drivers/mesh_files.h"
 #include "drivers/plan.h"
+#include "drivers/resources.h"
 #include "drivers/self_check.h"
 #include "drivers/summary.h"
 #include "triangle/census.h"
@@ -559,6 +560,7 @@ static enum tri_status run_file(struct runner *r)
 {
     const struct run_limits *limits = &r->run.hooks->limits;
     r->begin = r->mark = tri_seconds();
+    resources_save_address_space();
     if (!interrupt_start(r->run.hooks->program, limits->seconds, limits->write_partial || limits->checkpoint))
         return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "the system has no timer left");
     enum tri_status status = run_stages(r);
