@@ -462,13 +462,14 @@ static void cut_suffix(char *base)
 static int parse_arguments(int argc, char **argv, struct settings *s)
 {
     int option;
-    while ((option = getopt_long(argc, argv, "o:c:s:w:m:e:t:b:", long_options, NULL)) != -1) {
+    while ((option = getopt_long(argc, argv, ":o:c:s:w:m:e:t:b:", long_options, NULL)) != -1) {
         if (option == HELP || option == VERSION) {
             fputs(option == HELP ? usage : PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", stdout);
             fputs(option == HELP ? help : "", stdout);
             return -1;
         }
-        if (option == '?') {
+        if (option == '?' || option == ':') {
+            one_line_bad_option(PTRIANGLE_NAME, option, argv);
             fputs(usage, stderr);
             return MISUSE;
         }

@@ -264,13 +264,14 @@ static bool apply(struct settings *s, int option)
 static int parse_arguments(int argc, char **argv, struct settings *s)
 {
     int option;
-    while ((option = getopt_long(argc, argv, "p:q:b:a:Dcjr", long_options, NULL)) != -1) {
+    while ((option = getopt_long(argc, argv, ":p:q:b:a:Dcjr", long_options, NULL)) != -1) {
         if (option == HELP || option == VERSION) {
             fputs(option == HELP ? usage : PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", stdout);
             fputs(option == HELP ? help : "", stdout);
             return -1;
         }
-        if (option == '?') {
+        if (option == '?' || option == ':') {
+            one_line_bad_option(PTRIANGLE_NAME, option, argv);
             fputs(usage, stderr);
             return TROUBLE;
         }
