@@ -71,7 +71,7 @@ static void test_fill(void **state)
     assert_int_equal(par_worklist_fill(&worklist, &mesh, &quality, false, &support_backwards, &radius, NULL), TRI_OK);
     assert_holds_all_bad(&worklist, &mesh, &quality, radius);
     for (int32_t t = 0; t < mesh.n_triangles; t++)
-        assert_int_equal(mesh.tri[t].state, 0);
+        assert_int_equal(mesh.tri[t].life, 0);
     free(worklist.item);
     tri_mesh_free(&mesh);
 }

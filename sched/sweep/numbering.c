@@ -30,7 +30,7 @@ static int32_t find_tile(struct tile_finder *f, const struct par_partition *p, s
     int32_t block = par_locate(&f->locator, p, 0, q);
     if (block != f->block) {
         f->block = block;
-        f->tile = block / p->n_rows / 2 * (p->n_rows / 2) + block % p->n_rows / 2;
+        f->tile = par_tile_of_block(p, block);
     }
     assert(tri_fence_holds(&f->locator.fence, q));
     return f->tile;
@@ -219,7 +219,7 @@ enum tri_status par_number(struct tri_mesh *mesh, const struct par_partition *pa
 {
     assert(mesh->incidence.n_vertices <= n_kept && n_kept <= mesh->n_vertices);
     struct par_numbering n = {.mesh = mesh, .partition = partition, .executor = executor, .n_kept = n_kept,
-                          .n_tiles = partition->n_columns / 2 * (partition->n_rows / 2)};
+                          .n_tiles = par_tile_columns(partition) * par_tile_rows(partition)};
     enum tri_status status = tri_stop_is_asked(mesh->stop) ? tri_fail_stopped(error) : allocate(&n, error);
     if (!status)
         renumber(&n);

@@ -59,15 +59,7 @@ static inline int32_t tile_of_number(const struct par_numbering *n, int32_t numb
 {
     if (number < n->n_kept)
         return n->kept_tile[number];
-    int32_t low = 0, high = n->n_tiles, place = number - n->n_kept; /* start[low] <= place < start[high] */
-    while (high - low > 1) {
-        int32_t middle = low + (high - low) / 2;
-        if (n->vertices.start[middle] <= place)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
+    return par_holder_of(n->vertices.start, n->n_tiles, number - n->n_kept);
 }
 
 /* A half-edge where all triangles have their places. */
