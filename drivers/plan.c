@@ -1,6 +1,6 @@
 /* RULE. What is sure refuses, what is likely warns: areas ask for so many triangles beyond doubt, angles for about so
- * many. A bound that somebody has set, --memory or a limit of the process, refuses what is likely, too. A mesh that fits
- * stays in memory, which is quicker. */
+ * many. A bound that somebody has set, --memory or a limit of the process, refuses what is likely, too. A mesh that
+ * fits stays in memory, which is quicker. */
 #define _DEFAULT_SOURCE /* access */
 
 #include "drivers/plan.h"

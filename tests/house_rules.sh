@@ -71,7 +71,7 @@ tested_by() {
     sched/triangulate.c) echo par_triangulate ;;
     sched/sweep/checkpoint.c | sched/sweep/spool.c) echo checkpoint ;;
     sched/sweep/deal.c | sched/sweep/sort_triangles.c | sched/sweep/move_triangles.c) echo numbering ;;
-    sched/sweep/numbering.c | sched/sweep/pipeline.c | sched/sweep/queue.c) basename "$1" .c ;;
+    sched/sweep/finds.c | sched/sweep/numbering.c | sched/sweep/pipeline.c | sched/sweep/queue.c) basename "$1" .c ;;
     sched/threads.c | sched/sweep/*) echo schedule ;;
     sched/ranks/*) echo ranks ;;
     *) basename "${1%.*}" ;;

@@ -21,18 +21,24 @@ void par_deal_free(struct par_deal *deal)
     *deal = (struct par_deal){0};
 }
 
-int32_t par_deal_add_up(struct par_deal *deal)
+int32_t par_add_up_counts(int32_t *at, size_t shares, int32_t n_tiles, int32_t *start)
 {
     int32_t sum = 0;
-    for (int32_t tile = 0; tile < deal->n_tiles; tile++) {
-        deal->start[tile] = sum;
-        for (size_t share = 0; share < deal->shares; share++) {
-            int32_t *at = par_deal_at(deal, share) + tile, count = *at;
-            *at = sum;
+    for (int32_t tile = 0; tile < n_tiles; tile++) {
+        start[tile] = sum;
+        for (size_t share = 0; share < shares; share++) {
+            int32_t *here = &at[share * (size_t)n_tiles + (size_t)tile], count = *here;
+            *here = sum;
             sum += count;
         }
     }
-    deal->start[deal->n_tiles] = sum;
+    start[n_tiles] = sum;
+    return sum;
+}
+
+int32_t par_deal_add_up(struct par_deal *deal)
+{
+    int32_t sum = par_add_up_counts(deal->at, deal->shares, deal->n_tiles, deal->start);
     assert(sum <= deal->n);
     return sum;
 }

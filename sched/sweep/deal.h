@@ -30,7 +30,11 @@ static inline int32_t *par_deal_at(const struct par_deal *deal, size_t share)
     return deal->at + share * (size_t)deal->n_tiles;
 }
 
-/* Counts become places: tile by tile, in each share by share. Returns how many things tiles get. */
+/* at[shares][n_tiles], counts, become places: tile by tile, in each share by share; start[n_tiles + 1], where each tile
+ * begins. Returns the sum. */
+int32_t par_add_up_counts(int32_t *at, size_t shares, int32_t n_tiles, int32_t *start);
+
+/* The same with the counts of a deal: how many things tiles get. */
 int32_t par_deal_add_up(struct par_deal *deal);
 
 /* Calls work once for each tile, on any threads; room serves one call at a time, and holds two items for each of the
