@@ -1,9 +1,6 @@
 /* Control characters are escaped when the text is complete. */
 #include "drivers/one_line.h"
 
-#include <getopt.h>
-#include <limits.h>
-#include <stdbool.h>
 #include <string.h>
 
 enum { LENGTH = 1 << 14 };
@@ -45,13 +42,4 @@ void one_line_complain(const char *program, const char *format, va_list argument
     fprintf(stderr, "%s: ", program);
     one_line_put(stderr, text);
     fputc('\n', stderr);
-}
-
-void one_line_bad_option(const char *program, int option, char **argv)
-{
-    const bool short_one = optopt > 0 && optopt <= CHAR_MAX;
-    const char *fault = optopt > CHAR_MAX ? "takes no value" : "is not an option, or short for several";
-    fprintf(stderr, "%s: ", program);
-    one_line_put(stderr, short_one ? (char[]){'-', (char)optopt, 0} : argv[optind - 1]);
-    fprintf(stderr, " %s\n", option == ':' ? "needs a value" : fault);
 }

@@ -15,7 +15,4 @@ void one_line_print(FILE *stream, const char *format, va_list arguments);
 /* "program: ", the text, which is one line, and its end on standard error; cut likewise. */
 void one_line_complain(const char *program, const char *format, va_list arguments);
 
-/* The same of what getopt_long has returned '?' or ':' for, whose own messages print words as they are. */
-void one_line_bad_option(const char *program, int option, char **argv);
-
 #endif
