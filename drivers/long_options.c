@@ -14,7 +14,7 @@ const char long_options_help[] =
     "                     all cores. The mesh is the same for any number\n"
     "  --max-area X       as -aX: no triangle larger than X\n"
     "  --min-angle X      as -qX: no angle below X degrees\n"
-    "  --holes auto       with -p: segments tell what is inside, without hole points: what lies behind an even\n"
+    "  --holes auto       with -p: segments tell what is inside, not hole points: what lies behind an even\n"
     "                     number of them is removed. Rings may lie in rings\n"
     "  --holes points     hole points tell (the default)\n"
     "  --output BASE      results are called BASE.node, BASE.ele, BASE.poly and so on\n"

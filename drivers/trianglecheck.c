@@ -1,7 +1,6 @@
 /* trianglecheck: judges a mesh from its files, whoever made it. All judgement is triangle/check/check.h's; here are
  * arguments, files and lines of text. Exit code 0: no fault, 1: faults, 2: wrong usage or unreadable files. */
 #include <errno.h>
-#include <getopt.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -9,6 +8,7 @@
 #include <string.h>
 
 #include "drivers/judged_files.h"
+#include "drivers/judged_words.h"
 #include "drivers/one_line.h"
 #include "drivers/resources.h"
 #include "drivers/verdict.h"
@@ -234,8 +234,9 @@ static bool apply_flag(struct settings *s, int option)
 }
 
 /* Applies one option; false: not an option, or no value for it. */
-static bool apply(struct settings *s, int option)
+static bool apply(void *settings, int option)
 {
+    struct settings *s = settings;
     switch (option) {
     case 'p':
         s->input = optarg;
@@ -263,26 +264,17 @@ static bool apply(struct settings *s, int option)
 /* 0: go on; < 0: done, with success; > 0: exit code. */
 static int parse_arguments(int argc, char **argv, struct settings *s)
 {
-    int option;
-    while ((option = getopt_long(argc, argv, "p:q:b:a:Dcjr", long_options, NULL)) != -1) {
-        if (option == HELP || option == VERSION) {
-            fputs(option == HELP ? usage : PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", stdout);
-            fputs(option == HELP ? help : "", stdout);
-            return -1;
-        }
-        if (option == '?') {
-            fputs(usage, stderr);
-            return TROUBLE;
-        }
-        if (!apply(s, option))
-            return fail("not a value for this option: %s", optarg);
+    static const struct judged_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,
+                                              ":p:q:b:a:Dcjr", long_options, VERSION, HELP, apply};
+    char *mesh = NULL;
+    switch (judged_words_take(&words, argc, argv, s, &mesh)) {
+    case WORDS_ANSWERED: return -1;
+    case WORDS_MISUSED: return TROUBLE;
+    case WORDS_BAD_VALUE: return fail("not a value for this option: %s", optarg);
+    case WORDS_TAKEN: break;
     }
-    if (optind + 1 != argc) {
-        fputs(usage, stderr);
-        return TROUBLE;
-    }
-    (void)(judged_cut_suffix(argv[optind], ".node") || judged_cut_suffix(argv[optind], ".ele"));
-    s->base = argv[optind];
+    (void)(judged_cut_suffix(mesh, ".node") || judged_cut_suffix(mesh, ".ele"));
+    s->base = mesh;
     return 0;
 }
 

@@ -113,7 +113,7 @@ static void take_batch(struct tri_bad_queue *queue, const struct tri_triangle *t
     for (uint32_t i = 0; i < n; i++) {
         struct tri_entry entry = queue->window[queue->head++ & MASK];
         queue->batch[kept] = entry;
-        kept += tri[entry.t].state == entry.state;
+        kept += tri[entry.t].life == entry.life;
     }
     queue->next = 0;
     queue->n_batch = kept;
