@@ -588,8 +588,8 @@ static bool split_encroached(struct tri_refiner *r)
 /* In the first pass only triangles with short edges are taken, see refine_worklist. */
 static bool next_entry(struct tri_refiner *r)
 {
-    return r->step == FIRST_PASS ? tri_bad_queue_pop_angle(&r->queue, r->limit, &r->hand)
-                                 : tri_bad_queue_pop(&r->queue, r->mesh->tri, &r->hand);
+    return r->step == FIRST_PASS ? tri_bad_queue_pop_angle(&r->queue, r->limit, r->mesh, &r->hand)
+                                 : tri_bad_queue_pop(&r->queue, r->mesh, &r->hand);
 }
 
 static bool work_off(struct tri_refiner *r)
