@@ -68,6 +68,7 @@ static inline tri_vertex_id restored_name(const struct tri_mesh *mesh, tri_verte
     return is_callers(mesh, v) ? name : v;
 }
 
+/* One question for three corners: where every third vertex is the caller's nobody can guess the answers. */
 static void restore_corners(void *context, size_t share)
 {
     const struct tri_mesh *mesh = context;
@@ -75,7 +76,7 @@ static void restore_corners(void *context, size_t share)
     for (tri_triangle_id t = range.first; t < range.last; t++) {
         tri_vertex_id *v = mesh->tri[t].v;
         if (!is_callers(mesh, v[0]) & !is_callers(mesh, v[1]) & !is_callers(mesh, v[2]))
-            continue; /* one question for three: where every third vertex is the caller's nobody can guess the answers */
+            continue;
         for (int k = 0; k < 3; k++)
             v[k] = restored_name(mesh, v[k]);
     }
