@@ -6,10 +6,11 @@
 #include <stdbool.h>
 
 struct judged_words {
+    const char *program;                   /* its name, for errors */
     const char *version;                   /* a line */
     const char *usage, *help;              /* lines; what --help prints below usage */
     const char *letters;                   /* options of one letter, and .. */
-    const struct option *options;          /* .. of a word: both as getopt_long takes them */
+    const struct option *options;          /* .. of a word: both as getopt_long takes them; letters begins with ':' */
     int version_option, help_option;
     bool (*apply)(void *settings, int option); /* with optarg; false: that is no value for it */
 };
@@ -17,7 +18,7 @@ struct judged_words {
 enum judged_words_end {
     WORDS_TAKEN,
     WORDS_ANSWERED,  /* help or version, on standard output */
-    WORDS_MISUSED,   /* and usage has been printed on standard error */
+    WORDS_MISUSED,   /* and what is wrong, and usage, has been printed on standard error */
     WORDS_BAD_VALUE  /* optarg; nothing has been printed */
 };
 

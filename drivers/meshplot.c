@@ -456,8 +456,8 @@ static bool apply(void *settings, int option)
 /* 0: go on; < 0: done, with success; > 0: exit code. */
 static int parse_arguments(int argc, char **argv, struct settings *s)
 {
-    static const struct judged_words words = {PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,
-                                              "o:c:s:w:m:e:t:b:", long_options, VERSION, HELP, apply};
+    static const struct judged_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,
+                                              ":o:c:s:w:m:e:t:b:", long_options, VERSION, HELP, apply};
     char *mesh = NULL;
     switch (judged_words_take(&words, argc, argv, s, &mesh)) {
     case WORDS_ANSWERED: return -1;

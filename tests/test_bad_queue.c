@@ -5,6 +5,9 @@
 /* Triangle t is in state 3 t, unless a test changes that. */
 enum { SLOTS = 100000 };
 static struct tri_triangle triangles[SLOTS];
+static struct tri_point corner;
+static double feature;
+static const struct tri_mesh mesh = {.tri = triangles, .xy = &corner, .feature = &feature};
 
 static int set_up(void **state)
 {
@@ -27,7 +30,7 @@ static void push_size(struct tri_bad_queue *queue, int32_t t)
 static int32_t pop(struct tri_bad_queue *queue)
 {
     struct tri_entry entry;
-    if (!tri_bad_queue_pop(queue, triangles, &entry))
+    if (!tri_bad_queue_pop(queue, &mesh, &entry))
         return TRI_NONE;
     assert_int_equal(entry.life, (uint32_t)entry.t * 3);
     return entry.t;

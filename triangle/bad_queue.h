@@ -71,10 +71,12 @@ static inline bool tri_bad_queue_push_size(struct tri_bad_queue *queue, struct t
  * O(buckets). */
 int tri_bad_queue_median(const struct tri_bad_queue *queue);
 
-/* Takes the next entry from the buckets below `limit`. False where none waits there. */
-bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, struct tri_entry *entry);
+/* Takes the next entry from the buckets below `limit`. False where none waits there. mesh: what entries speak of, of
+ * which that is fetched ahead which the entry after this one will need. */
+bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, const struct tri_mesh *mesh,
+                             struct tri_entry *entry);
 
-/* Takes the next entry: bad angles first. False where nothing waits. tri: what the entries speak of. */
-bool tri_bad_queue_pop(struct tri_bad_queue *queue, const struct tri_triangle *tri, struct tri_entry *entry);
+/* Takes the next entry: bad angles first. False where nothing waits. */
+bool tri_bad_queue_pop(struct tri_bad_queue *queue, const struct tri_mesh *mesh, struct tri_entry *entry);
 
 #endif

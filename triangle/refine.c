@@ -588,8 +588,8 @@ static bool split_encroached(struct tri_refiner *r)
 /* In the first pass only triangles with short edges are taken, see refine_worklist. */
 static bool next_entry(struct tri_refiner *r)
 {
-    return r->step == FIRST_PASS ? tri_bad_queue_pop_angle(&r->queue, r->limit, &r->hand)
-                                 : tri_bad_queue_pop(&r->queue, r->mesh->tri, &r->hand);
+    return r->step == FIRST_PASS ? tri_bad_queue_pop_angle(&r->queue, r->limit, r->mesh, &r->hand)
+                                 : tri_bad_queue_pop(&r->queue, r->mesh, &r->hand);
 }
 
 static bool work_off(struct tri_refiner *r)
@@ -678,7 +678,7 @@ static bool refine_worklist(struct tri_refiner *r)
     }
     if (!work_off(r))
         return false;
-    while (r->next_listed < r->n_worklist)
+    while (tri_has_sizes(r->options) && r->next_listed < r->n_worklist)
         if (!queue_bad(r, listed(r, r->next_listed++), true) || !work_off(r))
             return false;
     return true;
