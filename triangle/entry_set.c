@@ -56,7 +56,7 @@ bool tri_entry_set_holds(const struct tri_entry_set *set, struct tri_entry entry
     if (set->n == 0)
         return false;
     const struct tri_entry *slot = find(set, entry.t);
-    return slot->t == entry.t && slot->state == entry.state;
+    return slot->t == entry.t && slot->life == entry.life;
 }
 
 void tri_entry_set_free(struct tri_entry_set *set)
