@@ -117,6 +117,18 @@ def overlapping_path(n):
     return figure, "pc"
 
 
+def rounded_path(n):
+    """The same beside the line, as near to it as rounding lets points be."""
+    figure, places = Figure(), list(range(n))
+    random.Random(1).shuffle(places)
+    ids = [figure.point(x * math.cos(0.3), x * math.sin(0.3)) for x in places]
+    for a, b in zip(ids, ids[1:]):
+        figure.segment(a, b)
+    figure.point(0, n)
+    figure.point(n, 0)
+    return figure, "pc"
+
+
 def long_crossing(n):
     """One segment across the triangles of n random points in a long strip."""
     figure, source = Figure(), random.Random(1)
@@ -151,5 +163,5 @@ def slits(n):
 
 
 TRIANGULATION = (hub, two_hubs, holes, circle_diameters, facing_curves, on_a_segment, overlaps, overlapping_path,
-                 long_crossing)
+                 rounded_path, long_crossing)
 DEARER = (circle_diameter_quality, needles, slits)
