@@ -970,7 +970,8 @@ FOUND = [
     Case("regress/side_ulp_off.poly", None, "a segment along 200 vertices, its end an ulp off their line",
          "-pc: the same", ()),
     Case("regress/wide_fans.poly", None, "segments nearly on one line, two decimals, in a figure of long walls",
-         "-cq31 in blocks: about as many steps as triangles; each triangle of a fan at a fence searched all others", ()),
+         "-cq31 in blocks: about as many steps as triangles; each triangle of a fan at a fence searched all others",
+         ()),
 ]
 
 
