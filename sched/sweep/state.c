@@ -10,7 +10,7 @@
 #include "triangle/grow.h"
 #include "triangle/pause.h"
 
-static const uint64_t STATE = UINT64_C(0x3565746174736974); /* a version, too */
+static const uint64_t STATE = UINT64_C(0x3665746174736974); /* a version, too */
 
 /* --- of which run */
 
@@ -45,7 +45,9 @@ static uint64_t hash_mesh(uint64_t hash, const struct tri_mesh *m)
 
 uint64_t par_state_run(const struct par_state *state)
 {
-    return hash_mesh(hash_options(hash_bounds(0, state->quality), state->options), state->mesh);
+    uint64_t hash = hash_bounds(0, state->quality);
+    hash = state->then ? hash_bounds(hash, state->then) : hash;
+    return hash_mesh(hash_options(hash, state->options), state->mesh);
 }
 
 /* --- a head, and then arrays */
