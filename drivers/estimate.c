@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "drivers/resources.h"
 #include "triangle/census.h"
 #include "triangle/clock.h"
 
@@ -18,7 +19,8 @@ static const double BUFFERS = 3e7, PAGES = 3e7, COLUMNS_HELD = 260, COLUMNS_AWAY
                     COLUMNS_STATE = 520, SWEPT_BYTES = 1.3;
 /* The same a triangle, of a mesh that stays as a whole; of two states of it; and of the tiles in a checkpoint. */
 static const double PARKED_WORK = 6, PARKED_BYTES = 90, WHOLE_STATES = 120, TILES_BYTES = 26;
-/* And of tiles that wait until all are there (triangle/text/tile_store.h). */
+/* And of tiles that wait until all are there (triangle/text/tile_store.h). The boundary that a .14 wants then, a byte
+ * a vertex in memory, does not show at the peak (measured at 5 million triangles). */
 static const double KEPT_BYTES = 46;
 /* The same a triangle of a rank's own, which are so many times the average; and of a state, of which there are two. */
 static const double RANK_BYTES = 62, RANK_WORK = 20, BUSIEST = 1.15, RANK_STATES = 32;
@@ -139,13 +141,20 @@ static bool is_swept(const struct run *run)
     return quality->min_angle <= TRI_EASY_ANGLE && quality->max_steiner < 0;
 }
 
+/* The least memory that does, where some of what is held could go to files. Those are mapped: they save no address
+ * space. */
+static double floor_of(double held, double work)
+{
+    return resources_memory_end() == RESOURCES_ADDRESS_SPACE ? held : fmin(held, BUFFERS + work);
+}
+
 /* Of the rank that has most. */
 static struct needs needs_of_rank(const struct run *run, double grown)
 {
     const double own = fmin(BUSIEST * grown / run->hooks->n_ranks, grown);
     struct needs n = {.triangles = grown, .whole = own > TRI_MAX_TRIANGLES ? HUGE_VAL : own * RANK_BYTES};
     n.held = n.whole + BUFFERS;
-    n.floor = fmin(n.held, BUFFERS + RANK_WORK * own + PAGES * fmax(run->hooks->threads, 1));
+    n.floor = floor_of(n.held, RANK_WORK * own + PAGES * fmax(run->hooks->threads, 1));
     n.away = PARKED_BYTES * own;
     n.checkpoint = n.states = RANK_STATES * grown;
     return n;
@@ -159,7 +168,7 @@ static struct needs needs_of(const struct run *run, double grown, double bytes, 
     const double work = sweeps ? COLUMNS_WORK * column + SWEPT_BYTES * grown : PARKED_WORK * grown;
     struct needs n = {.triangles = grown, .whole = grown > TRI_MAX_TRIANGLES ? HUGE_VAL : grown * bytes};
     n.held = sweeps ? BUFFERS + COLUMNS_HELD * column + SWEPT_BYTES * grown : n.whole;
-    n.floor = fmin(n.held, BUFFERS + work + pages);
+    n.floor = floor_of(n.held, work + pages);
     n.away = sweeps ? COLUMNS_AWAY * column : PARKED_BYTES * grown;
     n.kept = run->hooks->exports.n > 0 ? KEPT_BYTES * grown : 0;
     n.states = WHOLE_STATES * grown;

@@ -1,7 +1,6 @@
 /* meshplot: draws a mesh from its files as PNG or SVG. Here are arguments and files; drivers/plot.h draws.
  * Exit code 0: drawn, 1: files that cannot be read, drawn or written, 2: wrong usage. */
 #include <errno.h>
-#include <getopt.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
@@ -12,7 +11,9 @@
 
 #include <cairo-svg.h>
 
+#include "drivers/interrupt.h"
 #include "drivers/judged_files.h"
+#include "drivers/judged_words.h"
 #include "drivers/one_line.h"
 #include "drivers/plot_part.h"
 #include "drivers/resources.h"
@@ -310,16 +311,18 @@ static enum tri_status draw(const struct settings *s, const struct plot_mesh *me
 static enum tri_status write_picture(const struct settings *s, const struct plot_mesh *mesh,
                                      const struct plot_shading *shading, struct tri_error *error)
 {
-    struct tri_output_set set;
+    static struct tri_output_set set; /* handlers know its temporary names (interrupt.c) */
     struct tri_output *output;
-    tri_outputs_begin(&set);
-    enum tri_status status = tri_output_open(&set, s->output, &output, error);
+    interrupt_stage("drawing");
+    interrupt_begin(&set);
+    enum tri_status status = interrupt_open(&set, s->output, &output, error);
     if (status == TRI_OK)
         status = draw(s, mesh, shading, output, error);
     if (status == TRI_OK)
-        return tri_outputs_commit(&set, error);
-    tri_outputs_abort(&set);
-    return status;
+        return interrupt_commit(&set, error);
+    interrupt_drop(&set);
+    return interrupt_code() == 0 ? status : tri_fail(error, TRI_STOPPED, "", 0, "stopped by %s; nothing was written",
+                                                     interrupt_cause());
 }
 
 static enum tri_status plot(struct settings *s, struct files *f, struct tri_error *error)
@@ -421,8 +424,9 @@ static bool parse_box(const char *text, struct plot_box *box)
 }
 
 /* Applies one option; false: not a value for it. */
-static bool apply(struct settings *s, int option)
+static bool apply(void *settings, int option)
 {
+    struct settings *s = settings;
     switch (option) {
     case 'o':
         s->output = optarg;
@@ -452,37 +456,26 @@ static bool apply(struct settings *s, int option)
     }
 }
 
-/* Cuts off a suffix that the user, or the shell's completion, has left at the base name. */
-static void cut_suffix(char *base)
-{
-    (void)(judged_cut_suffix(base, ".node") || judged_cut_suffix(base, ".ele") || judged_cut_suffix(base, ".poly"));
-}
-
 /* 0: go on; < 0: done, with success; > 0: exit code. */
 static int parse_arguments(int argc, char **argv, struct settings *s)
 {
-    int option;
-    while ((option = getopt_long(argc, argv, "o:c:s:w:m:e:t:b:", long_options, NULL)) != -1) {
-        if (option == HELP || option == VERSION) {
-            fputs(option == HELP ? usage : PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", stdout);
-            fputs(option == HELP ? help : "", stdout);
-            return -1;
-        }
-        if (option == '?') {
-            fputs(usage, stderr);
-            return MISUSE;
-        }
-        if (!apply(s, option))
-            return fail(MISUSE, "not a value for this option: %s", optarg);
+    static const struct judged_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,
+                                              ":o:c:s:w:m:e:t:b:", long_options, VERSION, HELP, apply};
+    char *mesh = NULL;
+    switch (judged_words_take(&words, argc, argv, s, &mesh)) {
+    case WORDS_ANSWERED: return -1;
+    case WORDS_MISUSED: return MISUSE;
+    case WORDS_BAD_VALUE: return fail(MISUSE, "not a value for this option: %s", optarg);
+    case WORDS_TAKEN: break;
     }
-    if (optind + 1 != argc || s->output == NULL) {
+    if (s->output == NULL) {
         fputs(usage, stderr);
         return MISUSE;
     }
     if (s->colour == BY_BLOCK && s->blocks == NULL)
         return fail(MISUSE, "--color block needs --blocks FILE");
-    cut_suffix(argv[optind]);
-    s->base = argv[optind];
+    (void)(judged_cut_suffix(mesh, ".node") || judged_cut_suffix(mesh, ".ele") || judged_cut_suffix(mesh, ".poly"));
+    s->base = mesh;
     return 0;
 }
 
@@ -494,8 +487,15 @@ int main(int argc, char **argv)
     int code = parse_arguments(argc, argv, &settings);
     if (code != 0)
         return code < 0 ? EXIT_SUCCESS : code;
-    if (plot(&settings, &files, &error) != TRI_OK)
+    interrupt_stage("reading");
+    if (!interrupt_start(PTRIANGLE_NAME, 0, false))
+        return fail(TROUBLE, "the system does not take a handler for the end");
+    enum tri_status status = plot(&settings, &files, &error);
+    if (status == TRI_STOPPED)
+        interrupt_told();
+    if (status != TRI_OK)
         code = fail_with(&error);
+    code = status == TRI_STOPPED ? interrupt_code() : code;
     tri_pslg_free(&files.mesh);
     tri_elements_free(&files.elements);
     free(files.block_phase);
