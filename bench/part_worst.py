@@ -9,8 +9,8 @@ from inputs import Domain
 from measure import measure, table
 
 NOTE = """\
-Microseconds of processor time, of the whole process, a vertex of the input: `triangle`, without writing of files; in brackets those of
-`trianglecheck` on the mesh, its files read. Median of {} runs.
+Microseconds of processor time, of the whole process, a vertex of the input: `triangle`, without writing of files; in
+brackets those of `trianglecheck` on the mesh, its files read. Median of {} runs.
 
 """
 
@@ -55,6 +55,7 @@ def run(settings):
             domain = measured[0].case.domain
             cells = [_cell(m, n) for m, n in zip(measured, taken)]
             lines.append((domain.name, f"`-{domain.switches}`", *cells, *["–"] * (len(sizes) - len(cells))))
-            rows += [{**row, "input": f"{row['input']}, {n}"} for m, n in zip(measured, taken) for row in m.rows("worst")]
+            rows += [{**row, "input": f"{row['input']}, {n}"}
+                     for m, n in zip(measured, taken) for row in m.rows("worst")]
             yield {"title": "Inputs of the worst kind", "text": NOTE.format(settings.repeats) + table(head, lines),
                    "rows": rows, "targets": []}

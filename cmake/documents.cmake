@@ -1,5 +1,6 @@
-# Manual pages and completions for bash, made by cmake/help.awk of what the programs print for --help: what a program says
-# of itself is written in one place. Left out where there is no awk, or the programs are for a machine that cannot be run.
+# Manual pages and completions for bash, made by cmake/help.awk of what the programs print for --help: what a program
+# says of itself is written in one place. Left out where there is no awk, or the programs are for a machine that cannot
+# be run.
 find_program(PTRIANGLE_AWK awk)
 get_property(programs GLOBAL PROPERTY PTRIANGLE_EXECUTABLES)
 if(NOT PTRIANGLE_AWK OR (CMAKE_CROSSCOMPILING AND NOT CMAKE_CROSSCOMPILING_EMULATOR))

@@ -24,8 +24,8 @@ if(PTRIANGLE_FUZZ)
     add_link_options(-fsanitize=fuzzer-no-link)
 endif()
 
-# Left out: -Wsign-conversion, which with 32-bit ids as indices asks for a cast in every line, and -Wdouble-promotion, which
-# takes exception to INFINITY.
+# Left out: -Wsign-conversion, which with 32-bit ids as indices asks for a cast in every line, and -Wdouble-promotion,
+# which takes exception to INFINITY.
 set(PTRIANGLE_WARNINGS -Wall -Wextra -Wshadow)
 set(PTRIANGLE_STRICT_WARNINGS
     -Wpedantic -Wconversion -Wno-sign-conversion -Wvla -Wundef -Wwrite-strings
@@ -36,8 +36,9 @@ set(PTRIANGLE_STRICT_WARNINGS
 
 # Each operation on doubles is rounded to a double as it is written, or the exact predicates break and meshes differ
 # between compilers (triangle/arithmetic.h): no fused multiply-add, no -ffast-math, no x87. These options stand behind
-# those of CFLAGS and CMAKE_C_FLAGS, so that they win. Linking has them too, since compilers add code there that switches
-# subnormals off for the whole process; -Ofast is the one option that nothing behind it takes back. They are private: a client's own arithmetic is the client's business.
+# those of CFLAGS and CMAKE_C_FLAGS, so that they win. Linking has them too, since compilers add code there that
+# switches subnormals off for the whole process; -Ofast is the one option that nothing behind it takes back. They are
+# private: a client's own arithmetic is the client's business.
 include(CheckCSourceCompiles)
 set(PTRIANGLE_ARITHMETIC -fno-fast-math -fno-unsafe-math-optimizations -ffp-contract=off)
 check_c_source_compiles("#ifndef __i386__\n#error other\n#endif\nint main(void) { return 0; }" PTRIANGLE_I386)
@@ -48,8 +49,8 @@ foreach(flags CMAKE_C_FLAGS CMAKE_CXX_FLAGS)
     string(REPLACE "-Ofast" "-O3" ${flags} "${${flags}}")
 endforeach()
 
-# Points come as pairs of doubles, which compilers like to pack into one register; but nearly everything done with them is
-# a cross product, for which they have to be unpacked again. Without, refinement is up to a tenth faster.
+# Points come as pairs of doubles, which compilers like to pack into one register; but nearly everything done with them
+# is a cross product, for which they have to be unpacked again. Without, refinement is up to a tenth faster.
 set(PTRIANGLE_SPEED -fno-tree-slp-vectorize)
 
 # Hidden symbols let the compiler inline position-independent code, and keep a client's shared library from exporting
@@ -76,8 +77,8 @@ function(ptriangle_flags target)
     target_link_options(${target} PRIVATE -fno-fast-math -fno-unsafe-math-optimizations)
 endfunction()
 
-# The C++ runtime goes into the executables, so that they run where no libstdc++ is installed. Sanitizers bring a runtime
-# of their own that expects the shared one.
+# The C++ runtime goes into the executables, so that they run where no libstdc++ is installed. Sanitizers bring a
+# runtime of their own that expects the shared one.
 include(CheckCXXSourceCompiles)
 set(CMAKE_REQUIRED_LINK_OPTIONS -static-libstdc++ -static-libgcc)
 check_cxx_source_compiles("#include <string>\nint main(int n, char **) { return std::string(n, 'x').size() == 0; }"

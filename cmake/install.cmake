@@ -1,6 +1,6 @@
 # cmake --install: executables, libraries, public headers, CMake package, pkg-config files. Nothing installed
-# names a folder of the machine that built it: the tree may be moved. Components: programs, runtime (shared libraries) and
-# development.
+# names a folder of the machine that built it: the tree may be moved. Components: programs, runtime (shared libraries)
+# and development.
 
 include(CMakePackageConfigHelpers)
 set(PTRIANGLE_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/ptriangle)

@@ -1,7 +1,7 @@
 # The executables and the example, from drivers/. They link the static libraries, whose inside they know.
 
-# HDF5, which ptriangle writes and its companions read; without, everything else is built. The serial C library, at least
-# 1.10.3, which writes chunks directly; and zlib, which it needs itself.
+# HDF5, which ptriangle writes and its companions read; without, everything else is built. The serial C library, at
+# least 1.10.3, which writes chunks directly; and zlib, which it needs itself.
 find_package(ZLIB)
 include(CheckCSourceCompiles)
 find_path(HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial)

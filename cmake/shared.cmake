@@ -1,6 +1,6 @@
 # Shared libraries for clients. Each consists of objects of its own and lets nothing out but the functions that
-# cmake/exports.map lists, so that libptriangle, which needs the inside of libtriangle, contains it, and libtritext what it
-# needs of it: a client links the one mesher or the other, and libtritext where it reads and writes files.
+# cmake/exports.map lists, so that libptriangle, which needs the inside of libtriangle, contains it, and libtritext what
+# it needs of it: a client links the one mesher or the other, and libtritext where it reads and writes files.
 
 # Before 1.0 every minor version may change the interface.
 function(ptriangle_shared name)

@@ -116,8 +116,8 @@ set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c)
 set(PTRIANGLE_TEXT_NEEDS triangle/status.c triangle/scratch_file.c triangle/pslg.c triangle/api/figure.c)
 set(PTRIANGLE_CHECK_NEEDS triangle/status.c triangle/pslg.c triangle/api/figure.c triangle/predicates.c)
 
-# Folder sched/, the parallel schedule: compiled with OpenMP, as are the programs ptriangle and trianglecheck, which hand
-# out threads (sched/threads.h), and nothing else.
+# Folder sched/, the parallel schedule: compiled with OpenMP, as are the programs ptriangle and trianglecheck, which
+# hand out threads (sched/threads.h), and nothing else.
 set(PTRIANGLE_SCHED_SOURCES
     sched/theory.c
     sched/threads.c
@@ -130,6 +130,9 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/sweep/tiles.c
     sched/sweep/stream.c
     sched/sweep/queue.c
+    sched/sweep/deal.c
+    sched/sweep/sort_triangles.c
+    sched/sweep/move_triangles.c
     sched/sweep/numbering.c
     sched/sweep/park.c
     sched/sweep/spool.c
@@ -160,7 +163,8 @@ set(PTRIANGLE_SCHED_SOURCES
 set(PTRIANGLE_MPI_SOURCES sched/ranks/mpi.c)
 set(PTRIANGLE_MPI_HEADER include/ptriangle/mpi.h)
 
-# Headers that are installed, below include/ptriangle/, beside triangle.h, which lies where Triangle's clients look for it.
+# Headers that are installed, below include/ptriangle/, beside triangle.h, which lies where Triangle's clients look for
+# it.
 set(PTRIANGLE_PUBLIC_HEADERS
     include/ptriangle/tri.h
     include/ptriangle/par.h
@@ -168,8 +172,8 @@ set(PTRIANGLE_PUBLIC_HEADERS
     include/ptriangle/files.h
     include/ptriangle/check.h)
 
-# Folder drivers/: what the executables share, then the executables, each from drivers/<name>.c. The second list of programs
-# needs the folder sched/ and its library.
+# Folder drivers/: what the executables share, then the executables, each from drivers/<name>.c. The second list of
+# programs needs the folder sched/ and its library.
 set(PTRIANGLE_DRIVER_SOURCES)
 set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle)
 set(PTRIANGLE_JUDGE_SOURCES drivers/verdict.c sched/threads.c)
@@ -179,6 +183,7 @@ set(PTRIANGLE_JUDGED_SOURCES # reading of meshes that are there, for the judge a
     drivers/judged_text.c
     drivers/judged_h5.c
     drivers/judged_files.c
+    drivers/judged_words.c
     drivers/one_line.c)
 set(PTRIANGLE_EXAMPLES checkerboard) # need the library alone, are not installed
 set(PTRIANGLE_PETSC_EXAMPLES poisson) # likewise, where PETSc is found

@@ -25,7 +25,7 @@ void console_say(const struct console *console, const char *format, ...)
         return;
     va_list arguments;
     va_start(arguments, format);
-    vprintf(format, arguments);
+    one_line_print(stdout, format, arguments);
     va_end(arguments);
 }
 
@@ -35,7 +35,7 @@ void console_detail(const struct console *console, int verbosity, const char *fo
         return;
     va_list arguments;
     va_start(arguments, format);
-    vprintf(format, arguments);
+    one_line_print(stdout, format, arguments);
     va_end(arguments);
 }
 
@@ -46,7 +46,7 @@ void console_warn(const struct console *console, const char *format, ...)
     va_list arguments;
     va_start(arguments, format);
     fputs("Warning:  ", stdout);
-    vprintf(format, arguments);
+    one_line_print(stdout, format, arguments);
     va_end(arguments);
 }
 
@@ -76,7 +76,7 @@ void console_remark(const struct console *console, const char *format, ...)
     va_start(arguments, format);
     fflush(stdout);
     fprintf(stderr, "%s: ", console->program);
-    vfprintf(stderr, format, arguments);
+    one_line_print(stderr, format, arguments);
     va_end(arguments);
 }
 

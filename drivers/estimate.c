@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "drivers/resources.h"
 #include "triangle/census.h"
 #include "triangle/clock.h"
 
@@ -139,13 +140,20 @@ static bool is_swept(const struct run *run)
     return quality->min_angle <= TRI_EASY_ANGLE && quality->max_steiner < 0;
 }
 
+/* The least memory that does, where some of what is held could go to files. Those are mapped: they save no address
+ * space. */
+static double floor_of(double held, double work)
+{
+    return resources_memory_end() == RESOURCES_ADDRESS_SPACE ? held : fmin(held, BUFFERS + work);
+}
+
 /* Of the rank that has most. */
 static struct needs needs_of_rank(const struct run *run, double grown)
 {
     const double own = fmin(BUSIEST * grown / run->hooks->n_ranks, grown);
     struct needs n = {.triangles = grown, .whole = own > TRI_MAX_TRIANGLES ? HUGE_VAL : own * RANK_BYTES};
     n.held = n.whole + BUFFERS;
-    n.floor = fmin(n.held, BUFFERS + RANK_WORK * own + PAGES * fmax(run->hooks->threads, 1));
+    n.floor = floor_of(n.held, RANK_WORK * own + PAGES * fmax(run->hooks->threads, 1));
     n.away = PARKED_BYTES * own;
     n.checkpoint = n.states = RANK_STATES * grown;
     return n;
@@ -159,7 +167,7 @@ static struct needs needs_of(const struct run *run, double grown, double bytes, 
     const double work = sweeps ? COLUMNS_WORK * column + SWEPT_BYTES * grown : PARKED_WORK * grown;
     struct needs n = {.triangles = grown, .whole = grown > TRI_MAX_TRIANGLES ? HUGE_VAL : grown * bytes};
     n.held = sweeps ? BUFFERS + COLUMNS_HELD * column + SWEPT_BYTES * grown : n.whole;
-    n.floor = fmin(n.held, BUFFERS + work + pages);
+    n.floor = floor_of(n.held, work + pages);
     n.away = sweeps ? COLUMNS_AWAY * column : PARKED_BYTES * grown;
     n.kept = run->hooks->exports.n > 0 ? KEPT_BYTES * grown : 0;
     n.states = WHOLE_STATES * grown;

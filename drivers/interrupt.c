@@ -28,6 +28,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "triangle/clock.h"
+
 _Static_assert(ATOMIC_INT_LOCK_FREE == 2 && ATOMIC_POINTER_LOCK_FREE == 2, "handlers need lock-free atomics");
 
 static const struct timespec GRACE = {0, 800000000};
@@ -265,10 +267,39 @@ bool interrupt_start(const char *program, double seconds, bool patient)
     return true;
 }
 
+/* --- other tasks */
+
+static int (*pass_on)(void *user, int who);
+static void *pass_on_user;
+static _Thread_local bool may_pass_on;
+
+void interrupt_pass_on(int (*function)(void *user, int who), void *user)
+{
+    pass_on = function;
+    pass_on_user = user;
+    may_pass_on = function != NULL;
+}
+
+/* Asking costs a look into the network. */
+static void ask_others(void)
+{
+    static const double PAUSE = 0.005;
+    static double next;
+    const double now = tri_seconds();
+    if (now < next)
+        return;
+    next = now + PAUSE;
+    const int who = pass_on(pass_on_user, (int)who_asked());
+    if (who != NOBODY && who_asked() == NOBODY) /* else it is the same request, come back: no second one */
+        ask((unsigned)who);
+}
+
 static bool is_asked(void *user)
 {
-    const unsigned now = atomic_load_explicit(&state, memory_order_relaxed);
     (void)user;
+    if (may_pass_on)
+        ask_others();
+    const unsigned now = atomic_load_explicit(&state, memory_order_relaxed);
     return now / WHO != NOBODY && !(now & GOING_ON);
 }
 

@@ -31,6 +31,11 @@ void interrupt_go_on(void);
 /* The program has told of the stop itself: a handler that ends it now is silent. */
 void interrupt_told(void);
 
+/* Where a run is several tasks, all end when one is asked to: interrupt_stop() calls this now and then, on no thread
+ * but the one that calls here, with who has asked this task (0: nobody), and takes for a request what it returns (0:
+ * none). NULL: there are no others any more. */
+void interrupt_pass_on(int (*pass_on)(void *user, int who), void *user);
+
 /* The exit code for whoever was stopped: 128 + number of the signal, or INTERRUPT_TIME_UP; 0: nobody has asked. */
 int interrupt_code(void);
 

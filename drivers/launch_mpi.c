@@ -1,6 +1,7 @@
 /* Tasks that are ranks of an MPI. */
 #include <mpi.h>
 
+#include "drivers/interrupt.h"
 #include "drivers/launch.h"
 #include "sched/ranks/mpi_carrier.h"
 
@@ -17,15 +18,19 @@ enum tri_status launch_ranks(struct launch *launch, int tasks, struct tri_error 
                         "started as %d tasks, which do not find each other: this program is built for another MPI than "
                         "that of the launcher", tasks);
     }
-    launch->carrier = par_mpi_carrier_new(&world);
-    if (launch->carrier)
-        return TRI_OK;
-    MPI_Finalize();
-    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the other tasks");
+    enum tri_status status = par_mpi_carrier_new(&launch->carrier, &world, error);
+    if (status) {
+        MPI_Finalize();
+        return status;
+    }
+    launch->carrier->stop = interrupt_stop();
+    interrupt_pass_on(launch->carrier->pass_on, launch->carrier->self);
+    return TRI_OK;
 }
 
 void launch_end(struct launch *launch)
 {
+    interrupt_pass_on(NULL, NULL);
     par_mpi_carrier_free(launch->carrier);
     MPI_Finalize();
 }

@@ -1,7 +1,6 @@
 /* meshplot: draws a mesh from its files as PNG or SVG. Here are arguments and files; drivers/plot.h draws.
  * Exit code 0: drawn, 1: files that cannot be read, drawn or written, 2: wrong usage. */
 #include <errno.h>
-#include <getopt.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
@@ -13,6 +12,7 @@
 #include <cairo-svg.h>
 
 #include "drivers/judged_files.h"
+#include "drivers/judged_words.h"
 #include "drivers/one_line.h"
 #include "drivers/plot_part.h"
 #include "drivers/resources.h"
@@ -421,8 +421,9 @@ static bool parse_box(const char *text, struct plot_box *box)
 }
 
 /* Applies one option; false: not a value for it. */
-static bool apply(struct settings *s, int option)
+static bool apply(void *settings, int option)
 {
+    struct settings *s = settings;
     switch (option) {
     case 'o':
         s->output = optarg;
@@ -452,37 +453,26 @@ static bool apply(struct settings *s, int option)
     }
 }
 
-/* Cuts off a suffix that the user, or the shell's completion, has left at the base name. */
-static void cut_suffix(char *base)
-{
-    (void)(judged_cut_suffix(base, ".node") || judged_cut_suffix(base, ".ele") || judged_cut_suffix(base, ".poly"));
-}
-
 /* 0: go on; < 0: done, with success; > 0: exit code. */
 static int parse_arguments(int argc, char **argv, struct settings *s)
 {
-    int option;
-    while ((option = getopt_long(argc, argv, "o:c:s:w:m:e:t:b:", long_options, NULL)) != -1) {
-        if (option == HELP || option == VERSION) {
-            fputs(option == HELP ? usage : PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", stdout);
-            fputs(option == HELP ? help : "", stdout);
-            return -1;
-        }
-        if (option == '?') {
-            fputs(usage, stderr);
-            return MISUSE;
-        }
-        if (!apply(s, option))
-            return fail(MISUSE, "not a value for this option: %s", optarg);
+    static const struct judged_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,
+                                              ":o:c:s:w:m:e:t:b:", long_options, VERSION, HELP, apply};
+    char *mesh = NULL;
+    switch (judged_words_take(&words, argc, argv, s, &mesh)) {
+    case WORDS_ANSWERED: return -1;
+    case WORDS_MISUSED: return MISUSE;
+    case WORDS_BAD_VALUE: return fail(MISUSE, "not a value for this option: %s", optarg);
+    case WORDS_TAKEN: break;
     }
-    if (optind + 1 != argc || s->output == NULL) {
+    if (s->output == NULL) {
         fputs(usage, stderr);
         return MISUSE;
     }
     if (s->colour == BY_BLOCK && s->blocks == NULL)
         return fail(MISUSE, "--color block needs --blocks FILE");
-    cut_suffix(argv[optind]);
-    s->base = argv[optind];
+    (void)(judged_cut_suffix(mesh, ".node") || judged_cut_suffix(mesh, ".ele") || judged_cut_suffix(mesh, ".poly"));
+    s->base = mesh;
     return 0;
 }
 

@@ -1,5 +1,9 @@
-/* Errors, each of which is one line. */
+/* Control characters are escaped when the text is complete. */
 #include "drivers/one_line.h"
+
+#include <string.h>
+
+enum { LENGTH = 1 << 14 };
 
 void one_line_put(FILE *stream, const char *text)
 {
@@ -12,9 +16,27 @@ void one_line_put(FILE *stream, const char *text)
             fputc(*at, stream);
 }
 
+void one_line_print(FILE *stream, const char *format, va_list arguments)
+{
+    if (!strstr(format, "%s")) {
+        vfprintf(stream, format, arguments);
+        return;
+    }
+    const size_t length = strlen(format), before = strspn(format, "\n");
+    size_t after = 0;
+    while (after < length - before && format[length - after - 1] == '\n')
+        after++;
+    char text[LENGTH];
+    vsnprintf(text, sizeof text, format, arguments);
+    if (strlen(text) + 1 < sizeof text)
+        text[strlen(text) - after] = 0;
+    fprintf(stream, "%.*s", (int)before, format);
+    one_line_put(stream, text + before);
+    fputs(format + length - after, stream);
+}
+
 void one_line_complain(const char *program, const char *format, va_list arguments)
 {
-    enum { LENGTH = 1 << 14 };
     char text[LENGTH];
     vsnprintf(text, sizeof text, format, arguments);
     fprintf(stderr, "%s: ", program);

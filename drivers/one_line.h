@@ -1,14 +1,18 @@
-/* Errors, each of which is one line. */
+/* What names of files and words of the command line, which may hold anything, look like where they are printed. */
 #ifndef DRIVERS_ONE_LINE_H
 #define DRIVERS_ONE_LINE_H
 
 #include <stdarg.h>
 #include <stdio.h>
 
-/* Names of files may hold anything: control characters are printed as \n or \x1b. */
+/* Control characters are printed as \n or \x1b. */
 void one_line_put(FILE *stream, const char *text);
 
-/* "program: " and the text on standard error; what is longer than several names is cut. */
+/* As vfprintf; but where the format takes a text (%s), line breaks are those at its beginning and end alone: all other
+ * control characters come out of texts. What is longer than several names is cut. */
+void one_line_print(FILE *stream, const char *format, va_list arguments);
+
+/* "program: ", the text, which is one line, and its end on standard error; cut likewise. */
 void one_line_complain(const char *program, const char *format, va_list arguments);
 
 #endif

@@ -1,6 +1,6 @@
 /* RULE. What is sure refuses, what is likely warns: areas ask for so many triangles beyond doubt, angles for about so
- * many. A bound that was asked for (--memory) refuses what is likely, too. A mesh that fits stays in memory, which is
- * quicker. */
+ * many. A bound that somebody has set, --memory or a limit of the process, refuses what is likely, too. A mesh that
+ * fits stays in memory, which is quicker. */
 #define _DEFAULT_SOURCE /* access */
 
 #include "drivers/plan.h"
@@ -25,11 +25,26 @@ static const double MARGIN = 1.15, STRICT_MARGIN = 1.5, STEEP_MARGIN = 2.5, CONF
 static const double PROCESS_BYTES = 1.2e7, POINT_BYTES = 182, SEGMENT_BYTES = 135, REBUILT_POINT_BYTES = 100,
                     ELEMENT_BYTES = 48, SURE_SHARE = 0.75;
 
-static bool is_strict(const struct run *run) { return run->hooks->limits.memory > 0; }
+/* Measured: what is allocated to write files, touched or not. */
+static const double BUFFER_BYTES = 3e7;
+
+/* Has somebody set a bound: --memory, or one of the process (ulimit -v), beyond which requests fail? */
+static bool is_strict(const struct run *run)
+{
+    return run->hooks->limits.memory > 0 || resources_memory_end() != RESOURCES_SYSTEM;
+}
+
+/* The limits of a process count what it asks for, touched or not: stacks of threads, and buffers. */
+static double system_memory_left(const struct run *run)
+{
+    const bool counts_all = resources_memory_end() != RESOURCES_SYSTEM;
+    const double untouched = counts_all ? resources_stacks(run->hooks->threads) + BUFFER_BYTES : 0;
+    return fmax(resources_memory() - untouched, 0);
+}
 
 double plan_memory_left(const struct run *run)
 {
-    double allowed = run->hooks->limits.memory, left = resources_memory();
+    double allowed = run->hooks->limits.memory, left = system_memory_left(run);
     return allowed > 0 ? fmin(left, fmax(allowed - resources_memory_used(), 0)) : left;
 }
 
@@ -240,9 +255,11 @@ static double margin_of(const struct run *run)
     return quality->conforming ? CONFORMING_MARGIN : quality->min_angle > TRI_EASY_ANGLE ? STEEP_MARGIN : STRICT_MARGIN;
 }
 
+/* Files of a mesh that does not fit save no address space (estimate.h). */
 static bool fits(const struct run *run, const struct estimate *e, double left)
 {
-    const double margin = margin_of(run);
+    const bool can_park = resources_memory_end() != RESOURCES_ADDRESS_SPACE;
+    const double margin = e->sweeps || can_park ? margin_of(run) : 1;
     return fmax(e->likely.triangles, e->least.triangles) <= TRI_MAX_TRIANGLES && margin * e->likely.whole <= left;
 }
 

@@ -205,6 +205,16 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
     return status;
 }
 
+/* A stop is no failure that others have to share where the mesh that is there will be written. */
+static enum tri_status report_ranks(struct program *p, const struct run *run, enum tri_status status,
+                                    struct tri_error *error)
+{
+    const bool is_kept = status == TRI_STOPPED && run->hooks->limits.write_partial;
+    enum tri_status shared = rank_report_gather(&p->ranks, p->launch.carrier, &p->schedule, is_kept ? TRI_OK : status,
+                                                error);
+    return shared ? shared : status;
+}
+
 static enum tri_status refine(void *user, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
                               const struct tri_refine_options *quality, struct tri_refine_report *report,
                               struct tri_error *error)
@@ -223,10 +233,8 @@ static enum tri_status refine(void *user, struct run *run, struct tri_output_set
         if (!status)
             progress_stage(&p->progress, "writing");
     }
-    if (p->launch.carrier)
-        status = rank_report_gather(&p->ranks, p->launch.carrier, &p->schedule, status, error);
     *report = p->schedule.total;
-    return status;
+    return p->launch.carrier ? report_ranks(p, run, status, error) : status;
 }
 
 static double estimate(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *quality)

@@ -1,4 +1,6 @@
 /* Small files of the kernel's, read line by line. */
+#define _DEFAULT_SOURCE /* mallopt */
+
 #include "drivers/resources.h"
 
 #include <math.h>
@@ -10,6 +12,9 @@
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 enum { LINE_BYTES = 512, PATH_BYTES = RESOURCES_PATH };
 
@@ -54,14 +59,14 @@ static double of_limit(int resource, double used)
     return fmax((double)limit.rlim_cur - used, 0);
 }
 
-/* Data and stack count against the one, all of the address space against the other. */
-static double of_process(enum extent extent)
+static double of_status(const char *word) { return 1024 * fmax(find_number("/proc/self/status", word), 0); }
+
+static double of_address_space(enum extent extent)
 {
-    if (extent == ALL)
-        return fmin(of_limit(RLIMIT_AS, 0), of_limit(RLIMIT_DATA, 0));
-    double space = find_number("/proc/self/status", "VmSize:"), data = find_number("/proc/self/status", "VmData:");
-    return fmin(of_limit(RLIMIT_AS, 1024 * fmax(space, 0)), of_limit(RLIMIT_DATA, 1024 * fmax(data, 0)));
+    return of_limit(RLIMIT_AS, extent == LEFT ? of_status("VmSize:") : 0);
 }
+
+static double of_data(enum extent extent) { return of_limit(RLIMIT_DATA, extent == LEFT ? of_status("VmData:") : 0); }
 
 struct files {
     const char *limit, *usage, *cache; /* the last: the word in memory.stat for what the kernel gives back */
@@ -120,16 +125,41 @@ static double of_groups(enum extent extent)
     return least;
 }
 
+static double of_system(enum extent extent) { return fmin(of_machine(extent), of_groups(extent)); }
+
 static double least_of(enum extent extent)
 {
-    return fmin(of_machine(extent), fmin(of_process(extent), of_groups(extent)));
+    return fmin(of_system(extent), fmin(of_address_space(extent), of_data(extent)));
+}
+
+enum resources_end resources_memory_end(void)
+{
+    const double system = of_system(LEFT), data = of_data(LEFT), space = of_address_space(LEFT);
+    if (system <= fmin(data, space))
+        return RESOURCES_SYSTEM;
+    return space <= data ? RESOURCES_ADDRESS_SPACE : RESOURCES_DATA;
 }
 
 double resources_memory(void) { return least_of(LEFT); }
 
+void resources_save_address_space(void)
+{
+#ifdef __GLIBC__
+    if (fmin(of_address_space(ALL), of_data(ALL)) < HUGE_VAL)
+        mallopt(M_ARENA_MAX, 1);
+#endif
+}
+
+double resources_stacks(int threads)
+{
+    const double usual = 8 << 20, limit = of_limit(RLIMIT_STACK, 0);
+    const double there = fmax(find_number("/proc/self/status", "Threads:"), 1);
+    return fmax(threads - there, 0) * (limit < HUGE_VAL ? limit : usual);
+}
+
 double resources_memory_total(void) { return least_of(ALL); }
 
-double resources_memory_used(void) { return 1024 * fmax(find_number("/proc/self/status", "VmRSS:"), 0); }
+double resources_memory_used(void) { return of_status("VmRSS:"); }
 
 /* ru_maxrss counts units of 1024 bytes, but bytes where Darwin is the system. */
 int64_t resources_memory_peak(void)

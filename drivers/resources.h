@@ -9,6 +9,18 @@
  * up to the root. What of these cannot be read limits nothing; HUGE_VAL: nothing could be. */
 double resources_memory(void);
 
+/* What ends first of these. Beyond the limits of a process a request for memory fails at once; mapped files count as
+ * address space, too. */
+enum resources_end { RESOURCES_SYSTEM, RESOURCES_DATA, RESOURCES_ADDRESS_SPACE };
+enum resources_end resources_memory_end(void);
+
+/* Where the process has limits all threads share one heap from now on: one for each would take 64 MB of address space.
+ * To be called before they allocate. */
+void resources_save_address_space(void);
+
+/* Bytes for the stacks of so many threads, touched or not, less those that are there. */
+double resources_stacks(int threads);
+
 /* Bytes of memory that the machine, the process's limits and its control groups, the least of them, give to begin with;
  * HUGE_VAL: not known. */
 double resources_memory_total(void);

@@ -13,6 +13,7 @@
 #include "drivers/interrupt.h"
 #include "drivers/mesh_files.h"
 #include "drivers/plan.h"
+#include "drivers/resources.h"
 #include "drivers/self_check.h"
 #include "drivers/summary.h"
 #include "triangle/census.h"
@@ -559,7 +560,10 @@ static enum tri_status run_file(struct runner *r)
 {
     const struct run_limits *limits = &r->run.hooks->limits;
     r->begin = r->mark = tri_seconds();
-    if (!interrupt_start(r->run.hooks->program, limits->seconds, limits->write_partial || limits->checkpoint))
+    resources_save_address_space();
+    const bool patient = limits->write_partial || limits->checkpoint ||
+                         r->run.hooks->written_elsewhere; /* the first task, which has been told, says why all end */
+    if (!interrupt_start(r->run.hooks->program, limits->seconds, patient))
         return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "the system has no timer left");
     enum tri_status status = run_stages(r);
     if (status)

@@ -92,7 +92,7 @@ void summary_remaining(const struct console *console, const int64_t count[TRI_EX
 {
     int64_t n = sum_of(count);
     if (n == 0)
-        console_say(console, "All triangles keep the bounds.\n");
+        console_say(console, "All triangles keep the bounds%s.\n", options->conforming ? " on angles and sizes" : "");
     else
         console_say(console, "%" PRId64 " triangle%s below the bounds:", n, n == 1 ? " stays" : "s stay");
     say_reasons(console, count, options, report);

@@ -1,7 +1,6 @@
 /* trianglecheck: judges a mesh from its files, whoever made it. All judgement is triangle/check/check.h's; here are
  * arguments, files and lines of text. Exit code 0: no fault, 1: faults, 2: wrong usage or unreadable files. */
 #include <errno.h>
-#include <getopt.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -9,6 +8,7 @@
 #include <string.h>
 
 #include "drivers/judged_files.h"
+#include "drivers/judged_words.h"
 #include "drivers/one_line.h"
 #include "drivers/resources.h"
 #include "drivers/verdict.h"
@@ -48,7 +48,8 @@ static const char help[] = /* in the form that cmake/help.awk makes a manual pag
     "      --threads N      at most so many (default: OMP_NUM_THREADS, or all cores); the verdict is the same\n"
     "      --memory SIZE    memory to use: 500M, 4G (K, M, G, T: powers of 1024), or 60% of what is free (default:\n"
     "                       80%). A mesh that does not fit is judged part by part, with the same verdict; beside a\n"
-    "                       part, its boundary, segments and input, and a byte for each vertex stay in memory\n"
+    "                       part, its boundary, segments and input, and a byte for each vertex stay in memory:\n"
+    "                       what takes too much of that is refused\n"
     "      --scratch DIR    folder for what does not fit then (default: TMPDIR, else /tmp): text files as numbers,\n"
     "                       20 bytes a vertex and 24 a triangle\n"
     "      --json           report in JSON on standard output, instead of lines\n"
@@ -95,6 +96,19 @@ static double memory_to_use(const struct settings *s)
     return resources_memory() * (s->memory_share > 0 ? s->memory_share : USUAL_PERCENT / 100.0);
 }
 
+/* What stays in memory beside the parts leaves room for them, or the trial is refused. */
+static enum tri_status check_memory(const struct judged_files *f, const struct tri_pslg *input, struct tri_error *error)
+{
+    static const double MOST_SHARE = 0.7;
+    const double needed = tri_check_least_bytes(&f->source, input) / MOST_SHARE, allowed = f->source.memory;
+    if (allowed <= 0 || needed < JUDGED_WORTH_A_LOOK || needed <= allowed)
+        return TRI_OK;
+    return tri_fail(error, TRI_NO_MEMORY, "", 0,
+                    "to judge %.3g million vertices and %.3g million subsegments, and what they are compared with, "
+                    "takes about %.3g MB of memory; %.3g MB may be used", 1e-6 * (double)f->source.n_points,
+                    1e-6 * (double)f->source.n_segments, 1e-6 * needed, 1e-6 * allowed);
+}
+
 static enum tri_status judge(const struct settings *s, struct judged_files *f, const struct tri_executor *executor,
                              int threads, struct tri_check_report *report, struct tri_error *error)
 {
@@ -110,7 +124,9 @@ static enum tri_status judge(const struct settings *s, struct judged_files *f, c
         options.executor = executor;
         options.n_threads = threads;
     }
-    return tri_check_from(&f->source, s->input != NULL ? &f->input : NULL, &options, report, error);
+    const struct tri_pslg *input = s->input != NULL ? &f->input : NULL;
+    enum tri_status status = check_memory(f, input, error);
+    return status != TRI_OK ? status : tri_check_from(&f->source, input, &options, report, error);
 }
 
 /* --- arguments */
@@ -234,8 +250,9 @@ static bool apply_flag(struct settings *s, int option)
 }
 
 /* Applies one option; false: not an option, or no value for it. */
-static bool apply(struct settings *s, int option)
+static bool apply(void *settings, int option)
 {
+    struct settings *s = settings;
     switch (option) {
     case 'p':
         s->input = optarg;
@@ -263,26 +280,17 @@ static bool apply(struct settings *s, int option)
 /* 0: go on; < 0: done, with success; > 0: exit code. */
 static int parse_arguments(int argc, char **argv, struct settings *s)
 {
-    int option;
-    while ((option = getopt_long(argc, argv, "p:q:b:a:Dcjr", long_options, NULL)) != -1) {
-        if (option == HELP || option == VERSION) {
-            fputs(option == HELP ? usage : PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", stdout);
-            fputs(option == HELP ? help : "", stdout);
-            return -1;
-        }
-        if (option == '?') {
-            fputs(usage, stderr);
-            return TROUBLE;
-        }
-        if (!apply(s, option))
-            return fail("not a value for this option: %s", optarg);
+    static const struct judged_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,
+                                              ":p:q:b:a:Dcjr", long_options, VERSION, HELP, apply};
+    char *mesh = NULL;
+    switch (judged_words_take(&words, argc, argv, s, &mesh)) {
+    case WORDS_ANSWERED: return -1;
+    case WORDS_MISUSED: return TROUBLE;
+    case WORDS_BAD_VALUE: return fail("not a value for this option: %s", optarg);
+    case WORDS_TAKEN: break;
     }
-    if (optind + 1 != argc) {
-        fputs(usage, stderr);
-        return TROUBLE;
-    }
-    (void)(judged_cut_suffix(argv[optind], ".node") || judged_cut_suffix(argv[optind], ".ele"));
-    s->base = argv[optind];
+    (void)(judged_cut_suffix(mesh, ".node") || judged_cut_suffix(mesh, ".ele"));
+    s->base = mesh;
     return 0;
 }
 

@@ -58,6 +58,31 @@ static inline int32_t par_cells(const struct par_partition *p) { return (p->n_co
 /* Is there a coarser one that is worth a round of phases? */
 static inline bool par_can_coarsen(const struct par_partition *p) { return par_cells(p) >= 16; }
 
+/* Tiles are the blocks of odd column and odd row, phase 0: counted column by column, rows upwards. */
+static inline int32_t par_tile_columns(const struct par_partition *p) { return p->n_columns / 2; }
+static inline int32_t par_tile_rows(const struct par_partition *p) { return p->n_rows / 2; }
+
+/* The tile of a block of phase 0, which is column * n_rows + row. */
+static inline int32_t par_tile_of_block(const struct par_partition *p, int32_t block)
+{
+    return block / p->n_rows / 2 * par_tile_rows(p) + block % p->n_rows / 2;
+}
+
+/* Things lie in order, those of k = 0 .. n - 1 (tiles, rows, ranks) from start[k] to start[k + 1] - 1: whose is this
+ * place, which is one's? O(log n). */
+static inline int32_t par_holder_of(const int32_t *start, int32_t n, int32_t place)
+{
+    int32_t low = 0, high = n;
+    while (high - low > 1) {
+        int32_t middle = low + (high - low) / 2;
+        if (start[middle] <= place)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 /* The box of block (column, row). */
 struct tri_fence par_fence(const struct par_partition *partition, int32_t column, int32_t row);
 

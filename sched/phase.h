@@ -45,7 +45,7 @@ struct par_share {
 enum par_stage {
     PAR_SIZES,   /* sizes, where angles are dear */
     PAR_BOUNDS,  /* all bounds, up to the usual angle */
-    PAR_BEYOND,  /* a larger angle */
+    PAR_ABOVE,   /* a larger angle */
     PAR_FINISHED /* nothing is left but to hand it out */
 };
 

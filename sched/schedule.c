@@ -201,8 +201,7 @@ static enum tri_status refine_rest(struct par_state *state, const struct tri_ref
         if (state->worklist.n == 0)
             return TRI_OK;
     }
-    enum tri_status status = tri_refine_check(state->mesh, &options, NULL, error);
-    status = status ? status : tri_refiner_new(&refiner, state->mesh, &options, &report, error);
+    enum tri_status status = tri_refiner_new(&refiner, state->mesh, &options, &report, error);
     status = status ? status : run_refiner(state, refiner, top, error);
     tri_refiner_free(refiner);
     assert(tri_mesh_is_sound(state->mesh));
@@ -616,20 +615,20 @@ static bool must_be_sequential(const struct tri_refine_options *quality, const s
 }
 
 /* A last call for angles that no schedule serves. */
-static enum tri_status refine_beyond(struct par_state *state, const struct tri_refine_options *quality,
+static enum tri_status refine_above_usual(struct par_state *state, const struct tri_refine_options *quality,
                                      struct tri_error *error)
 {
     double last = tri_seconds();
-    if (state->stage > PAR_BEYOND || quality->min_angle <= TRI_USUAL_ANGLE)
+    if (state->stage > PAR_ABOVE || quality->min_angle <= TRI_USUAL_ANGLE)
         return TRI_OK;
-    state->stage = PAR_BEYOND;
+    state->stage = PAR_ABOVE;
     enum tri_status status = state->paused ? TRI_OK : come_to_border(state, error);
     status = status ? status : refine_rest(state, quality, true, true, error);
     state->report->seconds_last += tri_seconds() - last;
     return status;
 }
 
-/* Refines by schedules: two where angles are dear, and a last call for what is beyond them. */
+/* Refines by schedules: two where angles are dear, and a last call for angles above those of a schedule. */
 static enum tri_status refine_by_schedule(struct par_state *state, const struct tri_refine_options *quality,
                                           struct tri_error *error)
 {
@@ -642,7 +641,7 @@ static enum tri_status refine_by_schedule(struct par_state *state, const struct 
     enum tri_status status = sizes ? refine_sizes_first(state, &usual, error) : TRI_OK;
     state->may_number = !state->options->by_block && quality->min_angle <= TRI_USUAL_ANGLE;
     status = status ? status : refine_stage(state, &usual, PAR_BOUNDS, error);
-    return status ? status : refine_beyond(state, quality, error);
+    return status ? status : refine_above_usual(state, quality, error);
 }
 
 /* Hands out a mesh that is finished, tile by tile if it is numbered. */

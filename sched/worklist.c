@@ -85,11 +85,11 @@ static int32_t add_old(const struct finding *f, struct tri_range range, tri_tria
     const struct tri_triangle *tri = f->mesh->tri;
     int32_t begin = par_ids_find(f->worklist, range.first), end = par_ids_find(f->worklist, range.last), all = n;
     for (int32_t i = begin; i < end; i++)
-        all += tri[f->worklist->item[i]].state == 0;
+        all += tri[f->worklist->item[i]].life == 0;
     for (int32_t i = end - 1, at = all; i >= begin; i--) {
         tri_triangle_id old = f->worklist->item[i];
         assert(i == begin || f->worklist->item[i - 1] < old); /* in order, and each once */
-        if (tri[old].state != 0)
+        if (tri[old].life != 0)
             continue;
         while (n > 0 && found[n - 1] > old)
             found[--at] = found[--n];
@@ -104,7 +104,7 @@ static int32_t find_newborn(const struct finding *f, struct tri_range range, tri
 {
     int32_t n = 0;
     for (tri_triangle_id t = range.first; t < range.last; t++)
-        if (f->mesh->tri[t].state != 0)
+        if (f->mesh->tri[t].life != 0)
             found[n++] = t;
     n = tri_find_work_among(f->mesh, f->bounds, found, n, found);
     return add_old(f, range, found, n);
@@ -130,7 +130,7 @@ static void fill_share(void *context, size_t share)
                           : tri_find_work(f->mesh, f->bounds, range.first, range.last, found);
     f->radius2[share] = largest_radius2(f->mesh, found, f->n[share]);
     for (tri_triangle_id t = range.first; t < range.last; t++)
-        f->mesh->tri[t].state = 0;
+        f->mesh->tri[t].life = 0;
 }
 
 enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mesh,

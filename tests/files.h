@@ -1,8 +1,10 @@
-/* What tests look for in their folder. */
+/* What tests look for in their folder. To be included after cmocka.h. */
 #ifndef TESTS_FILES_H
 #define TESTS_FILES_H
 
 #include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Names in the current folder but . and ..; -1: it cannot be read. */
@@ -16,6 +18,22 @@ static inline int files_here(void)
         n += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
     closedir(directory);
     return n;
+}
+
+/* The n bytes of a file and a 0, malloc'ed. */
+static inline char *file_bytes(const char *name, size_t *n)
+{
+    FILE *file = fopen(name, "rb");
+    assert_non_null(file);
+    assert_int_equal(fseek(file, 0, SEEK_END), 0);
+    *n = (size_t)ftell(file);
+    rewind(file);
+    char *bytes = malloc(*n + 1);
+    assert_non_null(bytes);
+    assert_int_equal(fread(bytes, 1, *n, file), *n);
+    bytes[*n] = 0;
+    fclose(file);
+    return bytes;
 }
 
 #endif

@@ -136,3 +136,36 @@ enum tri_status lattice_hand_out(const struct lattice *l, const struct tri_sink 
     free(columns);
     return status || !sink->end ? status : sink->end(sink->user, error);
 }
+
+/* --- as a grid */
+
+static void point(const void *user, int64_t i, struct tri_grid_point *point)
+{
+    lattice_point(user, i, point->at);
+    point->marker = lattice_point_marker(i);
+}
+
+static double attribute(const void *user, int64_t i, int32_t k)
+{
+    (void)user;
+    return lattice_attribute(i, k);
+}
+
+static void triangle(const void *user, int64_t i, int64_t nodes[6]) { lattice_corners(user, i, nodes); }
+
+static double column(const void *user, int64_t i, int32_t k) { return lattice_column(user, lattice_region(i), k); }
+
+static void segment(const void *user, int64_t i, struct tri_grid_edge *segment)
+{
+    lattice_ends(user, i, segment->ends);
+    segment->marker = lattice_segment_marker(i);
+}
+
+struct tri_grid lattice_grid(const struct lattice *l, bool markers)
+{
+    return (struct tri_grid){.user = l, .has_markers = markers, .n_points = lattice_points(l),
+                             .n_triangles = lattice_triangles(l), .n_segments = lattice_segments(l),
+                             .n_attributes = l->n_attributes, .n_columns = l->n_columns, .n_nodes = 3,
+                             .point = point, .attribute = attribute, .triangle = triangle, .column = column,
+                             .segment = segment};
+}

@@ -3,6 +3,7 @@
 #define TESTS_LATTICE_TILES_H
 
 #include "ptriangle/tiles.h"
+#include "triangle/grid.h"
 
 /* side * side points at whole places, each square cut into two triangles; the points of the lowest row were there
  * before refinement. One row of squares is a tile, or a few are. All values follow from the item's number. */
@@ -28,6 +29,9 @@ int32_t lattice_region(int64_t i);
 double lattice_column(const struct lattice *lattice, int32_t region, int32_t k);
 void lattice_ends(const struct lattice *lattice, int64_t i, int64_t ends[2]);
 int32_t lattice_segment_marker(int64_t i);
+
+/* The same as a grid, which lives as long as the lattice; numbers count from 0. */
+struct tri_grid lattice_grid(const struct lattice *lattice, bool markers);
 
 /* Hands everything out, up to the first call that fails; the status of the last one. */
 enum tri_status lattice_hand_out(const struct lattice *lattice, const struct tri_sink *sink, struct tri_error *error);

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Compiles triangle/dropin/triangle.h in every way that clients of Triangle are known to include theirs: alone, twice, within a
-# namespace, within extern "C", with and without their macros, in old and new dialects of C and C++. Then the other
-# public headers in C++.
+# Compiles triangle/dropin/triangle.h in every way that clients of Triangle are known to include theirs: alone, twice,
+# within a namespace, within extern "C", with and without their macros, in old and new dialects of C and C++. Then the
+# other public headers in C++.
 # Usage: run_header.sh SOURCE_ROOT WORK_DIR C_COMPILER CXX_COMPILER
 set -u
 root=$1

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The package as others take it: static from a build that is there, shared from one of its own, and as a subproject. Clients
-# are a project of C++ alone, the C clients of tests/client/, and what pkg-config says.
+# The package as others take it: static from a build that is there, shared from one of its own, and as a subproject.
+# Clients are a project of C++ alone, the C clients of tests/client/, and what pkg-config says.
 # Usage: run_package.sh SOURCE_ROOT BUILD_DIR WORK_DIR CMAKE C_COMPILER CXX_COMPILER
 set -eu
 root=$1

@@ -5,12 +5,15 @@
 /* Triangle t is in state 3 t, unless a test changes that. */
 enum { SLOTS = 100000 };
 static struct tri_triangle triangles[SLOTS];
+static struct tri_point corner;
+static double feature;
+static const struct tri_mesh mesh = {.tri = triangles, .xy = &corner, .feature = &feature};
 
 static int set_up(void **state)
 {
     (void)state;
     for (int32_t t = 0; t < SLOTS; t++)
-        triangles[t].state = (uint32_t)t * 3;
+        triangles[t].life = (uint32_t)t * 3;
     return 0;
 }
 
@@ -27,9 +30,9 @@ static void push_size(struct tri_bad_queue *queue, int32_t t)
 static int32_t pop(struct tri_bad_queue *queue)
 {
     struct tri_entry entry;
-    if (!tri_bad_queue_pop(queue, triangles, &entry))
+    if (!tri_bad_queue_pop(queue, &mesh, &entry))
         return TRI_NONE;
-    assert_int_equal(entry.state, (uint32_t)entry.t * 3);
+    assert_int_equal(entry.life, (uint32_t)entry.t * 3);
     return entry.t;
 }
 
@@ -140,8 +143,8 @@ static void test_only_what_is_up_to_date(void **state)
     assert_true(tri_bad_queue_init(&queue));
     for (int32_t t = 0; t < N; t++) {
         bool bad = support_below(&random, 3) > 0;
-        triangles[t].state += support_below(&random, 2) == 0;
-        kept[t] = bad && triangles[t].state == (uint32_t)t * 3;
+        triangles[t].life += support_below(&random, 2) == 0;
+        kept[t] = bad && triangles[t].life == (uint32_t)t * 3;
         assert_true(tri_bad_queue_push_size(&queue, (struct tri_entry){t, (uint32_t)t * 3}, bad));
     }
     for (int32_t t = 0; t < N; t++)

@@ -11,6 +11,22 @@ static struct tri_mesh refined_letter(const struct tri_options *options, struct 
     return mesh;
 }
 
+/* Among every third triangle, backwards and in place: those of all that are among them. */
+static void assert_finds_among(const struct tri_mesh *mesh)
+{
+    const struct tri_options some = support_quality(20, 0);
+    int32_t all[1000], list[1000], wanted[1000], n = 0, n_wanted = 0;
+    const int32_t n_all = tri_find_work(mesh, &some.quality, 0, mesh->n_triangles, all);
+    for (int32_t t = mesh->n_triangles - 1; t >= 0; t -= 3)
+        list[n++] = t;
+    for (int32_t i = n_all; i-- > 0;)
+        if ((mesh->n_triangles - 1 - all[i]) % 3 == 0)
+            wanted[n_wanted++] = all[i];
+    assert_true(n_wanted > 0 && n_wanted < n);
+    assert_int_equal(tri_find_work_among(mesh, &some.quality, list, n, list), n_wanted);
+    assert_memory_equal(list, wanted, (size_t)n_wanted * sizeof *wanted);
+}
+
 /* Work is found triangle by triangle: any cut into ranges finds the same, and what is found is what the criterion
  * says. */
 static void test_find_work(void **state)
@@ -34,6 +50,7 @@ static void test_find_work(void **state)
     }
     assert_int_equal(found, naive);
     assert_true(found > 0);
+    assert_finds_among(&mesh);
     tri_mesh_free(&mesh);
 }
 
@@ -95,6 +112,29 @@ static int64_t encroached(const struct tri_mesh *mesh, const struct tri_options 
     return n;
 }
 
+/* What has no reason of its own gets the one that the report of the run makes likely. */
+static void test_settle_counts(void **state)
+{
+    (void)state;
+    const int64_t found[TRI_EXCUSES + 1] = {1, 2, 3, 4, 5, 6, 70};
+    const struct {
+        struct tri_refine_report report;
+        enum tri_excuse gets;
+    } cases[] = {
+        {{0}, TRI_EXCUSE_PRECISION},
+        {{.given_up = {[TRI_EXCUSE_PROTECTED] = 8, [TRI_EXCUSE_PRECISION] = 8}}, TRI_EXCUSE_PRECISION},
+        {{.given_up = {[TRI_EXCUSE_PROTECTED] = 9, [TRI_EXCUSE_PRECISION] = 8}}, TRI_EXCUSE_PROTECTED},
+        {{.gated = 1, .given_up = {[TRI_EXCUSE_PROTECTED] = 9}}, TRI_EXCUSE_DEFERRED},
+        {{.fenced = 1}, TRI_EXCUSE_DEFERRED},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        int64_t count[TRI_EXCUSES];
+        tri_settle_counts(&cases[i].report, found, count);
+        for (int k = 0; k < TRI_EXCUSES; k++)
+            assert_int_equal(count[k], found[k] + (k == (int)cases[i].gets ? found[TRI_EXCUSES] : 0));
+    }
+}
+
 static void test_encroached(void **state)
 {
     (void)state;
@@ -135,7 +175,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_find_work),  cmocka_unit_test(test_count_bad), cmocka_unit_test(test_excuses),
-        cmocka_unit_test(test_encroached), cmocka_unit_test(test_check),
+        cmocka_unit_test(test_encroached), cmocka_unit_test(test_check),     cmocka_unit_test(test_settle_counts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

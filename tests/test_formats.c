@@ -54,12 +54,10 @@ static char *bytes_of(tri_write_call *write, const struct tri_grid *grid, size_t
     return bytes;
 }
 
-static void test_boundary(void **state)
+static void assert_three_pieces(const struct tri_grid *grid)
 {
-    (void)state;
-    struct array_grid arrays = ell();
     struct tri_boundary boundary;
-    assert_int_equal(tri_boundary_make(&boundary, array_grid(&arrays), NULL), TRI_OK);
+    assert_int_equal(tri_boundary_make(&boundary, grid, NULL), TRI_OK);
     assert_int_equal(boundary.n_pieces, 3);
     static const int64_t nodes[] = {0, 1, 2, 2, 5, 4, 7, 6, 6, 3, 0};
     static const int64_t n[] = {3, 5, 3};
@@ -71,6 +69,17 @@ static void test_boundary(void **state)
         assert_true(boundary.pieces[p].outer && !boundary.pieces[p].closed);
     }
     tri_boundary_free(&boundary);
+}
+
+static void test_boundary(void **state)
+{
+    (void)state;
+    struct array_grid arrays = ell();
+    struct tri_boundary boundary;
+    assert_three_pieces(array_grid(&arrays));
+    struct tri_grid unknown = *array_grid(&arrays);
+    unknown.neighbors = NULL; /* the boundary is among the segments; one of them is inside */
+    assert_three_pieces(&unknown);
     arrays.grid.n_segments = 0; /* one marker: one loop */
     assert_int_equal(tri_boundary_make(&boundary, array_grid(&arrays), NULL), TRI_OK);
     assert_int_equal(boundary.n_pieces, 1);

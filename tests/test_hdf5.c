@@ -136,21 +136,6 @@ static int remove_files(void **state)
     return 0;
 }
 
-static char *bytes_of(const char *name, size_t *n)
-{
-    FILE *file = fopen(name, "rb");
-    assert_non_null(file);
-    assert_int_equal(fseek(file, 0, SEEK_END), 0);
-    *n = (size_t)ftell(file);
-    rewind(file);
-    char *bytes = malloc(*n + 1);
-    assert_non_null(bytes);
-    assert_int_equal(fread(bytes, 1, *n, file), *n);
-    bytes[*n] = 0;
-    fclose(file);
-    return bytes;
-}
-
 static void test_what_is_written_is_read(void **state)
 {
     (void)state;
@@ -204,7 +189,7 @@ static void test_small_files_are_small(void **state)
     struct tri_error error;
     size_t n;
     assert_int_equal(write_lattice(&SMALL, true, 0, &error), TRI_OK);
-    free(bytes_of("x.h5", &n));
+    free(file_bytes("x.h5", &n));
     assert_true(n < 20000);
 }
 
@@ -220,9 +205,9 @@ static void test_same_mesh_same_bytes(void **state)
         other.rows_in_tile = i / 3 == 1 ? 1 : 300;
         other.one_by_one = i / 3 == 2;
         assert_int_equal(write_lattice(&lattice, true, narrow[i % 3], &error), TRI_OK);
-        char *first = bytes_of("x.h5", &n);
+        char *first = file_bytes("x.h5", &n);
         assert_int_equal(write_lattice(&other, true, narrow[i % 3], &error), TRI_OK);
-        char *second = bytes_of("x.h5", &m);
+        char *second = file_bytes("x.h5", &m);
         assert_int_equal(n, m);
         assert_int_equal(memcmp(first, second, n), 0);
         free(first);
@@ -248,7 +233,7 @@ static void test_xdmf(void **state)
     struct tri_error error;
     size_t n;
     assert_int_equal(write_lattice(&SMALL, true, 0, &error), TRI_OK);
-    char *text = bytes_of("x.xdmf", &n);
+    char *text = file_bytes("x.xdmf", &n);
     assert_non_null(strstr(text, "TopologyType=\"Triangle\" NumberOfElements=\"32\""));
     assert_non_null(strstr(text, "<DataItem Dimensions=\"25 2\" NumberType=\"Float\" Precision=\"8\" Format=\"HDF\">"
                                  "x.h5:/points</DataItem>"));
@@ -402,7 +387,7 @@ static void test_no_such_mesh(void **state)
     write_words("y", "0 2 0 0\n", 8);
     refuse("y", TRI_CANNOT_READ, "not an HDF5 file");
     assert_int_equal(write_lattice(&SMALL, true, 0, &error), TRI_OK);
-    char *bytes = bytes_of("x.h5", &n);
+    char *bytes = file_bytes("x.h5", &n);
     write_words("y", bytes, n / 2);
     refuse("y", TRI_CANNOT_READ, "not an HDF5 file");
     free(bytes);

@@ -37,7 +37,7 @@ static struct tri_pause restored(const struct kept *kept, const struct tri_mesh 
 {
     struct tri_pause pause = kept->head;
     struct tri_pause_array to[TRI_PAUSE_ARRAYS];
-    assert_true(tri_pause_is_head(&pause, mesh->n_triangles, mesh->n_subs));
+    assert_true(tri_pause_is_head(&pause, mesh->n_triangles, mesh->n_subs, mesh->n_triangles));
     assert_true(tri_pause_reserve(&pause));
     tri_pause_arrays(&pause, to);
     for (int k = 0; k < TRI_PAUSE_ARRAYS; k++) {
@@ -146,14 +146,14 @@ static void test_heads_that_cannot_be(void **state)
     struct tri_pause pause, head;
     tri_refiner_show(refiner, &pause);
     tri_pause_head(&pause, &head);
-    assert_true(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs));
+    assert_true(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs, mesh.n_triangles));
     int32_t *const counts[] = {&head.queue.n_nodes, &head.queue.first[7], &head.queue.last[7], &head.queue.count[7],
                                &head.queue.next, &head.queue.n_batch, &head.queue.free_node, &head.n_encroached,
                                &head.next_listed, &head.limit, &head.stage, &head.step};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
         const int32_t old = *counts[i];
         *counts[i] = -5;
-        assert_false(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs));
+        assert_false(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs, mesh.n_triangles));
         *counts[i] = old;
     }
     const struct {
@@ -163,11 +163,13 @@ static void test_heads_that_cannot_be(void **state)
     for (size_t i = 0; i < sizeof most / sizeof *most; i++) {
         const int32_t old = *most[i].at;
         *most[i].at = most[i].most + 1;
-        assert_false(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs));
+        assert_false(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs, mesh.n_triangles));
         *most[i].at = old;
     }
+    assert_true(head.n_worklist > 0);
+    assert_false(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs, head.n_worklist - 1));
     head.queue.head = head.queue.tail - TRI_WINDOW - 1;
-    assert_false(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs));
+    assert_false(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs, mesh.n_triangles));
     tri_refiner_free(refiner);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);

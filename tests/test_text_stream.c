@@ -24,39 +24,6 @@ static double sites[] = {0.5, 0.5, 0.25, 0.125, 1, 2, 3, 4};
 static const struct tri_pslg FIGURE = {.n_holes = 2, .holes = sites, .n_regions = 1, .regions = sites + 4};
 static char *words[] = {"program", "-pq\n30"};
 
-/* --- the lattice as a grid */
-
-static void point(const void *user, int64_t i, struct tri_grid_point *point)
-{
-    lattice_point(user, i, point->at);
-    point->marker = lattice_point_marker(i);
-}
-
-static double attribute(const void *user, int64_t i, int32_t k)
-{
-    (void)user;
-    return lattice_attribute(i, k);
-}
-
-static void triangle(const void *user, int64_t i, int64_t nodes[6]) { lattice_corners(user, i, nodes); }
-
-static double column(const void *user, int64_t i, int32_t k) { return lattice_column(user, lattice_region(i), k); }
-
-static void segment(const void *user, int64_t i, struct tri_grid_edge *segment)
-{
-    lattice_ends(user, i, segment->ends);
-    segment->marker = lattice_segment_marker(i);
-}
-
-static struct tri_grid grid_of(const struct lattice *l, const struct tri_text_options *o)
-{
-    return (struct tri_grid){.user = l, .base = o->base, .has_markers = o->markers, .n_points = lattice_points(l),
-                             .n_triangles = lattice_triangles(l), .n_segments = lattice_segments(l),
-                             .n_attributes = l->n_attributes, .n_columns = l->n_columns, .n_nodes = 3,
-                             .figure = o->figure, .point = point, .attribute = attribute, .triangle = triangle,
-                             .column = column, .segment = segment};
-}
-
 /* --- files */
 
 static const char *names[] = {"x.node", "x.ele", "x.poly"};
@@ -74,7 +41,9 @@ static enum tri_status open_all(struct tri_output_set *set, struct tri_text_opti
 static void write_grid(const struct lattice *lattice, struct tri_text_options o)
 {
     struct tri_output_set set;
-    const struct tri_grid grid = grid_of(lattice, &o);
+    struct tri_grid grid = lattice_grid(lattice, o.markers);
+    grid.base = o.base;
+    grid.figure = o.figure;
     assert_int_equal(open_all(&set, &o, NULL), TRI_OK);
     assert_int_equal(tri_write_node(o.node, &grid, NULL, NULL), TRI_OK);
     assert_int_equal(tri_write_ele(o.ele, &grid, NULL, NULL), TRI_OK);
@@ -126,20 +95,6 @@ static enum tri_status write_stream(const struct lattice *lattice, struct tri_te
     return status;
 }
 
-static char *bytes_of(const char *name)
-{
-    FILE *file = fopen(name, "rb");
-    assert_non_null(file);
-    assert_int_equal(fseek(file, 0, SEEK_END), 0);
-    const size_t n = (size_t)ftell(file);
-    rewind(file);
-    char *bytes = malloc(n + 1);
-    assert_int_equal(fread(bytes, 1, n, file), n);
-    bytes[n] = 0;
-    fclose(file);
-    return bytes;
-}
-
 static int remove_files(void **state)
 {
     (void)state;
@@ -152,12 +107,13 @@ static int remove_files(void **state)
 static void compare(const struct lattice *lattice, const struct tri_text_options *o, double estimate)
 {
     char *wanted[3];
+    size_t n;
     write_grid(lattice, *o);
     for (int i = 0; i < 3; i++)
-        wanted[i] = bytes_of(names[i]);
+        wanted[i] = file_bytes(names[i], &n);
     assert_int_equal(write_stream(lattice, *o, estimate, NULL), TRI_OK);
     for (int i = 0; i < 3; i++) {
-        char *found = bytes_of(names[i]);
+        char *found = file_bytes(names[i], &n);
         assert_string_equal(found, wanted[i]);
         free(found);
         free(wanted[i]);

@@ -24,39 +24,6 @@ static const struct lattice SMALL = {5, 1, 2, 2, false, false}, PLAIN = {11, 3, 
 static const char *const names[] = {"x.vtu", "x.msh"};
 enum { FILES = 2 };
 
-/* --- the lattice as a grid */
-
-static void point(const void *user, int64_t i, struct tri_grid_point *point)
-{
-    lattice_point(user, i, point->at);
-    point->marker = lattice_point_marker(i);
-}
-
-static double attribute(const void *user, int64_t i, int32_t k)
-{
-    (void)user;
-    return lattice_attribute(i, k);
-}
-
-static void triangle(const void *user, int64_t i, int64_t nodes[6]) { lattice_corners(user, i, nodes); }
-
-static double column(const void *user, int64_t i, int32_t k) { return lattice_column(user, lattice_region(i), k); }
-
-static void segment(const void *user, int64_t i, struct tri_grid_edge *segment)
-{
-    lattice_ends(user, i, segment->ends);
-    segment->marker = lattice_segment_marker(i);
-}
-
-static struct tri_grid grid_of(const struct lattice *l, bool markers)
-{
-    return (struct tri_grid){.user = l, .has_markers = markers, .n_points = lattice_points(l),
-                             .n_triangles = lattice_triangles(l), .n_segments = lattice_segments(l),
-                             .n_attributes = l->n_attributes, .n_columns = l->n_columns, .n_nodes = 3,
-                             .point = point, .attribute = attribute, .triangle = triangle, .column = column,
-                             .segment = segment};
-}
-
 /* --- files */
 
 static enum tri_status write_all(const struct tri_grid *grid, struct tri_error *error)
@@ -91,19 +58,6 @@ static enum tri_status write_kept(const struct lattice *lattice, bool markers, i
     return status;
 }
 
-static char *bytes_of(const char *name, size_t *n)
-{
-    FILE *file = fopen(name, "rb");
-    assert_non_null(file);
-    assert_int_equal(fseek(file, 0, SEEK_END), 0);
-    *n = (size_t)ftell(file);
-    rewind(file);
-    char *bytes = malloc(*n + 1);
-    assert_int_equal(fread(bytes, 1, *n, file), *n);
-    fclose(file);
-    return bytes;
-}
-
 static int remove_files(void **state)
 {
     (void)state;
@@ -115,15 +69,15 @@ static int remove_files(void **state)
 
 static void compare(const struct lattice *lattice, bool markers, int void_meshes)
 {
-    const struct tri_grid grid = grid_of(lattice, markers);
+    const struct tri_grid grid = lattice_grid(lattice, markers);
     char *wanted[FILES];
     size_t size[FILES], n;
     assert_int_equal(write_all(&grid, NULL), TRI_OK);
     for (int i = 0; i < FILES; i++)
-        wanted[i] = bytes_of(names[i], &size[i]);
+        wanted[i] = file_bytes(names[i], &size[i]);
     assert_int_equal(write_kept(lattice, markers, void_meshes, ".", NULL), TRI_OK);
     for (int i = 0; i < FILES; i++) {
-        char *found = bytes_of(names[i], &n);
+        char *found = file_bytes(names[i], &n);
         assert_int_equal(n, size[i]);
         assert_memory_equal(found, wanted[i], n);
         free(found);

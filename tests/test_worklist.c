@@ -30,7 +30,7 @@ static void test_a_set_holds_what_is_listed(void **state)
 }
 
 /* A square with enough points for several shares, and bounds that about half of its triangles miss. */
-static struct tri_mesh queue_encroached(struct tri_refine_options *quality)
+static struct tri_mesh half_bad(struct tri_refine_options *quality)
 {
     struct tri_pslg pslg = support_square(1, 50000, 3);
     struct tri_options options = tri_defaults();
@@ -65,13 +65,13 @@ static void test_fill(void **state)
 {
     (void)state;
     struct tri_refine_options quality;
-    struct tri_mesh mesh = queue_encroached(&quality);
+    struct tri_mesh mesh = half_bad(&quality);
     struct par_ids worklist = {0};
     double radius;
     assert_int_equal(par_worklist_fill(&worklist, &mesh, &quality, false, &support_backwards, &radius, NULL), TRI_OK);
     assert_holds_all_bad(&worklist, &mesh, &quality, radius);
     for (int32_t t = 0; t < mesh.n_triangles; t++)
-        assert_int_equal(mesh.tri[t].state, 0);
+        assert_int_equal(mesh.tri[t].life, 0);
     free(worklist.item);
     tri_mesh_free(&mesh);
 }
@@ -81,7 +81,7 @@ static void test_fill_again(void **state)
 {
     (void)state;
     struct tri_refine_options quality;
-    struct tri_mesh mesh = queue_encroached(&quality);
+    struct tri_mesh mesh = half_bad(&quality);
     struct par_ids worklist = {0};
     struct tri_refine_report report;
     double radius;
@@ -100,7 +100,7 @@ static void test_filter(void **state)
 {
     (void)state;
     struct tri_refine_options quality, stricter;
-    struct tri_mesh mesh = queue_encroached(&quality);
+    struct tri_mesh mesh = half_bad(&quality);
     struct par_ids worklist = {0}, found = {0};
     double radius;
     stricter = tri_refine_defaults();

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Runs the tests in a build that counts lines (preset coverage), prints how many lines of triangle/ and sched/ they
-# reach, file by file, and fails where that is below 95% of all or 80% of a file. Needs gcovr (Debian: gcovr; PyPI: gcovr).
+# reach, file by file, and fails where that is below 95% of all or 80% of a file. Needs gcovr (Debian: gcovr; PyPI:
+# gcovr).
 # Usage: tools/coverage.sh [CTEST_OPTION...]     default: -L 'full|ranks'
 set -eu
 cd "$(dirname "$0")/.."

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Builds the Debian packages of the tree as it is, tracked files alone, and says what lintian thinks of them if it is there.
+# Builds the Debian packages of the tree as it is, tracked files alone, and says what lintian thinks of them if it is
+# there.
 # Usage: tools/deb.sh [OUTPUT_FOLDER]     default: out/deb
 # What is needed: apt-get install build-essential debhelper, and apt-get build-dep . in this folder.
 set -eu

@@ -197,8 +197,8 @@ def section():
     poly.ring(circle(30, -6.5, 1.25, 24, 0.5), 20)
     poly.hole(30, -6.5)
     for x, y, attribute, area in ((20, -14, 1, 8), (5, -6, 2, 4), (5, -1.5, 3, 2), (16.5, 2, 4, 0.25), (30, 3, 5, 3),
-                                  (17.5, 2, 6, 0.125), (16.0625, -5, 7, 0.0078125), (30, 7.875, 8, 0.0625), (30, -1.5, 3, 2),
-                                  (31.375, -6.5, 9, 0.0625)):
+                                  (17.5, 2, 6, 0.125), (16.0625, -5, 7, 0.0078125), (30, 7.875, 8, 0.0625),
+                                  (30, -1.5, 3, 2), (31.375, -6.5, 9, 0.0625)):
         poly.region(x, y, attribute, area)
     return poly
 
@@ -959,12 +959,14 @@ FOUND = [
          "-pc: that coordinate counts as 0, for the judge, too", ()),
     Case("regress/below_dxf.poly", None, "outline from a drawing, nearly a rectangle",
          "-q20: no angle below; two triangles stayed so without need", ()),
-    Case("regress/drifted_chain.poly", None, "a figure 2000 times as high as wide, with segments ulps beside each other",
+    Case("regress/drifted_chain.poly", None,
+         "a figure 2000 times as high as wide, with segments ulps beside each other",
          "-q33: angles kept but at small ones; once 145 were not, beside a subsegment that could not be split", ()),
     Case("regress/spike_levels.poly", None, "spike 8e-9 wide at its mouth, on a house in a triangle",
          "-q25D: at most 1,000 triangles; its sides were cut into parts too short to mend the angles beside them", ()),
     Case("regress/flat_hole.poly", None, "a hole that is a sliver: its short side lies nearly along the long ones",
-         "-q33: no angle below beside it; the triangle at the short side was taken for one in the sliver, and stayed", ()),
+         "-q33: no angle below beside it; the triangle at the short side was taken for one in the sliver, and stayed",
+         ()),
     Case("regress/bundle_levels.poly", None, "segments side by side, their ends nearer to each other than they are",
          "-a0.00065D: some thousand triangles; once each new point in the bundle asked for more, without end", ()),
 ]

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Builds for other processors and another C library, runs the fast tests there, and compares the meshes of a list of runs,
-# byte by byte, with those of this machine's own build.
+# Builds for other processors and another C library, runs the fast tests there, and compares the meshes of a list of
+# runs, byte by byte, with those of this machine's own build.
 # Usage: tools/ports.sh [quick] [PORT...]
 #   arm64   64 bits, fused multiply-add at hand; by qemu-user
 #   s390x   big-endian, FLT_EVAL_METHOD 1; by qemu-user

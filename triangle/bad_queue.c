@@ -83,7 +83,28 @@ static int lowest_bit(uint64_t word)
     return bit;
 }
 
-bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, struct tri_entry *entry)
+/* The entries behind one that is taken lie scattered, being in order of their edges: what the point of the next will
+ * look at is fetched while that of this one is worked on, and the triangle of the one after it. */
+static void fetch_ahead(const struct tri_bad_queue *queue, int32_t node, const struct tri_mesh *mesh)
+{
+    if (node == NIL)
+        return;
+    const struct tri_node *soon = &queue->node[node];
+    const struct tri_triangle *t = &mesh->tri[soon->entry.t];
+    if (soon->next != NIL)
+        __builtin_prefetch(&mesh->tri[queue->node[soon->next].entry.t]);
+    if (t->life != soon->entry.life || !tri_is_live(t))
+        return;
+    for (int k = 0; k < 3; k++) {
+        __builtin_prefetch(&mesh->xy[t->v[k]]);
+        __builtin_prefetch(&mesh->feature[t->v[k]]);
+        if (t->n[k] >= 0)
+            __builtin_prefetch(&mesh->tri[tri_of(t->n[k])]);
+    }
+}
+
+bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, const struct tri_mesh *mesh,
+                             struct tri_entry *entry)
 {
     for (int word = 0; 64 * word < limit; word++) {
         if (!queue->filled[word])
@@ -100,6 +121,7 @@ bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, struct tri_
             queue->filled[word] &= ~(UINT64_C(1) << bucket % 64);
         queue->node[node].next = queue->free_node;
         queue->free_node = node;
+        fetch_ahead(queue, queue->first[bucket], mesh);
         return true;
     }
     return false;
@@ -113,22 +135,22 @@ static void take_batch(struct tri_bad_queue *queue, const struct tri_triangle *t
     for (uint32_t i = 0; i < n; i++) {
         struct tri_entry entry = queue->window[queue->head++ & MASK];
         queue->batch[kept] = entry;
-        kept += tri[entry.t].state == entry.state;
+        kept += tri[entry.t].life == entry.life;
     }
     queue->next = 0;
     queue->n_batch = kept;
 }
 
-bool tri_bad_queue_pop(struct tri_bad_queue *queue, const struct tri_triangle *tri, struct tri_entry *entry)
+bool tri_bad_queue_pop(struct tri_bad_queue *queue, const struct tri_mesh *mesh, struct tri_entry *entry)
 {
-    if (tri_bad_queue_pop_angle(queue, TRI_BUCKETS, entry))
+    if (tri_bad_queue_pop_angle(queue, TRI_BUCKETS, mesh, entry))
         return true;
     while (queue->next == queue->n_batch) {
         if (queue->head == queue->tail && queue->n_cold > 0)
             refill(queue);
         if (queue->head == queue->tail)
             return false;
-        take_batch(queue, tri);
+        take_batch(queue, mesh->tri);
     }
     *entry = queue->batch[queue->next++];
     return true;

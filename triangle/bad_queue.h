@@ -1,17 +1,17 @@
 /* The triangles that wait to be refined.
  *
  * Two kinds. Those whose angle is bad wait in buckets, one for the urgent ones, which come first (refine.c says which),
- * the others by their shortest edge, shortest first: what grows out of the
- * smallest features is settled before larger triangles are asked, and the mesh comes out smaller (docs/performance.md:
- * by a third at 33 degrees against worst angle first). Within a bucket (an eighth of an octave) first come, first
- * served. Those that are only too large wait first in, first out, which spreads sizes evenly, but in a window: when it
- * is full its older half goes to a stack and is taken back when the window has run empty. So the work stays where the
- * cache is, for any size of mesh.
+ * the others by their shortest edge, shortest first: what grows out of the smallest features is settled before larger
+ * triangles are asked, and the mesh comes out smaller (docs/performance.md: by a third at 33 degrees against worst
+ * angle first). Within a bucket (a quarter of an octave of the squared length) first come, first served. Those that are
+ * only too large wait first in, first out, which spreads sizes evenly, but in a window: when it is full its older half
+ * goes to a stack and is taken back when the window has run empty. So the work stays where the cache is, for any size
+ * of mesh.
  *
- * An entry names a triangle and the state it had; whoever takes an entry compares. Two of three entries for sizes
- * are out of date when their turn comes, for the points before them were inserted nearby. So these leave the window in
- * batches, of which those are kept that are up to date: a loop without a branch that depends on it, which could not be
- * predicted. */
+ * An entry names a triangle, and which life of its number it was in; whoever takes an entry compares. Two of three
+ * entries for sizes are out of date when their turn comes, for the points before them were inserted nearby. So these
+ * leave the window in batches, of which those are kept that are up to date: a loop without a branch that depends on it,
+ * which could not be predicted. */
 #ifndef TRIANGLE_BAD_QUEUE_H
 #define TRIANGLE_BAD_QUEUE_H
 
@@ -25,7 +25,7 @@ enum { TRI_URGENT_BUCKET = 0, TRI_BUCKETS = 512, TRI_WINDOW = 1 << 13, TRI_BATCH
 
 struct tri_entry {
     tri_triangle_id t;
-    uint32_t state;
+    uint32_t life;
 };
 
 struct tri_node {
@@ -71,10 +71,12 @@ static inline bool tri_bad_queue_push_size(struct tri_bad_queue *queue, struct t
  * O(buckets). */
 int tri_bad_queue_median(const struct tri_bad_queue *queue);
 
-/* Takes the next entry from the buckets below `limit`. False where none waits there. */
-bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, struct tri_entry *entry);
+/* Takes the next entry from the buckets below `limit`. False where none waits there. mesh: what entries speak of, of
+ * which that is fetched ahead which the entry after this one will need. */
+bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, const struct tri_mesh *mesh,
+                             struct tri_entry *entry);
 
-/* Takes the next entry: bad angles first. False where nothing waits. tri: what the entries speak of. */
-bool tri_bad_queue_pop(struct tri_bad_queue *queue, const struct tri_triangle *tri, struct tri_entry *entry);
+/* Takes the next entry: bad angles first. False where nothing waits. */
+bool tri_bad_queue_pop(struct tri_bad_queue *queue, const struct tri_mesh *mesh, struct tri_entry *entry);
 
 #endif

@@ -253,7 +253,7 @@ static void take_numbers(struct tri_cavity *c, struct tri_mesh *mesh)
     assert(c->n_tri <= c->n_edges);
     for (int32_t i = c->n_tri; i < c->n_edges; i++) {
         assert(mesh->n_triangles < mesh->triangle_capacity);
-        mesh->tri[mesh->n_triangles].state = 0;
+        mesh->tri[mesh->n_triangles].life = 0;
         c->tri[i] = mesh->n_triangles++;
     }
     c->tri[c->n_edges] = c->tri[0];
@@ -315,7 +315,7 @@ static void fill_chain(struct tri_cavity *c, struct tri_mesh *mesh, tri_vertex_i
         t->n[1] = tri_code(c->tri[i + 1], 2);
         t->n[2] = tri_code(before, 1);
         t->region = edge->region;
-        t->state++;
+        t->life++;
         tri_relink(mesh, edge->outer, edge->a, tri_code(triangle, 0));
         before = triangle;
     }

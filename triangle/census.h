@@ -13,8 +13,8 @@ extern "C" {
 double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                        const struct tri_executor *executor);
 
-/* TRI_TOO_LARGE where the area bounds ask for more triangles than one mesh can hold; tri_refine asks first.
- * O(triangles). */
+/* TRI_TOO_LARGE where the area bounds ask for more triangles than one mesh can hold; tri_refine asks first, and
+ * so does a schedule. O(triangles). */
 enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                                  const struct tri_executor *executor, struct tri_error *error);
 

@@ -201,7 +201,7 @@ static void move_share(void *context, size_t share)
             at->n[k] = from->n[old] >= 0 ? new_code(s, from->n[old]) : from->n[old];
         }
         at->region = 0;
-        at->state = 0;
+        at->life = 0;
     }
 }
 

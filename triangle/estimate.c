@@ -122,7 +122,7 @@ static double rough_log2(double x)
 static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id t)
 {
     struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
-    double longest2 = fmax(shape.l[0], fmax(shape.l[1], shape.l[2]));
+    double longest2 = tri_larger(shape.l[0], tri_larger(shape.l[1], shape.l[2]));
     double octaves = 0.5 * rough_log2(longest2 / shape.l[shape.shortest]);
     double gap = tri_gap_cost(mesh, t, &shape), angle = fmin(options->min_angle, TRI_USUAL_ANGLE);
     if (tri_is_hopeless(mesh, tri_final_angle(options), t, &shape))

@@ -47,7 +47,9 @@
 #include "triangle/feature_size.h"
 
 #include <assert.h>
+#include <stdlib.h>
 
+#include "triangle/grow.h"
 #include "triangle/quality.h"
 #include "triangle/small_angle.h"
 
@@ -62,6 +64,11 @@ static bool is_beside(double edge, double left, double right) { return left <= r
 struct estimate {
     struct tri_mesh *mesh;
     tri_vertex_id own[TRI_MOST_SHARES + 1]; /* share i: vertices own[i] .. own[i + 1] - 1 */
+    struct crossing {
+        tri_triangle_id *item; /* [n] triangles of the share that have a vertex of another one */
+        int32_t n, capacity;
+        bool lost;             /* no memory to tell */
+    } crossing[TRI_MOST_SHARES];
 };
 
 static void divide_vertices(struct estimate *e)
@@ -85,33 +92,59 @@ static void estimate_corner(struct tri_mesh *mesh, const struct tri_triangle *t,
     mesh->feature[t->v[k]] = tri_lesser(mesh->feature[t->v[k]], size);
 }
 
-/* The share's triangles at its own vertices, or at others. */
-static void estimate_share(const struct estimate *e, size_t share, bool own)
+static bool owns(const struct estimate *e, size_t share, tri_vertex_id v)
 {
+    return v >= e->own[share] && v < e->own[share + 1];
+}
+
+static void note_crossing(struct crossing *crossing, tri_triangle_id t)
+{
+    if (!crossing->lost && tri_grow(&crossing->item, &crossing->capacity, crossing->n + 1, sizeof *crossing->item))
+        crossing->item[crossing->n++] = t;
+    else
+        crossing->lost = true;
+}
+
+/* The share's triangles at its own vertices. */
+static void estimate_own(void *context, size_t share)
+{
+    struct estimate *e = context;
     struct tri_mesh *mesh = e->mesh;
     struct tri_range range = tri_share(share, mesh->n_triangles);
-    for (int32_t i = range.first; i < range.last; i++) {
+    for (tri_vertex_id v = e->own[share]; v < e->own[share + 1]; v++)
+        mesh->feature[v] = HUGE_VAL;
+    for (tri_triangle_id i = range.first; i < range.last; i++) {
         const struct tri_triangle *t = &mesh->tri[i];
         if (!tri_is_live(t))
             continue;
-        bool is_mine[3], any = false;
-        for (int k = 0; k < 3; k++)
-            any |= is_mine[k] = (t->v[k] >= e->own[share] && t->v[k] < e->own[share + 1]) == own;
-        if (!any)
-            continue;
         struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
+        int own = 0;
         for (int k = 0; k < 3; k++)
-            if (is_mine[k])
+            if (owns(e, share, t->v[k])) {
                 estimate_corner(mesh, t, &shape, k);
+                own++;
+            }
+        if (own < 3)
+            note_crossing(&e->crossing[share], i);
     }
 }
 
-static void estimate_own(void *context, size_t share)
+/* And at those of other shares. Where there was no memory to note which these are, all are looked at. */
+static void estimate_others(const struct estimate *e, size_t share)
 {
-    const struct estimate *e = context;
-    for (tri_vertex_id v = e->own[share]; v < e->own[share + 1]; v++)
-        e->mesh->feature[v] = HUGE_VAL;
-    estimate_share(e, share, true);
+    struct tri_mesh *mesh = e->mesh;
+    const struct crossing *crossing = &e->crossing[share];
+    struct tri_range range = tri_share(share, mesh->n_triangles);
+    int32_t n = crossing->lost ? range.last - range.first : crossing->n;
+    for (int32_t i = 0; i < n; i++) {
+        const struct tri_triangle *t = &mesh->tri[crossing->lost ? range.first + i : crossing->item[i]];
+        if (!tri_is_live(t))
+            continue;
+        struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
+        for (int k = 0; k < 3; k++)
+            if (!owns(e, share, t->v[k]))
+                estimate_corner(mesh, t, &shape, k);
+    }
 }
 
 void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *executor)
@@ -119,8 +152,10 @@ void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *exe
     struct estimate e = {.mesh = mesh};
     divide_vertices(&e);
     tri_execute(executor, tri_shares(mesh->n_triangles), estimate_own, &e);
-    for (size_t share = 0; share < tri_shares(mesh->n_triangles); share++)
-        estimate_share(&e, share, false);
+    for (size_t share = 0; share < tri_shares(mesh->n_triangles); share++) {
+        estimate_others(&e, share);
+        free(e.crossing[share].item);
+    }
 }
 
 double tri_feature_inside(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, struct tri_point p, bool sized)

@@ -1,6 +1,6 @@
 /* The mesh: flat index arrays that every stage of the triangulator works on.
  *
- * A triangle is 32 bytes: three corners counter-clockwise, three links, a region, a state word. Link e lies opposite
+ * A triangle is 32 bytes: three corners counter-clockwise, three links, a region, a life. Link e lies opposite
  * corner e.
  *   link >= 0   code 4 * t + f: the neighbour is triangle t, and its edge f is the same edge seen from the other side;
  *   link <  0   ~s: the edge is subsegment s, whose record names the triangle on either side.
@@ -54,7 +54,7 @@ struct tri_triangle {
     tri_vertex_id v[3];   /* corners, counter-clockwise; v[0] == TRI_NONE: the number is free */
     tri_link n[3];        /* links, see above */
     tri_region_id region;
-    uint32_t state;       /* counts the lives of this number: by it a queue entry tells whether it is still this one */
+    uint32_t life;        /* counts the lives of this number: by it a queue entry tells whether it is still this one */
 };
 
 struct tri_subsegment {

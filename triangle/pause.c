@@ -41,11 +41,11 @@ static bool is_queue(const struct tri_bad_queue *q)
     return is;
 }
 
-bool tri_pause_is_head(const struct tri_pause *h, int64_t n_triangles, int64_t n_subs)
+bool tri_pause_is_head(const struct tri_pause *h, int64_t n_triangles, int64_t n_subs, int64_t n_worklist)
 {
     const bool is_place = h->stage >= 0 && h->stage <= TRI_PAUSE_LAST_STAGE && h->step >= 0 &&
                           h->step <= TRI_PAUSE_LAST_STEP && h->limit >= 0 && h->limit <= TRI_BUCKETS;
-    return is_place && is_queue(&h->queue) && h->n_worklist <= n_triangles && h->next_listed >= 0 &&
+    return is_place && is_queue(&h->queue) && h->n_worklist <= n_worklist && h->next_listed >= 0 &&
            h->next_listed <= h->n_worklist && h->n_encroached >= 0 &&
            (!h->in_hand || (h->hand.t >= 0 && h->hand.t < n_triangles)) && (h->n_encroached == 0 || n_subs > 0) &&
            h->report.inserted_free >= 0 && h->report.inserted_on_segments >= 0;

@@ -12,7 +12,7 @@
 struct tri_pause {
     struct tri_refine_report report;
     struct tri_bounds bounds; /* for the angle that is worked for now */
-    int64_t beyond, back;     /* see refine.c, as for what follows */
+    int64_t above, back;      /* see refine.c, as for what follows */
     int32_t stage, step, limit, next_listed, n_worklist, in_hand;
     struct tri_entry hand;
     struct tri_bad_queue queue;
@@ -39,8 +39,9 @@ void tri_pause_arrays(const struct tri_pause *pause, struct tri_pause_array arra
 /* The same without the arrays, every byte of it set: as it can be written and compared. */
 void tri_pause_head(const struct tri_pause *pause, struct tri_pause *head);
 
-/* Could this be such a head of a refiner on a mesh with so many triangles and subsegments? */
-bool tri_pause_is_head(const struct tri_pause *head, int64_t n_triangles, int64_t n_subs);
+/* Could this be such a head of a refiner on a mesh with so many triangles and subsegments, with so many in its worklist
+ * (all triangles, where there is none)? */
+bool tri_pause_is_head(const struct tri_pause *head, int64_t n_triangles, int64_t n_subs, int64_t n_worklist);
 
 /* Gives a head arrays of its own, to be filled. False: no memory, and it has none. */
 bool tri_pause_reserve(struct tri_pause *head);

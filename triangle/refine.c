@@ -48,7 +48,7 @@ static const double EQUILATERAL = 2.3094010767585030580, IDEAL = 0.85;
 /* In degrees: a bound that is soon reached around points that were inserted for a larger one. */
 static const double BACK_ANGLE = 30;
 
-enum stage { EASY_STAGE, USUAL_STAGE, BEYOND_STAGE, BACK_STAGE, LAST_STAGE };
+enum stage { EASY_STAGE, USUAL_STAGE, ABOVE_STAGE, BACK_STAGE, LAST_STAGE };
 
 enum step { NOT_BEGUN, FIRST_PASS, SECOND_PASS };
 
@@ -65,7 +65,7 @@ struct tri_refiner {
     struct tri_cavity cavity;
     struct tri_bad_queue queue;
     bool sized;       /* the triangle in hand asks for a point because of sizes, not of angles */
-    int64_t beyond;   /* how many points more may be inserted for angles above TRI_USUAL_ANGLE */
+    int64_t above;    /* how many points more may be inserted for angles above TRI_USUAL_ANGLE */
     int64_t back;     /* and, once that was too many, for BACK_ANGLE */
     enum step step;
     int limit;        /* buckets from here on wait for the second pass */
@@ -131,12 +131,12 @@ static bool push_angle(struct tri_refiner *r, tri_triangle_id triangle, double s
     const struct tri_triangle *t = &r->mesh->tri[triangle];
     assert(triangle >= 0 && tri_is_live(t));
     int bucket = encroaches_opposite(r, t) ? TRI_URGENT_BUCKET : bucket_of(r, shortest);
-    return tri_bad_queue_push_angle(&r->queue, (struct tri_entry){triangle, t->state}, bucket);
+    return tri_bad_queue_push_angle(&r->queue, (struct tri_entry){triangle, t->life}, bucket);
 }
 
 static bool push(struct tri_refiner *r, tri_triangle_id triangle, enum tri_badness badness, double shortest)
 {
-    struct tri_entry entry = {triangle, r->mesh->tri[triangle].state};
+    struct tri_entry entry = {triangle, r->mesh->tri[triangle].life};
     assert(badness != TRI_GOOD && tri_is_live(&r->mesh->tri[triangle]));
     return badness == TRI_BAD_ANGLE ? push_angle(r, triangle, shortest)
                                     : tri_bad_queue_push_size(&r->queue, entry, badness == TRI_BAD_SIZE);
@@ -153,7 +153,7 @@ static bool judge_edge(struct tri_refiner *r, const struct tri_cavity_edge *edge
     bool is_bad = area2 > area2_bound;
     if (r->options->unsuitable)
         is_bad = is_bad || tri_is_unsuitable(&r->criterion, r->mesh->tri[edge->triangle].v);
-    struct tri_entry entry = {edge->triangle, r->mesh->tri[edge->triangle].state};
+    struct tri_entry entry = {edge->triangle, r->mesh->tri[edge->triangle].life};
     return tri_bad_queue_push_size(&r->queue, entry, is_bad);
 }
 
@@ -365,21 +365,21 @@ static bool tolerates(const struct tri_refiner *r, const struct tri_cavity_edge 
     return !(r->options->min_angle > 0) && tri_is_protected(r->options, &r->mesh->sub[~edge->outer]);
 }
 
-/* Does the new point lie on the wrong side of a wall, or see it under too wide an angle? Sets *beyond. */
-static bool encroaches(const struct tri_refiner *r, int32_t i, bool *beyond)
+/* Does the new point lie on the wrong side of a wall, or see it under too wide an angle? Sets *behind. */
+static bool encroaches(const struct tri_refiner *r, int32_t i, bool *behind)
 {
     const struct tri_cavity *c = &r->cavity;
     const struct tri_cavity_edge *edge = &c->edge[i], *next = edge + 1;
     assert(i >= 0 && i < c->n_edges && edge->outer < 0); /* a wall */
     double cross = edge->area2, dot = edge->ra.x * next->ra.x + edge->ra.y * next->ra.y;
-    *beyond = false;
+    *behind = false;
     if (dot >= 0 && cross > 0)
         return false;
     bool in_lens = dot < 0 && dot * dot > r->criterion.bounds.lens_cos2 * edge->ra.l * next->ra.l;
     if (in_lens && !tolerates(r, edge))
         return true;
-    *beyond = tri_orient2d(c->p, r->mesh->xy[edge->a], r->mesh->xy[next->a]) <= 0;
-    return *beyond;
+    *behind = tri_orient2d(c->p, r->mesh->xy[edge->a], r->mesh->xy[next->a]) <= 0;
+    return *behind;
 }
 
 /* The subsegment to split instead of inserting the new point: one that hides it, else the first that it encroaches. */
@@ -387,10 +387,10 @@ static tri_sub_id find_encroached(const struct tri_refiner *r)
 {
     tri_sub_id found = TRI_NONE;
     for (int32_t i = 0; i < r->cavity.n_wall; i++) {
-        bool beyond;
-        if (!encroaches(r, r->cavity.wall[i], &beyond))
+        bool behind;
+        if (!encroaches(r, r->cavity.wall[i], &behind))
             continue;
-        if (beyond)
+        if (behind)
             return ~r->cavity.edge[r->cavity.wall[i]].outer;
         if (found == TRI_NONE)
             found = ~r->cavity.edge[r->cavity.wall[i]].outer;
@@ -479,16 +479,16 @@ static void lower_bound(struct tri_refiner *r, double degrees)
     r->criterion.bounds.lens_cos2 = degrees > 0 ? r->criterion.bounds.lens_cos2 : lens_cos2;
 }
 
-/* A point for angles beyond the usual one: once what the mesh can afford has been spent, less is asked for. */
+/* A point for angles above the usual one: once what the mesh can afford has been spent, less is asked for. */
 static void count_point(struct tri_refiner *r)
 {
-    if (r->stage < BEYOND_STAGE || r->sized)
+    if (r->stage < ABOVE_STAGE || r->sized)
         return;
-    bool still_beyond = r->beyond >= 0;
-    int64_t left = still_beyond ? --r->beyond : --r->back;
+    bool is_above = r->above >= 0;
+    int64_t left = is_above ? --r->above : --r->back;
     if (left != -1)
         return;
-    lower_bound(r, still_beyond ? BACK_ANGLE : 0);
+    lower_bound(r, is_above ? BACK_ANGLE : 0);
     r->report->hit_cap = true;
 }
 
@@ -512,8 +512,8 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
 {
     for (;;) {
         const struct tri_triangle *t = &r->mesh->tri[entry.t];
-        assert(entry.t >= 0 && entry.state <= t->state);
-        if (t->state != entry.state || !tri_is_live(t))
+        assert(entry.t >= 0 && entry.life <= t->life);
+        if (t->life != entry.life || !tri_is_live(t))
             return DONE;
         struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
         enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
@@ -574,8 +574,8 @@ static bool split_encroached(struct tri_refiner *r)
 /* In the first pass only triangles with short edges are taken, see refine_worklist. */
 static bool next_entry(struct tri_refiner *r)
 {
-    return r->step == FIRST_PASS ? tri_bad_queue_pop_angle(&r->queue, r->limit, &r->hand)
-                                 : tri_bad_queue_pop(&r->queue, r->mesh->tri, &r->hand);
+    return r->step == FIRST_PASS ? tri_bad_queue_pop_angle(&r->queue, r->limit, r->mesh, &r->hand)
+                                 : tri_bad_queue_pop(&r->queue, r->mesh, &r->hand);
 }
 
 static bool work_off(struct tri_refiner *r)
@@ -664,7 +664,7 @@ static bool refine_worklist(struct tri_refiner *r)
     }
     if (!work_off(r))
         return false;
-    while (r->next_listed < r->n_worklist)
+    while (tri_has_sizes(r->options) && r->next_listed < r->n_worklist)
         if (!queue_bad(r, listed(r, r->next_listed++), true) || !work_off(r))
             return false;
     return true;
@@ -679,7 +679,7 @@ static bool refine_worklist(struct tri_refiner *r)
  * fence there is only the usual stage. With a worklist there is no easy one: what it makes bad for the next is not
  * among them.
  *
- * THEOREM (beyond the usual angle). Whatever the bound, for angles above TRI_USUAL_ANGLE no more than 600 + 3/4 n
+ * THEOREM (above the usual angle). Whatever the bound, for angles above TRI_USUAL_ANGLE no more than 600 + 3/4 n
  * points are inserted, n being the triangles of the mesh at that angle. Proof: each is counted (count_point); after
  * 200 + n / 4 of them no triangle is bad by more than BACK_ANGLE, after twice as many again none is bad by its angle.
  * So without sizes and -D the mesh has at most 2.5 n + 1200 triangles. Each of these points may make a triangle too
@@ -693,13 +693,13 @@ static void begin_stages(struct tri_refiner *r)
     r->criterion.bounds = tri_bounds_for(easy ? TRI_SIZES_ANGLE : usual, r->options->conforming);
 }
 
-static void go_beyond(struct tri_refiner *r)
+static void go_above(struct tri_refiner *r)
 {
     assert(!r->options->fence && r->stage != EASY_STAGE);
-    r->beyond = 200 + r->mesh->n_triangles / 4;
-    r->back = 2 * r->beyond;
+    r->above = 200 + r->mesh->n_triangles / 4;
+    r->back = 2 * r->above;
     lower_bound(r, r->options->min_angle);
-    r->stage = BEYOND_STAGE;
+    r->stage = ABOVE_STAGE;
 }
 
 static void next_stage(struct tri_refiner *r)
@@ -713,12 +713,12 @@ static void next_stage(struct tri_refiner *r)
     case USUAL_STAGE:
         r->stage = LAST_STAGE;
         if (r->options->min_angle > TRI_USUAL_ANGLE && !r->options->fence)
-            go_beyond(r);
+            go_above(r);
         return;
-    case BEYOND_STAGE:
+    case ABOVE_STAGE:
         r->stage = LAST_STAGE;
         if (r->report->hit_cap && r->back >= 0) {
-            r->beyond = -1;
+            r->above = -1;
             lower_bound(r, BACK_ANGLE);
             r->stage = BACK_STAGE;
         }
@@ -743,14 +743,18 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
                                 const struct tri_refine_options *options, struct tri_refine_report *report,
                                 struct tri_error *error)
 {
-    struct tri_refiner *r = calloc(1, sizeof *r);
-    *refiner = r;
+    struct tri_refiner *r = NULL;
+    *refiner = NULL;
     memset(report, 0, sizeof *report); /* all its bytes: a pause shows them */
+    enum tri_status status = options->fence || options->part ? TRI_OK : tri_refine_check(mesh, options, NULL, error);
+    if (status)
+        return status;
+    r = calloc(1, sizeof *r);
     if (!r || !tri_bad_queue_init(&r->queue)) {
         free(r);
-        *refiner = NULL;
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for refinement");
     }
+    *refiner = r;
     assert(mesh->n_triangles == 0 || mesh->incidence.n_vertices > 0); /* tri_refine_prepare has been called */
     r->mesh = mesh;
     r->options = options;
@@ -792,7 +796,7 @@ void tri_refiner_show(const struct tri_refiner *r, struct tri_pause *pause)
     memset(pause, 0, sizeof *pause);
     memcpy(&pause->report, r->report, sizeof pause->report);
     pause->bounds = r->criterion.bounds;
-    pause->beyond = r->beyond;
+    pause->above = r->above;
     pause->back = r->back;
     pause->stage = (int32_t)r->stage;
     pause->step = (int32_t)r->step;
@@ -812,7 +816,7 @@ void tri_refiner_go_on(struct tri_refiner *r, struct tri_pause *pause)
     assert(r->step == NOT_BEGUN && r->n_encroached == 0 && !r->encroached);
     *r->report = pause->report;
     r->criterion.bounds = pause->bounds;
-    r->beyond = pause->beyond;
+    r->above = pause->above;
     r->back = pause->back;
     r->stage = (enum stage)pause->stage;
     r->step = (enum step)pause->step;
@@ -835,9 +839,7 @@ enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_option
                            struct tri_refine_report *report, struct tri_error *error)
 {
     struct tri_refiner *refiner = NULL;
-    enum tri_status status = options->fence ? TRI_OK : tri_refine_check(mesh, options, NULL, error);
-    *report = (struct tri_refine_report){0};
-    status = status ? status : tri_refiner_new(&refiner, mesh, options, report, error);
+    enum tri_status status = tri_refiner_new(&refiner, mesh, options, report, error);
     if (!status)
         status = tri_refiner_run(refiner, error);
     tri_refiner_free(refiner);

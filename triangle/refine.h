@@ -120,13 +120,16 @@ struct tri_refine_options tri_refine_defaults(void);
 
 /* Refines until every bad triangle is given up or deferred. On TRI_NO_MEMORY, TRI_TOO_LARGE or TRI_STOPPED
  * (mesh->stop) the mesh is valid and as far as it got; after the last, once mesh->stop is NULL, another call goes on.
+ * TRI_TOO_LARGE comes before anything is done where area bounds ask for more than a mesh holds (tri_refine_check; not
+ * asked within a fence, and of a part).
  * Terminates for any PSLG and any bound. Amortised O(1) a point in practice. */
 enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,
                            struct tri_refine_report *report, struct tri_error *error);
 
 /* The same in pieces, for callers whose more_room may say TRI_NO_ROOM: run returns it with everything in order, and
  * goes on where it was when called again, as if there had been no pause. Meanwhile the mesh's pointers may change, and
- * a part of a mesh may grow. */
+ * a part of a mesh may grow. The mesh, the options and the report are borrowed, until the refiner is freed, which may
+ * be NULL. */
 struct tri_refiner;
 enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *mesh,
                                 const struct tri_refine_options *options, struct tri_refine_report *report,

@@ -230,9 +230,11 @@ static struct gap gap_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_
 {
     int32_t nu, nv;
     tri_parent_id beside[2][8];
-    const tri_parent_id *pu = parents_beside(mesh, u, v, w, beside[0], &nu);
-    const tri_parent_id *pv = parents_beside(mesh, v, u, w, beside[1], &nv);
     struct gap gap = {0, false};
+    const tri_parent_id *pu = parents_beside(mesh, u, v, w, beside[0], &nu);
+    if (nu == 0)
+        return gap;
+    const tri_parent_id *pv = parents_beside(mesh, v, u, w, beside[1], &nv);
     for (int32_t i = 0; i < nu; i++)
         for (int32_t k = 0; k < nv; k++) {
             const struct tri_parent *p = &mesh->parents[pu[i]], *q = &mesh->parents[pv[k]];
@@ -302,6 +304,8 @@ static double cost_across(const struct tri_mesh *mesh, tri_vertex_id u, tri_vert
 static double demand_of(const struct tri_mesh *mesh, tri_triangle_id triangle)
 {
     const struct tri_triangle *t = &mesh->tri[triangle];
+    if (!tri_is_on_parent(mesh, t->v[0]) && !tri_is_on_parent(mesh, t->v[1]) && !tri_is_on_parent(mesh, t->v[2]))
+        return 0;
     struct tri_shape shape = tri_shape_of(mesh->xy, t->v);
     double demand = tri_gap_cost(mesh, triangle, &shape);
     for (int e = 0; e < 3; e++) {

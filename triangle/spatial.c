@@ -56,29 +56,40 @@ enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **place, const st
 
 /* --- and back */
 
-static void restore_name(const struct tri_mesh *mesh, tri_vertex_id *v)
+static inline bool is_callers(const struct tri_mesh *mesh, tri_vertex_id v)
 {
-    if (*v >= 0 && *v < mesh->n_input)
-        *v = mesh->origin[*v];
+    return (uint32_t)v < (uint32_t)mesh->n_input;
 }
 
+/* Looks up a name in any case, so that it need not be guessed whose it is. */
+static inline tri_vertex_id restored_name(const struct tri_mesh *mesh, tri_vertex_id v)
+{
+    tri_vertex_id name = mesh->origin[is_callers(mesh, v) ? v : 0];
+    return is_callers(mesh, v) ? name : v;
+}
+
+/* One question for three corners: where every third vertex is the caller's nobody can guess the answers. */
 static void restore_corners(void *context, size_t share)
 {
     const struct tri_mesh *mesh = context;
     struct tri_range range = tri_share(share, mesh->n_triangles);
-    for (tri_triangle_id t = range.first; t < range.last; t++)
+    for (tri_triangle_id t = range.first; t < range.last; t++) {
+        tri_vertex_id *v = mesh->tri[t].v;
+        if (!is_callers(mesh, v[0]) & !is_callers(mesh, v[1]) & !is_callers(mesh, v[2]))
+            continue;
         for (int k = 0; k < 3; k++)
-            restore_name(mesh, &mesh->tri[t].v[k]);
+            v[k] = restored_name(mesh, v[k]);
+    }
 }
 
 static void restore_ends(const struct tri_mesh *mesh)
 {
     for (tri_sub_id s = 0; s < mesh->n_subs; s++)
         for (int k = 0; k < 2; k++)
-            restore_name(mesh, &mesh->sub[s].v[k]);
+            mesh->sub[s].v[k] = restored_name(mesh, mesh->sub[s].v[k]);
     for (int32_t p = 0; p < mesh->n_parents; p++)
         for (int k = 0; k < 2; k++)
-            restore_name(mesh, &mesh->parents[p].v[k]);
+            mesh->parents[p].v[k] = restored_name(mesh, mesh->parents[p].v[k]);
 }
 
 /* The first of the points at a place, by the caller's numbers: twin[caller's index] = caller's index. */

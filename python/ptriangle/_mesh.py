@@ -234,8 +234,9 @@ def _with_polygons(points, segments, polygons):
     return np.concatenate(all_points), np.concatenate(all_segments)
 
 
-def mesh(points=None, segments=None, *, polygons=None, holes=None, regions=None, point_attributes=None, point_markers=None,
-         segment_markers=None, triangles=None, triangle_attributes=None, triangle_areas=None, **wanted):
+def mesh(points=None, segments=None, *, polygons=None, holes=None, regions=None, point_attributes=None,
+         point_markers=None, segment_markers=None, triangles=None, triangle_attributes=None,
+         triangle_areas=None, **wanted):
     """A triangle mesh of a planar figure; see help(ptriangle)."""
     even_odd = polygons is not None or isinstance(holes, str)
     if polygons is not None:

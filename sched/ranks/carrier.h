@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "triangle/status.h"
+#include "triangle/stop.h"
 
 /* Bytes that grow. */
 struct par_bytes {
@@ -46,6 +47,10 @@ struct par_carrier {
     bool (*transfer)(void *self, const struct par_bytes *out, const struct par_bytes *in);
     /* Collective: the n bytes of all become those of rank 0. */
     bool (*spread)(void *self, void *bytes, size_t n);
+    /* Not collective, by the thread that exchanges: tells all others, once, that this rank has been asked to end, by
+     * `why` > 0. Returns what another has told, or 0. NULL: there is no such way. */
+    int (*pass_on)(void *self, int why);
+    const struct tri_stop *stop; /* asked while the rank waits for others, and has nothing else to do; or NULL */
     const double *share;     /* for tests: [n_ranks + 1] ascending from 0 to 1: rank p owns the part share[p] to
                                 share[p + 1] of the odd columns; NULL: equal parts */
     bool ended;              /* the ranks have agreed on an error: nothing is sent any more */

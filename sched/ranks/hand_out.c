@@ -138,6 +138,15 @@ static int compare_places(const void *left, const void *right)
     return (a->y > b->y) - (a->y < b->y);
 }
 
+static bool are_numbers(const struct handing *h, const struct par_bytes *told)
+{
+    const struct numbered_place *place = (const struct numbered_place *)(const void *)told->at;
+    bool good = told->n % sizeof *place == 0;
+    for (size_t i = 0; good && i < told->n / sizeof *place; i++)
+        good = place[i].number >= h->tiles->n_kept && place[i].number < h->tiles->first[0][h->ranks->carrier->n_ranks];
+    return good;
+}
+
 /* The vertices of own triangles that lie in earlier tiles of others learn their numbers. */
 static void take_numbers(struct handing *h, struct par_bytes *told)
 {
@@ -165,8 +174,10 @@ static enum tri_status exchange_numbers(struct handing *h, enum tri_status statu
         status = no_memory(error);
     status = par_swap(r->carrier, PAR_MOVE_NUMBERS, r->out, r->in, status, error);
     for (int p = 0; p < r->carrier->n_ranks; p++) {
-        if (!status)
+        if (!status && are_numbers(h, &r->in[p]))
             take_numbers(h, &r->in[p]);
+        else if (!status)
+            status = tri_fail(error, TRI_INTERNAL, NULL, 0, "another rank tells of vertices that do not exist");
         free(r->in[p].at);
         r->in[p] = (struct par_bytes){0};
     }

@@ -11,18 +11,24 @@
 /* Counts of MPI are ints. */
 enum { MOST_BYTES = 1 << 30 };
 
+enum { TAG_BYTES, TAG_STOP };
+
 struct messenger {
     struct par_carrier carrier; /* first: what others see */
     MPI_Comm comm;
+    int32_t why;                /* what this rank has told by TAG_STOP; 0: nothing */
+    MPI_Request *telling;       /* [n_ranks] of that */
+    int heard;                  /* messages of others with TAG_STOP */
 };
 
 /* Waits without taking the processor from those who are waited for: ranks may be more than cores. */
-static bool wait_for(MPI_Request *request, int n)
+static bool wait_for(const struct messenger *m, MPI_Request *request, int n)
 {
     struct timespec pause = {0, 1000};
     int done = 0;
     MPI_Status states[2];
     while (MPI_Testall(n, request, &done, states) == MPI_SUCCESS && !done) {
+        (void)tri_stop_is_asked(m->carrier.stop); /* who is asked passes it on: the others end what is waited for */
         nanosleep(&pause, NULL);
         pause.tv_nsec = pause.tv_nsec < 500000 ? 2 * pause.tv_nsec : pause.tv_nsec;
     }
@@ -34,7 +40,7 @@ static bool gather(void *self, const int64_t *mine, int32_t n, int64_t *all)
     const struct messenger *m = self;
     MPI_Request request;
     return MPI_Iallgather(mine, n, MPI_INT64_T, all, n, MPI_INT64_T, m->comm, &request) == MPI_SUCCESS &&
-           wait_for(&request, 1);
+           wait_for(m, &request, 1);
 }
 
 static bool deal(void *self, const int64_t *to, int64_t *from)
@@ -42,7 +48,7 @@ static bool deal(void *self, const int64_t *to, int64_t *from)
     const struct messenger *m = self;
     MPI_Request request;
     return MPI_Ialltoall(to, 1, MPI_INT64_T, from, 1, MPI_INT64_T, m->comm, &request) == MPI_SUCCESS &&
-           wait_for(&request, 1);
+           wait_for(m, &request, 1);
 }
 
 static int piece_of(size_t n, size_t at)
@@ -59,10 +65,12 @@ static bool exchange(const struct messenger *m, const struct par_bytes *out, int
     for (size_t at = 0; good && (at < out->n || at < in->n); at += MOST_BYTES) {
         MPI_Request request[2] = {MPI_REQUEST_NULL, MPI_REQUEST_NULL};
         if (at < in->n)
-            good = MPI_Irecv(in->at + at, piece_of(in->n, at), MPI_BYTE, from, 0, m->comm, &request[0]) == MPI_SUCCESS;
+            good = MPI_Irecv(in->at + at, piece_of(in->n, at), MPI_BYTE, from, TAG_BYTES, m->comm,
+                             &request[0]) == MPI_SUCCESS;
         if (good && at < out->n)
-            good = MPI_Isend(out->at + at, piece_of(out->n, at), MPI_BYTE, to, 0, m->comm, &request[1]) == MPI_SUCCESS;
-        good = good && wait_for(request, 2);
+            good = MPI_Isend(out->at + at, piece_of(out->n, at), MPI_BYTE, to, TAG_BYTES, m->comm,
+                             &request[1]) == MPI_SUCCESS;
+        good = good && wait_for(m, request, 2);
     }
     return good;
 }
@@ -88,10 +96,54 @@ static bool spread(void *self, void *bytes, size_t n)
     for (size_t at = 0; good && at < n; at += MOST_BYTES) {
         MPI_Request request;
         good = MPI_Ibcast((char *)bytes + at, piece_of(n, at), MPI_BYTE, 0, m->comm, &request) == MPI_SUCCESS &&
-               wait_for(&request, 1);
+               wait_for(m, &request, 1);
     }
     return good;
 }
+
+/* --- who has been asked to end */
+
+static void tell_all(struct messenger *m, int why)
+{
+    m->why = why;
+    for (int p = 0; p < m->carrier.n_ranks; p++)
+        if (p != m->carrier.rank)
+            MPI_Isend(&m->why, 1, MPI_INT32_T, p, TAG_STOP, m->comm, &m->telling[p]);
+}
+
+static int hear(struct messenger *m, int from)
+{
+    int32_t why = 0;
+    MPI_Recv(&why, 1, MPI_INT32_T, from, TAG_STOP, m->comm, MPI_STATUS_IGNORE);
+    m->heard++;
+    return why;
+}
+
+static int pass_on(void *self, int why)
+{
+    struct messenger *m = self;
+    MPI_Status status;
+    int there = 0;
+    if (why != 0 && m->why == 0 && m->heard == 0) /* who has told this one has told all */
+        tell_all(m, why);
+    if (MPI_Iprobe(MPI_ANY_SOURCE, TAG_STOP, m->comm, &there, &status) != MPI_SUCCESS || !there)
+        return 0;
+    return hear(m, status.MPI_SOURCE);
+}
+
+/* Collective: what has been told is heard, so that no message is left. */
+static void hear_all(struct messenger *m)
+{
+    int tells = m->why != 0, all = 0;
+    if (MPI_Allreduce(&tells, &all, 1, MPI_INT, MPI_SUM, m->comm) != MPI_SUCCESS)
+        return;
+    while (m->heard < all - tells)
+        hear(m, MPI_ANY_SOURCE);
+    for (int p = 0; p < m->carrier.n_ranks; p++)
+        MPI_Wait(&m->telling[p], MPI_STATUS_IGNORE);
+}
+
+/* --- beginning and end */
 
 static bool is_running(void)
 {
@@ -119,8 +171,10 @@ static bool have_all(MPI_Comm comm, const void *memory)
 
 static void free_messenger(struct messenger *m)
 {
-    if (m)
+    if (m) {
         free(m->carrier.of_each);
+        free(m->telling);
+    }
     free(m);
 }
 
@@ -131,29 +185,40 @@ static struct messenger *messenger_on(MPI_Comm comm)
         return NULL;
     m->comm = comm;
     m->carrier = (struct par_carrier){.self = m, .gather = gather, .deal = deal, .transfer = transfer,
-                                      .spread = spread};
+                                      .spread = spread, .pass_on = pass_on};
     MPI_Comm_rank(comm, &m->carrier.rank);
     MPI_Comm_size(comm, &m->carrier.n_ranks);
-    m->carrier.of_each = malloc((size_t)m->carrier.n_ranks * sizeof *m->carrier.of_each);
-    return m;
-}
-
-struct par_carrier *par_mpi_carrier_new(const void *comm)
-{
-    MPI_Comm copy;
-    if (MPI_Comm_dup(*(const MPI_Comm *)comm, &copy) != MPI_SUCCESS)
-        return NULL;
-    struct messenger *m = messenger_on(copy);
-    if (have_all(copy, m ? m->carrier.of_each : NULL))
-        return &m->carrier;
-    MPI_Comm_free(&copy);
+    const size_t n = (size_t)m->carrier.n_ranks;
+    m->carrier.of_each = malloc(n * sizeof *m->carrier.of_each);
+    m->telling = malloc(n * sizeof *m->telling);
+    for (size_t p = 0; m->telling && p < n; p++)
+        m->telling[p] = MPI_REQUEST_NULL;
+    if (m->carrier.of_each && m->telling)
+        return m;
     free_messenger(m);
     return NULL;
+}
+
+enum tri_status par_mpi_carrier_new(struct par_carrier **carrier, const void *comm, struct tri_error *error)
+{
+    MPI_Comm copy;
+    *carrier = NULL;
+    if (MPI_Comm_dup(*(const MPI_Comm *)comm, &copy) != MPI_SUCCESS)
+        return tri_fail(error, TRI_INTERNAL, NULL, 0, "the communicator cannot be duplicated");
+    struct messenger *m = messenger_on(copy);
+    if (have_all(copy, m)) {
+        *carrier = &m->carrier;
+        return TRI_OK;
+    }
+    MPI_Comm_free(&copy);
+    free_messenger(m);
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the other ranks");
 }
 
 void par_mpi_carrier_free(struct par_carrier *carrier)
 {
     struct messenger *m = carrier->self;
+    hear_all(m);
     MPI_Comm_free(&m->comm);
     free_messenger(m);
 }
@@ -163,10 +228,11 @@ enum tri_status par_stream_on(MPI_Comm comm, const struct tri_figure *figure, co
 {
     if (!is_running())
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "MPI has not been initialised, or has ended");
-    struct par_carrier *carrier = par_mpi_carrier_new(&comm);
-    if (!carrier)
-        return tri_fail(error, TRI_INTERNAL, NULL, 0, "the communicator cannot be duplicated");
-    enum tri_status status = par_stream_over(carrier, figure, settings, sink, error);
+    struct par_carrier *carrier;
+    enum tri_status status = par_mpi_carrier_new(&carrier, &comm, error);
+    if (status)
+        return status;
+    status = par_stream_over(carrier, figure, settings, sink, error);
     tell_traffic(carrier, exchanges);
     par_mpi_carrier_free(carrier);
     return status;

@@ -4,10 +4,11 @@
 
 #include "sched/ranks/carrier.h"
 
-/* comm points to an MPI_Comm, which is duplicated. Collective. NULL: no memory, or no communicator. */
-struct par_carrier *par_mpi_carrier_new(const void *comm);
+/* Collective. *carrier: the ranks of a copy of the MPI_Comm at `comm`; par_mpi_carrier_free frees both. All ranks
+ * return the same status: TRI_NO_MEMORY, if one of them has none. */
+enum tri_status par_mpi_carrier_new(struct par_carrier **carrier, const void *comm, struct tri_error *error);
 
-/* Collective. */
+/* Collective, after the same exchanges on all ranks, whatever came of them. */
 void par_mpi_carrier_free(struct par_carrier *carrier);
 
 #endif

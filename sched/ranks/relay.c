@@ -50,14 +50,20 @@ static bool pack(struct par_relay *relay, const struct tri_tile *tile)
     return true;
 }
 
-/* Points *tile at what is packed; returns its bytes. */
-static size_t unpack(const struct par_relay *relay, const char *bytes, struct tri_tile *tile)
+/* Points *tile at what is packed, of which there are n bytes; returns how many it takes, or 0: it is no tile. */
+static size_t unpack(const struct par_relay *relay, const char *bytes, size_t n, struct tri_tile *tile)
 {
     const void *array[ARRAYS];
     size_t size[ARRAYS], at = filled_up(sizeof *tile);
+    if (n < at)
+        return 0;
     memcpy(tile, bytes, sizeof *tile);
+    if (tile->n_vertices < 0 || tile->n_triangles < 0 || tile->n_segments < 0)
+        return 0;
     sizes_of(relay, tile, size);
     for (int k = 0; k < ARRAYS; k++) {
+        if (n - at < filled_up(size[k]))
+            return 0;
         array[k] = bytes + at;
         at += filled_up(size[k]);
     }
@@ -79,7 +85,7 @@ static size_t next_piece(const struct par_relay *relay)
     size_t most = relay->most_bytes > 0 ? relay->most_bytes : MOST_BYTES, n = 0;
     struct tri_tile tile;
     while (relay->sent + n < relay->tiles.n && n < most)
-        n += unpack(relay, relay->tiles.at + relay->sent + n, &tile);
+        n += unpack(relay, relay->tiles.at + relay->sent + n, relay->tiles.n - relay->sent - n, &tile);
     return n;
 }
 
@@ -88,8 +94,11 @@ static enum tri_status hand_on(struct par_relay *relay, const struct par_bytes *
     enum tri_status status = TRI_OK;
     struct tri_tile tile;
     for (size_t at = 0; !status && at < piece->n;) {
-        at += unpack(relay, piece->at + at, &tile);
+        const size_t n = unpack(relay, piece->at + at, piece->n - at, &tile);
+        if (n == 0)
+            return tri_fail(error, TRI_INTERNAL, NULL, 0, "what came from another rank is no tile");
         status = relay->to->take(relay->to->user, &tile, error);
+        at += n;
     }
     return status;
 }

@@ -29,7 +29,7 @@ bool par_territory_init(struct par_territory *t, const struct par_partition *par
 {
     int n = carrier->n_ranks;
     *t = (struct par_territory){.partition = partition, .rank = carrier->rank, .n_ranks = n,
-                                .n_columns = (partition->n_columns - 1) / 2, .n_rows = (partition->n_rows - 1) / 2};
+                                .n_columns = par_tile_columns(partition), .n_rows = par_tile_rows(partition)};
     int64_t tiles = (int64_t)t->n_columns * t->n_rows;
     t->start = malloc(((size_t)n + 1) * sizeof *t->start);
     t->boxes = malloc((size_t)n * sizeof *t->boxes);
@@ -53,22 +53,14 @@ void par_territory_free(struct par_territory *t)
 
 int par_owner_of_tile(const struct par_territory *t, int32_t tile)
 {
-    int low = 0, high = t->n_ranks; /* start[low] <= tile < start[high] */
-    while (high - low > 1) {
-        int mid = low + (high - low) / 2;
-        if (t->start[mid] <= tile)
-            low = mid;
-        else
-            high = mid;
-    }
-    assert(t->start[low] <= tile && tile < t->start[low + 1]);
-    return low;
+    int rank = par_holder_of(t->start, t->n_ranks, tile);
+    assert(t->start[rank] <= tile && tile < t->start[rank + 1]);
+    return rank;
 }
 
 int32_t par_tile_at(const struct par_territory *t, struct tri_point q)
 {
-    int32_t block = par_block_at(t->partition, 0, q), n_rows = t->partition->n_rows;
-    return block / n_rows / 2 * t->n_rows + block % n_rows / 2;
+    return par_tile_of_block(t->partition, par_block_at(t->partition, 0, q));
 }
 
 int par_owner_at(const struct par_territory *t, struct tri_point q)

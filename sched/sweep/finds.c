@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sched/sweep/deal.h"
+
 /* Free ids in runs shorter than this are forgotten; a run takes the room of two ids. */
 enum { SHORTEST_RUN = 8 };
 
@@ -30,19 +32,9 @@ void par_finds_free(struct par_finds *finds)
     free(finds->first_piece);
 }
 
-/* Counts become places: row by row, in each share by share. */
 static void add_up(struct par_finds *finds)
 {
-    int32_t sum = 0;
-    for (int32_t row = 0; row < finds->n_rows; row++) {
-        finds->start[row] = sum;
-        for (size_t share = 0; share < PAR_FIND_SHARES; share++) {
-            int32_t *at = &finds->count[share * (size_t)finds->n_rows + (size_t)row], count = *at;
-            *at = sum;
-            sum += count;
-        }
-    }
-    finds->start[finds->n_rows] = finds->n = sum;
+    finds->n = par_add_up_counts(finds->count, PAR_FIND_SHARES, finds->n_rows, finds->start);
 }
 
 static void deal_share(void *context, size_t share)

@@ -1,7 +1,7 @@
 /* One file for each array, mapped as far as it has disk space.
  *
  * INVARIANT: arrays in memory take, with all else that the process has there, no more than the bound when they begin to
- * grow. All else is the most that has been seen beside the arrays in use since memory was last trimmed, and a share of
+ * grow. All else is the most that has been seen beside the arrays in use since memory was last trimmed, and a part of
  * the bound for what is to come before they grow again. */
 #define _DEFAULT_SOURCE /* madvise, malloc_trim */
 
@@ -30,9 +30,10 @@
 
 enum { EXTRAS = 12, SHEETS = TRI_ARRAYS + EXTRAS, GRAIN = 1 << 18, LOOK_NANOSECONDS = 1000000 };
 
-/* Shares of the bound: for what grows between two growths of the arrays; and, where the arrays are in files, of what
- * all else leaves of it, for pages of theirs before they are unmapped. */
-static const double TO_COME = 0.1, TOUCHED = 0.3;
+/* Shares of the bound: for what grows between two growths of the arrays, which is at least so many bytes, since a
+ * library that writes files brings code and buffers with the first one; and, where the arrays are in files, of what all
+ * else leaves of it, for pages of theirs before they are unmapped. */
+static const double TO_COME = 0.1, TO_COME_BYTES = 8e6, TOUCHED = 0.3;
 
 /* One array in its file. */
 struct sheet {
@@ -91,7 +92,7 @@ static bool allows(void *user, const struct tri_mesh *mesh, size_t bytes)
 {
     struct par_park *park = user;
     look_at_others(park, mesh);
-    return (double)bytes + park->others + TO_COME * park->memory <= park->memory;
+    return (double)bytes + park->others + fmax(TO_COME * park->memory, TO_COME_BYTES) <= park->memory;
 }
 
 /* --- files */

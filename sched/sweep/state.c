@@ -340,7 +340,8 @@ static enum tri_status get_pause(struct par_state_file *f, const struct head *h,
 {
     struct tri_pause pause;
     par_carry_head(f, &pause, sizeof pause);
-    f->failed = f->failed || !tri_pause_is_head(&pause, h->n_triangles, h->n_subs);
+    const int64_t listed = h->amid ? h->n_worklist : h->n_triangles; /* what the call goes through */
+    f->failed = f->failed || !tri_pause_is_head(&pause, h->n_triangles, h->n_subs, listed);
     if (f->failed)
         return TRI_OK;
     if (f->way == PAR_READ) {

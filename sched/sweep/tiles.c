@@ -80,17 +80,11 @@ static int32_t find_row(const struct par_column *c, struct row_of_numbers *last,
     if ((uint64_t)(number - last->first) < (uint64_t)last->count)
         return last->row;
     const int32_t *start = c->vertices.start;
-    int32_t place = (int32_t)(number - c->first_vertex), low = 0, high = c->vertices.n_rows;
+    const int32_t place = (int32_t)(number - c->first_vertex);
     assert(place >= 0 && place < c->vertices.n);
-    while (high - low > 1) { /* start[low] <= place < start[high] */
-        int32_t middle = low + (high - low) / 2;
-        if (start[middle] <= place)
-            low = middle;
-        else
-            high = middle;
-    }
-    *last = (struct row_of_numbers){c->first_vertex + start[low], start[low + 1] - start[low], low};
-    return low;
+    const int32_t row = par_holder_of(start, c->vertices.n_rows, place);
+    *last = (struct row_of_numbers){c->first_vertex + start[row], start[row + 1] - start[row], row};
+    return row;
 }
 
 /* Has this number, or its lack, a vertex behind the column? */

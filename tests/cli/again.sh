@@ -1,6 +1,6 @@
 # Refining a finished mesh again with the same bounds adds almost nothing: what was given up at corners and in narrow
-# spaces is given up again. (From 33 degrees on, where vertices ran away, a second run takes the short edges for features
-# and goes on from there.)
+# spaces is given up again. (From 33 degrees on, where vertices ran away, a second run takes the short edges for
+# features and goes on from there.)
 
 size_of() { # size_of BASE: triangles
     awk 'NR == 1 { print $1 }' "$1.ele"

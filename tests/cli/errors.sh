@@ -42,6 +42,21 @@ what='a newline in a name'
 y' >.out 2>.err
 complains '^trianglecheck: no\\ny'
 check "one line" sh -c 'test "$(wc -l <.err)" -eq 1'
+mkdir "a
+b"
+cp letter.poly "a
+b/"
+run 0 -p "a
+b/letter"
+says 'Opening a\nb/letter.poly.'
+says 'Writing a\nb/letter.1.node.'
+"$bin/trianglecheck" "--no-
+such" 2>.err
+complains '^trianglecheck: --no-\\nsuch is not an option, or short for several$'
+"$bin/trianglecheck" --poly 2>.err
+complains '^trianglecheck: -p needs a value$'
+rm -r "a
+b"
 if [ -x "$bin/meshplot" ]; then
     "$bin/meshplot" 'no
 y.h5' -o a.png >.out 2>.err
@@ -114,7 +129,7 @@ for signal in TERM INT HUP; do
     fi
     job=$!
     tries=0
-    until ls .tri-* >/dev/null 2>&1 || [ $tries -ge 100 ]; do
+    until ls .tri-* >/dev/null 2>&1 || [ $tries -ge 2400 ]; do
         tries=$((tries + 1))
         sleep 0.05
     done

@@ -41,6 +41,26 @@ full && least=3 || least=1
 check "some runs are kept within ($kept), others refused ($refused)" \
     test $kept -ge $((2 * least)) -a $refused -ge $least
 
+# --- a limit of the process binds as the option does: refused before the work where it cannot do
+if (ulimit -v 300000 && "$bin/ptriangle" -h) >/dev/null 2>&1; then
+    what="ulimit -v, much to do"
+    rm -f out.h5
+    (
+        ulimit -v 300000
+        "$bin/ptriangle" -Qpq20a0.0000002S100000000 s --output out.h5 --threads 2 >.out 2>.err
+    )
+    check "exit code" test $? -eq 1
+    complains 'the bounds ask for about [0-9.]+ million triangles, which take [0-9.]+ [kMG]B of memory; [0-9.]+ [kMG]B are left'
+    what="ulimit -v, little to do"
+    (
+        ulimit -v 300000
+        "$bin/ptriangle" -Qpq20a0.000003S200000 s --output out.h5 --threads 2 >.out 2>.err
+    )
+    check "exit code" test $? -eq 0
+    full || program 0 -Qpq20a0.000003S200000 s --output whole.h5
+    check "the same bytes" cmp whole.h5 out.h5
+fi
+
 # --- what is triangulated alone, or read again, is in memory: it fits, or is refused before
 rm -f ./*
 awk 'BEGIN { n = 100000; print n, 2, 0, 0; srand(1); for (i = 1; i <= n; i++) print i, rand(), rand() }' >p.node
@@ -74,3 +94,13 @@ done
 check "with much memory runs are kept within ($kept), with little refused ($refused)" test $kept -eq 3 -a $refused -eq 3
 program 1 p --output out --memory 1M
 complains '^p\.node: has .* GB of text, which is read into memory; '
+
+# --- the judge: what stays in memory beside the parts of a mesh fits, or the trial is refused before
+program 0 -Qp g.poly --output g1
+what="trianglecheck of many subsegments"
+"$python" "$data/../tests/cli/peak.py" 40000000 "$bin/trianglecheck" --quiet g1 --poly g.poly --memory 40000000 \
+    --threads 2 >.out 2>.err
+check "with enough memory: exit code" test $? -eq 0
+"$bin/trianglecheck" --quiet g1 --poly g.poly --memory 12M >.out 2>.err
+check "with little memory: exit code" test $? -eq 2
+complains '^trianglecheck: to judge 0.04 million vertices .* takes about [0-9.]+ MB of memory; 12.6 MB may be used$'

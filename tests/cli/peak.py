@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 """Runs a program and says how much memory it had at most: peak.py BYTES COMMAND...
 
-Exit code: that of the program; 99: it took more than 1.05 times the bytes and 2 MB, for what libraries and the stacks of
-threads take unasked, which is said on standard error."""
+Exit code: that of the program; 99: it took more than that, which is said on standard error."""
 import os
 import sys
 
@@ -12,7 +11,7 @@ if child == 0:
     os.execvp(command[0], command)
 _, status, usage = os.wait4(child, 0)
 peak = usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
-if peak > 1.05 * bound + 2e6:
+if peak > bound:
     print(f"peak: {peak / 1e6:.0f} MB, allowed {bound / 1e6:.0f} MB", file=sys.stderr)
     sys.exit(99)
 sys.exit(os.waitstatus_to_exitcode(status))

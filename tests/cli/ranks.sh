@@ -275,6 +275,34 @@ check "the other's" test "$(cat .code1)" -eq 124
 check "the checkpoint stays, as after any stop" test -e state/manifest
 rm -rf state
 
+# --- a signal to a task that only waits for the first one, which would work for long: that one is told
+what="a signal to the task that waits"
+checks=$((checks + 1))
+timeout 100 "$MPIEXEC" -n 2 sh -c 'rank=${OMPI_COMM_WORLD_RANK:-$PMI_RANK}
+    "$0" "$@" &
+    echo $! >".pid$rank"
+    wait $!
+    echo $? >".code$rank"' "$bin/ptriangle" -Qpq30a0.00001e letter --output two --checkpoint state --every 0 \
+    >.out 2>.err &
+launcher=$!
+while [ ! -e state/state-0 ] && kill -0 $launcher; do
+    sleep 0.05
+done
+kill -TERM "$(cat .pid1)"
+wait $launcher
+check "the first one's" test "$(cat .code0)" -eq 143
+check "the other's" test "$(cat .code1)" -eq 143
+check "it is told once" test "$(grep -c 'stopped by SIGTERM after .* nothing was written' .err)" -eq 1
+check "the state is kept" grep -q 'to go on: ptriangle -Qpq30a0.00001e letter --output two --every 0 --resume state' .err
+rm -rf state
+
+# --- stopped by the limit of time, the first task writes what it has
+ranks 124 2 -Qpq30a0.00001 letter --output two --write-partial --time-limit 2
+check "it says so" grep -q 'the mesh so far is written' .err
+check "once" test "$(grep -c 'stopped by' .err)" -eq 1
+check "the mesh is there" test -s two.ele
+rm -f two.*
+
 # --- one error, no file
 fresh letter.poly
 ranks 1 3 -Qpq30a0.01 absent.poly

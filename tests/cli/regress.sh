@@ -1,5 +1,5 @@
-# What programs pass to Triangle, and what its users reported: crashes, endless loops, locales, numbers. docs/compatibility.md
-# says which report each part stands for.
+# What programs pass to Triangle, and what its users reported: crashes, endless loops, locales, numbers.
+# docs/compatibility.md says which report each part stands for.
 
 contents() { # contents BASE: all records of the output of BASE, without the closing comments
     for output in "$1".1.*; do
@@ -91,8 +91,8 @@ if [ -n "$comma" ]; then
     what="LC_ALL=$comma"
     check "the mesh depends on the locale" cmp .expected .found
     check "printed numbers depend on the locale" sh -c 'grep -E "area:|angle:|-  +[0-9]" .out | cmp -s - .numbers'
-    # the libraries inside a process that has set it: these tests look for such locales themselves. Not where an emulator
-    # runs the programs by scripts (tools/ports.sh): the locales are in this machine's byte order
+    # the libraries inside a process that has set it: these tests look for such locales themselves. Not where an
+    # emulator runs the programs by scripts (tools/ports.sh): the locales are in this machine's byte order
     for program in switches decimal triangulate; do
         test="$bin/../tests/test_$program"
         [ ! -x "$test" ] || [ "$(head -c 2 "$bin/triangle")" = '#!' ] ||

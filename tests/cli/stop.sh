@@ -14,7 +14,7 @@ mesher() { # mesher CODE PROGRAM WORDS...: must end with the exit code
 
 await() { # await COMMAND...: until it succeeds
     tries=0
-    until "$@" 2>/dev/null || [ $tries -ge 200 ]; do
+    until "$@" 2>/dev/null || [ $tries -ge 2400 ]; do
         tries=$((tries + 1))
         sleep 0.05
     done

@@ -1,8 +1,8 @@
 # Meshes that are swept: the same files as out of memory, refusals, checkpoints.
 #
 # PTRIANGLE_TEST_SWEEP sweeps what would fit in memory, PTRIANGLE_TEST_BLOCK makes many columns of a small mesh. A
-# checkpoint after each column, and a time after which a run is stopped or killed: wherever that falls, what goes on ends
-# with the same bytes; so no test depends on speed.
+# checkpoint after each column, and a time after which a run is stopped or killed: wherever that falls, what goes on
+# ends with the same bytes; so no test depends on speed.
 h5() { "$bin/ptriangle" --version >/dev/null && "$bin/ptriangle" -Qp letter --output .try.h5 >/dev/null 2>&1; }
 
 fresh letter.poly

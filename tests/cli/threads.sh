@@ -37,8 +37,8 @@ same() {
     judge "$base.1" --poly "$base.poly" --max-area "$area" $3
 }
 
-# Areas for 100000 to 300000 triangles; the graded inputs have many of them along their boundaries. Where small angles or
-# narrow channels of the input leave triangles below the bound, their number is bounded.
+# Areas for 100000 to 300000 triangles; the graded inputs have many of them along their boundaries. Where small angles
+# or narrow channels of the input leave triangles below the bound, their number is bounded.
 same 4e-4 -pq30 "--min-angle 30" letter.poly
 same 6e-6 -pq "--min-angle 20" square_random1000.poly
 same 6e6 -pq30 "--max-bad 300" coast/norway_sea.poly

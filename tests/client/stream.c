@@ -1,5 +1,5 @@
-/* A client of ptriangle, as a user would write one: takes a mesh tile by tile, as it is made, and keeps nothing of it but
- * sums; so a solver can take a mesh that no memory holds. It needs no file.
+/* A client of ptriangle, as a user would write one: takes a mesh tile by tile, as it is made, and keeps nothing of it
+ * but sums; so a solver can take a mesh that no memory holds. It needs no file.
  * Usage: stream FILE.poly MIN_ANGLE MAX_AREA MEMORY SCRATCH      memory in MB; what the figure covers is printed */
 #include <stdio.h>
 #include <stdlib.h>

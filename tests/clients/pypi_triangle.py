@@ -1,7 +1,7 @@
 """The Python package `triangle` (PyPI, 20200424) with this project's library in it: pytest runs this.
 
-Its doctests fix the order of triangles and edges, which is arbitrary; the same calls are compared here as sets. The data
-are the package's own.
+Its doctests fix the order of triangles and edges, which is arbitrary; the same calls are compared here as sets. The
+data are the package's own.
 """
 import math
 

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The mesh in other programs' formats, opened by meshio, VTK, Gmsh, h5py and py2dm from PyPI. Where PyPI cannot be reached one
-# line says so, and the exit code is 77.
+# The mesh in other programs' formats, opened by meshio, VTK, Gmsh, h5py and py2dm from PyPI. Where PyPI cannot be
+# reached one line says so, and the exit code is 77.
 # Usage: run_formats.sh BIN_DIR WORK_DIR PYTHON HDF5      HDF5 is 1 where the programs write .h5 files
 set -eu
 bin=$1

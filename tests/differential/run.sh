@@ -1,8 +1,8 @@
 #!/bin/sh
 # Compares our `triangle` and our triangulate() with Triangle 1.6 on generated inputs (differential.py). Triangle comes
-# as the Python package `triangle`, from PyPI, into a virtual environment in the work folder, which later runs use again;
-# it is not part of this project. PTRIANGLE_ORACLE_PYTHON names a Python that has it already. Without either: one line
-# and exit code 77.
+# as the Python package `triangle`, from PyPI, into a virtual environment in the work folder, which later runs use
+# again; it is not part of this project. PTRIANGLE_ORACLE_PYTHON names a Python that has it already. Without either: one
+# line and exit code 77.
 # Usage: run.sh BIN_DIR WORK_DIR C_COMPILER LIBTRIANGLE.a|"" (without it: the program alone)
 set -u
 here=$(cd "$(dirname "$0")" && pwd)

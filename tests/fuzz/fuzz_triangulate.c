@@ -70,7 +70,8 @@ static void take_switches(struct bytes *b, char *to, size_t size)
 {
     static const char *const words[] = {"p", "r", "q", "q20", "q30", "q33.5", "a", "a1", "a0.01", "u", "A", "c",
                                         "D", "j", "e", "v", "n", "B", "P", "N", "E", "I", "O", "z", "o2", "Y", "YY",
-                                        "S7", "i", "F", "l", "s", "C", "V", "w", "W", "q.", "a-1", "q99", "-", "Q", "0"};
+                                        "S7", "i", "F", "l", "s", "C", "V", "w", "W", "q.", "a-1", "q99",
+                                        "-", "Q", "0"};
     *to = 0;
     for (int n = bytes_below(b, MOST_LETTERS); n > 0; n--) {
         size_t length = strlen(to);

@@ -194,8 +194,8 @@ static void judge_threads(const struct outcome *first, const struct tri_pslg *ps
     if (generate(&o, pslg, 3, &error))
         judge_fault(verdict, "threads", "on 3 threads: %s", error.text);
     else if (!same_meshes(&first->mesh, &o.mesh))
-        judge_fault(verdict, "threads", "%d triangles on 1 thread, another mesh of %d on 3", (int)first->mesh.n_triangles,
-                    (int)o.mesh.n_triangles);
+        judge_fault(verdict, "threads", "%d triangles on 1 thread, another mesh of %d on 3",
+                    (int)first->mesh.n_triangles, (int)o.mesh.n_triangles);
     tri_mesh_free(&o.mesh);
 }
 
@@ -229,8 +229,8 @@ static int32_t triangles_of(const struct torture_case *as, const struct outcome 
 }
 
 /* The schedule's mesh has about as many triangles as that of one sequential call, in cells of its own choice nearly
- * as many; tiny cells have many seams. Just below the usual angle small edges spread as the order has it. The sides of a
- * narrow space are halved until their parts are about as long as it is wide, and order decides on the last halving:
+ * as many; tiny cells have many seams. Just below the usual angle small edges spread as the order has it. The sides of
+ * a narrow space are halved until their parts are about as long as it is wide, and order decides on the last halving:
  * what such spaces take may be twice as much. */
 static void judge_schedule_size(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
@@ -294,7 +294,7 @@ static void judge_again(const struct outcome *first, struct verdict *verdict)
     struct tri_reconstruct_options how = {.use_segments = true, .refine = true, .base = 1};
     enter(verdict, "rebuilding");
     o.options.quality.max_area /= 2;
-    /* The short edges that a bound beyond the usual one has left are features of the mesh: asked again it would go on. */
+    /* Short edges that a bound above the usual one has left are features of the mesh: asked again it would go on. */
     if (o.options.quality.min_angle > TRI_USUAL_ANGLE)
         o.options.quality.min_angle = 30;
     o.options.quality.region_areas = true;

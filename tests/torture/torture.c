@@ -206,7 +206,8 @@ static void summarise(const struct torture *t)
 
 /* --- arguments */
 
-enum { SEED = 1, COUNT, FAMILIES, LIST, NEAR, FILE_NAME, SWITCHES, BLOCK, AGAIN, OUT, MINIMISE, IGNORE, SECONDS, VERBOSE };
+enum { SEED = 1, COUNT, FAMILIES, LIST, NEAR, FILE_NAME, SWITCHES, BLOCK, AGAIN, OUT, MINIMISE, IGNORE, SECONDS,
+       VERBOSE };
 
 static const struct option options[] = {{"seed", 1, NULL, SEED},
                                         {"count", 1, NULL, COUNT},
@@ -300,8 +301,8 @@ static void run_all(struct torture *t)
         if (!make_case(t, i, &c))
             exit(2);
         if (t->verbose) {
-            printf("seed %llu %s -%s block %d points %d segments %d\n", (unsigned long long)c.seed, c.family, c.switches,
-                   (int)c.block, (int)c.figure.pslg.n_points, (int)c.figure.pslg.n_segments);
+            printf("seed %llu %s -%s block %d points %d segments %d\n", (unsigned long long)c.seed, c.family,
+                   c.switches, (int)c.block, (int)c.figure.pslg.n_points, (int)c.figure.pslg.n_segments);
             fflush(stdout);
         }
         run_case(t, &c);

@@ -68,21 +68,25 @@ struct check_opens {
     struct check_open *at;
 };
 
-/* Triangles in a row. */
+/* Triangles in a row. Of a part the first arrays lie in its room; where the whole mesh is one part they are the
+ * caller's. The others, and the room, are the part's own, and serve the next part again. */
 struct check_part {
     int64_t first; /* triangle */
     int32_t n_triangles, n_points, n_half_edges;
     const int32_t *triangles;     /* [n_triangles][3] corners */
     const double *points;         /* [n_points][2] */
     const int64_t *vertex;        /* [n_points] their numbers in the mesh, ascending; NULL: the same */
-    const int64_t *neighbors;     /* [n_triangles][3] as given, or NULL .. */
-    const int32_t *own_neighbors; /* .. or those of the arrays, or NULL: not given */
+    const int64_t *neighbors;       /* [n_triangles][3] as given, of a part, .. */
+    const int32_t *whole_neighbors; /* .. or of the whole mesh; both NULL: not given */
     const double *attributes;     /* [n_triangles][n_attributes], the last counts; NULL: not given, or not looked at */
     int32_t n_attributes;
 
     /* edges.c */
     int32_t *entry_of;    /* [n_points + 1] into entry */
-    uint64_t *entry;      /* [n_half_edges] see there */
+    union {
+        uint64_t *entry;  /* [n_half_edges] see there */
+        int64_t *corners; /* [n_half_edges] by their numbers in the mesh, while a part is read */
+    };
     int32_t *link;        /* [n_half_edges] the same edge in the neighbour; -1: open */
     uint8_t *constrained; /* [n_half_edges] bits */
     int32_t *turns;       /* [n_points] see stars.c */

@@ -99,7 +99,7 @@ void tri_check_release_part(struct checker *c)
 /* A corner of the part as it is given: in the caller's arrays, or as it has just been read. */
 static int64_t given_corner(const struct checker *c, int64_t h)
 {
-    return c->whole != NULL ? c->part.triangles[h] : (int64_t)c->part.entry[h];
+    return c->whole != NULL ? c->part.triangles[h] : c->part.corners[h];
 }
 
 static bool is_no_vertex(const struct checker *c, int64_t h)
@@ -225,11 +225,10 @@ static enum tri_status read_part(struct checker *c, bool *good)
 {
     struct check_part *p = &c->part;
     struct check_room *r = p->room;
-    int64_t *corners = (int64_t *)p->entry; /* not needed yet */
-    enum tri_status status = tri_check_read(c, TRI_CHECK_CORNERS, p->first, p->n_triangles, corners);
+    enum tri_status status = tri_check_read(c, TRI_CHECK_CORNERS, p->first, p->n_triangles, p->corners);
     if (status != TRI_OK || !(*good = judge_corners(c)) || !check_good(c, TRI_CHECK_ARRAYS))
         return status;
-    mark(r, corners, p->n_half_edges);
+    mark(r, p->corners, p->n_half_edges);
     status = number(c);
     if (status == TRI_OK)
         status = read_points(c);
@@ -253,7 +252,7 @@ static bool take_arrays(struct checker *c)
     p->n_points = m->n_points;
     p->triangles = m->triangles;
     p->points = m->points;
-    p->own_neighbors = m->neighbors;
+    p->whole_neighbors = m->neighbors;
     p->attributes = check_wants_regions(c) ? m->attributes : NULL;
     p->n_attributes = m->n_attributes;
     return judge_corners(c);

@@ -1,4 +1,4 @@
-/* What lies behind triangulate(): from struct triangulateio to a PSLG or a mesh, through the stages, and back.
+/* From struct triangulateio to a PSLG or a mesh, and from a mesh back (run.h has what lies between).
  *
  * Everything that can fail comes before the first change of the caller's structs: the arrays of the output are all
  * allocated before the first of them is filled. */
@@ -7,8 +7,9 @@
 
 #include "triangle/dropin/switches.h"
 #include "triangle/dropin/triangle.h"
+#include "triangle/mesh.h"
+#include "triangle/pslg.h"
 #include "triangle/reconstruct.h"
-#include "triangle/generate.h"
 
 #define REAL TRI_REAL /* as clients of Triangle have it */
 
@@ -33,11 +34,5 @@ void tri_io_input_free(struct tri_io_input *input);
 enum tri_status tri_io_output(const struct tri_mesh *mesh, const struct tri_io_input *input,
                               const struct tri_switches *switches, const struct triangulateio *in,
                               struct triangulateio *out, struct triangulateio *vorout, struct tri_error *error);
-
-/* triangulate_with, with the refinement that is given (its user is the options, never NULL; NULL: tri_refine); the
- * executor (or NULL) runs what comes in pieces. */
-int tri_io_triangulate(const char *switches, const struct triangulateio *in, struct triangulateio *out,
-                       struct triangulateio *vorout, const struct triangulate_options *options, tri_refine_call *refine,
-                       const struct tri_executor *executor);
 
 #endif

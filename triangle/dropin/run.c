@@ -1,4 +1,6 @@
 /* The stages behind triangulate(), and what is told about them. */
+#include "triangle/dropin/run.h"
+
 #include <stdio.h>
 
 #include "triangle/dropin/io.h"

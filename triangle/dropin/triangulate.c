@@ -6,7 +6,7 @@
 
 #include <stddef.h>
 
-#include "triangle/dropin/io.h"
+#include "triangle/dropin/run.h"
 
 /* What clients in other languages, and objects compiled against Triangle's own header, rely on. */
 #define AT(field, offset) _Static_assert(offsetof(struct triangulateio, field) == (offset), #field " has moved")

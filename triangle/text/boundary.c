@@ -14,7 +14,8 @@
 struct side {
     int64_t from, to;
     int32_t marker;
-    bool used;
+    bool used;     /* by a triangle, while segments are told from the boundary; then by a loop */
+    bool boundary;
 };
 
 struct builder {
@@ -56,7 +57,7 @@ static void list_sides(struct builder *b)
         b->grid->triangle(b->grid->user, t, nodes);
         for (int k = 0; k < 3; k++)
             if (neighbors[k] < 0)
-                b->sides[n++] = (struct side){nodes[(k + 1) % 3], nodes[(k + 2) % 3], 0, false};
+                b->sides[n++] = (struct side){nodes[(k + 1) % 3], nodes[(k + 2) % 3], 0, false, true};
     }
     assert(n == b->n);
     sort_sides(b);
@@ -97,18 +98,18 @@ static void use_sides(struct builder *b, const char *on_segment)
     }
 }
 
-/* Only sides with a triangle, and none beyond, stay. */
+/* Only sides with a triangle, and none on the other side, stay. */
 static void keep_boundary(struct builder *b)
 {
     int64_t n = 0;
     for (int64_t i = 0; i < b->n; i++) {
-        const struct side side = b->sides[i];
-        const int64_t beyond = find(b, side.to, side.from);
-        b->loop[i] = side.used && !(has_side(b, beyond, side.to, side.from) && b->sides[beyond].used);
+        struct side *side = &b->sides[i];
+        const int64_t other = find(b, side->to, side->from);
+        side->boundary = side->used && !(has_side(b, other, side->to, side->from) && b->sides[other].used);
     }
     for (int64_t i = 0; i < b->n; i++)
-        if (b->loop[i])
-            b->sides[n++] = (struct side){b->sides[i].from, b->sides[i].to, 0, false};
+        if (b->sides[i].boundary)
+            b->sides[n++] = (struct side){b->sides[i].from, b->sides[i].to, 0, false, true};
     b->n = n;
 }
 
@@ -123,7 +124,7 @@ static bool list_sides_of_segments(struct builder *b)
         struct tri_grid_edge segment;
         b->grid->segment(b->grid->user, s, &segment);
         for (int k = 0; k < 2; k++) {
-            b->sides[n++] = (struct side){segment.ends[k], segment.ends[1 - k], 0, false};
+            b->sides[n++] = (struct side){segment.ends[k], segment.ends[1 - k], 0, false, false};
             on_segment[segment.ends[k]] = 1;
         }
     }

@@ -1,0 +1,114 @@
+/* What shares find, row by row: dealt, or left where it is, as a naive list has it; and runs of ids. */
+#include "sched/sweep/finds.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { IDS = 5000, ROWS = 7, EMPTY_ROW = 4 };
+
+/* Ids are found in runs of a row, one in eleven is not; no share finds any of EMPTY_ROW. -1: not found. */
+static int32_t row_of(int32_t id)
+{
+    int32_t row = id / 13 * 5 % ROWS;
+    return id % 11 == 3 || row == EMPTY_ROW ? -1 : row;
+}
+
+static int32_t note_of(int32_t id) { return 3 * id + 1; }
+
+static void find_all(struct par_finds *finds)
+{
+    assert_true(par_finds_begin(finds, ROWS));
+    for (size_t share = 0; share < PAR_FIND_SHARES; share++) {
+        struct par_finder finder = par_finder_of(finds, share);
+        const struct tri_range range = par_finds_share(share, IDS);
+        for (int32_t id = range.first; id < range.last; id++)
+            if (row_of(id) >= 0)
+                par_find_noted(&finder, id, row_of(id), note_of(id));
+        assert_true(par_finder_end(&finder));
+    }
+}
+
+/* The ids of a row, ascending; returns how many. */
+static int32_t list_row(int32_t row, int32_t list[IDS])
+{
+    int32_t n = 0;
+    for (int32_t id = 0; id < IDS; id++)
+        if (row_of(id) == row)
+            list[n++] = id;
+    return n;
+}
+
+static void test_deal(void **state)
+{
+    (void)state;
+    struct par_finds finds;
+    find_all(&finds);
+    assert_true(par_finds_deal(&finds, NULL));
+    for (int32_t row = 0, at = 0; row < ROWS; row++) {
+        int32_t list[IDS], n = list_row(row, list);
+        assert_int_equal(finds.start[row], at);
+        assert_int_equal(finds.start[row + 1], at + n);
+        assert_memory_equal(finds.item + at, list, (size_t)n * sizeof *list);
+        at += n;
+    }
+    par_finds_free(&finds);
+}
+
+static void test_sort(void **state)
+{
+    (void)state;
+    struct par_finds finds;
+    find_all(&finds);
+    assert_true(par_finds_sort(&finds));
+    assert_int_equal(finds.first_piece[0], 0);
+    for (int32_t row = 0, sum = 0; row < ROWS; row++) {
+        int32_t list[IDS], n = list_row(row, list), at = 0;
+        for (int32_t p = finds.first_piece[row]; p < finds.first_piece[row + 1]; p++)
+            for (int32_t i = 0; i < finds.piece[p].n; i++, at++) {
+                assert_true(at < n);
+                assert_int_equal(finds.piece[p].item[i], list[at]);
+                assert_int_equal(finds.piece[p].note[i], note_of(list[at]));
+            }
+        assert_int_equal(at, n);
+        assert_int_equal(finds.start[row], sum);
+        sum += n;
+        assert_int_equal(finds.start[row + 1], sum);
+    }
+    assert_int_equal(finds.first_piece[EMPTY_ROW], finds.first_piece[EMPTY_ROW + 1]);
+    par_finds_free(&finds);
+}
+
+/* Ids 0 .. 7, 20 .. 22, 30 .. 39: the second run is too short to be kept. */
+static void test_runs(void **state)
+{
+    (void)state;
+    struct par_ids list = {0};
+    struct par_ranges ranges = {0};
+    for (int32_t id = 0; id < 40; id++)
+        if (id < 8 || (id >= 20 && id < 23) || id >= 30)
+            assert_true(par_ids_add(&list, id));
+    par_finds_to_runs(&list);
+    assert_true(par_finds_add_runs(&list, &ranges));
+    assert_int_equal(ranges.n, 2);
+    assert_true(ranges.item[0].next == 0 && ranges.item[0].end == 8);
+    assert_true(ranges.item[1].next == 30 && ranges.item[1].end == 40);
+    free(list.item);
+    free(ranges.item);
+    free(ranges.below);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_deal),
+        cmocka_unit_test(test_sort),
+        cmocka_unit_test(test_runs),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,15 @@
+/* What lies behind triangulate(), whoever refines: that of libtriangle.a (triangle/dropin/triangulate.c) and that of
+ * libptriangle.a (sched/triangulate.c). */
+#ifndef TRIANGLE_DROPIN_RUN_H
+#define TRIANGLE_DROPIN_RUN_H
+
+#include "triangle/dropin/triangle.h"
+#include "triangle/generate.h"
+
+/* triangulate_with, with the refinement that is given (its user is the options, never NULL; NULL: tri_refine); the
+ * executor (or NULL) runs what comes in pieces. */
+int tri_io_triangulate(const char *switches, const struct triangulateio *in, struct triangulateio *out,
+                       struct triangulateio *vorout, const struct triangulate_options *options, tri_refine_call *refine,
+                       const struct tri_executor *executor);
+
+#endif
