@@ -501,6 +501,20 @@ static bool at_limit(struct tri_refiner *r)
     return r->report->hit_limit = true;
 }
 
+/* Above the usual angle edges must be twice as long, so that afterwards there is room for better angles around
+ * them. */
+static bool is_hopeless(const struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape)
+{
+    const tri_vertex_id *v = r->mesh->tri[triangle].v;
+    const double angle = tri_final_angle(r->options);
+    int k = shape->shortest;
+    if (tri_is_hopeless(r->mesh, angle, triangle, shape))
+        return true;
+    if (r->stage != ABOVE_STAGE || !tri_has_run_away(r->mesh, angle, v[tri_next[k]], v[tri_prev[k]], shape->l[k] / 4))
+        return false;
+    return r->report->hit_cap = true;
+}
+
 /* Somebody asks for the end: between two points the mesh is in order. */
 static bool must_stop(struct tri_refiner *r)
 {
@@ -520,7 +534,7 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         if (badness == TRI_GOOD)
             return DONE;
         r->sized = badness == TRI_BAD_SIZE;
-        if (badness == TRI_BAD_ANGLE && tri_is_hopeless(r->mesh, tri_final_angle(r->options), entry.t, &shape)) {
+        if (badness == TRI_BAD_ANGLE && is_hopeless(r, entry.t, &shape)) {
             if (!tri_is_too_large(&r->criterion, t, &shape))
                 return give_up(r, entry.t, TRI_EXCUSE_INPUT_ANGLE);
             r->sized = true;
