@@ -191,6 +191,7 @@ set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
 
 # meshplot, built where cairo is found.
 set(PTRIANGLE_PLOT_SOURCES
+    drivers/interrupt.c
     drivers/plot_part.c
     drivers/plot_colour.c
     drivers/plot_shade.c

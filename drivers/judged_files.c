@@ -93,10 +93,30 @@ static enum tri_status read_arrays(struct judged_files *f, const struct judged_n
     return status;
 }
 
-static enum tri_status read_input(struct judged_files *f, const char *path, const struct tri_executor *executor,
-                                  struct tri_error *error)
+static double size_of(const char *path)
 {
-    struct tri_read_options options = {.default_base = f->base, .may_be_empty = true, .executor = executor,
+    struct stat status;
+    return path != NULL && stat(path, &status) == 0 ? (double)status.st_size : 0;
+}
+
+/* The input's text is read into memory. */
+static enum tri_status check_input_size(const struct judged_ask *ask, struct tri_error *error)
+{
+    const double size = size_of(ask->input);
+    if (size < JUDGED_WORTH_A_LOOK || size <= ask->memory)
+        return TRI_OK;
+    return tri_fail(error, TRI_NO_MEMORY, ask->input, 0,
+                    "has %.3g MB of text, which is read into memory; %.3g MB may be used", 1e-6 * size,
+                    1e-6 * ask->memory);
+}
+
+static enum tri_status read_input(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
+{
+    const char *path = ask->input;
+    enum tri_status fits = check_input_size(ask, error);
+    if (fits != TRI_OK)
+        return fits;
+    struct tri_read_options options = {.default_base = f->base, .may_be_empty = true, .executor = ask->executor,
                                        .regions_if_any = (f->source.given >> TRI_CHECK_ATTRIBUTES & 1) != 0};
     int32_t base;
     bool points_in_poly;
@@ -142,12 +162,6 @@ static void leave_out_nodes(struct judged_files *f)
     }
 }
 
-static double size_of(const char *path)
-{
-    struct stat status;
-    return path != NULL && stat(path, &status) == 0 ? (double)status.st_size : 0;
-}
-
 bool judged_fits(const char *base, double memory)
 {
     static const char *const suffixes[] = {".node", ".ele", ".poly", ".neigh"};
@@ -166,7 +180,7 @@ static enum tri_status read_texts(struct judged_files *f, const struct judged_as
 {
     f->listed = names->poly != NULL;
     enum tri_status status = TRI_OK;
-    if (judged_fits(ask->base, ask->memory)) {
+    if (judged_fits(ask->base, ask->memory - TEXT_SHARE * size_of(ask->input))) {
         status = read_arrays(f, names, ask->executor, error);
         f->source = take_arrays(f);
     } else {
@@ -220,7 +234,7 @@ enum tri_status judged_read(struct judged_files *f, const struct judged_ask *ask
 {
     enum tri_status status = is_hdf5(ask->base) ? open_h5(f, ask, error) : read_mesh(f, ask, error);
     if (status == TRI_OK && ask->input != NULL)
-        status = read_input(f, ask->input, ask->executor, error);
+        status = read_input(f, ask, error);
     if (status == TRI_OK)
         leave_out_nodes(f);
     f->source.scratch = ask->scratch;

@@ -13,6 +13,9 @@
 #include "triangle/pslg.h"
 #include "triangle/reconstruct.h"
 
+/* Bytes: less is not worth a refusal. */
+#define JUDGED_WORTH_A_LOOK 1e7
+
 struct judged_files {
     struct tri_check_source source; /* what they hold; its memory and scratch are those asked for */
     struct tri_pslg input;

@@ -11,6 +11,7 @@
 
 #include <cairo-svg.h>
 
+#include "drivers/interrupt.h"
 #include "drivers/judged_files.h"
 #include "drivers/judged_words.h"
 #include "drivers/one_line.h"
@@ -310,16 +311,18 @@ static enum tri_status draw(const struct settings *s, const struct plot_mesh *me
 static enum tri_status write_picture(const struct settings *s, const struct plot_mesh *mesh,
                                      const struct plot_shading *shading, struct tri_error *error)
 {
-    struct tri_output_set set;
+    static struct tri_output_set set; /* handlers know its temporary names (interrupt.c) */
     struct tri_output *output;
-    tri_outputs_begin(&set);
-    enum tri_status status = tri_output_open(&set, s->output, &output, error);
+    interrupt_stage("drawing");
+    interrupt_begin(&set);
+    enum tri_status status = interrupt_open(&set, s->output, &output, error);
     if (status == TRI_OK)
         status = draw(s, mesh, shading, output, error);
     if (status == TRI_OK)
-        return tri_outputs_commit(&set, error);
-    tri_outputs_abort(&set);
-    return status;
+        return interrupt_commit(&set, error);
+    interrupt_drop(&set);
+    return interrupt_code() == 0 ? status : tri_fail(error, TRI_STOPPED, "", 0, "stopped by %s; nothing was written",
+                                                     interrupt_cause());
 }
 
 static enum tri_status plot(struct settings *s, struct files *f, struct tri_error *error)
@@ -484,8 +487,15 @@ int main(int argc, char **argv)
     int code = parse_arguments(argc, argv, &settings);
     if (code != 0)
         return code < 0 ? EXIT_SUCCESS : code;
-    if (plot(&settings, &files, &error) != TRI_OK)
+    interrupt_stage("reading");
+    if (!interrupt_start(PTRIANGLE_NAME, 0, false))
+        return fail(TROUBLE, "the system does not take a handler for the end");
+    enum tri_status status = plot(&settings, &files, &error);
+    if (status == TRI_STOPPED)
+        interrupt_told();
+    if (status != TRI_OK)
         code = fail_with(&error);
+    code = status == TRI_STOPPED ? interrupt_code() : code;
     tri_pslg_free(&files.mesh);
     tri_elements_free(&files.elements);
     free(files.block_phase);

@@ -69,8 +69,7 @@ struct run_hooks {
     enum tri_status (*refine)(void *user, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
                               const struct tri_refine_options *options, struct tri_refine_report *report,
                               struct tri_error *error);
-    /* Triangles that the mesh will have, and the share of them by which that may be wrong; NULL: what areas ask for is
-     * all that is known. */
+    /* How many triangles the mesh will have, to the order; NULL: what areas ask for is all that is known. */
     double (*estimate)(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *options);
     bool streams;                   /* refine follows run->plan, and can write files meanwhile */
     bool always_sweep;              /* on ranks, and for tests: also what would fit in memory */

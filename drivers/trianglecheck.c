@@ -48,7 +48,8 @@ static const char help[] = /* in the form that cmake/help.awk makes a manual pag
     "      --threads N      at most so many (default: OMP_NUM_THREADS, or all cores); the verdict is the same\n"
     "      --memory SIZE    memory to use: 500M, 4G (K, M, G, T: powers of 1024), or 60% of what is free (default:\n"
     "                       80%). A mesh that does not fit is judged part by part, with the same verdict; beside a\n"
-    "                       part, its boundary, segments and input, and a byte for each vertex stay in memory\n"
+    "                       part, its boundary, segments and input, and a byte for each vertex stay in memory:\n"
+    "                       what takes too much of that is refused\n"
     "      --scratch DIR    folder for what does not fit then (default: TMPDIR, else /tmp): text files as numbers,\n"
     "                       20 bytes a vertex and 24 a triangle\n"
     "      --json           report in JSON on standard output, instead of lines\n"
@@ -95,6 +96,19 @@ static double memory_to_use(const struct settings *s)
     return resources_memory() * (s->memory_share > 0 ? s->memory_share : USUAL_PERCENT / 100.0);
 }
 
+/* What stays in memory beside the parts leaves room for them, or the trial is refused. */
+static enum tri_status check_memory(const struct judged_files *f, const struct tri_pslg *input, struct tri_error *error)
+{
+    static const double MOST_SHARE = 0.7;
+    const double needed = tri_check_least_bytes(&f->source, input) / MOST_SHARE, allowed = f->source.memory;
+    if (allowed <= 0 || needed < JUDGED_WORTH_A_LOOK || needed <= allowed)
+        return TRI_OK;
+    return tri_fail(error, TRI_NO_MEMORY, "", 0,
+                    "to judge %.3g million vertices and %.3g million subsegments, and what they are compared with, "
+                    "takes about %.3g MB of memory; %.3g MB may be used", 1e-6 * (double)f->source.n_points,
+                    1e-6 * (double)f->source.n_segments, 1e-6 * needed, 1e-6 * allowed);
+}
+
 static enum tri_status judge(const struct settings *s, struct judged_files *f, const struct tri_executor *executor,
                              int threads, struct tri_check_report *report, struct tri_error *error)
 {
@@ -110,7 +124,9 @@ static enum tri_status judge(const struct settings *s, struct judged_files *f, c
         options.executor = executor;
         options.n_threads = threads;
     }
-    return tri_check_from(&f->source, s->input != NULL ? &f->input : NULL, &options, report, error);
+    const struct tri_pslg *input = s->input != NULL ? &f->input : NULL;
+    enum tri_status status = check_memory(f, input, error);
+    return status != TRI_OK ? status : tri_check_from(&f->source, input, &options, report, error);
 }
 
 /* --- arguments */

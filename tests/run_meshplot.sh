@@ -76,5 +76,19 @@ refuses 1 missing -o no.png
 printf '2 3 0\n1 1 2 3\n' >mesh.1.ele
 refuses 1 mesh.1 -o no.png
 
+# a signal while it waits for its input, from a pipe: its number, one line, no file
+mkfifo held.node
+cp mesh.1.ele held.ele
+"$plot" held -o no.png >out.txt 2>err.txt &
+job=$!
+exec 3>held.node # once it has begun to read
+kill -TERM $job
+wait $job
+code=$?
+exec 3>&-
+[ $code -eq 143 ] || fault "SIGTERM: exit code $code instead of 143"
+grep -q '^meshplot: stopped by SIGTERM' err.txt || fault "SIGTERM: $(head -n 1 err.txt)"
+[ -z "$(ls no.* .tri-* 2>/dev/null)" ] || fault "SIGTERM: a file is left"
+
 echo "meshplot: $faults faults"
 [ "$faults" -eq 0 ]

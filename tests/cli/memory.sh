@@ -94,3 +94,13 @@ done
 check "with much memory runs are kept within ($kept), with little refused ($refused)" test $kept -eq 3 -a $refused -eq 3
 program 1 p --output out --memory 1M
 complains '^p\.node: has .* GB of text, which is read into memory; '
+
+# --- the judge: what stays in memory beside the parts of a mesh fits, or the trial is refused before
+program 0 -Qp g.poly --output g1
+what="trianglecheck of many subsegments"
+"$python" "$data/../tests/cli/peak.py" 40000000 "$bin/trianglecheck" --quiet g1 --poly g.poly --memory 40000000 \
+    --threads 2 >.out 2>.err
+check "with enough memory: exit code" test $? -eq 0
+"$bin/trianglecheck" --quiet g1 --poly g.poly --memory 12M >.out 2>.err
+check "with little memory: exit code" test $? -eq 2
+complains '^trianglecheck: to judge 0.04 million vertices .* takes about [0-9.]+ MB of memory; 12.6 MB may be used$'

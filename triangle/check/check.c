@@ -336,6 +336,15 @@ static double bytes_of_triangle(const struct tri_check_source *source, double ve
            (source->given >> TRI_CHECK_NEIGHBORS_GIVEN & 1) * 24 + (source->given >> TRI_CHECK_ATTRIBUTES & 1) * 8;
 }
 
+/* Measured: bytes at the peak for each subsegment, and for each point and segment of the input. */
+static const double SUBSEGMENT_BYTES = 126, INPUT_BYTES = 40;
+
+double tri_check_least_bytes(const struct tri_check_source *source, const struct tri_pslg *input)
+{
+    const double items = input != NULL ? (double)input->n_points + input->n_segments : 0;
+    return 1.25 * (double)source->n_points + SUBSEGMENT_BYTES * (double)source->n_segments + INPUT_BYTES * items;
+}
+
 /* As many triangles as the bound allows, at least a few; all, where they are in memory. */
 static enum tri_status choose_part(struct checker *c)
 {
@@ -344,7 +353,7 @@ static enum tri_status choose_part(struct checker *c)
     double vertices = 1, most = INT32_MAX / 3 - 1;
     enum tri_status status = source->memory > 0 ? tri_check_sample(c, &vertices) : TRI_OK;
     if (source->memory > 0) {
-        double rest = source->memory * 0.75 - 1.25 * (double)source->n_points;
+        double rest = source->memory * 0.75 - tri_check_least_bytes(source, c->input);
         most = fmax(LEAST, fmin(most, rest / bytes_of_triangle(source, vertices)));
     }
     bool all = (double)c->n_triangles <= most;

@@ -103,6 +103,9 @@ struct tri_check_source {
     const char *scratch;
 };
 
+/* Bytes that a trial takes whatever its bound: a byte for each vertex, subsegments, and the input (NULL: none). */
+double tri_check_least_bytes(const struct tri_check_source *source, const struct tri_pslg *input);
+
 enum tri_check_delaunay { TRI_CHECK_CONSTRAINED, TRI_CHECK_CONFORMING, TRI_CHECK_NOT_DELAUNAY };
 
 /* Where the mesh may end, beside along segments of the input. */
