@@ -123,6 +123,7 @@ set(PTRIANGLE_CHECK_NEEDS triangle/status.c triangle/pslg.c triangle/api/figure.
 set(PTRIANGLE_SCHED_SOURCES
     sched/theory.c
     sched/threads.c
+    sched/by_tile.c
     sched/partition.c
     sched/room.c
     sched/sweep/tile_copy.c

@@ -508,7 +508,7 @@ uint64_t par_key_of(const struct par_partition *partition, int round, int phase,
 {
     int32_t column = block / partition->n_rows, row = block % partition->n_rows;
     int32_t place = (2 * column + phase % 2) * partition->n_rows + row;
-    return (uint64_t)round << 56 | (uint64_t)(place + 1) << 32;
+    return (uint64_t)(round + 1) << 56 | (uint64_t)(place + 1) << 32;
 }
 
 /* What a phase has left. */

@@ -23,9 +23,10 @@ void par_forget_deferred(struct par_report *report);
 
 void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add);
 
-/* Who left each triangle of a worklist, and when: round (8 bits), place of the block in the order of all, by column,
- * phase and row, + 1 (24 bits), how many it had left before (32 bits). Of those that no block has had, their places in
- * the list. So keys do not depend on who else was at work. */
+/* Who left each triangle of a worklist, and when: round + 1 (8 bits), place of the block in the order of all, by
+ * column, phase and row, + 1 (24 bits), how many it had left before (32 bits). Of those that no block has had:
+ * PAR_NO_ROUND, the tile (block of the first phase) and their places in its list (sched/by_tile.h); or only their
+ * places in the list of all. So keys do not depend on who else was at work. */
 struct par_keys {
     uint64_t *item;
     int32_t n, capacity;
@@ -77,6 +78,8 @@ struct par_state {
     struct tri_pause *paused; /* where a sequential call goes on that a checkpoint's state is amid; else NULL */
     struct par_share *share; /* NULL: all blocks are done here, with all that they may look at */
     int32_t n_kept;          /* vertices there were before */
+    const struct tri_refine_options *then; /* what is asked for behind this schedule, on its cells, before the mesh is
+                                numbered; NULL: nothing, or something else */
     bool may_number;         /* nothing is refined after this schedule, and what it makes is to be numbered */
     struct par_partition cells; /* of the last schedule of the whole mesh, and the tiles by which it is numbered */
     enum par_end end;
@@ -84,6 +87,8 @@ struct par_state {
     bool stays;              /* a mesh that does not fit in memory is not swept, or no more */
     struct par_park *park;   /* bounds the memory of the mesh; NULL: nobody does */
 };
+
+enum { PAR_NO_ROUND = -1 };
 
 /* The key of the first triangle that a block leaves in a phase of a round. */
 uint64_t par_key_of(const struct par_partition *partition, int round, int phase, int32_t block);

@@ -7,6 +7,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "sched/by_tile.h"
 #include "sched/cells.h"
 #include "sched/phase.h"
 #include "sched/ranks/ranks.h"
@@ -471,7 +472,7 @@ static enum tri_status run_schedule(struct par_state *state, const struct tri_re
         par_partition_free(&state->cells);
         status = par_partition_copy(&state->cells, partition, error);
     }
-    if (!status && top && state->may_number && state->options->sink && state->options->carrier)
+    if (!status && top && (state->may_number || state->then) && state->options->sink && state->options->carrier)
         status = refine_on_ranks(state, partition, error);
     else if (!status && top && !state->stays && is_too_much(state, partition->estimate))
         status = leave_memory(state, partition, error);
@@ -579,6 +580,26 @@ static enum tri_status refine_level(struct par_state *state, const struct tri_re
     return status;
 }
 
+/* The schedule behind that for sizes, on its cells: on ranks each has its part of the mesh by now, and nobody could cut
+ * the whole of it anew. Triangles hardly larger than a share of a cell need no coarse mesh before. */
+static enum tri_status refine_again(struct par_state *state, const struct tri_refine_options *quality,
+                                    struct tri_error *error)
+{
+    struct par_partition partition;
+    double began = tri_seconds();
+    enum tri_status status = par_partition_copy(&partition, &state->cells, error);
+    if (status)
+        return status;
+    status = fill_worklist(state, quality, false, error);
+    if (!status && !par_order_by_tile(state, &partition, 0, par_blocks(&partition)))
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)state->worklist.n);
+    state->report->seconds_find += tri_seconds() - began;
+    if (!status)
+        status = run_schedule(state, quality, &partition, true, error);
+    par_partition_free(&partition);
+    return status;
+}
+
 /* The schedule of a stage, or what of it is still to be done. */
 static enum tri_status refine_stage(struct par_state *state, const struct tri_refine_options *quality,
                                     enum par_stage stage, struct tri_error *error)
@@ -592,7 +613,9 @@ static enum tri_status refine_stage(struct par_state *state, const struct tri_re
     const bool begun = state->stage < stage;
     state->stage = stage;
     enum tri_status status = begun ? come_to_border(state, error) : TRI_OK;
-    return status ? status : refine_level(state, quality, 0, error);
+    if (status)
+        return status;
+    return state->cells.x ? refine_again(state, quality, error) : refine_level(state, quality, 0, error);
 }
 
 /* Bounds above TRI_EASY_ANGLE are dear wherever triangles of different sizes meet, and in a mesh that comes out of a
@@ -638,9 +661,13 @@ static enum tri_status refine_by_schedule(struct par_state *state, const struct 
     const bool sizes = usual.min_angle > TRI_EASY_ANGLE && tri_has_sizes(&usual);
     if (!sizes && state->stage == PAR_SIZES)
         state->stage = PAR_BOUNDS; /* the first */
+    const bool may_number = !state->options->by_block && quality->min_angle <= TRI_USUAL_ANGLE;
+    state->then = may_number ? &usual : NULL;
     enum tri_status status = sizes ? refine_sizes_first(state, &usual, error) : TRI_OK;
-    state->may_number = !state->options->by_block && quality->min_angle <= TRI_USUAL_ANGLE;
-    status = status ? status : refine_stage(state, &usual, PAR_BOUNDS, error);
+    state->then = NULL;
+    state->may_number = may_number;
+    if (!status && state->end != PAR_DELIVERED)
+        status = refine_stage(state, &usual, PAR_BOUNDS, error);
     return status ? status : refine_above_usual(state, quality, error);
 }
 

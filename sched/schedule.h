@@ -54,7 +54,7 @@ struct par_options {
     bool sweep;              /* for tests: whatever memory there is */
     struct par_carrier *carrier; /* not NULL: this is one of several ranks, which all make this call with the same mesh,
                                 bounds and cells, and each gets tiles of its own (sched/ranks/ranks.h), in the numbers
-                                of one process. What is no schedule, or has another behind it, each rank does as a
+                                of one process. What is no schedule, or has one call behind it, each rank does as a
                                 whole, and rank 0 gets all tiles. Whoever makes the call ends with par_agree */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
     int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, and pause often */

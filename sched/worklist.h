@@ -39,9 +39,8 @@ bool par_triangle_set_of(struct par_triangle_set *set, const struct par_ids *tri
 
 /* The worklist becomes all triangles that violate the bounds, in the order of their numbers; *radius, the largest
  * circumradius among them. known: the worklist is that already, for the mesh as it was after the last call; then only
- * triangles born since are judged. (Where options.conforming counts, a triangle may have become bad or good with the
- * one across its subsegment, which was born since: that one is here.) All begin a new life, see struct
- * tri_triangle.life. TRI_NO_MEMORY: the worklist is as before. O(triangles). */
+ * triangles born since are judged. All begin a new life, see struct tri_triangle.life. TRI_NO_MEMORY: the worklist is
+ * as before. O(triangles). */
 enum tri_status par_worklist_fill(struct par_ids *worklist, struct tri_mesh *mesh,
                                   const struct tri_refine_options *quality, bool known,
                                   const struct tri_executor *executor, double *radius, struct tri_error *error);

@@ -28,6 +28,9 @@ static const struct trial trials[] = {
     {"nasty/huge_scale.poly", 30, 10000, 256, false, false, 0},
     {"nasty/needle_1e-9.poly", 20, 4000, 256, false, false, 0},
     {"square_random1000.poly", 33, 10000, 256, false, false, 0}, /* two schedules */
+    {"section.poly", 32, 20000, 300, true, true, 0},
+    {"coast/norway_sea.poly", 34, 30000, 400, false, false, 0},
+    {"letter.poly", 34, 20000, 500, false, false, 1},
     {"section.poly", 35, 10000, 500, true, true, 0},             /* and a sequential call behind them */
 };
 
@@ -373,7 +376,7 @@ static int run_in_steps(const struct member *alone, const struct start *start, c
 static void test_other_ranks_go_on(void **state)
 {
     (void)state;
-    static const int chosen[] = {4, 6, 10};
+    static const int chosen[] = {4, 15, 6, 10};
     struct support_random random = {11};
     for (size_t i = 0; i < sizeof chosen / sizeof *chosen; i += (size_t)every(2)) {
         const struct trial *trial = &trials[chosen[i]];

@@ -339,7 +339,7 @@ static void test_budgets_hand_out_the_same_tiles(void **state)
         options.memory = 1000;
         options.scratch = ".";
         options.threads = 3;
-        if (start.options.quality.min_angle <= TRI_EASY_ANGLE) /* else a second schedule begins in the order of ids */
+        if (start.options.quality.min_angle <= TRI_EASY_ANGLE) /* a last call begins in the order of ids */
             options.tight_room = 100;
         assert_int_equal(refine_to(&parts, &start, &options, &tight_report, &tight), TRI_OK);
         print_message("  %-28s %lld triangles, rounds %d, %s: %lld bytes on disk\n", trials[i].file,

@@ -1,14 +1,15 @@
 #!/bin/sh
 # Builds for other processors and another C library, runs the fast tests there, and compares the meshes of a list of
 # runs, byte by byte, with those of this machine's own build.
-# Usage: tools/ports.sh [quick] [PORT...]
+# Usage: tools/ports.sh [quick|resume] [PORT...]
 #   arm64   64 bits, fused multiply-add at hand; by qemu-user
 #   s390x   big-endian, FLT_EVAL_METHOD 1; by qemu-user
 #   i386    32 bits, with the x87 at hand; x86-64 kernels run it
 #   musl    static, with musl and libc++, by the compiler zig of PyPI; sequential programs alone, and the tests of the
 #           command line alone
-# Without a name the first three; quick: programs and meshes, no tests. Needs x86-64, Debian 12 or newer, and an hour
-# for all of it (quick: some minutes). Libraries for the other processors are unpacked below build/ports; what is
+# Without a name the first three; quick: programs and meshes, no tests; resume: of the same sources, the tests that a
+# run which was cut short has not finished. Needs x86-64, Debian 12 or newer, and hours for all of it (quick: some
+# minutes). Libraries for the other processors are unpacked below build/ports; what is
 # installed on the machine itself is qemu-user and compilers.
 set -eu
 cd "$(dirname "$0")/.."
@@ -17,7 +18,11 @@ work=${PTRIANGLE_BUILD:-$root/build}/ports
 jobs=$(nproc 2>/dev/null || echo 2)
 
 quick=no
-[ "${1:-}" != quick ] || { quick=yes; shift; }
+resume=""
+case ${1:-} in
+quick) quick=yes; shift ;;
+resume) resume=-F; shift ;;
+esac
 [ $# -gt 0 ] || set -- arm64 s390x i386
 for port; do
     case $port in
@@ -237,7 +242,14 @@ tests() { # tests PORT FOLDER
             sh tests/cli/run.sh $topic "$2/bin" "$root/data" "" "$work/musl/tests/$topic" || failed="$failed $1"
         done
     else
-        ctest --test-dir "$2" -L fast --parallel "$jobs" --output-on-failure --no-tests=error || failed="$failed $1"
+        log=$work/$1.tests.log # of all parts of a run
+        [ -n "$resume" ] || rm -f "$log"
+        # shellcheck disable=SC2086
+        ctest $resume --test-dir "$2" -L fast --parallel "$jobs" --output-on-failure --no-tests=error | tee -a "$log"
+        if ! tail -n 30 "$log" | grep -q 'tests passed' ||
+            grep -qE '\*\*\*(Failed|Timeout|Exception|Not Run)' "$log"; then
+            failed="$failed $1"
+        fi
     fi
 }
 

@@ -6,6 +6,7 @@
 
 #include "triangle/criterion.h"
 #include "triangle/disk.h"
+#include "triangle/predicates.h"
 #include "triangle/small_angle.h"
 
 /* No mesh has triangles of more than this share of their bounds on average. (Measured: 0.63 to 0.67.) */
@@ -69,7 +70,8 @@ static bool needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
         return true;
     double fraction;
     for (int e = 0; c->options->conforming && e < 3; e++)
-        if (t->n[e] < 0 && tri_is_encroached(c->mesh, &c->mesh->sub[~t->n[e]], &fraction))
+        if (t->n[e] < 0 && t->n[e] != TRI_BEYOND &&
+            tri_is_encroached_from(c->mesh, &c->mesh->sub[~t->n[e]], tri_code(triangle, e), &fraction))
             return true;
     return false;
 }
@@ -96,6 +98,16 @@ int32_t tri_find_work_among(const struct tri_mesh *mesh, const struct tri_refine
         if (needs_work(&c, triangle[i]))
             found[n_found++] = triangle[i];
     return n_found;
+}
+
+int tri_obtuse_corner(const struct tri_mesh *mesh, tri_triangle_id triangle)
+{
+    const struct tri_point *xy = mesh->xy;
+    const tri_vertex_id *v = mesh->tri[triangle].v;
+    for (int k = 0; k < 3; k++)
+        if (tri_dot(xy[v[tri_next[k]]], xy[v[tri_prev[k]]], xy[v[k]]) < 0)
+            return k;
+    return -1;
 }
 
 int32_t tri_find_hopeless(const struct tri_mesh *mesh, const struct tri_refine_options *options,

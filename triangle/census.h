@@ -19,14 +19,18 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_r
                                  const struct tri_executor *executor, struct tri_error *error);
 
 /* found[last - first] receives the triangles from first to last - 1 at which there is something for the loop to do (an
- * angle that is bad and not hopeless, a bad size; an encroached subsegment if conforming), in order; returns how
- * many. To be told the bounds costs more than to judge a triangle. */
+ * angle that is bad and not hopeless, a bad size; if conforming, a subsegment that the triangle encroaches), in order;
+ * returns how many. Neighbours are not asked, which may be elsewhere. To be told the bounds costs more than to judge a
+ * triangle. */
 int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id first,
                       tri_triangle_id last, tri_triangle_id *found);
 
 /* The same among these n triangles. found may be the array they are in. */
 int32_t tri_find_work_among(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                             const tri_triangle_id *triangle, int32_t n, tri_triangle_id *found);
+
+/* The corner at which a triangle is obtuse, so that it encroaches a subsegment that lies opposite; -1: none. Exact. */
+int tri_obtuse_corner(const struct tri_mesh *mesh, tri_triangle_id triangle);
 
 /* Counts the subsegments with a vertex of a triangle beside them in their diametral circle, which -D could not mend, by
  * place: at a small angle of the input, between segments near to each other, and so on. */

@@ -109,15 +109,18 @@ static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegmen
     return NARROW * sight.h >= sight.l || off >= shortest || off * sight.l <= MOST_PARTS * sight.h * sight.h;
 }
 
+bool tri_is_encroached_from(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code,
+                            double *fraction)
+{
+    bool is = tri_is_in_diametral_disk(mesh, s, code) && is_split_for(mesh, s, tri_apex(mesh, code), fraction);
+    assert(!is || (*fraction > 0 && *fraction < 1));
+    return is;
+}
+
 bool tri_is_encroached(const struct tri_mesh *mesh, const struct tri_subsegment *s, double *fraction)
 {
-    for (int side = 0; side < 2; side++) {
-        tri_halfedge code = s->side[side];
-        if (code != TRI_NONE && tri_is_in_diametral_disk(mesh, s, code) &&
-            is_split_for(mesh, s, tri_apex(mesh, code), fraction)) {
-            assert(*fraction > 0 && *fraction < 1);
+    for (int side = 0; side < 2; side++)
+        if (s->side[side] != TRI_NONE && tri_is_encroached_from(mesh, s, s->side[side], fraction))
             return true;
-        }
-    }
     return false;
 }

@@ -99,7 +99,8 @@ static bool is_state(const struct par_ranks *r, const struct common *c, const st
 {
     const struct writer *writer = writers_of(s);
     bool good = c->word == STATE && c->n_tiles == tiles_in_all(r) && c->stand.round >= 0 && c->stand.round < 32 &&
-                c->stand.phase >= 0 && c->stand.phase <= PAR_PHASES && c->stand.step >= 0;
+                c->stand.phase >= 0 && c->stand.phase <= PAR_PHASES && c->stand.step >= 0 &&
+                (c->stand.schedule == 0 || (c->stand.schedule == 1 && r->state->then));
     for (int64_t p = 0; good && p < s->n_ranks; p++)
         good = writer[p].end >= (p > 0 ? writer[p - 1].end : 0) && writer[p].end <= c->n_tiles;
     return good && writer[s->n_ranks - 1].end == c->n_tiles;

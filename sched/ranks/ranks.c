@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sched/by_tile.h"
 #include "sched/sweep/state.h"
 #include "triangle/grow.h"
 
@@ -141,16 +142,6 @@ static void free_in(struct par_ranks *r)
     }
 }
 
-static enum tri_status lend(struct par_ranks *r, struct tri_error *error)
-{
-    enum tri_status status = par_index_straddlers(r) ? TRI_OK : par_ranks_no_memory(error);
-    status = status ? status : par_lend(r, error);
-    status = swap(r, PAR_MOVE_BORDERS, status, error);
-    status = status ? status : par_borrow(r, error);
-    free_in(r);
-    return status;
-}
-
 /* *any: somebody has asked for more, and has got it. Collective. */
 static enum tri_status lend_more(struct par_ranks *r, const struct par_ids *asked, bool *any,
                                  enum tri_status status, struct tri_error *error)
@@ -172,6 +163,45 @@ static enum tri_status lend_more(struct par_ranks *r, const struct par_ids *aske
         status = tri_fail(error, TRI_INTERNAL, NULL, 0, "nobody knows what lies beyond an edge");
     status = status ? status : par_borrow(r, error);
     free_in(r);
+    return status;
+}
+
+/* Does a block at a border that is done here take the triangle? */
+static bool is_taken(const struct par_ranks *r, tri_triangle_id t)
+{
+    const struct par_shift *s = &r->shift;
+    int32_t block = s->partition ? par_owner_of(s->partition, s->phase, r->state->mesh, t) : 0;
+    return block != TRI_NONE && s->is_border[block];
+}
+
+/* Across which edges of what such blocks begin with is the unknown? *asked receives their ends. Who lends an entry need
+ * not own all of its corners, and who owns the others need not know of the entry. */
+static bool find_unknown(const struct par_ranks *r, struct par_ids *asked)
+{
+    const struct par_ids *list = &r->state->worklist;
+    bool memory = true;
+    for (int32_t i = 0; i < list->n; i++) {
+        const struct tri_triangle *t = &r->state->mesh->tri[list->item[i]];
+        for (int e = 0; memory && e < 3; e++)
+            if (t->n[e] == TRI_BEYOND && is_taken(r, list->item[i]))
+                memory = par_ids_add(asked, t->v[tri_next[e]]) && par_ids_add(asked, t->v[tri_prev[e]]);
+    }
+    return memory;
+}
+
+static enum tri_status lend(struct par_ranks *r, struct tri_error *error)
+{
+    struct par_ids asked = {0};
+    bool any;
+    enum tri_status status = par_index_straddlers(r) ? TRI_OK : par_ranks_no_memory(error);
+    status = status ? status : par_lend(r, error);
+    status = swap(r, PAR_MOVE_BORDERS, status, error);
+    status = status ? status : par_borrow(r, error);
+    free_in(r);
+    if (!status && !find_unknown(r, &asked))
+        status = par_ranks_no_memory(error);
+    status = lend_more(r, &asked, &any, status, error);
+    free(asked.item);
     return status;
 }
 
@@ -358,7 +388,7 @@ static enum tri_status refine_rounds(struct par_ranks *r, int64_t *left, struct 
     status = status ? status : refine_round(r, &partition, left, error);
     while (!status && *left > 0 && par_can_coarsen(&partition)) {
         par_partition_coarsen(&partition);
-        *stand = (struct par_stand){.round = stand->round + 1};
+        *stand = (struct par_stand){.schedule = stand->schedule, .round = stand->round + 1};
         r->state->round = stand->round;
         status = refine_round(r, &partition, left, error);
     }
@@ -443,15 +473,51 @@ static enum tri_status begin(struct par_ranks *r, struct tri_error *error)
     return par_agree(r->carrier, status, error);
 }
 
+/* Rounds, and what they leave over. Collective. */
+static enum tri_status run_schedule(struct par_ranks *r, struct tri_error *error)
+{
+    int64_t left = 0;
+    enum tri_status status = refine_rounds(r, &left, error);
+    r->state->report->left_over += status ? 0 : left;
+    return status || left == 0 ? status : par_keep(r, refine_rest(r, error), error);
+}
+
+/* What is bad now among the triangles of the own tiles. All of these are here, as they are in the mesh of one process;
+ * of the others some are. */
+static enum tri_status find_own_work(struct par_ranks *r, struct tri_error *error)
+{
+    struct par_state *state = r->state;
+    const struct par_territory *t = &r->territory;
+    par_room_mark(&state->spare, state->mesh, &state->executor);
+    enum tri_status status = par_worklist_fill(&state->worklist, state->mesh, state->quality, false, &state->executor,
+                                               &state->radius, error);
+    bool memory = status || par_order_by_tile(state, t->partition, par_first_block(t, t->rank),
+                                              par_first_block(t, t->rank + 1));
+    return memory ? status : par_ranks_no_memory(error);
+}
+
+/* The schedule for what the state asks for then, from its beginning, or from where it stands on. Collective. */
+static enum tri_status run_second(struct par_ranks *r, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    r->state->quality = r->state->then;
+    r->state->n_schedules++;
+    if (r->stand.schedule == 0) {
+        r->stand = (struct par_stand){.schedule = 1};
+        r->state->round = 0;
+        status = par_agree(r->carrier, find_own_work(r, error), error);
+    }
+    return status ? status : run_schedule(r, error);
+}
+
 /* Collective, from an agreement to another. */
 static enum tri_status refine_all(struct par_ranks *r, struct par_tiles *tiles, struct tri_error *error)
 {
-    int64_t left = 0;
     enum tri_status status = begin(r, error);
-    status = status ? status : refine_rounds(r, &left, error);
-    r->state->report->left_over += status ? 0 : left;
-    if (!status && left > 0)
-        status = par_keep(r, refine_rest(r, error), error);
+    if (!status && r->stand.schedule == 0)
+        status = run_schedule(r, error);
+    if (!status && r->state->then)
+        status = run_second(r, error);
     status = add_up(r, status, error);
     return par_hand_out_on_ranks(r, tiles, status, error);
 }

@@ -17,6 +17,9 @@
  * When the phase is over the others are told which triangles have gone and which have come, and the borrowed ones are
  * dropped.
  *
+ * A second schedule, for larger angles, begins with what is bad then, which the ranks find and put in order by tiles
+ * (sched/by_tile.h): each entry is with one owner of a corner, and the others learn of it where it is taken.
+ *
  * THEOREM. The mesh is that of one process. For blocks of a phase commute (phase.h), a block sees all that it would see
  * in one process, with every triangle turned as there, and finds its share of the worklist in the same order, that of
  * keys, which do not depend on who left what.
@@ -53,6 +56,7 @@ struct par_index {
 
 /* How far the schedule is: what comes next. */
 struct par_stand {
+    int32_t schedule;     /* 0; 1: that for what the state asks for then */
     int32_t round, phase; /* the second PAR_PHASES: the round is over */
     int32_t step;         /* of the phase */
 };
@@ -76,10 +80,10 @@ struct par_ranks {
     int64_t left_before;       /* .. and its left_over */
 };
 
-/* Collective. Refines what is in the state's worklist, the same on all ranks, and hands each rank its own tiles: the
- * sink of rank 0 gets the vertices that there were before, too. *tiles is as par_tiles_begin takes it. Afterwards the
- * state's mesh is to be freed and no more. All ranks return the same status: TRI_NO_MEMORY, TRI_TOO_LARGE, TRI_STOPPED,
- * or what a sink says. */
+/* Collective. Refines what is in the state's worklist, the same on all ranks, then for what the state asks for then, on
+ * the same tiles, and hands each rank its own: the sink of rank 0 gets the vertices that there were before, too. *tiles
+ * is as par_tiles_begin takes it. Afterwards the state's mesh is to be freed and no more. All ranks return the same
+ * status: TRI_NO_MEMORY, TRI_TOO_LARGE, TRI_STOPPED, or what a sink says. */
 enum tri_status par_refine_on_ranks(struct par_state *state, const struct par_partition *partition,
                                     struct par_tiles *tiles, struct tri_error *error);
 

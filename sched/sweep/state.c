@@ -45,7 +45,9 @@ static uint64_t hash_mesh(uint64_t hash, const struct tri_mesh *m)
 
 uint64_t par_state_run(const struct par_state *state)
 {
-    return hash_mesh(hash_options(hash_bounds(0, state->quality), state->options), state->mesh);
+    uint64_t hash = hash_bounds(0, state->quality);
+    hash = state->then ? hash_bounds(hash, state->then) : hash;
+    return hash_mesh(hash_options(hash, state->options), state->mesh);
 }
 
 /* --- a head, and then arrays */

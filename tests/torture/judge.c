@@ -252,12 +252,12 @@ static void judge_schedule_size(const struct outcome *first, const struct tri_ps
 }
 
 /* Above the usual angle at most so many times the triangles at that, which is proved but for what sizes and -D ask for
- * (refine.c); up to it, at most so many times those at an angle that theory promises: some 16 squared by
- * feature_size.c, 47 the most that was seen. Few triangles are not worth it. */
+ * (refine.c); up to it, at most so many times those at an angle that theory promises: 60 the most
+ * that was seen (feature_size.c says why so many). Few triangles are not worth it. */
 static void judge_amount(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
     const double PROMISED = 25, BEYOND = 2.5, USUAL = 64;
-    enum { FEW = 20000 };
+    enum { FEW = 5000 };
     struct outcome less = *first;
     double angle = first->options.quality.min_angle;
     bool beyond = angle > TRI_USUAL_ANGLE;
