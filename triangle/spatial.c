@@ -56,7 +56,7 @@ enum tri_status tri_sort_points(struct tri_mesh *mesh, int32_t **place, const st
 
 /* --- and back */
 
-static inline bool is_callers(const struct tri_mesh *mesh, tri_vertex_id v)
+static inline unsigned is_callers(const struct tri_mesh *mesh, tri_vertex_id v)
 {
     return (uint32_t)v < (uint32_t)mesh->n_input;
 }
@@ -75,7 +75,7 @@ static void restore_corners(void *context, size_t share)
     struct tri_range range = tri_share(share, mesh->n_triangles);
     for (tri_triangle_id t = range.first; t < range.last; t++) {
         tri_vertex_id *v = mesh->tri[t].v;
-        if (!is_callers(mesh, v[0]) & !is_callers(mesh, v[1]) & !is_callers(mesh, v[2]))
+        if (!(is_callers(mesh, v[0]) | is_callers(mesh, v[1]) | is_callers(mesh, v[2])))
             continue;
         for (int k = 0; k < 3; k++)
             v[k] = restored_name(mesh, v[k]);

@@ -16,6 +16,7 @@ struct common {
     uint64_t word;
     struct par_stand stand;
     int64_t n_tiles, left_over;
+    int64_t rounds; /* that are over, of both schedules */
     int64_t done[PAR_DONE];
 };
 
@@ -100,6 +101,7 @@ static bool is_state(const struct par_ranks *r, const struct common *c, const st
     const struct writer *writer = writers_of(s);
     bool good = c->word == STATE && c->n_tiles == tiles_in_all(r) && c->stand.round >= 0 && c->stand.round < 32 &&
                 c->stand.phase >= 0 && c->stand.phase <= PAR_PHASES && c->stand.step >= 0 &&
+                c->rounds >= c->stand.round && c->rounds < 64 &&
                 (c->stand.schedule == 0 || (c->stand.schedule == 1 && r->state->then));
     for (int64_t p = 0; good && p < s->n_ranks; p++)
         good = writer[p].end >= (p > 0 ? writer[p - 1].end : 0) && writer[p].end <= c->n_tiles;
@@ -111,7 +113,7 @@ static void go_on_from(struct par_ranks *r, const struct common *c)
 {
     r->stand = c->stand;
     r->state->round = c->stand.round;
-    r->state->report->rounds += c->stand.round;
+    r->state->report->rounds += (int)c->rounds;
     r->state->report->left_over += c->left_over;
     if (r->carrier->rank == 0)
         par_add_done(r, c->done);
@@ -195,7 +197,8 @@ static enum tri_status put(struct par_ranks *r, const int64_t *told, const int64
 {
     struct state state;
     struct common common = {.word = STATE, .stand = r->stand, .n_tiles = tiles_in_all(r),
-                            .left_over = r->state->report->left_over - r->left_before};
+                            .left_over = r->state->report->left_over - r->left_before,
+                            .rounds = r->state->report->rounds - r->rounds_before - 1};
     int64_t triangles = 0;
     if (!make_state(&state, r->carrier->n_ranks))
         return par_ranks_no_memory(error);

@@ -561,6 +561,7 @@ enum tri_status par_refine_on_ranks(struct par_state *state, const struct par_pa
     bool memory = init(&r, partition);
     r.before = state->report->total;
     r.left_before = state->report->left_over;
+    r.rounds_before = state->report->rounds;
     r.run = par_state_run(state);
     enum tri_status status = par_agree(carrier, memory ? TRI_OK : par_ranks_no_memory(error), error);
     if (!status)

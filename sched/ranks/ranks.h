@@ -77,7 +77,8 @@ struct par_ranks {
     struct par_stand stand;
     uint64_t run;              /* a hash of what all ranks began with */
     struct tri_refine_report before; /* the report of what came before that .. */
-    int64_t left_before;       /* .. and its left_over */
+    int64_t left_before;       /* .. its left_over .. */
+    int rounds_before;         /* .. and its rounds */
 };
 
 /* Collective. Refines what is in the state's worklist, the same on all ranks, then for what the state asks for then, on
