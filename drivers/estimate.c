@@ -141,11 +141,16 @@ static bool is_swept(const struct run *run)
     return quality->min_angle <= TRI_EASY_ANGLE && quality->max_steiner < 0;
 }
 
-/* The least memory that does, where some of what is held could go to files. Those are mapped: they save no address
- * space. */
-static double floor_of(double held, double work)
+bool estimate_can_park(const struct run *run, double held)
 {
-    return resources_memory_end() == RESOURCES_ADDRESS_SPACE ? held : fmin(held, BUFFERS + work);
+    const bool bounded = run->hooks->limits.memory > 0;
+    return resources_memory_end() != RESOURCES_ADDRESS_SPACE || (bounded && held <= resources_memory());
+}
+
+/* The least memory that does, where some of what is held could go to files. */
+static double floor_of(const struct run *run, double held, double work)
+{
+    return estimate_can_park(run, held) ? fmin(held, BUFFERS + work) : held;
 }
 
 /* Of the rank that has most. */
@@ -154,7 +159,7 @@ static struct needs needs_of_rank(const struct run *run, double grown)
     const double own = fmin(BUSIEST * grown / run->hooks->n_ranks, grown);
     struct needs n = {.triangles = grown, .whole = own > TRI_MAX_TRIANGLES ? HUGE_VAL : own * RANK_BYTES};
     n.held = n.whole + BUFFERS;
-    n.floor = floor_of(n.held, RANK_WORK * own + PAGES * fmax(run->hooks->threads, 1));
+    n.floor = floor_of(run, n.held, RANK_WORK * own + PAGES * fmax(run->hooks->threads, 1));
     n.away = PARKED_BYTES * own;
     n.checkpoint = n.states = RANK_STATES * grown;
     return n;
@@ -168,7 +173,7 @@ static struct needs needs_of(const struct run *run, double grown, double bytes, 
     const double work = sweeps ? COLUMNS_WORK * column + SWEPT_BYTES * grown : PARKED_WORK * grown;
     struct needs n = {.triangles = grown, .whole = grown > TRI_MAX_TRIANGLES ? HUGE_VAL : grown * bytes};
     n.held = sweeps ? BUFFERS + COLUMNS_HELD * column + SWEPT_BYTES * grown : n.whole;
-    n.floor = floor_of(n.held, work + pages);
+    n.floor = floor_of(run, n.held, work + pages);
     n.away = sweeps ? COLUMNS_AWAY * column : PARKED_BYTES * grown;
     n.kept = run->hooks->exports.n > 0 ? KEPT_BYTES * grown : 0;
     n.states = WHOLE_STATES * grown;

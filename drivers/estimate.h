@@ -28,4 +28,7 @@ struct estimate {
 /* Of the mesh as it is and the bounds. How good it is: docs/performance.md. O(triangles). */
 struct estimate estimate_make(const struct run *run, bool with_seconds);
 
+/* Could so much be moved to files that are mapped? Not where the address space ends before what --memory allows. */
+bool estimate_can_park(const struct run *run, double held);
+
 #endif

@@ -2,6 +2,7 @@
 
 #include <limits.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "drivers/one_line.h"
 
@@ -12,11 +13,12 @@ static enum judged_words_end misused(const struct judged_words *words)
 }
 
 /* What getopt_long has returned '?' or ':' for; its own messages would print words as they are. */
-static void complain(const char *program, int option, char **argv)
+static void complain(const struct judged_words *words, int option, char **argv)
 {
     const bool short_one = optopt > 0 && optopt <= CHAR_MAX;
-    const char *fault = optopt > CHAR_MAX ? "takes no value" : "is not an option, or short for several";
-    fprintf(stderr, "%s: ", program);
+    const bool is_known = optopt > CHAR_MAX || (short_one && optopt != ':' && strchr(words->letters, optopt));
+    const char *fault = is_known ? "takes no value" : "is not an option, or short for several";
+    fprintf(stderr, "%s: ", words->program);
     one_line_put(stderr, short_one ? (char[]){'-', (char)optopt, 0} : argv[optind - 1]);
     fprintf(stderr, " %s\n", option == ':' ? "needs a value" : fault);
 }
@@ -33,7 +35,7 @@ enum judged_words_end judged_words_take(const struct judged_words *words, int ar
             return WORDS_ANSWERED;
         }
         if (option == '?' || option == ':') {
-            complain(words->program, option, argv);
+            complain(words, option, argv);
             return misused(words);
         }
         if (!words->apply(settings, option))

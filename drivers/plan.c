@@ -255,11 +255,9 @@ static double margin_of(const struct run *run)
     return quality->conforming ? CONFORMING_MARGIN : quality->min_angle > TRI_EASY_ANGLE ? STEEP_MARGIN : STRICT_MARGIN;
 }
 
-/* Files of a mesh that does not fit save no address space (estimate.h). */
 static bool fits(const struct run *run, const struct estimate *e, double left)
 {
-    const bool can_park = resources_memory_end() != RESOURCES_ADDRESS_SPACE;
-    const double margin = e->sweeps || can_park ? margin_of(run) : 1;
+    const double margin = e->sweeps || estimate_can_park(run, e->likely.held) ? margin_of(run) : 1;
     return fmax(e->likely.triangles, e->least.triangles) <= TRI_MAX_TRIANGLES && margin * e->likely.whole <= left;
 }
 

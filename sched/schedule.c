@@ -392,6 +392,13 @@ static enum tri_status try_to_sweep(struct par_state *state, const struct par_pa
     return status;
 }
 
+static enum tri_status fail_without_scratch(const struct par_state *state, double triangles, struct tri_error *error)
+{
+    return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
+                    "about %.1f GB are asked for and there are %.1f: a mesh like this needs a scratch directory",
+                    1e-9 * BYTES_IN_MEMORY * triangles, 1e-9 * (double)state->options->memory);
+}
+
 /* The whole mesh does not fit in memory: it is swept where nothing comes after this schedule and the sink can begin
  * again. If that leaves something over, or cannot be, it moves to files as it grows. */
 static enum tri_status leave_memory(struct par_state *state, const struct par_partition *partition,
@@ -411,9 +418,7 @@ static enum tri_status leave_memory(struct par_state *state, const struct par_pa
     if (status || swept)
         return status;
     if (!options->scratch)
-        return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
-                        "about %.1f GB are asked for and there are %.1f: a mesh like this needs a scratch directory",
-                        1e-9 * BYTES_IN_MEMORY * partition->estimate, 1e-9 * (double)options->memory);
+        return fail_without_scratch(state, partition->estimate, error);
     return tri_refine_check(state->mesh, state->quality, &state->executor, error);
 }
 
@@ -586,11 +591,18 @@ static enum tri_status refine_again(struct par_state *state, const struct tri_re
                                     struct tri_error *error)
 {
     struct par_partition partition;
-    double began = tri_seconds();
+    double began = tri_seconds(), sure;
+    if (!state->stays && !state->options->scratch && state->options->memory > 0) {
+        double estimate = estimate_of(state, quality, &sure);
+        if (is_too_much(state, estimate))
+            return fail_without_scratch(state, estimate, error);
+    }
     enum tri_status status = par_partition_copy(&partition, &state->cells, error);
     if (status)
         return status;
     status = fill_worklist(state, quality, false, error);
+    if (!status)
+        status = par_park_expect(state->park, state->mesh, par_order_bytes(&state->worklist), error);
     if (!status && !par_order_by_tile(state, &partition, 0, par_blocks(&partition)))
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)state->worklist.n);
     state->report->seconds_find += tri_seconds() - began;

@@ -81,7 +81,10 @@ mkfifo held.node
 cp mesh.1.ele held.ele
 "$plot" held -o no.png >out.txt 2>err.txt &
 job=$!
+(sleep 60 && : <held.node) >/dev/null 2>&1 & # the next line waits for a reader
+guard=$!
 exec 3>held.node # once it has begun to read
+kill $guard
 kill -TERM $job
 wait $job
 code=$?

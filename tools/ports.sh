@@ -246,7 +246,7 @@ tests() { # tests PORT FOLDER
         [ -n "$resume" ] || rm -f "$log"
         # shellcheck disable=SC2086
         ctest $resume --test-dir "$2" -L fast --parallel "$jobs" --output-on-failure --no-tests=error | tee -a "$log"
-        if ! tail -n 30 "$log" | grep -q 'tests passed' ||
+        if ! tail -n 300 "$log" | grep -q 'tests passed' ||
             grep -qE '\*\*\*(Failed|Timeout|Exception|Not Run)' "$log"; then
             failed="$failed $1"
         fi

@@ -10,9 +10,12 @@
  * Proof: its ends are within ALONG of the carrier's line, and so is all of the piece; the stop is on the other side of
  * that line by no more than ALONG. Of the vertices between two ends none has a larger coordinate than both.
  *
- * COST. A carrier costs what it crosses, as laying it does, and what it shares is not looked at again. So if n segments
- * lie along a line as well as rounding lets them, the first carriers share all but a few, in O(n log n). Each piece is
- * listed at that end which has fewer, so that no vertex of many pieces is asked for all of them by each carrier. */
+ * COST. A carrier costs four times what it crosses, at most. If n segments lie along a line as well as rounding lets
+ * them, the first carriers share all but a few, in O(n log n). Where nothing is to be shared, carriers may cross far
+ * more than those who lay the pieces one after the other, each cutting the ways of the next: once MOST_IN_VAIN
+ * triangles for each piece and vertex have been looked at for nothing, the pieces that are left stay as they are. Each
+ * piece is listed at that end which has fewer, so that a vertex of many pieces need not be asked for all of them by
+ * each carrier. */
 #include "triangle/bundle.h"
 
 #include <assert.h>
@@ -27,10 +30,13 @@
 /* In resolutions. */
 static const double ALONG = 1.25, APART = 2;
 
+enum { MOST_IN_VAIN = 64 };
+
 struct bundles {
     const struct tri_mesh *mesh;
     struct tri_piece *piece; /* [n]; from == to: it has been shared */
     int32_t n, n_vertices;
+    int32_t *carrier, n_carriers; /* [n] the pieces that are no edges, the longest first */
     int32_t *first, *incident; /* pieces incident[first[v] .. first[v + 1] - 1] are listed at v */
     struct tri_point a, b;     /* the carrier's ends */
     tri_vertex_id *stop;       /* [n_vertices] the first n_stops, along the carrier */
@@ -41,7 +47,8 @@ struct bundles {
     int32_t n_members;
     struct tri_piece *result;
     int32_t n_results, result_capacity;
-    int64_t looked_at;
+    int64_t looked_at, in_vain;
+    uint32_t step; /* see tri_stop_is_due */
 };
 
 /* --- pieces by vertex */
@@ -220,9 +227,13 @@ static bool leave(const struct bundles *b, tri_exit *find_exit, void *context, t
     return v && v[0] != *to && v[1] != *to && v[2] != *to;
 }
 
+/* The way back goes farther beyond `from`, and by the other side where the line runs through vertices; where find_exit
+ * exchanges the ends there is one way alone. */
 static bool carry(struct bundles *b, int32_t carrier, tri_exit *find_exit, void *context)
 {
     tri_vertex_id from = b->piece[carrier].from, to = b->piece[carrier].to;
+    const int32_t n_results = b->n_results;
+    const int64_t looked_at = b->looked_at;
     tri_triangle_id t;
     if (from == to || !leave(b, find_exit, context, &t, &from, &to))
         return true;
@@ -230,26 +241,40 @@ static bool carry(struct bundles *b, int32_t carrier, tri_exit *find_exit, void 
     b->b = b->mesh->xy[to];
     walk(b, t, from, to);
     tri_vertex_id back_from = to, back_to = from;
-    if (leave(b, find_exit, context, &t, &back_from, &back_to))
+    if (leave(b, find_exit, context, &t, &back_from, &back_to) && back_from != from)
         walk(b, t, back_from, back_to);
     sort_stops(b);
     bool room = share(b);
     forget_stops(b);
+    if (b->n_results == n_results)
+        b->in_vain += b->looked_at - looked_at;
     return room;
 }
 
 static bool carry_all(struct bundles *b, tri_exit *find_exit, void *context)
 {
-    int32_t *order = malloc((size_t)b->n * sizeof *order);
-    bool room = order;
-    for (int32_t i = 0; room && i < b->n; i++)
-        order[i] = i;
-    if (room)
-        tri_heap_sort(order, b->n, is_longer, b);
-    for (int32_t i = 0; room && i < b->n; i++)
-        room = carry(b, order[i], find_exit, context);
-    free(order);
+    const int64_t most = MOST_IN_VAIN * ((int64_t)b->n + b->n_vertices);
+    bool room = true;
+    for (int32_t i = 0; room && i < b->n_carriers && b->in_vain < most; i++) {
+        if (tri_stop_is_due(b->mesh->stop, &b->step))
+            break;
+        room = carry(b, b->carrier[i], find_exit, context);
+    }
     return room;
+}
+
+static bool list_carriers(struct bundles *b, tri_exit *find_exit, void *context)
+{
+    b->carrier = malloc((size_t)b->n * sizeof *b->carrier);
+    for (int32_t i = 0; b->carrier && i < b->n; i++) {
+        tri_vertex_id from = b->piece[i].from, to = b->piece[i].to;
+        tri_triangle_id t;
+        if (leave(b, find_exit, context, &t, &from, &to))
+            b->carrier[b->n_carriers++] = i;
+    }
+    if (b->carrier)
+        tri_heap_sort(b->carrier, b->n_carriers, is_longer, b);
+    return b->carrier;
 }
 
 static bool begin(struct bundles *b)
@@ -280,23 +305,34 @@ static bool add_others(struct bundles *b)
     return true;
 }
 
+static void free_bundles(struct bundles *b)
+{
+    free(b->carrier);
+    free(b->first);
+    free(b->incident);
+    free(b->stop);
+    free(b->place);
+    free(b->member);
+    free(b->reach);
+    free(b->result);
+}
+
+static bool share_all(struct bundles *b, tri_exit *find_exit, void *context)
+{
+    return begin(b) && carry_all(b, find_exit, context) && add_others(b);
+}
+
 bool tri_share_bundles(const struct tri_mesh *mesh, int32_t n_vertices, struct tri_piece **piece, int32_t *n,
                        tri_exit *find_exit, void *context, int64_t *looked_at)
 {
     struct bundles b = {.mesh = mesh, .piece = *piece, .n = *n, .n_vertices = n_vertices};
-    bool room = *n < 2 || (begin(&b) && carry_all(&b, find_exit, context) && add_others(&b));
-    if (room && *n > 1) {
+    bool room = *n < 2 || list_carriers(&b, find_exit, context);
+    if (room && b.n_carriers > 0 && (room = share_all(&b, find_exit, context))) {
         *piece = b.result;
         *n = b.n_results;
         b.result = b.piece;
     }
     *looked_at += b.looked_at;
-    free(b.first);
-    free(b.incident);
-    free(b.stop);
-    free(b.place);
-    free(b.member);
-    free(b.reach);
-    free(b.result);
+    free_bundles(&b);
     return room;
 }

@@ -6,9 +6,10 @@
  *   2. A vertex within NEAR of the piece (in resolutions, crossing.h; and within BESIDE of the segment's own line) is
  *      on it for all that coordinates tell: the piece runs through it. Of several the nearest is taken, so the triangle
  *      that the piece sweeps over holds none of the others; or the nearest of the first ones, and what else that
- *      triangle holds is no farther from the piece's second part than NEAR, and ends it in its turn. (So n vertices
- *      along a segment are found in O(n) steps, not n for each of n pieces.) Looked at are the corners of the triangles
- *      that the piece crosses; so rule 4. Where many pieces run along the same vertices they are shared (bundle.h).
+ *      triangle holds is no farther from the piece's second part than NEAR, in resolutions of the larger end, and ends
+ *      it in its turn where that is NEAR in its own. (So n vertices along a segment are found in O(n) steps, not n for
+ *      each of n pieces.) Looked at are the corners of the triangles that the piece crosses; so rule 4. Where many
+ *      pieces run along the same vertices they are shared (bundle.h).
  *   3. Where the piece crosses a subsegment, both get a vertex in common: one that is within APART of the crossing,
  *      else a new one, the rounded crossing of the two input segments (of the pieces, where bends have moved the
  *      crossing away from that). The subsegment is taken up, and its two parts and those of the piece are laid by the

@@ -67,7 +67,7 @@ struct estimate {
     struct crossing {
         tri_triangle_id *item; /* [n] triangles of the share that have a vertex of another one */
         int32_t n, capacity;
-        bool lost;             /* no memory to tell */
+        bool lost;             /* no memory to tell, or too many */
     } crossing[TRI_MOST_SHARES];
 };
 
@@ -97,8 +97,10 @@ static bool owns(const struct estimate *e, size_t share, tri_vertex_id v)
     return v >= e->own[share] && v < e->own[share + 1];
 }
 
-static void note_crossing(struct crossing *crossing, tri_triangle_id t)
+/* At most so many: in a mesh that is in no order they are nearly all, and not worth the memory. */
+static void note_crossing(struct crossing *crossing, int32_t most, tri_triangle_id t)
 {
+    crossing->lost |= crossing->n >= most;
     if (!crossing->lost && tri_grow(&crossing->item, &crossing->capacity, crossing->n + 1, sizeof *crossing->item))
         crossing->item[crossing->n++] = t;
     else
@@ -125,11 +127,11 @@ static void estimate_own(void *context, size_t share)
                 own++;
             }
         if (own < 3)
-            note_crossing(&e->crossing[share], i);
+            note_crossing(&e->crossing[share], (range.last - range.first) / 8, i);
     }
 }
 
-/* And at those of other shares. Where there was no memory to note which these are, all are looked at. */
+/* And at those of other shares. Where they have not been noted, all are looked at. */
 static void estimate_others(const struct estimate *e, size_t share)
 {
     struct tri_mesh *mesh = e->mesh;

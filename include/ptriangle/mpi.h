@@ -35,7 +35,7 @@ struct par_exchanges { /* sent by this rank */
  *
  * All ranks return the same status, and where it is not TRI_OK the same *error: that of the lowest rank that failed.
  * Tiles that have been taken are worth nothing then. settings->stop, where one rank's says true, stops all. In
- * settings that par_mesh_new refines as one sequential call, with min_angle above 31 degrees, and for a small mesh,
+ * settings that par_mesh_new refines as one sequential call, with min_angle above 34 degrees, and for a small mesh,
  * each rank makes the whole mesh, and rank 0 hands it out.
  *
  * MPI must run, with MPI_THREAD_FUNNELED where there is more than one thread. comm is duplicated for the time of the

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "sched/by_tile.h"
+#include "sched/sweep/park.h"
 #include "sched/sweep/state.h"
 #include "triangle/grow.h"
 
@@ -491,6 +492,8 @@ static enum tri_status find_own_work(struct par_ranks *r, struct tri_error *erro
     par_room_mark(&state->spare, state->mesh, &state->executor);
     enum tri_status status = par_worklist_fill(&state->worklist, state->mesh, state->quality, false, &state->executor,
                                                &state->radius, error);
+    if (!status)
+        status = par_park_expect(state->park, state->mesh, par_order_bytes(&state->worklist), error);
     bool memory = status || par_order_by_tile(state, t->partition, par_first_block(t, t->rank),
                                               par_first_block(t, t->rank + 1));
     return memory ? status : par_ranks_no_memory(error);
@@ -558,6 +561,7 @@ enum tri_status par_refine_on_ranks(struct par_state *state, const struct par_pa
     struct par_ranks r = {.state = state, .carrier = carrier, .n_common = state->mesh->n_vertices};
     state->round = 0;
     state->n_schedules++;
+    assert(!state->options->margin); /* fences would depend on what triangles a rank has */
     bool memory = init(&r, partition);
     r.before = state->report->total;
     r.left_before = state->report->left_over;

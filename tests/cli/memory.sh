@@ -46,6 +46,7 @@ if (ulimit -v 300000 && "$bin/ptriangle" -h) >/dev/null 2>&1; then
     what="ulimit -v, much to do"
     rm -f out.h5
     (
+        ulimit -s 8192
         ulimit -v 300000
         "$bin/ptriangle" -Qpq20a0.0000002S100000000 s --output out.h5 --threads 2 >.out 2>.err
     )
@@ -53,6 +54,7 @@ if (ulimit -v 300000 && "$bin/ptriangle" -h) >/dev/null 2>&1; then
     complains 'the bounds ask for about [0-9.]+ million triangles, which take [0-9.]+ [kMG]B of memory; [0-9.]+ [kMG]B are left'
     what="ulimit -v, little to do"
     (
+        ulimit -s 8192
         ulimit -v 300000
         "$bin/ptriangle" -Qpq20a0.000003S200000 s --output out.h5 --threads 2 >.out 2>.err
     )

@@ -297,7 +297,7 @@ check "the state is kept" grep -q 'to go on: ptriangle -Qpq30a0.00001e letter --
 rm -rf state
 
 # --- stopped by the limit of time, the first task writes what it has
-ranks 124 2 -Qpq30a0.00001 letter --output two --write-partial --time-limit 2
+ranks 124 2 -Qpq30a0.000003 letter --output two --write-partial --time-limit 2
 check "it says so" grep -q 'the mesh so far is written' .err
 check "once" test "$(grep -c 'stopped by' .err)" -eq 1
 check "the mesh is there" test -s two.ele
