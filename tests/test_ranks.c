@@ -376,7 +376,7 @@ static int run_in_steps(const struct member *alone, const struct start *start, c
 static void test_other_ranks_go_on(void **state)
 {
     (void)state;
-    static const int chosen[] = {4, 6, 15, 10};
+    static const int chosen[] = {4, 15, 6, 10};
     struct support_random random = {11};
     for (size_t i = 0; i < sizeof chosen / sizeof *chosen; i += (size_t)every(2)) {
         const struct trial *trial = &trials[chosen[i]];
