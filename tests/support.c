@@ -298,6 +298,15 @@ void support_judge(const struct tri_mesh *mesh, const struct tri_pslg *pslg, con
         fail_msg("%s", text);
 }
 
+void support_judge_hull(struct tri_mesh *mesh, const struct tri_pslg *pslg)
+{
+    struct tri_check_options options = {.max_bad = -1, .ignore_holes = true, .convex = !mesh->twin,
+                                        .border = TRI_CHECK_BORDER_HULL};
+    tri_mark_vertices(mesh);
+    tri_mark_boundary(mesh);
+    support_judge(mesh, pslg, &options, false, NULL);
+}
+
 struct tri_mesh support_generate(const struct tri_pslg *pslg, const struct tri_options *options,
                                  struct tri_report *report)
 {

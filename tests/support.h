@@ -94,6 +94,9 @@ bool support_passes(const struct tri_mesh *mesh, const struct tri_pslg *pslg, co
 void support_judge(const struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_check_options *options,
                    bool with_regions, struct tri_check_report *report);
 
+/* The same of a mesh before carving, which it marks: the whole hull is kept, holes are ignored. */
+void support_judge_hull(struct tri_mesh *mesh, const struct tri_pslg *pslg);
+
 /* tri_generate that must succeed. */
 struct tri_mesh support_generate(const struct tri_pslg *pslg, const struct tri_options *options,
                                  struct tri_report *report);

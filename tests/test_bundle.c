@@ -1,16 +1,6 @@
 /* Segments along each other, and along many vertices, but for rounding: how many steps they take. */
 #include "support.h"
 
-/* Judged with the whole hull kept, holes ignored. */
-static void judge(struct tri_mesh *mesh, const struct tri_pslg *pslg)
-{
-    struct tri_check_options options = {.max_bad = -1, .ignore_holes = true, .convex = !mesh->twin,
-                                        .border = TRI_CHECK_BORDER_HULL};
-    tri_mark_vertices(mesh);
-    tri_mark_boundary(mesh);
-    support_judge(mesh, pslg, &options, false, NULL);
-}
-
 /* N points along a line, as well as rounding lets them, and four corners around it. */
 static struct tri_pslg along_a_line(int32_t n, int32_t segments, double slope)
 {
@@ -28,7 +18,7 @@ static void assert_short_work(struct tri_pslg *pslg, int32_t n)
     struct tri_constrain_report report;
     struct tri_mesh mesh = support_constrained(pslg, &report);
     support_assert_cdt(&mesh, false);
-    judge(&mesh, pslg);
+    support_judge_hull(&mesh, pslg);
     assert_int_equal(mesh.n_subs, n - 1 + 4);
     print_message("  %d vertices in one chain: %lld triangles looked at\n", (int)n, (long long)report.looked_at);
     assert_true(report.looked_at < 150 * (int64_t)n);

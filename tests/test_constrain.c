@@ -1,16 +1,6 @@
 /* Segments against the naive definition of a constrained Delaunay triangulation, and against what the input says. */
 #include "support.h"
 
-/* Judged with the whole hull kept, holes ignored. */
-static void judge(struct tri_mesh *mesh, const struct tri_pslg *pslg)
-{
-    struct tri_check_options options = {.max_bad = -1, .ignore_holes = true, .convex = !mesh->twin,
-                                        .border = TRI_CHECK_BORDER_HULL};
-    tri_mark_vertices(mesh);
-    tri_mark_boundary(mesh);
-    support_judge(mesh, pslg, &options, false, NULL);
-}
-
 static void test_tangles_are_naively_constrained_delaunay(void **state)
 {
     (void)state;
@@ -21,7 +11,7 @@ static void test_tangles_are_naively_constrained_delaunay(void **state)
             struct tri_pslg pslg = support_tangle((enum support_kind)kind, points, segments, seed);
             struct tri_mesh mesh = support_constrained(&pslg, &report);
             support_assert_cdt(&mesh, true);
-            judge(&mesh, &pslg);
+            support_judge_hull(&mesh, &pslg);
             tri_mesh_free(&mesh);
             tri_pslg_free(&pslg);
         }
@@ -35,7 +25,7 @@ static void test_large_tangles_pass_the_judge(void **state)
         struct tri_pslg pslg = support_tangle((enum support_kind)kind, 300, 100, 5);
         struct tri_mesh mesh = support_constrained(&pslg, &report);
         support_assert_cdt(&mesh, false);
-        judge(&mesh, &pslg);
+        support_judge_hull(&mesh, &pslg);
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);
     }
@@ -121,7 +111,7 @@ static void test_vertices_on_a_segment_split_it(void **state)
     assert_int_equal(report.crossings, 0);
     assert_int_equal(mesh.n_vertices, 9);
     assert_int_equal(count_subs(&mesh, 0), 6);
-    judge(&mesh, &pslg);
+    support_judge_hull(&mesh, &pslg);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
 }
@@ -210,7 +200,7 @@ static void test_many_spokes_and_long_gaps(void **state)
         support_add_segment(&pslg, 0, 1 + i);
     struct tri_mesh mesh = support_constrained(&pslg, &report);
     support_assert_cdt(&mesh, false);
-    judge(&mesh, &pslg);
+    support_judge_hull(&mesh, &pslg);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
 }
@@ -289,7 +279,7 @@ static void test_once_broken(void **state)
         print_message("  number %d\n", (int)i);
         struct tri_mesh mesh = support_constrained(&pslg, &report);
         support_assert_cdt(&mesh, true);
-        judge(&mesh, &pslg);
+        support_judge_hull(&mesh, &pslg);
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);
     }
@@ -335,7 +325,7 @@ static void test_nearest_beside_is_taken(void **state)
         struct tri_mesh mesh = support_constrained(&pslg, &report);
         assert_int_equal(report.bent, 1);
         assert_true(is_run_through(&mesh, near) && !is_run_through(&mesh, far));
-        judge(&mesh, &pslg);
+        support_judge_hull(&mesh, &pslg);
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);
     }
@@ -361,7 +351,7 @@ static void test_a_chain_does_not_drift(void **state)
     struct tri_mesh mesh = support_constrained(&pslg, &report);
     for (int i = 0; i < VERTICES; i++)
         assert_int_equal(is_run_through(&mesh, 4 + i), height[i] <= 3 * 1.9 * ULP);
-    judge(&mesh, &pslg);
+    support_judge_hull(&mesh, &pslg);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
 }
@@ -381,7 +371,7 @@ static void test_crossing_at_a_vertex_nearby(void **state)
         assert_int_equal(report.crossings, !shared);
         assert_int_equal(mesh.n_vertices, pslg.n_points + !shared);
         assert_int_equal(is_run_through(&mesh, v), shared);
-        judge(&mesh, &pslg);
+        support_judge_hull(&mesh, &pslg);
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);
     }
@@ -415,7 +405,7 @@ static void test_all_segment_files(void **state)
             print_message("  %s\n", *name);
             struct tri_mesh mesh = support_constrained(&pslg, &report);
             support_assert_cdt(&mesh, false);
-            judge(&mesh, &pslg);
+            support_judge_hull(&mesh, &pslg);
             tri_mesh_free(&mesh);
             tri_pslg_free(&pslg);
         }
