@@ -38,8 +38,12 @@ enum judged_words_end judged_words_take(const struct judged_words *words, int ar
             complain(words, option, argv);
             return misused(words);
         }
-        if (!words->apply(settings, option))
-            return WORDS_BAD_VALUE;
+        if (!words->apply(settings, option)) {
+            fprintf(stderr, "%s: not a value for this option: ", words->program);
+            one_line_put(stderr, optarg);
+            fputc('\n', stderr);
+            return WORDS_MISUSED;
+        }
     }
     if (optind + 1 != argc)
         return misused(words);

@@ -17,9 +17,8 @@ struct judged_words {
 
 enum judged_words_end {
     WORDS_TAKEN,
-    WORDS_ANSWERED,  /* help or version, on standard output */
-    WORDS_MISUSED,   /* and what is wrong, and usage, has been printed on standard error */
-    WORDS_BAD_VALUE  /* optarg; nothing has been printed */
+    WORDS_ANSWERED, /* help or version, on standard output */
+    WORDS_MISUSED   /* and what is wrong, and usage unless it is a value, has been printed on standard error */
 };
 
 /* *mesh becomes the one word that is no option, borrowed from argv. */

@@ -462,12 +462,9 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     static const struct judged_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,
                                               ":o:c:s:w:m:e:t:b:", long_options, VERSION, HELP, apply};
     char *mesh = NULL;
-    switch (judged_words_take(&words, argc, argv, s, &mesh)) {
-    case WORDS_ANSWERED: return -1;
-    case WORDS_MISUSED: return MISUSE;
-    case WORDS_BAD_VALUE: return fail(MISUSE, "not a value for this option: %s", optarg);
-    case WORDS_TAKEN: break;
-    }
+    enum judged_words_end end = judged_words_take(&words, argc, argv, s, &mesh);
+    if (end != WORDS_TAKEN)
+        return end == WORDS_ANSWERED ? -1 : MISUSE;
     if (s->output == NULL) {
         fputs(usage, stderr);
         return MISUSE;

@@ -283,12 +283,9 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     static const struct judged_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,
                                               ":p:q:b:a:Dcjr", long_options, VERSION, HELP, apply};
     char *mesh = NULL;
-    switch (judged_words_take(&words, argc, argv, s, &mesh)) {
-    case WORDS_ANSWERED: return -1;
-    case WORDS_MISUSED: return TROUBLE;
-    case WORDS_BAD_VALUE: return fail("not a value for this option: %s", optarg);
-    case WORDS_TAKEN: break;
-    }
+    enum judged_words_end end = judged_words_take(&words, argc, argv, s, &mesh);
+    if (end != WORDS_TAKEN)
+        return end == WORDS_ANSWERED ? -1 : TROUBLE;
     (void)(judged_cut_suffix(mesh, ".node") || judged_cut_suffix(mesh, ".ele"));
     s->base = mesh;
     return 0;
