@@ -56,18 +56,19 @@ static double size_of(const char *name)
     return stat(name, &status) == 0 ? (double)status.st_size : 0;
 }
 
+/* What is read from a text takes at most about as much as the text, which is gone before the next is read. */
 enum tri_status plan_check_files(const struct run *run, const struct file_names *files, struct tri_error *error)
 {
-    for (int i = 0; i < files->n; i++) {
-        const double size = size_of(files->name[i]);
-        if (size < WORTH_A_LOOK && !is_strict(run))
-            continue;
-        const double left = plan_memory_left(run);
-        if (size > left)
-            return tri_fail(error, TRI_NO_MEMORY, files->name[i], 0,
-                            "has %.3g GB of text, which is read into memory; %.3g GB are left", 1e-9 * size,
-                            1e-9 * left);
-    }
+    double size = 0;
+    for (int i = 0; i < files->n; i++)
+        size += size_of(files->name[i]);
+    if (size < WORTH_A_LOOK && !is_strict(run))
+        return TRI_OK;
+    const double left = plan_memory_left(run);
+    if (size > left)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
+                        "the input has %.3g GB of text, which is read into memory; %.3g GB are left", 1e-9 * size,
+                        1e-9 * left);
     return TRI_OK;
 }
 

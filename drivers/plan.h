@@ -12,8 +12,8 @@ const char *plan_obstacle(const struct run *run);
 /* Bytes of memory that the process may still take: what is left of the system's and of --memory. */
 double plan_memory_left(const struct run *run);
 
-/* Can these files be read, of which each is in memory as text for a while? A name that is no file takes nothing.
- * TRI_NO_MEMORY, with figures. */
+/* Can these files, the texts of one input, be read into memory? A name that is no file takes nothing. TRI_NO_MEMORY,
+ * with figures. */
 enum tri_status plan_check_files(const struct run *run, const struct file_names *files, struct tri_error *error);
 
 /* Can what has been read be triangulated, which takes place in memory whatever comes then? TRI_NO_MEMORY beyond doubt,
