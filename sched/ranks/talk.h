@@ -2,9 +2,9 @@
  * subsegments of which one has told the other since the talk began. Nothing is told twice.
  *
  * A message is read as a whole and looked through before anything is done. Numbers in it are told as differences, which
- * are small since what lies side by side in the plane is told one after the other; two corners of a triangle beside one
- * that has just been told are known. So a new vertex takes 25 bytes, and a triangle about 3. A vertex that all ranks
- * have had from the start goes by its number there. */
+ * are small since what lies side by side in the plane is told one after the other, and places as the bits in which they
+ * differ from the last; two corners of a triangle beside one that has just been told are known. So a new vertex takes
+ * about 20 bytes, and a triangle about 3. A vertex that all ranks have had from the start goes by its number there. */
 #ifndef SCHED_RANKS_TALK_H
 #define SCHED_RANKS_TALK_H
 
