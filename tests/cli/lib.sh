@@ -54,6 +54,11 @@ program() { # the same for ptriangle
     [ "$found" -eq "$code" ] || fault "exit code $found instead of $code: $(head -n 1 .err)"
 }
 
+in_time() { # in_time CODE: the exit code of a run with a time limit is 0, or that of a stop
+    checks=$((checks + 1))
+    [ "$1" -eq 0 ] || [ "$1" -eq 124 ] || { fault "exit code $1: $(head -n 1 .err)" && return 1; }
+}
+
 says() { check "does not say: $1" grep -qxF -e "$1" .out; }      # a whole line of standard output
 matches() { check "no line matches: $1" grep -qE -e "$1" .out; } # a part of one
 silent_on() { check "says: $1" sh -c "! grep -qE -e \"\$1\" .out" sh "$1"; }

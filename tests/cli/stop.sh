@@ -114,7 +114,7 @@ if [ -x "$bin/ptriangle" ]; then
     ln -s nowhere dangling
     ls >.before
     for words in "--report letter.poly" "--report link" "--blocks second" "--report ./letter.1.node" "--report a --blocks a" \
-        "--report dangling --blocks nowhere" "--report $PWD/b --blocks b" "--output letter"; do
+        "--report dangling --blocks nowhere" "--report ../${PWD##*/}/b --blocks b" "--output letter"; do
         # shellcheck disable=SC2086 # several words
         mesher 1 ptriangle -p letter $words
         complains 'would be (overwritten|written twice)'
