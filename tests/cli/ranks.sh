@@ -196,8 +196,7 @@ while [ "$found" -eq 124 ] && [ $tries -lt 40 ]; do
     fi
     found=$?
     what="$n ranks, for $limit s"
-    checks=$((checks + 1))
-    [ "$found" -eq 0 ] || [ "$found" -eq 124 ] || fault "exit code $found: $(head -n 3 .err)"
+    in_time "$found"
     tries=$((tries + 1))
 done
 check "the same bytes by whoever goes on" same_but_for_comments one.node two.node
@@ -217,6 +216,7 @@ leave_state() { # N WORDS...: stopped with a state, unless it is finished before
             timeout 100 "$bin/ptriangle" "$@" --output three --checkpoint kept --every 0 --time-limit "$limit" \
                 >.out 2>.err
         fi
+        in_time $? || break
     done
 }
 for sweep in "" 1; do
