@@ -121,6 +121,19 @@ case "${LD_PRELOAD:-}$(ldd "$bin/ptriangle")" in
     ;;
 esac
 
+# --- a network that fails for one task: all end, and there is no file
+if [ -n "${PTRIANGLE_LOST:-}" ]; then
+    fresh letter.poly
+    for one in 0 1; do
+        for k in 1 40; do
+            with_one $one "export LD_PRELOAD=$PTRIANGLE_LOST PTRIANGLE_LOST_AT=$k" any -Qpq30a0.01 letter --output two
+            check "look $k of task $one: exit code $found" test "$found" -ne 0
+            check "look $k of task $one: at most one line" test "$(grep -c '^ptriangle: ' .err)" -le 1
+            check "look $k of task $one: no file" sh -c '! ls two.* 2>/dev/null'
+        done
+    done
+fi
+
 # --- memory that runs out in one task, wherever: exit code 1, one line, no file; or all files
 fresh letter.poly
 program 0 -Qpq30a0.01 letter --output one
