@@ -88,6 +88,7 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/window.c
     triangle/text/read.c
     triangle/text/output.c
+    triangle/text/joined.c
     triangle/text/behind.c
     triangle/text/write.c
     triangle/text/layouts.c
@@ -223,6 +224,7 @@ set(PTRIANGLE_RUN_PROGRAMS triangle ptriangle)
 # What the parallel program has beside that. Its report is written with jansson; without, the last file stands in.
 set(PTRIANGLE_PARALLEL_SOURCES
     drivers/blocks_file.c
+    drivers/joint_files.c
     drivers/launch.c
     drivers/long_options.c
     drivers/progress.c

@@ -199,20 +199,20 @@ enum tri_status tri_h5_array_end(struct tri_h5_array *array, struct tri_error *e
 
 /* --- rows that others write */
 
-/* False: HDF5 does not tell. */
-static bool chunk_place(const struct tri_h5_array *array, int64_t chunk, int64_t *place)
+/* Where the chunk that begins with this row lies. False: HDF5 does not tell. */
+static bool chunk_place(hid_t dataset, int64_t row, int64_t *place, hsize_t *size)
 {
-    const hsize_t first[2] = {(hsize_t)(chunk * array->chunk_rows), 0};
-    hsize_t size;
+    const hsize_t first[2] = {(hsize_t)row, 0};
     haddr_t at = HADDR_UNDEF;
     unsigned filters;
-    bool told = H5Dget_chunk_info_by_coord(array->dataset, first, &filters, &at, &size) >= 0 && at != HADDR_UNDEF;
+    const bool told = H5Dget_chunk_info_by_coord(dataset, first, &filters, &at, size) >= 0 && at != HADDR_UNDEF;
     *place = (int64_t)at;
     return told;
 }
 
 enum tri_status tri_h5_array_lay_out(struct tri_h5_array *array, int64_t n, int64_t *place, struct tri_error *error)
 {
+    hsize_t size;
     array->n = n;
     if (array->n_chunks == 0) {
         array->dataset = create_dataset(array, n, false);
@@ -221,7 +221,7 @@ enum tri_status tri_h5_array_lay_out(struct tri_h5_array *array, int64_t n, int6
     if (array->dataset < 0)
         return tri_h5_fail(array->file, array->name, error);
     for (int64_t k = 0; array->n_chunks > 0 && k * array->chunk_rows < n; k++)
-        if (!chunk_place(array, k, &place[k]))
+        if (!chunk_place(array->dataset, k * array->chunk_rows, &place[k], &size))
             return tri_h5_fail(array->file, array->name, error);
     return conclude(array, error);
 }
@@ -237,6 +237,18 @@ static void widen_numbers(char *data, size_t n)
     }
 }
 
+/* What lies in a file must not depend on what has lain there before. */
+static bool clear_chunk(const struct tri_h5_array *array, hid_t dataset, int64_t row)
+{
+    int64_t place;
+    hsize_t size;
+    if (!chunk_place(dataset, row, &place, &size))
+        return false;
+    const int failure = tri_output_clear(array->file->output, (uint64_t)place, size);
+    array->file->failure = array->file->failure ? array->file->failure : failure;
+    return failure == 0;
+}
+
 /* Copies the chunks of the old dataset, by way of the buffer. */
 static enum tri_status copy_chunks(struct tri_h5_array *array, hid_t old, struct tri_error *error)
 {
@@ -245,7 +257,7 @@ static enum tri_status copy_chunks(struct tri_h5_array *array, hid_t old, struct
     for (int64_t first = 0; first < end && !status; first += array->chunk_rows) {
         const hsize_t place[2] = {(hsize_t)first, 0};
         uint32_t filters = 0;
-        if (H5Dread_chunk(old, H5P_DEFAULT, place, &filters, array->buffer) < 0)
+        if (H5Dread_chunk(old, H5P_DEFAULT, place, &filters, array->buffer) < 0 || !clear_chunk(array, old, first))
             return tri_h5_fail(array->file, array->name, error);
         widen_numbers(array->buffer, (size_t)array->chunk_rows * (size_t)array->width);
         status = write_chunk(array, first, error);
