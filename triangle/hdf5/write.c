@@ -168,8 +168,8 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
 {
     struct tri_h5_writer *w = user;
     enum tri_status status = TRI_OK;
-    assert(!w->is_laid_out && tile->first_vertex == w->arrays.points.n && tile->first_triangle == w->arrays.triangles.n &&
-           tile->first_segment == w->segments.n);
+    assert(!w->is_laid_out && tile->first_vertex == w->arrays.points.n &&
+           tile->first_triangle == w->arrays.triangles.n && tile->first_segment == w->segments.n);
     H5E_BEGIN_TRY
     {
         status = add_points(w, tile, error);
@@ -239,12 +239,13 @@ static enum tri_status lay_out_array(struct tri_h5_writer *w, enum tri_h5_kind k
 /* The calls of HDF5 that a file of unknown sizes would have taken, in their order, but for those that write rows. */
 static enum tri_status lay_out(struct tri_h5_writer *w, const struct tri_stream *stream, struct tri_error *error)
 {
-    const int64_t n_points = stream->first_vertex[stream->n_ranks], n_triangles = stream->first_triangle[stream->n_ranks];
-    const int64_t n[TRI_H5_KINDS] = {n_points, n_points, n_points, n_triangles, n_triangles,
-                                     stream->first_segment[stream->n_ranks], stream->first_segment[stream->n_ranks]};
+    const int64_t n_points = stream->first_vertex[stream->n_ranks],
+                  n_triangles = stream->first_triangle[stream->n_ranks],
+                  n_segments = stream->first_segment[stream->n_ranks];
+    const int64_t n[TRI_H5_KINDS] = {n_points, n_points, n_points, n_triangles, n_triangles, n_segments, n_segments};
     enum tri_status status = allocate(w, n_points, error);
     w->is_laid_out = true;
-    w->segments.n = n[TRI_H5_OF_SEGMENTS];
+    w->segments.n = n_segments;
     for (enum tri_h5_kind kind = 0; kind < TRI_H5_KINDS && !status; kind++) {
         if (kind == TRI_H5_OF_SEGMENTS)
             status = begin_segments(w, error);

@@ -35,9 +35,9 @@ bool tri_h5_is_there(void);
 enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tri_h5_options *options,
                                   struct tri_sink *sink, struct tri_error *error);
 
-/* On several ranks (a stream with n_ranks > 1) the writer, which is on one of them, is told of the beginning and the end
- * alone: at the beginning it gives all arrays their places, which are known from then on, and whoever has rows puts them
- * there (triangle/hdf5/part.h), until before the end. The places are the writer's. */
+/* On several ranks (a stream with n_ranks > 1) the writer, which is on one of them, is told of the beginning and the
+ * end alone: at the beginning it gives all arrays their places, which are known from then on, and whoever has rows puts
+ * them there (triangle/hdf5/part.h), until before the end. The places are the writer's. */
 const struct tri_h5_layout *tri_h5_writer_layout(const struct tri_h5_writer *writer, int64_t **place);
 
 /* What it has to know then, before the end: points that there were before refinement, and the bounds of all. */

@@ -1,9 +1,9 @@
-/* An output (triangle/text/output.h) that several processes write, maybe on several machines, each to places of its own:
- * one of them has opened it, and commits or aborts it; the others join in by a ticket.
+/* An output (triangle/text/output.h) that several processes write, maybe on several machines, each to places of its
+ * own: one of them has opened it, and commits or aborts it; the others join in by a ticket.
  *
  * That a name means the same file elsewhere is not taken for granted: a ticket holds the file's number in its file
- * system, and the file is given a length that tells it from others as long as tickets are out. Nobody reads the file for
- * that: a system that keeps pages of it in mind might write them back later, with what it has read. */
+ * system, and the file is given a length that tells it from others as long as tickets are out. Nobody reads the file
+ * for that: a system that keeps pages of it in mind might write them back later, with what it has read. */
 #ifndef TRIANGLE_TEXT_JOINED_H
 #define TRIANGLE_TEXT_JOINED_H
 
@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-enum { TRI_TICKET_PATH = 4096 };
+enum { TRI_TICKET_PATH = 1024 };
 
 struct tri_ticket {
     char path[TRI_TICKET_PATH];      /* as errors name the file; empty: no ticket */

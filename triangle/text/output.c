@@ -442,8 +442,10 @@ int tri_output_clear(const struct tri_output *output, uint64_t place, uint64_t s
     int result = 0;
     if (size == 0 || punch_hole(output, place, size))
         return 0;
-    for (uint64_t done = 0; done < size && !result; done += sizeof zeros)
-        result = tri_output_write_at(output, place + done, zeros, size - done < sizeof zeros ? size - done : sizeof zeros);
+    for (uint64_t done = 0; done < size && !result; done += sizeof zeros) {
+        const uint64_t left = size - done;
+        result = tri_output_write_at(output, place + done, zeros, left < sizeof zeros ? (size_t)left : sizeof zeros);
+    }
     return result;
 }
 
