@@ -21,7 +21,8 @@ struct estimate {
     struct needs least;  /* what area bounds ask for beyond doubt; all 0: there are none */
     struct needs likely;
     double vertices;
-    bool sweeps;         /* a mesh that is handed out as it is made is never there as a whole: some columns are */
+    bool sweeps;         /* a mesh that is handed out as it is made is never there as a whole: some columns are, or
+                            each task has its part */
     double seconds;      /* from here on; costs a few milliseconds to find out, and is 0 unless asked for */
 };
 

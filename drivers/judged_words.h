@@ -9,8 +9,8 @@ struct judged_words {
     const char *program;                   /* its name, for errors */
     const char *version;                   /* a line */
     const char *usage, *help;              /* lines; what --help prints below usage */
-    const char *letters;                   /* options of one letter, and .. */
-    const struct option *options;          /* .. of a word: both as getopt_long takes them; letters begins with ':' */
+    const char *letters;                   /* options of one letter behind "-:", and .. */
+    const struct option *options;          /* .. of a word: both as getopt_long takes them */
     int version_option, help_option;
     bool (*apply)(void *settings, int option); /* with optarg; false: that is no value for it */
 };

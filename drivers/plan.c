@@ -20,10 +20,11 @@
  * not worth looking for. */
 static const double MARGIN = 1.15, STRICT_MARGIN = 1.5, STEEP_MARGIN = 2.5, CONFORMING_MARGIN = 4, WORTH_A_LOOK = 1e8;
 
-/* Measured: bytes at the peak of triangulating, of the process, a point, a segment, and of a mesh that is rebuilt, a
- * point and a triangle; and the share of them that is sure. */
-static const double PROCESS_BYTES = 1.2e7, POINT_BYTES = 182, SEGMENT_BYTES = 135, REBUILT_POINT_BYTES = 100,
-                    ELEMENT_BYTES = 48, SURE_SHARE = 0.75;
+/* Measured: bytes at the peak of triangulating, of the process, a point, an attribute of one, a segment, and of a mesh
+ * that is rebuilt, a point and a triangle; of text on its way into files, a point and at the most; and the share of all
+ * that is sure. */
+static const double PROCESS_BYTES = 1.2e7, POINT_BYTES = 200, ATTRIBUTE_BYTES = 20, SEGMENT_BYTES = 135,
+                    REBUILT_POINT_BYTES = 100, ELEMENT_BYTES = 48, TEXT_BYTES = 60, MOST_TEXT = 6e6, SURE_SHARE = 0.7;
 
 /* Measured: what is allocated to write files, touched or not. */
 static const double BUFFER_BYTES = 3e7;
@@ -76,8 +77,9 @@ enum tri_status plan_check_files(const struct run *run, const struct file_names 
 static double input_bytes(const struct run *run)
 {
     const struct tri_pslg *p = &run->pslg;
-    const double points = (run->elements.n > 0 ? REBUILT_POINT_BYTES : POINT_BYTES) + 16.0 * p->n_attributes;
-    return PROCESS_BYTES + points * p->n_points + SEGMENT_BYTES * p->n_segments + ELEMENT_BYTES * run->elements.n;
+    const double point = (run->elements.n > 0 ? REBUILT_POINT_BYTES : POINT_BYTES) + ATTRIBUTE_BYTES * p->n_attributes;
+    return PROCESS_BYTES + point * p->n_points + SEGMENT_BYTES * p->n_segments + ELEMENT_BYTES * run->elements.n +
+           fmin(TEXT_BYTES * p->n_points, MOST_TEXT);
 }
 
 enum tri_status plan_check_input(const struct run *run, const struct console *console, struct tri_error *error)
@@ -186,7 +188,7 @@ static enum tri_status check_whole(const struct run *run, const struct estimate 
 static enum tri_status check_stream(const struct run *run, const struct estimate *e, double left,
                                     const struct console *console, struct tri_error *error)
 {
-    static const char why[] = "bounds above 31 degrees and -S";
+    const char *why = run->hooks->n_ranks > 0 ? "angles above 34 degrees and -S" : "bounds above 31 degrees and -S";
     if (!e->sweeps && e->least.triangles > TRI_MAX_TRIANGLES)
         return fail_too_many(&e->least, why, error);
     if (!e->sweeps && e->likely.triangles > TRI_MAX_TRIANGLES)
@@ -271,6 +273,9 @@ static void say_way(const struct console *console, const struct run *run, const 
     if (e->sweeps && run->hooks->n_ranks > 0)
         console_say(console, "Sharing: about %.3g million triangles among %d tasks, up to %s of memory each.\n",
                     millions(n->triangles), run->hooks->n_ranks, console_size(n->held).text);
+    else if (run->hooks->n_ranks > 1)
+        console_say(console, "Each of %d tasks makes all of the mesh: angles above 34 degrees and -S are not shared.\n",
+                    run->hooks->n_ranks);
     else if (e->sweeps)
         console_say(console, "Sweeping: about %.3g million triangles %s, a few columns of them %s.\n",
                     millions(n->triangles), whole, console_size(n->held).text);

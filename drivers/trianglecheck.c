@@ -281,7 +281,7 @@ static bool apply(void *settings, int option)
 static int parse_arguments(int argc, char **argv, struct settings *s)
 {
     static const struct judged_words words = {PTRIANGLE_NAME, PTRIANGLE_NAME " " PTRIANGLE_VERSION "\n", usage, help,
-                                              ":p:q:b:a:Dcjr", long_options, VERSION, HELP, apply};
+                                              "-:p:q:b:a:Dcjr", long_options, VERSION, HELP, apply};
     char *mesh = NULL;
     enum judged_words_end end = judged_words_take(&words, argc, argv, s, &mesh);
     if (end != WORDS_TAKEN)

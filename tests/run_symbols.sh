@@ -6,12 +6,15 @@ set -u
 nm=$1
 failed=0
 
+# list FLAGS LIBRARY: a line a symbol; those that name a member, with the path of the library, are left out.
+list() { "$nm" -P "$@" 2>/dev/null | grep -v ':$'; }
+
 # names FLAG LIBRARY: symbols, sorted.
-names() { "$nm" -P "$1" "$2" 2>/dev/null | awk 'NF > 1 { print $1 }' | sort -u; }
+names() { list "$1" "$2" | awk '{ print $1 }' | sort -u; }
 
 # own LIBRARY PATTERN: all that it defines matches, but for what compilers put into position-independent code (i386).
 own() {
-    all=$("$nm" -P -g "$1" 2>/dev/null | awk 'NF > 1 && $2 !~ /^[Uwv]$/ { print $1 }' | sort -u)
+    all=$(list -g "$1" | awk '$2 !~ /^[Uwv]$/ { print $1 }' | sort -u)
     [ -n "$all" ] || { echo "symbols: $1 defines nothing"; failed=1; }
     strange=$(echo "$all" | grep -v '^__x86\.get_pc_thunk\.' | grep -vE "$2")
     [ -z "$strange" ] || { echo "symbols: $1 defines" $strange; failed=1; }
@@ -33,8 +36,8 @@ foreign=$(names -u "$5" | grep '^tri' | grep -vE '^tri_(check.*|fail|(orient2d|d
 
 # Members that define triangulate define the same, so that none of the other library's is needed beside.
 entries() {
-    "$nm" -P -A -g "$1" | awk '$3 ~ /^[A-TV-Z]$/ { sub(/:$/, "", $1); member[$2] = $1; all[$1] = all[$1] " " $2 }
-        END { print all[member["triangulate"]] }'
+    list -A -g "$1" | sed 's/^.*\[\(.*\)\]: /\1 /' |
+        awk '$3 ~ /^[A-TV-Z]$/ { member[$2] = $1; all[$1] = all[$1] " " $2 } END { print all[member["triangulate"]] }'
 }
 a=$(entries "$2")
 b=$(entries "$3")
@@ -42,7 +45,7 @@ if [ -z "$a" ] || [ "$a" != "$b" ]; then
     echo "symbols: triangulate lies with '$a' in the one, with '$b' in the other"
     failed=1
 fi
-"$nm" -P "$2" | grep -q '^triunsuitable w' || { echo "symbols: triunsuitable is not weak"; failed=1; }
+list "$2" | grep -q '^triunsuitable w' || { echo "symbols: triunsuitable is not weak"; failed=1; }
 
 [ "$failed" -eq 0 ] && echo "symbols: as they should be"
 exit "$failed"

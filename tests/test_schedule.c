@@ -620,6 +620,33 @@ static void test_fans_at_a_fence_are_searched_once(void **state)
     tri_pslg_free(&start.pslg);
 }
 
+/* Cuts do not run along a gap that holds nearly all of the work, upright or level. */
+static void test_a_long_gap_costs_no_triangles(void **state)
+{
+    (void)state;
+    for (int turned = 0; turned < 2; turned++) {
+        struct par_report report;
+        struct start start = {.options = support_quality(32, 0)};
+        struct par_options blocks = small_blocks(2000, 2), one_call = small_blocks(1e9, 1);
+        assert_true(support_read("regress/long_gap.poly", &start.pslg));
+        for (int32_t v = 0; turned && v < start.pslg.n_points; v++) {
+            double *p = start.pslg.points + 2 * (size_t)v, x = p[0];
+            p[0] = p[1];
+            p[1] = x;
+        }
+        struct tri_mesh sequential = refine(&start, &one_call, &report);
+        assert_int_equal(report.levels, 0);
+        par_report_free(&report);
+        struct tri_mesh mesh = refine(&start, &blocks, &report);
+        print_message("  %d triangles, by the schedule %d\n", (int)sequential.n_triangles, (int)mesh.n_triangles);
+        assert_true(report.levels > 0 && mesh.n_triangles < 1.1 * sequential.n_triangles);
+        par_report_free(&report);
+        tri_mesh_free(&sequential);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&start.pslg);
+    }
+}
+
 static void test_nothing_is_deferred_with_the_margin(void **state)
 {
     (void)state;
@@ -1088,6 +1115,7 @@ int main(void)
         cmocka_unit_test(test_schedules_are_told_apart),
         cmocka_unit_test(test_what_is_left_does_not_multiply),
         cmocka_unit_test(test_fans_at_a_fence_are_searched_once),
+        cmocka_unit_test(test_a_long_gap_costs_no_triangles),
         cmocka_unit_test(test_default_blocks_cost_no_triangles),
         cmocka_unit_test(test_a_size_test_runs_in_parallel_only_where_allowed),
         cmocka_unit_test(test_limits_and_gates_go_the_sequential_way),

@@ -896,6 +896,13 @@ def far_region():
     return poly
 
 
+@case("regress/long_gap.poly", "two walls side by side, 2,750 times as long as the gap between them, in a box",
+      "-q32 in blocks: about as many triangles as in one call; once 2.3 times as many, with cuts along the gap")
+def long_gap():
+    return figure(((0, 0), (4, 0), (4, 13), (0, 13), (2, 1), (2, 12), (2.004, 1), (2.004, 12)),
+                  ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (6, 7)))
+
+
 # --- what broke once, found elsewhere: files as they are, read here for the tables; tests/cli/regress.sh says how
 
 FOUND = [

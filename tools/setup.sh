@@ -39,6 +39,10 @@ int main(void) { return 0; }'
     return $result
 }
 
+python_headers() {
+    python3 -c 'import os, sys, sysconfig; sys.exit(not os.path.exists(sysconfig.get_path("include") + "/Python.h"))'
+}
+
 openmp_with_clang() {
     probe=$(mktemp)
     printf '#include <omp.h>\nint main(void) { return omp_get_max_threads() < 1; }\n' |
@@ -95,6 +99,7 @@ list_missing() {
     need "libmpich-dev mpich" command -v mpicc.mpich
     need clang command -v clang++
     need python3-venv python3 -c 'import ensurepip, venv'
+    need python3-dev python_headers
     need libomp-dev openmp_with_clang
     need "$(fuzzer_package)" fuzzer_with_clang
     need cppcheck command -v cppcheck

@@ -5,7 +5,7 @@
 #include "sched/ranks/ranks.h"
 
 /* Rings around what a block begins with; a new point seldom changes more than some triangles around a bad one. */
-enum { RINGS = 3 };
+enum { RINGS = 2 };
 
 /* The rank that works in a box at a place, this one holding a part; -1: none. */
 static int worker_at(const struct par_ranks *r, struct tri_point q)
@@ -19,21 +19,43 @@ static bool tell_of(struct par_talk *talk, tri_triangle_id t)
     return par_talk_number(talk, t) != TRI_NONE || par_talk_add_triangle(talk, t);
 }
 
-/* An own vertex around which rank w has to know all, with a triangle there, joins the ring. */
-static bool join(const struct par_ranks *r, int w, struct par_ids *ring, tri_vertex_id v, tri_triangle_id t)
+/* Own vertices around which a rank has to know all, each with a triangle there. */
+struct ring {
+    struct par_ids vertex, triangle;
+};
+
+static void free_ring(struct ring *ring)
 {
-    struct par_map *surrounded = &r->lent[w].surrounded;
-    struct tri_point q = r->state->mesh->xy[v];
-    if (par_map_get(surrounded, v) != TRI_NONE || !par_is_own(&r->territory, q) || worker_at(r, q) != w)
-        return true;
-    return par_map_put(surrounded, v, t) && par_ids_add(ring, v);
+    free(ring->vertex.item);
+    free(ring->triangle.item);
+    *ring = (struct ring){0};
 }
 
-static bool join_corners(const struct par_ranks *r, int w, struct par_ids *ring, tri_triangle_id t)
+/* A telling of so many rings to rank w. */
+struct telling {
+    const struct par_ranks *ranks;
+    int w;
+    int32_t rings;
+};
+
+/* A vertex joins a ring, unless all around it has been told, or is not this rank's to tell. */
+static bool join(const struct telling *telling, struct ring *ring, tri_vertex_id v, tri_triangle_id t)
 {
-    const tri_vertex_id *v = r->state->mesh->tri[t].v;
-    assert(tri_is_live(&r->state->mesh->tri[t]));
-    return join(r, w, ring, v[0], t) && join(r, w, ring, v[1], t) && join(r, w, ring, v[2], t);
+    const struct par_ranks *r = telling->ranks;
+    struct par_map *surrounded = &r->lent[telling->w].surrounded;
+    struct tri_point q = r->state->mesh->xy[v];
+    if (par_map_get(surrounded, v) != TRI_NONE || !par_is_own(&r->territory, q) || worker_at(r, q) != telling->w)
+        return true;
+    return par_map_put(surrounded, v, telling->rings) && par_ids_add(&ring->vertex, v) &&
+           par_ids_add(&ring->triangle, t);
+}
+
+static bool join_corners(const struct telling *telling, struct ring *ring, tri_triangle_id t)
+{
+    const struct tri_mesh *mesh = telling->ranks->state->mesh;
+    const tri_vertex_id *v = mesh->tri[t].v;
+    assert(tri_is_live(&mesh->tri[t]));
+    return join(telling, ring, v[0], t) && join(telling, ring, v[1], t) && join(telling, ring, v[2], t);
 }
 
 static int corner_at(const struct tri_triangle *t, tri_vertex_id v) { return t->v[0] == v ? 0 : t->v[1] == v ? 1 : 2; }
@@ -48,40 +70,39 @@ static tri_triangle_id turn(const struct tri_mesh *mesh, tri_triangle_id t, tri_
 }
 
 /* Tells of all triangles around an own vertex, of which `t` is one; their corners join the next ring. */
-static bool tell_around(const struct par_ranks *r, int w, tri_vertex_id v, tri_triangle_id t,
-                        struct par_ids *next)
+static bool tell_around(const struct telling *telling, tri_vertex_id v, tri_triangle_id t, struct ring *next)
 {
+    const struct par_ranks *r = telling->ranks;
     const struct tri_mesh *mesh = r->state->mesh;
+    struct par_talk *talk = &r->lent[telling->w];
     tri_triangle_id at = t;
     bool memory = true;
     assert(t != TRI_NONE && par_is_own(&r->territory, mesh->xy[v])); /* so all triangles around it are here */
     do {
-        memory = memory && tell_of(&r->lent[w], at) && join_corners(r, w, next, at);
+        memory = memory && tell_of(talk, at) && join_corners(telling, next, at);
         at = turn(mesh, at, v, true);
     } while (memory && at != TRI_NONE && at != t);
     if (at == t)
         return memory;
     for (at = turn(mesh, t, v, false); memory && at != TRI_NONE; at = turn(mesh, at, v, false))
-        memory = tell_of(&r->lent[w], at) && join_corners(r, w, next, at);
+        memory = tell_of(talk, at) && join_corners(telling, next, at);
     return memory;
 }
 
-/* So many rings, the first of which is given. Frees it. */
-static bool tell_rings(const struct par_ranks *r, int w, struct par_ids *ring, int32_t rings)
+/* Its rings, the first of which is given. Frees that. */
+static bool tell_rings(const struct telling *telling, struct ring *ring)
 {
-    const struct par_map *surrounded = &r->lent[w].surrounded;
     bool memory = true;
-    for (int32_t n = 0; memory && n < rings && ring->n > 0; n++) {
-        struct par_ids next = {0};
-        for (int32_t i = 0; memory && i < ring->n; i++)
-            memory = tell_around(r, w, ring->item[i], par_map_get(surrounded, ring->item[i]), &next);
-        free(ring->item);
+    for (int32_t n = 0; memory && n < telling->rings && ring->vertex.n > 0; n++) {
+        struct ring next = {0};
+        for (int32_t i = 0; memory && i < ring->vertex.n; i++)
+            memory = tell_around(telling, ring->vertex.item[i], ring->triangle.item[i], &next);
+        free_ring(ring);
         *ring = next;
     }
-    for (int32_t i = 0; memory && i < ring->n; i++) /* around these not all has been told */
-        memory = par_map_put(&r->lent[w].surrounded, ring->item[i], TRI_NONE);
-    free(ring->item);
-    *ring = (struct par_ids){0};
+    for (int32_t i = 0; memory && i < ring->vertex.n; i++) /* around these not all has been told */
+        memory = par_map_put(&telling->ranks->lent[telling->w].surrounded, ring->vertex.item[i], TRI_NONE);
+    free_ring(ring);
     return memory;
 }
 
@@ -107,14 +128,16 @@ static int taker_of(const struct par_ranks *r, int32_t i)
 
 static bool tell_surroundings(const struct par_ranks *r)
 {
-    struct par_ids *ring = calloc((size_t)r->carrier->n_ranks, sizeof *ring);
+    struct ring *ring = calloc((size_t)r->carrier->n_ranks, sizeof *ring);
     bool memory = ring;
     for (int32_t i = 0; memory && i < r->state->worklist.n; i++) {
-        int w = taker_of(r, i);
-        memory = w < 0 || join_corners(r, w, &ring[w], r->state->worklist.item[i]);
+        const struct telling telling = {r, taker_of(r, i), RINGS};
+        memory = telling.w < 0 || join_corners(&telling, &ring[telling.w], r->state->worklist.item[i]);
     }
-    for (int w = 0; ring && w < r->carrier->n_ranks; w++)
-        memory = tell_rings(r, w, &ring[w], memory ? RINGS : 0) && memory;
+    for (int w = 0; ring && w < r->carrier->n_ranks; w++) {
+        const struct telling telling = {r, w, memory ? RINGS : 0};
+        memory = tell_rings(&telling, &ring[w]) && memory;
+    }
     free(ring);
     return memory;
 }
@@ -169,7 +192,6 @@ enum tri_status par_lend(struct par_ranks *r, struct tri_error *error)
     size_t n = (size_t)r->carrier->n_ranks;
     struct par_message *message = calloc(n, sizeof *message);
     int32_t *first = calloc(n, sizeof *first);
-    r->rings = RINGS;
     bool memory = message && first && tell_straddlers(r) && tell_surroundings(r) &&
                   tell_all(r, message, first) && lend_entries(r, message) && write_messages(r, message, first);
     free_messages(message, r->carrier->n_ranks);
@@ -188,23 +210,63 @@ static bool is_bad_list(const struct par_bytes *bytes, const struct par_talk *ta
     return bad;
 }
 
-/* The vertices that rank w has asked for, with a triangle at each, are the first ring. */
-static bool begin_ring(struct par_ranks *r, int w, struct par_ids *ring)
+/* What is asked for: a vertex, a triangle there that has been told, and the most rings of a telling that told all
+ * around one of its neighbours. */
+struct wish {
+    tri_vertex_id vertex;
+    tri_triangle_id triangle;
+    int32_t rings;
+};
+
+static void look_at(struct wish *wish, const struct par_talk *talk, const struct tri_mesh *mesh, tri_triangle_id t)
+{
+    wish->triangle = t;
+    for (int k = 0; k < 3; k++) {
+        int32_t rings = par_map_get(&talk->surrounded, mesh->tri[t].v[k]);
+        wish->rings = rings > wish->rings ? rings : wish->rings;
+    }
+}
+
+/* Returns how many there are; TRI_NONE: no memory. */
+static int32_t read_wishes(const struct par_ranks *r, int w, struct wish *wish)
 {
     const int32_t *number = (const int32_t *)(const void *)r->in[w].at;
+    const struct par_talk *talk = &r->lent[w];
     const struct tri_mesh *mesh = r->state->mesh;
-    struct par_talk *talk = &r->lent[w];
-    struct par_map wanted = {0};
+    struct par_map at = {0};
+    int32_t n = 0;
     bool memory = true;
-    for (size_t i = 0; memory && i < r->in[w].n / sizeof *number; i++)
-        memory = par_map_put(&wanted, talk->vertex.item[number[i]], 0);
-    for (int32_t i = 0, n = talk->triangle.n; memory && i < n; i++) {
-        const tri_vertex_id *v = mesh->tri[talk->triangle.item[i]].v;
-        for (int k = 0; memory && k < 3; k++)
-            if (par_map_get(&wanted, v[k]) != TRI_NONE)
-                memory = join(r, w, ring, v[k], talk->triangle.item[i]);
+    for (size_t i = 0; memory && i < r->in[w].n / sizeof *number; i++) {
+        tri_vertex_id v = talk->vertex.item[number[i]];
+        if (par_map_get(&at, v) != TRI_NONE)
+            continue;
+        memory = par_map_put(&at, v, n);
+        wish[n++] = (struct wish){v, TRI_NONE, 0};
     }
-    par_map_free(&wanted);
+    for (int32_t i = 0; memory && i < talk->triangle.n; i++)
+        for (int k = 0; k < 3; k++) {
+            int32_t which = par_map_get(&at, mesh->tri[talk->triangle.item[i]].v[k]);
+            if (which != TRI_NONE)
+                look_at(&wish[which], talk, mesh, talk->triangle.item[i]);
+        }
+    par_map_free(&at);
+    return memory ? n : TRI_NONE;
+}
+
+/* Where what has been told was not enough, twice as many rings are told of: so a block that eats its way into another
+ * rank's part asks seldom, and one that asks a little here and there does not get that much everywhere. */
+static bool fulfil(const struct par_ranks *r, int w)
+{
+    struct wish *wish = malloc(r->in[w].n / sizeof(int32_t) * sizeof *wish + 1);
+    const int32_t n = wish ? read_wishes(r, w, wish) : TRI_NONE;
+    bool memory = n != TRI_NONE;
+    for (int32_t i = 0; memory && i < n; i++) {
+        const struct telling telling = {r, w, wish[i].rings > 0 ? 2 * wish[i].rings : RINGS};
+        struct ring ring = {0};
+        memory = join(&telling, &ring, wish[i].vertex, wish[i].triangle);
+        memory = tell_rings(&telling, &ring) && memory;
+    }
+    free(wish);
     return memory;
 }
 
@@ -214,13 +276,10 @@ enum tri_status par_lend_more(struct par_ranks *r, struct tri_error *error)
     struct par_message *message = calloc(n, sizeof *message);
     int32_t *first = calloc(n, sizeof *first);
     bool memory = message && first, bad = false;
-    r->rings *= 2;
     for (int w = 0; memory && w < r->carrier->n_ranks; w++) {
-        struct par_ids ring = {0};
         first[w] = r->lent[w].triangle.n;
         bad = bad || is_bad_list(&r->in[w], &r->lent[w]);
-        memory = bad || begin_ring(r, w, &ring);
-        memory = tell_rings(r, w, &ring, memory ? r->rings : 0) && memory;
+        memory = bad || fulfil(r, w);
     }
     memory = memory && tell_all(r, message, first) && write_messages(r, message, first);
     free_messages(message, r->carrier->n_ranks);

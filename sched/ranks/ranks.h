@@ -72,7 +72,6 @@ struct par_ranks {
     struct par_shift shift;
     struct par_talk *lent, *borrowed; /* [n_ranks] */
     struct par_index places, triangles; /* of the straddlers and of what is borrowed */
-    int32_t rings;     /* to lend when more is asked for */
     struct par_bytes *out, *in; /* [n_ranks] */
     struct par_stand stand;
     uint64_t run;              /* a hash of what all ranks began with */

@@ -265,23 +265,74 @@ static void put_ascending(struct writer *w, const struct par_ids *list)
         put(w, (uint64_t)(list->item[i] - last - 1));
 }
 
-enum { COMMON, FREE, OTHER };
+enum { COMMON, FREE, OTHER, KINDS };
 
-static void put_vertex(struct writer *w, const struct par_told_vertex *v, const double *attribute, int32_t n)
+/* Numbers that go with a place: two coordinates and a size. They differ little from those told before: the bits in
+ * which they do are told, without the bytes of zeros in front of them. */
+enum { REALS = 3, LENGTHS = sizeof(uint64_t) + 1 };
+struct reals {
+    uint64_t bits[REALS];
+};
+
+static struct reals reals_of(const struct par_told_vertex *v)
+{
+    const double real[REALS] = {v->xy.x, v->xy.y, v->feature};
+    struct reals reals;
+    memcpy(&reals, real, sizeof reals);
+    return reals;
+}
+
+static unsigned bytes_in(uint64_t word)
+{
+    unsigned n = 0;
+    for (; word > 0; word >>= 8)
+        n++;
+    return n;
+}
+
+static void put_lowest(struct writer *w, uint64_t word, unsigned n)
+{
+    for (; n > 0; n--, word >>= 8)
+        put_byte(w, (unsigned char)(word & 255));
+}
+
+static void put_place(struct writer *w, const struct reals *reals, struct reals *last, unsigned kind)
+{
+    unsigned n[REALS], header = 0;
+    for (int k = REALS - 1; k >= 0; k--) {
+        last->bits[k] ^= reals->bits[k];
+        n[k] = bytes_in(last->bits[k]);
+        header = header * LENGTHS + n[k];
+    }
+    put(w, header * KINDS + kind);
+    for (int k = 0; k < REALS; k++)
+        put_lowest(w, last->bits[k], n[k]);
+    *last = *reals;
+}
+
+static void put_vertex(struct writer *w, const struct par_told_vertex *v, struct reals *last, const double *attribute,
+                       int32_t n)
 {
     bool is_free = v->on == TRI_VERTEX_FREE && v->marker == 0;
-    put(w, v->common != TRI_NONE ? COMMON : is_free ? FREE : OTHER);
     if (v->common != TRI_NONE) {
+        put(w, COMMON);
         put(w, (uint64_t)v->common);
         return;
     }
+    const struct reals reals = reals_of(v);
+    put_place(w, &reals, last, is_free ? FREE : OTHER);
     if (!is_free) {
         put_signed(w, v->on);
         put_signed(w, v->marker);
     }
-    put_bytes(w, &v->xy, sizeof v->xy);
-    put_bytes(w, &v->feature, sizeof v->feature);
     put_bytes(w, attribute, (size_t)n * sizeof *attribute);
+}
+
+static void put_vertices(struct writer *w, const struct par_message *m, int32_t n_attributes)
+{
+    struct reals last = {{0}};
+    for (int32_t i = 0; i < m->n_vertices; i++)
+        put_vertex(w, &m->vertex[i], &last, m->attribute + (size_t)i * (size_t)n_attributes, n_attributes);
 }
 
 /* The byte at the beginning of a triangle: which edges lead to triangles that have been told; is the corner opposite to
@@ -387,8 +438,7 @@ bool par_message_write(const struct par_message *m, const struct par_talk *talk,
         put(&w, (uint64_t)count[k]);
     put_ascending(&w, &m->gone);
     put_ascending(&w, &m->gone_subs);
-    for (int32_t i = 0; i < m->n_vertices; i++)
-        put_vertex(&w, &m->vertex[i], m->attribute + (size_t)i * (size_t)n_attributes, n_attributes);
+    put_vertices(&w, m, n_attributes);
     put_triangles(&w, m, talk);
     put_sides(&w, m, talk);
     put_entries(&w, m);
@@ -456,21 +506,50 @@ static void get_ascending(struct reader *r, struct par_ids *list, int32_t n, int
         list->item[list->n] = last + 1 + get_below(r, (int64_t)end - last - 1);
 }
 
-static void get_vertex(struct reader *r, struct par_told_vertex *v, double *attribute, int32_t n, int32_t n_common)
+static uint64_t get_lowest(struct reader *r, unsigned n)
 {
-    int32_t kind = get_below(r, OTHER + 1);
+    uint64_t word = 0;
+    unsigned char byte = 0;
+    for (unsigned k = 0; k < n; k++) {
+        get_bytes(r, &byte, 1);
+        word |= (uint64_t)byte << 8 * k;
+    }
+    return word;
+}
+
+static void get_place(struct reader *r, struct par_told_vertex *v, struct reals *last, unsigned header)
+{
+    double real[REALS];
+    for (int k = 0; k < REALS; k++, header /= LENGTHS)
+        last->bits[k] ^= get_lowest(r, header % LENGTHS);
+    memcpy(real, last, sizeof real);
+    v->xy = (struct tri_point){real[0], real[1]};
+    v->feature = real[2];
+}
+
+static void get_vertex(struct reader *r, struct par_told_vertex *v, struct reals *last, double *attribute, int32_t n,
+                       int32_t n_common)
+{
+    const unsigned header = (unsigned)get_below(r, KINDS * LENGTHS * LENGTHS * LENGTHS), kind = header % KINDS;
     *v = (struct par_told_vertex){.common = TRI_NONE, .on = TRI_VERTEX_FREE};
     if (kind == COMMON) {
         v->common = get_below(r, n_common);
+        r->bad = r->bad || header != COMMON;
         return;
     }
+    get_place(r, v, last, header / KINDS);
     if (kind == OTHER) {
         v->on = get_int(r);
         v->marker = get_int(r);
     }
-    get_bytes(r, &v->xy, sizeof v->xy);
-    get_bytes(r, &v->feature, sizeof v->feature);
     get_bytes(r, attribute, (size_t)n * sizeof *attribute);
+}
+
+static void get_vertices(struct reader *r, struct par_message *m, int32_t n_attributes, int32_t n_common)
+{
+    struct reals last = {{0}};
+    for (int32_t i = 0; !r->bad && i < m->n_vertices; i++)
+        get_vertex(r, &m->vertex[i], &last, m->attribute + (size_t)i * (size_t)n_attributes, n_attributes, n_common);
 }
 
 static void get_links(struct reader *r, struct par_told_triangle *t, int32_t number, int flags)
@@ -609,8 +688,7 @@ enum tri_status par_message_read(struct par_message *m, const struct par_talk *t
     if (!r.bad) {
         get_ascending(&r, &m->gone, count[0], talk->triangle.n);
         get_ascending(&r, &m->gone_subs, count[1], talk->sub.n);
-        for (int32_t i = 0; i < m->n_vertices; i++)
-            get_vertex(&r, &m->vertex[i], m->attribute + (size_t)i * (size_t)n, n, n_common);
+        get_vertices(&r, m, n, n_common);
         get_triangles(&r, m, talk, mesh->n_regions);
         get_sides(&r, m, talk, mesh->n_parents);
         get_entries(&r, m, talk->triangle.n + m->n_triangles);

@@ -2,9 +2,9 @@
  * subsegments of which one has told the other since the talk began. Nothing is told twice.
  *
  * A message is read as a whole and looked through before anything is done. Numbers in it are told as differences, which
- * are small since what lies side by side in the plane is told one after the other; two corners of a triangle beside one
- * that has just been told are known. So a new vertex takes 25 bytes, and a triangle about 3. A vertex that all ranks
- * have had from the start goes by its number there. */
+ * are small since what lies side by side in the plane is told one after the other, and places as the bits in which they
+ * differ from the last; two corners of a triangle beside one that has just been told are known. So a new vertex takes
+ * about 20 bytes, and a triangle about 3. A vertex that all ranks have had from the start goes by its number there. */
 #ifndef SCHED_RANKS_TALK_H
 #define SCHED_RANKS_TALK_H
 
@@ -35,7 +35,7 @@ struct par_talk {
     struct par_ids vertex, triangle, sub; /* ids here; of triangles and subsegments that are no more TRI_NONE */
     struct par_ids sub_end;               /* where each subsegment ended when it was told */
     struct par_map vertex_at, triangle_at, sub_at; /* their numbers */
-    struct par_map surrounded;                 /* vertices of which all triangles have been told */
+    struct par_map surrounded; /* vertices of which all triangles have been told: with how many rings at once */
 };
 
 bool par_talk_add_vertex(struct par_talk *talk, tri_vertex_id v);

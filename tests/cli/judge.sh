@@ -9,6 +9,22 @@ denies() { # denies PATTERN WORDS...: faults, one of which is this
     matches "$pattern"
 }
 
+# --- the word that is no option may stand anywhere, once
+fresh letter.poly
+run 0 -pq letter
+for posix in "" 1; do
+    [ -z "$posix" ] || export POSIXLY_CORRECT=1
+    judge letter.1 --poly letter.poly
+    judge --poly letter.poly letter.1
+    judge --poly letter.poly -- letter.1
+    for words in "" "letter.1 letter.1" "letter.1 -- letter.1" "-- letter.1 -q 20"; do
+        # shellcheck disable=SC2086 # several words
+        "$bin/trianglecheck" $words >.out 2>.err
+        check "trianglecheck $words: exit code" test $? -eq 2
+    done
+done
+unset POSIXLY_CORRECT
+
 # --- coordinates that count as 0
 fresh regress/denormal_coordinate.poly
 run 0 -pc denormal_coordinate

@@ -74,7 +74,7 @@ program 0 -Q p --output q
 kept=0
 refused=0
 for input in "-Qe p" "-Qp g.poly" "-QrI q"; do
-    for budget in 18 40; do
+    for budget in 18 44; do
         what="ptriangle $input --memory ${budget}000000"
         # shellcheck disable=SC2086
         "$python" "$data/../tests/cli/peak.py" "$budget"000000 "$bin/ptriangle" $input --output out \

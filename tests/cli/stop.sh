@@ -1,17 +1,6 @@
 # Runs that are stopped: exit code, one line, all files or none; what a killed run has left is gone after the next.
 #
 # A pipe that nobody reads or writes holds a program where it is to be held, so that no test depends on speed.
-mesher() { # mesher CODE PROGRAM WORDS...: must end with the exit code
-    code=$1
-    program=$2
-    shift 2
-    what="$program $*"
-    checks=$((checks + 1))
-    "$bin/$program" "$@" >.out 2>.err
-    found=$?
-    [ "$found" -eq "$code" ] || fault "exit code $found instead of $code: $(head -n 1 .err)"
-}
-
 await() { # await COMMAND...: until it succeeds
     tries=0
     until "$@" 2>/dev/null || [ $tries -ge 2400 ]; do
@@ -114,7 +103,7 @@ if [ -x "$bin/ptriangle" ]; then
     ln -s nowhere dangling
     ls >.before
     for words in "--report letter.poly" "--report link" "--blocks second" "--report ./letter.1.node" "--report a --blocks a" \
-        "--report dangling --blocks nowhere" "--report $PWD/b --blocks b" "--output letter"; do
+        "--report dangling --blocks nowhere" "--report ../${PWD##*/}/b --blocks b" "--output letter"; do
         # shellcheck disable=SC2086 # several words
         mesher 1 ptriangle -p letter $words
         complains 'would be (overwritten|written twice)'

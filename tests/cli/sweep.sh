@@ -178,8 +178,9 @@ until [ -e state/state-0 ] || [ -e out.h5 ]; do
     rm -rf state
     limit=$(echo "$limit" | awk '{ print $1 * 1.3 }')
     "$bin/ptriangle" -Qpq30a0.002 letter --output=out.h5 --checkpoint state --every 0 --time-limit "$limit" >.out 2>.err
+    in_time $? || break
 done
-if [ ! -e out.h5 ]; then
+if [ -e state/state-0 ]; then
     complains '^ptriangle: [0-9]+ triangles are kept; to go on: ptriangle -Qpq30a0.002 letter --output=out.h5 --every 0 --resume state$'
     cp -R state kept
 

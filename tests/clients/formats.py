@@ -77,7 +77,11 @@ def by_vtk():
 
 
 def by_gmsh():
-    import gmsh
+    try:
+        import gmsh
+    except OSError as lacking:  # its library wants those of a screen
+        print("formats: Gmsh cannot be loaded here:", lacking)
+        return
     gmsh.initialize(["gmsh", "-v", "0"])
     gmsh.open(stem + ".msh")
     tags, at, _ = gmsh.model.mesh.getNodes()
@@ -199,4 +203,4 @@ if os.path.exists(stem + ".h5"):
     by_h5py()
     by_xdmf()
     by_vtkhdf()
-print("formats:", stem, len(points), "points,", len(triangles), "triangles: all readers agree")
+print("formats:", stem, len(points), "points,", len(triangles), "triangles: the readers agree")

@@ -1,7 +1,8 @@
 #!/bin/sh
 # Real clients, from PyPI, with this library in Triangle's place: the package `triangle` with libtriangle.a, MeshPy with
 # libptriangle.a and its own tests, FloPy with the program. The copies of Triangle in the first two are left out when
-# they are unpacked. Where PyPI cannot be reached one line says so, and the exit code is 77.
+# they are unpacked. Where PyPI cannot be reached, or Python's headers are not there, one line says so, and the exit code is
+# 77.
 # Usage: run_python.sh BUILD_DIR WORK_DIR CMAKE PYTHON C_COMPILER CXX_COMPILER
 set -eu
 build=$1
@@ -18,18 +19,22 @@ work=$(cd "$work" && pwd)
 prefix=$work/prefix
 
 skip() {
-    echo "skipped: $1 ($(tail -n 1 "$work/pip.log"))"
+    echo "skipped: $1"
     exit 77
 }
+skip_pip() { skip "$1 ($(tail -n 1 "$work/pip.log"))"; }
 pip() { "$work/venv/bin/python" -m pip --disable-pip-version-check --no-input "$@" >"$work/pip.log" 2>&1; }
 must_pip() { pip "$@" || { cat "$work/pip.log"; exit 1; }; }
 PATH=$work/venv/bin:$PATH # meson is called by its name
 
+"$python" -c 'import os, sys, sysconfig; sys.exit(not os.path.exists(sysconfig.get_path("include") + "/Python.h"))' ||
+    skip "no headers of Python (Debian: python3-dev)"
+
 # What comes from outside, once: versions that are known to be there.
 if [ ! -e "$work/fetched" ]; then
     rm -rf "$work/venv" "$work/sources"
-    "$python" -m venv "$work/venv" >"$work/pip.log" 2>&1 || skip "python has no venv (Debian: python3-venv)"
-    pip --retries 2 install numpy pytest || skip "PyPI cannot be reached"
+    "$python" -m venv "$work/venv" >"$work/pip.log" 2>&1 || skip_pip "python has no venv (Debian: python3-venv)"
+    pip --retries 2 install numpy pytest || skip_pip "PyPI cannot be reached"
     must_pip install setuptools cython wheel meson-python ninja pybind11 flopy==3.11.0 shapely geojson
     must_pip download --no-deps --no-build-isolation --no-binary :all: -d "$work/sources" triangle==20200424 \
         meshpy==2026.1.1
