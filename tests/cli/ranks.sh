@@ -4,6 +4,8 @@
 # shellcheck disable=SC2154 # bin is of run.sh
 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
 OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_btl=self,vader,tcp OMP_NUM_THREADS=1 PTRIANGLE_TEST_BLOCK=500
+PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe # from OpenMPI 5 on
+export PRTE_MCA_rmaps_default_mapping_policy
 export OMPI_ALLOW_RUN_AS_ROOT OMPI_ALLOW_RUN_AS_ROOT_CONFIRM OMPI_MCA_rmaps_base_oversubscribe
 export OMPI_MCA_mpi_yield_when_idle OMPI_MCA_btl OMP_NUM_THREADS PTRIANGLE_TEST_BLOCK
 
@@ -140,6 +142,19 @@ case "${LD_PRELOAD:-}$(ldd "$bin/ptriangle")" in
     done
     ;;
 esac
+
+# --- a network that fails for one task: all end, and there is no file
+if [ -n "${PTRIANGLE_LOST:-}" ]; then
+    fresh letter.poly
+    for one in 0 1; do
+        for k in 1 40; do
+            with_one $one "export LD_PRELOAD=$PTRIANGLE_LOST PTRIANGLE_LOST_AT=$k" any -Qpq30a0.01 letter --output two
+            check "look $k of task $one: exit code $found" test "$found" -ne 0
+            check "look $k of task $one: at most one line" test "$(grep -c '^ptriangle: ' .err)" -le 1
+            check "look $k of task $one: no file" sh -c '! ls two.* 2>/dev/null'
+        done
+    done
+fi
 
 # --- memory that runs out in one task, wherever: exit code 1, one line, no file; or all files
 fresh letter.poly
