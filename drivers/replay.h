@@ -3,10 +3,11 @@
  *
  * MODEL. Every rank makes the coarse mesh. Tiles go to ranks as sched/ranks/ deals them out; a block is done by the
  * rank that owns the first of its tiles, and whoever owns another of them lends and gets back. Four phases follow each
- * other, and those of a second schedule on the same cells, where angles are dear. Each takes as long as its busiest rank refines (list scheduling on its threads: prediction.h), then as long as
- * the busiest one packs and unpacks, then as long as the slowest one's messages are under way; agreements take some
- * latencies in proportion to the logarithm of the number of ranks, and whoever waits for one sleeps and looks again,
- * half a millisecond late at most. Then each rank numbers and hands out what it owns.
+ * other, and those of a second schedule on the same cells, where angles are dear. Each takes as long as its busiest
+ * rank refines (list scheduling on its threads: prediction.h), then as long as the busiest one packs and unpacks, then
+ * as long as the slowest one's messages are under way; agreements take some latencies in proportion to the logarithm
+ * of the number of ranks, and whoever waits for one sleeps and looks again, half a millisecond late at most. Then each
+ * rank numbers and hands out what it owns.
  *
  * Not in the model: links of the network that are shared, threads and ranks that share caches and memory, files. Nor
  * may ranks begin a phase while others, elsewhere in the plane, still refine for the last one, which would be quicker.
