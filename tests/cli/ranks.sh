@@ -4,6 +4,8 @@
 # shellcheck disable=SC2154 # bin is of run.sh
 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
 OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_btl=self,vader,tcp OMP_NUM_THREADS=1 PTRIANGLE_TEST_BLOCK=500
+PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe # from OpenMPI 5 on
+export PRTE_MCA_rmaps_default_mapping_policy
 export OMPI_ALLOW_RUN_AS_ROOT OMPI_ALLOW_RUN_AS_ROOT_CONFIRM OMPI_MCA_rmaps_base_oversubscribe
 export OMPI_MCA_mpi_yield_when_idle OMPI_MCA_btl OMP_NUM_THREADS PTRIANGLE_TEST_BLOCK
 
