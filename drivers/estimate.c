@@ -98,7 +98,8 @@ static double bytes_a_triangle(const struct run *run)
 
 /* --- seconds */
 
-/* Of one triangle, on one thread: a small square is refined twice; the second time its memory is there. */
+/* Of one triangle, on one thread that nobody holds up: a small square is refined twice; the second time its memory is
+ * there. */
 static double seconds_a_triangle(void)
 {
     double corners[] = {0, 0, 1, 0, 1, 1, 0, 1}, seconds = 0;
@@ -111,12 +112,22 @@ static double seconds_a_triangle(void)
         struct tri_report report;
         if (tri_generate(&mesh, &square, &options, &report, NULL) != TRI_OK)
             return USUAL_SECONDS;
-        double began = tri_seconds();
+        double began = tri_thread_seconds();
         tri_refine(&mesh, &options.quality, &report.quality, NULL);
-        seconds = (tri_seconds() - began) / (mesh.n_triangles + 1);
+        seconds = (tri_thread_seconds() - began) / (mesh.n_triangles + 1);
         tri_mesh_free(&mesh);
     }
     return seconds;
+}
+
+/* Reading, and the triangulation that is there already; no more than the processor has worked for it, since others may
+ * have held it up. */
+static double seconds_so_far(const struct run *run)
+{
+    double sum = 0;
+    for (int stage = 0; stage < RUN_STAGES; stage++)
+        sum += run->seconds[stage];
+    return fmin(sum, resources_processor_seconds());
 }
 
 static double seconds_of(const struct run *run, double triangles, double disk)
@@ -124,7 +135,7 @@ static double seconds_of(const struct run *run, double triangles, double disk)
     double one = seconds_a_triangle(), threads = fmax(run->hooks->threads, 1);
     double work = run->options.refine ? triangles * one * (run->hooks->refine ? 1 + NUMBERING : 1) : 0;
     double text = disk / TEXT_BYTES * (one / USUAL_SECONDS);
-    return (work + text) / threads;
+    return seconds_so_far(run) + (work + text) / threads;
 }
 
 /* --- all together */

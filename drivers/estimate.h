@@ -23,7 +23,7 @@ struct estimate {
     double vertices;
     bool sweeps;         /* a mesh that is handed out as it is made is never there as a whole: some columns are, or
                             each task has its part */
-    double seconds;      /* from here on; costs a few milliseconds to find out, and is 0 unless asked for */
+    double seconds;      /* of the whole run; costs a few milliseconds to find out, and is 0 unless asked for */
 };
 
 /* Of the mesh as it is and the bounds. How good it is: docs/performance.md. O(triangles). */

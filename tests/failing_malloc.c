@@ -27,6 +27,7 @@ void *__libc_malloc(size_t bytes);
 void *__libc_calloc(size_t n, size_t bytes);
 void *__libc_realloc(void *block, size_t bytes);
 void *__libc_memalign(size_t alignment, size_t bytes);
+ssize_t __pwrite64(int file, const void *data, size_t n, off64_t place);
 
 static atomic_long calls, writes;
 static long fail_at = LONG_MAX, fail_write = LONG_MAX;
@@ -110,23 +111,20 @@ static bool is_of_the_program(const void *caller)
     return dladdr(caller, &info) && !strstr(info.dli_fname, ".so");
 }
 
-static ssize_t write_or_fail(const char *call, const void *caller, int file, const void *data, size_t n, off64_t place)
+static ssize_t write_or_fail(const void *caller, int file, const void *data, size_t n, off64_t place)
 {
-    if (is_of_the_program(caller) && ++writes >= fail_write) {
-        errno = ENOSPC;
-        return -1;
-    }
-    if (strcmp(call, "pwrite") == 0)
-        return ((ssize_t(*)(int, const void *, size_t, off_t))dlsym(RTLD_NEXT, call))(file, data, n, (off_t)place);
-    return ((ssize_t(*)(int, const void *, size_t, off64_t))dlsym(RTLD_NEXT, call))(file, data, n, place);
+    if (!is_of_the_program(caller) || ++writes < fail_write)
+        return __pwrite64(file, data, n, place);
+    errno = ENOSPC;
+    return -1;
 }
 
 ssize_t pwrite(int file, const void *data, size_t n, off_t place)
 {
-    return write_or_fail("pwrite", __builtin_return_address(0), file, data, n, place);
+    return write_or_fail(__builtin_return_address(0), file, data, n, place);
 }
 
 ssize_t pwrite64(int file, const void *data, size_t n, off64_t place)
 {
-    return write_or_fail("pwrite64", __builtin_return_address(0), file, data, n, place);
+    return write_or_fail(__builtin_return_address(0), file, data, n, place);
 }

@@ -79,6 +79,7 @@ fi
 echo "== ranks"
 if [ -n "${MPIEXEC:-}" ]; then
     OMP_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 \
+        PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe \
         timeout 100 "$MPIEXEC" -n 2 "$work/cmake/ranks" "$square" 30 0.00002
 fi
 
