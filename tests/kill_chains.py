@@ -23,8 +23,8 @@ INPUTS = [  # name, switches, triangles of a block, bound on memory or None
     ("coast/norway_sea", "pq30a4000000", "1000", None),
     ("coast/norway_sea", "pq33a8000000", "1000", None),
     ("square_random1000", "pq33a0.000006", "2000", "400M"),
-    ("square_random1000", "pq20a0.0000009", "", "110M"),
-    ("square_random1000", "pq33a0.000001", "", "110M"),
+    ("square_random1000", "pq20a0.0000009", "", "130M"),
+    ("square_random1000", "pq33a0.000001", "", "130M"),
 ]
 RECORD = 'echo $$ >"pid.${OMPI_COMM_WORLD_RANK:-$PMI_RANK}"; exec "$0" "$@"'
 
