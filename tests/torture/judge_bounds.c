@@ -153,7 +153,7 @@ static bool leads_to(const struct tri_mesh *mesh, const struct tri_subsegment *s
     return tri_dot(a, b, p) < 0 || ((here > 0) != (there > 0) && parts);
 }
 
-/* Of the triangles without a reason of their own those whose usual point leads to a subsegment beside a flat triangle. */
+/* Of the triangles without a reason of their own those whose usual point leads to a subsegment beside a flat one. */
 static int64_t stuck_beside_flat(const struct outcome *o, const struct tri_refine_options *angles, double least_height)
 {
     const struct tri_mesh *mesh = &o->mesh;
