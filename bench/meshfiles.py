@@ -13,10 +13,12 @@ def rows(path):
 
 
 class Pslg:
-    """points: x, y one after the other; segments, triangles: point numbers from 0; holes: x, y one after the other."""
+    """points: x, y one after the other; segments, triangles: point numbers from 0; holes: x, y one after the other;
+    regions: x, y, attribute, area bound one after the other."""
 
     def __init__(self):
         self.points, self.segments, self.holes, self.triangles = array("d"), array("i"), array("d"), array("i")
+        self.regions = array("d")
 
 
 def _read_points(source, header):
@@ -68,6 +70,7 @@ def write(path, pslg):
         if path.endswith(".poly"):
             _table(file, f"{len(pslg.segments) // 2} 0", pslg.segments, 2)
             _table(file, f"{len(pslg.holes) // 2}", pslg.holes, 2)
+            _table(file, f"{len(pslg.regions) // 4}", pslg.regions, 4)
 
 
 def write_mesh(base, points, triangles, segments):

@@ -9,8 +9,9 @@ from inputs import Domain
 from measure import measure, table
 
 NOTE = """\
-Microseconds of processor time, of the whole process, a vertex of the input: `triangle`, without writing of files; in
-brackets those of `trianglecheck` on the mesh, its files read. Median of {} runs.
+Microseconds of processor time, of the whole process, a vertex of the input and triangle of the mesh: `triangle`,
+without writing of files; in brackets those of `trianglecheck` on the mesh, its files read; then triangles a vertex of
+the input. Median of {} runs.
 
 """
 
@@ -24,16 +25,16 @@ class Worst(Domain):
         return self.bundle
 
 
-def _domain(settings, build, n):
-    path = os.path.join(settings.work, "inputs", f"worst_{build.__name__}_{n}.poly")
-    figure, bundle = build(n)
-    meshfiles.write(path, figure)
-    return Worst(build.__name__.replace("_", " "), path, 0, 0, bundle)
+def _domain(settings, case, n):
+    name, switches = case.build.__name__, case.switches.format(n=n)
+    path = os.path.join(settings.work, "inputs", f"worst_{name}_{n}.poly")
+    meshfiles.write(path, case.build(n))
+    return Worst(name.replace("_", " "), path, 0, 0, switches)
 
 
-def _measured(settings, build, n):
-    domain = _domain(settings, build, n)
-    measured, = measure(f"worst: {domain.name}, {n:,}", [Sequential(settings, domain)], settings)
+def _measured(settings, case, n):
+    domain = _domain(settings, case, n)
+    measured, = measure(f"worst: {domain.name}, -{domain.switches}, {n:,}", [Sequential(settings, domain)], settings)
     os.remove(domain.path)
     return measured
 
@@ -41,21 +42,22 @@ def _measured(settings, build, n):
 def _cell(measured, n):
     if not measured.good:
         return "missing: " + measured.reason
-    return f"{measured.median('processor') / n * 1e6:.2f} ({measured.verdict.seconds / n * 1e6:.2f})"
+    triangles = measured.verdict.triangles
+    made, judged = measured.median("processor") / (n + triangles), measured.verdict.seconds / (n + triangles)
+    return f"{made * 1e6:.2f} ({judged * 1e6:.2f}), {triangles / n:.3g}"
 
 
 def run(settings):
-    sizes = (1_000, 10_000) if settings.small else (10_000, 100_000, 1_000_000)
+    sizes = (500, 2_000) if settings.small else (10_000, 100_000, 1_000_000)
     head = ("input", "switches", *(f"{n:,} vertices" for n in sizes))
     lines, rows = [], []
-    for builders, largest in ((worst.TRIANGULATION, sizes[-1]), (worst.DEARER, sizes[-2])):
-        for build in builders:
-            taken = [n for n in sizes if n <= largest]
-            measured = [_measured(settings, build, n) for n in taken]
-            domain = measured[0].case.domain
-            cells = [_cell(m, n) for m, n in zip(measured, taken)]
-            lines.append((domain.name, f"`-{domain.switches}`", *cells, *["–"] * (len(sizes) - len(cells))))
-            rows += [{**row, "input": f"{row['input']}, {n}"}
-                     for m, n in zip(measured, taken) for row in m.rows("worst")]
-            yield {"title": "Inputs of the worst kind", "text": NOTE.format(settings.repeats) + table(head, lines),
-                   "rows": rows, "targets": []}
+    for case in worst.CASES:
+        taken = [n for n in sizes if n <= case.largest]
+        measured = [_measured(settings, case, n) for n in taken]
+        cells = [_cell(m, n) for m, n in zip(measured, taken)]
+        lines.append((measured[0].case.domain.name, f"`-{case.switches}`", *cells,
+                      *["–"] * (len(sizes) - len(cells))))
+        rows += [{**row, "input": f"{row['input']}, -{case.switches}, {n}"}
+                 for m, n in zip(measured, taken) for row in m.rows("worst")]
+        yield {"title": "Inputs of the worst kind", "text": NOTE.format(settings.repeats) + table(head, lines),
+               "rows": rows, "targets": []}

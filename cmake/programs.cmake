@@ -1,14 +1,14 @@
 # The executables and the example, from drivers/. They link the static libraries, whose inside they know.
 
 # HDF5, which ptriangle writes and its companions read; without, everything else is built. The serial C library, at
-# least 1.10.3, which writes chunks directly; and zlib, which it needs itself.
+# least 1.10.5, which writes chunks directly and tells where they lie; and zlib, which it needs itself.
 find_package(ZLIB)
 include(CheckCSourceCompiles)
 find_path(HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial)
 find_library(HDF5_LIBRARY NAMES hdf5_serial hdf5 PATH_SUFFIXES hdf5/serial)
 if(HDF5_INCLUDE AND HDF5_LIBRARY AND ZLIB_FOUND)
     set(CMAKE_REQUIRED_INCLUDES ${HDF5_INCLUDE})
-    check_c_source_compiles("#include <hdf5.h>\n#if !H5_VERSION_GE(1, 10, 3) || defined(H5_HAVE_PARALLEL)\n#error\n#endif\n\
+    check_c_source_compiles("#include <hdf5.h>\n#if !H5_VERSION_GE(1, 10, 5) || defined(H5_HAVE_PARALLEL)\n#error\n#endif\n\
         int main(void) { return 0; }" PTRIANGLE_HDF5)
     unset(CMAKE_REQUIRED_INCLUDES)
 endif()

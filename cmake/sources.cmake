@@ -88,6 +88,7 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/window.c
     triangle/text/read.c
     triangle/text/output.c
+    triangle/text/joined.c
     triangle/text/behind.c
     triangle/text/write.c
     triangle/text/layouts.c
@@ -105,14 +106,16 @@ set(PTRIANGLE_TEXT_SOURCES
 set(PTRIANGLE_HDF5_SOURCES
     triangle/hdf5/file.c
     triangle/hdf5/items.c
+    triangle/hdf5/rows.c
     triangle/hdf5/array.c
     triangle/hdf5/segments.c
     triangle/hdf5/ends.c
     triangle/hdf5/views.c
     triangle/hdf5/xdmf.c
     triangle/hdf5/write.c
+    triangle/hdf5/part.c
     triangle/hdf5/read.c)
-set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c)
+set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c triangle/hdf5/rows.c triangle/hdf5/part.c)
 
 # What text and judge need of the mesher: all that their shared libraries have of it.
 set(PTRIANGLE_TEXT_NEEDS triangle/status.c triangle/scratch_file.c triangle/pslg.c triangle/api/figure.c)
@@ -221,6 +224,7 @@ set(PTRIANGLE_RUN_PROGRAMS triangle ptriangle)
 # What the parallel program has beside that. Its report is written with jansson; without, the last file stands in.
 set(PTRIANGLE_PARALLEL_SOURCES
     drivers/blocks_file.c
+    drivers/joint_files.c
     drivers/launch.c
     drivers/long_options.c
     drivers/progress.c

@@ -22,8 +22,11 @@ static const double PARKED_WORK = 6, PARKED_BYTES = 90, WHOLE_STATES = 120, TILE
 /* And of tiles that wait until all are there (triangle/text/tile_store.h). The boundary that a .14 wants then, a byte
  * a vertex in memory, does not show at the peak (measured at 5 million triangles). */
 static const double KEPT_BYTES = 46;
-/* The same a triangle of a rank's own, which are so many times the average; and of a state, of which there are two. */
-static const double RANK_BYTES = 62, RANK_WORK = 20, BUSIEST = 1.15, RANK_STATES = 32;
+/* The same a triangle of a rank's own, which are so many times the average; of its share of a state, of which there are
+ * two; for each root as above what numbers and hands out a column, where a rank has that much; of pieces of files that
+ * pass through the first rank; and, for each triangle of all ranks, of the coarse mesh and what begins with it. */
+static const double RANK_BYTES = 62, BUSIEST = 1.15, RANK_STATES = 32, RANK_COLUMN = 45, RANK_PIECES = 3.5e7,
+                    RANK_COARSE = 0.1, RANK_WORK = 20;
 /* Text that one thread writes in a second where a triangle takes it the usual time. */
 static const double TEXT_BYTES = 6.5e8, USUAL_SECONDS = 1.25e-7;
 
@@ -95,7 +98,8 @@ static double bytes_a_triangle(const struct run *run)
 
 /* --- seconds */
 
-/* Of one triangle, on one thread: a small square is refined twice; the second time its memory is there. */
+/* Of one triangle, on one thread that nobody holds up: a small square is refined twice; the second time its memory is
+ * there. */
 static double seconds_a_triangle(void)
 {
     double corners[] = {0, 0, 1, 0, 1, 1, 0, 1}, seconds = 0;
@@ -108,12 +112,21 @@ static double seconds_a_triangle(void)
         struct tri_report report;
         if (tri_generate(&mesh, &square, &options, &report, NULL) != TRI_OK)
             return USUAL_SECONDS;
-        double began = tri_seconds();
+        double began = tri_thread_seconds();
         tri_refine(&mesh, &options.quality, &report.quality, NULL);
-        seconds = (tri_seconds() - began) / (mesh.n_triangles + 1);
+        seconds = (tri_thread_seconds() - began) / (mesh.n_triangles + 1);
         tri_mesh_free(&mesh);
     }
     return seconds;
+}
+
+/* Reading, and the triangulation that is there already. */
+static double seconds_so_far(const struct run *run)
+{
+    double sum = 0;
+    for (int stage = 0; stage < RUN_STAGES; stage++)
+        sum += run->seconds[stage];
+    return sum;
 }
 
 static double seconds_of(const struct run *run, double triangles, double disk)
@@ -121,7 +134,7 @@ static double seconds_of(const struct run *run, double triangles, double disk)
     double one = seconds_a_triangle(), threads = fmax(run->hooks->threads, 1);
     double work = run->options.refine ? triangles * one * (run->hooks->refine ? 1 + NUMBERING : 1) : 0;
     double text = disk / TEXT_BYTES * (one / USUAL_SECONDS);
-    return (work + text) / threads;
+    return seconds_so_far(run) + (work + text) / threads;
 }
 
 /* --- all together */
@@ -134,11 +147,13 @@ static double column_of(const struct run *run, double triangles)
     return sqrt(triangles * (cell_triangles ? cell_triangles(triangles) : triangles));
 }
 
-/* As schedules go: above TRI_EASY_ANGLE there are two, and a limit on new points makes it one call. */
+/* As schedules go: above TRI_EASY_ANGLE there are two, which ranks can share; above TRI_USUAL_ANGLE there is a call
+ * after them, and a limit on new points makes it one call. */
 static bool is_swept(const struct run *run)
 {
     const struct tri_refine_options *quality = &run->options.quality;
-    return quality->min_angle <= TRI_EASY_ANGLE && quality->max_steiner < 0;
+    return quality->min_angle <= (run->hooks->n_ranks > 0 ? TRI_USUAL_ANGLE : TRI_EASY_ANGLE) &&
+           quality->max_steiner < 0;
 }
 
 bool estimate_can_park(const struct run *run, double held)
@@ -156,10 +171,11 @@ static double floor_of(const struct run *run, double held, double work)
 /* Of the rank that has most. */
 static struct needs needs_of_rank(const struct run *run, double grown)
 {
-    const double own = fmin(BUSIEST * grown / run->hooks->n_ranks, grown);
+    const double own = fmin(BUSIEST * grown / run->hooks->n_ranks, grown), column = column_of(run, grown);
+    const double work = RANK_PIECES + fmin(RANK_COLUMN * column, RANK_WORK * own) + RANK_COARSE * grown;
     struct needs n = {.triangles = grown, .whole = own > TRI_MAX_TRIANGLES ? HUGE_VAL : own * RANK_BYTES};
     n.held = n.whole + BUFFERS;
-    n.floor = floor_of(run, n.held, RANK_WORK * own + PAGES * fmax(run->hooks->threads, 1));
+    n.floor = floor_of(run, n.held, work + PAGES * fmax(run->hooks->threads, 1));
     n.away = PARKED_BYTES * own;
     n.checkpoint = n.states = RANK_STATES * grown;
     return n;

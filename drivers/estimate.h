@@ -21,8 +21,9 @@ struct estimate {
     struct needs least;  /* what area bounds ask for beyond doubt; all 0: there are none */
     struct needs likely;
     double vertices;
-    bool sweeps;         /* a mesh that is handed out as it is made is never there as a whole: some columns are */
-    double seconds;      /* from here on; costs a few milliseconds to find out, and is 0 unless asked for */
+    bool sweeps;         /* a mesh that is handed out as it is made is never there as a whole: some columns are, or
+                            each task has its part */
+    double seconds;      /* of the whole run; costs a few milliseconds to find out, and is 0 unless asked for */
 };
 
 /* Of the mesh as it is and the bounds. How good it is: docs/performance.md. O(triangles). */

@@ -130,6 +130,8 @@ static enum tri_status read_input(struct judged_files *f, const struct judged_as
     (void)judged_cut_suffix(stem, ".poly");
     char *node = tri_joined(stem, ".node");
     free(stem);
+    if (node == NULL)
+        return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
     enum tri_status status = tri_read_poly(path, node, &options, &f->input, &base, &points_in_poly, error);
     free(node);
     return status;

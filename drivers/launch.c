@@ -63,7 +63,7 @@ int launch_agree(struct launch *launch, int code, struct tri_error *error)
         return code;
     code = agree_on_failure(launch, code, error);
     const int64_t mine = code;
-    bool told = carrier->gather(carrier->self, &mine, 1, carrier->of_each);
+    bool told = !carrier->lost && carrier->gather(carrier->self, &mine, 1, carrier->of_each);
     for (int p = 0; told && p < carrier->n_ranks; p++)
         if (carrier->of_each[p] >= FIRST_STOP)
             return (int)carrier->of_each[p];

@@ -1,5 +1,6 @@
 /* Tasks that are ranks of an MPI. */
 #include <mpi.h>
+#include <stdlib.h>
 
 #include "drivers/interrupt.h"
 #include "drivers/launch.h"
@@ -31,6 +32,8 @@ enum tri_status launch_ranks(struct launch *launch, int tasks, struct tri_error 
 void launch_end(struct launch *launch)
 {
     interrupt_pass_on(NULL, NULL);
+    if (launch->carrier->lost) /* the others wait */
+        MPI_Abort(MPI_COMM_WORLD, EXIT_FAILURE);
     par_mpi_carrier_free(launch->carrier);
     MPI_Finalize();
 }

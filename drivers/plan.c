@@ -188,7 +188,7 @@ static enum tri_status check_whole(const struct run *run, const struct estimate 
 static enum tri_status check_stream(const struct run *run, const struct estimate *e, double left,
                                     const struct console *console, struct tri_error *error)
 {
-    static const char why[] = "bounds above 31 degrees and -S";
+    const char *why = run->hooks->n_ranks > 0 ? "angles above 34 degrees and -S" : "bounds above 31 degrees and -S";
     if (!e->sweeps && e->least.triangles > TRI_MAX_TRIANGLES)
         return fail_too_many(&e->least, why, error);
     if (!e->sweeps && e->likely.triangles > TRI_MAX_TRIANGLES)
@@ -273,6 +273,9 @@ static void say_way(const struct console *console, const struct run *run, const 
     if (e->sweeps && run->hooks->n_ranks > 0)
         console_say(console, "Sharing: about %.3g million triangles among %d tasks, up to %s of memory each.\n",
                     millions(n->triangles), run->hooks->n_ranks, console_size(n->held).text);
+    else if (run->hooks->n_ranks > 1)
+        console_say(console, "Each of %d tasks makes all of the mesh: angles above 34 degrees and -S are not shared.\n",
+                    run->hooks->n_ranks);
     else if (e->sweeps)
         console_say(console, "Sweeping: about %.3g million triangles %s, a few columns of them %s.\n",
                     millions(n->triangles), whole, console_size(n->held).text);

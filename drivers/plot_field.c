@@ -176,8 +176,9 @@ static void fill_triangles(const struct canvas *c, bool vector, const struct plo
     paint_fill(c->cr, vector);
 }
 
-/* Fills into a finer layer, and lays that on the picture. */
-static void fill_through_layer(const struct canvas *c, const struct plot_shading *shading, const int32_t *order)
+/* Fills into a finer layer, and lays that on the picture. Returns what became of the layer. */
+static cairo_status_t fill_through_layer(const struct canvas *c, const struct plot_shading *shading,
+                                         const int32_t *order)
 {
     const struct plot_box *f = &c->field;
     const double pixels = f->x1 * f->y1 * LAYER_SCALE * LAYER_SCALE;
@@ -189,6 +190,7 @@ static void fill_through_layer(const struct canvas *c, const struct plot_shading
     cairo_scale(on_layer.cr, scale, scale);
     cairo_set_antialias(on_layer.cr, CAIRO_ANTIALIAS_NONE);
     fill_triangles(&on_layer, false, shading, order);
+    const cairo_status_t status = cairo_status(on_layer.cr);
     cairo_destroy(on_layer.cr);
     cairo_save(c->cr);
     cairo_scale(c->cr, 1.0 / scale, 1.0 / scale);
@@ -197,19 +199,23 @@ static void fill_through_layer(const struct canvas *c, const struct plot_shading
     cairo_paint(c->cr);
     cairo_restore(c->cr);
     cairo_surface_destroy(layer);
+    return status;
 }
 
 static enum tri_status draw_triangles(const struct canvas *c, bool vector, const struct plot_shading *shading,
                                       struct tri_error *error)
 {
     int32_t *order = order_by_shade(c->mesh, shading);
+    cairo_status_t status = CAIRO_STATUS_SUCCESS;
     if (order == NULL)
         return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
     if (vector)
         fill_triangles(c, true, shading, order);
     else
-        fill_through_layer(c, shading, order);
+        status = fill_through_layer(c, shading, order);
     free(order);
+    if (status != CAIRO_STATUS_SUCCESS)
+        return tri_fail(error, TRI_INTERNAL, "", 0, "cairo: %s", cairo_status_to_string(status));
     return TRI_OK;
 }
 

@@ -213,10 +213,11 @@ enum tri_status plot_shade_density(struct plot_shading *s, const struct plot_den
 
 /* --- regions */
 
+/* What is no number, in an HDF5 file of others, comes last. */
 static int compare_reals(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+    return x < y ? -1 : x > y ? 1 : (isnan(x) != 0) - (isnan(y) != 0);
 }
 
 /* Sorts and drops repetitions; returns how many remain. */
@@ -225,7 +226,7 @@ static int32_t distinct_reals(double *value, int32_t n)
     int32_t kept = 0;
     qsort(value, (size_t)n, sizeof *value, compare_reals);
     for (int32_t i = 0; i < n; i++) {
-        if (kept == 0 || value[i] > value[kept - 1])
+        if (kept == 0 || compare_reals(&value[i], &value[kept - 1]) > 0)
             value[kept++] = value[i];
     }
     return kept;

@@ -9,6 +9,7 @@
 #include "drivers/console.h"
 #include "drivers/help.h"
 #include "drivers/interrupt.h"
+#include "drivers/joint_files.h"
 #include "drivers/launch.h"
 #include "drivers/long_options.h"
 #include "drivers/progress.h"
@@ -41,6 +42,7 @@ struct program {
     struct file_names h5;      /* HDF5 files that are wanted */
     char *xdmf[STREAMS_MOST];  /* [h5.n] names of the texts beside them */
     struct streams streams;
+    struct joint_files joint;  /* on several ranks */
     int32_t n_before;          /* vertices there were before refinement */
     bool refined;              /* the schedule has run: its report is filled */
     struct par_report schedule;
@@ -100,6 +102,13 @@ static struct par_options options_of(struct program *p, const struct run *run)
     return options;
 }
 
+/* Vertices, triangles or segments, by 0, 1, 2, that have been handed out, by all ranks. */
+static int64_t handed_out(const struct program *p, int which)
+{
+    const int64_t here[] = {p->streams.vertices, p->streams.triangles, p->streams.segments};
+    return p->joint.together ? p->joint.total[which] : here[which];
+}
+
 static enum tri_status refine_with(struct program *p, struct run *run, const struct par_options *options,
                                    struct tri_mesh *mesh, const struct tri_refine_options *quality,
                                    struct tri_error *error)
@@ -107,7 +116,7 @@ static enum tri_status refine_with(struct program *p, struct run *run, const str
     p->n_before = mesh->n_vertices;
     progress_begin(&p->progress, mesh->n_triangles, run->plan.triangles, p->threads);
     enum tri_status status = par_refine(mesh, quality, options, &p->schedule, error);
-    progress_end(&p->progress, options->sweep ? p->streams.triangles : mesh->n_triangles,
+    progress_end(&p->progress, options->sweep ? handed_out(p, 1) : mesh->n_triangles,
                  options->sweep ? 0 : p->schedule.seconds_number);
     p->refined = true;
     return status;
@@ -116,11 +125,11 @@ static enum tri_status refine_with(struct program *p, struct run *run, const str
 /* Refinement keeps the number of holes and pieces: vertices - edges + triangles stays what it was. Every edge on the
  * boundary is a subsegment. */
 static void count_streamed(struct tri_counts *c, const struct tri_counts *before, int64_t unused,
-                           const struct streams *streams)
+                           const struct program *p)
 {
-    c->vertices = streams->vertices - unused;
-    c->triangles = streams->triangles;
-    c->subsegments = streams->segments;
+    c->vertices = handed_out(p, 0) - unused;
+    c->triangles = handed_out(p, 1);
+    c->subsegments = handed_out(p, 2);
     c->edges = c->vertices + c->triangles - (before->vertices - before->edges + before->triangles);
     c->exterior = 2 * c->edges - 3 * c->triangles;
     c->interior = c->subsegments - c->exterior;
@@ -130,6 +139,44 @@ static void count_streamed(struct tri_counts *c, const struct tri_counts *before
 static int64_t waiting_bytes(const struct run_plan *plan)
 {
     return (int64_t)fmin(fmax(plan->memory / 32, 0x1p20), 0x1p26);
+}
+
+/* What others than the first rank cannot know of its files. */
+static void show_streams(struct program *p)
+{
+    struct joint_files *joint = &p->joint;
+    joint->text_options = p->streams.text_options;
+    joint->text = p->streams.text_sink;
+    for (int i = 0; i < p->streams.n; i++) {
+        const struct stream *s = &p->streams.stream[i];
+        joint->h5[i] = (struct joint_h5){.writer = s->writer, .sink = s->sink, .output = s->options.file};
+    }
+}
+
+/* Do all ranks write the files? Not where a format wants the whole mesh. Collective. */
+static enum tri_status join_files(struct program *p, const struct run *run, enum tri_status status,
+                                  struct tri_error *error)
+{
+    const struct run_limits *limits = &run->hooks->limits;
+    const bool ends_at_once = !limits->write_partial && !limits->checkpoint;
+    p->joint = (struct joint_files){.carrier = p->launch.carrier, .scratch = p->scratch,
+                                    .stop = ends_at_once ? interrupt_stop() : NULL,
+                                    .text_options = {.base = run->base, .figure = &run->pslg,
+                                                     .markers = !run->arguments->switches.no_markers}};
+    if (!status && p->launch.rank == 0)
+        show_streams(p);
+    return joint_files_open(&p->joint, p->streams.n_exports == 0 && p->launch.carrier->n_ranks > 1, status, error);
+}
+
+/* Refines into files, on a rank that is one of several. */
+static enum tri_status refine_jointly(struct program *p, struct run *run, struct tri_mesh *mesh,
+                                      const struct tri_refine_options *quality, struct tri_error *error)
+{
+    struct par_options options = options_of(p, run);
+    const struct tri_sink sink = joint_files_sink(&p->joint);
+    options.carrier = p->launch.carrier;
+    options.sink = &sink;
+    return refine_with(p, run, &options, mesh, quality, error);
 }
 
 /* Refines into a sink; on several ranks into that of the first. */
@@ -162,11 +209,25 @@ static enum tri_status refine_behind_queue(struct program *p, struct run *run, c
     return status;
 }
 
-/* A rank whose tiles are written by another one. */
+/* Refines on several ranks. to: where rank 0 takes tiles of all, if all cannot write together. */
+static enum tri_status refine_on_ranks(struct program *p, struct run *run, const struct tri_sink *to,
+                                       struct tri_mesh *mesh, const struct tri_refine_options *quality,
+                                       enum tri_status status, struct tri_error *error)
+{
+    status = join_files(p, run, status, error);
+    if (!status && p->joint.together)
+        status = refine_jointly(p, run, mesh, quality, error);
+    else if (!status)
+        status = to ? refine_behind_queue(p, run, to, mesh, quality, error)
+                    : refine_into(p, run, NULL, mesh, quality, error);
+    return joint_files_close(&p->joint, status, error);
+}
+
+/* A rank whose files another one commits. */
 static enum tri_status help_others(struct program *p, struct run *run, struct tri_mesh *mesh,
                                    const struct tri_refine_options *quality, struct tri_error *error)
 {
-    enum tri_status status = refine_into(p, run, NULL, mesh, quality, error);
+    enum tri_status status = refine_on_ranks(p, run, NULL, mesh, quality, TRI_OK, error);
     tri_mesh_free(mesh);
     return status;
 }
@@ -192,14 +253,15 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
     status = status ? status : streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
     status = status ? status : streams_open_text(&p->streams, run, set, error);
     status = status ? status : streams_open_exports(&p->streams, run, p->scratch, set, error);
-    if (!status)
-        status = p->launch.carrier ? refine_behind_queue(p, run, &streams, mesh, quality, error)
-                                   : refine_into(p, run, &streams, mesh, quality, error);
+    if (p->launch.carrier)
+        status = refine_on_ranks(p, run, &streams, mesh, quality, status, error);
+    else if (!status)
+        status = refine_into(p, run, &streams, mesh, quality, error);
     streams_close(&p->streams);
     tri_mesh_free(mesh); /* what is left of it is no mesh */
     tell_of_parking(p, run->arguments->switches.quiet);
     if (!status)
-        count_streamed(&run->counts, &before, unused, &p->streams);
+        count_streamed(&run->counts, &before, unused, p);
     run->remain_known = !status && p->schedule.remain_known;
     memcpy(run->remain, p->schedule.remain, sizeof run->remain);
     return status;

@@ -152,9 +152,9 @@ void resources_save_address_space(void)
 
 double resources_stacks(int threads)
 {
-    const double usual = 8 << 20, limit = of_limit(RLIMIT_STACK, 0);
+    const double unlimited = 2 << 20, limit = of_limit(RLIMIT_STACK, 0); /* the first is glibc's, on most processors */
     const double there = fmax(find_number("/proc/self/status", "Threads:"), 1);
-    return fmax(threads - there, 0) * (limit < HUGE_VAL ? limit : usual);
+    return fmax(threads - there, 0) * (limit < HUGE_VAL ? limit : unlimited);
 }
 
 double resources_memory_total(void) { return least_of(ALL); }

@@ -228,7 +228,7 @@ static void follow_stage(void *user, enum tri_stage begins)
             console_say(&r->console, "Recovering segments.\n");
         break;
     case TRI_STAGE_HOLES:
-        interrupt_stage("removing holes");
+        interrupt_stage(s->segments ? "removing holes" : "preparing the mesh");
         end_stage(r, RUN_SEGMENTS);
         if (s->segments || s->keep_hull)
             say_milliseconds(r, "Segment", r->run.seconds[RUN_SEGMENTS]);
@@ -240,6 +240,7 @@ static void follow_stage(void *user, enum tri_stage begins)
         break;
     case TRI_STAGE_QUALITY:
         say_built(r);
+        interrupt_stage("finishing the mesh"); /* unless it is refined */
         r->built = true;
         break;
     case TRI_STAGE_DONE:

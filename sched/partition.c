@@ -1,6 +1,7 @@
 /* Quantiles of the estimated work (triangle/estimate.h), first along x, then along y in each column. There are some 32
  * samples for a cell: enough for shares equal within a sixth. They are sorted in runs, which are merged; columns are
- * tasks. Samples that are alike are equal, so their order is the same however they are sorted.
+ * sorted, and then merged in pairs, as tasks. Samples that are alike are equal, so their order is the same however they
+ * are sorted.
  *
  * SHAPE. Cells are about square on average, over the box of the mesh. But where nearly all of the work lies along a
  * line (a long gap that is filled), quantiles across it lie side by side within it: a block that has one side of a wall
@@ -17,6 +18,7 @@
 
 #include "triangle/estimate.h"
 #include "triangle/grow.h"
+#include "triangle/radix.h"
 
 enum {
     SAMPLES_PER_CELL = 32,
@@ -63,9 +65,50 @@ static int by_y(const void *left, const void *right)
     return a->q.x != b->q.x ? (a->q.x < b->q.x ? -1 : 1) : by_work(a, b);
 }
 
+typedef int compare_samples(const void *left, const void *right);
+
+/* Where a sample lies in the plane's width or height, as 32 bits above its number: monotonous, so that only those that
+ * agree have to be compared. */
+static void make_keys(const struct sample *item, int32_t n, bool along_x, uint64_t *key)
+{
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (int32_t i = 0; i < n; i++) {
+        const double at = along_x ? item[i].q.x : item[i].q.y;
+        low = at < low ? at : low;
+        high = at > high ? at : high;
+    }
+    const double scale = UINT32_MAX / (high - low), finite = scale < HUGE_VAL ? scale : 0;
+    for (int32_t i = 0; i < n; i++)
+        key[i] = (uint64_t)(((along_x ? item[i].q.x : item[i].q.y) - low) * finite) << 32 | (uint32_t)i;
+}
+
+/* Sorts samples along an axis; room: twice as many. */
+static void sort_along(struct sample *item, int64_t n, bool along_x, struct sample *room)
+{
+    compare_samples *const compare = along_x ? by_x : by_y;
+    uint64_t *key = (uint64_t *)(void *)room;
+    struct sample *sorted = room + n;
+    _Static_assert(sizeof(struct sample) >= 2 * sizeof(uint64_t), "keys and their scratch fit where samples do");
+    if (n > INT32_MAX) {
+        qsort(item, (size_t)n, sizeof *item, compare);
+        return;
+    }
+    make_keys(item, (int32_t)n, along_x, key);
+    tri_radix_sort(key, key + n, (int32_t)n, 32, 64, NULL);
+    for (int64_t i = 0; i < n; i++)
+        sorted[i] = item[key[i] & UINT32_MAX];
+    for (int64_t i = 0, end; i < n; i = end) {
+        for (end = i + 1; end < n && key[end] >> 32 == key[i] >> 32;)
+            end++;
+        if (end - i > 1)
+            qsort(sorted + i, (size_t)(end - i), sizeof *sorted, compare);
+    }
+    memcpy(item, sorted, (size_t)n * sizeof *item);
+}
+
 /* Runs of samples, each in order, or to be sorted. */
 struct runs {
-    struct sample *from, *to;
+    struct sample *from, *to; /* the second: room for twice as many */
     int64_t n, runs;
 };
 
@@ -76,7 +119,19 @@ static void sort_run(void *context, size_t run)
     const struct runs *r = context;
     int64_t begin = run_begin(r, run), end = run_begin(r, run + 1);
     if (begin < end)
-        qsort(r->from + begin, (size_t)(end - begin), sizeof *r->from, by_x);
+        sort_along(r->from + begin, end - begin, true, r->to + 2 * begin);
+}
+
+/* Two lists in order become one. */
+static void merge(const struct sample *a, int64_t n_a, const struct sample *b, int64_t n_b, compare_samples *compare,
+                  struct sample *to)
+{
+    for (int64_t i = 0, k = 0; i + k < n_a + n_b;) {
+        bool first = k == n_b || (i < n_a && compare(&a[i], &b[k]) <= 0);
+        to[i + k] = first ? a[i] : b[k];
+        i += first;
+        k += !first;
+    }
 }
 
 /* Two neighbours become one. */
@@ -84,11 +139,10 @@ static void merge_runs(void *context, size_t pair)
 {
     const struct runs *r = context;
     int64_t a = run_begin(r, 2 * pair), middle = run_begin(r, 2 * pair + 1), end = run_begin(r, 2 * pair + 2);
-    for (int64_t at = a, b = middle; at < end; at++)
-        r->to[at] = b == end || (a < middle && by_x(&r->from[a], &r->from[b]) <= 0) ? r->from[a++] : r->from[b++];
+    merge(r->from + a, middle - a, r->from + middle, end - middle, by_x, r->to + a);
 }
 
-/* scratch: as many. */
+/* scratch: twice as many. */
 static void sort_by_x(struct samples *s, struct sample *scratch, const struct tri_executor *executor)
 {
     struct runs r = {s->item, scratch, s->n, s->n < FEW ? 1 : RUNS};
@@ -143,23 +197,29 @@ static void place_bounds(double *bounds, int32_t n_shares, const struct samples 
 /* Columns that are cut into rows. */
 struct cutting {
     struct par_partition *p;
-    const struct samples *s;
+    struct samples *s;
     const int64_t *column;  /* [n_columns] the first sample of each column of cells; the last: the end */
-    struct sample *scratch; /* [2 * s->n] those of each block column, which has two columns of cells */
+    struct sample *scratch; /* [2 * s->n] */
     int64_t *cut;           /* [n_columns][n_rows] */
 };
 
+static void sort_column(void *context, size_t k)
+{
+    const struct cutting *c = context;
+    const int64_t first = c->column[k], n = c->column[k + 1] - first;
+    if (n > 0)
+        sort_along(c->s->item + first, n, false, c->scratch + 2 * first);
+}
+
+/* A block column has two columns of cells. */
 static void cut_rows(void *context, size_t k)
 {
     const struct cutting *c = context;
     const size_t before = k > 0 ? k - 1 : 0, after = k + 1 < (size_t)c->p->n_columns ? k + 1 : k;
     const size_t rows = (size_t)c->p->n_rows;
-    const int64_t first = c->column[before], n = c->column[after] - first;
-    struct samples inside = {c->scratch + (k > 0 ? first + c->column[k] : 0), n, n};
-    if (n > 0) {
-        memcpy(inside.item, c->s->item + first, (size_t)n * sizeof *inside.item);
-        qsort(inside.item, (size_t)n, sizeof *inside.item, by_y);
-    }
+    const int64_t first = c->column[before], middle = c->column[k], end = c->column[after], n = end - first;
+    struct samples inside = {c->scratch + (k > 0 ? first + middle : 0), n, n};
+    merge(c->s->item + first, middle - first, c->s->item + middle, end - middle, by_y, inside.item);
     cut_shares(&inside, c->p->n_rows - 1, c->cut + k * rows);
     place_bounds(c->p->y + k * rows, c->p->n_rows - 1, &inside, c->cut + k * rows, false, c->p->low.y, c->p->high.y);
 }
@@ -175,6 +235,7 @@ static bool cut_plane(struct par_partition *p, struct samples *s, const struct t
         sort_by_x(s, scratch, executor);
         cut_shares(s, p->n_columns - 1, columns);
         place_bounds(p->x, p->n_columns - 1, s, columns, true, p->low.x, p->high.x);
+        tri_execute(executor, n_columns - 1, sort_column, &cutting);
         tri_execute(executor, n_columns, cut_rows, &cutting);
     }
     bool done = columns && rows && scratch;

@@ -1,10 +1,11 @@
 /* A library to be loaded before all others (LD_PRELOAD): one call of malloc, calloc, realloc or aligned_alloc fails, or
- * that and all later ones, in any program.
+ * that and all later ones, in any program; or one by which the program itself writes.
  *
  *   PTRIANGLE_FAIL_AT=K     the K-th call fails, counted from 1
  *   PTRIANGLE_FAIL_AFTER=1  so do all behind it
  *   PTRIANGLE_FAIL_KILL=1   instead the process is killed
  *   PTRIANGLE_FAIL_OWN=1    only calls of the program itself are counted, not those of libraries
+ *   PTRIANGLE_FAIL_WRITE=K  the K-th call of pwrite finds the disk full, and so do all behind it
  *   PTRIANGLE_COUNT=FILE    receives the number of calls when the program ends
  *
  * Calls of the dynamic linker and of OpenMP's library are not counted: that prints a line and ends the program, and
@@ -20,21 +21,25 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/types.h>
 
 void *__libc_malloc(size_t bytes);
 void *__libc_calloc(size_t n, size_t bytes);
 void *__libc_realloc(void *block, size_t bytes);
 void *__libc_memalign(size_t alignment, size_t bytes);
+ssize_t __pwrite64(int file, const void *data, size_t n, off64_t place);
 
-static atomic_long calls;
-static long fail_at = LONG_MAX;
+static atomic_long calls, writes;
+static long fail_at = LONG_MAX, fail_write = LONG_MAX;
 static bool fail_after, own, kills;
 static atomic_bool begun;
 
 __attribute__((constructor)) static void begin(void)
 {
     const char *at = getenv("PTRIANGLE_FAIL_AT"), *after = getenv("PTRIANGLE_FAIL_AFTER");
+    const char *write = getenv("PTRIANGLE_FAIL_WRITE");
     fail_at = at ? atol(at) : LONG_MAX;
+    fail_write = write ? atol(write) : LONG_MAX;
     fail_after = after && *after == '1';
     own = getenv("PTRIANGLE_FAIL_OWN");
     kills = getenv("PTRIANGLE_FAIL_KILL");
@@ -98,4 +103,28 @@ int posix_memalign(void **block, size_t alignment, size_t bytes)
 {
     *block = must_fail(__builtin_return_address(0)) ? NULL : __libc_memalign(alignment, bytes);
     return *block ? 0 : ENOMEM;
+}
+
+static bool is_of_the_program(const void *caller)
+{
+    Dl_info info;
+    return dladdr(caller, &info) && !strstr(info.dli_fname, ".so");
+}
+
+static ssize_t write_or_fail(const void *caller, int file, const void *data, size_t n, off64_t place)
+{
+    if (!is_of_the_program(caller) || ++writes < fail_write)
+        return __pwrite64(file, data, n, place);
+    errno = ENOSPC;
+    return -1;
+}
+
+ssize_t pwrite(int file, const void *data, size_t n, off_t place)
+{
+    return write_or_fail(__builtin_return_address(0), file, data, n, place);
+}
+
+ssize_t pwrite64(int file, const void *data, size_t n, off64_t place)
+{
+    return write_or_fail(__builtin_return_address(0), file, data, n, place);
 }

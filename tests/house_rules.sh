@@ -66,6 +66,7 @@ tested_by() {
     triangle/dropin/*) echo triangulate ;;
     triangle/text/names.c | triangle/text/window.c) echo read ;;
     triangle/text/output.c | triangle/text/layouts.c) echo write ;;
+    triangle/text/joined.c) echo joint_files ;;
     triangle/text/stream.c) echo text_stream ;;
     triangle/text/boundary.c | triangle/text/gmsh.c | triangle/text/grouping.c) echo formats ;;
     triangle/text/hydro.c | triangle/text/vtu.c) echo formats ;;

@@ -35,8 +35,8 @@ fi
 pc=$(find "$work/prefix" -name ptriangle.pc)
 PKG_CONFIG_PATH=$(dirname "$pc")
 export PKG_CONFIG_PATH
-# shellcheck disable=SC2046 # the words of pkg-config are meant to be split
-"$cc" -std=c11 "$client/client.c" -o "$work/by_hand" $(pkg-config --cflags --libs ptriangle)
+eval "set -- $(pkg-config --cflags --libs ptriangle)" # words as for a shell: blanks in a path are quoted
+"$cc" -std=c11 "$client/client.c" -o "$work/by_hand" "$@"
 "$work/by_hand" "$square"
 
 echo "== a client of Triangle, relinked"
@@ -48,8 +48,8 @@ takes() {
 }
 "$work/cmake/dropin" >"$work/sequential.txt"
 takes "$work/cmake/dropin" no
-# shellcheck disable=SC2046
-"$cc" -std=c11 -c "$client/dropin.c" $(pkg-config --cflags triangle) -o "$work/dropin.o"
+eval "set -- $(pkg-config --cflags triangle)"
+"$cc" -std=c11 -c "$client/dropin.c" "$@" -o "$work/dropin.o"
 "$cc" "$work/dropin.o" -L "$directory" -ltriangle -lm -o "$work/relinked"
 takes "$work/relinked" no
 "$work/relinked" | diff - "$work/sequential.txt"
@@ -79,6 +79,7 @@ fi
 echo "== ranks"
 if [ -n "${MPIEXEC:-}" ]; then
     OMP_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 \
+        PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe \
         timeout 100 "$MPIEXEC" -n 2 "$work/cmake/ranks" "$square" 30 0.00002
 fi
 

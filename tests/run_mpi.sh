@@ -14,6 +14,8 @@ failed=0
 found=0
 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMP_NUM_THREADS=1
 OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_btl=self,vader,tcp OMPI_MCA_mpi_yield_when_idle=1
+PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe # from OpenMPI 5 on
+export PRTE_MCA_rmaps_default_mapping_policy
 export OMPI_ALLOW_RUN_AS_ROOT OMPI_ALLOW_RUN_AS_ROOT_CONFIRM OMP_NUM_THREADS
 OMPI_CC=$compiler MPICH_CC=$compiler # that of the libraries: it knows their OpenMP
 export OMPI_CC MPICH_CC OMPI_MCA_rmaps_base_oversubscribe OMPI_MCA_btl OMPI_MCA_mpi_yield_when_idle

@@ -73,8 +73,8 @@ LD_LIBRARY_PATH=$work/$libraries
 export PKG_CONFIG_PATH LD_LIBRARY_PATH
 [ "$(pkg-config --modversion pt-triangle)" = 0.1.0 ] || fail "version of pt-triangle.pc"
 for package in pt-triangle ptriangle; do
-    # shellcheck disable=SC2046 # words
-    "$cc" -std=c11 "$client/dropin.c" $(pkg-config --cflags --libs $package) -o by_hand
+    eval "set -- $(pkg-config --cflags --libs $package)" # words as for a shell
+    "$cc" -std=c11 "$client/dropin.c" "$@" -o by_hand
     ./by_hand | cmp - shared_clients.sequential
 done
 unset PKG_CONFIG_PATH LD_LIBRARY_PATH
@@ -97,8 +97,8 @@ export PKG_CONFIG_PATH
 mkdir alone/as_triangle
 cp alone/include/pt-triangle.h alone/as_triangle/triangle.h # the client knows it by this name
 for package in pt-triangle ptriangle; do
-    # shellcheck disable=SC2046 # words
-    "$cc" -std=c11 "$client/dropin.c" -Ialone/as_triangle $(pkg-config --cflags --libs $package) -o by_hand
+    eval "set -- $(pkg-config --cflags --libs $package)"
+    "$cc" -std=c11 "$client/dropin.c" -Ialone/as_triangle "$@" -o by_hand
     ./by_hand | cmp - static_clients.sequential
 done
 unset PKG_CONFIG_PATH

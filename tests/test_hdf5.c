@@ -1,5 +1,6 @@
 /* HDF5 files: what is written is what is read, in chunks and without, narrow and wide; the same tiles give the same
  * bytes; whatever fails, nothing remains. */
+#include <math.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -215,6 +216,97 @@ static void test_same_mesh_same_bytes(void **state)
     }
 }
 
+/* Rows that several write, tile by tile in turn, into the places that the writer has given. */
+enum { PARTS = 3 };
+struct parts {
+    const struct lattice *lattice;
+    struct tri_h5_options options;
+    struct tri_h5_writer *writer;
+    struct tri_sink whole;
+    struct tri_h5_part *part[PARTS];
+    int turn;
+    double bounds[4];
+};
+
+static enum tri_status begin_parts(void *user, const struct tri_stream *stream, struct tri_error *error)
+{
+    struct parts *p = user;
+    const int64_t points[] = {0, 0, 5, lattice_points(p->lattice)},
+                  triangles[] = {0, 0, 7, lattice_triangles(p->lattice)},
+                  segments[] = {0, 0, 1, lattice_segments(p->lattice)};
+    struct tri_stream on_ranks = *stream;
+    int64_t *place;
+    on_ranks.n_ranks = PARTS;
+    on_ranks.first_vertex = points;
+    on_ranks.first_triangle = triangles;
+    on_ranks.first_segment = segments;
+    enum tri_status status = p->whole.begin(p->whole.user, &on_ranks, error);
+    for (int i = 0; i < PARTS && !status; i++) {
+        const struct tri_h5_layout *layout = tri_h5_writer_layout(p->writer, &place);
+        status = tri_h5_part_new(&p->part[i], layout, place, &on_ranks, p->options.file, error);
+    }
+    return status;
+}
+
+static enum tri_status take_part(void *user, const struct tri_tile *tile, struct tri_error *error)
+{
+    struct parts *p = user;
+    tri_h5_extend_bounds(p->bounds, tile);
+    return tri_h5_part_take(p->part[p->turn++ % PARTS], tile, error);
+}
+
+static enum tri_status end_parts(void *user, struct tri_error *error)
+{
+    struct parts *p = user;
+    enum tri_status status = TRI_OK;
+    for (int i = 0; i < PARTS && !status; i++)
+        status = tri_h5_part_end(p->part[i], error);
+    tri_h5_writer_tell(p->writer, p->lattice->side, p->bounds);
+    return status ? status : p->whole.end(p->whole.user, error);
+}
+
+static enum tri_status write_parts(const struct lattice *lattice, bool markers, int64_t most_narrow,
+                                   struct tri_error *error)
+{
+    struct tri_output_set set;
+    struct parts p = {.lattice = lattice, .bounds = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL},
+                      .options = {.program = "test", .name = "x.h5", .markers = markers, .most_narrow = most_narrow}};
+    const struct tri_sink sink = {&p, begin_parts, take_part, end_parts};
+    tri_outputs_begin(&set);
+    enum tri_status status = tri_output_open(&set, "x.h5", &p.options.file, error);
+    status = status ? status : tri_output_open(&set, "x.xdmf", &p.options.xdmf, error);
+    status = status ? status : tri_h5_writer_new(&p.writer, &p.options, &p.whole, error);
+    status = status ? status : lattice_hand_out(lattice, &sink, error);
+    tri_h5_writer_free(p.writer);
+    for (int i = 0; i < PARTS; i++)
+        tri_h5_part_free(p.part[i]);
+    if (!status)
+        return tri_outputs_commit(&set, error);
+    tri_outputs_abort(&set);
+    return status;
+}
+
+static void test_parts_make_the_same_bytes(void **state)
+{
+    (void)state;
+    static const struct lattice larger = {1101, 37, 0, 0, false, false}; /* chunks that have been written become wide */
+    const struct lattice *all[] = {&LARGE, &larger, &PLAIN, &LARGE, &SMALL, &larger, &WHOLE};
+    const int64_t narrow[] = {0, 786432, 0, 262144, 3, 1100000, 0};
+    for (int i = 0; i < 7; i += every(2)) {
+        struct tri_error error;
+        size_t n, m;
+        assert_int_equal(write_lattice(all[i], i % 3 == 0, narrow[i], &error), TRI_OK);
+        char *whole = file_bytes("x.h5", &n);
+        assert_int_equal(write_parts(all[i], i % 3 == 0, narrow[i], &error), TRI_OK);
+        char *parts = file_bytes("x.h5", &m);
+        assert_int_equal(n, m);
+        assert_int_equal(memcmp(whole, parts, n), 0);
+        compare(all[i], i % 3 == 0);
+        free(whole);
+        free(parts);
+    }
+}
+
 /* As many points as fit in one chunk, one less, one more; and chunks of segments. */
 static void test_around_a_chunk(void **state)
 {
@@ -410,6 +502,7 @@ int main(void)
         cmocka_unit_test_teardown(test_ends_of_cells, remove_files),
         cmocka_unit_test_teardown(test_small_files_are_small, remove_files),
         cmocka_unit_test_teardown(test_same_mesh_same_bytes, remove_files),
+        cmocka_unit_test_teardown(test_parts_make_the_same_bytes, remove_files),
         cmocka_unit_test_teardown(test_around_a_chunk, remove_files),
         cmocka_unit_test_teardown(test_no_times, remove_files),
         cmocka_unit_test_teardown(test_xdmf, remove_files),

@@ -389,10 +389,69 @@ static void test_extremes(void **state)
     tri_pslg_free(&pslg);
 }
 
+/* --- columns by sorting all samples at once */
+
+struct sampled {
+    double at[3]; /* place and work */
+};
+
+struct sampling {
+    struct sampled *item;
+    size_t n;
+};
+
+static bool note_sample(void *user, struct tri_point q, double work)
+{
+    struct sampling *s = user;
+    s->item = realloc(s->item, (s->n + 1) * sizeof *s->item);
+    s->item[s->n++] = (struct sampled){{q.x, q.y, work}};
+    return s->item;
+}
+
+static int compare_sampled(const void *left, const void *right)
+{
+    const double *a = ((const struct sampled *)left)->at, *b = ((const struct sampled *)right)->at;
+    int k = a[0] != b[0] ? 0 : a[1] != b[1] ? 1 : 2;
+    return (a[k] > b[k]) - (a[k] < b[k]);
+}
+
+static void assert_columns_are_quantiles(const struct par_partition *p, const struct sampling *s)
+{
+    double total = 0, sum = 0;
+    int32_t column = 1;
+    for (size_t i = 0; i < s->n; i++)
+        total += s->item[i].at[2];
+    for (size_t i = 0; i + 1 < s->n && column < p->n_columns - 1; i++) {
+        sum += s->item[i].at[2];
+        for (; column < p->n_columns - 1 && sum >= total * column / (p->n_columns - 1); column++)
+            assert_true(p->x[column] == 0.5 * (s->item[i].at[0] + s->item[i + 1].at[0]));
+    }
+}
+
+/* Lattices have many samples in one place along each axis. */
+static void test_columns_are_those_of_sorted_samples(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < 3; k++) {
+        struct tri_options options;
+        struct tri_mesh mesh = start_of(&trials[k], &options);
+        struct tri_refine_options quality = options.quality;
+        struct par_partition p = cut(&mesh, &quality, trials[k].block);
+        struct sampling s = {0};
+        assert_true(tri_sample_work(&mesh, &quality, p.estimate / par_cells(&p) / 32, NULL, note_sample, &s));
+        qsort(s.item, s.n, sizeof *s.item, compare_sampled);
+        assert_columns_are_quantiles(&p, &s);
+        free(s.item);
+        par_partition_free(&p);
+        tri_mesh_free(&mesh);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fences_serve_every_point_and_phases_are_disjoint),
+        cmocka_unit_test(test_columns_are_those_of_sorted_samples),
         cmocka_unit_test(test_coarsening_halves),
         cmocka_unit_test(test_cell_size),
         cmocka_unit_test(test_blocks_have_equal_shares_of_the_work),

@@ -1,10 +1,24 @@
-/* A name that nobody has, taken back at once. */
+/* A name that nobody has, taken back before a signal can end the process. */
 #include "triangle/scratch_file.h"
 
 #include <errno.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+static int make_nameless(char *path)
+{
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    const int file = mkstemp(path), fault = errno;
+    if (file >= 0)
+        (void)unlink(path);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    errno = fault;
+    return file;
+}
 
 int tri_scratch_file(const char *folder)
 {
@@ -17,9 +31,7 @@ int tri_scratch_file(const char *folder)
     }
     memcpy(path, folder, n);
     memcpy(path + n, name, sizeof name);
-    const int file = mkstemp(path), fault = errno;
-    if (file >= 0)
-        (void)unlink(path);
+    const int file = make_nameless(path), fault = errno;
     free(path);
     errno = fault;
     return file;

@@ -38,6 +38,10 @@ struct par_exchanges { /* sent by this rank */
  * settings that par_mesh_new refines as one sequential call, with min_angle above 34 degrees, and for a small mesh,
  * each rank makes the whole mesh, and rank 0 hands it out.
  *
+ * Where MPI itself fails, and the error handler of comm returns, this rank returns TRI_INTERNAL. The others may wait
+ * for it for ever, and requests that MPI does not let go of may be pending on memory that has gone: MPI_Abort is all
+ * that is safe then.
+ *
  * MPI must run, with MPI_THREAD_FUNNELED where there is more than one thread. comm is duplicated for the time of the
  * call; the copy has its error handler. Counts of messages stay below 2^31 however much is sent. exchanges: NULL where
  * nobody asks. */

@@ -63,7 +63,7 @@ struct par_carrier par_carrier_alone(int64_t *room)
 
 static enum tri_status out_of_touch(struct par_carrier *carrier, struct tri_error *error)
 {
-    carrier->ended = true;
+    carrier->ended = carrier->lost = true;
     carrier->status = TRI_INTERNAL;
     return tri_fail(error, TRI_INTERNAL, NULL, 0, "the ranks cannot reach each other");
 }
@@ -164,14 +164,24 @@ static enum tri_status prepare(struct par_carrier *carrier, const struct par_byt
     return par_agree(carrier, status, error);
 }
 
+/* What a network that has failed may still read or write is never freed. */
+static void abandon(struct par_bytes *bytes, int n)
+{
+    for (int p = 0; p < n; p++)
+        bytes[p] = (struct par_bytes){0};
+}
+
 enum tri_status par_swap(struct par_carrier *carrier, enum par_move move, struct par_bytes *out, struct par_bytes *in,
                          enum tri_status status, struct tri_error *error)
 {
     status = par_agree(carrier, status, error);
     status = status ? status : prepare(carrier, out, in, error);
     double began = tri_seconds();
-    if (!status && !carrier->transfer(carrier->self, out, in))
+    if (!status && !carrier->transfer(carrier->self, out, in)) {
         status = out_of_touch(carrier, error);
+        abandon(out, carrier->n_ranks);
+        abandon(in, carrier->n_ranks);
+    }
     carrier->seconds_moving += tri_seconds() - began;
     count(carrier, move, out);
     in[carrier->rank] = out[carrier->rank];

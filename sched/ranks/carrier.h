@@ -54,6 +54,7 @@ struct par_carrier {
     const double *share;     /* for tests: [n_ranks + 1] ascending from 0 to 1: rank p owns the part share[p] to
                                 share[p + 1] of the odd columns; NULL: equal parts */
     bool ended;              /* the ranks have agreed on an error: nothing is sent any more */
+    bool lost;               /* .. or this one cannot reach the others, which may wait for it: somebody must end them */
     enum tri_status status;  /* that error */
     struct par_traffic traffic[PAR_MOVES];
     double seconds_waiting;  /* for each other, in agreements */
@@ -71,7 +72,8 @@ bool par_bytes_add(struct par_bytes *bytes, const void *item, size_t n);
 enum tri_status par_agree(struct par_carrier *carrier, enum tri_status status, struct tri_error *error);
 
 /* Collective: an agreement, then out[p] goes to rank p, and in[p] becomes what comes from there; what goes to the own
- * rank is in[rank] afterwards. Frees `out` in any case; `in` is the caller's to free, in any case. */
+ * rank is in[rank] afterwards. Frees `out` in any case; `in` is the caller's to free, in any case.
+ * Where the network fails both are empty then: what it may still read or write is left to it. */
 enum tri_status par_swap(struct par_carrier *carrier, enum par_move move, struct par_bytes *out, struct par_bytes *in,
                          enum tri_status status, struct tri_error *error);
 

@@ -218,6 +218,8 @@ enum tri_status par_mpi_carrier_new(struct par_carrier **carrier, const void *co
 void par_mpi_carrier_free(struct par_carrier *carrier)
 {
     struct messenger *m = carrier->self;
+    if (carrier->lost) /* the others do not come here; and MPI may know this memory still */
+        return;
     hear_all(m);
     MPI_Comm_free(&m->comm);
     free_messenger(m);

@@ -8,7 +8,8 @@
  * return the same status: TRI_NO_MEMORY, if one of them has none. */
 enum tri_status par_mpi_carrier_new(struct par_carrier **carrier, const void *comm, struct tri_error *error);
 
-/* Collective, after the same exchanges on all ranks, whatever came of them. */
+/* Collective, after the same exchanges on all ranks, whatever came of them. Where the network has failed nothing
+ * happens. */
 void par_mpi_carrier_free(struct par_carrier *carrier);
 
 #endif

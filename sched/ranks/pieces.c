@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const uint64_t PIECES = UINT64_C(0x3173656365697074); /* a version as well */
+static const uint64_t PIECES = UINT64_C(0x3273656365697074); /* a version as well */
 
 struct head {
     uint64_t word, run;

@@ -18,8 +18,9 @@ bool par_finds_begin(struct par_finds *finds, int32_t n_rows)
     return finds->count && finds->start;
 }
 
-void par_finds_free(struct par_finds *finds)
+void par_finds_forget(struct par_finds *finds)
 {
+    const struct par_finds kept = {.n_rows = finds->n_rows, .start = finds->start, .n = finds->n};
     for (int s = 0; s < PAR_FIND_SHARES; s++) {
         free(finds->found[s].item);
         free(finds->notes[s].item);
@@ -27,9 +28,15 @@ void par_finds_free(struct par_finds *finds)
     }
     free(finds->count);
     free(finds->item);
-    free(finds->start);
     free(finds->piece);
     free(finds->first_piece);
+    *finds = kept;
+}
+
+void par_finds_free(struct par_finds *finds)
+{
+    par_finds_forget(finds);
+    free(finds->start);
 }
 
 static void add_up(struct par_finds *finds)

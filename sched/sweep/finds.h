@@ -44,6 +44,9 @@ struct par_finds {
 bool par_finds_begin(struct par_finds *finds, int32_t n_rows);
 void par_finds_free(struct par_finds *finds);
 
+/* What has been dealt goes, but for how much it was: n, n_rows, start. */
+void par_finds_forget(struct par_finds *finds);
+
 /* The ids that a share looks at. */
 static inline struct tri_range par_finds_share(size_t share, int32_t n)
 {

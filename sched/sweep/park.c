@@ -302,6 +302,10 @@ static enum tri_status leave(void *user, struct tri_mesh *mesh, struct tri_error
 {
     struct par_park *park = user;
     assert(!mesh->storage);
+    if (!park->folder && isinf(park->others))
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
+                        "the system does not tell how much memory is in use: a bound of %.3g GB cannot be kept",
+                        1e-9 * park->memory);
     if (!park->folder)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
                         "the mesh, %.3g million triangles so far, outgrows the %.3g GB of memory that are allowed",

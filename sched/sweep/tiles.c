@@ -29,6 +29,7 @@ struct par_column {
     struct par_finds vertices, triangles, subs;
     struct par_ids straddling[PAR_FIND_SHARES]; /* triangles that reach beyond it, with a numbered corner */
     bool no_memory[PAR_FIND_SHARES];
+    bool is_short; /* of its vertices it knows no more than how many there are in each row */
 };
 
 /* --- what belongs to the column */
@@ -67,6 +68,24 @@ static void find_vertices(void *context, size_t share)
         par_find(&finder, v, find_tile(&place, tiles->partition, mesh->xy[v]) - c->first_tile);
     }
     c->no_memory[share] = !par_finder_end(&finder);
+}
+
+/* The vertices that have been numbered, in the order of their numbers. */
+static void find_numbered(void *context, size_t share)
+{
+    struct par_column *c = context;
+    const struct par_tiles *tiles = c->tiles;
+    struct tri_range range = par_finds_share(share, tiles->mesh->n_vertices);
+    struct par_ids *found = &c->vertices.found[share];
+    bool memory = true;
+    for (tri_vertex_id v = range.first < tiles->n_kept ? tiles->n_kept : range.first; v < range.last; v++) {
+        const int64_t place = tiles->number[v] - c->first_vertex;
+        if (tiles->mesh->on[v] == TRI_VERTEX_NONE || place < 0 || place >= c->vertices.n)
+            continue;
+        c->vertices.item[place] = v;
+        memory = par_ids_add(found, v) && memory;
+    }
+    c->no_memory[share] = !memory;
 }
 
 /* The row of numbers that mostly are of the same one as the last. */
@@ -213,6 +232,31 @@ static bool know_kept(struct par_tiles *tiles)
     return tiles->kept_tile;
 }
 
+/* Numbers are where the mesh is, in files, too. */
+static void free_numbers(struct par_tiles *tiles)
+{
+    if (tiles->is_in_files)
+        tri_mesh_extra_free(tiles->mesh, tiles->number);
+    else
+        free(tiles->number);
+    tiles->number = NULL;
+}
+
+static bool grow_numbers(struct par_tiles *tiles, size_t n)
+{
+    if (!tiles->mesh->storage)
+        return tri_resize(&tiles->number, n, sizeof *tiles->number);
+    int64_t *number = tri_mesh_extra(tiles->mesh, n * sizeof *number);
+    if (!number)
+        return false;
+    if (tiles->capacity > 0)
+        memcpy(number, tiles->number, (size_t)tiles->capacity * sizeof *number);
+    free_numbers(tiles);
+    tiles->number = number;
+    tiles->is_in_files = true;
+    return true;
+}
+
 bool par_tiles_reserve(struct par_tiles *tiles)
 {
     int32_t before = tiles->capacity, now = tiles->mesh->vertex_capacity;
@@ -221,7 +265,7 @@ bool par_tiles_reserve(struct par_tiles *tiles)
         return false;
     if (now <= before)
         return true;
-    if (!tri_resize(&tiles->number, (size_t)now, sizeof *tiles->number))
+    if (!grow_numbers(tiles, (size_t)now))
         return false;
     for (tri_vertex_id v = before; v < now; v++)
         tiles->number[v] = v < tiles->n_kept ? v : NO_NUMBER;
@@ -396,9 +440,27 @@ static enum tri_status number_column(struct par_column *c, struct tri_error *err
     return par_pipeline_run(&pipeline, executor, error);
 }
 
+/* Lists of vertices go until they are wanted: those of all columns are as many as the mesh has. */
+static void shorten(struct par_column *c)
+{
+    par_finds_forget(&c->vertices);
+    c->is_short = true;
+}
+
+static bool lengthen(struct par_column *c)
+{
+    c->vertices.item = malloc(((size_t)c->vertices.n + 1) * sizeof *c->vertices.item);
+    if (c->vertices.item)
+        tri_execute(c->tiles->executor, PAR_FIND_SHARES, find_numbered, c);
+    c->is_short = false;
+    return c->vertices.item && memory_has_lasted(c);
+}
+
 static enum tri_status hand_out_column(struct par_column *c, struct tri_error *error)
 {
     const struct tri_executor *executor = c->tiles->executor;
+    if (c->is_short && !lengthen(c))
+        return no_memory(error);
     tri_execute(executor, PAR_FIND_SHARES, find_triangles, c);
     tri_execute(executor, PAR_FIND_SHARES, find_subs, c);
     if (!memory_has_lasted(c) || !par_finds_sort(&c->triangles) || !par_finds_deal(&c->subs, executor))
@@ -421,14 +483,23 @@ void par_column_free(struct par_column *c)
     free(c);
 }
 
-enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct par_column **numbered,
-                                 struct tri_error *error)
+static enum tri_status number_next(struct par_tiles *tiles, int32_t column, struct par_column **numbered,
+                                   struct tri_error *error)
 {
     struct par_column *c = *numbered = calloc(1, sizeof *c);
     if (!c)
         return no_memory(error);
     enum tri_status status = begin_column(c, tiles, column) ? number_column(c, error) : no_memory(error);
     tiles->n_vertices += c->vertices.n;
+    return status;
+}
+
+enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct par_column **numbered,
+                                 struct tri_error *error)
+{
+    enum tri_status status = number_next(tiles, column, numbered, error);
+    if (!status)
+        shorten(*numbered);
     return status;
 }
 
@@ -448,7 +519,7 @@ enum tri_status par_tiles_column(struct par_tiles *tiles, int32_t column, struct
 {
     struct par_column *c;
     par_room_mark(spare, tiles->mesh, tiles->executor);
-    enum tri_status status = par_tiles_number(tiles, column, &c, error);
+    enum tri_status status = number_next(tiles, column, &c, error);
     status = status ? status : par_tiles_hand_out(c, spare, error);
     par_column_free(c);
     return status;
@@ -459,11 +530,10 @@ void par_tiles_free(struct par_tiles *tiles)
     for (int32_t i = 0; tiles->job && i < tiles->n_jobs; i++)
         par_tile_job_free(&tiles->job[i]);
     free(tiles->job);
-    free(tiles->number);
+    free_numbers(tiles);
     free(tiles->kept_tile);
     free(tiles->held.item);
     tiles->job = NULL;
-    tiles->number = NULL;
     tiles->kept_tile = NULL;
     tiles->held = (struct par_ids){0};
 }

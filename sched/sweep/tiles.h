@@ -33,6 +33,7 @@ struct par_tiles {
     int64_t *number;              /* [capacity] of each vertex; -1: none yet */
     int32_t *kept_tile;           /* [n_kept] column * n_rows + row of those that keep theirs */
     int32_t capacity;
+    bool is_in_files;             /* number is; the mesh's storage has it */
     int64_t n_vertices, n_triangles, n_segments; /* handed out so far */
     struct par_ids held;          /* numbered vertices that triangles beyond the last column still have */
     int32_t n_threads;            /* of the executor; 0: one */
@@ -63,7 +64,8 @@ bool par_tiles_reserve(struct par_tiles *tiles);
 
 /* The same in two steps, in each of which columns come from left to right. Number: its vertices, from
  * tiles->n_vertices on; ids that are free have been marked (par_room_mark) and stay so; *numbered is to be freed in any
- * case. Hand out: by then all corners of its triangles have their numbers, or are vertices of later tiles. */
+ * case, and is small until then. Hand out: by then all corners of its triangles have their numbers, or are vertices of
+ * later tiles. */
 struct par_column;
 enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct par_column **numbered,
                                  struct tri_error *error);

@@ -34,24 +34,25 @@ fresh() { # an empty folder with the named inputs of data/ in it
     ls >.before
 }
 
-run() { # run CODE WORDS...: triangle must end with the exit code; out and err keep what it printed
+mesher() { # mesher CODE PROGRAM WORDS...: must end with the exit code; .out and .err keep what it printed
     code=$1
-    shift
-    what="triangle $*"
+    program=$2
+    shift 2
+    what="$program $*"
     checks=$((checks + 1))
-    "$bin/triangle" "$@" >.out 2>.err
+    "$bin/$program" "$@" >.out 2>.err
     found=$?
     [ "$found" -eq "$code" ] || fault "exit code $found instead of $code: $(head -n 1 .err)"
 }
-
+run() { # run CODE WORDS...: triangle
+    code=$1
+    shift
+    mesher "$code" triangle "$@"
+}
 program() { # the same for ptriangle
     code=$1
     shift
-    what="ptriangle $*"
-    checks=$((checks + 1))
-    "$bin/ptriangle" "$@" >.out 2>.err
-    found=$?
-    [ "$found" -eq "$code" ] || fault "exit code $found instead of $code: $(head -n 1 .err)"
+    mesher "$code" ptriangle "$@"
 }
 
 in_time() { # in_time CODE: the exit code of a run with a time limit is 0, or that of a stop

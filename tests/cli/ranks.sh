@@ -4,6 +4,8 @@
 # shellcheck disable=SC2154 # bin is of run.sh
 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
 OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_btl=self,vader,tcp OMP_NUM_THREADS=1 PTRIANGLE_TEST_BLOCK=500
+PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe # from OpenMPI 5 on
+export PRTE_MCA_rmaps_default_mapping_policy
 export OMPI_ALLOW_RUN_AS_ROOT OMPI_ALLOW_RUN_AS_ROOT_CONFIRM OMPI_MCA_rmaps_base_oversubscribe
 export OMPI_MCA_mpi_yield_when_idle OMPI_MCA_btl OMP_NUM_THREADS PTRIANGLE_TEST_BLOCK
 
@@ -19,16 +21,16 @@ ranks() {
     [ "$found" -eq "$code" ] || fault "exit code $found instead of $code: $(head -n 3 .out)"
 }
 
-# with_one RANK DO CODE WORDS...: two ranks, of which one does something first; CODE any: 0, or a failure that is no
-# hang
+# with_one RANK DO CODE WORDS...: two ranks, or $of, of which one does something first; CODE any: 0, or a failure that
+# is no hang
 with_one() {
     one=$1
     first=$2
     code=$3
     shift 3
-    what="two ranks, rank $one after $first: $*"
+    what="${of:-2} ranks, rank $one after $first: $*"
     checks=$((checks + 1))
-    RANK=$one DO=$first timeout 100 "$MPIEXEC" -n 2 sh -c \
+    RANK=$one DO=$first timeout 100 "$MPIEXEC" -n "${of:-2}" sh -c \
         '[ "${OMPI_COMM_WORLD_RANK:-$PMI_RANK}" -ne "$RANK" ] || eval "$DO"; exec "$0" "$@"' \
         "$bin/ptriangle" "$@" >.out 2>.err
     found=$?
@@ -73,8 +75,8 @@ done
 # --- one task reads and writes: the others see neither the input nor the folder
 fresh section.poly
 same_but_for_comments() { # A B
-    grep -v '^#' "$1" >.one
-    grep -v '^#' "$2" >.two
+    grep -av '^#' "$1" >.one
+    grep -av '^#' "$2" >.two
     cmp .one .two
 }
 program 0 -Qpq10aA section
@@ -90,7 +92,7 @@ for case in "-pq28aA section.poly" "-rpq20a0.01e section.1"; do
 done
 
 # --- what moved, by reason and rank
-ranks 0 3 -Qpq30a0.001 section.poly --output one.h5 --report report.json
+ranks 0 3 -Qpq30a0.001 section.poly --output one.vtu --report report.json
 for word in '"borders": [1-9]' '"tiles": [1-9]' '"input": [1-9]'; do
     check "the report has no $word" grep -q "$word" report.json
 done
@@ -98,13 +100,61 @@ check "three ranks" test "$(grep -c '"waiting_seconds"' report.json)" -eq 3
 program 0 -Qpq30a0.01 section.poly --output one.h5 --report report.json
 check "one process has no ranks" grep -q '"ranks": null' report.json
 
+# --- each rank writes its own rows, and none of them moves; beside a format that wants the whole mesh one writes all
+fresh letter.poly
+outputs="--output two"
+files="one.node one.ele one.poly"
+program 0 -Qpq30a0.001 letter --output one
+if "$bin/ptriangle" -Qpq30a0.001 letter --output one.h5 >.out 2>&1; then
+    outputs="--output two --output two.h5"
+    files="$files one.h5"
+fi
+for others in "" "--output two.vtu"; do
+    # shellcheck disable=SC2086 # several words, or none
+    ranks 0 3 -Qpq30a0.001 letter $outputs $others --report report.json
+    check "tiles moved if and only if they had to: $others" test \
+        "$(grep -q '"tiles": [0-9]\{6\}' report.json && echo moved)" = "${others:+moved}"
+    for file in $files; do
+        check "the same but for the command: $others, $file" same_but_for_comments "$file" "two${file#one}"
+    done
+    rm -f two.*
+done
+
 # --- a bound on the memory of each task
 fresh letter.poly
 program 0 -Qpq30a0.001 letter --output one
 ranks 0 3 -Qpq30a0.001 letter --output two --memory 400M
 check "the same bytes within a bound" same_but_for_comments one.ele two.ele
-ranks 1 2 -Qpq20a0.000001 letter --output two --memory 100M
-check "refused in one line" test "$(grep -c 'million triangles, which take .* GB of memory' .err)" -eq 1
+ranks 1 2 -Qpq20a0.000001 letter --output two --memory 60M
+check "refused in one line" test "$(grep -c 'million triangles, which take .* [MG]B of memory' .err)" -eq 1
+case "${LD_PRELOAD:-}$(ldd "$bin/ptriangle")" in
+*libasan* | *libtsan* | *libubsan*) ;; # have memory of their own
+*)
+    fresh square_random1000.poly
+    for how in q20a0.0000004 q33a0.0000006; do
+        what="three ranks, -p$how, each within 145 MB"
+        checks=$((checks + 1))
+        PTRIANGLE_TEST_BLOCK='' timeout 100 "$MPIEXEC" -n 3 python3 "$data/../tests/cli/peak.py" 145000000 \
+            "$bin/ptriangle" "-Qp$how" square_random1000 --output two.h5 --memory 145M >.out 2>.err
+        found=$?
+        [ "$found" -eq 0 ] || fault "exit code $found: $(head -n 3 .err)"
+        rm -f two.h5
+    done
+    ;;
+esac
+
+# --- a network that fails for one task: all end, and there is no file
+if [ -n "${PTRIANGLE_LOST:-}" ]; then
+    fresh letter.poly
+    for one in 0 1; do
+        for k in 1 40; do
+            with_one $one "export LD_PRELOAD=$PTRIANGLE_LOST PTRIANGLE_LOST_AT=$k" any -Qpq30a0.01 letter --output two
+            check "look $k of task $one: exit code $found" test "$found" -ne 0
+            check "look $k of task $one: at most one line" test "$(grep -c '^ptriangle: ' .err)" -le 1
+            check "look $k of task $one: no file" sh -c '! ls two.* 2>/dev/null'
+        done
+    done
+fi
 
 # --- memory that runs out in one task, wherever: exit code 1, one line, no file; or all files
 fresh letter.poly
@@ -122,6 +172,20 @@ if [ -n "${PTRIANGLE_SHIM:-}" ]; then
             check "allocation $k: one line: $(head -n 3 .err)" test "$(grep -c '^ptriangle: .*memory' .err)" -eq 1
             check "allocation $k: no file" sh -c '! ls two.* .tri-* 2>/dev/null'
         fi
+    done
+
+    # --- the disk is full for the last of three tasks, whatever it writes then: the same
+    for output in two "${outputs##* }"; do
+        for k in 1 4 16 64; do
+            rm -f two.*
+            of=3 with_one 2 "export LD_PRELOAD=$PTRIANGLE_SHIM PTRIANGLE_FAIL_WRITE=$k" any -Qpq30a0.001 letter \
+                --output "$output"
+            [ "$found" -ne 0 ] || break
+            check "$output, write $k: exit code $found" test "$found" -eq 1
+            check "$output, write $k: one line: $(head -n 3 .err)" test "$(grep -c 'No space left' .err)" -eq 1
+            check "$output, write $k: no file" sh -c '! ls two.* .tri-* 2>/dev/null'
+        done
+        check "$output: a write has failed" test "$k" -gt 1
     done
 
     # --- one task is killed there: all end, and nothing has got its name; other tasks, or one, go on, to the same bytes

@@ -1,17 +1,6 @@
 # Runs that are stopped: exit code, one line, all files or none; what a killed run has left is gone after the next.
 #
 # A pipe that nobody reads or writes holds a program where it is to be held, so that no test depends on speed.
-mesher() { # mesher CODE PROGRAM WORDS...: must end with the exit code
-    code=$1
-    program=$2
-    shift 2
-    what="$program $*"
-    checks=$((checks + 1))
-    "$bin/$program" "$@" >.out 2>.err
-    found=$?
-    [ "$found" -eq "$code" ] || fault "exit code $found instead of $code: $(head -n 1 .err)"
-}
-
 await() { # await COMMAND...: until it succeeds
     tries=0
     until "$@" 2>/dev/null || [ $tries -ge 2400 ]; do

@@ -58,15 +58,15 @@ void tri_h5_array_free(struct tri_h5_array *array)
 
 /* --- datasets */
 
-/* How the dataset is kept: in chunks, which have their place as soon as they are part of it and are not filled before
- * they are written, or in one piece. < 0: an error. */
+/* How the dataset is kept: in chunks or in one piece, which have their place as soon as they are part of it and are not
+ * filled before they are written. < 0: an error. */
 static hid_t creation_of(const struct tri_h5_array *array, bool in_chunks)
 {
     const hsize_t chunk[2] = {(hsize_t)array->chunk_rows, (hsize_t)array->width};
     hid_t creation = tri_h5_no_times(H5P_DATASET_CREATE);
-    if (creation < 0 || !in_chunks)
+    if (creation < 0)
         return creation;
-    if (H5Pset_chunk(creation, dimensions(array), chunk) >= 0 &&
+    if ((!in_chunks || H5Pset_chunk(creation, dimensions(array), chunk) >= 0) &&
         H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY) >= 0 &&
         H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER) >= 0)
         return creation;
@@ -173,6 +173,16 @@ static void clear_rest(struct tri_h5_array *array)
     memset(array->buffer + taken, 0, chunk_bytes(array) - taken);
 }
 
+/* Gives back chunks that are not needed, and closes the dataset. */
+static enum tri_status conclude(struct tri_h5_array *array, struct tri_error *error)
+{
+    enum tri_status status = array->n_chunks > 0 ? resize(array, array->n, error) : TRI_OK;
+    if (array->dataset >= 0 && H5Dclose(array->dataset) < 0 && !status)
+        status = tri_h5_fail(array->file, array->name, error);
+    array->dataset = -1;
+    return status;
+}
+
 enum tri_status tri_h5_array_end(struct tri_h5_array *array, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -184,12 +194,36 @@ enum tri_status tri_h5_array_end(struct tri_h5_array *array, struct tri_error *e
     tri_h5_wait(array->file, &array->behind);
     if (!status && array->file->failure != 0)
         status = tri_h5_fail(array->file, array->name, error);
-    if (!status && array->n_chunks > 0)
-        status = resize(array, array->n, error);
-    if (array->dataset >= 0 && H5Dclose(array->dataset) < 0 && !status)
-        status = tri_h5_fail(array->file, array->name, error);
-    array->dataset = -1;
-    return status;
+    return status ? status : conclude(array, error);
+}
+
+/* --- rows that others write */
+
+/* Where the chunk that begins with this row lies. False: HDF5 does not tell. */
+static bool chunk_place(hid_t dataset, int64_t row, int64_t *place, hsize_t *size)
+{
+    const hsize_t first[2] = {(hsize_t)row, 0};
+    haddr_t at = HADDR_UNDEF;
+    unsigned filters;
+    const bool told = H5Dget_chunk_info_by_coord(dataset, first, &filters, &at, size) >= 0 && at != HADDR_UNDEF;
+    *place = (int64_t)at;
+    return told;
+}
+
+enum tri_status tri_h5_array_lay_out(struct tri_h5_array *array, int64_t n, int64_t *place, struct tri_error *error)
+{
+    hsize_t size;
+    array->n = n;
+    if (array->n_chunks == 0) {
+        array->dataset = create_dataset(array, n, false);
+        *place = array->dataset >= 0 ? (int64_t)H5Dget_offset(array->dataset) : 0; /* without rows there is none */
+    }
+    if (array->dataset < 0)
+        return tri_h5_fail(array->file, array->name, error);
+    for (int64_t k = 0; array->n_chunks > 0 && k * array->chunk_rows < n; k++)
+        if (!chunk_place(array->dataset, k * array->chunk_rows, &place[k], &size))
+            return tri_h5_fail(array->file, array->name, error);
+    return conclude(array, error);
 }
 
 /* --- wider numbers */
@@ -203,6 +237,18 @@ static void widen_numbers(char *data, size_t n)
     }
 }
 
+/* What lies in a file must not depend on what has lain there before. */
+static bool clear_chunk(const struct tri_h5_array *array, hid_t dataset, int64_t row)
+{
+    int64_t place;
+    hsize_t size;
+    if (!chunk_place(dataset, row, &place, &size))
+        return false;
+    const int failure = tri_output_clear(array->file->output, (uint64_t)place, size);
+    array->file->failure = array->file->failure ? array->file->failure : failure;
+    return failure == 0;
+}
+
 /* Copies the chunks of the old dataset, by way of the buffer. */
 static enum tri_status copy_chunks(struct tri_h5_array *array, hid_t old, struct tri_error *error)
 {
@@ -211,7 +257,7 @@ static enum tri_status copy_chunks(struct tri_h5_array *array, hid_t old, struct
     for (int64_t first = 0; first < end && !status; first += array->chunk_rows) {
         const hsize_t place[2] = {(hsize_t)first, 0};
         uint32_t filters = 0;
-        if (H5Dread_chunk(old, H5P_DEFAULT, place, &filters, array->buffer) < 0)
+        if (H5Dread_chunk(old, H5P_DEFAULT, place, &filters, array->buffer) < 0 || !clear_chunk(array, old, first))
             return tri_h5_fail(array->file, array->name, error);
         widen_numbers(array->buffer, (size_t)array->chunk_rows * (size_t)array->width);
         status = write_chunk(array, first, error);

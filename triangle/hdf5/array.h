@@ -9,8 +9,7 @@
 #define TRIANGLE_HDF5_ARRAY_H
 
 #include "triangle/hdf5/file.h"
-
-enum tri_h5_type { TRI_H5_FLOAT64, TRI_H5_INT32, TRI_H5_INT64 };
+#include "triangle/hdf5/rows.h"
 
 /* May not move once something is allocated for it. */
 struct tri_h5_array {
@@ -46,6 +45,11 @@ void tri_h5_array_advance(struct tri_h5_array *array, int32_t rows);
 /* From now on the integers have 64 bits; those that there are already are rewritten. TRI_NO_MEMORY and errors of
  * writing. Reads and writes what has been written; the space in the file is used again. */
 enum tri_status tri_h5_array_widen(struct tri_h5_array *array, struct tri_error *error);
+
+/* Instead of rows: the array has n of them, in so many chunks as have been allocated, or in one piece. place receives
+ * where each of the chunks that n rows fill lies in the file, or the piece. Then the dataset is closed, and somebody
+ * else puts the rows there. */
+enum tri_status tri_h5_array_lay_out(struct tri_h5_array *array, int64_t n, int64_t *place, struct tri_error *error);
 
 /* Writes the rest, gives back chunks that were not needed, and closes the dataset. */
 enum tri_status tri_h5_array_end(struct tri_h5_array *array, struct tri_error *error);

@@ -15,12 +15,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "triangle/grow.h"
 #include "triangle/hdf5/items.h"
 #include "triangle/hdf5/layout.h"
 #include "triangle/hdf5/segments.h"
 #include "triangle/hdf5/views.h"
 #include "triangle/hdf5/xdmf.h"
-#include "triangle/text/binary.h"
 
 enum { CHUNK_POINTS = 1 << 18, CHUNK_TRIANGLES = 2 * CHUNK_POINTS, CHUNK_SEGMENTS = CHUNK_POINTS };
 
@@ -35,6 +35,9 @@ struct tri_h5_writer {
     double bounds[4];     /* least x, least y, largest x, largest y; none as long as there are no points */
     int32_t n_columns;
     double *columns;      /* [n_regions][n_columns] of the stream */
+    bool is_laid_out;     /* all arrays have their places, and have been closed: others write the rows */
+    struct tri_h5_layout layout;
+    int64_t *place;       /* [layout.n] */
 };
 
 bool tri_h5_is_there(void) { return true; }
@@ -87,105 +90,23 @@ static enum tri_status begin_arrays(struct tri_h5_writer *w, const struct tri_st
     return s ? s : tri_h5_segments_begin(&w->segments, w->options.xdmf, error);
 }
 
-static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
-{
-    struct tri_h5_writer *w = user;
-    enum tri_status status = copy_columns(w, stream, error);
-    H5E_BEGIN_TRY
-    {
-        status = status ? status : tri_h5_create(&w->file, w->options.file, error);
-        status = status ? status : begin_arrays(w, stream, error);
-    }
-    H5E_END_TRY
-    return status;
-}
-
 /* --- tiles */
 
-/* Puts rows i to end - 1 of a tile at `at`. */
-typedef void put_call(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end, char *at);
-
-static void put_points(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end, char *at)
+static struct tri_h5_array *array_of(struct tri_h5_writer *w, enum tri_h5_kind kind)
 {
-    (void)w;
-    for (; i < end; i++)
-        at = tri_put_f64(tri_put_f64(at, tile->points[i][0]), tile->points[i][1]);
-}
-
-static void put_point_markers(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end,
-                              char *at)
-{
-    (void)w;
-    for (; i < end; i++)
-        at = tri_put_i32(at, tile->point_markers[i]);
-}
-
-static void put_point_attributes(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end,
-                                 char *at)
-{
-    const int64_t width = w->arrays.point_attributes.width;
-    for (int64_t k = i * width; k < end * width; k++)
-        at = tri_put_f64(at, tile->attributes[k]);
-}
-
-static void put_corners(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end, char *at)
-{
-    (void)w;
-    for (; i < end; i++)
-        for (int k = 0; k < 3; k++)
-            at = tri_put_i32(at, (int32_t)tile->corners[i][k]);
-}
-
-static void put_wide_corners(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end,
-                             char *at)
-{
-    (void)w;
-    for (; i < end; i++)
-        for (int k = 0; k < 3; k++)
-            at = tri_put_i64(at, tile->corners[i][k]);
-}
-
-static void put_columns(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end, char *at)
-{
-    for (; i < end; i++)
-        for (int32_t k = 0; k < w->n_columns; k++)
-            at = tri_put_f64(at, w->columns[(int64_t)tile->regions[i] * w->n_columns + k]);
-}
-
-static void put_whole_columns(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end,
-                              char *at)
-{
-    for (; i < end; i++)
-        for (int32_t k = 0; k < w->n_columns; k++)
-            at = tri_put_i32(at, (int32_t)w->columns[(int64_t)tile->regions[i] * w->n_columns + k]);
-}
-
-static void put_ends(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end, char *at)
-{
-    (void)w;
-    for (; i < end; i++)
-        at = tri_put_i32(tri_put_i32(at, (int32_t)tile->ends[i][0]), (int32_t)tile->ends[i][1]);
-}
-
-static void put_wide_ends(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end, char *at)
-{
-    (void)w;
-    for (; i < end; i++)
-        at = tri_put_i64(tri_put_i64(at, tile->ends[i][0]), tile->ends[i][1]);
-}
-
-static void put_segment_markers(const struct tri_h5_writer *w, const struct tri_tile *tile, int32_t i, int32_t end,
-                                char *at)
-{
-    (void)w;
-    for (; i < end; i++)
-        at = tri_put_i32(at, tile->segment_markers[i]);
+    struct tri_h5_arrays *a = &w->arrays;
+    struct tri_h5_array *const all[TRI_H5_KINDS] = {&a->points, &a->point_markers, &a->point_attributes, &a->triangles,
+                                                    &a->triangle_attributes, &a->segments, &a->segment_markers};
+    return all[kind];
 }
 
 /* The tile's n rows of one array. */
-static enum tri_status add_rows(struct tri_h5_writer *w, struct tri_h5_array *array, const struct tri_tile *tile,
-                                int32_t n, put_call *put, struct tri_error *error)
+static enum tri_status add_rows(struct tri_h5_writer *w, enum tri_h5_kind kind, const struct tri_tile *tile, int32_t n,
+                                struct tri_error *error)
 {
+    struct tri_h5_array *array = array_of(w, kind);
+    tri_h5_put_call *put = tri_h5_put_of(kind, array->type);
+    const struct tri_h5_rows rows = {tile, w->columns, w->arrays.point_attributes.width, w->n_columns};
     for (int32_t i = 0; array->file && i < n;) {
         int32_t room;
         char *at;
@@ -193,7 +114,7 @@ static enum tri_status add_rows(struct tri_h5_writer *w, struct tri_h5_array *ar
         if (status)
             return status;
         const int32_t end = room < n - i ? i + room : n;
-        put(w, tile, i, end, at);
+        put(&rows, i, end, at);
         tri_h5_array_advance(array, end - i);
         i = end;
     }
@@ -212,60 +133,43 @@ static enum tri_status widen_in_time(struct tri_h5_writer *w, int64_t n_points, 
 /* Chunks for so many points and their triangles, in the order of the arrays; see above. */
 static enum tri_status allocate(struct tri_h5_writer *w, int64_t n_points, struct tri_error *error)
 {
-    struct tri_h5_arrays *a = &w->arrays;
-    struct tri_h5_array *all[] = {&a->points, &a->point_markers, &a->point_attributes, &a->triangles,
-                                  &a->triangle_attributes};
     enum tri_status status = TRI_OK;
     if (n_points <= CHUNK_POINTS)
         return widen_in_time(w, n_points, error);
     while (w->n_chunks * CHUNK_POINTS < n_points && !status) {
         w->n_chunks++;
         status = widen_in_time(w, w->n_chunks * CHUNK_POINTS, error);
-        for (size_t i = 0; i < sizeof all / sizeof *all && !status; i++)
-            status = all[i]->file ? tri_h5_array_allocate(all[i], w->n_chunks, error) : TRI_OK;
+        for (enum tri_h5_kind kind = 0; kind < TRI_H5_OF_SEGMENTS && !status; kind++)
+            if (array_of(w, kind)->file)
+                status = tri_h5_array_allocate(array_of(w, kind), w->n_chunks, error);
     }
     return status;
-}
-
-static void extend_bounds(struct tri_h5_writer *w, const struct tri_tile *tile)
-{
-    double *b = w->bounds;
-    for (int32_t i = 0; i < tile->n_vertices; i++) {
-        const double *at = tile->points[i];
-        b[0] = at[0] < b[0] ? at[0] : b[0];
-        b[1] = at[1] < b[1] ? at[1] : b[1];
-        b[2] = at[0] > b[2] ? at[0] : b[2];
-        b[3] = at[1] > b[3] ? at[1] : b[3];
-    }
 }
 
 static enum tri_status add_points(struct tri_h5_writer *w, const struct tri_tile *tile, struct tri_error *error)
 {
     const int32_t n = tile->n_vertices;
     enum tri_status status = allocate(w, w->arrays.points.n + n, error);
-    status = status ? status : add_rows(w, &w->arrays.points, tile, n, put_points, error);
-    status = status ? status : add_rows(w, &w->arrays.point_markers, tile, n, put_point_markers, error);
-    status = status ? status : add_rows(w, &w->arrays.point_attributes, tile, n, put_point_attributes, error);
-    extend_bounds(w, tile);
+    for (enum tri_h5_kind kind = TRI_H5_OF_POINTS; !status && kind <= TRI_H5_OF_POINT_ATTRIBUTES; kind++)
+        status = add_rows(w, kind, tile, n, error);
+    tri_h5_extend_bounds(w->bounds, tile);
     w->n_input += tile->column < 0 ? n : 0;
     return status;
 }
 
 static enum tri_status add_triangles(struct tri_h5_writer *w, const struct tri_tile *tile, struct tri_error *error)
 {
-    struct tri_h5_arrays *a = &w->arrays;
-    put_call *corners = a->triangles.type == TRI_H5_INT64 ? put_wide_corners : put_corners;
-    put_call *columns = a->triangle_attributes.type == TRI_H5_INT32 ? put_whole_columns : put_columns;
-    enum tri_status status = add_rows(w, &a->triangles, tile, tile->n_triangles, corners, error);
-    return status ? status : add_rows(w, &a->triangle_attributes, tile, tile->n_triangles, columns, error);
+    const int32_t n = tile->n_triangles;
+    enum tri_status status = add_rows(w, TRI_H5_OF_TRIANGLES, tile, n, error);
+    return status ? status : add_rows(w, TRI_H5_OF_TRIANGLE_ATTRIBUTES, tile, n, error);
 }
 
 static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_error *error)
 {
     struct tri_h5_writer *w = user;
     enum tri_status status = TRI_OK;
-    assert(tile->first_vertex == w->arrays.points.n && tile->first_triangle == w->arrays.triangles.n &&
-           tile->first_segment == w->segments.n);
+    assert(!w->is_laid_out && tile->first_vertex == w->arrays.points.n &&
+           tile->first_triangle == w->arrays.triangles.n && tile->first_segment == w->segments.n);
     H5E_BEGIN_TRY
     {
         status = add_points(w, tile, error);
@@ -294,30 +198,88 @@ static enum tri_status begin_segments(struct tri_h5_writer *w, struct tri_error 
 
 static enum tri_status write_segments(struct tri_h5_writer *w, struct tri_error *error)
 {
-    struct tri_h5_arrays *a = &w->arrays;
     struct tri_tile tile;
-    put_call *put = a->triangles.type == TRI_H5_INT64 ? put_wide_ends : put_ends;
     enum tri_status status = begin_segments(w, error);
     do {
         status = status ? status : tri_h5_segments_next(&w->segments, &tile, error);
-        status = status ? status : add_rows(w, &a->segments, &tile, tile.n_segments, put, error);
-        status = status ? status
-                        : add_rows(w, &a->segment_markers, &tile, tile.n_segments, put_segment_markers, error);
+        status = status ? status : add_rows(w, TRI_H5_OF_SEGMENTS, &tile, tile.n_segments, error);
+        status = status ? status : add_rows(w, TRI_H5_OF_SEGMENT_MARKERS, &tile, tile.n_segments, error);
     } while (!status && tile.n_segments > 0);
     return status;
 }
 
 static enum tri_status end_arrays(struct tri_h5_writer *w, struct tri_error *error)
 {
-    struct tri_h5_arrays *a = &w->arrays;
-    struct tri_h5_array *first[] = {&a->points, &a->point_markers, &a->point_attributes, &a->triangles,
-                                    &a->triangle_attributes}, *last[] = {&a->segments, &a->segment_markers};
     enum tri_status status = TRI_OK;
-    for (size_t i = 0; i < sizeof first / sizeof *first && !status; i++)
-        status = first[i]->file ? tri_h5_array_end(first[i], error) : TRI_OK;
-    status = status ? status : write_segments(w, error);
-    for (size_t i = 0; i < sizeof last / sizeof *last && !status; i++)
-        status = last[i]->file ? tri_h5_array_end(last[i], error) : TRI_OK;
+    for (enum tri_h5_kind kind = 0; kind < TRI_H5_KINDS && !status; kind++) {
+        if (kind == TRI_H5_OF_SEGMENTS)
+            status = write_segments(w, error);
+        if (!status && array_of(w, kind)->file)
+            status = tri_h5_array_end(array_of(w, kind), error);
+    }
+    return status;
+}
+
+/* --- laying out: all sizes are known, and others put the rows where they belong */
+
+static enum tri_status lay_out_array(struct tri_h5_writer *w, enum tri_h5_kind kind, int64_t n, struct tri_error *error)
+{
+    struct tri_h5_array *array = array_of(w, kind);
+    struct tri_h5_layout *layout = &w->layout;
+    if (!array->file)
+        return TRI_OK;
+    const int64_t n_places = array->n_chunks > 0 ? (n + array->chunk_rows - 1) / array->chunk_rows : 1;
+    layout->array[kind] = (struct tri_h5_laid){array->type, array->width, array->chunk_rows, layout->n, n_places};
+    if (!tri_resize(&w->place, (size_t)(layout->n + n_places), sizeof *w->place))
+        return tri_fail(error, TRI_NO_MEMORY, w->options.file->path, 0, "no memory to write the file");
+    layout->n += n_places;
+    return tri_h5_array_lay_out(array, n, w->place + layout->n - n_places, error);
+}
+
+/* The calls of HDF5 that a file of unknown sizes would have taken, in their order, but for those that write rows. */
+static enum tri_status lay_out(struct tri_h5_writer *w, const struct tri_stream *stream, struct tri_error *error)
+{
+    const int64_t n_points = stream->first_vertex[stream->n_ranks],
+                  n_triangles = stream->first_triangle[stream->n_ranks],
+                  n_segments = stream->first_segment[stream->n_ranks];
+    const int64_t n[TRI_H5_KINDS] = {n_points, n_points, n_points, n_triangles, n_triangles, n_segments, n_segments};
+    enum tri_status status = allocate(w, n_points, error);
+    w->is_laid_out = true;
+    w->segments.n = n_segments;
+    for (enum tri_h5_kind kind = 0; kind < TRI_H5_KINDS && !status; kind++) {
+        if (kind == TRI_H5_OF_SEGMENTS)
+            status = begin_segments(w, error);
+        status = status ? status : lay_out_array(w, kind, n[kind], error);
+    }
+    return status;
+}
+
+const struct tri_h5_layout *tri_h5_writer_layout(const struct tri_h5_writer *writer, int64_t **place)
+{
+    *place = writer->place;
+    return &writer->layout;
+}
+
+void tri_h5_writer_tell(struct tri_h5_writer *writer, int64_t n_input, const double bounds[4])
+{
+    writer->n_input = n_input;
+    memcpy(writer->bounds, bounds, sizeof writer->bounds);
+}
+
+/* --- all together */
+
+static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
+{
+    struct tri_h5_writer *w = user;
+    enum tri_status status = copy_columns(w, stream, error);
+    H5E_BEGIN_TRY
+    {
+        status = status ? status : tri_h5_create(&w->file, w->options.file, error);
+        status = status ? status : begin_arrays(w, stream, error);
+        if (!status && stream->n_ranks > 1)
+            status = lay_out(w, stream, error);
+    }
+    H5E_END_TRY
     return status;
 }
 
@@ -344,7 +306,7 @@ static enum tri_status end(void *user, struct tri_error *error)
     enum tri_status status = TRI_OK;
     H5E_BEGIN_TRY
     {
-        status = end_arrays(w, error);
+        status = w->is_laid_out ? TRI_OK : end_arrays(w, error);
         status = status ? status : write_about(w, error);
         status = status ? status : tri_h5_write_views(&w->file, &w->arrays, error);
         status = status ? status : tri_h5_close(&w->file, error);
@@ -375,13 +337,10 @@ enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tr
 /* What an unfinished file holds is of no use: it is let go of without a write. */
 static void let_go(struct tri_h5_writer *w)
 {
-    struct tri_h5_arrays *a = &w->arrays;
-    struct tri_h5_array *all[] = {&a->points, &a->point_markers, &a->point_attributes, &a->triangles,
-                                  &a->triangle_attributes, &a->segments, &a->segment_markers};
     if (w->file.id >= 0 && w->file.failure == 0)
         w->file.failure = -1;
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        tri_h5_array_free(all[i]);
+    for (enum tri_h5_kind kind = 0; kind < TRI_H5_KINDS; kind++)
+        tri_h5_array_free(array_of(w, kind));
     tri_h5_segments_free(&w->segments);
     (void)tri_h5_close(&w->file, NULL);
 }
@@ -396,5 +355,6 @@ void tri_h5_writer_free(struct tri_h5_writer *writer)
     }
     H5E_END_TRY
     free(writer->columns);
+    free(writer->place);
     free(writer);
 }

@@ -8,6 +8,7 @@
 #define TRIANGLE_HDF5_WRITE_H
 
 #include "ptriangle/tiles.h"
+#include "triangle/hdf5/part.h"
 #include "triangle/text/output.h"
 
 #ifdef __cplusplus
@@ -33,6 +34,14 @@ bool tri_h5_is_there(void);
  * triangle/text/output.h. */
 enum tri_status tri_h5_writer_new(struct tri_h5_writer **writer, const struct tri_h5_options *options,
                                   struct tri_sink *sink, struct tri_error *error);
+
+/* On several ranks (a stream with n_ranks > 1) the writer, which is on one of them, is told of the beginning and the
+ * end alone: at the beginning it gives all arrays their places, which are known from then on, and whoever has rows puts
+ * them there (triangle/hdf5/part.h), until before the end. The places are the writer's. */
+const struct tri_h5_layout *tri_h5_writer_layout(const struct tri_h5_writer *writer, int64_t **place);
+
+/* What it has to know then, before the end: points that there were before refinement, and the bounds of all. */
+void tri_h5_writer_tell(struct tri_h5_writer *writer, int64_t n_input, const double bounds[4]);
 
 /* NULL is fine. */
 void tri_h5_writer_free(struct tri_h5_writer *writer);

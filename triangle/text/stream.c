@@ -21,6 +21,7 @@ struct tri_text_stream {
     struct tri_text_options options;
     struct tri_grid grid;
     const struct tri_tile *tile;
+    bool known;                /* the counts are, from the beginning */
     double *columns;           /* [n_regions][n_columns] */
     struct table points, triangles, segments;
 };
@@ -73,11 +74,10 @@ static void keep_room(struct table *table, double rows)
     table->counts[0] = 0;
 }
 
-static enum tri_status add_rows(const struct tri_text_stream *s, struct table *table, int64_t n,
+static enum tri_status add_rows(const struct tri_text_stream *s, struct table *table, int64_t first, int64_t n,
                                 struct tri_error *error)
 {
-    const int64_t first = table->counts[0];
-    table->counts[0] += n;
+    table->counts[0] += s->known ? 0 : n;
     return table->output ? table->write(table->output, &s->grid, first, n, NULL, error) : TRI_OK;
 }
 
@@ -93,6 +93,18 @@ static enum tri_status conclude_table(struct table *table, struct tri_error *err
     if (status)
         return status;
     return tri_output_conclude(table->output, tri_output_write_at(table->output, table->place, line, n), error);
+}
+
+static void keep_room_for_all(struct tri_text_stream *s, const struct tri_stream *stream)
+{
+    struct table *tables[] = {&s->points, &s->triangles, &s->segments};
+    const double expected[] = {stream->estimate / 2, stream->estimate, sqrt(stream->estimate)};
+    const int64_t *first[] = {stream->first_vertex, stream->first_triangle, stream->first_segment};
+    for (int i = 0; i < 3; i++) {
+        const int64_t n = s->known ? first[i][stream->n_ranks] : 0;
+        keep_room(tables[i], s->known ? (double)n : expected[i]);
+        tables[i]->counts[0] = n;
+    }
 }
 
 /* --- the sink */
@@ -120,12 +132,13 @@ static enum tri_status begin(void *user, const struct tri_stream *stream, struct
     s->points = (struct table){o->node, tri_write_node_rows, 0, 0, {0, 2, attributes, markers}, 4};
     s->triangles = (struct table){o->ele, tri_write_ele_rows, 0, 0, {0, 3, stream->n_columns}, 3};
     s->segments = (struct table){o->poly, tri_write_segment_rows, 0, 0, {0, markers}, 2};
-    keep_room(&s->points, stream->estimate / 2);
-    keep_room(&s->triangles, stream->estimate);
+    s->known = stream->n_ranks > 1;
     enum tri_status status = copy_columns(s, stream, error);
-    if (!status && o->poly)
+    if (status || stream->rank > 0)
+        return status;
+    if (o->poly)
         status = tri_write_counts(o->poly, s->points.counts, 4, error); /* no points */
-    keep_room(&s->segments, sqrt(stream->estimate));
+    keep_room_for_all(s, stream);
     return status;
 }
 
@@ -133,9 +146,9 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
 {
     struct tri_text_stream *s = user;
     s->tile = tile;
-    enum tri_status status = add_rows(s, &s->points, tile->n_vertices, error);
-    status = status ? status : add_rows(s, &s->triangles, tile->n_triangles, error);
-    return status ? status : add_rows(s, &s->segments, tile->n_segments, error);
+    enum tri_status status = add_rows(s, &s->points, tile->first_vertex, tile->n_vertices, error);
+    status = status ? status : add_rows(s, &s->triangles, tile->first_triangle, tile->n_triangles, error);
+    return status ? status : add_rows(s, &s->segments, tile->first_segment, tile->n_segments, error);
 }
 
 static enum tri_status end(void *user, struct tri_error *error)

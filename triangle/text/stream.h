@@ -1,7 +1,11 @@
 /* A stream of tiles as .node, .ele and .poly: byte for byte the files of the same mesh in memory.
  *
  * The first line of a table says how many rows it has, which is known at the end. Room is kept for a number of as many
- * digits as the stream's estimate lets expect; where it has more or fewer the rows are moved by that, once. */
+ * digits as the stream's estimate lets expect; where it has more or fewer the rows are moved by that, once.
+ *
+ * On several ranks (a stream with n_ranks > 1) numbers are known from the beginning, and each rank has an output of its
+ * own, in which its rows are; that of rank 0 begins with the first lines. Once the rows of the others stand behind its
+ * own, its end adds what comes last; the others have none. */
 #ifndef TRIANGLE_TEXT_STREAM_H
 #define TRIANGLE_TEXT_STREAM_H
 

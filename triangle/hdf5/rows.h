@@ -1,0 +1,35 @@
+/* Rows of a tile as bytes of an HDF5 file. */
+#ifndef TRIANGLE_HDF5_ROWS_H
+#define TRIANGLE_HDF5_ROWS_H
+
+#include "ptriangle/tiles.h"
+
+/* The arrays of triangle/hdf5/layout.h, in the order in which they are laid out. */
+enum tri_h5_kind {
+    TRI_H5_OF_POINTS,
+    TRI_H5_OF_POINT_MARKERS,
+    TRI_H5_OF_POINT_ATTRIBUTES,
+    TRI_H5_OF_TRIANGLES,
+    TRI_H5_OF_TRIANGLE_ATTRIBUTES,
+    TRI_H5_OF_SEGMENTS,
+    TRI_H5_OF_SEGMENT_MARKERS,
+    TRI_H5_KINDS
+};
+
+enum tri_h5_type { TRI_H5_FLOAT64, TRI_H5_INT32, TRI_H5_INT64 };
+
+struct tri_h5_rows {
+    const struct tri_tile *tile;
+    const double *columns; /* [regions][n_columns] */
+    int32_t n_attributes, n_columns;
+};
+
+/* Puts rows i to end - 1 of the tile's array at `at`. */
+typedef void tri_h5_put_call(const struct tri_h5_rows *rows, int32_t i, int32_t end, char *at);
+
+tri_h5_put_call *tri_h5_put_of(enum tri_h5_kind kind, enum tri_h5_type type);
+
+/* Least x, least y, largest x, largest y, of these and of the tile's points. */
+void tri_h5_extend_bounds(double bounds[4], const struct tri_tile *tile);
+
+#endif

@@ -1,0 +1,89 @@
+#define _DEFAULT_SOURCE /* realpath */
+
+#include "triangle/text/joined.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "triangle/text/text.h"
+
+static bool put_path(char at[TRI_TICKET_PATH], const char *path)
+{
+    const size_t n = path ? strlen(path) + 1 : TRI_TICKET_PATH;
+    if (n < TRI_TICKET_PATH)
+        memcpy(at, path, n);
+    return n < TRI_TICKET_PATH;
+}
+
+bool tri_ticket_make(struct tri_ticket *ticket, struct tri_output *output)
+{
+    enum { MOST = 1 << 16 };
+    struct timespec now;
+    struct stat status;
+    char *temporary = output->temporary ? realpath(output->temporary, NULL) : NULL;
+    bool made = put_path(ticket->temporary, temporary) && clock_gettime(CLOCK_REALTIME, &now) == 0;
+    free(temporary);
+    ticket->length = made ? 1 + (uint64_t)(now.tv_nsec / 16 + getpid()) % MOST : 0;
+    made = made && ftruncate(output->file, (off_t)ticket->length) == 0 && fstat(output->file, &status) == 0;
+    ticket->inode = made ? (uint64_t)status.st_ino : 0;
+    made = made && put_path(ticket->path, output->path);
+    if (!made)
+        ticket->path[0] = 0;
+    return made;
+}
+
+bool tri_output_join(struct tri_output *output, struct tri_ticket *ticket, const struct tri_stop *stop)
+{
+    struct stat status;
+    *output = (struct tri_output){.path = ticket->path, .temporary = ticket->temporary, .direct = -1, .stop = stop};
+    output->file = open(ticket->temporary, O_WRONLY | O_CLOEXEC | O_NOFOLLOW);
+    if (output->file < 0)
+        return false;
+    if (fstat(output->file, &status) == 0 && (uint64_t)status.st_ino == ticket->inode &&
+        (uint64_t)status.st_size == ticket->length)
+        return true;
+    close(output->file);
+    output->file = -1;
+    return false;
+}
+
+enum tri_status tri_output_leave(struct tri_output *output, bool on_disk, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    if (output->file < 0)
+        return TRI_OK;
+    if (on_disk)
+        status = tri_output_sync(output, error);
+    const int result = close(output->file);
+    output->file = -1;
+    if (status || result == 0 || errno == EINTR)
+        return status;
+    return tri_fail_system(error, TRI_CANNOT_WRITE, output->path, "cannot write", errno);
+}
+
+enum tri_status tri_output_copy(const struct tri_output *from, struct tri_output *to, uint64_t place, uint64_t n,
+                                struct tri_error *error)
+{
+    enum { PIECE = 1 << 20 };
+    int result = 0;
+    char *buffer = malloc(PIECE);
+    if (!buffer)
+        return tri_fail(error, TRI_NO_MEMORY, to->path, 0, "no memory to write the file");
+    for (uint64_t done = 0; done < n && !result;) {
+        const ssize_t got = pread(from->file, buffer, n - done < PIECE ? n - done : PIECE, (off_t)done);
+        if (got == 0 || (got < 0 && errno != EINTR)) {
+            free(buffer);
+            return tri_fail_system(error, TRI_CANNOT_WRITE, from->path, "cannot read again", got == 0 ? EIO : errno);
+        }
+        if (got > 0)
+            result = tri_output_write_at(to, place + done, buffer, (size_t)got);
+        done += got > 0 ? (uint64_t)got : 0;
+    }
+    free(buffer);
+    return tri_output_conclude(to, result, error);
+}
