@@ -120,13 +120,14 @@ static double seconds_a_triangle(void)
     return seconds;
 }
 
-/* Reading, and the triangulation that is there already. */
+/* Reading, and the triangulation that is there already; no more than the processor has worked for it, since others may
+ * have held it up. */
 static double seconds_so_far(const struct run *run)
 {
     double sum = 0;
     for (int stage = 0; stage < RUN_STAGES; stage++)
         sum += run->seconds[stage];
-    return sum;
+    return fmin(sum, resources_processor_seconds());
 }
 
 static double seconds_of(const struct run *run, double triangles, double disk)

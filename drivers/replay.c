@@ -19,7 +19,8 @@ struct player {
     const struct replay_how *how;
     int32_t columns, rows;            /* of tiles, of all copies */
     int32_t old_columns, old_rows;    /* of the measured mesh */
-    double *measured;                 /* [blocks] seconds in the measured mesh */
+    double *measured;                 /* [blocks] seconds in the measured mesh, in the schedule at hand */
+    const struct replay_pair *pair;   /* of the schedule at hand */
     struct piece *piece, *sorted;     /* [n_pieces] of the phase at hand; the same by worker */
     int32_t n_pieces;
     int32_t *begin;                   /* [n_ranks + 1] each worker's pieces in `sorted` */
@@ -32,24 +33,30 @@ struct player {
     struct replay *sum;
 };
 
-/* Measured: 15 million triangles on 2, 4 and 9 ranks. */
-static const double CELL = 65536, PAIR_BYTES = 201e3, PAIR_SECONDS = 0.005;
+/* Measured: 15 million triangles on 2, 4 and 9 ranks, with bounds of 20 and of 33 degrees. */
+static const double CELL = 65536;
+static const struct replay_pair FIRST = {168e3, 0.005, 3}, SECOND = {14e3, 0.0017, 6};
 
 struct replay_how replay_usual(int n_ranks, int threads, int times, double cell)
 {
-    double side = sqrt(cell / CELL);
+    double share = cell / CELL;
     return (struct replay_how){.n_ranks = n_ranks, .threads = threads, .times = times, .latency = 2e-6,
-                               .bandwidth = 1e10, .lateness = 2.5e-4, .pair_bytes = PAIR_BYTES * side,
-                               .pair_seconds = PAIR_SECONDS * side};
+                               .bandwidth = 1e10, .lateness = 2.5e-4,
+                               .pair = {{FIRST.bytes * share, FIRST.seconds * share, FIRST.swaps}, SECOND}};
 }
 
 /* --- blocks */
 
-static void take_blocks(struct player *p, const struct par_report *report)
+/* Of a schedule on the cells of the report, the first of which is number 0. Those before it made the coarse mesh, whose
+ * time is known as a whole. */
+static void take_blocks(struct player *p, const struct par_report *report, int which)
 {
+    memset(p->measured, 0, (size_t)report->columns * (size_t)report->rows * sizeof *p->measured);
     for (int32_t i = 0; i < report->n_blocks; i++) {
         const struct par_block_report *b = &report->blocks[i];
-        if (b->schedule == report->schedule && b->round == 0 && b->block < report->columns * report->rows)
+        if (b->schedule != report->schedule + which)
+            continue;
+        if (b->round == 0 && b->block < report->columns * report->rows)
             p->measured[b->block] += b->seconds;
         else
             p->later += b->seconds;
@@ -149,8 +156,8 @@ static void count_pairs(struct player *p, const struct piece *piece)
         p->pairs[worker]++;
         p->pairs[lender]++;
         if (p->met[lender] != worker) {
-            p->messages[worker] += REPLAY_SWAPS;
-            p->messages[lender] += REPLAY_SWAPS;
+            p->messages[worker] += p->pair->swaps;
+            p->messages[lender] += p->pair->swaps;
         }
         p->met[lender] = worker;
     }
@@ -183,7 +190,7 @@ static double gather_seconds(const struct replay_how *how, double bytes)
 static double agreements(const struct player *p)
 {
     double blocks = (2.0 * p->columns + 1) * (2.0 * p->rows + 1);
-    return gather_seconds(p->how, blocks / 8) + 4 * REPLAY_SWAPS * gather_seconds(p->how, 8);
+    return gather_seconds(p->how, blocks / 8) + 4 * p->pair->swaps * gather_seconds(p->how, 8);
 }
 
 static void play_phase(struct player *p, int phase)
@@ -198,16 +205,31 @@ static void play_phase(struct player *p, int phase)
     sort_pieces(p);
     p->sum->refine += refine(p);
     for (int rank = 0; rank < how->n_ranks; rank++) {
-        double bytes = p->pairs[rank] * how->pair_bytes;
+        double bytes = p->pairs[rank] * p->pair->bytes;
         under_way = larger(under_way, bytes / how->bandwidth + p->messages[rank] * how->latency);
-        packing = larger(packing, p->pairs[rank] * how->pair_seconds / 2);
-        p->busy[rank] += p->pairs[rank] * how->pair_seconds / 2;
+        packing = larger(packing, p->pairs[rank] * p->pair->seconds / 2);
+        p->busy[rank] += p->pairs[rank] * p->pair->seconds / 2;
         p->sent[rank] += bytes / 2; /* the other half comes */
         p->sum->bytes += bytes / 2;
         p->sum->messages += p->messages[rank] / 2;
     }
     p->sum->merge += packing;
     p->sum->communicate += under_way + agreements(p);
+}
+
+static void play_schedule(struct player *p, const struct par_report *report, int which)
+{
+    p->pair = &p->how->pair[which];
+    take_blocks(p, report, which);
+    for (int phase = 0; phase < PAR_PHASES; phase++)
+        play_phase(p, phase);
+}
+
+/* On the cells of the report: the blocks of the last one come last. */
+static int schedules_of(const struct par_report *report)
+{
+    int last = report->n_blocks > 0 ? report->blocks[report->n_blocks - 1].schedule : 0;
+    return last > report->schedule ? last - report->schedule + 1 : 1;
 }
 
 /* --- all together */
@@ -273,9 +295,8 @@ bool replay_on_ranks(const struct par_report *report, const struct replay_how *h
     *replay = (struct replay){0};
     bool good = columns > 0 && rows > 0 && reserve(&p, report);
     if (good) {
-        take_blocks(&p, report);
-        for (int phase = 0; phase < PAR_PHASES; phase++)
-            play_phase(&p, phase);
+        for (int which = 0; which < REPLAY_SCHEDULES && which < schedules_of(report); which++)
+            play_schedule(&p, report, which);
         add_up(&p, report);
     }
     release(&p);

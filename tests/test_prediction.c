@@ -80,7 +80,7 @@ static void test_shares(void **state)
 
 /* --- on ranks */
 
-enum { SIDE = 5 }; /* of a mesh of 2 x 2 tiles, in blocks */
+enum { SIDE = 5, SWAPS = 3 }; /* the first: of a mesh of 2 x 2 tiles, in blocks */
 
 /* Seconds: 1 in tiles, 1/4 in blocks over two of them, half of that at rims, 1/16 in the middle. */
 static struct par_report four_tiles(struct par_block_report blocks[SIDE * SIDE])
@@ -96,8 +96,8 @@ static struct par_report four_tiles(struct par_block_report blocks[SIDE * SIDE])
 
 static struct replay replayed(const struct par_report *report, int n_ranks, int times)
 {
-    struct replay_how how = {.n_ranks = n_ranks, .threads = 1, .times = times, .bandwidth = 1e9, .pair_bytes = 1000,
-                             .pair_seconds = 0.5};
+    struct replay_how how = {.n_ranks = n_ranks, .threads = 1, .times = times, .bandwidth = 1e9,
+                             .pair = {{1000, 0.5, SWAPS}, {100, 0.25, 2 * SWAPS}}};
     struct replay replay;
     assert_true(replay_on_ranks(report, &how, &replay));
     assert_true(is_near(replay.total, replay.alone + replay.refine + replay.merge + replay.communicate +
@@ -127,7 +127,7 @@ static void test_two_ranks_meet_along_a_column(void **state)
     double refine = 2.5 + 2.5 * (0.125 + 0.25); /* a column, and those left and right of it */
     assert_true(is_near(r.refine, refine));
     assert_true(is_near(r.bytes, 5 * 1000) && is_near(r.most_bytes, 5 * 500));
-    assert_true(is_near(r.messages, 2 * REPLAY_SWAPS)); /* in two phases */
+    assert_true(is_near(r.messages, 2 * SWAPS)); /* in two phases */
     assert_true(is_near(r.merge, 5 * 0.25) && is_near(r.hand_out, 1));
     assert_true(is_near(r.processor, 0.5 + refine + 5 * 0.25 + 1));
 }
@@ -141,12 +141,36 @@ static void test_four_ranks_meet_at_a_corner(void **state)
     struct replay four = replayed(&report, 4, 1), many = replayed(&report, 100, 1);
     assert_true(is_near(four.refine, 1 + 0.375 + 0.375 + 0.375 * 0.375));
     assert_true(is_near(four.bytes, (2 + 2 + 7) * 1000));
-    assert_true(is_near(four.messages, (2 + 2 + 5) * REPLAY_SWAPS));
+    assert_true(is_near(four.messages, (2 + 2 + 5) * SWAPS));
     assert_true(is_near(many.refine, four.refine) && is_near(many.bytes, four.bytes)); /* some have nothing */
     struct par_report none = report;
     struct replay_how how = replay_usual(2, 1, 1, 1e5);
     none.columns = none.rows = 0;
     assert_false(replay_on_ranks(&none, &how, &four));
+}
+
+/* Twice the same, the second time with messages of a tenth and half the packing; a coarse mesh before, and a round
+ * behind. */
+static void test_a_second_schedule_is_shared(void **state)
+{
+    (void)state;
+    enum { N = SIDE * SIDE };
+    struct par_block_report blocks[2 * N + 2] = {block_of(0, 0, 0, 6, 100)};
+    struct par_report report = four_tiles(blocks + 1);
+    const struct replay one = replayed(&report, 2, 1);
+    for (int i = 1; i <= N; i++) {
+        blocks[i].schedule = 1;
+        blocks[N + i] = blocks[i];
+        blocks[N + i].schedule = 2;
+    }
+    blocks[2 * N + 1] = block_of(2, 1, 0, 6, 4);
+    report.blocks = blocks;
+    report.n_blocks = 2 * N + 2;
+    report.schedule = 1;
+    const struct replay two = replayed(&report, 2, 1);
+    assert_true(is_near(two.alone, one.alone + 4) && is_near(two.hand_out, one.hand_out));
+    assert_true(is_near(two.refine, 2 * one.refine) && is_near(two.merge, 1.5 * one.merge));
+    assert_true(is_near(two.bytes, 1.1 * one.bytes) && is_near(two.messages, 3 * one.messages));
 }
 
 int main(void)
@@ -157,6 +181,7 @@ int main(void)
         cmocka_unit_test(test_one_rank_does_all),
         cmocka_unit_test(test_two_ranks_meet_along_a_column),
         cmocka_unit_test(test_four_ranks_meet_at_a_corner),
+        cmocka_unit_test(test_a_second_schedule_is_shared),
         cmocka_unit_test(test_shares),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -79,10 +79,11 @@ static void find_work(struct par_ranks *r, int64_t *word)
 {
     const struct par_state *state = r->state;
     struct par_shift *s = &r->shift;
+    struct par_locator locator = PAR_LOST;
     for (int32_t i = 0; i < state->worklist.n; i++) {
         tri_triangle_id t = state->worklist.item[i];
         assert(tri_is_live(&state->mesh->tri[t]));
-        int32_t b = s->partition ? par_owner_of(s->partition, s->phase, state->mesh, t) : 0;
+        int32_t b = s->partition ? par_locate_owner(&locator, s->partition, s->phase, state->mesh, t) : 0;
         s->block_of[i] = b;
         if (b != TRI_NONE && s->worker[b] >= 0)
             word[b / 64] |= (int64_t)((uint64_t)1 << b % 64);
