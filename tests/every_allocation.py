@@ -147,6 +147,9 @@ def try_case(case, most, bin_folder, data, shim, work):
 
 def main():
     bin_folder, data, shim, work = sys.argv[1:5]
+    os.makedirs(work, exist_ok=True)
+    shutil.copy(shim, f"{work}/failing.so")
+    shim = "../failing.so"  # seen from the folder of a case: LD_PRELOAD takes a blank for the end of a name
     named = {"few": FEW, "all": ALL}
     cases = named.get(sys.argv[5]) or [ALL[int(i)] for i in sys.argv[5:]]
     most = MOST_OF_FEW if cases is FEW else MOST

@@ -903,6 +903,15 @@ def long_gap():
                   ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (6, 7)))
 
 
+@case("regress/flat_hull.poly", "slanted square, ten segments on each side",
+      "-pcq20: keeps the bound; once 26 of 84 triangles did not, beside flat triangles between segments and hull")
+def flat_hull():
+    c, s = 0.96, 0.28
+    square = ([(k, 0) for k in range(10)] + [(10, k) for k in range(10)] + [(10 - k, 10) for k in range(10)] +
+              [(0, 10 - k) for k in range(10)])
+    return outline([(c * x - s * y, s * x + c * y) for x, y in square])
+
+
 # --- what broke once, found elsewhere: files as they are, read here for the tables; tests/cli/regress.sh says how
 
 FOUND = [

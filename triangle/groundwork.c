@@ -152,7 +152,7 @@ static enum tri_status list_parents(struct tri_mesh *mesh, struct tri_error *err
 }
 
 /* New points lie about 100 units in the last place apart at least: nearer, rounding would decide on shapes. */
-static double shortest_edge2(const struct tri_mesh *mesh)
+double tri_shortest_edge2(const struct tri_mesh *mesh)
 {
     double size = 0;
     for (tri_vertex_id v = 0; v < mesh->n_input; v++) {
@@ -164,7 +164,7 @@ static double shortest_edge2(const struct tri_mesh *mesh)
 
 enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
 {
-    mesh->limits.shortest2 = shortest_edge2(mesh);
+    mesh->limits.shortest2 = tri_shortest_edge2(mesh);
     tri_estimate_features(mesh, executor);
     find_acute(mesh);
     enum tri_status status = list_parents(mesh, error);

@@ -34,6 +34,9 @@ struct tri_limits {
     double gap_points;      /* about so many points those that are filled take */
 };
 
+/* What limits.shortest2 will be. O(input vertices). */
+double tri_shortest_edge2(const struct tri_mesh *mesh);
+
 /* Makes the mesh ready for refinement: lists the parents at each vertex, estimates feature sizes, sets the limits, and
  * marks the input vertices at which two subsegments meet at less than 60 degrees inside the mesh (TRI_VERTEX_ACUTE). To
  * be called once, after carving. O(triangles). */

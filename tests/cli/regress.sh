@@ -295,6 +295,14 @@ few 1000 -pq25D spike_levels
 fresh regress/drifted_chain.poly # split points an ulp inside, again and again, where coordinates get finer
 run 0 -pq33 drifted_chain
 judge drifted_chain.1 --poly drifted_chain.poly --min-angle 33
+fresh regress/flat_hull.poly # the hull runs outside its segments, by an ulp
+for switches in -pcq20 -pcq30a0.05 -pcq20F; do
+    rm -f flat_hull.1.*
+    run 0 $switches flat_hull
+    says "All triangles keep the bounds."
+    judge flat_hull.1 --poly flat_hull.poly --keep-hull --min-angle 20
+done
+
 fresh regress/below_dxf.poly # two triangles stayed below the bound without need
 run 0 -pq20 below_dxf
 says 'All triangles keep the bounds.'

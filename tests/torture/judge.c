@@ -228,14 +228,17 @@ static int32_t triangles_of(const struct torture_case *as, const struct outcome 
     return n;
 }
 
-/* The schedule's mesh has about as many triangles as that of one sequential call, in cells of its own choice nearly
- * as many; tiny cells have many seams. Just below the usual angle small edges spread as the order has it. The sides of
- * a narrow space are halved until their parts are about as long as it is wide, and order decides on the last halving:
- * what such spaces take may be twice as much. */
+/* The schedule's mesh has about as many triangles as that of one sequential call. THEORY: both come of the same rules
+ * in another order. Whatever the order, points keep a fixed share of the feature size from each other, and are as dense
+ * as it and the areas ask (feature_size.c): both numbers lie between fixed multiples of one integral. Those of the
+ * proof are too far apart to judge by, so the factors are measured, over all families and 3,000 cases with a schedule:
+ * at most 1.11 in cells of the schedule's choice and 1.62 in tiny ones, which are all seam; above 32 degrees, where
+ * small edges spread as the order has it, 1.33 and 2.04. The sides of a narrow space are halved until their parts are
+ * about as long as it is wide, and order decides on the last halving: what such spaces take may be twice as much. */
 static void judge_schedule_size(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
     bool spreads = first->options.quality.min_angle > 32;
-    const double OWN_CELLS = spreads ? 1.4 : 1.1, TINY_CELLS = spreads ? 8 : 2;
+    const double OWN_CELLS = spreads ? 1.4 : 1.2, TINY_CELLS = spreads ? 4 : 2;
     const double FEW = 100 + first->mesh.limits.gap_points;
     struct torture_case sequential = *first->of, by_itself = *first->of;
     sequential.block = 0;

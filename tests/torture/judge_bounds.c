@@ -125,11 +125,72 @@ static int64_t may_run_away(const struct outcome *o, const struct tri_refine_opt
     return count;
 }
 
-/* The counts that the programs print. A point for a triangle beside a flat one may see the flat one from behind, and is
- * not inserted then; and its height is a feature that nothing can resolve, so that the subsegments beside it stay as
- * long as they are: where there are flat triangles, some around each may be left. */
-enum { AROUND = 10 };
+/* --- beside flat triangles */
 
+/* Is a triangle beside the subsegment as flat as rounding? Then that leaves no room for a split point. */
+static bool is_beside_flat(const struct tri_mesh *mesh, const struct tri_subsegment *s, double least_height)
+{
+    for (int side = 0; side < 2; side++) {
+        if (s->side[side] == TRI_NONE)
+            continue;
+        struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[tri_of(s->side[side])].v);
+        if (shape.area2 < least_height * sqrt(fmax(shape.l[0], fmax(shape.l[1], shape.l[2]))))
+            return true;
+    }
+    return false;
+}
+
+/* Does a triangle about `from` whose new point is p lead to a split of this subsegment, which hides p or is encroached
+ * by it? */
+static bool leads_to(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point from,
+                     struct tri_point p)
+{
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]];
+    double x = b.x - a.x, y = b.y - a.y;
+    double here = x * (from.y - a.y) - y * (from.x - a.x), there = x * (p.y - a.y) - y * (p.x - a.x);
+    double px = p.x - from.x, py = p.y - from.y;
+    bool parts = (px * (a.y - from.y) - py * (a.x - from.x) > 0) != (px * (b.y - from.y) - py * (b.x - from.x) > 0);
+    return tri_dot(a, b, p) < 0 || ((here > 0) != (there > 0) && parts);
+}
+
+/* Of the triangles without a reason of their own those whose usual point leads to a subsegment beside a flat one. */
+static int64_t stuck_beside_flat(const struct outcome *o, const struct tri_refine_options *angles, double least_height)
+{
+    const struct tri_mesh *mesh = &o->mesh;
+    double off_centre = tri_bounds_for(angles->min_angle, angles->conforming).off_centre;
+    int64_t n = 0;
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+        int64_t count[TRI_EXCUSES + 1] = {0};
+        tri_count_bad_among(mesh, angles, &o->report.quality, &t, 1, count);
+        if (count[TRI_EXCUSES] == 0) /* good, or with a reason of its own */
+            continue;
+        const int32_t *v = mesh->tri[t].v;
+        struct tri_shape shape = tri_shape_of(mesh->xy, v);
+        double reach = off_centre > 0 ? off_centre * sqrt(shape.l[shape.shortest]) : HUGE_VAL;
+        struct tri_point p = tri_place(mesh->xy, v, &shape, reach), a = mesh->xy[v[0]];
+        struct tri_point centroid = {a.x + ((mesh->xy[v[1]].x - a.x) + (mesh->xy[v[2]].x - a.x)) / 3,
+                                     a.y + ((mesh->xy[v[1]].y - a.y) + (mesh->xy[v[2]].y - a.y)) / 3};
+        bool is_stuck = false;
+        for (int32_t s = 0; s < mesh->n_subs && !is_stuck; s++)
+            is_stuck = is_beside_flat(mesh, &mesh->sub[s], least_height) && leads_to(mesh, &mesh->sub[s], centroid, p);
+        n += is_stuck;
+    }
+    return n;
+}
+
+/* What is small without another reason, next to flat triangles. A point for a triangle beside a flat one may see that
+ * from behind, and is not inserted then: some around each may be left. A subsegment beside a flat triangle cannot be
+ * split, since no point that coordinates know lies in between: of the triangles whose points lead to it all may be
+ * left, and with areas to keep they are as many as fit along it. */
+static int64_t may_be_beside_flat(const struct outcome *o, const struct bounds *b,
+                                  const struct tri_refine_options *angles, int64_t unexplained)
+{
+    enum { AROUND = 10 };
+    int64_t around = AROUND * b->too_flat;
+    return unexplained > around && around > 0 ? around + stuck_beside_flat(o, angles, b->least_height) : around;
+}
+
+/* The counts that the programs print. */
 static void judge_angles(const struct outcome *o, const struct bounds *b, const struct tri_check_report *report,
                          struct verdict *verdict)
 {
@@ -150,28 +211,15 @@ static void judge_angles(const struct outcome *o, const struct bounds *b, const 
         judge_fault(verdict, "angle protected", "%lld without Y", (long long)count[TRI_EXCUSE_PROTECTED]);
     if (o->switches.protect > 0 || o->options.quality.min_angle > TRI_USUAL_ANGLE)
         return;
-    int64_t unexplained = report->n_small - report->n_small_explained, beside = AROUND * b->too_flat;
-    int64_t ran_away = may_run_away(o, &angles, count[TRI_EXCUSE_LIMIT], verdict);
-    unexplained -= ran_away;
-    if (unexplained > count[TRI_EXCUSE_NARROW_GAP] + beside)
+    int64_t unexplained = report->n_small - report->n_small_explained - count[TRI_EXCUSE_NARROW_GAP];
+    unexplained -= may_run_away(o, &angles, count[TRI_EXCUSE_LIMIT], verdict);
+    unexplained -= may_be_beside_flat(o, b, &angles, unexplained);
+    if (unexplained > 0)
         judge_fault(verdict, "angle",
                     "%lld small angles without a reason (input angle %lld, gap %lld, precision %lld)",
-                    (long long)(unexplained - count[TRI_EXCUSE_NARROW_GAP] - beside),
+                    (long long)unexplained,
                     (long long)count[TRI_EXCUSE_INPUT_ANGLE], (long long)count[TRI_EXCUSE_NARROW_GAP],
                     (long long)count[TRI_EXCUSE_PRECISION]);
-}
-
-/* Is a triangle beside the subsegment as flat as rounding? Then that leaves no room for a split point. */
-static bool is_beside_flat(const struct tri_mesh *mesh, const struct tri_subsegment *s, double least_height)
-{
-    for (int side = 0; side < 2; side++) {
-        if (s->side[side] == TRI_NONE)
-            continue;
-        struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[tri_of(s->side[side])].v);
-        if (shape.area2 < least_height * sqrt(fmax(shape.l[0], fmax(shape.l[1], shape.l[2]))))
-            return true;
-    }
-    return false;
 }
 
 /* Is the apex on this side in the circle of the subsegment, although coordinates resolve parts whose circles it is not
