@@ -755,6 +755,16 @@ static enum tri_status refine_and_deliver(struct par_state *state, const struct 
     return status ? status : deliver(state, error);
 }
 
+/* On several ranks: they would wait for each other where they do not make the same mesh. */
+static enum tri_status check_ranks(const struct par_state *state, enum tri_status status, struct tri_error *error)
+{
+    struct par_carrier *carrier = state->options->carrier;
+    if (!carrier)
+        return status;
+    return par_expect_same(carrier, status ? 0 : par_state_run(state),
+                           "the ranks do not begin with the same figure and settings", status, error);
+}
+
 enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
                            const struct par_options *options, struct par_report *report, struct tri_error *error)
 {
@@ -768,6 +778,7 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     bool sequential = must_be_sequential(quality, options);
     bool can_sweep = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE;
     enum tri_status status = can_sweep ? TRI_OK : tri_refine_check(mesh, quality, &state.executor, error);
+    status = check_ranks(&state, status, error);
     if (!status && is_bounded(options))
         status = par_park_open(&state.park, mesh, options->sink ? options->scratch : NULL, options->memory, error);
     if (status)

@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 
-HANG = 240  # seconds
+HANG = 600  # seconds
 INPUTS = [  # name, switches, triangles of a block, bound on memory or None
     ("letter", "pq30a0.0005", "500", None),
     ("letter", "pq33a0.001", "500", None),

@@ -9,6 +9,7 @@
 
 #include "sched/ranks/ranks.h"
 #include "sched/ranks/relay.h"
+#include "sched/ranks/stream.h"
 #include "sched/schedule.h"
 #include "sched/sweep/checkpoint.h"
 
@@ -487,6 +488,71 @@ static void test_all_get_what_the_first_has(void **state)
     }
 }
 
+/* --- calls that do not fit each other */
+
+struct caller {
+    struct par_carrier carrier;
+    double corner, area;
+    bool has_sink;
+    enum tri_status status;
+    struct tri_error error;
+};
+
+static enum tri_status let_go(void *user, const struct tri_tile *tile, struct tri_error *error)
+{
+    (void)user, (void)tile, (void)error;
+    return TRI_OK;
+}
+
+static void *call(void *user)
+{
+    struct caller *c = user;
+    const double points[] = {0, 0, 1, 0, c->corner, 1, 0, 1};
+    struct tri_figure figure = tri_no_figure();
+    struct tri_settings settings = tri_no_settings();
+    const struct tri_sink sink = {.take = c->has_sink ? let_go : NULL};
+    figure.points = (struct tri_reals){.at = points, .n = 4, .width = 2, .stride = 2};
+    settings.min_angle = 25;
+    settings.max_area = c->area;
+    settings.threads = 1;
+    c->status = par_stream_over(&c->carrier, &figure, &settings, &sink, &c->error);
+    return NULL;
+}
+
+/* Nobody waits: all return the same. */
+static void test_ranks_that_are_called_otherwise_are_refused(void **state)
+{
+    static const struct {
+        double corner, area;
+        bool has_sink;
+        const char *text; /* NULL: it is the call of the others */
+    } one[] = {
+        {1, 1e-5, true, NULL},
+        {1, 2e-5, true, "the ranks do not begin with the same figure and settings"},
+        {1, 0.4, true, "the ranks do not begin with the same figure and settings"}, /* too small to be shared */
+        {2, 1e-5, true, "the ranks do not begin with the same figure and settings"},
+        {1, -1, true, "settings: max_area is -1"},
+        {1, 1e-5, false, "a stream needs a sink that takes"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof one / sizeof *one; i++) {
+        struct fake_world world;
+        struct caller c[3];
+        fake_world_init(&world, 3);
+        for (int p = 0; p < 3; p++)
+            c[p] = (struct caller){.carrier = fake_carrier(&world, p), .corner = 1, .area = 1e-5, .has_sink = true};
+        c[1].corner = one[i].corner;
+        c[1].area = one[i].area;
+        c[1].has_sink = one[i].has_sink;
+        fake_run(&world, call, c, sizeof *c);
+        fake_world_free(&world);
+        for (int p = 0; p < 3; p++) {
+            assert_int_equal(c[p].status, one[i].text ? TRI_BAD_INPUT : TRI_OK);
+            assert_string_equal(c[p].error.text, one[i].text ? one[i].text : "");
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -496,6 +562,7 @@ int main(void)
         cmocka_unit_test(test_an_error_of_one_is_an_error_of_all),
         cmocka_unit_test(test_other_ranks_go_on),
         cmocka_unit_test(test_what_does_not_fit_is_refused),
+        cmocka_unit_test(test_ranks_that_are_called_otherwise_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -42,6 +42,10 @@ struct par_exchanges { /* sent by this rank */
  * for it for ever, and requests that MPI does not let go of may be pending on memory that has gone: MPI_Abort is all
  * that is safe then.
  *
+ * TRI_BAD_INPUT on all ranks: what one has been given is wrong; they do not begin with the same figure and bounds
+ * (size tests are not compared); machines that store numbers in different ways; an intercommunicator. Several calls at
+ * a time, on communicators of their own, are fine where MPI allows that to threads (MPI_THREAD_MULTIPLE).
+ *
  * MPI must run, with MPI_THREAD_FUNNELED where there is more than one thread. comm is duplicated for the time of the
  * call; the copy has its error handler. Counts of messages stay below 2^31 however much is sent. exchanges: NULL where
  * nobody asks. */

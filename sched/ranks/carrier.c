@@ -228,3 +228,14 @@ enum tri_status par_sum(struct par_carrier *carrier, const int64_t *value, int32
     free(all);
     return status;
 }
+
+enum tri_status par_expect_same(struct par_carrier *carrier, uint64_t number, const char *words, enum tri_status status,
+                                struct tri_error *error)
+{
+    const int64_t mine = (int64_t)number;
+    status = par_gather(carrier, &mine, 1, carrier->of_each, status, error);
+    for (int p = 1; !status && p < carrier->n_ranks; p++)
+        if (carrier->of_each[p] != carrier->of_each[0])
+            status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "%s", words);
+    return status;
+}

@@ -86,6 +86,10 @@ enum tri_status par_spread(struct par_carrier *carrier, enum par_move move, void
 enum tri_status par_gather(struct par_carrier *carrier, const int64_t *mine, int32_t n, int64_t *all,
                            enum tri_status status, struct tri_error *error);
 
+/* Collective: an agreement, then TRI_BAD_INPUT on all ranks, by these words, unless all come with the same number. */
+enum tri_status par_expect_same(struct par_carrier *carrier, uint64_t number, const char *words, enum tri_status status,
+                                struct tri_error *error);
+
 /* Collective: an agreement, then sum[i] becomes the sum of value[i] over all ranks. */
 enum tri_status par_sum(struct par_carrier *carrier, const int64_t *value, int32_t n, int64_t *sum,
                         enum tri_status status, struct tri_error *error);

@@ -3,6 +3,7 @@
 #include "ptriangle/mpi.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 #include "sched/ranks/mpi_carrier.h"
@@ -162,11 +163,34 @@ static void tell_traffic(const struct par_carrier *carrier, struct par_exchanges
     }
 }
 
-/* Collective: has everybody got memory? Who has none must not leave the others waiting. */
-static bool have_all(MPI_Comm comm, const void *memory)
+/* Numbers go as they lie in memory: is that the same everywhere? What is told are words that MPI translates. */
+static int64_t layout(void)
 {
-    int mine = memory != NULL, all = 0;
-    return MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, comm) == MPI_SUCCESS && all;
+    const struct {
+        double real;
+        int64_t whole;
+        int32_t sizes[4];
+    } probe = {1.0 / 3, INT64_C(0x0102030405060708),
+               {sizeof(size_t), sizeof(bool), sizeof(struct tri_tile), sizeof(struct tri_error)}};
+    unsigned char byte[sizeof probe];
+    uint64_t hash = 0;
+    memcpy(byte, &probe, sizeof probe);
+    for (size_t i = 0; i < sizeof byte; i++)
+        hash = 31 * hash + byte[i];
+    return (int64_t)(hash >> 1);
+}
+
+/* Collective: has everybody got memory, and the same kind of machine? Who has none must not let the others wait. */
+static enum tri_status check_all(MPI_Comm comm, const void *memory, struct tri_error *error)
+{
+    int64_t mine[3] = {memory != NULL, layout(), -layout()}, least[3] = {0};
+    if (MPI_Allreduce(mine, least, 3, MPI_INT64_T, MPI_MIN, comm) != MPI_SUCCESS)
+        return tri_fail(error, TRI_INTERNAL, NULL, 0, "the ranks cannot reach each other");
+    if (!least[0])
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the other ranks");
+    if (least[1] != -least[2])
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "the machines of the ranks store numbers in different ways");
+    return TRI_OK;
 }
 
 static void free_messenger(struct messenger *m)
@@ -202,17 +226,22 @@ static struct messenger *messenger_on(MPI_Comm comm)
 enum tri_status par_mpi_carrier_new(struct par_carrier **carrier, const void *comm, struct tri_error *error)
 {
     MPI_Comm copy;
+    int inter = 0;
     *carrier = NULL;
+    if (MPI_Comm_test_inter(*(const MPI_Comm *)comm, &inter) == MPI_SUCCESS && inter)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "the communicator has two groups: ranks of one are wanted");
     if (MPI_Comm_dup(*(const MPI_Comm *)comm, &copy) != MPI_SUCCESS)
         return tri_fail(error, TRI_INTERNAL, NULL, 0, "the communicator cannot be duplicated");
     struct messenger *m = messenger_on(copy);
-    if (have_all(copy, m)) {
+    enum tri_status status = check_all(copy, m, error);
+    if (!status) {
         *carrier = &m->carrier;
         return TRI_OK;
     }
-    MPI_Comm_free(&copy);
+    if (status != TRI_INTERNAL)
+        MPI_Comm_free(&copy);
     free_messenger(m);
-    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the other ranks");
+    return status;
 }
 
 void par_mpi_carrier_free(struct par_carrier *carrier)

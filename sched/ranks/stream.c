@@ -14,6 +14,8 @@ enum tri_status par_stream_over(struct par_carrier *carrier, const struct tri_fi
     how.sink = sink;
     struct tri_settings own;
     enum tri_status status = tri_api_settings_take(&own, settings, error);
+    if (!status && !(sink && sink->take))
+        status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "a stream needs a sink that takes");
     if (!status) {
         int threads = par_threads(own.threads, false);
         const struct tri_executor executor = par_executor(&threads);
