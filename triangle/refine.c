@@ -735,10 +735,10 @@ static bool refine_worklist(struct tri_refiner *r)
  * fence there is only the usual stage. With a worklist there is no easy one: what it makes bad for the next is not
  * among them.
  *
- * THEOREM (above the usual angle). Whatever the bound, for angles above TRI_USUAL_ANGLE no more than 600 + 3/4 n
+ * THEOREM (above the usual angle). Whatever the bound, for angles above TRI_USUAL_ANGLE no more than 602 + 3/4 n
  * points are inserted, n being the triangles of the mesh at that angle. Proof: each is counted (count_point); after
- * 200 + n / 4 of them no triangle is bad by more than BACK_ANGLE, after twice as many again none is bad by its angle.
- * So without sizes and -D the mesh has at most 2.5 n + 1200 triangles. Each of these points may make a triangle too
+ * 201 + n / 4 of them no triangle is bad by more than BACK_ANGLE, after 401 + n / 2 more none is bad by its angle.
+ * So without sizes and -D the mesh has at most 2.5 n + 1204 triangles. Each of these points may make a triangle too
  * large for its bound, or encroach a subsegment under -D; what comes of that is finite by inside.c and disk.c. */
 static void begin_stages(struct tri_refiner *r)
 {

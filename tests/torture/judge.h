@@ -8,8 +8,9 @@
  *   - angles and circles at the resolution of coordinates, told one by one: a flat triangle, a subsegment beside one
  *     (judge_bounds.c); and ten angles around each flat triangle, from behind which their points would be seen;
  *   - areas: none, but of triangles thinner than that resolution, and with -Y;
- *   - the number of triangles: 2.5 times that at 34 degrees for any bound above, which is proved (refine.c); up to 34,
- *     64 times that at 25, which is measured (feature_size.c); by the schedule, see judge_schedule_size;
+ *   - the number of triangles: 2.5 times that at 34 degrees for any bound above, which is proved (refine.c), 5 times
+ *     with sizes or -D, which is measured; up to 34, 64 times that at 25, which is measured, too (feature_size.c); by
+ *     the schedule, see judge_schedule_size;
  *   - time: 60 s of processor time for meshes of some 100,000 triangles, which take below 1 s each and are made up to
  *     seven times and judged by naive twins; with -Y more, as a point there may cost as much as there are points. */
 #ifndef TESTS_TORTURE_JUDGE_H
