@@ -6,7 +6,7 @@
  * SHAPE. Cells are about square on average, over the box of the mesh. But where nearly all of the work lies along a
  * line (a long gap that is filled), quantiles across it lie side by side within it: a block that has one side of a wall
  * cannot split it, and refines up to it as it is; the other half of its work is done from triangles that were good
- * already, step by step, and makes a mesh that grades several times as slowly (measured: up to 2.1 times the triangles
+ * already, step by step, and makes a mesh that grades several times as slowly (measured: up to 2.3 times the triangles
  * of one sequential call at 32 degrees, and 1.06 with cuts that cross the gap). So the box of the middle half of the
  * work, as its quantiles show it, decides on the numbers of columns and rows where it is SKEW times more drawn out
  * than the mesh: cells are square up to that factor where the work is. */

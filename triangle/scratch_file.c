@@ -1,4 +1,4 @@
-/* A name that nobody has, taken back before a signal can end the process. */
+/* A name that nobody has, taken back before a signal to this thread can end the process. */
 #include "triangle/scratch_file.h"
 
 #include <errno.h>

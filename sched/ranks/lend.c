@@ -261,6 +261,7 @@ static bool fulfil(const struct par_ranks *r, int w)
     const int32_t n = wish ? read_wishes(r, w, wish) : TRI_NONE;
     bool memory = n != TRI_NONE;
     for (int32_t i = 0; memory && i < n; i++) {
+        assert(wish[i].triangle != TRI_NONE); /* vertices are told as corners */
         const struct telling telling = {r, w, wish[i].rings > 0 ? 2 * wish[i].rings : RINGS};
         struct ring ring = {0};
         memory = join(&telling, &ring, wish[i].vertex, wish[i].triangle);
@@ -279,7 +280,7 @@ enum tri_status par_lend_more(struct par_ranks *r, struct tri_error *error)
     for (int w = 0; memory && w < r->carrier->n_ranks; w++) {
         first[w] = r->lent[w].triangle.n;
         bad = bad || is_bad_list(&r->in[w], &r->lent[w]);
-        memory = bad || fulfil(r, w);
+        memory = bad || r->in[w].n == 0 || fulfil(r, w);
     }
     memory = memory && tell_all(r, message, first) && write_messages(r, message, first);
     free_messages(message, r->carrier->n_ranks);

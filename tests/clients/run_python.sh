@@ -1,8 +1,8 @@
 #!/bin/sh
 # Real clients, from PyPI, with this library in Triangle's place: the package `triangle` with libtriangle.a, MeshPy with
 # libptriangle.a and its own tests, FloPy with the program. The copies of Triangle in the first two are left out when
-# they are unpacked. Where PyPI cannot be reached, or Python's headers are not there, one line says so, and the exit code is
-# 77.
+# they are unpacked. Where PyPI cannot be reached, or Python's headers are not there, one line says so, and the exit
+# code is 77.
 # Usage: run_python.sh BUILD_DIR WORK_DIR CMAKE PYTHON C_COMPILER CXX_COMPILER
 set -eu
 build=$1

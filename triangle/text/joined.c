@@ -7,8 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/utsname.h>
 #include <time.h>
 #include <unistd.h>
+#ifdef __linux__
+#include <sys/vfs.h>
+#endif
 
 #include "triangle/text/text.h"
 
@@ -20,18 +24,47 @@ static bool put_path(char at[TRI_TICKET_PATH], const char *path)
     return n < TRI_TICKET_PATH;
 }
 
+static bool put_host(char at[TRI_TICKET_HOST])
+{
+    struct utsname names;
+    if (uname(&names) != 0 || strlen(names.nodename) >= TRI_TICKET_HOST)
+        return false;
+    memcpy(at, names.nodename, strlen(names.nodename) + 1);
+    return true;
+}
+
+/* Do rows that meet in a page of this file keep apart, if it was opened on that machine? */
+static bool keeps_apart(int file, const char *host)
+{
+    char here[TRI_TICKET_HOST];
+    if (put_host(here) && strcmp(here, host) == 0)
+        return true;
+#ifdef __linux__
+    enum { NFS = 0x6969, SMB = 0x517b };
+    const uint32_t CIFS = 0xff534d42, SMB2 = 0xfe534d42;
+    struct statfs system;
+    if (fstatfs(file, &system) != 0)
+        return false;
+    const uint32_t type = (uint32_t)system.f_type;
+    return type != NFS && type != SMB && type != CIFS && type != SMB2;
+#else
+    (void)file;
+    return false;
+#endif
+}
+
 bool tri_ticket_make(struct tri_ticket *ticket, struct tri_output *output)
 {
     enum { MOST = 1 << 16 };
     struct timespec now;
     struct stat status;
     char *temporary = output->temporary ? realpath(output->temporary, NULL) : NULL;
-    bool made = put_path(ticket->temporary, temporary) && clock_gettime(CLOCK_REALTIME, &now) == 0;
+    bool made = put_path(ticket->temporary, temporary) && put_path(ticket->path, output->path) &&
+                put_host(ticket->host) && clock_gettime(CLOCK_REALTIME, &now) == 0;
     free(temporary);
     ticket->length = made ? 1 + (uint64_t)(now.tv_nsec / 16 + getpid()) % MOST : 0;
     made = made && ftruncate(output->file, (off_t)ticket->length) == 0 && fstat(output->file, &status) == 0;
     ticket->inode = made ? (uint64_t)status.st_ino : 0;
-    made = made && put_path(ticket->path, output->path);
     if (!made)
         ticket->path[0] = 0;
     return made;
@@ -45,7 +78,7 @@ bool tri_output_join(struct tri_output *output, struct tri_ticket *ticket, const
     if (output->file < 0)
         return false;
     if (fstat(output->file, &status) == 0 && (uint64_t)status.st_ino == ticket->inode &&
-        (uint64_t)status.st_size == ticket->length)
+        (uint64_t)status.st_size == ticket->length && keeps_apart(output->file, ticket->host))
         return true;
     close(output->file);
     output->file = -1;
