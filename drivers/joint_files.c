@@ -99,7 +99,9 @@ enum tri_status joint_files_open(struct joint_files *joint, bool wanted, enum tr
     if (!status && !is_first(joint))
         ready = join_all(joint);
     status = ask_all(joint, ready, &joint->together, status, error);
-    return status || !is_first(joint) ? status : begin_files_again(joint, error);
+    if (!status && is_first(joint))
+        status = begin_files_again(joint, error);
+    return par_agree(joint->carrier, status, error);
 }
 
 /* --- beginning */

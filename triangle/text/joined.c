@@ -16,21 +16,18 @@
 
 #include "triangle/text/text.h"
 
-static bool put_path(char at[TRI_TICKET_PATH], const char *path)
+static bool put(char *at, size_t room, const char *text)
 {
-    const size_t n = path ? strlen(path) + 1 : TRI_TICKET_PATH;
-    if (n < TRI_TICKET_PATH)
-        memcpy(at, path, n);
-    return n < TRI_TICKET_PATH;
+    const size_t n = text ? strlen(text) + 1 : room + 1;
+    if (n <= room)
+        memcpy(at, text, n);
+    return n <= room;
 }
 
 static bool put_host(char at[TRI_TICKET_HOST])
 {
     struct utsname names;
-    if (uname(&names) != 0 || strlen(names.nodename) >= TRI_TICKET_HOST)
-        return false;
-    memcpy(at, names.nodename, strlen(names.nodename) + 1);
-    return true;
+    return uname(&names) == 0 && put(at, TRI_TICKET_HOST, names.nodename);
 }
 
 /* Do rows that meet in a page of this file keep apart, if it was opened on that machine? */
@@ -59,7 +56,8 @@ bool tri_ticket_make(struct tri_ticket *ticket, struct tri_output *output)
     struct timespec now;
     struct stat status;
     char *temporary = output->temporary ? realpath(output->temporary, NULL) : NULL;
-    bool made = put_path(ticket->temporary, temporary) && put_path(ticket->path, output->path) &&
+    bool made = put(ticket->temporary, TRI_TICKET_PATH, temporary) &&
+                put(ticket->path, TRI_TICKET_PATH, output->path) &&
                 put_host(ticket->host) && clock_gettime(CLOCK_REALTIME, &now) == 0;
     free(temporary);
     ticket->length = made ? 1 + (uint64_t)(now.tv_nsec / 16 + getpid()) % MOST : 0;
