@@ -199,20 +199,23 @@ enum tri_status tri_h5_array_end(struct tri_h5_array *array, struct tri_error *e
 
 /* --- rows that others write */
 
-/* Where the chunk that begins with this row lies. False: HDF5 does not tell. */
-static bool chunk_place(hid_t dataset, int64_t row, int64_t *place, hsize_t *size)
+/* Where the chunk that begins with this row lies, of so many bytes. HDF5 tells it only at the price of going through
+ * all chunks before (H5Dget_chunk_info_by_coord in 1.10); where it writes to it knows at once. False: it fails. */
+static bool chunk_place(const struct tri_h5_array *array, hid_t dataset, int64_t row, size_t bytes, int64_t *place)
 {
     const hsize_t first[2] = {(hsize_t)row, 0};
-    haddr_t at = HADDR_UNDEF;
-    unsigned filters;
-    const bool told = H5Dget_chunk_info_by_coord(dataset, first, &filters, &at, size) >= 0 && at != HADDR_UNDEF;
-    *place = (int64_t)at;
-    return told;
+    struct tri_h5_file *file = array->file;
+    file->sought = array->buffer;
+    file->found = -1;
+    const bool sent = H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, first, bytes, array->buffer) >= 0;
+    file->sought = NULL;
+    *place = file->found;
+    return sent && file->found >= 0;
 }
 
 enum tri_status tri_h5_array_lay_out(struct tri_h5_array *array, int64_t n, int64_t *place, struct tri_error *error)
 {
-    hsize_t size;
+    const size_t bytes = chunk_bytes(array);
     array->n = n;
     if (array->n_chunks == 0) {
         array->dataset = create_dataset(array, n, false);
@@ -221,7 +224,7 @@ enum tri_status tri_h5_array_lay_out(struct tri_h5_array *array, int64_t n, int6
     if (array->dataset < 0)
         return tri_h5_fail(array->file, array->name, error);
     for (int64_t k = 0; array->n_chunks > 0 && k * array->chunk_rows < n; k++)
-        if (!chunk_place(array->dataset, k * array->chunk_rows, &place[k], &size))
+        if (!chunk_place(array, array->dataset, k * array->chunk_rows, bytes, &place[k]))
             return tri_h5_fail(array->file, array->name, error);
     return conclude(array, error);
 }
@@ -240,9 +243,9 @@ static void widen_numbers(char *data, size_t n)
 /* What lies in a file must not depend on what has lain there before. */
 static bool clear_chunk(const struct tri_h5_array *array, hid_t dataset, int64_t row)
 {
+    const size_t size = chunk_bytes(array) / 2; /* its integers have 32 bits */
     int64_t place;
-    hsize_t size;
-    if (!chunk_place(dataset, row, &place, &size))
+    if (!chunk_place(array, dataset, row, size, &place))
         return false;
     const int failure = tri_output_clear(array->file->output, (uint64_t)place, size);
     array->file->failure = array->file->failure ? array->file->failure : failure;

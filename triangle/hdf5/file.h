@@ -19,6 +19,8 @@ struct tri_h5_file {
                        written, and HDF5 is told that all is well, so that it lets go of what it has */
     struct tri_behind *behind; /* NULL, or by which the next write is to be done if these are its data: */
     const char *behind_data;
+    const char *sought; /* what is written from there is not: the driver tells where it would have gone; NULL */
+    int64_t found;      /* there; < 0: nothing has come */
 };
 
 /* Creates the file in an output that has places: else TRI_CANNOT_WRITE. To be closed in any case; may not move. */
