@@ -1,8 +1,11 @@
 /* What launchers tell their tasks by the environment. */
 #include "drivers/launch.h"
 
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
+#include <unistd.h>
 
 static long number_of(const char *name)
 {
@@ -37,6 +40,7 @@ enum tri_status launch_join(struct launch *launch, struct tri_error *error)
     *launch = (struct launch){0};
     if (tasks == 1)
         return TRI_OK;
+    launch->voice = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
     if (task != 0)
         fall_silent();
     enum tri_status status = launch_ranks(launch, tasks, error);
@@ -70,11 +74,33 @@ int launch_agree(struct launch *launch, int code, struct tri_error *error)
     return code;
 }
 
+static void pause_for(int tenths)
+{
+    struct timespec left = {tenths / 10, tenths % 10 * 100000000L};
+    nanosleep(&left, NULL);
+}
+
+/* The launcher kills the others when this one aborts, so that the first one may say nothing, or only that it was asked
+ * to end. Where that one has met the same it has told, and is given the time to end all. Afterwards the launcher needs
+ * some to pass the words on: that of MPICH drops what it has not read by then. */
+static void tell_loss(const struct launch *launch, bool told)
+{
+    enum { ENDING = 10, READING = 5 };
+    if (launch->rank > 0)
+        pause_for(ENDING);
+    if (launch->rank > 0 || !told)
+        dprintf(launch->voice, "ptriangle: task %d cannot reach the others\n", launch->rank);
+    pause_for(READING);
+}
+
 int launch_leave(struct launch *launch, int code, struct tri_error *error)
 {
     if (!launch->carrier)
         return code;
+    const bool told = code != EXIT_SUCCESS;
     code = agree_on_failure(launch, code, error);
+    if (launch->carrier->lost)
+        tell_loss(launch, told);
     launch_end(launch);
     return code;
 }

@@ -8,6 +8,7 @@
 struct launch {
     int rank;                     /* 0 where there is one task */
     struct par_carrier *carrier;  /* NULL there */
+    int voice;                    /* of several: standard error, also of a task whose words are not heard */
 };
 
 /* Looks who started the program; of several tasks only the first one's words are heard from here on. TRI_BAD_INPUT:
@@ -18,7 +19,8 @@ enum tri_status launch_join(struct launch *launch, struct tri_error *error);
  * these. error: why this one has failed, where that is known. */
 int launch_agree(struct launch *launch, int code, struct tri_error *error);
 
-/* The last thing that is done: the tasks learn whether one has failed, and part. Returns the exit code. */
+/* The last thing that is done: the tasks learn whether one has failed, and part. A task that cannot reach the others
+ * says so, and ends them all. Returns the exit code. */
 int launch_leave(struct launch *launch, int code, struct tri_error *error);
 
 /* By whether there is MPI: how tasks become ranks, and cease to be. */

@@ -2,9 +2,10 @@
 """Ranks that are killed at random moments, and gone on with by others: kill_chains.py PROGRAM MPIRUN DATA SEED COUNT.
 
 A chain makes one mesh: a number of ranks, drawn anew for each run, goes on from the checkpoint of those before, until
-none is killed. After each kill all ranks must end, with a failure, and no file may have its name; in the end the files
-are those of one process, and neither a checkpoint nor a temporary file is left. PROGRAM is one of a build with tests,
-for the environment variable that makes blocks small. Exit code: 0 where all chains are good."""
+none is killed: one rank, several, all by SIGTERM, or the launcher; at any moment, or while the files of all are
+written. After each kill all ranks must end, with a failure, and what has its final name by then is as it should be; in
+the end the files are those of one process, and neither a checkpoint nor a temporary file is left. PROGRAM is one of a
+build with tests, for the environment variable that makes blocks small. Exit code: 0 where all chains are good."""
 import hashlib
 import os
 import random
@@ -26,6 +27,8 @@ INPUTS = [  # name, switches, triangles of a block, bound on memory or None
     ("square_random1000", "pq20a0.0000009", "", "130M"),
     ("square_random1000", "pq33a0.000001", "", "130M"),
 ]
+OUTPUTS = [["{}"], ["{}.h5"], ["{}", "{}.h5"]]  # what all ranks write: .node, .ele and .poly; HDF5; both
+RANKS = [2, 2, 3, 3, 4, 5, 6, 9]
 RECORD = 'echo $$ >"pid.${OMPI_COMM_WORLD_RANK:-$PMI_RANK}"; exec "$0" "$@"'
 
 
@@ -36,16 +39,24 @@ def environment(block):
     return dict(own, **{name: "1" for name in names.split()})
 
 
-def digest(base):
-    """Of the files of a mesh, but for comments and what names a file."""
-    sums = []
-    for name in sorted(n for n in os.listdir(".") if n.startswith(base + ".") and not n.endswith(".xdmf")):
+def digests(base):
+    """Of the files of a mesh, by suffix, but for comments and what names a file."""
+    sums = {}
+    for name in (n for n in os.listdir(".") if n.startswith(base + ".") and not n.endswith(".xdmf")):
         with open(name, "rb") as file:
             data = file.read()
         if not name.endswith(".h5"):
             data = b"\n".join(line for line in data.split(b"\n") if not line.startswith(b"#"))
-        sums.append((name[len(base):], hashlib.md5(data).hexdigest()))
+        sums[name[len(base):]] = hashlib.md5(data).hexdigest()
     return sums
+
+
+def words_of(outputs, base):
+    return [word for output in outputs for word in ("--output", output.format(base))]
+
+
+def temporaries():
+    return [name for folder in (".", "scratch") for name in os.listdir(folder) if name.startswith(".tri-")]
 
 
 def pids():
@@ -59,14 +70,38 @@ def pids():
     return found
 
 
-def kill(victim, launcher):
-    """One rank, or the launcher; it may have ended by itself."""
-    there = pids()
-    pid = launcher.pid if victim == "launcher" or not there else random.choice(sorted(there.values()))
+def send(pid, what):
+    """It may have ended by itself."""
     try:
-        os.kill(pid, signal.SIGKILL)
+        os.kill(pid, what)
     except ProcessLookupError:
         pass
+
+
+def kill(how, launcher):
+    there = sorted(pids().values())
+    if how == "launcher" or not there:
+        send(launcher.pid, signal.SIGKILL)
+    elif how == "term":
+        for pid in there:
+            send(pid, signal.SIGTERM)
+    else:
+        for pid in random.sample(there, 1 if how == "rank" else random.randint(1, len(there))):
+            send(pid, signal.SIGKILL)
+
+
+def wait_for_writing(launcher):
+    """Until the files of all grow, or it has ended."""
+    def written():
+        size = 0
+        for name in temporaries():
+            try:
+                size += os.stat(name).st_size
+            except FileNotFoundError:
+                pass
+        return size
+    while launcher.poll() is None and written() == 0:
+        time.sleep(0.002)
 
 
 def end_of(launcher, errors):
@@ -83,7 +118,16 @@ def end_of(launcher, errors):
             errors.append("a rank hangs")
             return None
         time.sleep(0.05)
+    wait_for_numbers()
     return code
+
+
+def wait_for_numbers():
+    """Until nobody has the numbers of ranks that are gone, or for a while: what took over those of a dead launcher asks
+    for them when it likes, and as long as one is in sight its temporary files are taken for those of one at work."""
+    began = time.time()
+    while any(os.path.exists(f"/proc/{pid}") for pid in pids().values()) and time.time() - began < 20:
+        time.sleep(0.05)
 
 
 def is_there(pid):
@@ -94,52 +138,69 @@ def is_there(pid):
         return False
 
 
-def run_once(command, block, seconds, errors):
-    """Kills somebody after so many seconds, unless they are None. Returns the exit code."""
+def run_once(command, block, seconds, while_written, errors):
+    """Kills somebody after so many seconds, from the beginning or from that of writing, unless they are None. Returns
+    the exit code and who was killed."""
     for name in list(os.listdir(".")):
         if name.startswith("pid."):
             os.remove(name)
+    how = ""
     with open("log", "ab") as log:
         launcher = subprocess.Popen(command, env=environment(block), stdout=log, stderr=log, stdin=subprocess.DEVNULL)
     if seconds is not None:
+        if while_written:
+            wait_for_writing(launcher)
         time.sleep(seconds)
-        kill(random.choice(["rank", "rank", "rank", "launcher"]), launcher)
-    return end_of(launcher, errors)
+        how = random.choice(["rank", "rank", "some", "term", "launcher"])
+        if launcher.poll() is not None:
+            how = "late"
+        kill(how if how != "late" else "term", launcher)
+    return end_of(launcher, errors), how
 
 
 def chain(program, mpirun, source, number):
     """Returns what is wrong with it, and how it went."""
     name, switches, block, memory = random.choice(INPUTS)
     shutil.copy(os.path.join(source, name + ".poly"), "in.poly")
-    output = random.choice([["one", "two"], ["one.h5", "two.h5"]])
+    os.mkdir("scratch")
+    outputs = random.choice(OUTPUTS)
     began = time.time()
-    words = [program, "-Q" + switches, "in", "--output"]
-    subprocess.run(words + [output[0]], env=environment(block), check=True, stdin=subprocess.DEVNULL, timeout=HANG)
+    words = [program, "-Q" + switches, "in", "--scratch", "scratch"]
+    subprocess.run(words + words_of(outputs, "one"), env=environment(block), check=True, stdin=subprocess.DEVNULL,
+                   timeout=HANG)
     alone = time.time() - began
+    good = digests("one")
     kept = ["--checkpoint", "state", "--resume", "state", "--every", random.choice(["0", "0", "0.3"])]
     errors, story, kills = [], [], random.randint(1, 4)
     for attempt in range(kills + 1):
-        n = random.randint(2, 9)
+        n = random.choice(RANKS)
         bound = ["--memory", memory] if memory and random.random() < 0.8 else []
-        seconds = random.random() * (alone + 1.5) * (1 + n / 4) if attempt < kills else None
-        command = [mpirun, "-n", str(n), "sh", "-c", RECORD] + words + [output[1]] + kept + bound
-        code = run_once(command, block, seconds, errors)
-        story.append(f"{n}{'m' if bound else ''}:{code}{'s' if os.path.exists('state/state-0') else ''}")
-        done = any(file.startswith("two.") for file in os.listdir("."))
+        while_written = random.random() < 0.5
+        seconds = None
+        if attempt < kills:
+            seconds = random.random() * (0.15 * alone if while_written else 0.3 + 1.5 * alone)
+        command = [mpirun, "-n", str(n), "sh", "-c", RECORD] + words + words_of(outputs, "two") + kept + bound
+        code, how = run_once(command, block, seconds, while_written, errors)
+        found = digests("two")
+        story.append(f"{n}{'m' if bound else ''}{how}{'w' if how and while_written else ''}:{code}"
+                     f"{'s' if os.path.exists('state/state-0') else ''}{'f' if found else ''}")
+        if any(good.get(suffix) != found[suffix] for suffix in found):
+            errors.append("a file has its name and other bytes")
+        if code == 0 and how in ("rank", "some", "term") and not found:
+            errors.append("exit code 0, and no file")
         if code == 0 or errors:
-            break
-        if done and seconds is not None and code is not None:
-            story.append("killed at the end")
             break
         if seconds is None:
             with open("log", "rb") as log:
                 errors.append("the last run fails: " + log.read()[-400:].decode(errors="replace"))
-    if not errors and digest("one") != digest("two"):
-        errors.append("other bytes")
-    if not errors and code == 0 and os.path.exists("state"):
+    if not errors and good != digests("two"):
+        errors.append("other files")
+    if not errors and os.path.exists("state"):
         errors.append("a checkpoint is left")
-    print(f"{number}: {name} -{switches} {memory or ''} {output[1]}: {' '.join(story)} {' '.join(errors) or 'good'}",
-          flush=True)
+    if not errors and temporaries():
+        errors.append("temporary files are left: " + " ".join(temporaries()))
+    print(f"{number}: {name} -{switches} {memory or ''} {' '.join(outputs)}: {' '.join(story)} "
+          f"{' '.join(errors) or 'good'}", flush=True)
     return not errors
 
 
