@@ -88,6 +88,7 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/window.c
     triangle/text/read.c
     triangle/text/output.c
+    triangle/text/parts.c
     triangle/text/joined.c
     triangle/text/behind.c
     triangle/text/write.c
@@ -211,6 +212,7 @@ set(PTRIANGLE_RUN_SOURCES
     drivers/one_line.c
     drivers/help.c
     drivers/interrupt.c
+    drivers/export.c
     drivers/mesh_files.c
     drivers/summary.c
     drivers/self_check.c

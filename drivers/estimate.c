@@ -19,9 +19,10 @@ static const double BUFFERS = 3e7, PAGES = 3e7, COLUMNS_HELD = 260, COLUMNS_AWAY
                     COLUMNS_STATE = 520, SWEPT_BYTES = 1.3;
 /* The same a triangle, of a mesh that stays as a whole; of two states of it; and of the tiles in a checkpoint. */
 static const double PARKED_WORK = 6, PARKED_BYTES = 90, WHOLE_STATES = 120, TILES_BYTES = 26;
-/* And of tiles that wait until all are there (triangle/text/tile_store.h). The boundary that a .14 wants then, a byte
- * a vertex in memory, does not show at the peak (measured at 5 million triangles). */
-static const double KEPT_BYTES = 46;
+/* And of tiles that wait until all are there (triangle/text/tile_store.h), and what cutting them into parts adds. The
+ * boundary that a .14 wants then, a byte a vertex in memory, does not show at the peak (measured at 5 million
+ * triangles). */
+static const double KEPT_BYTES = 46, PART_BYTES = 17;
 /* The same a triangle of a rank's own, which are so many times the average; of its share of a state, of which there are
  * two; for each root as above what numbers and hands out a column, where a rank has that much; of pieces of files that
  * pass through the first rank; and, for each triangle of all ranks, of the coarse mesh and what begins with it. */
@@ -192,7 +193,7 @@ static struct needs needs_of(const struct run *run, double grown, double bytes, 
     n.held = sweeps ? BUFFERS + COLUMNS_HELD * column + SWEPT_BYTES * grown : n.whole;
     n.floor = floor_of(run, n.held, work + pages);
     n.away = sweeps ? COLUMNS_AWAY * column : PARKED_BYTES * grown;
-    n.kept = run->hooks->exports.n > 0 ? KEPT_BYTES * grown : 0;
+    n.kept = run->hooks->exports.n > 0 ? (KEPT_BYTES + (run->hooks->n_parts > 0 ? PART_BYTES : 0)) * grown : 0;
     n.states = WHOLE_STATES * grown;
     n.checkpoint = sweeps ? TILES_BYTES * grown + COLUMNS_STATE * column : n.states;
     return n;

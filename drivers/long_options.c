@@ -22,6 +22,8 @@ const char long_options_help[] =
     "                     the mesh as HDF5, with FILE.xdmf beside it, or for VTK and ParaView, Gmsh, SMS or ADCIRC,\n"
     "                     in place of BASE.node and so on, or beside them if --output BASE is given, too; up to 4\n"
     "                     such files\n"
+    "  --parts N          .msh files are cut into N parts (up to 512): FILE.msh becomes FILE_1.msh ... FILE_N.msh,\n"
+    "                     partitioned as Gmsh does it, with the same numbers as in one file\n"
     "  --report FILE      seconds, blocks, memory and mesh statistics, as JSON; -: on standard output, where\n"
     "                     with -Q nothing else is printed\n"
     "  --blocks FILE      block and phase of each triangle, a line each, for meshplot --blocks\n"
@@ -49,7 +51,7 @@ const char long_options_help[] =
     "  --version, --help  name and version; this help\n";
 
 enum id {
-    THREADS, MAX_AREA, MIN_ANGLE, HOLES, OUTPUT, REPORT, BLOCKS, NUMBERING, MEMORY, SCRATCH, CHECKPOINT, EVERY,
+    THREADS, MAX_AREA, MIN_ANGLE, HOLES, OUTPUT, PARTS, REPORT, BLOCKS, NUMBERING, MEMORY, SCRATCH, CHECKPOINT, EVERY,
     RESUME, DRY_RUN, TIME_LIMIT, WRITE_PARTIAL, PROGRESS, NO_PROGRESS, VERSION, HELP
 };
 
@@ -64,7 +66,7 @@ static const struct kind {
     {"dry-run", DRY_RUN, false},    {"time-limit", TIME_LIMIT, true}, {"write-partial", WRITE_PARTIAL, false},
     {"version", VERSION, false},    {"help", HELP, false},         {"holes", HOLES, true},
     {"memory", MEMORY, true},       {"scratch", SCRATCH, true},    {"checkpoint", CHECKPOINT, true},
-    {"every", EVERY, true},         {"resume", RESUME, true},
+    {"every", EVERY, true},         {"resume", RESUME, true},      {"parts", PARTS, true},
 };
 
 static const struct kind *find_kind(const char *name, size_t length)
@@ -82,15 +84,17 @@ static bool is_real(const char *text, double *value)
     return end > text && tri_scan_real(text, end, value) == end;
 }
 
-/* The whole text is a number of threads; 0: it is not. */
-static int number_of_threads(const char *text)
+/* The whole text is a number from 1 to most; 0: it is not. */
+static int number_up_to(int most, const char *text)
 {
-    int64_t threads;
+    int64_t number;
     const char *end = text + strlen(text);
-    if (end == text || tri_scan_integer(text, end, &threads) != end || threads < 1)
+    if (end == text || tri_scan_integer(text, end, &number) != end || number < 1)
         return 0;
-    return threads <= LONG_OPTIONS_MAX_THREADS ? (int)threads : 0;
+    return number <= most ? (int)number : 0;
 }
+
+static int number_of_threads(const char *text) { return number_up_to(LONG_OPTIONS_MAX_THREADS, text); }
 
 int long_options_threads(const struct long_options *options)
 {
@@ -233,6 +237,25 @@ static enum tri_status take_output(struct long_options *options, const struct ki
     return take_name(&options->output, kind, value, error);
 }
 
+static enum tri_status take_parts(struct long_options *options, const char *value, struct tri_error *error)
+{
+    options->n_parts = number_up_to(TRI_MOST_PARTS, value);
+    if (options->n_parts)
+        return TRI_OK;
+    return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--parts: \"%.40s\" is not a whole number from 1 to %d", value,
+                    TRI_MOST_PARTS);
+}
+
+enum tri_status long_options_check(const struct long_options *options, struct tri_error *error)
+{
+    bool can_be_cut = options->n_parts == 0;
+    for (int i = 0; i < options->n_exports; i++)
+        can_be_cut = can_be_cut || tri_format_of(options->exports[i])->write_parts;
+    if (can_be_cut)
+        return TRI_OK;
+    return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--parts: is of .msh files; --output FILE.msh names one");
+}
+
 static enum tri_status apply(struct long_options *options, struct tri_switches *switches, const struct kind *kind,
                              const char *value, struct tri_error *error)
 {
@@ -242,6 +265,7 @@ static enum tri_status apply(struct long_options *options, struct tri_switches *
     case MIN_ANGLE: return take_angle(switches, value, error);
     case HOLES: return take_holes(switches, value, error);
     case OUTPUT: return take_output(options, kind, value, error);
+    case PARTS: return take_parts(options, value, error);
     case REPORT: return take_name(&options->report, kind, value, error);
     case BLOCKS: return take_name(&options->blocks, kind, value, error);
     case NUMBERING: return take_numbering(options, value, error);

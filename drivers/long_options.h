@@ -21,6 +21,7 @@ struct long_options {
     const char *exports[LONG_OPTIONS_MOST_EXPORTS]; /* [n_exports] FILE of --output, whose suffix names a format */
     int n_streams;      /* the same for HDF5 */
     const char *streams[LONG_OPTIONS_MOST_EXPORTS]; /* [n_streams] */
+    int n_parts;        /* into which such files are cut; 0: not given */
     const char *report; /* file; NULL: none */
     const char *blocks; /* file; NULL: none */
     enum long_options_progress progress;
@@ -42,6 +43,9 @@ struct long_options {
  * too many, too few or out of range. */
 enum tri_status long_options_take(struct long_options *options, struct tri_switches *switches, int argc,
                                   char *const *argv, int *at, struct tri_error *error);
+
+/* Once all words have been taken: do they agree? TRI_BAD_INPUT. */
+enum tri_status long_options_check(const struct long_options *options, struct tri_error *error);
 
 /* Threads to work with: those of --threads, else of OMP_NUM_THREADS, else of SLURM_CPUS_PER_TASK, which a batch system
  * sets; 0: OpenMP decides, as it does where OMP_NUM_THREADS is set. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "drivers/export.h"
 #include "drivers/interrupt.h"
 #include "triangle/grid.h"
 #include "triangle/text/formats.h"
@@ -84,11 +85,18 @@ static enum tri_status try_file(struct tri_output_set *set, const char *path, co
 static enum tri_status try_export(struct tri_output_set *set, const struct mesh_files *files, const char *path,
                                   const struct file_names *read, struct tri_error *error)
 {
-    const struct tri_format *format = tri_format_of(path);
-    if (files->arguments->switches.second_order && !format->second_order)
+    const struct export export = export_of(path, files->n_parts);
+    enum tri_status status = TRI_OK;
+    if (files->arguments->switches.second_order && !export.format->second_order)
         return tri_fail(error, TRI_BAD_INPUT, path, 0, "files of %s cannot hold second-order triangles (-o2)",
-                        format->name);
-    return try_file(set, path, read, error);
+                        export.format->name);
+    for (int i = 0; i < export_files(&export) && !status; i++) {
+        char *name = export_name(&export, path, i);
+        status = name ? try_file(set, name, read, error)
+                      : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
+        free(name);
+    }
+    return status;
 }
 
 static enum tri_status try_all(struct tri_output_set *set, const struct mesh_files *files,
@@ -148,10 +156,13 @@ static enum tri_status write_file(struct writer *w, const struct kind *kind)
 /* In another program's format, which need not know comments. */
 static enum tri_status write_export(struct writer *w, const char *path)
 {
-    struct tri_output *output;
-    console_say(w->files->console, "Writing %s.\n", path);
-    enum tri_status status = interrupt_open(w->set, path, &output, w->error);
-    return status ? status : tri_format_of(path)->write(output, &w->grid, w->files->executor, w->error);
+    struct export export = export_of(path, w->files->n_parts);
+    if (export.n_parts > 0)
+        console_say(w->files->console, "Writing %s in %d parts.\n", path, export.n_parts);
+    else
+        console_say(w->files->console, "Writing %s.\n", path);
+    enum tri_status status = export_open(&export, path, w->set, w->error);
+    return status ? status : export_write(&export, &w->grid, w->files->executor, w->error);
 }
 
 static enum tri_status write_all(struct writer *w)

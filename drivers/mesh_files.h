@@ -30,6 +30,7 @@ struct mesh_files {
     const struct tri_elements *elements; /* -r: the input's triangles; else n is 0 */
     const struct file_names *exports;    /* files in the formats that their suffixes name */
     bool exports_alone;                  /* no others */
+    int n_parts;                         /* into which exports are cut that can be; 0: none */
     const bool *is_edge;                 /* [n_segments] -rp: the segments of the input that are not are written again;
                                             NULL: no -r */
 };
@@ -44,7 +45,7 @@ enum tri_status mesh_files_check(const struct mesh_files *files, const struct fi
                                  const struct file_names *read, struct tri_error *error);
 
 /* Writes all of them into the guarded set (drivers/interrupt.h), whoever fails: its caller commits or aborts. Says a
- * line for each. */
+ * line for each, and one for all parts of a mesh. */
 enum tri_status mesh_files_write(const struct mesh_files *files, struct tri_output_set *set, struct tri_error *error);
 
 #endif

@@ -391,7 +391,8 @@ static enum tri_status take_words(struct program *p, struct arguments *arguments
     }
     if (status || p->options.version || p->options.help || arguments->switches.help)
         return status;
-    status = arguments_end(arguments, error);
+    status = long_options_check(&p->options, error);
+    status = status ? status : arguments_end(arguments, error);
     status = status ? status : name_output(arguments, p->options.output, error);
     if (!status && p->options.report && arguments->file)
         status = report_check(error);
@@ -468,6 +469,7 @@ static struct run_hooks hooks_of(struct program *p)
                                          .checkpoint = o->resume ? o->resume : o->checkpoint}};
     for (int i = 0; i < o->n_exports; i++)
         add_further(&hooks.exports, o->exports[i]);
+    hooks.n_parts = o->n_parts;
     hooks.exports_alone = o->n_exports + o->n_streams > 0 && !o->output;
     hooks.first_file = o->n_streams > 0 ? o->streams[0] : hooks.exports_alone ? o->exports[0] : NULL;
     hooks.n_streamed = o->n_streams;

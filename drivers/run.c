@@ -548,7 +548,8 @@ static enum tri_status run_stages(struct runner *r)
                                .executor = run->hooks->executor, .mesh = &run->mesh, .pslg = &run->pslg,
                                .points_in_poly = run->points_in_poly, .base = run->base,
                                .elements = &run->elements, .exports = &run->hooks->exports,
-                               .exports_alone = run->hooks->exports_alone};
+                               .exports_alone = run->hooks->exports_alone,
+                               .n_parts = run->hooks->n_parts};
     if (run->hooks->limits.dry_run)
         return print_estimate(r);
     status = run->hooks->written_elsewhere ? TRI_OK : check_files(r, &files);

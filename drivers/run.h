@@ -86,6 +86,7 @@ struct run_hooks {
     double (*cell_triangles)(double triangles);
     struct file_names exports;      /* the mesh in other formats .. */
     bool exports_alone;             /* .. and in no others */
+    int n_parts;                    /* into which those are cut that can be; 0: none */
     const char *first_file;         /* of those that take most of the disk; NULL: they have the arguments' base name */
     int n_streamed;                 /* HDF5 files, which refine or write makes */
     struct file_names further;      /* files that are written beside the mesh .. */

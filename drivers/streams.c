@@ -91,8 +91,8 @@ enum tri_status streams_open_exports(struct streams *streams, const struct run *
     streams->markers = !run->arguments->switches.no_markers;
     streams->executor = run->hooks->executor;
     for (int i = 0; !status && i < names->n; i++) {
-        streams->format[i] = tri_format_of(names->name[i]);
-        status = interrupt_open(set, names->name[i], &streams->export[i], error);
+        streams->export[i] = export_of(names->name[i], run->hooks->n_parts);
+        status = export_open(&streams->export[i], names->name[i], set, error);
     }
     streams->n_exports = names->n;
     if (status || names->n == 0)
@@ -184,7 +184,7 @@ static enum tri_status write_exports(struct streams *streams, struct tri_error *
     struct tri_grid grid;
     enum tri_status status = tri_tile_store_grid(streams->store, streams->markers, &grid, error);
     for (int i = 0; !status && i < streams->n_exports; i++)
-        status = streams->format[i]->write(streams->export[i], &grid, streams->executor, error);
+        status = export_write(&streams->export[i], &grid, streams->executor, error);
     return status;
 }
 

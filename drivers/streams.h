@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "drivers/export.h"
 #include "drivers/run.h"
 #include "ptriangle/tiles.h"
 #include "triangle/hdf5/write.h"
@@ -28,8 +29,7 @@ struct streams {
     struct tri_text_stream *text; /* .node, .ele and .poly; NULL: none of them */
     struct tri_sink text_sink;
     int n_exports;
-    struct tri_output *export[MESH_FILES_MOST_NAMES]; /* in other formats, at the end: */
-    const struct tri_format *format[MESH_FILES_MOST_NAMES];
+    struct export export[MESH_FILES_MOST_NAMES]; /* in other formats, at the end: */
     struct tri_tile_store *store;  /* NULL: none of them */
     struct tri_sink store_sink;
     bool markers;                  /* are written */

@@ -69,7 +69,7 @@ tested_by() {
     triangle/text/joined.c) echo joint_files ;;
     triangle/text/stream.c) echo text_stream ;;
     triangle/text/boundary.c | triangle/text/gmsh.c | triangle/text/grouping.c) echo formats ;;
-    triangle/text/hydro.c | triangle/text/vtu.c) echo formats ;;
+    triangle/text/hydro.c | triangle/text/parts.c | triangle/text/vtu.c) echo formats ;;
     sched/triangulate.c) echo par_triangulate ;;
     sched/sweep/checkpoint.c | sched/sweep/spool.c) echo checkpoint ;;
     sched/sweep/deal.c | sched/sweep/sort_triangles.c | sched/sweep/move_triangles.c) echo numbering ;;

@@ -15,6 +15,7 @@
 #include "tests/array_grid.h"
 #include "triangle/text/boundary.h"
 #include "triangle/text/grouping.h"
+#include "triangle/text/parts.h"
 
 /* A square of 3 x 3 points less its upper right quarter; two regions; the marker 2 below, 0 left, else 1. Segment 6 is
  * inside. */
@@ -163,6 +164,136 @@ static void test_sizes_of_binary_files(void **state)
     free(msh);
 }
 
+static int times_in(const int64_t *list, int64_t first, int64_t end, int64_t item)
+{
+    int n = 0;
+    for (int64_t i = first; i < end; i++)
+        n += list[i] == item;
+    return n;
+}
+
+/* Is the point in the part's file, once? */
+static bool has_point(const struct tri_parts *p, int part, int64_t point)
+{
+    int n = times_in(p->inner, p->first_inner[part], p->first_inner[part + 1], point);
+    for (int64_t i = 0; i < p->n_interfaces; i++)
+        for (int64_t k = p->first_shared[i]; k < p->first_shared[i + 1]; k++)
+            n += tri_part_has_interface(p, part, i) && p->shared[k].point == point;
+    assert_true(n <= 1);
+    return n;
+}
+
+/* Each triangle and segment is in one part, which has its points, too, and no others. */
+static void assert_is_cut(const struct tri_grid *grid, int n)
+{
+    struct tri_grouping surfaces, curves;
+    struct tri_parts p;
+    int users[16] = {0};
+    assert_int_equal(tri_group(&surfaces, grid->n_triangles, tri_triangle_group, grid, NULL), TRI_OK);
+    assert_int_equal(tri_group(&curves, grid->n_segments, tri_segment_group, grid, NULL), TRI_OK);
+    assert_int_equal(tri_parts_make(&p, n, grid, &surfaces, &curves, NULL), TRI_OK);
+    assert_true(p.first_triangle[n] == grid->n_triangles && p.first_segment[n] == grid->n_segments);
+    for (int64_t i = 0; i < grid->n_triangles; i++)
+        assert_int_equal(times_in(p.triangle, 0, grid->n_triangles, i), 1);
+    for (int64_t i = 0; i < grid->n_segments; i++)
+        assert_int_equal(times_in(p.segment, 0, grid->n_segments, i), 1);
+    for (int part = 0; part < n; part++) {
+        bool used[16] = {false};
+        const int64_t size = p.first_triangle[part + 1] - p.first_triangle[part];
+        assert_true(size >= grid->n_triangles / n && size <= grid->n_triangles / n + 1);
+        for (int64_t i = p.first_triangle[part]; i < p.first_triangle[part + 1]; i++) {
+            int64_t nodes[6];
+            grid->triangle(grid->user, tri_grouped(&surfaces, p.triangle[i]), nodes);
+            for (int k = 0; k < 3; k++)
+                used[nodes[k]] = true;
+        }
+        for (int64_t i = p.first_segment[part]; i < p.first_segment[part + 1]; i++) {
+            struct tri_grid_edge segment;
+            grid->segment(grid->user, tri_grouped(&curves, p.segment[i]), &segment);
+            used[segment.ends[0]] = used[segment.ends[1]] = true;
+        }
+        for (int64_t i = 0; i < grid->n_points; i++) {
+            users[i] += has_point(&p, part, i);
+            assert_true(!used[i] || has_point(&p, part, i));
+            assert_true(used[i] || !has_point(&p, part, i) || part == 0);
+        }
+    }
+    for (int64_t k = 0; k < p.n_shared; k++)
+        assert_true(users[p.shared[k].point] == p.shared[k].n && p.shared[k].n > 1);
+    for (int64_t i = 0; i < grid->n_points; i++)
+        assert_true(users[i] >= 1);
+    tri_parts_free(&p);
+    tri_grouping_free(&surfaces);
+    tri_grouping_free(&curves);
+}
+
+static void test_parts(void **state)
+{
+    (void)state;
+    struct array_grid arrays = ell();
+    for (int n = 1; n <= 9; n++)
+        assert_is_cut(array_grid(&arrays), n);
+    /* no edges; point 8 is unused */
+    static const int32_t loose[] = {0, 5, 0, 7, 2, 6, 6, 2, 6, 1, 5, 7, 1, 7, 8, 6, 8, 5};
+    static const double more[] = {0, 0, 1, 0, 2, 0, 0, 1, 1, 1, 2, 1, 0, 2, 1, 2, 2, 2};
+    arrays.points = more;
+    arrays.segments = loose;
+    arrays.grid.n_points = 9;
+    for (int n = 1; n <= 9; n++)
+        assert_is_cut(array_grid(&arrays), n);
+    arrays.grid.n_triangles = arrays.grid.n_segments = 0;
+    assert_is_cut(array_grid(&arrays), 2);
+}
+
+/* Across the longer side, at equal places by number. */
+static void test_where_parts_meet(void **state)
+{
+    (void)state;
+    struct array_grid arrays = ell();
+    const struct tri_grid *grid = array_grid(&arrays);
+    struct tri_grouping surfaces, curves;
+    struct tri_parts p;
+    assert_int_equal(tri_group(&surfaces, 6, tri_triangle_group, grid, NULL), TRI_OK);
+    assert_int_equal(tri_group(&curves, 9, tri_segment_group, grid, NULL), TRI_OK);
+    assert_int_equal(tri_parts_make(&p, 2, grid, &surfaces, &curves, NULL), TRI_OK);
+    bool lower[6] = {false};
+    for (int64_t i = 0; i < p.first_triangle[1]; i++)
+        lower[tri_grouped(&surfaces, p.triangle[i])] = true;
+    assert_true(lower[1] && lower[5] && p.first_triangle[1] == 3); /* those in the middle: 0 and 4 */
+    assert_true(lower[0] != lower[4] && !lower[2] && !lower[3]);
+    tri_parts_free(&p);
+    tri_grouping_free(&surfaces);
+    tri_grouping_free(&curves);
+}
+
+static void test_bytes_of_a_part(void **state)
+{
+    (void)state;
+    struct array_grid arrays = ell();
+    struct tri_output_set set;
+    struct tri_output *output[2];
+    const char *const name[] = {"test_formats_1.out", "test_formats_2.out"};
+    tri_outputs_begin(&set);
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(tri_output_open(&set, name[i], &output[i], NULL), TRI_OK);
+    assert_int_equal(tri_write_msh_parts(output, 2, array_grid(&arrays), NULL, NULL), TRI_OK);
+    assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+    for (int i = 0; i < 2; i++) {
+        static char bytes[1 << 14];
+        static const char section[] = "\n$EndEntities\n$PartitionedEntities\n\2\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0";
+        FILE *file = fopen(name[i], "rb");
+        assert_non_null(file);
+        const size_t size = fread(bytes, 1, sizeof bytes, file);
+        bool found = false;
+        for (size_t k = 0; k + sizeof section < size; k++)
+            found = found || memcmp(bytes + k, section, sizeof section - 1) == 0;
+        assert_true(found);
+        assert_memory_equal(bytes + size - 16, "$EndElementData\n", 16);
+        fclose(file);
+        unlink(name[i]);
+    }
+}
+
 static void test_names(void **state)
 {
     (void)state;
@@ -181,6 +312,9 @@ int main(void)
         cmocka_unit_test(test_too_many_groups_are_one),
         cmocka_unit_test(test_texts),
         cmocka_unit_test(test_sizes_of_binary_files),
+        cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_where_parts_meet),
+        cmocka_unit_test(test_bytes_of_a_part),
         cmocka_unit_test(test_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -143,12 +143,32 @@ static void test_refused(void **state)
     }
 }
 
+static void test_parts(void **state)
+{
+    (void)state;
+    struct taken t = nothing();
+    assert_int_equal(long_options_check(&t.options, &t.error), TRI_OK);
+    assert_int_equal(TAKE(&t, "--parts", "512"), TRI_OK);
+    assert_int_equal(t.options.n_parts, 512);
+    assert_int_equal(long_options_check(&t.options, &t.error), TRI_BAD_INPUT);
+    char vtu[] = "--output=a.vtu", msh[] = "--output=a.msh";
+    assert_int_equal(take(&t, vtu, NULL), TRI_OK);
+    assert_int_equal(long_options_check(&t.options, &t.error), TRI_BAD_INPUT);
+    assert_int_equal(take(&t, msh, NULL), TRI_OK);
+    assert_int_equal(long_options_check(&t.options, &t.error), TRI_OK);
+    assert_int_equal(TAKE(&t, "--parts", "0"), TRI_BAD_INPUT);
+    assert_int_equal(TAKE(&t, "--parts", "513"), TRI_BAD_INPUT);
+    assert_int_equal(TAKE(&t, "--parts", "2.5"), TRI_BAD_INPUT);
+    assert_int_equal(TAKE_ALONE(&t, "--parts"), TRI_BAD_INPUT);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_both_forms),
         cmocka_unit_test(test_memory), cmocka_unit_test(test_threads_of_a_batch_system),
         cmocka_unit_test(test_bounds),
+        cmocka_unit_test(test_parts),
         cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

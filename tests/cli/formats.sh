@@ -17,6 +17,46 @@ says "Writing fort.14."
 judge base --poly letter.poly --min-angle 30
 check "ADCIRC's two suffixes" cmp fort.14 x.grd
 
+# parts: the same on any number of threads, swept or not
+fresh section.poly letter.poly
+PTRIANGLE_TEST_BLOCK=60
+export PTRIANGLE_TEST_BLOCK
+for way in one three swept; do
+    case $way in
+    one) program 0 -pq30aAQ --threads 1 --output one.msh --parts 3 section.poly ;;
+    three) program 0 -pq30aAQ --threads 3 --output three.msh --parts=3 section.poly ;;
+    swept) PTRIANGLE_TEST_SWEEP=1 program 0 -pq30aAQ --output swept.msh --parts 3 section.poly ;;
+    esac
+    for part in 1 2 3; do
+        check "the same part $part" cmp "one_$part.msh" "${way}_$part.msh"
+    done
+done
+unset PTRIANGLE_TEST_BLOCK
+wrote one_1.msh one_2.msh one_3.msh swept_1.msh swept_2.msh swept_3.msh three_1.msh three_2.msh three_3.msh
+fresh letter.poly
+program 0 -p --output x.msh --output x.vtu --parts 1 letter.poly
+says "Writing x.msh in 1 parts."
+wrote x_1.msh x.vtu
+rm -f x_1.msh x.vtu
+program 1 -p --output a.b/x.msh --output x.vtu --parts 1 letter.poly
+complains 'a\.b/x_1\.msh: cannot create'
+program 1 -p --output x.msh --parts 513 letter.poly
+complains '--parts: "513" is not a whole number from 1 to 512'
+program 1 -p --parts 2 letter.poly
+complains '--parts: is of \.msh files'
+echo old >x_1.msh
+ln -s . x_2.msh
+program 1 -pq30 --output x.msh --parts 2 letter.poly
+complains 'x_2\.msh: '
+check "the old file" grep -qx old x_1.msh
+rm -f x_1.msh x_2.msh
+if [ -e /dev/full ]; then
+    ln -s /dev/full x_2.msh
+    program 1 -pq30 --output x.msh --parts 2 letter.poly
+    complains 'x_2\.msh: cannot write'
+    wrote x_2.msh
+fi
+
 # all or nothing, and nothing where it cannot be
 fresh letter.poly
 echo old >x.vtu

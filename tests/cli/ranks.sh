@@ -290,7 +290,7 @@ rm -rf kept three.*
 
 # --- what wants the whole mesh: the first task keeps it as one does; nobody touches what another has as standard input
 echo precious >.stdin
-for output in "-e --output two" "--output two.vtu" "--output two.msh"; do
+for output in "-e --output two" "--output two.vtu" "--output two.msh" "--output two.msh --parts 3"; do
     # shellcheck disable=SC2086 # several words
     program 0 -Qpq30a0.01 letter $output
     mkdir one

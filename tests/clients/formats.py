@@ -98,6 +98,60 @@ def by_gmsh():
     gmsh.finalize()
 
 
+def elements_of(gmsh):
+    """Tag: physical tags, parts, nodes."""
+    found = {}
+    for dim, entity in gmsh.model.getEntities():
+        physical = tuple(gmsh.model.getPhysicalGroupsForEntity(dim, entity).tolist())
+        parts = tuple(gmsh.model.getPartitions(dim, entity).tolist())
+        for _, tags, nodes in zip(*gmsh.model.mesh.getElements(dim, entity)):
+            for tag, ends in zip(tags.tolist(), nodes.reshape(len(tags), -1).tolist()):
+                assert tag not in found
+                found[tag] = physical, parts, ends
+    return found
+
+
+def nodes_of(gmsh):
+    tags, at, _ = gmsh.model.mesh.getNodes()
+    return {tag: tuple(x) for tag, x in zip(tags.tolist(), at.reshape(-1, 3).tolist())}
+
+
+def parts_by_gmsh(n):
+    """Each part alone, and all of them: the elements and nodes of the file that is whole, by the same tags."""
+    try:
+        import gmsh
+    except OSError:
+        return
+    gmsh.initialize(["gmsh", "-v", "0"])
+    gmsh.open(stem + ".msh")
+    nodes, elements = nodes_of(gmsh), elements_of(gmsh)
+    names = [f"{stem}{n}_{part + 1}.msh" for part in range(n)]
+    seen, users = {}, {}
+    for part, name in enumerate(names):
+        gmsh.logger.start()
+        gmsh.open(name)
+        assert not [line for line in gmsh.logger.get() if line.startswith(("Warning", "Error"))], name
+        gmsh.logger.stop()
+        assert gmsh.model.getNumberOfPartitions() == n
+        own, at = elements_of(gmsh), nodes_of(gmsh)
+        assert not seen.keys() & own.keys() and all(parts == (part + 1,) for _, parts, _ in own.values())
+        assert set(at) == {node for _, _, ends in own.values() for node in ends}
+        assert all(nodes[node] == x for node, x in at.items())
+        seen.update(own)
+        for dim, entity in gmsh.model.getEntities():
+            for node in gmsh.model.mesh.getNodes(dim, entity)[0].tolist():
+                users.setdefault(node, []).append((part + 1, tuple(gmsh.model.getPartitions(dim, entity).tolist())))
+    assert {t: (p, e) for t, (p, _, e) in seen.items()} == {t: (p, e) for t, (p, _, e) in elements.items()}
+    assert set(users) == set(nodes)
+    for told in users.values():  # each part knows who shares a node
+        assert all(parts == tuple(part for part, _ in told) for _, parts in told)
+    gmsh.clear()
+    for name in names:
+        gmsh.merge(name)
+    assert nodes_of(gmsh) == nodes and elements_of(gmsh).keys() == elements.keys()
+    gmsh.finalize()
+
+
 def boundary():
     """Edges of one triangle, that on their left."""
     edges = [tuple(t[[k, (k + 1) % 3]]) for t in triangles for k in range(3)]
@@ -196,6 +250,8 @@ by_meshio(stem + ".vtu", "attributes")
 by_meshio(stem + ".msh", "attribute 0")
 by_vtk()
 by_gmsh()
+for n in (1, 3, 40) if order == 1 else (3,):
+    parts_by_gmsh(n)
 by_py2dm()
 if order == 1:
     by_words()

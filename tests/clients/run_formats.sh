@@ -60,6 +60,10 @@ if [ "$hdf5" = 1 ]; then
     "$bin/ptriangle" -Qpq30aA --output a.h5 basin.poly
     test -e a.h5
 fi
+for parts in 1 3 40; do
+    "$bin/ptriangle" -Qpq30aA --output "a$parts.msh" --parts $parts basin.poly
+done
+"$bin/ptriangle" -Qpq30aAo2 --output b3.msh --parts 3 basin.poly
 "$bin/ptriangle" -Qpq30aAo2 --output b --output b.vtu --output b.msh --output b.2dm basin.poly
 venv/bin/python "$here/formats.py" a 1
 venv/bin/python "$here/formats.py" b 2

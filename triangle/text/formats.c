@@ -4,9 +4,9 @@
 #include <string.h>
 
 static const struct tri_format formats[] = {
-    {".vtu", "VTK", true, tri_write_vtu},     {".msh", "Gmsh", true, tri_write_msh},
-    {".2dm", "SMS", true, tri_write_2dm},     {".14", "ADCIRC", false, tri_write_14},
-    {".grd", "ADCIRC", false, tri_write_14},
+    {".vtu", "VTK", true, tri_write_vtu, NULL},    {".msh", "Gmsh", true, tri_write_msh, tri_write_msh_parts},
+    {".2dm", "SMS", true, tri_write_2dm, NULL},    {".14", "ADCIRC", false, tri_write_14, NULL},
+    {".grd", "ADCIRC", false, tri_write_14, NULL},
 };
 
 const struct tri_format *tri_format_of(const char *name)

@@ -19,11 +19,18 @@ tri_write_call tri_write_msh; /* Gmsh 4.1, binary */
 tri_write_call tri_write_2dm; /* SMS */
 tri_write_call tri_write_14;  /* ADCIRC; no second-order triangles: TRI_BAD_INPUT */
 
+/* The mesh cut into n parts (triangle/text/parts.h), each in a file of its own. */
+enum { TRI_MOST_PARTS = 512 };
+typedef enum tri_status tri_write_parts_call(struct tri_output *const *outputs, int n, const struct tri_grid *grid,
+                                             const struct tri_executor *executor, struct tri_error *error);
+tri_write_parts_call tri_write_msh_parts;
+
 struct tri_format {
     const char *suffix; /* of the files' names */
     const char *name;   /* whose format */
     bool second_order;  /* it can hold second-order triangles */
     tri_write_call *write;
+    tri_write_parts_call *write_parts; /* NULL: it has no parts */
 };
 
 /* The format that the name of a file asks for by its end; NULL: none of these. */

@@ -6,29 +6,120 @@
  * their own: "marker" and "attribute 0" and so on, of nodes and elements. Nodes are numbered from 1 as they are,
  * elements from 1 as they stand in the file, since some readers rely on that. Sections have text around them and
  * numbers in bytes in them: sizes and tags of nodes and elements are 64 bits wide, those in data 32. (Gmsh reference
- * manual, "MSH file format".) */
+ * manual, "MSH file format".)
+ *
+ * The file of a part has the nodes and elements of that part, by the tags that they have in a file of all. Entities are
+ * those of all, too; behind them come partitioned ones: surfaces and curves of the part, and for each interface (nodes
+ * that this part shares with the same others) a curve without elements, child of the surface on which the file of all
+ * has its nodes. Their tags are the same in all parts. */
 #include <assert.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "triangle/text/binary.h"
 #include "triangle/text/grouping.h"
 #include "triangle/text/formats.h"
+#include "triangle/text/parts.h"
 
 enum { GMSH_LINE = 1, GMSH_TRIANGLE = 2, GMSH_QUADRATIC_TRIANGLE = 9 };
 enum { ENTITY_BYTES = 96 };
+
+/* Groups of surfaces or curves. */
+struct groups {
+    struct tri_grouping all;
+    int n;                               /* of them that are entities */
+    int32_t dimension;
+    int32_t physical[TRI_MOST_GROUPS];   /* tags; 0: none */
+    int64_t first[TRI_MOST_GROUPS], end[TRI_MOST_GROUPS]; /* what of them goes into the file, counted as in `place` */
+    const int64_t *place;                /* in the grouping; NULL: these are the places themselves */
+};
 
 struct gmsh {
     const struct tri_grid *grid;
     struct tri_output *output;
     const struct tri_executor *executor;
     struct tri_error *error;
-    struct tri_grouping surfaces, curves;
+    struct groups surfaces, curves;
     double low[2], high[2];
-    int64_t first; /* of the rows of a block */
-    int32_t k;     /* column of a data section */
+    const struct tri_parts *parts; /* NULL: there are none */
+    int part;
+    int64_t n_nodes, n_triangles, n_segments; /* in the file */
+    int64_t n_inner;                          /* nodes that no other part has */
+    int64_t *border;                          /* [n_nodes - n_inner] the others */
+    int64_t first;                            /* of the rows of a block */
+    int32_t k;                                /* column of a data section */
 };
+
+/* --- what is in the file */
+
+static int64_t node_at(const struct gmsh *g, int64_t i)
+{
+    if (!g->parts)
+        return i;
+    return i < g->n_inner ? g->parts->inner[g->parts->first_inner[g->part] + i] : g->border[i - g->n_inner];
+}
+
+/* The place of an element in its grouping. */
+static int64_t place_at(const struct groups *groups, int64_t i) { return groups->place ? groups->place[i] : i; }
+
+static int64_t size_of(const struct groups *groups, int k) { return groups->end[k] - groups->first[k]; }
+
+static int count_blocks(const struct groups *groups)
+{
+    int n = 0;
+    for (int k = 0; k < groups->n; k++)
+        n += size_of(groups, k) > 0;
+    return n;
+}
+
+static void choose_all(struct groups *groups)
+{
+    groups->place = NULL;
+    for (int k = 0; k < groups->n; k++) {
+        groups->first[k] = groups->all.first[k];
+        groups->end[k] = groups->all.first[k + 1];
+    }
+}
+
+/* Places at .. end - 1 of a list of the parts; they ascend, as groups do. Returns how many they are. */
+static int64_t choose_some(struct groups *groups, const int64_t *place, int64_t at, int64_t end)
+{
+    const int64_t n = end - at;
+    groups->place = place;
+    for (int k = 0; k < groups->n; k++) {
+        groups->first[k] = at;
+        while (at < end && place[at] < groups->all.first[k + 1])
+            at++;
+        groups->end[k] = at;
+    }
+    return n;
+}
+
+static bool has_interface(const struct gmsh *g, int64_t i) { return tri_part_has_interface(g->parts, g->part, i); }
+
+static int64_t interface_size(const struct gmsh *g, int64_t i)
+{
+    return g->parts->first_shared[i + 1] - g->parts->first_shared[i];
+}
+
+static enum tri_status choose_nodes(struct gmsh *g)
+{
+    const struct tri_parts *p = g->parts;
+    int64_t n = 0, *at;
+    for (int64_t i = 0; i < p->n_interfaces; i++)
+        n += has_interface(g, i) ? interface_size(g, i) : 0;
+    g->n_inner = p->first_inner[g->part + 1] - p->first_inner[g->part];
+    g->n_nodes = g->n_inner + n;
+    g->border = at = malloc((size_t)n * sizeof *g->border + 1);
+    if (!g->border)
+        return tri_fail(g->error, TRI_NO_MEMORY, NULL, 0, "out of memory for a part of the mesh");
+    for (int64_t i = 0; i < p->n_interfaces; i++)
+        for (int64_t k = p->first_shared[i]; has_interface(g, i) && k < p->first_shared[i + 1]; k++)
+            *at++ = p->shared[k].point;
+    return TRI_OK;
+}
 
 static enum tri_status put_text(const struct gmsh *g, const char *text)
 {
@@ -63,67 +154,165 @@ static void find_bounds(struct gmsh *g)
     }
 }
 
-/* Its tag, its box, its physical tag if any, and no parts of a boundary. */
-static enum tri_status put_entity(const struct gmsh *g, int32_t tag, int64_t physical)
+static char *put_box(const struct gmsh *g, char *at)
 {
-    char bytes[ENTITY_BYTES], *at = tri_put_i32(bytes, tag);
     at = tri_put_f64(tri_put_f64(tri_put_f64(at, g->low[0]), g->low[1]), 0);
-    at = tri_put_f64(tri_put_f64(tri_put_f64(at, g->high[0]), g->high[1]), 0);
-    at = tri_put_u64(at, physical > 0);
-    at = physical > 0 ? tri_put_i32(at, (int32_t)physical) : at;
-    return put_bytes(g, bytes, tri_put_u64(at, 0));
+    return tri_put_f64(tri_put_f64(tri_put_f64(at, g->high[0]), g->high[1]), 0);
 }
 
-static enum tri_status put_entities(const struct gmsh *g, const struct tri_grouping *groups, int n)
+/* Its box, its physical tag if any, and no parts of a boundary. */
+static char *put_shape(const struct gmsh *g, char *at, int32_t physical)
 {
-    enum tri_status status = TRI_OK;
+    at = tri_put_u64(put_box(g, at), physical > 0);
+    at = physical > 0 ? tri_put_i32(at, physical) : at;
+    return tri_put_u64(at, 0);
+}
+
+static void choose_physical(struct groups *groups)
+{
     int64_t next = 1;
-    for (int k = 0; k < n; k++) {
-        int32_t own = tri_group_tag(groups->value[k]);
+    for (int k = 0; k < groups->n; k++) {
+        int32_t own = tri_group_tag(groups->all.value[k]);
         next = own >= next ? (int64_t)own + 1 : next;
     }
-    for (int k = 0; k < n && !status; k++) {
-        int32_t own = tri_group_tag(groups->value[k]);
+    for (int k = 0; k < groups->n; k++) {
+        int32_t own = tri_group_tag(groups->all.value[k]);
         int64_t physical = own > 0 ? own : next++;
-        status = put_entity(g, k + 1, physical <= INT32_MAX ? physical : 0);
+        groups->physical[k] = physical <= INT32_MAX ? (int32_t)physical : 0;
+    }
+}
+
+static enum tri_status put_entities(const struct gmsh *g, const struct groups *groups)
+{
+    enum tri_status status = TRI_OK;
+    for (int k = 0; k < groups->n && !status; k++) {
+        char bytes[ENTITY_BYTES], *at = put_shape(g, tri_put_i32(bytes, k + 1), groups->physical[k]);
+        status = put_bytes(g, bytes, at);
     }
     return status;
 }
 
-static int count_curves(const struct gmsh *g) { return g->grid->n_segments > 0 ? g->curves.n : 0; }
+/* Numbers of points, curves, surfaces and volumes. */
+static enum tri_status put_numbers(const struct gmsh *g, int64_t curves, int64_t surfaces)
+{
+    char bytes[32], *at = tri_put_i64(tri_put_u64(bytes, 0), curves);
+    return put_bytes(g, bytes, tri_put_u64(tri_put_i64(at, surfaces), 0));
+}
 
 static enum tri_status write_entities(struct gmsh *g)
 {
-    char bytes[32], *at = tri_put_u64(tri_put_u64(bytes, 0), (uint64_t)count_curves(g));
-    find_bounds(g);
     enum tri_status status = put_text(g, "$Entities\n");
-    status = status ? status : put_bytes(g, bytes, tri_put_u64(tri_put_u64(at, (uint64_t)g->surfaces.n), 0));
-    status = status ? status : put_entities(g, &g->curves, count_curves(g));
-    status = status ? status : put_entities(g, &g->surfaces, g->surfaces.n);
+    status = status ? status : put_numbers(g, g->curves.n, g->surfaces.n);
+    status = status ? status : put_entities(g, &g->curves);
+    status = status ? status : put_entities(g, &g->surfaces);
     return status ? status : put_text(g, "\n$EndEntities\n");
 }
 
-/* --- nodes: all on the first surface */
+/* --- partitioned entities */
+
+/* The tag of a group's entity, or of the part of it that is in this file: behind those of all. */
+static int32_t tag_of(const struct gmsh *g, const struct groups *groups, int k)
+{
+    return (g->parts ? (g->part + 1) * groups->n : 0) + k + 1;
+}
+
+/* Behind those of the curves. */
+static int32_t interface_tag(const struct gmsh *g, int64_t i)
+{
+    return (int32_t)((g->parts->n + 1) * g->curves.n + i + 1);
+}
+
+/* There is one in any case: nodes lie on it. */
+static int first_surface(const struct gmsh *g)
+{
+    for (int k = 0; k < g->surfaces.n; k++)
+        if (size_of(&g->surfaces, k) > 0)
+            return k;
+    return 0;
+}
+
+static bool has_piece(const struct gmsh *g, const struct groups *groups, int k)
+{
+    return size_of(groups, k) > 0 || (groups == &g->surfaces && k == first_surface(g));
+}
+
+static int count_pieces(const struct gmsh *g, const struct groups *groups)
+{
+    int n = 0;
+    for (int k = 0; k < groups->n; k++)
+        n += has_piece(g, groups, k);
+    return n;
+}
+
+static enum tri_status put_pieces(const struct gmsh *g, const struct groups *groups)
+{
+    enum tri_status status = TRI_OK;
+    for (int k = 0; k < groups->n && !status; k++) {
+        char bytes[ENTITY_BYTES + 32], *at = tri_put_i32(bytes, tag_of(g, groups, k));
+        at = tri_put_i32(tri_put_i32(at, groups->dimension), k + 1);
+        at = tri_put_i32(tri_put_u64(at, 1), g->part + 1);
+        at = put_shape(g, at, groups->physical[k]);
+        status = has_piece(g, groups, k) ? put_bytes(g, bytes, at) : TRI_OK;
+    }
+    return status;
+}
+
+static enum tri_status put_interface(const struct gmsh *g, int64_t i)
+{
+    const struct tri_shared_point *point = &g->parts->shared[g->parts->first_shared[i]];
+    char bytes[ENTITY_BYTES], *at = tri_put_i32(tri_put_i32(tri_put_i32(bytes, interface_tag(g, i)), 2), 1);
+    enum tri_status status = put_bytes(g, bytes, tri_put_i64(at, point->n));
+    for (int32_t k = 0; k < point->n && !status; k++)
+        status = put_bytes(g, bytes, tri_put_i32(bytes, point->part[k] + 1));
+    return status ? status : put_bytes(g, bytes, put_shape(g, bytes, 0));
+}
+
+static int64_t count_interfaces(const struct gmsh *g)
+{
+    int64_t n = 0;
+    for (int64_t i = 0; g->parts && i < g->parts->n_interfaces; i++)
+        n += has_interface(g, i);
+    return n;
+}
+
+/* No ghosts. */
+static enum tri_status write_pieces(struct gmsh *g)
+{
+    char bytes[16];
+    if (!g->parts)
+        return TRI_OK;
+    enum tri_status status = put_text(g, "$PartitionedEntities\n");
+    status = status ? status : put_bytes(g, bytes, tri_put_u64(tri_put_i64(bytes, g->parts->n), 0));
+    status = status ? status : put_numbers(g, count_pieces(g, &g->curves) + count_interfaces(g),
+                                           count_pieces(g, &g->surfaces));
+    status = status ? status : put_pieces(g, &g->curves);
+    for (int64_t i = 0; i < g->parts->n_interfaces && !status; i++)
+        status = has_interface(g, i) ? put_interface(g, i) : TRI_OK;
+    status = status ? status : put_pieces(g, &g->surfaces);
+    return status ? status : put_text(g, "\n$EndPartitionedEntities\n");
+}
+
+/* --- nodes: all on the first surface, but for interfaces */
 
 static char *tag_row(void *user, size_t i, char *at)
 {
-    (void)user;
-    return tri_put_u64(at, (uint64_t)i + 1);
+    const struct gmsh *g = user;
+    return tri_put_i64(at, node_at(g, g->first + (int64_t)i) + 1);
 }
 
 static char *place_row(void *user, size_t i, char *at)
 {
     const struct gmsh *g = user;
     struct tri_grid_point point;
-    g->grid->point(g->grid->user, (int64_t)i, &point);
+    g->grid->point(g->grid->user, node_at(g, g->first + (int64_t)i), &point);
     return tri_put_f64(tri_put_f64(tri_put_f64(at, point.at[0]), point.at[1]), 0);
 }
 
 /* The head of $Nodes and $Elements: blocks, items, least and greatest tag. */
-static enum tri_status put_totals(const struct gmsh *g, int64_t blocks, int64_t n)
+static enum tri_status put_totals(const struct gmsh *g, int64_t blocks, int64_t n, int64_t least, int64_t greatest)
 {
     char bytes[32], *at = tri_put_i64(tri_put_i64(bytes, blocks), n);
-    return put_bytes(g, bytes, tri_put_i64(tri_put_i64(at, n > 0), n));
+    return put_bytes(g, bytes, tri_put_i64(tri_put_i64(at, least), greatest));
 }
 
 /* The head of a block: dimension and tag of the entity, a number that means something else in each section, items. */
@@ -133,27 +322,69 @@ static enum tri_status put_block(const struct gmsh *g, int32_t dimension, int32_
     return put_bytes(g, bytes, tri_put_i64(at, n));
 }
 
+/* Nodes first .. first + n - 1 of the file, without parameters. */
+static enum tri_status write_node_block(struct gmsh *g, int32_t dimension, int32_t tag, int64_t first, int64_t n)
+{
+    g->first = first;
+    enum tri_status status = put_block(g, dimension, tag, 0, n);
+    status = status ? status : put_rows(g, n, 8, tag_row);
+    return status ? status : put_rows(g, n, 24, place_row);
+}
+
+static enum tri_status write_node_blocks(struct gmsh *g)
+{
+    int64_t first = g->n_inner;
+    enum tri_status status = write_node_block(g, 2, tag_of(g, &g->surfaces, first_surface(g)), 0, g->n_inner);
+    for (int64_t i = 0; g->parts && i < g->parts->n_interfaces && !status; i++) {
+        if (!has_interface(g, i))
+            continue;
+        status = write_node_block(g, 1, interface_tag(g, i), first, interface_size(g, i));
+        first += interface_size(g, i);
+    }
+    return status;
+}
+
+/* Inner nodes ascend. */
+static enum tri_status put_node_totals(const struct gmsh *g)
+{
+    int64_t least = INT64_MAX, greatest = 0;
+    for (int64_t i = 0; i < g->n_nodes; i = i < g->n_inner - 1 ? g->n_inner - 1 : i + 1) {
+        const int64_t tag = node_at(g, i) + 1;
+        least = tag < least ? tag : least;
+        greatest = tag > greatest ? tag : greatest;
+    }
+    return put_totals(g, 1 + count_interfaces(g), g->n_nodes, greatest > 0 ? least : -1, greatest);
+}
+
 static enum tri_status write_nodes(struct gmsh *g)
 {
-    const int64_t n = g->grid->n_points;
     enum tri_status status = put_text(g, "$Nodes\n");
-    status = status ? status : put_totals(g, 1, n);
-    status = status ? status : put_block(g, 2, 1, 0, n); /* without parameters */
-    status = status ? status : put_rows(g, n, 8, tag_row);
-    status = status ? status : put_rows(g, n, 24, place_row);
+    status = status ? status : put_node_totals(g);
+    status = status ? status : write_node_blocks(g);
     return status ? status : put_text(g, "\n$EndNodes\n");
 }
 
 /* --- elements */
+
+static int64_t element_tag(const struct gmsh *g, const struct groups *groups, int64_t i)
+{
+    return (groups == &g->curves ? g->grid->n_triangles : 0) + place_at(groups, i) + 1;
+}
+
+/* Item i of a block. */
+static int64_t item_at(const struct gmsh *g, const struct groups *groups, size_t i)
+{
+    return tri_grouped(&groups->all, place_at(groups, g->first + (int64_t)i));
+}
 
 /* Gmsh has the nodes amid edges in the order of the edges from corner to corner. */
 static char *triangle_row(void *user, size_t i, char *at)
 {
     static const int order[6] = {0, 1, 2, 5, 3, 4};
     const struct gmsh *g = user;
-    int64_t t = tri_grouped(&g->surfaces, g->first + (int64_t)i), nodes[6];
-    g->grid->triangle(g->grid->user, t, nodes);
-    at = tri_put_i64(at, g->first + (int64_t)i + 1);
+    int64_t nodes[6];
+    g->grid->triangle(g->grid->user, item_at(g, &g->surfaces, i), nodes);
+    at = tri_put_i64(at, element_tag(g, &g->surfaces, g->first + (int64_t)i));
     for (int k = 0; k < g->grid->n_nodes; k++)
         at = tri_put_i64(at, nodes[order[k]] + 1);
     return at;
@@ -162,117 +393,159 @@ static char *triangle_row(void *user, size_t i, char *at)
 static char *segment_row(void *user, size_t i, char *at)
 {
     const struct gmsh *g = user;
-    int64_t s = tri_grouped(&g->curves, g->first + (int64_t)i);
     struct tri_grid_edge segment;
-    g->grid->segment(g->grid->user, s, &segment);
-    at = tri_put_i64(at, g->grid->n_triangles + g->first + (int64_t)i + 1);
+    g->grid->segment(g->grid->user, item_at(g, &g->curves, i), &segment);
+    at = tri_put_i64(at, element_tag(g, &g->curves, g->first + (int64_t)i));
     return tri_put_i64(tri_put_i64(at, segment.ends[0] + 1), segment.ends[1] + 1);
 }
 
-static enum tri_status write_blocks(struct gmsh *g, const struct tri_grouping *groups, int n, int32_t dimension,
-                                    int32_t kind, size_t row_bytes, char *(*row)(void *, size_t, char *))
+static enum tri_status write_blocks(struct gmsh *g, const struct groups *groups, int32_t kind, size_t row_bytes,
+                                    char *(*row)(void *, size_t, char *))
 {
     enum tri_status status = TRI_OK;
-    for (int k = 0; k < n && !status; k++) {
-        int64_t size = groups->first[k + 1] - groups->first[k];
+    for (int k = 0; k < groups->n && !status; k++) {
+        if (size_of(groups, k) == 0)
+            continue;
         g->first = groups->first[k];
-        status = put_block(g, dimension, k + 1, kind, size);
-        status = status ? status : put_rows(g, size, row_bytes, row);
+        status = put_block(g, groups->dimension, tag_of(g, groups, k), kind, size_of(groups, k));
+        status = status ? status : put_rows(g, size_of(groups, k), row_bytes, row);
     }
     return status;
 }
 
+/* Tags ascend, triangles before segments. */
+static enum tri_status put_element_totals(const struct gmsh *g)
+{
+    const struct groups *both[] = {&g->surfaces, &g->curves};
+    int64_t least = 0, greatest = 0;
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < both[i]->n; k++) {
+            if (size_of(both[i], k) == 0)
+                continue;
+            least = least > 0 ? least : element_tag(g, both[i], both[i]->first[k]);
+            greatest = element_tag(g, both[i], both[i]->end[k] - 1);
+        }
+    return put_totals(g, count_blocks(&g->surfaces) + count_blocks(&g->curves), g->n_triangles + g->n_segments,
+                      least, greatest);
+}
+
 static enum tri_status write_elements(struct gmsh *g)
 {
-    const int n_surfaces = g->grid->n_triangles > 0 ? g->surfaces.n : 0, n_curves = count_curves(g);
     const int32_t kind = g->grid->n_nodes == 6 ? GMSH_QUADRATIC_TRIANGLE : GMSH_TRIANGLE;
     enum tri_status status = put_text(g, "$Elements\n");
-    status = status ? status : put_totals(g, n_surfaces + n_curves, g->grid->n_triangles + g->grid->n_segments);
-    status = status ? status : write_blocks(g, &g->surfaces, n_surfaces, 2, kind,
-                                            8 + 8 * (size_t)g->grid->n_nodes, triangle_row);
-    status = status ? status : write_blocks(g, &g->curves, n_curves, 1, GMSH_LINE, 24, segment_row);
+    status = status ? status : put_element_totals(g);
+    status = status ? status : write_blocks(g, &g->surfaces, kind, 8 + 8 * (size_t)g->grid->n_nodes, triangle_row);
+    status = status ? status : write_blocks(g, &g->curves, GMSH_LINE, 24, segment_row);
     return status ? status : put_text(g, "\n$EndElements\n");
 }
 
-/* --- data */
+/* --- data: a tag and a number */
 
-static char *put_datum(char *at, size_t i, double value) { return tri_put_f64(tri_put_i32(at, (int32_t)i + 1), value); }
+static char *put_datum(char *at, int64_t tag, double value)
+{
+    return tri_put_f64(tri_put_i32(at, (int32_t)tag), value);
+}
 
 static char *node_marker_row(void *user, size_t i, char *at)
 {
     const struct gmsh *g = user;
+    const int64_t node = node_at(g, (int64_t)i);
     struct tri_grid_point point;
-    g->grid->point(g->grid->user, (int64_t)i, &point);
-    return put_datum(at, i, point.marker);
+    g->grid->point(g->grid->user, node, &point);
+    return put_datum(at, node + 1, point.marker);
 }
 
 static char *node_attribute_row(void *user, size_t i, char *at)
 {
     const struct gmsh *g = user;
-    return put_datum(at, i, g->grid->attribute(g->grid->user, (int64_t)i, g->k));
+    const int64_t node = node_at(g, (int64_t)i);
+    return put_datum(at, node + 1, g->grid->attribute(g->grid->user, node, g->k));
 }
 
-/* Which triangle, or segment behind all of them, is element i of the file. */
-static int64_t element_at(const struct gmsh *g, size_t place)
-{
-    const int64_t n = g->grid->n_triangles, i = (int64_t)place;
-    return i < n ? tri_grouped(&g->surfaces, i) : n + tri_grouped(&g->curves, i - n);
-}
-
-/* Of triangles 0. */
-static char *element_marker_row(void *user, size_t i, char *at)
+/* Triangles have no marker, and segments no attributes. */
+static char *triangle_zero_row(void *user, size_t i, char *at)
 {
     const struct gmsh *g = user;
-    int64_t element = element_at(g, i), s = element - g->grid->n_triangles;
-    return put_datum(at, i, s < 0 ? 0 : tri_segment_group(g->grid, s));
+    return put_datum(at, element_tag(g, &g->surfaces, g->first + (int64_t)i), 0);
 }
 
-/* Of segments 0. */
-static char *element_attribute_row(void *user, size_t i, char *at)
+static char *triangle_attribute_row(void *user, size_t i, char *at)
 {
     const struct gmsh *g = user;
-    int64_t element = element_at(g, i);
-    bool is_triangle = element < g->grid->n_triangles;
-    return put_datum(at, i, is_triangle ? g->grid->column(g->grid->user, element, g->k) : 0);
+    const double value = g->grid->column(g->grid->user, item_at(g, &g->surfaces, i), g->k);
+    return put_datum(at, element_tag(g, &g->surfaces, g->first + (int64_t)i), value);
+}
+
+static char *segment_zero_row(void *user, size_t i, char *at)
+{
+    const struct gmsh *g = user;
+    return put_datum(at, element_tag(g, &g->curves, g->first + (int64_t)i), 0);
+}
+
+static char *segment_marker_row(void *user, size_t i, char *at)
+{
+    const struct gmsh *g = user;
+    const double value = tri_segment_group(g->grid, item_at(g, &g->curves, i));
+    return put_datum(at, element_tag(g, &g->curves, g->first + (int64_t)i), value);
 }
 
 /* Without time: one step, one component. */
-static enum tri_status write_data(struct gmsh *g, const char *section, const char *name, int64_t n,
-                                  char *(*row)(void *, size_t, char *))
+static enum tri_status begin_data(const struct gmsh *g, const char *section, const char *name, int64_t n)
 {
     char head[192];
     snprintf(head, sizeof head, "$%s\n1\n\"%s\"\n1\n0\n3\n0\n1\n%" PRId64 "\n", section, name, n);
-    enum tri_status status = put_text(g, head);
-    status = status ? status : put_rows(g, n, 12, row);
-    snprintf(head, sizeof head, "\n$End%s\n", section);
-    return status ? status : put_text(g, head);
+    return put_text(g, head);
 }
 
-static enum tri_status write_columns(struct gmsh *g, const char *section, int32_t n_columns, int64_t n,
-                                     char *(*row)(void *, size_t, char *))
+static enum tri_status write_node_data(struct gmsh *g, const char *name, char *(*row)(void *, size_t, char *))
+{
+    enum tri_status status = begin_data(g, "NodeData", name, g->n_nodes);
+    status = status ? status : put_rows(g, g->n_nodes, 12, row);
+    return status ? status : put_text(g, "\n$EndNodeData\n");
+}
+
+static enum tri_status put_data_blocks(struct gmsh *g, const struct groups *groups,
+                                       char *(*row)(void *, size_t, char *))
 {
     enum tri_status status = TRI_OK;
-    for (g->k = 0; g->k < n_columns && !status; g->k++) {
-        char name[32];
-        snprintf(name, sizeof name, "attribute %" PRId32, g->k);
-        status = write_data(g, section, name, n, row);
+    for (int k = 0; k < groups->n && !status; k++) {
+        g->first = groups->first[k];
+        status = put_rows(g, size_of(groups, k), 12, row);
     }
     return status;
+}
+
+static enum tri_status write_element_data(struct gmsh *g, const char *name, char *(*triangle)(void *, size_t, char *),
+                                          char *(*segment)(void *, size_t, char *))
+{
+    enum tri_status status = begin_data(g, "ElementData", name, g->n_triangles + g->n_segments);
+    status = status ? status : put_data_blocks(g, &g->surfaces, triangle);
+    status = status ? status : put_data_blocks(g, &g->curves, segment);
+    return status ? status : put_text(g, "\n$EndElementData\n");
+}
+
+static const char *name_column(char name[32], int32_t k)
+{
+    snprintf(name, 32, "attribute %" PRId32, k);
+    return name;
 }
 
 static enum tri_status write_all_data(struct gmsh *g)
 {
     const struct tri_grid *grid = g->grid;
-    const int64_t points = grid->n_points, elements = grid->n_triangles + grid->n_segments;
     enum tri_status status = TRI_OK;
-    if (points > INT32_MAX || elements > INT32_MAX) /* the format has no room for their numbers */
-        return TRI_OK;
+    char name[32];
+    if (grid->n_points > INT32_MAX || grid->n_triangles + grid->n_segments > INT32_MAX)
+        return TRI_OK; /* the format has no room for their tags */
     if (grid->has_markers) {
-        status = write_data(g, "NodeData", "marker", points, node_marker_row);
-        status = status ? status : write_data(g, "ElementData", "marker", elements, element_marker_row);
+        status = write_node_data(g, "marker", node_marker_row);
+        status = status ? status : write_element_data(g, "marker", triangle_zero_row, segment_marker_row);
     }
-    status = status ? status : write_columns(g, "NodeData", grid->n_attributes, points, node_attribute_row);
-    return status ? status : write_columns(g, "ElementData", grid->n_columns, elements, element_attribute_row);
+    for (g->k = 0; g->k < grid->n_attributes && !status; g->k++)
+        status = write_node_data(g, name_column(name, g->k), node_attribute_row);
+    for (g->k = 0; g->k < grid->n_columns && !status; g->k++)
+        status = write_element_data(g, name_column(name, g->k), triangle_attribute_row, segment_zero_row);
+    return status;
 }
 
 /* --- the file */
@@ -284,19 +557,71 @@ static enum tri_status write_all(struct gmsh *g)
     status = status ? status : put_bytes(g, one, tri_put_i32(one, 1)); /* tells the order of bytes */
     status = status ? status : put_text(g, "\n$EndMeshFormat\n");
     status = status ? status : write_entities(g);
+    status = status ? status : write_pieces(g);
     status = status ? status : write_nodes(g);
     status = status ? status : write_elements(g);
     return status ? status : write_all_data(g);
 }
 
+static enum tri_status begin(struct gmsh *g)
+{
+    const struct tri_grid *grid = g->grid;
+    enum tri_status status = tri_group(&g->surfaces.all, grid->n_triangles, tri_triangle_group, grid, g->error);
+    status = status ? status : tri_group(&g->curves.all, grid->n_segments, tri_segment_group, grid, g->error);
+    if (status)
+        return status;
+    g->surfaces.dimension = 2;
+    g->surfaces.n = g->surfaces.all.n;
+    g->curves.dimension = 1;
+    g->curves.n = grid->n_segments > 0 ? g->curves.all.n : 0;
+    choose_physical(&g->surfaces);
+    choose_physical(&g->curves);
+    find_bounds(g);
+    return TRI_OK;
+}
+
+static void end(struct gmsh *g)
+{
+    tri_grouping_free(&g->surfaces.all);
+    tri_grouping_free(&g->curves.all);
+}
+
 enum tri_status tri_write_msh(struct tri_output *output, const struct tri_grid *grid,
                               const struct tri_executor *executor, struct tri_error *error)
 {
-    struct gmsh g = {.grid = grid, .output = output, .executor = executor, .error = error};
-    enum tri_status status = tri_group(&g.surfaces, grid->n_triangles, tri_triangle_group, grid, error);
-    status = status ? status : tri_group(&g.curves, grid->n_segments, tri_segment_group, grid, error);
+    struct gmsh g = {.grid = grid, .output = output, .executor = executor, .error = error, .n_nodes = grid->n_points,
+                     .n_inner = grid->n_points, .n_triangles = grid->n_triangles, .n_segments = grid->n_segments};
+    enum tri_status status = begin(&g);
+    choose_all(&g.surfaces);
+    choose_all(&g.curves);
     status = status ? status : write_all(&g);
-    tri_grouping_free(&g.surfaces);
-    tri_grouping_free(&g.curves);
+    end(&g);
+    return status;
+}
+
+static enum tri_status write_part(struct gmsh *g, int part, struct tri_output *output)
+{
+    const struct tri_parts *p = g->parts;
+    g->part = part;
+    g->output = output;
+    g->n_triangles = choose_some(&g->surfaces, p->triangle, p->first_triangle[part], p->first_triangle[part + 1]);
+    g->n_segments = choose_some(&g->curves, p->segment, p->first_segment[part], p->first_segment[part + 1]);
+    enum tri_status status = choose_nodes(g);
+    status = status ? status : write_all(g);
+    free(g->border);
+    return status;
+}
+
+enum tri_status tri_write_msh_parts(struct tri_output *const *outputs, int n, const struct tri_grid *grid,
+                                    const struct tri_executor *executor, struct tri_error *error)
+{
+    struct tri_parts parts = {0};
+    struct gmsh g = {.grid = grid, .executor = executor, .error = error, .parts = &parts};
+    enum tri_status status = begin(&g);
+    status = status ? status : tri_parts_make(&parts, n, grid, &g.surfaces.all, &g.curves.all, error);
+    for (int part = 0; part < n && !status; part++)
+        status = write_part(&g, part, outputs[part]);
+    tri_parts_free(&parts);
+    end(&g);
     return status;
 }

@@ -24,7 +24,7 @@
 extern "C" {
 #endif
 
-enum { TRI_MAX_OUTPUTS = 16 };
+enum { TRI_MAX_OUTPUTS = 544 };
 
 struct tri_output {
     char *path;      /* what the file will be called: the caller's path with symbolic links followed */

@@ -17,7 +17,7 @@
 #include "triangle/scratch_file.h"
 
 enum kind { POINTS, POINT_MARKERS, ATTRIBUTES, CORNERS, REGIONS, ENDS, SEGMENT_MARKERS, KINDS };
-enum { EXTRAS = 4, SHEETS = KINDS + EXTRAS, CHUNK = 1 << 15 };
+enum { EXTRAS = 8, SHEETS = KINDS + EXTRAS, CHUNK = 1 << 15 };
 
 struct sheet {
     int file;       /* -1: none */

@@ -2,7 +2,8 @@
  * mesh as a grid, whose rows are read where they lie. In memory are a few megabytes of it at a time.
  *
  * The files have no names: nothing is left of them, however the process ends. They take 20 bytes a point, and 8 for
- * each attribute, 28 a triangle and 20 a segment; and 8 a triangle while those of several regions are grouped. */
+ * each attribute, 28 a triangle and 20 a segment; and 8 a triangle while those of several regions are grouped; and 10 a
+ * triangle, 12 a point and 12 a segment where a mesh is cut into parts. */
 #ifndef TRIANGLE_TEXT_TILE_STORE_H
 #define TRIANGLE_TEXT_TILE_STORE_H
 

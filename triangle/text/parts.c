@@ -1,0 +1,478 @@
+/* A triangle lies where its centroid is; of equal places its number decides. The cut between the parts below k and
+ * those from k on is kept as item k: a triangle finds its part by going down the bisections, halving what it may be in.
+ *
+ * A segment is an edge of a triangle of each part that has one. So where only one part has both ends, it is that one;
+ * else the triangles with such edges tell. */
+#include "triangle/text/parts.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "triangle/grow.h"
+
+enum { MOST_SAMPLES = 1 << 18 };
+
+/* A point and a part that uses it; parts count from 1 while users are told from nobody. */
+struct use {
+    int64_t point;
+    int32_t part;
+};
+
+struct edge {
+    int64_t ends[2]; /* ascending */
+    int64_t segment;
+};
+
+/* Where a triangle lies. */
+struct site {
+    double at[2];
+    int64_t triangle;
+};
+
+/* What lies before the site, along the axis, is on the side of the lower parts. */
+struct cut {
+    int axis; /* -1: all is */
+    struct site site;
+};
+
+struct work {
+    struct tri_parts *parts;
+    const struct tri_grid *grid;
+    struct site *sample;
+    struct cut cut[TRI_MOST_PARTS]; /* cut[k] between parts below k and from k on */
+    int16_t *part;         /* [n_triangles] of a triangle; they count from 1 */
+    int32_t *user;         /* [n_points] 0: nobody so far; k: part k; -k: several, k the last that was told of */
+    int32_t *segment_part; /* [n_segments] 0: not known yet */
+    struct use *use;       /* of points of several parts */
+    int64_t n_uses, room;
+    struct edge *edge;     /* segments between shared points, by their ends */
+    size_t n_edges;
+    bool no_memory;
+};
+
+static void *get(const struct tri_storage *storage, int64_t n, size_t bytes)
+{
+    const size_t all = (size_t)n * bytes;
+    return storage ? storage->extra(storage->user, all) : malloc(all + 1);
+}
+
+static void give_back(const struct tri_storage *storage, void *at)
+{
+    if (at && storage)
+        storage->extra_free(storage->user, at);
+    else
+        free(at);
+}
+
+/* --- cutting the plane */
+
+static int by_axis(int axis, const struct site *a, const struct site *b)
+{
+    for (int k = 0; k < 2; k++, axis = 1 - axis)
+        if (a->at[axis] != b->at[axis])
+            return a->at[axis] < b->at[axis] ? -1 : 1;
+    return a->triangle < b->triangle ? -1 : a->triangle > b->triangle;
+}
+
+static int by_x(const void *a, const void *b) { return by_axis(0, a, b); }
+static int by_y(const void *a, const void *b) { return by_axis(1, a, b); }
+
+/* A third of each: a sum might be too large. */
+static struct site site_of(const struct work *w, int64_t t)
+{
+    struct site site = {{0, 0}, t};
+    int64_t nodes[6];
+    w->grid->triangle(w->grid->user, t, nodes);
+    for (int k = 0; k < 3; k++) {
+        struct tri_grid_point point;
+        w->grid->point(w->grid->user, nodes[k], &point);
+        site.at[0] += point.at[0] / 3;
+        site.at[1] += point.at[1] / 3;
+    }
+    return site;
+}
+
+/* The axis along which the sites lie farther apart. */
+static int longer_axis(const struct site *site, int64_t n)
+{
+    double extent[2];
+    for (int axis = 0; axis < 2; axis++) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (int64_t i = 0; i < n; i++) {
+            low = fmin(low, site[i].at[axis]);
+            high = fmax(high, site[i].at[axis]);
+        }
+        extent[axis] = high / 2 - low / 2;
+    }
+    return extent[1] > extent[0];
+}
+
+/* Cuts n sites into parts first .. first + n_parts - 1; no deeper than the logarithm of their number. */
+static void bisect(struct work *w, struct site *site, int64_t n, int first, int n_parts)
+{
+    const int lower = n_parts / 2;
+    if (n_parts == 1)
+        return;
+    const int64_t n_lower = (n * lower + n_parts - 1) / n_parts;
+    const int axis = longer_axis(site, n);
+    if (n > 0)
+        qsort(site, (size_t)n, sizeof *site, axis ? by_y : by_x);
+    w->cut[first + lower] = n_lower < n ? (struct cut){axis, site[n_lower]} : (struct cut){.axis = -1};
+    bisect(w, site, n_lower, first, lower);
+    bisect(w, site + n_lower, n - n_lower, first + lower, n_parts - lower);
+}
+
+static enum tri_status cut_plane(struct work *w, struct tri_error *error)
+{
+    const int64_t m = w->grid->n_triangles, step = m / MOST_SAMPLES + 1;
+    int64_t n = 0;
+    w->sample = malloc((size_t)(m / step + 1) * sizeof *w->sample);
+    if (!w->sample)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to cut a mesh into parts");
+    for (int64_t t = 0; t < m; t += step)
+        w->sample[n++] = site_of(w, t);
+    bisect(w, w->sample, n, 0, w->parts->n);
+    free(w->sample);
+    return TRI_OK;
+}
+
+static int part_at(const struct work *w, const struct site *site)
+{
+    int first = 0, n = w->parts->n;
+    while (n > 1) {
+        const int lower = n / 2;
+        const struct cut *cut = &w->cut[first + lower];
+        if (cut->axis < 0 || by_axis(cut->axis, site, &cut->site) < 0) {
+            n = lower;
+        } else {
+            first += lower;
+            n -= lower;
+        }
+    }
+    return first;
+}
+
+/* --- who uses which point */
+
+static void note(struct work *w, int64_t point, int32_t part)
+{
+    if (tri_grow_far(&w->use, &w->room, w->n_uses + 1, sizeof *w->use))
+        w->use[w->n_uses++] = (struct use){point, part};
+    else
+        w->no_memory = true;
+}
+
+static void use_point(struct work *w, int64_t point, int32_t part)
+{
+    const int32_t before = w->user[point];
+    if (before == part || before == -part)
+        return;
+    if (before > 0)
+        note(w, point, before);
+    if (before != 0)
+        note(w, point, part);
+    w->user[point] = before == 0 ? part : -part;
+}
+
+static void use_corners(struct work *w)
+{
+    int64_t nodes[6];
+    for (int64_t t = 0; t < w->grid->n_triangles; t++) {
+        const struct site site = site_of(w, t);
+        w->part[t] = (int16_t)(part_at(w, &site) + 1);
+        w->grid->triangle(w->grid->user, t, nodes);
+        for (int k = 0; k < w->grid->n_nodes; k++)
+            use_point(w, nodes[k], w->part[t]);
+    }
+}
+
+/* --- whose are segments */
+
+static int by_ends(const void *left, const void *right)
+{
+    const struct edge *a = left, *b = right;
+    for (int k = 0; k < 2; k++)
+        if (a->ends[k] != b->ends[k])
+            return a->ends[k] < b->ends[k] ? -1 : 1;
+    return a->segment < b->segment ? -1 : a->segment > b->segment;
+}
+
+static struct edge edge_of(int64_t a, int64_t b, int64_t segment)
+{
+    return (struct edge){{a < b ? a : b, a < b ? b : a}, segment};
+}
+
+static bool is_between_shared(const struct work *w, const int64_t ends[2])
+{
+    return w->user[ends[0]] < 0 && w->user[ends[1]] < 0;
+}
+
+/* Those with an inner point are its part's. */
+static void assign_plain(struct work *w)
+{
+    for (int64_t s = 0; s < w->grid->n_segments; s++) {
+        struct tri_grid_edge segment;
+        w->grid->segment(w->grid->user, s, &segment);
+        const int32_t a = w->user[segment.ends[0]], b = w->user[segment.ends[1]];
+        w->segment_part[s] = a > 0 ? a : b > 0 ? b : 0;
+        w->n_edges += a < 0 && b < 0;
+    }
+}
+
+static bool list_edges(struct work *w)
+{
+    size_t n = 0;
+    w->edge = malloc(w->n_edges * sizeof *w->edge + 1);
+    for (int64_t s = 0; w->edge && s < w->grid->n_segments; s++) {
+        struct tri_grid_edge segment;
+        w->grid->segment(w->grid->user, s, &segment);
+        if (is_between_shared(w, segment.ends))
+            w->edge[n++] = edge_of(segment.ends[0], segment.ends[1], s);
+    }
+    if (w->edge)
+        qsort(w->edge, n, sizeof *w->edge, by_ends);
+    return w->edge;
+}
+
+/* Segments with these ends, which a part has. */
+static void assign_edge(struct work *w, const int64_t ends[2], int32_t part)
+{
+    const struct edge wanted = edge_of(ends[0], ends[1], 0);
+    size_t low = 0, high = w->n_edges;
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        if (by_ends(&w->edge[middle], &wanted) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (; low < w->n_edges && memcmp(w->edge[low].ends, wanted.ends, sizeof wanted.ends) == 0; low++)
+        if (!(w->segment_part[w->edge[low].segment] > 0 && w->segment_part[w->edge[low].segment] < part))
+            w->segment_part[w->edge[low].segment] = part;
+}
+
+static void assign_by_triangles(struct work *w)
+{
+    int64_t nodes[6];
+    for (int64_t t = 0; w->n_edges > 0 && t < w->grid->n_triangles; t++) {
+        w->grid->triangle(w->grid->user, t, nodes);
+        for (int k = 0; k < 3; k++) {
+            const int64_t ends[2] = {nodes[k], nodes[(k + 1) % 3]};
+            if (is_between_shared(w, ends))
+                assign_edge(w, ends, w->part[t]);
+        }
+    }
+}
+
+/* Those that are no edges have a part of one end; each part uses both ends of its segments. */
+static void assign_loose(struct work *w)
+{
+    for (int64_t s = 0; s < w->grid->n_segments; s++) {
+        struct tri_grid_edge segment;
+        w->grid->segment(w->grid->user, s, &segment);
+        const int32_t end = abs(w->user[segment.ends[0]]);
+        w->segment_part[s] = w->segment_part[s] ? w->segment_part[s] : end ? end : 1;
+        for (int k = 0; k < 2; k++)
+            use_point(w, segment.ends[k], w->segment_part[s]);
+    }
+}
+
+static enum tri_status assign_segments(struct work *w, struct tri_error *error)
+{
+    assign_plain(w);
+    if (!list_edges(w))
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to cut a mesh into parts");
+    assign_by_triangles(w);
+    assign_loose(w);
+    return TRI_OK;
+}
+
+/* --- lists */
+
+static void accumulate(int64_t *first, int n)
+{
+    int64_t before = 0;
+    for (int k = 0; k <= n; k++) {
+        const int64_t own = k < n ? first[k] : 0;
+        first[k] = before;
+        before += own;
+    }
+}
+
+static void list_inner(struct work *w)
+{
+    struct tri_parts *p = w->parts;
+    int64_t next[TRI_MOST_PARTS + 1];
+    for (int64_t i = 0; i < w->grid->n_points; i++) {
+        w->user[i] = w->user[i] ? w->user[i] : 1;
+        if (w->user[i] > 0)
+            p->first_inner[w->user[i] - 1]++;
+    }
+    accumulate(p->first_inner, p->n);
+    memcpy(next, p->first_inner, sizeof next);
+    for (int64_t i = 0; i < w->grid->n_points; i++)
+        if (w->user[i] > 0)
+            p->inner[next[w->user[i] - 1]++] = i;
+}
+
+static void list_triangles(struct work *w, const struct tri_grouping *surfaces)
+{
+    struct tri_parts *p = w->parts;
+    int64_t next[TRI_MOST_PARTS + 1];
+    for (int64_t t = 0; t < w->grid->n_triangles; t++)
+        p->first_triangle[w->part[t] - 1]++;
+    accumulate(p->first_triangle, p->n);
+    memcpy(next, p->first_triangle, sizeof next);
+    for (int64_t place = 0; place < w->grid->n_triangles; place++)
+        p->triangle[next[w->part[tri_grouped(surfaces, place)] - 1]++] = place;
+}
+
+static void list_segments(struct work *w, const struct tri_grouping *curves)
+{
+    struct tri_parts *p = w->parts;
+    int64_t next[TRI_MOST_PARTS + 1];
+    for (int64_t s = 0; s < w->grid->n_segments; s++)
+        p->first_segment[w->segment_part[s] - 1]++;
+    accumulate(p->first_segment, p->n);
+    memcpy(next, p->first_segment, sizeof next);
+    for (int64_t place = 0; place < w->grid->n_segments; place++)
+        p->segment[next[w->segment_part[tri_grouped(curves, place)] - 1]++] = place;
+}
+
+/* --- shared points */
+
+static int by_point(const void *left, const void *right)
+{
+    const struct use *a = left, *b = right;
+    if (a->point != b->point)
+        return a->point < b->point ? -1 : 1;
+    return a->part < b->part ? -1 : a->part > b->part;
+}
+
+static int compare_parts(const struct tri_shared_point *a, const struct tri_shared_point *b)
+{
+    for (int32_t k = 0; k < a->n && k < b->n; k++)
+        if (a->part[k] != b->part[k])
+            return a->part[k] < b->part[k] ? -1 : 1;
+    return a->n < b->n ? -1 : a->n > b->n;
+}
+
+static int by_parts(const void *left, const void *right)
+{
+    const struct tri_shared_point *a = left, *b = right;
+    const int order = compare_parts(a, b);
+    return order ? order : a->point < b->point ? -1 : a->point > b->point;
+}
+
+static void list_shared(struct work *w)
+{
+    struct tri_parts *p = w->parts;
+    for (int64_t i = 0; i < w->n_uses; i++) {
+        const struct use *use = &w->use[i];
+        p->part_list[i] = use->part - 1;
+        if (i == 0 || use->point != use[-1].point)
+            p->shared[p->n_shared++] = (struct tri_shared_point){use->point, 0, &p->part_list[i]};
+        p->shared[p->n_shared - 1].n++;
+    }
+    qsort(p->shared, (size_t)p->n_shared, sizeof *p->shared, by_parts);
+    for (int64_t i = 0; i < p->n_shared; i++)
+        if (i == 0 || compare_parts(&p->shared[i - 1], &p->shared[i]) != 0)
+            p->first_shared[p->n_interfaces++] = i;
+    p->first_shared[p->n_interfaces] = p->n_shared;
+}
+
+/* A point may have been noted more than once for a part. */
+static void sort_uses(struct work *w)
+{
+    int64_t n = 0;
+    if (w->n_uses > 0)
+        qsort(w->use, (size_t)w->n_uses, sizeof *w->use, by_point);
+    for (int64_t i = 0; i < w->n_uses; i++)
+        if (n == 0 || by_point(&w->use[n - 1], &w->use[i]) != 0)
+            w->use[n++] = w->use[i];
+    w->n_uses = n;
+}
+
+static enum tri_status make_lists(struct work *w, const struct tri_grouping *surfaces,
+                                  const struct tri_grouping *curves, struct tri_error *error)
+{
+    struct tri_parts *p = w->parts;
+    sort_uses(w);
+    p->part_list = malloc((size_t)w->n_uses * sizeof *p->part_list + 1);
+    p->shared = malloc((size_t)w->n_uses * sizeof *p->shared + 1);
+    p->first_shared = malloc((size_t)(w->n_uses + 1) * sizeof *p->first_shared);
+    if (w->no_memory || !p->part_list || !p->shared || !p->first_shared)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to cut a mesh into parts");
+    list_inner(w);
+    list_triangles(w, surfaces);
+    list_segments(w, curves);
+    list_shared(w);
+    return TRI_OK;
+}
+
+/* --- all together */
+
+static enum tri_status get_room(struct work *w, struct tri_error *error)
+{
+    const struct tri_grid *g = w->grid;
+    struct tri_parts *p = w->parts;
+    w->part = get(p->storage, g->n_triangles, sizeof *w->part);
+    w->user = get(p->storage, g->n_points, sizeof *w->user);
+    w->segment_part = get(p->storage, g->n_segments, sizeof *w->segment_part);
+    p->triangle = get(p->storage, g->n_triangles, sizeof *p->triangle);
+    p->inner = get(p->storage, g->n_points, sizeof *p->inner);
+    p->segment = get(p->storage, g->n_segments, sizeof *p->segment);
+    if (!w->part || !w->user || !w->segment_part || !p->triangle || !p->inner || !p->segment)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no room to cut a mesh into parts");
+    memset(w->user, 0, (size_t)g->n_points * sizeof *w->user);
+    return TRI_OK;
+}
+
+enum tri_status tri_parts_make(struct tri_parts *parts, int n, const struct tri_grid *grid,
+                               const struct tri_grouping *surfaces, const struct tri_grouping *curves,
+                               struct tri_error *error)
+{
+    assert(1 <= n && n <= TRI_MOST_PARTS);
+    *parts = (struct tri_parts){.n = n, .storage = grid->storage};
+    struct work w = {.parts = parts, .grid = grid};
+    enum tri_status status = get_room(&w, error);
+    status = status ? status : cut_plane(&w, error);
+    if (!status) {
+        use_corners(&w);
+        status = assign_segments(&w, error);
+    }
+    status = status ? status : make_lists(&w, surfaces, curves, error);
+    give_back(parts->storage, w.part);
+    give_back(parts->storage, w.user);
+    give_back(parts->storage, w.segment_part);
+    free(w.use);
+    free(w.edge);
+    return status;
+}
+
+void tri_parts_free(struct tri_parts *parts)
+{
+    give_back(parts->storage, parts->triangle);
+    give_back(parts->storage, parts->inner);
+    give_back(parts->storage, parts->segment);
+    free(parts->shared);
+    free(parts->part_list);
+    free(parts->first_shared);
+    *parts = (struct tri_parts){0};
+}
+
+bool tri_part_has_interface(const struct tri_parts *p, int part, int64_t interface)
+{
+    const struct tri_shared_point *point = &p->shared[p->first_shared[interface]];
+    int32_t low = 0, high = point->n;
+    while (low < high) {
+        const int32_t middle = low + (high - low) / 2;
+        if (point->part[middle] < part)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < point->n && point->part[low] == part;
+}
