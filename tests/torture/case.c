@@ -176,6 +176,13 @@ struct torture_case case_draw(uint64_t seed, const struct torture_range *range)
     return c;
 }
 
+bool case_is_refined(const struct torture_case *c)
+{
+    struct tri_switches switches = tri_switches_none();
+    tri_switches_add(&switches, c->switches);
+    return tri_switches_refine(&switches);
+}
+
 void case_free(struct torture_case *c)
 {
     figure_free(&c->figure);

@@ -29,6 +29,9 @@ struct torture_range {
 struct torture_case case_draw(uint64_t seed, const struct torture_range *range);
 void case_free(struct torture_case *c);
 
+/* Do its switches ask for points? */
+bool case_is_refined(const struct torture_case *c);
+
 /* How to run it with the programs; [n] characters. */
 void case_command(const struct torture_case *c, const char *file, char *text, size_t n);
 

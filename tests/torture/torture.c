@@ -21,9 +21,9 @@ static const char usage[] =
     "  --count N         number of cases (500)\n"
     "  --families A,B,.. draw from these alone; --list names all\n"
     "  --near            near-degenerate families alone, -p and -pc alone: nothing is refined\n"
-    "  --file F          instead of drawing: the figure in this .poly or .node file, with\n"
-    "  --switches S      these switches (p), and\n"
-    "  --block N         the schedule, with so many triangles in a cell (0: sequential)\n"
+    "  --file F          instead of drawing: the figure in this .poly or .node file\n"
+    "  --switches S      with these switches (p); of what is drawn: with these as well, where it is refined\n"
+    "  --block N         by the schedule, with so many triangles in a cell (0: sequential; as drawn)\n"
     "  --again           refined once more\n"
     "  --out DIR         write the figures of failures there\n"
     "  --minimise        make them small first\n"
@@ -292,13 +292,27 @@ static void use_all_families(struct torture *t)
 
 /* --- all together */
 
+/* What is asked of all cases that are refined. */
+static void add_given(const struct torture *t, struct torture_case *c)
+{
+    size_t n = strlen(c->switches);
+    if (!case_is_refined(c))
+        return;
+    snprintf(c->switches + n, sizeof c->switches - n, "%s", t->given.switches);
+    c->block = t->given.block > 0 ? t->given.block : c->block;
+    c->again |= t->given.again;
+}
+
 static bool make_case(const struct torture *t, int32_t i, struct torture_case *c)
 {
     if (!t->file) {
         *c = case_draw(t->seed + (uint64_t)i, &t->range);
+        add_given(t, c);
         return true;
     }
     *c = t->given;
+    if (!c->switches[0])
+        snprintf(c->switches, sizeof c->switches, "p");
     return case_read(c, t->file);
 }
 
@@ -323,7 +337,7 @@ static void run_all(struct torture *t)
 
 int main(int argc, char **argv)
 {
-    struct torture t = {.seed = 1, .count = 500, .seconds = 60, .given.switches = "p"};
+    struct torture t = {.seed = 1, .count = 500, .seconds = 60};
     t.range.families = t.families;
     t.verdict = mmap(NULL, sizeof *t.verdict, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (t.verdict == MAP_FAILED || !take_arguments(&t, argc, argv)) {
