@@ -77,9 +77,10 @@ static void make_keys(const struct sample *item, int32_t n, bool along_x, uint64
         low = at < low ? at : low;
         high = at > high ? at : high;
     }
-    const double scale = UINT32_MAX / (high - low), finite = scale < HUGE_VAL ? scale : 0;
+    /* Halves, since the width itself may be beyond what a double holds. */
+    const double scale = UINT32_MAX / (high / 2 - low / 2), finite = scale < HUGE_VAL ? scale : 0;
     for (int32_t i = 0; i < n; i++)
-        key[i] = (uint64_t)(((along_x ? item[i].q.x : item[i].q.y) - low) * finite) << 32 | (uint32_t)i;
+        key[i] = (uint64_t)(((along_x ? item[i].q.x : item[i].q.y) / 2 - low / 2) * finite) << 32 | (uint32_t)i;
 }
 
 /* Sorts samples along an axis; room: twice as many. */

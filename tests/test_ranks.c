@@ -18,8 +18,8 @@ static const struct trial trials[] = {
     {"square_random1000.poly", 20, 20000, 700, false, false, 0},
     {"section.poly", 28, 20000, 400, false, true, 0},
     {"gear.poly", 30, 10000, 256, false, false, 0},
-    {"koch_lake.poly", 30, 0, 600, false, false, 0},
     {"coast/norway_sea.poly", 25, 0, 2000, false, false, 0},
+    {"koch_lake.poly", 30, 0, 600, false, false, 0},
     {"coast/borders.poly", 20, 30000, 1500, false, false, 0},
     {"perforated.poly", 30, 25000, 1000, true, false, 0},
     {"cracked_plate.poly", 28, 15000, 400, false, false, 1},
@@ -377,7 +377,7 @@ static int run_in_steps(const struct member *alone, const struct start *start, c
 static void test_other_ranks_go_on(void **state)
 {
     (void)state;
-    static const int chosen[] = {4, 15, 6, 10};
+    static const int chosen[] = {5, 15, 10, 6};
     struct support_random random = {11};
     for (size_t i = 0; i < sizeof chosen / sizeof *chosen; i += (size_t)every(2)) {
         const struct trial *trial = &trials[chosen[i]];
