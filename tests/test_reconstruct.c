@@ -793,10 +793,33 @@ static void faults_in_shares(void **state)
     free_input(&in);
 }
 
+/* A bound that is out of reach: the mesh stays that of the usual angle, and refining it again adds nothing. */
+static void a_mesh_above_the_usual_angle_is_not_refined_again(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg;
+    assert_true(support_read("naca2412_box.poly", &pslg));
+    struct tri_options usual = support_quality(TRI_USUAL_ANGLE, 0), above = support_quality(40, 0);
+    struct tri_mesh at_usual = support_generate(&pslg, &usual, NULL), mesh = support_generate(&pslg, &above, NULL);
+    assert_int_equal(mesh.n_triangles, at_usual.n_triangles);
+    struct input in = input_of(&mesh);
+    struct tri_mesh back = rebuild(&in, &(struct tri_reconstruct_options){.use_segments = true, .refine = true});
+    struct tri_refine_report report;
+    assert_int_equal(tri_refine(&back, &above.quality, &report, NULL), TRI_OK);
+    assert_true(report.hit_cap);
+    assert_int_equal(back.n_triangles, mesh.n_triangles);
+    tri_mesh_free(&back);
+    free_input(&in);
+    tri_mesh_free(&mesh);
+    tri_mesh_free(&at_usual);
+    tri_pslg_free(&pslg);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shares_leave_no_trace),
+        cmocka_unit_test(a_mesh_above_the_usual_angle_is_not_refined_again),
         cmocka_unit_test(faults_in_shares),
         cmocka_unit_test(what_was_meshed_comes_back),
         cmocka_unit_test(boundary_becomes_subsegments),
