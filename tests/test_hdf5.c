@@ -307,6 +307,42 @@ static void test_parts_make_the_same_bytes(void **state)
     }
 }
 
+/* Whatever the machine's order of bytes; places in a file need not be aligned in memory. */
+static void test_rows_as_bytes(void **state)
+{
+    (void)state;
+    double points[1][2] = {{1, -2.5}}, attribute = 1, columns[2] = {7, -0x01020304};
+    int64_t corners[1][3] = {{1, 0x01020304, INT64_C(0x0102030405060708)}}, ends[1][2] = {{2, 0x0a0b0c0d}};
+    int32_t marker = -2, region = 1;
+    const struct tri_tile tile = {.n_vertices = 1, .n_triangles = 1, .n_segments = 1, .points = points,
+                                  .point_markers = &marker, .attributes = &attribute, .corners = corners,
+                                  .regions = &region, .ends = ends, .segment_markers = &marker};
+    const struct tri_h5_rows rows = {&tile, columns, 1, 1};
+    static const struct {
+        enum tri_h5_kind kind;
+        enum tri_h5_type type;
+        size_t n;
+        const char *bytes;
+    } wanted[] = {
+        {TRI_H5_OF_POINTS, TRI_H5_FLOAT64, 16, "\0\0\0\0\0\0\xf0\x3f\0\0\0\0\0\0\x04\xc0"},
+        {TRI_H5_OF_POINT_MARKERS, TRI_H5_INT32, 4, "\xfe\xff\xff\xff"},
+        {TRI_H5_OF_POINT_ATTRIBUTES, TRI_H5_FLOAT64, 8, "\0\0\0\0\0\0\xf0\x3f"},
+        {TRI_H5_OF_TRIANGLES, TRI_H5_INT64, 24,
+         "\x01\0\0\0\0\0\0\0\x04\x03\x02\x01\0\0\0\0\x08\x07\x06\x05\x04\x03\x02\x01"},
+        {TRI_H5_OF_TRIANGLE_ATTRIBUTES, TRI_H5_INT32, 4, "\xfc\xfc\xfd\xfe"},
+        {TRI_H5_OF_SEGMENTS, TRI_H5_INT32, 8, "\x02\0\0\0\x0d\x0c\x0b\x0a"},
+        {TRI_H5_OF_SEGMENTS, TRI_H5_INT64, 16, "\x02\0\0\0\0\0\0\0\x0d\x0c\x0b\x0a\0\0\0\0"},
+        {TRI_H5_OF_SEGMENT_MARKERS, TRI_H5_INT32, 4, "\xfe\xff\xff\xff"},
+    };
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
+        char room[32] = {0};
+        tri_h5_put_of(wanted[i].kind, wanted[i].type)(&rows, 0, 1, room + 1);
+        assert_memory_equal(room + 1, wanted[i].bytes, wanted[i].n);
+        assert_int_equal(room[0], 0);
+        assert_int_equal(room[1 + wanted[i].n], 0);
+    }
+}
+
 /* As many points as fit in one chunk, one less, one more; and chunks of segments. */
 static void test_around_a_chunk(void **state)
 {
@@ -503,6 +539,7 @@ int main(void)
         cmocka_unit_test_teardown(test_small_files_are_small, remove_files),
         cmocka_unit_test_teardown(test_same_mesh_same_bytes, remove_files),
         cmocka_unit_test_teardown(test_parts_make_the_same_bytes, remove_files),
+        cmocka_unit_test(test_rows_as_bytes),
         cmocka_unit_test_teardown(test_around_a_chunk, remove_files),
         cmocka_unit_test_teardown(test_no_times, remove_files),
         cmocka_unit_test_teardown(test_xdmf, remove_files),
