@@ -7,6 +7,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "drivers/interrupt.h"
+
 static long number_of(const char *name)
 {
     const char *text = getenv(name);
@@ -98,6 +100,7 @@ int launch_leave(struct launch *launch, int code, struct tri_error *error)
     if (!launch->carrier)
         return code;
     const bool told = code != EXIT_SUCCESS;
+    interrupt_told(); /* a task that has left with a failure makes the launcher end those that are still about to */
     code = agree_on_failure(launch, code, error);
     if (launch->carrier->lost)
         tell_loss(launch, told);
