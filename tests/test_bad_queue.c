@@ -154,7 +154,7 @@ static void test_only_what_is_up_to_date(void **state)
     tri_bad_queue_free(&queue);
 }
 
-/* Entries of the pool are used again: steady traffic does not grow it. */
+/* Blocks of the pool are used again: steady traffic does not grow it. */
 static void test_worklist_is_reused(void **state)
 {
     (void)state;
@@ -165,7 +165,7 @@ static void test_worklist_is_reused(void **state)
         if (i >= 100)
             assert_true(pop(&queue) != TRI_NONE);
     }
-    assert_in_range(queue.node_capacity, 100, 1024);
+    assert_in_range(queue.block_capacity, 100, 1024);
     tri_bad_queue_free(&queue);
 }
 

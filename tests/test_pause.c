@@ -147,8 +147,9 @@ static void test_heads_that_cannot_be(void **state)
     tri_refiner_show(refiner, &pause);
     tri_pause_head(&pause, &head);
     assert_true(tri_pause_is_head(&head, mesh.n_triangles, mesh.n_subs, mesh.n_triangles));
-    int32_t *const counts[] = {&head.queue.n_nodes, &head.queue.first[7], &head.queue.last[7], &head.queue.count[7],
-                               &head.queue.next, &head.queue.n_batch, &head.queue.free_node, &head.n_encroached,
+    int32_t *const counts[] = {&head.queue.n_blocks, &head.queue.bucket[7].first, &head.queue.bucket[7].last,
+                               &head.queue.bucket[7].begin, &head.queue.bucket[7].end, &head.queue.bucket[7].count,
+                               &head.queue.next, &head.queue.n_batch, &head.queue.free_block, &head.n_encroached,
                                &head.next_listed, &head.limit, &head.stage, &head.step};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
         const int32_t old = *counts[i];
@@ -158,8 +159,12 @@ static void test_heads_that_cannot_be(void **state)
     }
     const struct {
         int32_t *at, most;
-    } most[] = {{&head.limit, TRI_BUCKETS}, {&head.stage, TRI_PAUSE_LAST_STAGE}, {&head.step, TRI_PAUSE_LAST_STEP},
-                {&head.n_worklist, mesh.n_triangles}};
+    } most[] = {{&head.limit, TRI_BUCKETS},
+                {&head.stage, TRI_PAUSE_LAST_STAGE},
+                {&head.step, TRI_PAUSE_LAST_STEP},
+                {&head.n_worklist, mesh.n_triangles},
+                {&head.queue.bucket[7].begin, TRI_BLOCK - 1},
+                {&head.queue.bucket[7].end, TRI_BLOCK}};
     for (size_t i = 0; i < sizeof most / sizeof *most; i++) {
         const int32_t old = *most[i].at;
         *most[i].at = most[i].most + 1;

@@ -1,4 +1,4 @@
-/* Buckets of linked lists over one pool; a ring with a stack behind it. */
+/* Buckets of linked blocks over one pool; a ring with a stack behind it. */
 #include "triangle/bad_queue.h"
 
 #include <assert.h>
@@ -7,50 +7,62 @@
 
 #include "triangle/grow.h"
 
-enum { MASK = TRI_WINDOW - 1, HALF = TRI_WINDOW / 2, NIL = -1 };
+enum { MASK = TRI_WINDOW - 1, HALF = TRI_WINDOW / 2, NIL = -1, MOST_BLOCKS = INT32_MAX / TRI_BLOCK };
 
 bool tri_bad_queue_init(struct tri_bad_queue *queue)
 {
-    *queue = (struct tri_bad_queue){.free_node = NIL};
+    *queue = (struct tri_bad_queue){.free_block = NIL};
     for (int b = 0; b < TRI_BUCKETS; b++)
-        queue->first[b] = queue->last[b] = NIL;
+        queue->bucket[b] = (struct tri_bucket){.first = NIL, .last = NIL};
     queue->window = malloc(TRI_WINDOW * sizeof *queue->window);
     return queue->window;
 }
 
 void tri_bad_queue_free(struct tri_bad_queue *queue)
 {
-    free(queue->node);
+    free(queue->block);
     free(queue->window);
     free(queue->cold);
     *queue = (struct tri_bad_queue){0};
 }
 
-static int32_t take_node(struct tri_bad_queue *queue)
+static int32_t take_block(struct tri_bad_queue *queue)
 {
-    if (queue->free_node != NIL) {
-        int32_t node = queue->free_node;
-        queue->free_node = queue->node[node].next;
-        return node;
-    }
-    bool room = tri_grow(&queue->node, &queue->node_capacity, queue->n_nodes + 1, sizeof *queue->node);
-    return room ? queue->n_nodes++ : NIL;
+    int32_t block = queue->free_block;
+    if (block != NIL)
+        queue->free_block = queue->block[block].next;
+    else if (queue->n_blocks < MOST_BLOCKS &&
+             tri_grow(&queue->block, &queue->block_capacity, queue->n_blocks + 1, sizeof *queue->block))
+        block = queue->n_blocks++;
+    if (block != NIL)
+        queue->block[block] = (struct tri_block){.next = NIL}; /* all its bytes: a pause shows them */
+    return block;
 }
 
-bool tri_bad_queue_push_angle(struct tri_bad_queue *queue, struct tri_entry entry, int bucket)
+/* Gives the bucket another block behind its last. */
+static bool lengthen(struct tri_bad_queue *queue, struct tri_bucket *bucket)
 {
-    int32_t node = take_node(queue);
-    assert(bucket >= 0 && bucket < TRI_BUCKETS);
-    if (node == NIL)
+    int32_t block = take_block(queue);
+    if (block == NIL)
         return false;
-    queue->node[node] = (struct tri_node){entry, NIL};
-    if (queue->first[bucket] == NIL)
-        queue->first[bucket] = node;
+    if (bucket->first == NIL)
+        bucket->first = block;
     else
-        queue->node[queue->last[bucket]].next = node;
-    queue->last[bucket] = node;
-    queue->count[bucket]++;
-    queue->filled[bucket / 64] |= UINT64_C(1) << bucket % 64;
+        queue->block[bucket->last].next = block;
+    bucket->last = block;
+    bucket->end = 0;
+    return true;
+}
+
+bool tri_bad_queue_push_angle(struct tri_bad_queue *queue, struct tri_entry entry, int b)
+{
+    struct tri_bucket *bucket = &queue->bucket[b];
+    assert(b >= 0 && b < TRI_BUCKETS);
+    if ((bucket->first == NIL || bucket->end == TRI_BLOCK) && !lengthen(queue, bucket))
+        return false;
+    queue->block[bucket->last].entry[bucket->end++] = entry;
+    bucket->count++;
+    queue->filled[b / 64] |= UINT64_C(1) << b % 64;
     return true;
 }
 
@@ -85,15 +97,13 @@ static int lowest_bit(uint64_t word)
 
 /* The entries behind one that is taken lie scattered, being in order of their edges: what the point of the next will
  * look at is fetched while that of this one is worked on, and the triangle of the one after it. */
-static void fetch_ahead(const struct tri_bad_queue *queue, int32_t node, const struct tri_mesh *mesh)
+static void fetch_ahead(const struct tri_bad_queue *queue, const struct tri_bucket *bucket, const struct tri_mesh *mesh)
 {
-    if (node == NIL)
-        return;
-    const struct tri_node *soon = &queue->node[node];
-    const struct tri_triangle *t = &mesh->tri[soon->entry.t];
-    if (soon->next != NIL)
-        __builtin_prefetch(&mesh->tri[queue->node[soon->next].entry.t]);
-    if (t->life != soon->entry.life || !tri_is_live(t))
+    const struct tri_entry *soon = &queue->block[bucket->first].entry[bucket->begin];
+    if (bucket->count > 1 && bucket->begin + 1 < TRI_BLOCK)
+        __builtin_prefetch(&mesh->tri[soon[1].t]);
+    const struct tri_triangle *t = &mesh->tri[soon->t];
+    if (t->life != soon->life || !tri_is_live(t))
         return;
     for (int k = 0; k < 3; k++) {
         __builtin_prefetch(&mesh->xy[t->v[k]]);
@@ -103,25 +113,40 @@ static void fetch_ahead(const struct tri_bad_queue *queue, int32_t node, const s
     }
 }
 
+/* Lets go of the bucket's first block, all of whose entries have been served. */
+static void shorten(struct tri_bad_queue *queue, struct tri_bucket *bucket)
+{
+    int32_t block = bucket->first;
+    bucket->first = queue->block[block].next;
+    bucket->begin = 0;
+    queue->block[block].next = queue->free_block;
+    queue->free_block = block;
+}
+
+static void take_first(struct tri_bad_queue *queue, int b, struct tri_entry *entry)
+{
+    struct tri_bucket *bucket = &queue->bucket[b];
+    assert(bucket->first != NIL && bucket->count > 0);
+    *entry = queue->block[bucket->first].entry[bucket->begin++];
+    bucket->count--;
+    if (bucket->count == 0 || bucket->begin == TRI_BLOCK)
+        shorten(queue, bucket);
+    if (bucket->count == 0)
+        queue->filled[b / 64] &= ~(UINT64_C(1) << b % 64);
+}
+
 bool tri_bad_queue_pop_angle(struct tri_bad_queue *queue, int limit, const struct tri_mesh *mesh,
                              struct tri_entry *entry)
 {
     for (int word = 0; 64 * word < limit; word++) {
         if (!queue->filled[word])
             continue;
-        int bucket = 64 * word + lowest_bit(queue->filled[word]);
-        if (bucket >= limit)
+        int b = 64 * word + lowest_bit(queue->filled[word]);
+        if (b >= limit)
             return false;
-        int32_t node = queue->first[bucket];
-        assert(node != NIL && queue->count[bucket] > 0);
-        *entry = queue->node[node].entry;
-        queue->first[bucket] = queue->node[node].next;
-        queue->count[bucket]--;
-        if (queue->first[bucket] == NIL)
-            queue->filled[word] &= ~(UINT64_C(1) << bucket % 64);
-        queue->node[node].next = queue->free_node;
-        queue->free_node = node;
-        fetch_ahead(queue, queue->first[bucket], mesh);
+        take_first(queue, b, entry);
+        if (queue->bucket[b].count > 0)
+            fetch_ahead(queue, &queue->bucket[b], mesh);
         return true;
     }
     return false;
@@ -161,8 +186,8 @@ int tri_bad_queue_median(const struct tri_bad_queue *queue)
     int64_t all = 0, below = 0;
     int bucket = TRI_URGENT_BUCKET + 1; /* ends at the latest with the last entry */
     for (int b = bucket; b < TRI_BUCKETS; b++)
-        all += queue->count[b];
-    while (all > 0 && 2 * (below += queue->count[bucket]) < all)
+        all += queue->bucket[b].count;
+    while (all > 0 && 2 * (below += queue->bucket[bucket].count) < all)
         bucket++;
     return bucket;
 }

@@ -3,10 +3,11 @@
  * Two kinds. Those whose angle is bad wait in buckets, one for the urgent ones, which come first (refine.c says which),
  * the others by their shortest edge, shortest first: what grows out of the smallest features is settled before larger
  * triangles are asked, and the mesh comes out smaller (docs/performance.md: by a third at 33 degrees against worst
- * angle first). Within a bucket (a quarter of an octave of the squared length) first come, first served. Those that are
- * only too large wait first in, first out, which spreads sizes evenly, but in a window: when it is full its older half
- * goes to a stack and is taken back when the window has run empty. So the work stays where the cache is, for any size
- * of mesh.
+ * angle first). Within a bucket (a quarter of an octave of the squared length) first come, first served. A bucket is a
+ * list of blocks: where many wait, entries that lie one by one anywhere in memory each cost a miss of the cache when
+ * they come, and another when they go. Those that are only too large wait first in, first out, which spreads sizes
+ * evenly, but in a window: when it is full its older half goes to a stack and is taken back when the window has run
+ * empty. So the work stays where the cache is, for any size of mesh.
  *
  * An entry names a triangle, and which life of its number it was in; whoever takes an entry compares. Two of three
  * entries for sizes are out of date when their turn comes, for the points before them were inserted nearby. So these
@@ -21,23 +22,29 @@
 
 #include "triangle/mesh.h"
 
-enum { TRI_URGENT_BUCKET = 0, TRI_BUCKETS = 512, TRI_WINDOW = 1 << 13, TRI_BATCH = 16 };
+enum { TRI_URGENT_BUCKET = 0, TRI_BUCKETS = 512, TRI_BLOCK = 31, TRI_WINDOW = 1 << 13, TRI_BATCH = 16 };
 
 struct tri_entry {
     tri_triangle_id t;
     uint32_t life;
 };
 
-struct tri_node {
-    struct tri_entry entry;
-    int32_t next;
+/* Entries of one bucket that were pushed one after the other. */
+struct tri_block {
+    struct tri_entry entry[TRI_BLOCK];
+    int32_t next; /* block; -1: none */
+};
+
+struct tri_bucket {
+    int32_t first, last; /* block that is served, and that is filled; first == -1: none */
+    int32_t begin, end;  /* entry of the first that is served next, and of the last that is filled next */
+    int32_t count;       /* entries */
 };
 
 struct tri_bad_queue {
-    struct tri_node *node; /* pool of the buckets' entries */
-    int32_t n_nodes, node_capacity, free_node;
-    int32_t first[TRI_BUCKETS], last[TRI_BUCKETS];
-    int32_t count[TRI_BUCKETS];
+    struct tri_block *block; /* pool of the buckets' blocks */
+    int32_t n_blocks, block_capacity, free_block;
+    struct tri_bucket bucket[TRI_BUCKETS];
     uint64_t filled[TRI_BUCKETS / 64]; /* bit b % 64 of word b / 64: bucket b holds something */
 
     struct tri_entry *window; /* ring of TRI_WINDOW */

@@ -9,7 +9,7 @@
 void tri_pause_arrays(const struct tri_pause *p, struct tri_pause_array array[TRI_PAUSE_ARRAYS])
 {
     const struct tri_bad_queue *q = &p->queue;
-    array[0] = (struct tri_pause_array){q->node, (size_t)q->n_nodes * sizeof *q->node};
+    array[0] = (struct tri_pause_array){q->block, (size_t)q->n_blocks * sizeof *q->block};
     array[1] = (struct tri_pause_array){q->window, TRI_WINDOW * sizeof *q->window};
     array[2] = (struct tri_pause_array){q->cold, (size_t)q->n_cold * sizeof *q->cold};
     array[3] = (struct tri_pause_array){p->encroached, (size_t)p->n_encroached * sizeof *p->encroached};
@@ -17,10 +17,10 @@ void tri_pause_arrays(const struct tri_pause *p, struct tri_pause_array array[TR
 
 static void forget_arrays(struct tri_pause *p)
 {
-    p->queue.node = NULL;
+    p->queue.block = NULL;
     p->queue.window = p->queue.cold = NULL;
     p->encroached = NULL;
-    p->queue.node_capacity = p->encroached_capacity = 0;
+    p->queue.block_capacity = p->encroached_capacity = 0;
     p->queue.cold_capacity = 0;
 }
 
@@ -30,14 +30,20 @@ void tri_pause_head(const struct tri_pause *pause, struct tri_pause *head)
     forget_arrays(head);
 }
 
-static bool is_node(const struct tri_bad_queue *q, int32_t node) { return node >= -1 && node < q->n_nodes; }
+static bool is_block(const struct tri_bad_queue *q, int32_t block) { return block >= -1 && block < q->n_blocks; }
+
+static bool is_bucket(const struct tri_bad_queue *q, const struct tri_bucket *b)
+{
+    return is_block(q, b->first) && is_block(q, b->last) && b->begin >= 0 && b->begin < TRI_BLOCK && b->end >= 0 &&
+           b->end <= TRI_BLOCK && b->count >= 0 && b->count <= (int64_t)TRI_BLOCK * q->n_blocks;
+}
 
 static bool is_queue(const struct tri_bad_queue *q)
 {
-    bool is = q->n_nodes >= 0 && is_node(q, q->free_node) && q->tail - q->head <= TRI_WINDOW && q->n_cold >= 0 &&
+    bool is = q->n_blocks >= 0 && is_block(q, q->free_block) && q->tail - q->head <= TRI_WINDOW && q->n_cold >= 0 &&
               q->n_cold <= INT32_MAX && q->next >= 0 && q->next <= q->n_batch && q->n_batch <= TRI_BATCH;
     for (int b = 0; is && b < TRI_BUCKETS; b++)
-        is = is_node(q, q->first[b]) && is_node(q, q->last[b]) && q->count[b] >= 0 && q->count[b] <= q->n_nodes;
+        is = is_bucket(q, &q->bucket[b]);
     return is;
 }
 
@@ -56,7 +62,7 @@ bool tri_pause_reserve(struct tri_pause *h)
     struct tri_bad_queue *q = &h->queue;
     forget_arrays(h);
     q->window = malloc(TRI_WINDOW * sizeof *q->window);
-    if (q->window && tri_grow(&q->node, &q->node_capacity, q->n_nodes, sizeof *q->node) &&
+    if (q->window && tri_grow(&q->block, &q->block_capacity, q->n_blocks, sizeof *q->block) &&
         tri_grow_far(&q->cold, &q->cold_capacity, q->n_cold, sizeof *q->cold) &&
         tri_grow(&h->encroached, &h->encroached_capacity, h->n_encroached, sizeof *h->encroached))
         return true;

@@ -10,7 +10,7 @@
 #include "triangle/grow.h"
 #include "triangle/pause.h"
 
-static const uint64_t STATE = UINT64_C(0x3665746174736974); /* a version, too */
+static const uint64_t STATE = UINT64_C(0x3765746174736974); /* a version, too */
 
 /* --- of which run */
 
