@@ -319,6 +319,13 @@ def face_cut_off_with_its_outer_segments(m):
     m.remove({t for t in range(len(m.triangles)) if m.in_corner(t)})
 
 
+@mutation("no face carved in vain")
+def outline_beside_the_others_lost(m):
+    n = len(m.input_points)
+    m.input_points += [[20.0, 0.0, 0], [21.0, 0.0, 0], [20.0, 1.0, 0]]
+    m.input_segments += [[n, n + 1, 0], [n + 1, n + 2, 0], [n + 2, n, 0]]
+
+
 @mutation("vertex markers")
 def inner_vertex_marked_while_refining(m):
     m.points[m.free()][2] = 1

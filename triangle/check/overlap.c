@@ -13,10 +13,10 @@
  * above the highest edge. Faces are the classes of sides that that joins: between two events a face is cut into gaps
  * between neighbours, and a gap that goes on beyond an event, on either side of what starts or ends there, keeps the
  * edge below or above it.
- *   Each face outside the mesh but the outer one must have been emptied for a hole point. Where pieces of input
- * segments are missing, or triangles have attributes, a second sweep has these pieces and the inner subsegments among
- * its edges, since neither carving nor regions cross them. Missing pieces are rounded where they meet: should the sweep
- * fail over that, they are left out. */
+ *   Each face outside the mesh but the outer one must have been emptied for a hole point, whether mesh is beside it or
+ * only other such faces. Where pieces of input segments are missing, or triangles have attributes, a second sweep has
+ * these pieces and the inner subsegments among its edges, since neither carving nor regions cross them. Missing pieces
+ * are rounded where they meet: should the sweep fail over that, they are left out. */
 #include <assert.h>
 #include <stdlib.h>
 
@@ -394,8 +394,44 @@ static void gather_marks(struct sweep *w)
     }
 }
 
+/* Twice the area of each face, of root f at area[f], less TOLERANCES times its perimeter: what is thinner may be there
+ * by rounding, between missing pieces that nearly coincide. */
+static void measure_faces(struct sweep *w, double *area)
+{
+    const double TOLERANCES = 16;
+    for (int32_t f = 0; f < 2 * w->n_edges; f++) {
+        struct tri_point a = w->edge[f / 2].left, b = w->edge[f / 2].right, o = w->edge[0].left;
+        double width = b.x - a.x, twice = width * (a.y - o.y + (b.y - o.y)); /* below the edge, above o */
+        area[face_of(w, f / 2, f % 2)] +=
+            (f % 2 == BELOW ? twice : -twice) - TOLERANCES * w->c->tolerance * hypot(width, b.y - a.y);
+    }
+}
+
+/* Faces with nothing but missing pieces around them: whole parts of the mesh that are not there. */
+static enum tri_status check_lost_faces(struct sweep *w)
+{
+    struct checker *c = w->c;
+    double *area = tri_check_zeros(2 * (int64_t)w->n_edges + 1, sizeof *area);
+    if (area == NULL)
+        return TRI_NO_MEMORY;
+    measure_faces(w, area);
+    for (int32_t f = 0; f < 2 * w->n_edges; f++) {
+        const struct sweep_edge *e = &w->edge[f / 2];
+        int32_t root = face_of(w, f / 2, f % 2);
+        if (w->emptied[root] || root == 2 * w->n_edges || is_meshed(w, f / 2, f % 2) || !(area[root] > 0))
+            continue;
+        w->emptied[root] = 1;
+        tri_check_fault(c, TRI_CHECK_FACES,
+                        "beside the input's segment from (%.17g, %.17g) to (%.17g, %.17g) a face is empty without a "
+                        "hole point", check_given(c, e->left.x), check_given(c, e->left.y),
+                        check_given(c, e->right.x), check_given(c, e->right.y));
+    }
+    free(area);
+    return TRI_OK;
+}
+
 /* Every face outside the mesh was emptied for a hole point, or is the outer one. */
-static void check_faces(struct sweep *w)
+static enum tri_status check_faces(struct sweep *w)
 {
     struct checker *c = w->c;
     tri_check_begin(c, TRI_CHECK_FACES);
@@ -408,6 +444,7 @@ static void check_faces(struct sweep *w)
         tri_check_fault(c, TRI_CHECK_FACES, "beside edge %ld-%ld of triangle %ld a face is empty without a hole point",
                         n.from, n.to, n.triangle);
     }
+    return check_lost_faces(w);
 }
 
 /* Triangles of each face in the mesh have the attribute of the last region whose point is there; that they all have the
@@ -446,8 +483,8 @@ static enum tri_status sweep(struct checker *c, const struct check_pieces *missi
         *good = run(&w);
         gather_marks(&w);
         if (*good && last && faces_count(c))
-            check_faces(&w);
-        if (*good && again && check_good(c, TRI_CHECK_REGIONS))
+            status = check_faces(&w);
+        if (status == TRI_OK && *good && again && check_good(c, TRI_CHECK_REGIONS))
             check_regions(&w);
     }
     clear(&w);
