@@ -52,11 +52,11 @@ void console_warn(const struct console *console, const char *format, ...)
 
 struct console_size console_size(double bytes)
 {
-    static const char *const units[] = {"kB", "MB", "GB"};
+    static const char *const units[] = {"B", "kB", "MB", "GB"};
     struct console_size size;
-    double value = 1e-3 * bytes;
+    double value = bytes;
     int unit = 0;
-    for (; value >= 999.5 && unit < 2; unit++)
+    for (; value >= 999.5 && unit < 3; unit++)
         value *= 1e-3;
     snprintf(size.text, sizeof size.text, "%.3g %s", value, units[unit]);
     return size;

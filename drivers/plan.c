@@ -68,8 +68,8 @@ enum tri_status plan_check_files(const struct run *run, const struct file_names 
     const double left = plan_memory_left(run);
     if (size > left)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                        "the input has %.3g GB of text, which is read into memory; %.3g GB are left", 1e-9 * size,
-                        1e-9 * left);
+                        "the input has %s of text, which is read into memory; %s are left", console_size(size).text,
+                        console_size(left).text);
     return TRI_OK;
 }
 
@@ -90,12 +90,12 @@ enum tri_status plan_check_input(const struct run *run, const struct console *co
     const double all = resources_memory_used() + plan_memory_left(run);
     if ((is_strict(run) ? needed : SURE_SHARE * needed) > all)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                        "to triangulate the input, %.3g million points and %.3g million segments, takes about %.3g GB "
-                        "of memory; there are %.3g GB", 1e-6 * run->pslg.n_points, 1e-6 * run->pslg.n_segments,
-                        1e-9 * needed, 1e-9 * all);
+                        "to triangulate the input, %.3g million points and %.3g million segments, takes about %s "
+                        "of memory; there are %s", 1e-6 * run->pslg.n_points, 1e-6 * run->pslg.n_segments,
+                        console_size(needed).text, console_size(all).text);
     if (needed > all)
-        console_warn(console, "to triangulate the input may take about %.3g GB of memory; there are %.3g GB.\n",
-                     1e-9 * needed, 1e-9 * all);
+        console_warn(console, "to triangulate the input may take about %s of memory; there are %s.\n",
+                     console_size(needed).text, console_size(all).text);
     return TRI_OK;
 }
 
@@ -310,9 +310,9 @@ enum tri_status plan_make(struct run_plan *plan, const struct run *run, const st
 /* there: what there is, which is `left`, or all there is. */
 static void print_bytes(const char *what, double needed, double there, const char *left)
 {
-    printf("  %s: %.0f MB", what, ceil(1e-6 * needed));
+    printf("  %s: %s", what, console_size(needed).text);
     if (there < HUGE_VAL)
-        printf(" (%.0f MB %s)", floor(1e-6 * there), left);
+        printf(" (%s %s)", console_size(there).text, left);
     putchar('\n');
 }
 

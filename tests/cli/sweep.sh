@@ -118,7 +118,7 @@ done
 program 0 -pqa square.poly --max-area 1e-7 --output x.h5 --memory 500M --checkpoint x --dry-run
 matches '^  Way: swept'
 matches '^  Disk: [1-9][0-9]{2} MB'
-matches '^  Disk for the checkpoint: [1-9][0-9]{2,3} MB'
+matches '^  Disk for the checkpoint: ([1-9][0-9]{2} M|[1-9][0-9.]* G)B'
 wrote
 
 # --- a folder for what is parked is tried before the work
