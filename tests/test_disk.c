@@ -90,6 +90,22 @@ static void test_bundles_part(void **state)
     }
 }
 
+/* A spike a few million units in the last place wide: rounding must not put its levels beside each other. */
+static void test_levels_are_level_in_spite_of_rounding(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg;
+    assert_true(support_read("regress/endless_q36_small.poly", &pslg));
+    for (int angle = 0; angle <= 36; angle += 18) {
+        struct tri_report report;
+        struct tri_mesh mesh = conforming(&pslg, angle, &report);
+        judge_conforming(&mesh, &pslg, &report);
+        assert_true(mesh.n_triangles < 50);
+        tri_mesh_free(&mesh);
+    }
+    tri_pslg_free(&pslg);
+}
+
 /* The loop leaves no subsegment encroached, on anything, and no split makes a part that is shorter than half the
  * shortest edge. */
 static void test_nothing_stays_that_can_be_split(void **state)
@@ -101,17 +117,17 @@ static void test_nothing_stays_that_can_be_split(void **state)
         struct tri_options options = support_quality(0, 0);
         struct tri_mesh mesh = support_generate(&pslg, &options, &report);
         for (int32_t s = 0; s < mesh.n_subs; s++) {
-            double fraction;
+            struct tri_disk_split split;
             const tri_vertex_id *v = mesh.sub[s].v;
-            if (tri_is_encroached(&mesh, &mesh.sub[s], &fraction))
-                assert_true(fmin(fraction, 1 - fraction) * sqrt(tri_distance2(mesh.xy[v[0]], mesh.xy[v[1]])) >=
-                            0.5 * sqrt(mesh.limits.shortest2));
+            double length = sqrt(tri_distance2(mesh.xy[v[0]], mesh.xy[v[1]]));
+            if (tri_is_encroached(&mesh, &mesh.sub[s], &split))
+                assert_true(fmin(split.fraction, 1 - split.fraction) * length >= 0.5 * sqrt(mesh.limits.shortest2));
         }
         options.quality.conforming = true;
         assert_int_equal(tri_refine(&mesh, &options.quality, &report.quality, NULL), TRI_OK);
         for (int32_t s = 0; s < mesh.n_subs; s++) {
-            double fraction;
-            assert_false(tri_is_encroached(&mesh, &mesh.sub[s], &fraction));
+            struct tri_disk_split split;
+            assert_false(tri_is_encroached(&mesh, &mesh.sub[s], &split));
         }
         judge_conforming(&mesh, &pslg, &report);
         tri_mesh_free(&mesh);
@@ -163,6 +179,7 @@ int main(void)
         cmocka_unit_test(test_the_circle_is_not_inside),
         cmocka_unit_test(test_needles_part),
         cmocka_unit_test(test_bundles_part),
+        cmocka_unit_test(test_levels_are_level_in_spite_of_rounding),
         cmocka_unit_test(test_nothing_stays_that_can_be_split),
         cmocka_unit_test(test_what_stays_is_counted),
     };

@@ -30,11 +30,12 @@
  * least, or else v lies on e; the second makes parts of 2 h and more, the third of a quarter of a subsegment of two
  * shortest edges and more. So there are finitely many splits, whatever the rest of refinement does.
  *
- * Rounding puts the point level with v an ulp beside its place. Where h, the distance of v from e, is so small that
- * this leaves v in a circle (h^2 < ulp * length), only shorter parts help: length * ulp / h^2 of them. That is done
- * where MOST_PARTS are enough. Halving makes parts at most twice as short as that asks for: no edge of theirs is 16
- * times shorter than it would be without rounding, which is no feature. With more of them the triangles on their other
- * sides would have edges too short to be refined (feature_size.c), and would be given up.
+ * Rounding puts the point level with v an ulp beside its place; of the places about it the first is taken from which
+ * neither lies in a circle of the other (refine.c). Where there is none, and h, the distance of v from e, is so small
+ * that this leaves v in a circle (h^2 < ulp * length), only shorter parts help: length * ulp / h^2 of them. That is
+ * done where MOST_PARTS are enough. Halving makes parts at most twice as short as that asks for: no edge of theirs is
+ * 16 times shorter than it would be without rounding, which is no feature. With more of them the triangles on their
+ * other sides would have edges too short to be refined (feature_size.c), and would be given up.
  *
  * What stays: where v is nearer to e than the shortest edge, so that it lies on e as far as coordinates tell, or level
  * with an end of e up to rounding, and h too small to mend that. And where rounding leaves no room for the split point
@@ -88,7 +89,13 @@ static struct sight sight_of(const struct tri_mesh *mesh, const struct tri_subse
     return (struct sight){l, fabs(x * (at.y - a.y) - y * (at.x - a.x)) / l, nearer * l, level >= 0.5};
 }
 
-/* The fraction at which to split, by the rule. Below the shortest edge d is rounding. */
+/* Is the point level with the vertex the one to split at? Below the shortest edge d is rounding. */
+static bool is_split_level(const struct sight *v, double shortest)
+{
+    return NARROW * v->h < v->l && v->d >= shortest && v->d >= v->h;
+}
+
+/* The fraction at which to split, by the rule. */
 static double fraction_for(const struct sight *v, double usual, double shortest)
 {
     double from_nearer = v->from_end ? 1 - usual : usual, far = (v->d + v->h * (v->h / v->d)) / v->l;
@@ -99,28 +106,37 @@ static double fraction_for(const struct sight *v, double usual, double shortest)
 }
 
 /* Is the subsegment to be split for the sake of vertex v in its circle, and where? */
-static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v, double *fraction)
+static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v,
+                         struct tri_disk_split *split)
 {
     const struct sight sight = sight_of(mesh, s, v);
     double shortest = sqrt(mesh->limits.shortest2), off = fmax(sight.d, ULP * shortest);
     if (!tri_can_split(mesh, mesh->xy[s->v[0]], mesh->xy[s->v[1]]) || sight.h < shortest)
         return false;
-    *fraction = fraction_for(&sight, tri_split_fraction(mesh, s), shortest);
+    split->fraction = fraction_for(&sight, tri_split_fraction(mesh, s), shortest);
+    split->level = is_split_level(&sight, shortest) ? v : TRI_NONE;
     return NARROW * sight.h >= sight.l || off >= shortest || off * sight.l <= MOST_PARTS * sight.h * sight.h;
 }
 
 bool tri_is_encroached_from(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code,
-                            double *fraction)
+                            struct tri_disk_split *split)
 {
-    bool is = tri_is_in_diametral_disk(mesh, s, code) && is_split_for(mesh, s, tri_apex(mesh, code), fraction);
-    assert(!is || (*fraction > 0 && *fraction < 1));
+    bool is = tri_is_in_diametral_disk(mesh, s, code) && is_split_for(mesh, s, tri_apex(mesh, code), split);
+    assert(!is || (split->fraction > 0 && split->fraction < 1));
     return is;
 }
 
-bool tri_is_encroached(const struct tri_mesh *mesh, const struct tri_subsegment *s, double *fraction)
+bool tri_leaves_disks_empty(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,
+                            tri_vertex_id v)
+{
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], at = mesh->xy[v];
+    return tri_dot(a, p, at) >= 0 && tri_dot(p, b, at) >= 0;
+}
+
+bool tri_is_encroached(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_disk_split *split)
 {
     for (int side = 0; side < 2; side++)
-        if (s->side[side] != TRI_NONE && tri_is_encroached_from(mesh, s, s->side[side], fraction))
+        if (s->side[side] != TRI_NONE && tri_is_encroached_from(mesh, s, s->side[side], split))
             return true;
     return false;
 }

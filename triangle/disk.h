@@ -7,13 +7,23 @@
 /* Does the apex of the triangle with this code lie strictly in the diametral circle of the subsegment? Exact. */
 bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code);
 
-/* Does that apex, and do coordinates resolve a split because of it? Where to split is then *fraction, from the start:
- * see the rule in the .c file. */
+/* Where to split a subsegment: at this fraction from its start. */
+struct tri_disk_split {
+    double fraction;
+    tri_vertex_id level; /* the vertex that the point is level with; TRI_NONE: none */
+};
+
+/* Does that apex, and do coordinates resolve a split because of it? Where is then in *split: see the rule in the .c
+ * file. */
 bool tri_is_encroached_from(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code,
-                            double *fraction);
+                            struct tri_disk_split *split);
+
+/* Does vertex v lie in the diametral circle of neither part, if s is split at p? Exact. */
+bool tri_leaves_disks_empty(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,
+                            tri_vertex_id v);
 
 /* Does the apex of a triangle beside the subsegment lie in its circle, and do coordinates resolve a split because of
  * it? */
-bool tri_is_encroached(const struct tri_mesh *mesh, const struct tri_subsegment *s, double *fraction);
+bool tri_is_encroached(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_disk_split *split);
 
 #endif

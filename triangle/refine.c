@@ -347,35 +347,59 @@ static enum outcome give_up(struct tri_refiner *r, tri_triangle_id triangle, enu
     return GIVEN_UP;
 }
 
-/* The cavity of the point that splits subsegment s at this fraction of it, the first of its places that has one:
- * rounding may put a place outside the disk of a triangle beside s, or behind one of its edges. */
-static enum tri_search find_split(struct tri_refiner *r, tri_sub_id s, double fraction, int32_t *n_left)
+/* Are vertex `level` and the point whose cavity has been found out of the circles of each other's subsegments? */
+static bool is_level(const struct tri_refiner *r, tri_sub_id s, tri_vertex_id level)
 {
     const struct tri_mesh *m = r->mesh;
-    const struct tri_subsegment *sub = &m->sub[s];
-    struct tri_point p;
-    if (!tri_can_split(m, m->xy[sub->v[0]], m->xy[sub->v[1]]))
-        return TRI_SEARCH_OUTSIDE;
-    for (int choice = 0; choice < TRI_SPLIT_PLACES; choice++) {
-        if (!tri_place_split(m, sub, fraction, choice, &p))
-            continue;
-        enum tri_search found = tri_cavity_search_split(&r->cavity, m, p, s, n_left);
-        if (found != TRI_SEARCH_OUTSIDE)
-            return found;
+    if (!tri_leaves_disks_empty(m, &m->sub[s], r->cavity.p, level))
+        return false;
+    for (int32_t i = 0; i < r->cavity.n_wall; i++) {
+        const tri_vertex_id *end = m->sub[~r->cavity.edge[r->cavity.wall[i]].outer].v;
+        if ((end[0] == level || end[1] == level) && tri_dot(m->xy[end[0]], m->xy[end[1]], r->cavity.p) < 0)
+            return false;
     }
-    return TRI_SEARCH_OUTSIDE;
+    return true;
 }
 
-/* Splits subsegment s, at this fraction of it, for the sake of a triangle. */
-static enum outcome split_at(struct tri_refiner *r, tri_sub_id s, double fraction, tri_triangle_id triangle)
+/* The cavity of one of the places for a split; TRI_SEARCH_OUTSIDE: it has none. */
+static enum tri_search search_place(struct tri_refiner *r, tri_sub_id s, double fraction, int choice, int32_t *n_left)
+{
+    struct tri_point p;
+    return tri_place_split(r->mesh, &r->mesh->sub[s], fraction, choice, &p)
+               ? tri_cavity_search_split(&r->cavity, r->mesh, p, s, n_left)
+               : TRI_SEARCH_OUTSIDE;
+}
+
+/* The cavity of the point that splits subsegment s, the first of its places that has one: rounding may put a place
+ * outside the disk of a triangle beside s, or behind one of its edges. Beside a vertex that it shall be level with the
+ * first that is so in spite of rounding, if any is. */
+static enum tri_search find_split(struct tri_refiner *r, tri_sub_id s, struct tri_disk_split split, int32_t *n_left)
+{
+    const struct tri_mesh *m = r->mesh;
+    int first = -1;
+    if (!tri_can_split(m, m->xy[m->sub[s].v[0]], m->xy[m->sub[s].v[1]]))
+        return TRI_SEARCH_OUTSIDE;
+    for (int choice = 0; choice < TRI_SPLIT_PLACES; choice++) {
+        enum tri_search found = search_place(r, s, split.fraction, choice, n_left);
+        if (found == TRI_SEARCH_OUTSIDE)
+            continue;
+        if (found != TRI_SEARCH_FOUND || split.level == TRI_NONE || is_level(r, s, split.level))
+            return found;
+        first = first < 0 ? choice : first;
+    }
+    return first < 0 ? TRI_SEARCH_OUTSIDE : search_place(r, s, split.fraction, first, n_left);
+}
+
+/* Splits subsegment s for the sake of a triangle. */
+static enum outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri_disk_split split, tri_triangle_id triangle)
 {
     struct tri_mesh *m = r->mesh;
     const struct tri_subsegment old = m->sub[s];
     int32_t n_left;
-    assert(s >= 0 && fraction > 0 && fraction < 1);
+    assert(s >= 0 && split.fraction > 0 && split.fraction < 1);
     if (tri_is_protected(r->options, &old))
         return refuse(r, TRI_EXCUSE_PROTECTED);
-    enum tri_search found = find_split(r, s, fraction, &n_left);
+    enum tri_search found = find_split(r, s, split, &n_left);
     if (found == TRI_SEARCH_FENCED)
         return defer_fenced(r, triangle);
     if (found == TRI_SEARCH_BEYOND)
@@ -388,7 +412,7 @@ static enum outcome split_at(struct tri_refiner *r, tri_sub_id s, double fractio
     assert(r->cavity.n_edges > n_left || boundary);
     tri_vertex_id v = add_vertex(r, r->cavity.p, old.parent, old.marker ? old.marker : boundary ? 1 : 0);
     m->feature[v] = tri_feature_on_segment(m, &r->cavity, s, r->sized);
-    tri_interpolate_edge(m, old.v[0], old.v[1], fraction, v);
+    tri_interpolate_edge(m, old.v[0], old.v[1], split.fraction, v);
     tri_sub_id second = tri_cavity_fill_split(&r->cavity, m, v, s, n_left);
     tell_changes(r);
     r->report->inserted_on_segments++;
@@ -400,7 +424,8 @@ static enum outcome split_at(struct tri_refiner *r, tri_sub_id s, double fractio
 
 static enum outcome split(struct tri_refiner *r, tri_sub_id s, tri_triangle_id triangle)
 {
-    return split_at(r, s, tri_split_fraction(r->mesh, &r->mesh->sub[s]), triangle);
+    struct tri_disk_split usual = {tri_split_fraction(r->mesh, &r->mesh->sub[s]), TRI_NONE};
+    return split_at(r, s, usual, triangle);
 }
 
 /* Where only sizes count, a subsegment that must not be split is no reason not to insert a point beside it. */
@@ -633,11 +658,11 @@ static bool split_encroached(struct tri_refiner *r)
         tri_triangle_id beside = tri_of(sub->side[sub->side[0] == TRI_NONE]);
         assert(s >= 0 && tri_is_live(&r->mesh->tri[beside]));
         r->n_encroached--;
-        double fraction;
-        if (!tri_is_encroached(r->mesh, sub, &fraction) || at_limit(r))
+        struct tri_disk_split where;
+        if (!tri_is_encroached(r->mesh, sub, &where) || at_limit(r))
             continue;
         r->sized = false;
-        enum outcome outcome = split_at(r, s, fraction, beside);
+        enum outcome outcome = split_at(r, s, where, beside);
         if (outcome == FAILED) {
             r->encroached[r->n_encroached++] = s; /* there is room: it was there a moment ago */
             return false;

@@ -7,7 +7,7 @@
  * 1. The place is that on the parent's line, rounded once, or, for the sake of 2, a neighbour of it or of the place on
  * the subsegment, not more than ASTRAY away from the line. So a chain keeps to its line however often it is split;
  * where it cannot it is not split. Which of these places is taken the cavity decides: the first from which all of it
- * can be seen.
+ * can be seen; for a point that shall be level with a vertex (disk.c), the first of these that is, if any.
  * 2. THEOREM (boundary). Each parent on the boundary has an empty triangle of its own outside: its ends and its guard,
  * the centroid of the triangle of the constrained Delaunay triangulation that was carved there. If every split point
  * of a boundary subsegment lies on the inner side of it (or on it), or in the parent's own triangle, the boundary never
