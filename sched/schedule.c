@@ -658,7 +658,9 @@ static enum tri_status refine_above_usual(struct par_state *state, const struct 
         return TRI_OK;
     state->stage = PAR_ABOVE;
     enum tri_status status = state->paused ? TRI_OK : come_to_border(state, error);
-    status = status ? status : refine_rest(state, quality, true, true, error);
+    struct tri_refine_options above = *quality;
+    above.above = true;
+    status = status ? status : refine_rest(state, &above, true, true, error);
     state->report->seconds_last += tri_seconds() - last;
     return status;
 }

@@ -796,14 +796,6 @@ static bool refine_worklist(struct tri_refiner *r)
  * times as large. (About a hundredth of a mesh is bad at 34.5 degrees, a fiftieth at 35, a sixth at 36.) So where the
  * bound is out of reach the mesh stays that of the usual angle; what -r with the same bound makes of it is what it
  * makes for that angle: mostly nothing. */
-static void begin_stages(struct tri_refiner *r)
-{
-    double usual = fmin(r->options->min_angle, TRI_USUAL_ANGLE);
-    bool easy = usual > TRI_EASY_ANGLE && tri_has_sizes(r->options) && !r->options->fence &&
-                !r->options->worklist;
-    r->stage = easy ? EASY_STAGE : USUAL_STAGE;
-    r->criterion.bounds = tri_bounds_for(easy ? TRI_SIZES_ANGLE : usual, r->options->conforming);
-}
 
 /* Is no more than FEW_BAD of the listed triangles bad by its angle, and not to be given up? */
 static bool is_nearly_reached(const struct tri_refiner *r)
@@ -830,6 +822,18 @@ static void go_above(struct tri_refiner *r)
     bool tried = is_nearly_reached(r);
     r->stage = tried ? ABOVE_STAGE : LAST_STAGE;
     r->report->hit_cap |= !tried;
+}
+
+static void begin_stages(struct tri_refiner *r)
+{
+    double usual = fmin(r->options->min_angle, TRI_USUAL_ANGLE);
+    bool easy = usual > TRI_EASY_ANGLE && tri_has_sizes(r->options) && !r->options->fence &&
+                !r->options->worklist && !r->options->above;
+    assert(!r->options->above || (!r->options->worklist && r->options->min_angle > TRI_USUAL_ANGLE));
+    r->stage = easy ? EASY_STAGE : USUAL_STAGE;
+    r->criterion.bounds = tri_bounds_for(easy ? TRI_SIZES_ANGLE : usual, r->options->conforming);
+    if (r->options->above)
+        go_above(r);
 }
 
 static void next_stage(struct tri_refiner *r)

@@ -54,6 +54,8 @@ struct tri_refine_options {
     double min_angle;      /* degrees; 0: no bound on angles; above 34 best effort; within a fence no more than 34 */
     double final_angle;    /* degrees; of a call that prepares others: the bound that they have in the end, by which it
                               is decided how short edges may become (feature_size.h); 0: min_angle */
+    bool above;            /* the mesh is as another call has left it that had TRI_USUAL_ANGLE for its bound: only what
+                              is asked for above that is done; the whole mesh, no fence, no worklist */
     double max_area;       /* <= 0: none */
     bool region_areas;     /* mesh->regions[t.region].max_area applies too */
     double area_scale;     /* > 0: all area bounds are multiplied by this, for pre-refinement, and the size test is
