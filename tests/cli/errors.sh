@@ -120,12 +120,13 @@ for signal in TERM INT HUP; do
     mkfifo letter.1.ele
     ls >.before
     what="SIG$signal"
-    # a shell lets its background jobs ignore SIGINT; env puts that right where it can
-    if [ $signal = INT ]; then
-        env --default-signal=INT true 2>/dev/null || continue
-        env --default-signal=INT "$bin/triangle" -p letter >.out 2>.err &
-    else
+    # a shell lets its background jobs ignore SIGINT, and nohup SIGHUP; env puts that right where it can
+    if env --default-signal=$signal true 2>/dev/null; then
+        env --default-signal=$signal "$bin/triangle" -p letter >.out 2>.err &
+    elif [ $signal = TERM ]; then
         "$bin/triangle" -p letter >.out 2>.err &
+    else
+        continue
     fi
     job=$!
     tries=0
