@@ -10,7 +10,8 @@ await() { # await COMMAND...: until it succeeds
     check "has not come about: $*" "$@"
 }
 
-is_there() { ls .tri-*.tmp >/dev/null 2>&1; }
+# Outputs are opened once before anything is made, empty, to see that they can be.
+is_there() { find . -name '.tri-*.tmp' -size +0c | grep -q .; }
 
 if ! env --default-signal=INT true 2>/dev/null; then
     echo "cli stop: env cannot reset signals"
