@@ -39,7 +39,7 @@ struct task {
     bool lost;              /* no memory for one of these lists */
     struct tri_part part;
     enum progress progress;
-    int pauses;             /* so far */
+    int pauses;             /* so far, for triangles */
     enum tri_status status;
     struct tri_error error;
     double seconds;
@@ -338,6 +338,19 @@ static enum tri_status reserve_room(const struct phase *p, struct tri_error *err
     return par_room_reserve(&p->state->spare, p->state->mesh, expected, error);
 }
 
+/* Room for a task that is full, in triangles. Where places for subsegments alone have run out, as beside a coast, those
+ * follow for the triangles that are left: more triangles each time would stay empty. */
+static int32_t refill(struct task *task)
+{
+    const int64_t on_segments = task->report.inserted_on_segments, all = task->report.inserted_free + on_segments;
+    const int32_t more = more_for(task), left = par_room_left(&task->view.room, PAR_TRIANGLES);
+    task->view.room.on_segments = all > 0 ? (double)on_segments / (double)all : 0;
+    if (left >= more / 4)
+        return left;
+    task->pauses++;
+    return more;
+}
+
 /* Room for the tasks that wait for it, in canonical order. */
 static enum tri_status deal_room(struct phase *p, struct tri_error *error)
 {
@@ -346,10 +359,9 @@ static enum tri_status deal_room(struct phase *p, struct tri_error *error)
         struct task *task = &p->tasks[i];
         if (task->progress == TASK_ENDED || task->asked.n > 0)
             continue;
-        int32_t more = task->progress == TASK_NEW ? task->expected : more_for(task);
+        int32_t more = task->progress == TASK_NEW ? task->expected : refill(task);
         if (p->state->options->tight_room > 0)
             more = p->state->options->tight_room;
-        task->pauses += task->progress == TASK_PAUSED;
         p->state->report->pauses += task->progress == TASK_PAUSED;
         status = par_room_extend(&task->view.room, &p->state->spare, p->state->mesh, more, error);
     }

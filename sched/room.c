@@ -9,6 +9,8 @@
 
 enum { LEAST_RANGE = 64 };
 
+static const double LEAST_ON_SEGMENTS = 0.125;
+
 /* What one insertion takes at most. */
 static const int32_t one_insertion[PAR_KINDS] = {[PAR_VERTICES] = 1, [PAR_TRIANGLES] = 2, [PAR_SUBS] = 1};
 
@@ -156,8 +158,7 @@ static enum tri_status extend(struct par_room *room, struct par_room *spare, str
     return TRI_OK;
 }
 
-/* Unused items in the hands of a block. */
-static int32_t left_of(const struct par_room *room, enum par_kind kind)
+int32_t par_room_left(const struct par_room *room, enum par_kind kind)
 {
     int32_t left = 0;
     for (int32_t i = room->current[kind]; i < room->ranges[kind].n; i++)
@@ -165,14 +166,20 @@ static int32_t left_of(const struct par_room *room, enum par_kind kind)
     return left;
 }
 
-/* Of this kind, what comes with so many triangles. */
-static int64_t wanted_of(enum par_kind kind, int64_t triangles)
+/* Of this kind, what comes with so many triangles where this share of the points lies on segments. */
+static int64_t wanted_of(enum par_kind kind, int64_t triangles, double on_segments)
 {
     switch (kind) {
     case PAR_VERTICES: return triangles / 2 + triangles / 64 + 16;
     case PAR_TRIANGLES: return triangles;
-    default: return triangles / 16 + 64;
+    default: return (int64_t)(0.5 * on_segments * (double)triangles) + 64;
     }
+}
+
+/* Of the points that are still to come: an eighth, or more where more have been put there. */
+static double on_segments(const struct par_room *room)
+{
+    return room->on_segments > LEAST_ON_SEGMENTS ? room->on_segments : LEAST_ON_SEGMENTS;
 }
 
 enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, struct tri_mesh *shared,
@@ -180,7 +187,8 @@ enum tri_status par_room_extend(struct par_room *room, struct par_room *spare, s
 {
     enum tri_status status = TRI_OK;
     for (enum par_kind kind = PAR_VERTICES; !status && kind < PAR_KINDS; kind++)
-        status = extend(room, spare, shared, kind, (int32_t)wanted_of(kind, triangles) - left_of(room, kind), error);
+        status = extend(room, spare, shared, kind,
+                        (int32_t)wanted_of(kind, triangles, on_segments(room)) - par_room_left(room, kind), error);
     return status;
 }
 
@@ -191,7 +199,7 @@ enum tri_status par_room_reserve(const struct par_room *spare, struct tri_mesh *
     if (shared->bound || shared->storage)
         return TRI_OK;
     for (enum par_kind kind = PAR_VERTICES; !status && kind < PAR_KINDS; kind++) {
-        int64_t need = wanted_of(kind, triangles);
+        int64_t need = wanted_of(kind, triangles, LEAST_ON_SEGMENTS);
         for (int32_t i = 0; i < spare->ranges[kind].n; i++)
             need -= spare->ranges[kind].item[i].end - spare->ranges[kind].item[i].next;
         if (need > 0)

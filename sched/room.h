@@ -31,6 +31,7 @@ bool par_ranges_reserve(struct par_ranges *ranges, int32_t need);
 struct par_room {
     struct par_ranges ranges[PAR_KINDS];
     int32_t current[PAR_KINDS]; /* of a block: the range that it uses */
+    double on_segments;         /* of a block: share of its points that went there, as far as is known */
 };
 
 /* The mesh as one block sees it. */
@@ -48,6 +49,9 @@ enum tri_status par_view_more_room(void *user, struct tri_mesh *mesh, struct tri
 
 /* Where the block ends, or pauses: its room learns how far it has been used. */
 void par_view_end(struct par_view *view);
+
+/* Unused items of a kind in the hands of a block that does not run: ranges too short for an insertion count nothing. */
+int32_t par_room_left(const struct par_room *room, enum par_kind kind);
 
 /* Sees to it that the room has at least `triangles` unused triangles, and vertices and subsegments to match: from
  * `spare` first, else from the end of the shared arrays, which grow. TRI_NO_MEMORY, TRI_TOO_LARGE: what it got so

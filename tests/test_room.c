@@ -301,9 +301,28 @@ static void test_closing_extremes(void **state)
     tri_mesh_free(&mesh);
 }
 
+/* Where all points of a block lie on segments it gets a place for a subsegment with each, and no more triangles than
+ * it asks for, which are there already when it asks again. */
+static void test_room_beside_a_coast(void **state)
+{
+    (void)state;
+    struct tri_mesh mesh = mesh_with_attributes();
+    struct par_room room = {.on_segments = 1}, spare = {0};
+    assert_int_equal(par_room_extend(&room, &spare, &mesh, 10000, NULL), TRI_OK);
+    const int32_t triangles = par_room_left(&room, PAR_TRIANGLES), n_triangles = mesh.n_triangles;
+    assert_true(triangles >= 10000 && triangles < 10100);
+    assert_true(par_room_left(&room, PAR_SUBS) >= 5000);
+    assert_int_equal(par_room_extend(&room, &spare, &mesh, triangles, NULL), TRI_OK);
+    assert_int_equal(mesh.n_triangles, n_triangles);
+    par_room_return(&room, &spare);
+    par_room_close(&spare, &mesh, NULL);
+    tri_mesh_free(&mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_room_beside_a_coast),
         cmocka_unit_test(test_random_dealings),
         cmocka_unit_test(test_closing_keeps_the_mesh),
         cmocka_unit_test(test_closing_extremes),
