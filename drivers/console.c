@@ -50,18 +50,6 @@ void console_warn(const struct console *console, const char *format, ...)
     va_end(arguments);
 }
 
-struct console_size console_size(double bytes)
-{
-    static const char *const units[] = {"B", "kB", "MB", "GB"};
-    struct console_size size;
-    double value = bytes;
-    int unit = 0;
-    for (; value >= 999.5 && unit < 3; unit++)
-        value *= 1e-3;
-    snprintf(size.text, sizeof size.text, "%.3g %s", value, units[unit]);
-    return size;
-}
-
 bool console_series_add(struct console_series *series) { return series->n++ < CONSOLE_SERIES_LINES; }
 
 void console_series_end(const struct console *console, const struct console_series *series, const char *what)

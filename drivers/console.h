@@ -40,12 +40,6 @@ void console_detail(const struct console *console, int verbosity, const char *fo
 /* "Warning:  " and the text; the caller ends the line. */
 void console_warn(const struct console *console, const char *format, ...) CONSOLE_FORMAT(2, 3);
 
-/* Bytes in three digits: "62 B", "151 kB", "90 MB", "1.87 GB". */
-struct console_size {
-    char text[24];
-};
-struct console_size console_size(double bytes);
-
 /* Counts one more warning of its kind. True: say it. */
 bool console_series_add(struct console_series *series);
 

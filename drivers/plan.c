@@ -14,6 +14,7 @@
 
 #include "drivers/disk_needs.h"
 #include "drivers/resources.h"
+#include "triangle/size_text.h"
 
 /* A mesh in memory may take so much more than expected; more where it must not; and most where angles above 31 degrees
  * or diametral circles without vertices are asked for as well, of which an estimate knows least. Less than the last is
@@ -68,8 +69,8 @@ enum tri_status plan_check_files(const struct run *run, const struct file_names 
     const double left = plan_memory_left(run);
     if (size > left)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                        "the input has %s of text, which is read into memory; %s are left", console_size(size).text,
-                        console_size(left).text);
+                        "the input has %s of text, which is read into memory; %s are left", tri_size_text(size).text,
+                        tri_size_text(left).text);
     return TRI_OK;
 }
 
@@ -92,10 +93,10 @@ enum tri_status plan_check_input(const struct run *run, const struct console *co
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
                         "to triangulate the input, %.3g million points and %.3g million segments, takes about %s "
                         "of memory; there are %s", 1e-6 * run->pslg.n_points, 1e-6 * run->pslg.n_segments,
-                        console_size(needed).text, console_size(all).text);
+                        tri_size_text(needed).text, tri_size_text(all).text);
     if (needed > all)
         console_warn(console, "to triangulate the input may take about %s of memory; there are %s.\n",
-                     console_size(needed).text, console_size(all).text);
+                     tri_size_text(needed).text, tri_size_text(all).text);
     return TRI_OK;
 }
 
@@ -151,7 +152,7 @@ static enum tri_status fail_memory(const struct needs *n, bool sure, double need
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
                     "the %sbounds ask for %s %.3g million triangles, which take %s of memory; %s are left%s%s",
                     sure ? "area " : "", sure ? "at least" : "about", millions(n->triangles),
-                    console_size(needed).text, console_size(left).text, *obstacle ? "; less would do but for " : "",
+                    tri_size_text(needed).text, tri_size_text(left).text, *obstacle ? "; less would do but for " : "",
                     obstacle);
 }
 
@@ -159,7 +160,7 @@ static void warn_of_memory(const struct console *console, double needed, double 
 {
     if (needed > left)
         console_warn(console, "the bounds may take about %s of memory; %s are left.\n",
-                     console_size(needed).text, console_size(left).text);
+                     tri_size_text(needed).text, tri_size_text(left).text);
 }
 
 static void warn_of_triangles(const struct console *console)
@@ -231,11 +232,11 @@ static enum tri_status check_disk(const struct run *run, const struct estimate *
         return tri_fail(error, TRI_CANNOT_WRITE, place->path, 0,
                         "the area bounds ask for at least %.3g million triangles; %s and what else comes onto that "
                         "disk take %s, and %s are left there", millions(e->least.triangles), place->what,
-                        console_size(needed).text, console_size(disk_left(place)).text);
+                        tri_size_text(needed).text, tri_size_text(disk_left(place)).text);
     place = sum_of(likely) > WORTH_A_LOOK ? disk_too_small(likely, &needed) : NULL;
     if (place)
         console_warn(console, "%s: %s and what else comes onto that disk may take about %s; %s are left.\n",
-                     place->path, place->what, console_size(needed).text, console_size(disk_left(place)).text);
+                     place->path, place->what, tri_size_text(needed).text, tri_size_text(disk_left(place)).text);
     return TRI_OK;
 }
 
@@ -269,19 +270,19 @@ static void say_way(const struct console *console, const struct run *run, const 
     const struct needs *n = &e->likely;
     char whole[64] = "are too many for a mesh in memory";
     if (n->whole < HUGE_VAL)
-        snprintf(whole, sizeof whole, "would take %s of memory", console_size(n->whole).text);
+        snprintf(whole, sizeof whole, "would take %s of memory", tri_size_text(n->whole).text);
     if (e->sweeps && run->hooks->n_ranks > 0)
         console_say(console, "Sharing: about %.3g million triangles among %d tasks, up to %s of memory each.\n",
-                    millions(n->triangles), run->hooks->n_ranks, console_size(n->held).text);
+                    millions(n->triangles), run->hooks->n_ranks, tri_size_text(n->held).text);
     else if (run->hooks->n_ranks > 1)
         console_say(console, "Each of %d tasks makes all of the mesh: angles above 34 degrees and -S are not shared.\n",
                     run->hooks->n_ranks);
     else if (e->sweeps)
         console_say(console, "Sweeping: about %.3g million triangles %s, a few columns of them %s.\n",
-                    millions(n->triangles), whole, console_size(n->held).text);
+                    millions(n->triangles), whole, tri_size_text(n->held).text);
     if (n->held > left)
         console_say(console, "Parking: what does not fit in memory goes to %s, about %s.\n",
-                    run->hooks->limits.scratch, console_size(n->away).text);
+                    run->hooks->limits.scratch, tri_size_text(n->away).text);
 }
 
 static enum tri_status check_stream_all(const struct run *run, const struct estimate *e, double left,
@@ -310,9 +311,9 @@ enum tri_status plan_make(struct run_plan *plan, const struct run *run, const st
 /* there: what there is, which is `left`, or all there is. */
 static void print_bytes(const char *what, double needed, double there, const char *left)
 {
-    printf("  %s: %s", what, console_size(needed).text);
+    printf("  %s: %s", what, tri_size_text(needed).text);
     if (there < HUGE_VAL)
-        printf(" (%s %s)", console_size(there).text, left);
+        printf(" (%s %s)", tri_size_text(there).text, left);
     putchar('\n');
 }
 

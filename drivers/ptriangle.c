@@ -27,6 +27,7 @@
 #include "sched/threads.h"
 #include "triangle/census.h"
 #include "triangle/estimate.h"
+#include "triangle/size_text.h"
 #include "triangle/text/names.h"
 #include "triangle/text/write.h"
 
@@ -239,7 +240,7 @@ static void tell_of_parking(const struct program *p, bool quiet)
     if (p->schedule.parked > 0)
         console_say(&console, "%s parked in %s: %s.\n",
                     p->schedule.way == PAR_SWEPT ? "What did not fit in memory was" : "The mesh was not swept, and was",
-                    p->scratch, console_size((double)p->schedule.parked).text);
+                    p->scratch, tri_size_text((double)p->schedule.parked).text);
 }
 
 /* Refines, and writes what is finished meanwhile. */

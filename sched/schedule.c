@@ -22,6 +22,7 @@
 #include "triangle/clock.h"
 #include "triangle/estimate.h"
 #include "triangle/pause.h"
+#include "triangle/size_text.h"
 
 /* Coarse triangles that a cell has after pre-refinement: enough for seams to be narrow, few enough for pre-refinement
  * to take a few thousandths of the time. (docs/performance.md) */
@@ -395,8 +396,9 @@ static enum tri_status try_to_sweep(struct par_state *state, const struct par_pa
 static enum tri_status fail_without_scratch(const struct par_state *state, double triangles, struct tri_error *error)
 {
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
-                    "about %.1f GB are asked for and there are %.1f: a mesh like this needs a scratch directory",
-                    1e-9 * BYTES_IN_MEMORY * triangles, 1e-9 * (double)state->options->memory);
+                    "about %s are asked for and there are %s: a mesh like this needs a scratch directory",
+                    tri_size_text(BYTES_IN_MEMORY * triangles).text,
+                    tri_size_text((double)state->options->memory).text);
 }
 
 /* The whole mesh does not fit in memory: it is swept where nothing comes after this schedule and the sink can begin

@@ -135,7 +135,7 @@ done
 # The schedule drives refinement by its hooks: how triangles are judged and points inserted is the mesher's own affair.
 # (api/ and dropin/ are the doors of the library, of which sched/ has its own.)
 hooks='mesh|owners|fence|refine|pause|census|estimate|generate|executor|api/mesh|dropin/(triangle|run)'
-tools='clock|degrees|grow|hilbert|radix|point|scratch_file|status|stop'
+tools='clock|degrees|grow|hilbert|radix|point|scratch_file|size_text|status|stop'
 strange=$(grep -E '^sched/.*#[[:space:]]*include[[:space:]]*"triangle/' "$code" |
     grep -vE '"triangle/('"$hooks|$tools"')\.h"' | head -n 3)
 [ -z "$strange" ] || breach "sched/ includes what is no hook: $strange"

@@ -27,6 +27,7 @@
 #include "sched/sweep/spool.h"
 #include "sched/threads.h"
 #include "triangle/scratch_file.h"
+#include "triangle/size_text.h"
 
 enum { EXTRAS = 12, SHEETS = TRI_ARRAYS + EXTRAS, GRAIN = 1 << 18, LOOK_NANOSECONDS = 1000000 };
 
@@ -217,8 +218,8 @@ enum tri_status par_park_status(const struct par_park *park, enum tri_status sta
     if (status != TRI_NO_MEMORY || !park || !park->fault || park->fault == ENOMEM)
         return status;
     return tri_fail(error, TRI_CANNOT_WRITE, park->folder, 0,
-                    "cannot park %.3g MB there of a mesh that does not fit in memory: %s", 1e-6 * (double)park->wanted,
-                    strerror(park->fault));
+                    "cannot park %s there of a mesh that does not fit in memory: %s",
+                    tri_size_text((double)park->wanted).text, strerror(park->fault));
 }
 
 /* --- what leaves memory again */
@@ -304,12 +305,12 @@ static enum tri_status leave(void *user, struct tri_mesh *mesh, struct tri_error
     assert(!mesh->storage);
     if (!park->folder && isinf(park->others))
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                        "the system does not tell how much memory is in use: a bound of %.3g GB cannot be kept",
-                        1e-9 * park->memory);
+                        "the system does not tell how much memory is in use: a bound of %s cannot be kept",
+                        tri_size_text(park->memory).text);
     if (!park->folder)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                        "the mesh, %.3g million triangles so far, outgrows the %.3g GB of memory that are allowed",
-                        1e-6 * mesh->n_triangles, 1e-9 * park->memory);
+                        "the mesh, %.3g million triangles so far, outgrows the %s of memory that are allowed",
+                        1e-6 * mesh->n_triangles, tri_size_text(park->memory).text);
     for (int k = 0; k < TRI_ARRAYS; k++) /* of a mesh that was dropped */
         drop_sheet(park, &park->sheet[k]);
     enum tri_status status = tri_mesh_move(mesh, &park->storage, error);

@@ -1,0 +1,22 @@
+/* Sizes in messages: three digits, in a unit that fits. */
+#include "support.h"
+#include "triangle/size_text.h"
+
+static void test_units_fit(void **state)
+{
+    static const struct {
+        double bytes;
+        const char *text;
+    } cases[] = {{0, "0 B"},          {62, "62 B"},         {999.4, "999 B"},     {999.6, "1 kB"},
+                 {2250, "2.25 kB"},   {151e3, "151 kB"},    {9e7, "90 MB"},       {1.874e9, "1.87 GB"},
+                 {999.4e9, "999 GB"}, {5.25e12, "5.25 TB"}, {3e15, "3 PB"}};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        assert_string_equal(tri_size_text(cases[i].bytes).text, cases[i].text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_units_fit)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,21 @@
+/* Sizes in messages. */
+#ifndef TRIANGLE_SIZE_TEXT_H
+#define TRIANGLE_SIZE_TEXT_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Bytes in three digits: "62 B", "151 kB", "90 MB", "1.87 GB". */
+struct tri_size_text {
+    char text[24];
+};
+
+/* bytes >= 0; the largest unit is PB. */
+struct tri_size_text tri_size_text(double bytes);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
