@@ -8,9 +8,13 @@
 #include "triangle/census.h"
 #include "triangle/clock.h"
 
-/* Measured: bytes a triangle at the peak, at least and with one refinement loop or the schedule and its numbering; time
- * of the numbering against that of refining; triangles against the least number that area bounds ask for. */
-static const double LEAST_BYTES = 44, LOOP_BYTES = 52, SCHEDULE_BYTES = 74, NUMBERING = 0.55, AREA_FACTOR = 1.14;
+/* Measured: bytes a triangle at the peak, at least and with one refinement loop; time of the numbering against that of
+ * refining; triangles against the least number that area bounds ask for. */
+static const double LEAST_BYTES = 44, LOOP_BYTES = 52, NUMBERING = 0.55, AREA_FACTOR = 1.14;
+/* The schedule: bytes of a triangle and its half vertex; what numbers them at the end takes of each triangle, those
+ * that are there already too, and of each subsegment (par_number_bytes); and places that blocks are given and leave
+ * empty, a triangle that angles ask for: areas tell beforehand how many it will be. */
+static const double SCHEDULE_BYTES = 48, NUMBERING_BYTES = 26, NUMBERING_SUB_BYTES = 28, EMPTY_PLACES = 0.25;
 /* Measured, of a mesh that is handed out as it is made: bytes of buffers and libraries; for pages of files on their
  * way, a thread; for each root of (triangles * triangles in a cell), of all columns in memory, of those of the mesh
  * on disk with room to grow, of what numbers and hands them out, and of the state of a checkpoint, of which there are
@@ -95,6 +99,16 @@ static double bytes_a_triangle(const struct run *run)
     bool lists = s->second_order || s->edges || s->voronoi || s->off;
     return (run->hooks->refine ? SCHEDULE_BYTES : LOOP_BYTES) + 6 * run->mesh.n_attributes + (lists ? 6 : 0) +
            (s->second_order ? 12 : 0);
+}
+
+/* At the peak, of a mesh that grows by so many triangles, of which areas demand some. */
+static double bytes_whole(const struct run *run, double grown, double demand)
+{
+    if (!run->hooks->refine || grown <= 0)
+        return grown * bytes_a_triangle(run);
+    double places = grown + EMPTY_PLACES * fmax(grown - demand, 0);
+    return places * bytes_a_triangle(run) + (run->mesh.n_triangles + places) * NUMBERING_BYTES +
+           run->mesh.n_subs * NUMBERING_SUB_BYTES;
 }
 
 /* --- seconds */
@@ -183,13 +197,14 @@ static struct needs needs_of_rank(const struct run *run, double grown)
     return n;
 }
 
-static struct needs needs_of(const struct run *run, double grown, double bytes, bool sweeps)
+/* whole: bytes where it is in memory as a whole. */
+static struct needs needs_of(const struct run *run, double grown, double whole, bool sweeps)
 {
     if (run->hooks->n_ranks > 0 && sweeps)
         return needs_of_rank(run, grown);
     const double column = column_of(run, grown), pages = PAGES * fmax(run->hooks->threads, 1);
     const double work = sweeps ? COLUMNS_WORK * column + SWEPT_BYTES * grown : PARKED_WORK * grown;
-    struct needs n = {.triangles = grown, .whole = grown > TRI_MAX_TRIANGLES ? HUGE_VAL : grown * bytes};
+    struct needs n = {.triangles = grown, .whole = grown > TRI_MAX_TRIANGLES ? HUGE_VAL : whole};
     n.held = sweeps ? BUFFERS + COLUMNS_HELD * column + SWEPT_BYTES * grown : n.whole;
     n.floor = floor_of(run, n.held, work + pages);
     n.away = sweeps ? COLUMNS_AWAY * column : PARKED_BYTES * grown;
@@ -206,11 +221,11 @@ struct estimate estimate_make(const struct run *run, bool with_seconds)
     const double now = run->mesh.n_triangles, triangles = triangles_of(run, demand), grown = fmax(triangles - now, 0);
     const bool sweeps = is_swept(run);
     struct estimate e = {.sweeps = sweeps, .vertices = run->mesh.n_vertices + grown / 2};
-    e.likely = needs_of(run, grown, bytes_a_triangle(run), sweeps);
+    e.likely = needs_of(run, grown, bytes_whole(run, grown, demand), sweeps);
     e.likely.triangles = triangles;
     e.likely.files = disk_of(run, e.vertices, triangles);
     if (demand > 0 && quality->max_steiner < 0) {
-        e.least = needs_of(run, demand, LEAST_BYTES, sweeps);
+        e.least = needs_of(run, demand, demand * LEAST_BYTES, sweeps);
         e.least.files = disk_of(run, 0.5 * demand, demand);
     }
     e.seconds = with_seconds ? seconds_of(run, triangles, e.likely.files) : 0;
