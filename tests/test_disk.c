@@ -106,6 +106,25 @@ static void test_levels_are_level_in_spite_of_rounding(void **state)
     tri_pslg_free(&pslg);
 }
 
+/* A spike 10^-8 as wide as it is long: most levels have no two places that fit, and are moved. */
+static void test_new_levels_find_places_that_fit(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg;
+    struct tri_report report;
+    assert_true(support_read("regress/spike_levels.poly", &pslg));
+    struct tri_mesh mesh = conforming(&pslg, 20, &report);
+    struct tri_refine_options options = {.conforming = true};
+    int64_t count[TRI_EXCUSES], left = 0;
+    tri_count_encroached(&mesh, &options, &report.quality, count);
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        left += count[k];
+    assert_true(left < 4); /* of 7 where they are not moved */
+    assert_true(mesh.n_triangles < 1000);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
 /* The loop leaves no subsegment encroached, on anything, and no split makes a part that is shorter than half the
  * shortest edge. */
 static void test_nothing_stays_that_can_be_split(void **state)
@@ -180,6 +199,7 @@ int main(void)
         cmocka_unit_test(test_needles_part),
         cmocka_unit_test(test_bundles_part),
         cmocka_unit_test(test_levels_are_level_in_spite_of_rounding),
+        cmocka_unit_test(test_new_levels_find_places_that_fit),
         cmocka_unit_test(test_nothing_stays_that_can_be_split),
         cmocka_unit_test(test_what_stays_is_counted),
     };

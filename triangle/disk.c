@@ -37,15 +37,22 @@
  * 16 times shorter than it would be without rounding, which is no feature. With more of them the triangles on their
  * other sides would have edges too short to be refined (feature_size.c), and would be given up.
  *
+ * LEMMA (new levels). Whether two points at distance r from o fit, without a circle of one holding the other, depends
+ * on their difference alone: a vector of the lattice of coordinates, about h long, in a cone as wide as the angle of
+ * the parents, that of their perpendiculars. Other places beside theirs offer few others. But where r changes by
+ * ulp / h of itself, h changes by an ulp, and others are offered. So where the place of a new level on e has none
+ * beside it on f, the next of MOST_SHIFTS radii, at most SHIFTED from it, is taken that has.
+ *
  * What stays: where v is nearer to e than the shortest edge, so that it lies on e as far as coordinates tell, or level
  * with an end of e up to rounding, and h too small to mend that. And where rounding leaves no room for the split point
- * (cavity.h). Nothing else. */
+ * (cavity.h); or for the point level with an end of an input segment, which cannot move. Nothing else. */
 #include "triangle/disk.h"
 
 #include <assert.h>
 
 #include "triangle/predicates.h"
 #include "triangle/small_angle.h"
+#include "triangle/split.h"
 
 bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code)
 {
@@ -127,10 +134,80 @@ bool tri_is_encroached_from(const struct tri_mesh *mesh, const struct tri_subseg
 }
 
 bool tri_leaves_disks_empty(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,
-                            tri_vertex_id v)
+                            struct tri_point at)
 {
-    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], at = mesh->xy[v];
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]];
     return tri_dot(a, p, at) >= 0 && tri_dot(p, b, at) >= 0;
+}
+
+/* The radii tried for a new level, and how far they may lie from the first, in lengths of the shorter part. */
+enum { MOST_SHIFTS = 512 };
+static const double SHIFTED = 1.0 / 1024;
+
+/* The common end of two parents; TRI_NONE: there is none, or they are the same. */
+static tri_vertex_id end_between(const struct tri_mesh *mesh, tri_parent_id p, tri_parent_id q)
+{
+    const tri_vertex_id *a = mesh->parents[p].v, *b = mesh->parents[q].v;
+    for (int k = 0; p != q && k < 2; k++)
+        if (a[k] == b[0] || a[k] == b[1])
+            return a[k];
+    return TRI_NONE;
+}
+
+/* The fraction of subsegment s that lies at distance r from o, a point of its line. */
+static double fraction_at(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point o, double r)
+{
+    double at_a = distance(o, mesh->xy[s->v[0]]), at_b = distance(o, mesh->xy[s->v[1]]);
+    return (r - at_a) / (at_b - at_a);
+}
+
+/* Is there a place on subsegment t, level with p on s as seen from o, such that neither lies in a circle of the
+ * other? */
+static bool fits(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,
+                 const struct tri_subsegment *t, struct tri_point o)
+{
+    struct tri_point q;
+    double fraction = fraction_at(mesh, t, o, distance(o, p));
+    if (!(fraction > 0 && fraction < 1))
+        return false;
+    for (int choice = 0; choice < TRI_SPLIT_PLACES; choice++)
+        if (tri_place_split(mesh, t, fraction, choice, &q) && tri_leaves_disks_empty(mesh, t, q, p) &&
+            tri_leaves_disks_empty(mesh, s, p, q))
+            return true;
+    return false;
+}
+
+bool tri_has_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,
+                   const struct tri_subsegment *t)
+{
+    tri_vertex_id end = end_between(mesh, s->parent, t->parent);
+    struct tri_point a = mesh->xy[t->v[0]], b = mesh->xy[t->v[1]];
+    if (end == TRI_NONE || tri_dot(a, b, p) >= 0)
+        return true;
+    double l = distance(a, b), h = tri_line_distance(a, b, p);
+    double level = fraction_at(mesh, t, mesh->xy[end], distance(mesh->xy[end], p));
+    if (NARROW * h >= l || h < sqrt(mesh->limits.shortest2) || !(level * l > h && (1 - level) * l > h))
+        return true; /* it will not be split there */
+    return fits(mesh, s, p, t, mesh->xy[end]);
+}
+
+bool tri_shift_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, const struct tri_subsegment *t,
+                     double *fraction, int *choice)
+{
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], first = tri_point_between(a, b, *fraction), p;
+    struct tri_point o = mesh->xy[end_between(mesh, s->parent, t->parent)];
+    double r = distance(o, first), room = SHIFTED * fmin(distance(a, first), distance(first, b));
+    double h = tri_line_distance(mesh->xy[t->v[0]], mesh->xy[t->v[1]], first), step = r * (tri_resolution(first) / h);
+    for (int k = 0; k < MOST_SHIFTS && k * step <= room; k++) {
+        double at = fraction_at(mesh, s, o, r - k * step);
+        for (int i = 0; i < TRI_SPLIT_PLACES && at > 0 && at < 1; i++)
+            if (tri_place_split(mesh, s, at, i, &p) && fits(mesh, s, p, t, o)) {
+                *fraction = at;
+                *choice = i;
+                return true;
+            }
+    }
+    return false;
 }
 
 bool tri_is_encroached(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_disk_split *split)

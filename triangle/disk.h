@@ -18,9 +18,20 @@ struct tri_disk_split {
 bool tri_is_encroached_from(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code,
                             struct tri_disk_split *split);
 
-/* Does vertex v lie in the diametral circle of neither part, if s is split at p? Exact. */
+/* Does `at` lie in the diametral circle of neither part, if s is split at p? Exact. */
 bool tri_leaves_disks_empty(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,
-                            tri_vertex_id v);
+                            struct tri_point at);
+
+/* Once s is split at p: can t, where it is to be split level with p, be split such that neither point lies in a circle
+ * of the other's subsegments? True, too, where it is not to be split, or they are parts of segments without a common
+ * end. */
+bool tri_has_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,
+                   const struct tri_subsegment *t);
+
+/* Where it cannot: a fraction nearby, and the choice of its place (split.h), at which to split s so that t can; false:
+ * none was found. */
+bool tri_shift_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, const struct tri_subsegment *t,
+                     double *fraction, int *choice);
 
 /* Does the apex of a triangle beside the subsegment lie in its circle, and do coordinates resolve a split because of
  * it? */

@@ -351,7 +351,7 @@ static enum outcome give_up(struct tri_refiner *r, tri_triangle_id triangle, enu
 static bool is_level(const struct tri_refiner *r, tri_sub_id s, tri_vertex_id level)
 {
     const struct tri_mesh *m = r->mesh;
-    if (!tri_leaves_disks_empty(m, &m->sub[s], r->cavity.p, level))
+    if (!tri_leaves_disks_empty(m, &m->sub[s], r->cavity.p, m->xy[level]))
         return false;
     for (int32_t i = 0; i < r->cavity.n_wall; i++) {
         const tri_vertex_id *end = m->sub[~r->cavity.edge[r->cavity.wall[i]].outer].v;
@@ -370,24 +370,50 @@ static enum tri_search search_place(struct tri_refiner *r, tri_sub_id s, double 
                : TRI_SEARCH_OUTSIDE;
 }
 
+/* The cavity of a place that has one was found. Where a subsegment beside it has no place level with it, another
+ * place for both, if there is any. */
+static enum tri_search settle_level(struct tri_refiner *r, tri_sub_id s, struct tri_disk_split *split, int first,
+                                    int32_t *n_left)
+{
+    const struct tri_mesh *m = r->mesh;
+    const struct tri_point p = r->cavity.p;
+    for (int32_t i = 0; r->options->conforming && i < r->cavity.n_wall; i++) {
+        tri_sub_id t = ~r->cavity.edge[r->cavity.wall[i]].outer;
+        double fraction = split->fraction;
+        int choice;
+        if (t == s || tri_has_level(m, &m->sub[s], p, &m->sub[t]))
+            continue;
+        if (!tri_shift_level(m, &m->sub[s], &m->sub[t], &fraction, &choice))
+            return TRI_SEARCH_FOUND;
+        enum tri_search found = search_place(r, s, fraction, choice, n_left);
+        if (found == TRI_SEARCH_OUTSIDE)
+            return search_place(r, s, split->fraction, first, n_left);
+        split->fraction = fraction;
+        return found;
+    }
+    return TRI_SEARCH_FOUND;
+}
+
 /* The cavity of the point that splits subsegment s, the first of its places that has one: rounding may put a place
  * outside the disk of a triangle beside s, or behind one of its edges. Beside a vertex that it shall be level with the
- * first that is so in spite of rounding, if any is. */
-static enum tri_search find_split(struct tri_refiner *r, tri_sub_id s, struct tri_disk_split split, int32_t *n_left)
+ * first that is so in spite of rounding, if any is. Where it begins a level, one with room for those that follow. */
+static enum tri_search find_split(struct tri_refiner *r, tri_sub_id s, struct tri_disk_split *split, int32_t *n_left)
 {
     const struct tri_mesh *m = r->mesh;
     int first = -1;
     if (!tri_can_split(m, m->xy[m->sub[s].v[0]], m->xy[m->sub[s].v[1]]))
         return TRI_SEARCH_OUTSIDE;
     for (int choice = 0; choice < TRI_SPLIT_PLACES; choice++) {
-        enum tri_search found = search_place(r, s, split.fraction, choice, n_left);
+        enum tri_search found = search_place(r, s, split->fraction, choice, n_left);
         if (found == TRI_SEARCH_OUTSIDE)
             continue;
-        if (found != TRI_SEARCH_FOUND || split.level == TRI_NONE || is_level(r, s, split.level))
+        if (found == TRI_SEARCH_FOUND && split->level == TRI_NONE)
+            return settle_level(r, s, split, choice, n_left);
+        if (found != TRI_SEARCH_FOUND || is_level(r, s, split->level))
             return found;
         first = first < 0 ? choice : first;
     }
-    return first < 0 ? TRI_SEARCH_OUTSIDE : search_place(r, s, split.fraction, first, n_left);
+    return first < 0 ? TRI_SEARCH_OUTSIDE : search_place(r, s, split->fraction, first, n_left);
 }
 
 /* Splits subsegment s for the sake of a triangle. */
@@ -399,7 +425,7 @@ static enum outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri_dis
     assert(s >= 0 && split.fraction > 0 && split.fraction < 1);
     if (tri_is_protected(r->options, &old))
         return refuse(r, TRI_EXCUSE_PROTECTED);
-    enum tri_search found = find_split(r, s, split, &n_left);
+    enum tri_search found = find_split(r, s, &split, &n_left);
     if (found == TRI_SEARCH_FENCED)
         return defer_fenced(r, triangle);
     if (found == TRI_SEARCH_BEYOND)
