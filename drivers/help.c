@@ -46,11 +46,11 @@ static const char *const paragraphs[] = {
 
     "Other\n"
     "  -Q      print nothing but errors\n"
-    "  -V      print more; -VV: still more\n"
+    "  -V      print more; -VV: the same\n"
     "  -C      check the mesh, and say what came of it\n"
     "  -h, --help  this help\n"
     "  --version   name and version\n"
-    "  -i -F -l -X -w   accepted; the result does not depend on them\n",
+    "  -i -F -l -X -w -W   accepted; the result does not depend on them\n",
 };
 
 static const char exit_codes[] =

@@ -434,8 +434,12 @@ static enum tri_status settle_memory(struct long_options *options, struct tri_er
 }
 
 /* HDF5 files, and the texts beside them, are checked as all files are. */
-static enum tri_status name_streams(struct program *p, struct run_hooks *hooks, struct tri_error *error)
+static enum tri_status name_streams(struct program *p, const struct arguments *arguments, struct run_hooks *hooks,
+                                    struct tri_error *error)
 {
+    if (arguments->switches.second_order && p->options.n_streams > 0)
+        return tri_fail(error, TRI_BAD_INPUT, p->options.streams[0], 0,
+                        "files of HDF5 cannot hold second-order triangles (-o2)");
     for (int i = 0; i < p->options.n_streams; i++) {
         p->xdmf[i] = stream_xdmf(p->options.streams[i]);
         if (!p->xdmf[i])
@@ -489,7 +493,7 @@ static int run_program(struct program *p, const struct arguments *arguments, str
     hooks.executor = &executor;
     if (!p->scratch)
         tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-    if (!p->scratch || name_streams(p, &hooks, error)) {
+    if (!p->scratch || name_streams(p, arguments, &hooks, error)) {
         console_error(&(struct console){.program = PROGRAM}, error);
         return EXIT_FAILURE;
     }

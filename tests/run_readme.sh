@@ -1,6 +1,7 @@
 #!/bin/sh
 # What the README shows works: its C program compiles against the headers of the tree and runs, and each of its commands
-# on files of data/ ends with exit code 0. Usage: run_readme.sh SOURCE_ROOT BUILD_DIR WORK_DIR C_COMPILER
+# on files of data/ ends with exit code 0, but for those that make hundreds of millions of
+# triangles. Usage: run_readme.sh SOURCE_ROOT BUILD_DIR WORK_DIR C_COMPILER
 set -u
 root=$1
 build=$2
@@ -25,7 +26,7 @@ awk '/^```c$/ { inside = 1; next } /^```$/ { inside = 0 } inside' "$root/README.
     fault "the C program does not compile"
 ./example || fault "the program ends with exit code $?"
 
-grep -E '^    (triangle|trianglecheck|meshplot) ' "$root/README.md" | sed 's/#.*//' >commands.txt
+grep -E '^    (triangle|ptriangle|trianglecheck|meshplot) ' "$root/README.md" | grep -v 1.73e-9 | sed 's/#.*//' >commands.txt
 [ "$(wc -l <commands.txt)" -ge 8 ] || fault "only $(wc -l <commands.txt) commands found"
 while read -r program arguments; do
     [ -x "$build/bin/$program" ] || { echo "not built, not tested: $program"; continue; }

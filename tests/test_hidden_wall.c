@@ -7,6 +7,8 @@
 
 static const double ANGLE = 20, SINE = 0.34202014332566873;
 
+static const struct tri_refine_options free_sides = {0};
+
 static double lens(void) { return tri_bounds_for(ANGLE, false).lens_cos2; }
 
 /* A square with points close to its sides and to two segments inside. */
@@ -94,7 +96,7 @@ static void test_finds_what_is_near(void **state)
             bool is_there = false;
             if (!has_free_point(&cavity, &mesh, t))
                 continue;
-            assert_int_equal(tri_find_hidden_wall(&cavity, &mesh, lens(), &found), TRI_SEARCH_FOUND);
+            assert_int_equal(tri_find_hidden_wall(&cavity, &mesh, &free_sides, lens(), &found), TRI_SEARCH_FOUND);
             assert_true(found == TRI_NONE || (is_seen_wide(&mesh, found, cavity.p) && !is_wall(&cavity, found)));
             for (int32_t s = 0; s < mesh.n_subs; s++)
                 is_there |= is_seen_wide(&mesh, s, cavity.p) && is_near(&mesh, s, cavity.p);
@@ -147,10 +149,10 @@ static void test_fence_and_part(void **state)
                               left.y_max / mesh.unit};
     cavity.fence = &fence;
     assert_true(has_free_point(&cavity, &mesh, t));
-    assert_int_equal(tri_find_hidden_wall(&cavity, &mesh, lens(), &s), TRI_SEARCH_FENCED);
+    assert_int_equal(tri_find_hidden_wall(&cavity, &mesh, &free_sides, lens(), &s), TRI_SEARCH_FENCED);
     fence.x_max = all.x_max / mesh.unit;
     assert_true(has_free_point(&cavity, &mesh, t));
-    assert_int_equal(tri_find_hidden_wall(&cavity, &mesh, lens(), &s), TRI_SEARCH_FOUND);
+    assert_int_equal(tri_find_hidden_wall(&cavity, &mesh, &free_sides, lens(), &s), TRI_SEARCH_FOUND);
     assert_true(s >= 0);
     const struct tri_subsegment side = mesh.sub[s];
     assert_true(fabs(mesh.xy[side.v[0]].x - mesh.xy[side.v[1]].x) * mesh.unit == 8);
@@ -158,7 +160,7 @@ static void test_fence_and_part(void **state)
                           .n[tri_edge(side.side[side.side[0] == TRI_NONE])];
     assert_int_equal(*link, ~s);
     *link = TRI_BEYOND; /* as if a triangle beyond it were not here */
-    assert_int_equal(tri_find_hidden_wall(&cavity, &mesh, lens(), &s), TRI_SEARCH_BEYOND);
+    assert_int_equal(tri_find_hidden_wall(&cavity, &mesh, &free_sides, lens(), &s), TRI_SEARCH_BEYOND);
     assert_true((cavity.beyond[0] == side.v[0] && cavity.beyond[1] == side.v[1]) ||
                 (cavity.beyond[0] == side.v[1] && cavity.beyond[1] == side.v[0]));
     tri_mesh_free(&mesh);

@@ -56,8 +56,8 @@ static bool lengthen(struct tri_bad_queue *queue, struct tri_bucket *bucket)
 
 bool tri_bad_queue_push_angle(struct tri_bad_queue *queue, struct tri_entry entry, int b)
 {
-    struct tri_bucket *bucket = &queue->bucket[b];
     assert(b >= 0 && b < TRI_BUCKETS);
+    struct tri_bucket *bucket = &queue->bucket[b];
     if ((bucket->first == NIL || bucket->end == TRI_BLOCK) && !lengthen(queue, bucket))
         return false;
     queue->block[bucket->last].entry[bucket->end++] = entry;

@@ -45,7 +45,8 @@
  *
  * What stays: where v is nearer to e than the shortest edge, so that it lies on e as far as coordinates tell, or level
  * with an end of e up to rounding, and h too small to mend that. And where rounding leaves no room for the split point
- * (cavity.h); or for the point level with an end of an input segment, which cannot move. Nothing else. */
+ * (cavity.h); or for the point level with an end of an input segment, which cannot move; or where no radius that was
+ * looked at has places that fit. */
 #include "triangle/disk.h"
 
 #include <assert.h>

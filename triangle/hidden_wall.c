@@ -13,12 +13,16 @@
  * perpendicular lies on s. Each edge that the way from p to q crosses has both ends no nearer than R, and passes p no
  * farther than |pq|: p sees it under at least 180 degrees - 2 asin(|pq| / R). And the edges behind an edge whose inner
  * sides p sees are seen under angles that together are that of the edge, below 180 degrees, or there is one alone: for
- * b up to 45 degrees one of them at most is wide, and the walk does not branch.
+ * b up to 45 degrees one of them at most is wide, and the walk does not branch. Edges that pass farther away than
+ * R sin(b) are not crossed: where points lie in a long row, one would otherwise walk along it.
  *
  * Subsegments farther away are no nearer than R sin(b), which is what splitting those that are seen keeps to, too. */
 #include "triangle/hidden_wall.h"
 
 #include <assert.h>
+#include <math.h>
+
+#include "triangle/criterion.h"
 
 /* An edge seen from p, and what lies behind it. */
 struct view {
@@ -27,15 +31,30 @@ struct view {
     struct tri_relative ra, rb;
 };
 
-static bool is_wide(struct tri_relative a, struct tri_relative b, double lens_cos2)
+/* What the walk crosses. */
+struct way {
+    double lens_cos2; /* wider edges than this */
+    double near2;     /* that pass p nearer than the root of this */
+};
+
+static struct way way_from(const struct tri_cavity *c, double lens_cos2)
 {
-    double dot = a.x * b.x + a.y * b.y;
-    return dot < 0 && dot * dot > lens_cos2 * a.l * b.l && tri_cross(a, b) > 0;
+    double nearest = HUGE_VAL;
+    for (int32_t i = 0; i < c->n_edges; i++)
+        nearest = fmin(nearest, c->edge[i].ra.l);
+    return (struct way){lens_cos2, nearest * (1 - sqrt(lens_cos2)) / 2};
 }
 
-/* From a wide edge on across wide ones: to a subsegment, or to where there is none. Triangles are entered that are
+static bool is_crossed(const struct way *way, struct tri_relative a, struct tri_relative b)
+{
+    double dot = a.x * b.x + a.y * b.y, cross = tri_cross(a, b);
+    return dot < 0 && dot * dot > way->lens_cos2 * a.l * b.l && cross > 0 &&
+           cross * cross < way->near2 * (a.l + b.l - 2 * dot);
+}
+
+/* From such an edge on across others: to a subsegment, or to where there is none. Triangles are entered that are
  * owned alone: of others the links may be changing. */
-static enum tri_search walk(struct tri_cavity *c, const struct tri_mesh *mesh, struct view at, double lens_cos2,
+static enum tri_search walk(struct tri_cavity *c, const struct tri_mesh *mesh, struct view at, const struct way *way,
                             tri_sub_id *s)
 {
     while (at.link >= 0) {
@@ -44,8 +63,8 @@ static enum tri_search walk(struct tri_cavity *c, const struct tri_mesh *mesh, s
         tri_vertex_id apex = t->v[e];
         assert(t->v[tri_next[e]] == at.b && t->v[tri_prev[e]] == at.a);
         struct tri_relative r = tri_relative(&mesh->xy[apex], c->p);
-        bool left = is_wide(at.ra, r, lens_cos2);
-        if (!left && !is_wide(r, at.rb, lens_cos2))
+        bool left = is_crossed(way, at.ra, r);
+        if (!left && !is_crossed(way, r, at.rb))
             return TRI_SEARCH_FOUND;
         if (c->fence && !tri_fence_holds(c->fence, mesh->xy[apex]))
             return TRI_SEARCH_FENCED;
@@ -61,15 +80,18 @@ static enum tri_search walk(struct tri_cavity *c, const struct tri_mesh *mesh, s
     return TRI_SEARCH_FOUND;
 }
 
-enum tri_search tri_find_hidden_wall(struct tri_cavity *c, const struct tri_mesh *mesh, double lens_cos2,
-                                     tri_sub_id *s)
+enum tri_search tri_find_hidden_wall(struct tri_cavity *c, const struct tri_mesh *mesh,
+                                     const struct tri_refine_options *options, double lens_cos2, tri_sub_id *s)
 {
     enum tri_search found = TRI_SEARCH_FOUND;
+    const struct way way = way_from(c, lens_cos2);
     *s = TRI_NONE;
     for (int32_t i = 0; i < c->n_edges && found == TRI_SEARCH_FOUND && *s == TRI_NONE; i++) {
         const struct tri_cavity_edge *edge = &c->edge[i], *next = edge + 1;
-        if (edge->outer >= 0 && is_wide(edge->ra, next->ra, lens_cos2))
-            found = walk(c, mesh, (struct view){edge->outer, edge->a, next->a, edge->ra, next->ra}, lens_cos2, s);
+        if (edge->outer >= 0 && is_crossed(&way, edge->ra, next->ra))
+            found = walk(c, mesh, (struct view){edge->outer, edge->a, next->a, edge->ra, next->ra}, &way, s);
+        if (*s != TRI_NONE && tri_is_protected(options, &mesh->sub[*s]))
+            *s = TRI_NONE;
     }
     return found;
 }

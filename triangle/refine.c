@@ -538,13 +538,11 @@ static enum outcome find_hidden(struct tri_refiner *r, tri_triangle_id triangle,
 {
     if (!r->options->fence && !r->options->urgent)
         return DONE;
-    switch (tri_find_hidden_wall(&r->cavity, r->mesh, r->criterion.bounds.lens_cos2, s)) {
+    switch (tri_find_hidden_wall(&r->cavity, r->mesh, r->options, r->criterion.bounds.lens_cos2, s)) {
     case TRI_SEARCH_FENCED: return defer_fenced(r, triangle);
     case TRI_SEARCH_BEYOND: return wait_for_more(r, r->cavity.beyond);
     default: break;
     }
-    if (*s != TRI_NONE && tri_is_protected(r->options, &r->mesh->sub[*s]))
-        *s = TRI_NONE;
     return DONE;
 }
 
@@ -821,7 +819,8 @@ static bool refine_worklist(struct tri_refiner *r)
  * where no more than 13 were bad; of 17 cases with more than 16, 16 ended with more bad ones, in meshes 1.2 to 1.8
  * times as large. (About a hundredth of a mesh is bad at 34.5 degrees, a fiftieth at 35, a sixth at 36.) So where the
  * bound is out of reach the mesh stays that of the usual angle; what -r with the same bound makes of it is what it
- * makes for that angle: mostly nothing. */
+ * makes for that angle: mostly nothing. Where there are sizes most triangles are good by far, and trying mends half of
+ * the bad ones at 34.5 and 35 degrees: there it is tried whatever their number. */
 
 /* Is no more than FEW_BAD of the listed triangles bad by its angle, and not to be given up? */
 static bool is_nearly_reached(const struct tri_refiner *r)
@@ -845,7 +844,7 @@ static void go_above(struct tri_refiner *r)
     r->above = 200 + r->mesh->n_triangles / 4;
     r->back = 2 * r->above;
     lower_bound(r, r->options->min_angle);
-    bool tried = is_nearly_reached(r);
+    bool tried = tri_has_sizes(r->options) || is_nearly_reached(r);
     r->stage = tried ? ABOVE_STAGE : LAST_STAGE;
     r->report->hit_cap |= !tried;
 }

@@ -67,6 +67,8 @@ wrote x.vtu
 fresh letter.poly
 program 1 -pq30o2 --output x.vtu --output fort.14 letter.poly
 complains '^fort\.14: files of ADCIRC cannot hold second-order triangles'
+program 1 -pq30o2 --output x.vtu --output x.h5 letter.poly
+complains '^x\.h5: files of HDF5 cannot hold second-order triangles'
 program 1 -pq30 --output x.vtu --output ./x.vtu letter.poly
 complains 'would be written twice'
 program 1 -p --output 1.vtu --output 2.vtu --output 3.vtu --output 4.vtu --output 5.vtu letter.poly

@@ -107,17 +107,17 @@ static int64_t interface_size(const struct gmsh *g, int64_t i)
 static enum tri_status choose_nodes(struct gmsh *g)
 {
     const struct tri_parts *p = g->parts;
-    int64_t n = 0, *at;
+    int64_t n = 0, at = 0;
     for (int64_t i = 0; i < p->n_interfaces; i++)
         n += has_interface(g, i) ? interface_size(g, i) : 0;
     g->n_inner = p->first_inner[g->part + 1] - p->first_inner[g->part];
     g->n_nodes = g->n_inner + n;
-    g->border = at = malloc((size_t)n * sizeof *g->border + 1);
+    g->border = malloc((size_t)n * sizeof *g->border + 1);
     if (!g->border)
         return tri_fail(g->error, TRI_NO_MEMORY, NULL, 0, "out of memory for a part of the mesh");
     for (int64_t i = 0; i < p->n_interfaces; i++)
         for (int64_t k = p->first_shared[i]; has_interface(g, i) && k < p->first_shared[i + 1]; k++)
-            *at++ = p->shared[k].point;
+            g->border[at++] = p->shared[k].point;
     return TRI_OK;
 }
 
