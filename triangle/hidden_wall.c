@@ -37,19 +37,27 @@ struct way {
     double near2;     /* that pass p nearer than the root of this */
 };
 
+/* From the point of the cavity. */
 static struct way way_from(const struct tri_cavity *c, double lens_cos2)
 {
     double nearest = HUGE_VAL;
     for (int32_t i = 0; i < c->n_edges; i++)
-        nearest = fmin(nearest, c->edge[i].ra.l);
+        nearest = c->edge[i].ra.l < nearest ? c->edge[i].ra.l : nearest;
     return (struct way){lens_cos2, nearest * (1 - sqrt(lens_cos2)) / 2};
+}
+
+static bool is_wide(struct tri_relative a, struct tri_relative b, double lens_cos2)
+{
+    double dot = a.x * b.x + a.y * b.y;
+    return dot < 0 && dot * dot > lens_cos2 * a.l * b.l;
 }
 
 static bool is_crossed(const struct way *way, struct tri_relative a, struct tri_relative b)
 {
+    if (!is_wide(a, b, way->lens_cos2))
+        return false;
     double dot = a.x * b.x + a.y * b.y, cross = tri_cross(a, b);
-    return dot < 0 && dot * dot > way->lens_cos2 * a.l * b.l && cross > 0 &&
-           cross * cross < way->near2 * (a.l + b.l - 2 * dot);
+    return cross > 0 && cross * cross < way->near2 * (a.l + b.l - 2 * dot);
 }
 
 /* From such an edge on across others: to a subsegment, or to where there is none. Triangles are entered that are
@@ -84,11 +92,13 @@ enum tri_search tri_find_hidden_wall(struct tri_cavity *c, const struct tri_mesh
                                      const struct tri_refine_options *options, double lens_cos2, tri_sub_id *s)
 {
     enum tri_search found = TRI_SEARCH_FOUND;
-    const struct way way = way_from(c, lens_cos2);
     *s = TRI_NONE;
     for (int32_t i = 0; i < c->n_edges && found == TRI_SEARCH_FOUND && *s == TRI_NONE; i++) {
         const struct tri_cavity_edge *edge = &c->edge[i], *next = edge + 1;
-        if (edge->outer >= 0 && is_crossed(&way, edge->ra, next->ra))
+        if (edge->outer < 0 || !is_wide(edge->ra, next->ra, lens_cos2))
+            continue; /* nearly always */
+        const struct way way = way_from(c, lens_cos2);
+        if (is_crossed(&way, edge->ra, next->ra))
             found = walk(c, mesh, (struct view){edge->outer, edge->a, next->a, edge->ra, next->ra}, &way, s);
         if (*s != TRI_NONE && tri_is_protected(options, &mesh->sub[*s]))
             *s = TRI_NONE;
