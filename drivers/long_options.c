@@ -22,7 +22,7 @@ const char long_options_help[] =
     "                     the mesh as HDF5, with FILE.xdmf beside it, or for VTK and ParaView, Gmsh, SMS or ADCIRC,\n"
     "                     in place of BASE.node and so on, or beside them if --output BASE is given, too; up to 4\n"
     "                     such files\n"
-    "  --parts N          .msh files are cut into N parts (up to 512): FILE.msh becomes FILE_1.msh ... FILE_N.msh,\n"
+    "  --parts N          .msh files are cut into N parts (512 in all): FILE.msh becomes FILE_1.msh ... FILE_N.msh,\n"
     "                     partitioned as Gmsh does it, with the same numbers as in one file\n"
     "  --report FILE      seconds, blocks, memory and mesh statistics, as JSON; -: on standard output, where\n"
     "                     with -Q nothing else is printed\n"
@@ -248,12 +248,15 @@ static enum tri_status take_parts(struct long_options *options, const char *valu
 
 enum tri_status long_options_check(const struct long_options *options, struct tri_error *error)
 {
-    bool can_be_cut = options->n_parts == 0;
+    int n_cut = 0;
     for (int i = 0; i < options->n_exports; i++)
-        can_be_cut = can_be_cut || tri_format_of(options->exports[i])->write_parts;
-    if (can_be_cut)
+        n_cut += tri_format_of(options->exports[i])->write_parts != NULL;
+    if (n_cut * options->n_parts > TRI_MOST_PARTS)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--parts: %d parts of each of %d .msh files are more than %d",
+                        options->n_parts, n_cut, TRI_MOST_PARTS);
+    if (n_cut > 0 || options->n_parts == 0)
         return TRI_OK;
-    return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--parts: is of .msh files; --output FILE.msh names one");
+    return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--parts is for .msh files; --output FILE.msh names one");
 }
 
 static enum tri_status apply(struct long_options *options, struct tri_switches *switches, const struct kind *kind,

@@ -157,10 +157,12 @@ static enum tri_status write_file(struct writer *w, const struct kind *kind)
 static enum tri_status write_export(struct writer *w, const char *path)
 {
     struct export export = export_of(path, w->files->n_parts);
-    if (export.n_parts > 0)
-        console_say(w->files->console, "Writing %s in %d parts.\n", path, export.n_parts);
-    else
-        console_say(w->files->console, "Writing %s.\n", path);
+    char *first = export_name(&export, path, 0), *last = export_name(&export, path, export_files(&export) - 1);
+    if (first && last)
+        console_say(w->files->console, "Writing %s%s%s.\n", first, export.n_parts > 1 ? " to " : "",
+                    export.n_parts > 1 ? last : "");
+    free(first);
+    free(last);
     enum tri_status status = export_open(&export, path, w->set, w->error);
     return status ? status : export_write(&export, &w->grid, w->files->executor, w->error);
 }

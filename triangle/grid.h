@@ -44,6 +44,22 @@ struct tri_grid {
     void (*edge)(const void *user, int64_t i, struct tri_grid_edge *edge);
 };
 
+enum { TRI_GRID_ROUNDS = 1 << 15 };
+
+/* What has been used of the mesh and of extras need not stay in memory: to be said every TRI_GRID_ROUNDS items where
+ * the grid is not asked for each in order. pass: in round i of such a loop. */
+static inline void tri_grid_let_go(const struct tri_grid *grid)
+{
+    if (grid->storage && grid->storage->let_go)
+        grid->storage->let_go(grid->storage->user);
+}
+
+static inline void tri_grid_pass(const struct tri_grid *grid, int64_t i)
+{
+    if (i % TRI_GRID_ROUNDS == 0)
+        tri_grid_let_go(grid);
+}
+
 /* What of a mesh is handed out. All borrowed, as long as the grid lives.
  *
  * Input points come from the PSLG, since they are handed out bit by bit as they came: in the mesh coordinates smaller

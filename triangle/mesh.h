@@ -93,6 +93,9 @@ struct tri_storage {
     void *(*extra)(void *user, size_t bytes);
     void (*extra_free)(void *user, void *extra);
     void *user;
+    /* Of what has been read or written of the extras no more than a little needs to be in memory any longer; by any
+     * thread. NULL: the storage sees to that by itself. */
+    void (*let_go)(const void *user);
 };
 
 struct tri_mesh;

@@ -346,7 +346,8 @@ enum tri_status par_park_open(struct par_park **park, struct tri_mesh *mesh, con
     p->folder = folder;
     p->memory = (double)memory;
     p->files = resident().files;
-    p->storage = (struct tri_storage){reserve, fill, extra, extra_free, p};
+    p->storage = (struct tri_storage){
+        .reserve = reserve, .fill = fill, .extra = extra, .extra_free = extra_free, .user = p};
     p->bound = (struct tri_bound){allows, leave, p};
     for (int k = 0; k < SHEETS; k++)
         p->sheet[k].file = -1;

@@ -35,15 +35,17 @@ unset PTRIANGLE_TEST_BLOCK
 wrote one_1.msh one_2.msh one_3.msh swept_1.msh swept_2.msh swept_3.msh three_1.msh three_2.msh three_3.msh
 fresh letter.poly
 program 0 -p --output x.msh --output x.vtu --parts 1 letter.poly
-says "Writing x.msh in 1 parts."
+says "Writing x_1.msh."
 wrote x_1.msh x.vtu
 rm -f x_1.msh x.vtu
 program 1 -p --output a.b/x.msh --output x.vtu --parts 1 letter.poly
 complains 'a\.b/x_1\.msh: cannot create'
 program 1 -p --output x.msh --parts 513 letter.poly
 complains '--parts: "513" is not a whole number from 1 to 512'
+program 1 -p --output x.msh --output y.msh --parts 257 letter.poly
+complains '--parts: 257 parts of each of 2 \.msh files are more than 512$'
 program 1 -p --parts 2 letter.poly
-complains '--parts: is of \.msh files'
+complains '--parts is for \.msh files'
 echo old >x_1.msh
 ln -s . x_2.msh
 program 1 -pq30 --output x.msh --parts 2 letter.poly

@@ -58,6 +58,7 @@ static int64_t node_at(const struct gmsh *g, int64_t i)
 {
     if (!g->parts)
         return i;
+    tri_grid_pass(g->grid, i);
     return i < g->n_inner ? g->parts->inner[g->parts->first_inner[g->part] + i] : g->border[i - g->n_inner];
 }
 
@@ -83,6 +84,19 @@ static void choose_all(struct groups *groups)
     }
 }
 
+/* The first of ascending places at .. end - 1 that is not below the bound; end: all are. */
+static int64_t place_from(const int64_t *place, int64_t at, int64_t end, int64_t bound)
+{
+    while (at < end) {
+        const int64_t middle = at + (end - at) / 2;
+        if (place[middle] < bound)
+            at = middle + 1;
+        else
+            end = middle;
+    }
+    return at;
+}
+
 /* Places at .. end - 1 of a list of the parts; they ascend, as groups do. Returns how many they are. */
 static int64_t choose_some(struct groups *groups, const int64_t *place, int64_t at, int64_t end)
 {
@@ -90,9 +104,7 @@ static int64_t choose_some(struct groups *groups, const int64_t *place, int64_t 
     groups->place = place;
     for (int k = 0; k < groups->n; k++) {
         groups->first[k] = at;
-        while (at < end && place[at] < groups->all.first[k + 1])
-            at++;
-        groups->end[k] = at;
+        groups->end[k] = at = place_from(place, at, end, groups->all.first[k + 1]);
     }
     return n;
 }
@@ -368,6 +380,7 @@ static enum tri_status write_nodes(struct gmsh *g)
 
 static int64_t element_tag(const struct gmsh *g, const struct groups *groups, int64_t i)
 {
+    tri_grid_pass(g->grid, i);
     return (groups == &g->curves ? g->grid->n_triangles : 0) + place_at(groups, i) + 1;
 }
 

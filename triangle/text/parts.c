@@ -126,13 +126,16 @@ static void bisect(struct work *w, struct site *site, int64_t n, int first, int 
 
 static enum tri_status cut_plane(struct work *w, struct tri_error *error)
 {
-    const int64_t m = w->grid->n_triangles, step = m / MOST_SAMPLES + 1;
+    const int64_t m = w->grid->n_triangles, step = (m - 1) / MOST_SAMPLES + 1;
     int64_t n = 0;
     w->sample = malloc((size_t)(m / step + 1) * sizeof *w->sample);
     if (!w->sample)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to cut a mesh into parts");
-    for (int64_t t = 0; t < m; t += step)
+    for (int64_t t = 0; t < m; t += step) {
+        if (t % TRI_GRID_ROUNDS < step)
+            tri_grid_let_go(w->grid);
         w->sample[n++] = site_of(w, t);
+    }
     bisect(w, w->sample, n, 0, w->parts->n);
     free(w->sample);
     return TRI_OK;
@@ -306,39 +309,50 @@ static void list_inner(struct work *w)
     struct tri_parts *p = w->parts;
     int64_t next[TRI_MOST_PARTS + 1];
     for (int64_t i = 0; i < w->grid->n_points; i++) {
+        tri_grid_pass(w->grid, i);
         w->user[i] = w->user[i] ? w->user[i] : 1;
         if (w->user[i] > 0)
             p->first_inner[w->user[i] - 1]++;
     }
     accumulate(p->first_inner, p->n);
     memcpy(next, p->first_inner, sizeof next);
-    for (int64_t i = 0; i < w->grid->n_points; i++)
+    for (int64_t i = 0; i < w->grid->n_points; i++) {
+        tri_grid_pass(w->grid, i);
         if (w->user[i] > 0)
             p->inner[next[w->user[i] - 1]++] = i;
+    }
 }
 
 static void list_triangles(struct work *w, const struct tri_grouping *surfaces)
 {
     struct tri_parts *p = w->parts;
     int64_t next[TRI_MOST_PARTS + 1];
-    for (int64_t t = 0; t < w->grid->n_triangles; t++)
+    for (int64_t t = 0; t < w->grid->n_triangles; t++) {
+        tri_grid_pass(w->grid, t);
         p->first_triangle[w->part[t] - 1]++;
+    }
     accumulate(p->first_triangle, p->n);
     memcpy(next, p->first_triangle, sizeof next);
-    for (int64_t place = 0; place < w->grid->n_triangles; place++)
+    for (int64_t place = 0; place < w->grid->n_triangles; place++) {
+        tri_grid_pass(w->grid, place);
         p->triangle[next[w->part[tri_grouped(surfaces, place)] - 1]++] = place;
+    }
 }
 
 static void list_segments(struct work *w, const struct tri_grouping *curves)
 {
     struct tri_parts *p = w->parts;
     int64_t next[TRI_MOST_PARTS + 1];
-    for (int64_t s = 0; s < w->grid->n_segments; s++)
+    for (int64_t s = 0; s < w->grid->n_segments; s++) {
+        tri_grid_pass(w->grid, s);
         p->first_segment[w->segment_part[s] - 1]++;
+    }
     accumulate(p->first_segment, p->n);
     memcpy(next, p->first_segment, sizeof next);
-    for (int64_t place = 0; place < w->grid->n_segments; place++)
+    for (int64_t place = 0; place < w->grid->n_segments; place++) {
+        tri_grid_pass(w->grid, place);
         p->segment[next[w->segment_part[tri_grouped(curves, place)] - 1]++] = place;
+    }
 }
 
 /* --- shared points */
@@ -426,7 +440,10 @@ static enum tri_status get_room(struct work *w, struct tri_error *error)
     p->segment = get(p->storage, g->n_segments, sizeof *p->segment);
     if (!w->part || !w->user || !w->segment_part || !p->triangle || !p->inner || !p->segment)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no room to cut a mesh into parts");
-    memset(w->user, 0, (size_t)g->n_points * sizeof *w->user);
+    for (int64_t i = 0; i < g->n_points; i++) {
+        tri_grid_pass(g, i);
+        w->user[i] = 0;
+    }
     return TRI_OK;
 }
 

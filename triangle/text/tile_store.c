@@ -2,7 +2,7 @@
  *
  * INVARIANT: no more is in memory of the files than the rows that have been asked for since pages were let go, which
  * happens whenever somebody asks for a row whose number is a multiple of CHUNK: for writers go through all rows of a
- * kind, once and about in their order. */
+ * kind, once and about in their order. Where they do not, or go through extras alone, they say when. */
 #define _DEFAULT_SOURCE /* madvise */
 
 #include "triangle/text/tile_store.h"
@@ -109,6 +109,14 @@ static void extra_free(void *user, void *extra)
             empty(&s->sheet[k]);
 }
 
+static void let_go(const void *user)
+{
+    const struct tri_tile_store *s = user;
+    for (int k = 0; k < SHEETS; k++)
+        if (s->sheet[k].at)
+            madvise(s->sheet[k].at, s->sheet[k].bytes, MADV_DONTNEED);
+}
+
 /* --- the sink */
 
 static enum tri_status begin(void *user, const struct tri_stream *stream, struct tri_error *error)
@@ -150,11 +158,9 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
 
 static const struct tri_tile_store *look_at(const void *user, int64_t i)
 {
-    const struct tri_tile_store *s = user;
-    for (int k = 0; i % CHUNK == 0 && k < SHEETS; k++)
-        if (s->sheet[k].at)
-            madvise(s->sheet[k].at, s->sheet[k].bytes, MADV_DONTNEED);
-    return s;
+    if (i % CHUNK == 0)
+        let_go(user);
+    return user;
 }
 
 static void point(const void *user, int64_t i, struct tri_grid_point *point)
@@ -218,7 +224,7 @@ enum tri_status tri_tile_store_new(struct tri_tile_store **store, const char *fo
     if (!s)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no memory to write files");
     s->folder = folder;
-    s->storage = (struct tri_storage){.extra = extra, .extra_free = extra_free, .user = s};
+    s->storage = (struct tri_storage){.extra = extra, .extra_free = extra_free, .user = s, .let_go = let_go};
     for (int k = 0; k < SHEETS; k++)
         s->sheet[k].file = -1;
     *sink = (struct tri_sink){s, begin, take, NULL};
