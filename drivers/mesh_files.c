@@ -87,9 +87,6 @@ static enum tri_status try_export(struct tri_output_set *set, const struct mesh_
 {
     const struct export export = export_of(path, files->n_parts);
     enum tri_status status = TRI_OK;
-    if (files->arguments->switches.second_order && !export.format->second_order)
-        return tri_fail(error, TRI_BAD_INPUT, path, 0, "files of %s cannot hold second-order triangles (-o2)",
-                        export.format->name);
     for (int i = 0; i < export_files(&export) && !status; i++) {
         char *name = export_name(&export, path, i);
         status = name ? try_file(set, name, read, error)

@@ -28,6 +28,7 @@
 #include "triangle/census.h"
 #include "triangle/estimate.h"
 #include "triangle/size_text.h"
+#include "triangle/text/formats.h"
 #include "triangle/text/names.h"
 #include "triangle/text/write.h"
 
@@ -380,6 +381,27 @@ static enum tri_status name_output(struct arguments *arguments, const char *base
     return TRI_OK;
 }
 
+static enum tri_status refuse_second_order(const char *path, const char *format, struct tri_error *error)
+{
+    return tri_fail(error, TRI_BAD_INPUT, path, 0, "files of %s cannot hold second-order triangles (-o2)", format);
+}
+
+/* Can every file that is asked for hold what the switches ask for? */
+static enum tri_status check_formats(const struct long_options *options, const struct tri_switches *switches,
+                                     struct tri_error *error)
+{
+    if (!switches->second_order)
+        return TRI_OK;
+    if (options->n_streams > 0)
+        return refuse_second_order(options->streams[0], "HDF5", error);
+    for (int i = 0; i < options->n_exports; i++) {
+        const struct tri_format *format = tri_format_of(options->exports[i]);
+        if (!format->second_order)
+            return refuse_second_order(options->exports[i], format->name, error);
+    }
+    return TRI_OK;
+}
+
 static enum tri_status take_words(struct program *p, struct arguments *arguments, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -394,6 +416,7 @@ static enum tri_status take_words(struct program *p, struct arguments *arguments
         return status;
     status = long_options_check(&p->options, error);
     status = status ? status : arguments_end(arguments, error);
+    status = status ? status : check_formats(&p->options, &arguments->switches, error);
     status = status ? status : name_output(arguments, p->options.output, error);
     if (!status && p->options.report && arguments->file)
         status = report_check(error);
@@ -434,12 +457,8 @@ static enum tri_status settle_memory(struct long_options *options, struct tri_er
 }
 
 /* HDF5 files, and the texts beside them, are checked as all files are. */
-static enum tri_status name_streams(struct program *p, const struct arguments *arguments, struct run_hooks *hooks,
-                                    struct tri_error *error)
+static enum tri_status name_streams(struct program *p, struct run_hooks *hooks, struct tri_error *error)
 {
-    if (arguments->switches.second_order && p->options.n_streams > 0)
-        return tri_fail(error, TRI_BAD_INPUT, p->options.streams[0], 0,
-                        "files of HDF5 cannot hold second-order triangles (-o2)");
     for (int i = 0; i < p->options.n_streams; i++) {
         p->xdmf[i] = stream_xdmf(p->options.streams[i]);
         if (!p->xdmf[i])
@@ -493,7 +512,7 @@ static int run_program(struct program *p, const struct arguments *arguments, str
     hooks.executor = &executor;
     if (!p->scratch)
         tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
-    if (!p->scratch || name_streams(p, arguments, &hooks, error)) {
+    if (!p->scratch || name_streams(p, &hooks, error)) {
         console_error(&(struct console){.program = PROGRAM}, error);
         return EXIT_FAILURE;
     }

@@ -527,20 +527,30 @@ static void full_disk_leaves_old_files(void **state)
     assert_int_equal(empty_directory(), 1);
 }
 
+static void open_most(struct tri_output_set *set)
+{
+    struct tri_output *output;
+    tri_outputs_begin(set);
+    for (int i = 0; i < TRI_MAX_OUTPUTS; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "%d", i);
+        assert_int_equal(tri_output_open(set, in_directory(name), &output, NULL), TRI_OK);
+    }
+    assert_int_equal(set->next_name, TRI_MAX_OUTPUTS); /* no name has been tried twice */
+}
+
 static void too_many_outputs(void **state)
 {
     (void)state;
     empty_directory();
-    struct tri_output_set set;
+    static struct tri_output_set set;
     struct tri_output *output;
-    tri_outputs_begin(&set);
-    for (int i = 0; i < TRI_MAX_OUTPUTS; i++) {
-        char name[16];
-        snprintf(name, sizeof name, "%d", i);
-        assert_int_equal(tri_output_open(&set, in_directory(name), &output, NULL), TRI_OK);
-    }
+    open_most(&set);
     assert_int_equal(tri_output_open(&set, in_directory("a"), &output, NULL), TRI_CANNOT_WRITE);
     assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+    open_most(&set);
+    assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK); /* which replaces them */
+    assert_int_equal(set.next_name, 2 * TRI_MAX_OUTPUTS);
     assert_int_equal(empty_directory(), TRI_MAX_OUTPUTS);
 }
 

@@ -59,6 +59,19 @@ if [ -e /dev/full ]; then
     wrote x_2.msh
 fi
 
+# As many calls of the system for each file, however many there are. (Those that one process may not trace are not told.)
+calls() {
+    strace -f -qq -e trace=%file,link,linkat -o .found "$bin/ptriangle" -pQ --threads 1 --output x.msh --parts "$1" \
+        letter.poly && wc -l <.found
+}
+if command -v strace >/dev/null && strace -o .found true 2>/dev/null; then
+    fresh letter.poly
+    few=$(calls 20)
+    more=$(calls 40)
+    most=$(calls 80)
+    check "$few, $more and $most calls for 20, 40, 80 files" test $((most - more)) -le $((2 * (more - few) + 20))
+fi
+
 # all or nothing, and nothing where it cannot be
 fresh letter.poly
 echo old >x.vtu

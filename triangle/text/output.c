@@ -198,10 +198,10 @@ static bool is_kept(int file)
 
 /* O_EXCL decides between processes and threads that try the same name. The mode is that of any new file, so that the
  * process's mask applies. */
-static enum tri_status create_temporary(struct tri_output *output, struct tri_error *error)
+static enum tri_status create_temporary(struct tri_output_set *set, struct tri_output *output, struct tri_error *error)
 {
     for (int i = 0; i < MAX_NAMES; i++) {
-        char *const name = temporary_name(output->path, i);
+        char *const name = temporary_name(output->path, set->next_name++);
         if (!name)
             return tri_fail(error, TRI_NO_MEMORY, output->path, 0, "no memory to create the file");
         output->file = open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -257,34 +257,43 @@ static bool stat_directory(const char *path, struct stat *status)
     return stat(name, status) == 0;
 }
 
-static bool is_same_node(const struct stat *a, const struct stat *b)
+/* old: of the file at path; NULL: there is none. */
+static struct tri_output_place place_of(const char *path, const struct stat *old)
 {
-    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+    struct stat directory;
+    const bool is_known = old ? S_ISREG(old->st_mode) : stat_directory(path, &directory);
+    const struct stat *at = old ? old : &directory;
+    return is_known ? (struct tri_output_place){true, old != NULL, (uint64_t)at->st_dev, (uint64_t)at->st_ino}
+                    : (struct tri_output_place){0};
+}
+
+static bool is_same_place(const struct tri_output_place *a, const char *path_a, const struct tri_output_place *b,
+                          const char *path_b)
+{
+    return a->known && b->known && a->exists == b->exists && a->device == b->device && a->node == b->node &&
+           (a->exists || strcmp(path_a + directory_length(path_a), path_b + directory_length(path_b)) == 0);
 }
 
 bool tri_is_same_file(const char *a, const char *b)
 {
-    struct stat of_a, of_b;
-    bool is_a = stat(a, &of_a) == 0, is_b = stat(b, &of_b) == 0;
-    if (is_a && is_b)
-        return S_ISREG(of_a.st_mode) && is_same_node(&of_a, &of_b);
-    if (is_a || is_b || strcmp(a + directory_length(a), b + directory_length(b)) != 0)
-        return false;
-    return stat_directory(a, &of_a) && stat_directory(b, &of_b) && is_same_node(&of_a, &of_b);
+    struct stat old;
+    const struct tri_output_place of_a = place_of(a, stat(a, &old) == 0 ? &old : NULL);
+    const struct tri_output_place of_b = place_of(b, stat(b, &old) == 0 ? &old : NULL);
+    return is_same_place(&of_a, a, &of_b, b);
 }
 
-/* No two outputs are one file: the second would replace the first. */
+/* No two outputs are one file: the second would replace the first. The system is asked once for each, not for pairs. */
 static enum tri_status check_others(const struct tri_output_set *set, const struct tri_output *output,
                                     struct tri_error *error)
 {
     for (int i = 0; i < set->n; i++)
-        if (tri_is_same_file(set->outputs[i].path, output->path))
+        if (is_same_place(&set->outputs[i].place, set->outputs[i].path, &output->place, output->path))
             return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "would be written twice: %.300s is the same file",
                             set->outputs[i].path);
     return TRI_OK;
 }
 
-static enum tri_status open_output(const struct tri_output_set *set, struct tri_output *output, const char *path,
+static enum tri_status open_output(struct tri_output_set *set, struct tri_output *output, const char *path,
                                    struct tri_error *error)
 {
     struct stat old;
@@ -293,6 +302,7 @@ static enum tri_status open_output(const struct tri_output_set *set, struct tri_
     if (!output->path)
         return errno == ENOMEM ? tri_fail(error, TRI_NO_MEMORY, path, 0, "no memory to create the file")
                                : tri_fail_system(error, TRI_CANNOT_WRITE, path, "cannot create", errno);
+    output->place = place_of(output->path, exists ? &old : NULL);
     enum tri_status status = check_target(output, exists ? &old : NULL, error);
     status = status ? status : check_others(set, output, error);
     if (status != TRI_OK)
@@ -300,7 +310,7 @@ static enum tri_status open_output(const struct tri_output_set *set, struct tri_
     if (exists && !replaces)
         return set->trial ? TRI_OK : open_in_place(output, error);
     tidy_up(set, output->path);
-    status = create_temporary(output, error);
+    status = create_temporary(set, output, error);
     output->replaces = replaces;
     if (status == TRI_OK && replaces && fchmod(output->file, old.st_mode & 0777) != 0)
         return cannot_create(output, error);
@@ -516,10 +526,10 @@ enum tri_status tri_outputs_close(struct tri_output_set *set, struct tri_error *
 /* --- final names */
 
 /* A second name for the file that is going to be replaced, if there is one. */
-static void keep_old(struct tri_output *output)
+static void keep_old(struct tri_output_set *set, struct tri_output *output)
 {
     for (int i = 0; output->temporary && !output->old && i < MAX_NAMES; i++) {
-        char *const name = temporary_name(output->path, i);
+        char *const name = temporary_name(output->path, set->next_name++);
         if (name && link(output->path, name) == 0) {
             output->old = name;
             return;
@@ -558,7 +568,7 @@ enum tri_status tri_outputs_commit(struct tri_output_set *set, struct tri_error 
 {
     enum tri_status status = tri_outputs_close(set, error);
     for (int i = 0; status == TRI_OK && i < set->n; i++)
-        keep_old(&set->outputs[i]);
+        keep_old(set, &set->outputs[i]);
     for (int i = 0; status == TRI_OK && i < set->n; i++)
         status = rename_output(&set->outputs[i], error);
     for (int i = 0; status != TRI_OK && i < set->n; i++)

@@ -26,8 +26,16 @@ extern "C" {
 
 enum { TRI_MAX_OUTPUTS = 544 };
 
+/* Which file it is: of one that exists its own node, of a new one its folder's, where its name tells it. */
+struct tri_output_place {
+    bool known;  /* false: a device or pipe, which may be written twice */
+    bool exists;
+    uint64_t device, node;
+};
+
 struct tri_output {
     char *path;      /* what the file will be called: the caller's path with symbolic links followed */
+    struct tri_output_place place;
     char *temporary; /* what it is called until then; NULL: a device or pipe, written in place */
     char *old;       /* while files are renamed: a second name of the one that is replaced; NULL: none */
     bool replaces;   /* there was a file of that name */
@@ -45,6 +53,7 @@ struct tri_output {
 struct tri_output_set {
     int n;
     struct tri_output outputs[TRI_MAX_OUTPUTS];
+    int next_name;               /* number in the next temporary name: those below have been tried */
     bool trial;                  /* to see whether all can be opened: devices and pipes are left alone */
     const struct tri_stop *stop; /* asked by tri_output_write; borrowed; NULL: nobody */
 };

@@ -304,54 +304,33 @@ static void accumulate(int64_t *first, int n)
     }
 }
 
-static void list_inner(struct work *w)
+static int32_t part_of_triangle(const struct work *w, int64_t t) { return w->part[t]; }
+static int32_t part_of_segment(const struct work *w, int64_t s) { return w->segment_part[s]; }
+
+/* Of no triangle: the first part. 0: it is shared. */
+static int32_t part_of_point(const struct work *w, int64_t i)
 {
-    struct tri_parts *p = w->parts;
-    int64_t next[TRI_MOST_PARTS + 1];
-    for (int64_t i = 0; i < w->grid->n_points; i++) {
-        tri_grid_pass(w->grid, i);
-        w->user[i] = w->user[i] ? w->user[i] : 1;
-        if (w->user[i] > 0)
-            p->first_inner[w->user[i] - 1]++;
-    }
-    accumulate(p->first_inner, p->n);
-    memcpy(next, p->first_inner, sizeof next);
-    for (int64_t i = 0; i < w->grid->n_points; i++) {
-        tri_grid_pass(w->grid, i);
-        if (w->user[i] > 0)
-            p->inner[next[w->user[i] - 1]++] = i;
-    }
+    return w->user[i] == 0 ? 1 : w->user[i] > 0 ? w->user[i] : 0;
 }
 
-static void list_triangles(struct work *w, const struct tri_grouping *surfaces)
+/* Items by part, each as its place in the grouping, ascending. part_of: 0, or the part that lists it. */
+static void list_by_part(const struct work *w, int64_t n, int32_t (*part_of)(const struct work *w, int64_t item),
+                         const struct tri_grouping *groups, int64_t *list, int64_t *first)
 {
-    struct tri_parts *p = w->parts;
     int64_t next[TRI_MOST_PARTS + 1];
-    for (int64_t t = 0; t < w->grid->n_triangles; t++) {
-        tri_grid_pass(w->grid, t);
-        p->first_triangle[w->part[t] - 1]++;
+    for (int64_t i = 0; i < n; i++) {
+        const int32_t part = part_of(w, i);
+        tri_grid_pass(w->grid, i);
+        if (part > 0)
+            first[part - 1]++;
     }
-    accumulate(p->first_triangle, p->n);
-    memcpy(next, p->first_triangle, sizeof next);
-    for (int64_t place = 0; place < w->grid->n_triangles; place++) {
+    accumulate(first, w->parts->n);
+    memcpy(next, first, sizeof next);
+    for (int64_t place = 0; place < n; place++) {
+        const int32_t part = part_of(w, tri_grouped(groups, place));
         tri_grid_pass(w->grid, place);
-        p->triangle[next[w->part[tri_grouped(surfaces, place)] - 1]++] = place;
-    }
-}
-
-static void list_segments(struct work *w, const struct tri_grouping *curves)
-{
-    struct tri_parts *p = w->parts;
-    int64_t next[TRI_MOST_PARTS + 1];
-    for (int64_t s = 0; s < w->grid->n_segments; s++) {
-        tri_grid_pass(w->grid, s);
-        p->first_segment[w->segment_part[s] - 1]++;
-    }
-    accumulate(p->first_segment, p->n);
-    memcpy(next, p->first_segment, sizeof next);
-    for (int64_t place = 0; place < w->grid->n_segments; place++) {
-        tri_grid_pass(w->grid, place);
-        p->segment[next[w->segment_part[tri_grouped(curves, place)] - 1]++] = place;
+        if (part > 0)
+            list[next[part - 1]++] = place;
     }
 }
 
@@ -419,9 +398,9 @@ static enum tri_status make_lists(struct work *w, const struct tri_grouping *sur
     p->first_shared = malloc((size_t)(w->n_uses + 1) * sizeof *p->first_shared);
     if (w->no_memory || !p->part_list || !p->shared || !p->first_shared)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to cut a mesh into parts");
-    list_inner(w);
-    list_triangles(w, surfaces);
-    list_segments(w, curves);
+    list_by_part(w, w->grid->n_points, part_of_point, &(struct tri_grouping){0}, p->inner, p->first_inner);
+    list_by_part(w, w->grid->n_triangles, part_of_triangle, surfaces, p->triangle, p->first_triangle);
+    list_by_part(w, w->grid->n_segments, part_of_segment, curves, p->segment, p->first_segment);
     list_shared(w);
     return TRI_OK;
 }
