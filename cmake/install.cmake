@@ -13,6 +13,10 @@ install(TARGETS ${libraries} EXPORT ptriangleTargets
 if(executables)
     install(TARGETS ${executables} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
 endif()
+get_property(modules GLOBAL PROPERTY PTRIANGLE_MODULE_TARGETS)
+if(modules) # at their place seen from the executables
+    install(TARGETS ${modules} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/ptriangle COMPONENT programs)
+endif()
 get_property(documents GLOBAL PROPERTY PTRIANGLE_DOCUMENTS)
 foreach(document IN LISTS documents)
     if(document MATCHES "\\.1$")

@@ -1,4 +1,4 @@
-/* What launchers tell their tasks by the environment. */
+/* One of several tasks: whose words are heard, and how they part. */
 #include "drivers/launch.h"
 
 #include <fcntl.h>
@@ -8,27 +8,7 @@
 #include <unistd.h>
 
 #include "drivers/interrupt.h"
-
-static long number_of(const char *name)
-{
-    const char *text = getenv(name);
-    return text ? strtol(text, NULL, 10) : -1;
-}
-
-/* OpenMPI, then MPICH and its kin, then a step of SLURM. */
-static const char *const sizes[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
-static const char *const ranks[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "SLURM_PROCID"};
-
-static int look(int *task)
-{
-    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
-        if (number_of(sizes[i]) > 1) {
-            *task = (int)number_of(ranks[i]);
-            return (int)number_of(sizes[i]);
-        }
-    *task = 0;
-    return 1;
-}
+#include "drivers/tasks.h"
 
 static void fall_silent(void)
 {
@@ -38,7 +18,7 @@ static void fall_silent(void)
 
 enum tri_status launch_join(struct launch *launch, struct tri_error *error)
 {
-    int task, tasks = look(&task);
+    int task, tasks = tasks_started(&task);
     *launch = (struct launch){0};
     if (tasks == 1)
         return TRI_OK;

@@ -17,6 +17,7 @@
 #include "drivers/one_line.h"
 #include "drivers/plot_part.h"
 #include "drivers/resources.h"
+#include "drivers/start.h"
 #include "triangle/pslg.h"
 #include "triangle/text/names.h"
 #include "triangle/text/read.h"
@@ -476,7 +477,9 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     return 0;
 }
 
-int main(int argc, char **argv)
+const int program_trouble = TROUBLE;
+
+int program_main(int argc, char **argv)
 {
     struct settings settings = {.style = {.width = 1200, .segments = true, .legend = true}};
     struct files files = {0};

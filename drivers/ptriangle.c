@@ -19,6 +19,7 @@
 #include "drivers/restart.h"
 #include "drivers/run.h"
 #include "drivers/shared_input.h"
+#include "drivers/start.h"
 #include "drivers/streams.h"
 #include "sched/cells.h"
 #include "sched/ranks/relay.h"
@@ -569,7 +570,9 @@ static int carry_out(struct program *p, const struct arguments *arguments, struc
     return code;
 }
 
-int main(int argc, char **argv)
+const int program_trouble = EXIT_FAILURE;
+
+int program_main(int argc, char **argv)
 {
     static struct program program;
     struct tri_error error = {0};

@@ -11,6 +11,7 @@
 #include "drivers/judged_words.h"
 #include "drivers/one_line.h"
 #include "drivers/resources.h"
+#include "drivers/start.h"
 #include "drivers/verdict.h"
 #include "sched/threads.h"
 #include "triangle/check/check.h"
@@ -320,7 +321,9 @@ static int run(const struct settings *s, struct judged_files *f)
     return tri_check_passed(&report) ? EXIT_SUCCESS : FAULTS;
 }
 
-int main(int argc, char **argv)
+const int program_trouble = TROUBLE;
+
+int program_main(int argc, char **argv)
 {
     struct settings settings = {.check = {.max_bad = -1}};
     struct judged_files files = {0};

@@ -3,6 +3,7 @@
 # through find_package, and by hand through pkg-config.
 # A client of Triangle's interface is linked to the sequential and to the parallel library, and must print the same.
 # MPIEXEC, MPI_C_COMPILER: launcher and compiler of the MPI of the build; empty: it has none.
+# PTRIANGLE_MODULE_DIR: that of the modules, from that of the programs; empty: there are none.
 # Usage: run_client.sh BUILD_DIR WORK_DIR CMAKE C_COMPILER
 set -eu
 build=$1
@@ -88,8 +89,14 @@ for program in "$build/bin/"*; do
     installed=$work/prefix/bin/$(basename "$program")
     [ ! -x "$program" ] || [ -x "$installed" ] || { echo "not installed: $program" >&2; exit 1; }
     page=$work/prefix/share/man/man1/$(basename "$program").1
+    module=${PTRIANGLE_MODULE_DIR:-none}/$(basename "$program").so
+    [ ! -f "$build/bin/$module" ] || [ -f "$work/prefix/bin/$module" ] || { echo "not installed: $module" >&2; exit 1; }
     [ ! -d "$build/documents" ] || [ -f "$page" ] || { echo "not installed: $page" >&2; exit 1; }
 done
 cp "$square" "$work/"
 "$work/prefix/bin/triangle" -pQ "$work/square.poly"
 "$work/prefix/bin/trianglecheck" "$work/square.1" --poly "$work/square.poly"
+if "$build/bin/ptriangle" -pQ "$work/square.poly" --output "$work/square.h5" 2>/dev/null; then
+    "$work/prefix/bin/ptriangle" -pQ "$work/square.poly" --output "$work/moved.h5"
+    "$work/prefix/bin/trianglecheck" "$work/moved.h5" --poly "$work/square.poly"
+fi

@@ -1,0 +1,64 @@
+# Starting: MPI and HDF5, which take longer to load than a small mesh to make, are loaded where they are needed only, from
+# a module beside the program, wherever both lie.
+# PTRIANGLE_MODULE_DIR: its folder, from that of the program; empty: programs have all themselves.
+far=${PTRIANGLE_MODULE_DIR:-}
+if [ -z "$far" ]; then
+    echo "cli start: programs without modules"
+    exit 0
+fi
+modules=$bin/$far
+names=$(for module in "$modules"/*.so; do basename "$module" .so; done)
+
+fresh letter.poly
+for each in $names; do
+    if command -v readelf >/dev/null; then
+        check "$each needs MPI or HDF5" sh -c '! readelf -d "$1" | grep -E "NEEDED.*lib(mpi|hdf5)"' sh "$bin/$each"
+    fi
+    mkdir -p alone/bin alone/links
+    cp "$bin/$each" alone/bin/
+    ln -s "../bin/$each" alone/links/
+done
+
+# Without the module: all else works, and one line says what is amiss.
+from() { # from FOLDER CODE PROGRAM WORDS...
+    folder=$1
+    code=$2
+    program=$3
+    shift 3
+    what="$folder/$program $*"
+    checks=$((checks + 1))
+    "$folder/$program" "$@" >.out 2>.err
+    found=$?
+    [ "$found" -eq "$code" ] || fault "exit code $found instead of $code: $(head -n 1 .err)"
+}
+amiss() {
+    complains "^$1: the module for MPI and HDF5 cannot be loaded: .*/ptriangle/$1\.so: .*No such file"
+    check "one line" test "$(wc -l <.err)" -eq 1
+    check "and nothing else" test ! -s .out
+}
+from alone/bin 0 ptriangle -Qpq30 letter.poly
+from alone/bin 0 trianglecheck letter.1 --poly letter.poly -q 30
+from alone/bin 1 ptriangle -Qpq30 letter.poly --output letter.h5
+amiss ptriangle
+OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0
+export OMPI_COMM_WORLD_SIZE OMPI_COMM_WORLD_RANK
+from alone/bin 1 ptriangle -Qpq30 letter.poly
+unset OMPI_COMM_WORLD_SIZE OMPI_COMM_WORLD_RANK
+amiss ptriangle
+from alone/bin 2 trianglecheck letter.h5
+amiss trianglecheck
+
+# With it: moved, and found by a link.
+mkdir -p "alone/bin/$far"
+cp "$modules"/*.so "alone/bin/$far/"
+if "$bin/ptriangle" -Qpq30 letter.poly --output whole.h5 2>/dev/null; then
+    for folder in alone/bin alone/links; do
+        rm -f letter.h5
+        from "$folder" 0 ptriangle -Qpq30 letter.poly --output=letter.h5
+        check "the same bytes" cmp whole.h5 letter.h5
+        from "$folder" 0 trianglecheck --quiet letter.h5 --poly letter.poly -q 30
+    done
+    (PATH=$PWD/alone/links:$PATH && rm letter.h5 && ptriangle -Qpq30 letter.poly --output letter.h5)
+    check "found by PATH" cmp whole.h5 letter.h5
+fi
+rm -rf alone
