@@ -15,7 +15,9 @@ set_target_properties(libptriangle_python PROPERTIES
 target_compile_options(libptriangle_python PRIVATE
     -fno-semantic-interposition $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions> $<$<COMPILE_LANGUAGE:CXX>:-fno-rtti>)
 target_link_options(libptriangle_python PRIVATE
-    LINKER:--version-script=${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map LINKER:-Bsymbolic-functions LINKER:-z,defs)
+    # the path as a word of its own: in LINKER: a comma would end it
+    "SHELL:-Xlinker \"--version-script=${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map\""
+    LINKER:-Bsymbolic-functions LINKER:-z,defs)
 target_link_libraries(libptriangle_python PRIVATE m)
 install(TARGETS libptriangle_python LIBRARY DESTINATION ptriangle COMPONENT python EXCLUDE_FROM_ALL)
 

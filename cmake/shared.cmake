@@ -15,7 +15,9 @@ function(ptriangle_shared name)
         LINK_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map)
     target_compile_options(${target} PRIVATE -fno-semantic-interposition)
     target_link_options(${target} PRIVATE
-        LINKER:--version-script=${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map LINKER:-Bsymbolic-functions LINKER:-z,defs)
+        # the path as a word of its own: in LINKER: a comma would end it
+        "SHELL:-Xlinker \"--version-script=${CMAKE_CURRENT_SOURCE_DIR}/cmake/exports.map\""
+        LINKER:-Bsymbolic-functions LINKER:-z,defs)
     set_target_properties(lib${name} PROPERTIES EXCLUDE_FROM_ALL ON)
     set_property(GLOBAL APPEND PROPERTY PTRIANGLE_LIBRARIES ${target})
 endfunction()

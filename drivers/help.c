@@ -54,11 +54,16 @@ static const char *const paragraphs[] = {
 };
 
 static const char exit_codes[] =
+    "Exit code: 0; 1 after an error; 128 + n after signal n (one that would end a program: it ends within a\n"
+    "second and says how far it got). Files appear together, when all are complete and nothing can fail any\n"
+    "more: with any other code than 0 no file has been touched, but devices and pipes.\n";
+
+/* Where there are long options. */
+static const char further_exit_codes[] =
     "Exit code: 0; 1 after an error; 124 when --time-limit is over; 128 + n after signal n (one that would end\n"
     "a program: it ends within a second and says how far it got). Files appear together, when all are complete\n"
     "and nothing can fail any more: with any other code than 0 no file has been touched, but partial meshes and\n"
     "checkpoints where they are asked for, and devices and pipes.\n";
-
 
 static void print_usage(const char *program)
 {
@@ -83,5 +88,5 @@ void help_full(const char *program, const char *where, const char *further)
         printf("\n%s", paragraphs[i]);
     if (further)
         printf("\n%s", further);
-    printf("\n%s", exit_codes);
+    printf("\n%s", further ? further_exit_codes : exit_codes);
 }

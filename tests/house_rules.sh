@@ -151,6 +151,10 @@ long=$(LC_ALL=C.UTF-8 grep -nE '^.{121,}$' triangle/*.[ch] triangle/*/*.[ch] tri
     bench/*.py python/*/*.py tests/*.py tests/*/*.py tools/*.py | head -n 3)
 [ -z "$long" ] || breach "lines of more than 120 characters: $long"
 
+# ... and none of the documents, but for rows of tables.
+long=$(LC_ALL=C.UTF-8 grep -nE '^[^|].{120,}' ./*.md docs/*.md data/*.md | head -n 3)
+[ -z "$long" ] || breach "lines of more than 120 characters: $long"
+
 # 5. Each header compiles alone; those of hdf5/ where HDF5 is there; that for MPI in its client (tests/client/ranks.c).
 for file in include/*/*.h triangle/*.h triangle/*/*.h sched/*.h sched/*/*.h; do
     [ -f "$file" ] || continue

@@ -30,6 +30,9 @@ for program in triangle ptriangle trianglecheck meshplot; do
     for option in $taken; do
         echo "$told" | grep -qxe "$option" || fault "$program: no word about $option"
     done
+    for option in $(grep -oE -e '(^|[ (])--[a-z-]+' help.txt | tr -d ' (' | grep -vxe --name | sort -u); do
+        echo "$told" | grep -qxe "$option" || fault "$program: --help speaks of $option, which is none of its options"
+    done
     # shellcheck disable=SC2016 # for the other shell
     completed=$(bash -c '. "$1"; COMP_WORDS=("$2" -); COMP_CWORD=1; "_$2_words"; printf "%s\n" "${COMPREPLY[@]}"' \
         bash "$build/documents/$program" "$program") || fault "$program: completion"
