@@ -78,6 +78,8 @@ set(PTRIANGLE_CHECK_SOURCES
     triangle/check/border.c
     triangle/check/vertex_markers.c
     triangle/check/input.c
+    triangle/check/nodes.c
+    triangle/check/attributes.c
     triangle/check/apex.c
     triangle/check/quality.c
     triangle/api/judge.c)

@@ -146,14 +146,27 @@ static struct tri_check_source take_arrays(struct judged_files *f)
         .neighbors = f->neighbors, .n_segments = f->listed ? f->mesh.n_segments : 0,
         .segments = !f->listed ? NULL : f->mesh.segments != NULL ? f->mesh.segments : none,
         .segment_markers = f->mesh.segment_markers, .point_markers = f->mesh.markers,
-        .n_attributes = f->elements.n_attributes, .attributes = f->elements.attributes};
+        .n_attributes = f->elements.n_attributes, .attributes = f->elements.attributes,
+        .n_nodes = f->mesh.n_points, .middles = f->elements.n_nodes == 6 ? f->elements.extra : NULL,
+        .n_point_attributes = f->mesh.n_attributes, .point_attributes = f->mesh.attributes};
     return tri_check_source_of(&f->arrays);
 }
 
-/* Points that can be corners: those behind them are the nodes amid edges of six-node triangles, which are made last. */
+static int64_t least_extra(const struct tri_elements *e)
+{
+    int64_t least = INT64_MAX;
+    for (size_t i = 0; e->extra != NULL && i < (size_t)(e->n_nodes - 3) * (size_t)e->n; i++)
+        least = e->extra[i] >= 0 && e->extra[i] < least ? e->extra[i] : least;
+    return least;
+}
+
+/* Points that can be corners: those behind them are the nodes amid edges of six-node triangles, which are made last.
+ * Of the input's points fewer may be there (-j). */
 static void leave_out_nodes(struct judged_files *f)
 {
+    const int64_t first_node = f->text.given != 0 ? f->text.least_middle : least_extra(&f->elements);
     int64_t n = f->input.n_points < f->n_nodes ? f->input.n_points : f->n_nodes;
+    n = first_node < n ? first_node : n;
     if (f->elements.n_nodes > 3) {
         for (size_t i = 0; i < 3 * (size_t)f->elements.n; i++)
             n = f->elements.corners[i] >= n ? f->elements.corners[i] + 1 : n;

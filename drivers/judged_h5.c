@@ -55,7 +55,10 @@ static enum tri_status read_slice(void *user, enum tri_check_array array, int64_
     case TRI_CHECK_POINT_MARKERS: return tri_h5_point_markers(h5->file, first, n, out, error);
     case TRI_CHECK_SEGMENT_ENDS: return tri_h5_segments(h5->file, first, n, out, error);
     case TRI_CHECK_SEGMENT_MARKERS: return tri_h5_segment_markers(h5->file, first, n, out, error);
-    case TRI_CHECK_NEIGHBORS_GIVEN: break; /* there are none */
+    case TRI_CHECK_POINT_ATTRIBUTES: return tri_h5_point_attributes(h5->file, first, n, out, error);
+    case TRI_CHECK_NEIGHBORS_GIVEN:
+    case TRI_CHECK_MIDDLES:
+    case TRI_CHECK_N_ARRAYS: break; /* there are none */
     }
     return TRI_INTERNAL;
 }
@@ -66,8 +69,10 @@ struct tri_check_source judged_h5_source(struct judged_h5 *h5)
     unsigned given = 1u << TRI_CHECK_POINTS | 1u << TRI_CHECK_CORNERS;
     given |= (n->columns > 0 ? 1u : 0u) << TRI_CHECK_ATTRIBUTES;
     given |= (n->point_markers ? 1u : 0u) << TRI_CHECK_POINT_MARKERS;
+    given |= (n->attributes > 0 ? 1u : 0u) << TRI_CHECK_POINT_ATTRIBUTES;
     given |= (n->lists_segments ? 1u : 0u) << TRI_CHECK_SEGMENT_ENDS;
     given |= (n->lists_segments && n->segment_markers ? 1u : 0u) << TRI_CHECK_SEGMENT_MARKERS;
     return (struct tri_check_source){.n_points = n->points, .n_triangles = n->triangles, .n_segments = n->segments,
-                                     .given = given, .read = read_slice, .user = h5};
+                                     .n_point_attributes = n->attributes, .given = given, .read = read_slice,
+                                     .user = h5};
 }

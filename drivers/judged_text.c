@@ -14,7 +14,9 @@ struct rows {
     struct tri_window *window;
     const struct tri_executor *executor;
     double *reals;    /* points, or attributes */
+    double *further;  /* attributes of points */
     int64_t *numbers; /* corners, neighbours or ends */
+    int64_t *middles; /* nodes amid edges */
     int32_t *markers;
     int64_t fields[N_FIELDS]; /* of the header */
     int64_t largest;  /* corner so far */
@@ -45,10 +47,11 @@ static enum tri_status read_header(struct rows *r, int n, const char *nouns, str
 
 /* --- rows */
 
-static const char *parse_attributes(struct tri_fields *fields, int64_t n, double *last)
+/* The last one stays; or all do, in n places. */
+static const char *parse_attributes(struct tri_fields *fields, int64_t n, double *last, bool all)
 {
     for (int64_t i = 0; i < n; i++)
-        if (tri_fields_real(fields, last) == TRI_FIELD_BAD)
+        if (tri_fields_real(fields, all ? last + i : last) == TRI_FIELD_BAD)
             return "has an attribute that is not a finite number";
     return NULL;
 }
@@ -56,13 +59,12 @@ static const char *parse_attributes(struct tri_fields *fields, int64_t n, double
 static const char *parse_vertex(void *user, size_t i, struct tri_fields *fields)
 {
     struct rows *r = user;
-    double unused;
     tri_fields_skip(fields); /* its number */
     if (tri_fields_real(fields, &r->reals[2 * i]) != TRI_FIELD_GOOD)
         return "has no x coordinate that is a finite number";
     if (tri_fields_real(fields, &r->reals[2 * i + 1]) != TRI_FIELD_GOOD)
         return "has no y coordinate that is a finite number";
-    const char *fault = parse_attributes(fields, r->fields[2], &unused);
+    const char *fault = parse_attributes(fields, r->fields[2], r->further + r->fields[2] * (int64_t)i, true);
     return fault || r->fields[3] <= 0 ? fault : tri_fields_marker(fields, &r->markers[i]);
 }
 
@@ -80,17 +82,23 @@ static bool parse_numbers(struct tri_fields *fields, size_t n, int64_t base, int
 static const char *parse_element(void *user, size_t i, struct tri_fields *fields)
 {
     struct rows *r = user;
-    int64_t *corner = r->numbers + 3 * i, extra;
+    int64_t *corner = r->numbers + 3 * i, *middle = r->middles + 3 * i, extra;
     tri_fields_skip(fields); /* its number */
     if (!parse_numbers(fields, 3, r->text->base, corner))
         return "has fewer than three corners that are numbers";
     for (int k = 0; k < 3; k++)
         if (corner[k] < 0 || corner[k] >= r->text->n_nodes)
             return "has a corner that is not the number of a vertex";
-    for (int64_t k = 3; k < r->fields[1]; k++)
-        if (tri_fields_integer(fields, &extra) != TRI_FIELD_GOOD)
+    for (int64_t k = 3; k < r->fields[1]; k++) {
+        const bool good = tri_fields_integer(fields, &extra) == TRI_FIELD_GOOD;
+        if (!good)
             tri_fields_skip(fields);
-    return parse_attributes(fields, r->fields[2], &r->reals[i]);
+        if (k < 6)
+            middle[k - 3] = good ? extra - r->text->base : -1;
+    }
+    for (int64_t k = r->fields[1]; k < 6; k++)
+        middle[k - 3] = -1;
+    return parse_attributes(fields, r->fields[2], &r->reals[i], false);
 }
 
 static const char *parse_segment(void *user, size_t i, struct tri_fields *fields)
@@ -118,6 +126,15 @@ static enum tri_status append(struct rows *r, enum tri_check_array array, const 
     return given ? scratch_append(&r->text->array[array], rows, (int64_t)n, error) : TRI_OK;
 }
 
+static enum tri_status append_middles(struct rows *r, size_t n, struct tri_error *error)
+{
+    int64_t least = r->text->least_middle;
+    for (size_t i = 0; i < 3 * n; i++)
+        least = r->middles[i] >= 0 && r->middles[i] < least ? r->middles[i] : least;
+    r->text->least_middle = least;
+    return append(r, TRI_CHECK_MIDDLES, r->middles, n, error);
+}
+
 static enum tri_status flush(void *user, size_t n, struct tri_error *error)
 {
     struct rows *r = user;
@@ -127,6 +144,10 @@ static enum tri_status flush(void *user, size_t n, struct tri_error *error)
         r->largest = r->numbers[i] > r->largest ? r->numbers[i] : r->largest;
     if (!status && corners)
         status = append(r, TRI_CHECK_ATTRIBUTES, r->reals, n, error);
+    if (!status && corners && r->fields[1] > 3)
+        status = append_middles(r, n, error);
+    if (!status && points)
+        status = append(r, TRI_CHECK_POINT_ATTRIBUTES, r->further, n, error);
     if (!status && points)
         status = append(r, TRI_CHECK_POINT_MARKERS, r->markers, n, error);
     if (!status && r->array == TRI_CHECK_SEGMENT_ENDS)
@@ -163,6 +184,22 @@ static enum tri_status detect_base(struct rows *r, struct tri_error *error)
     return status;
 }
 
+/* Room for those of as many points as may be in hand. */
+static enum tri_status open_attributes(struct rows *r, const char *folder, struct tri_error *error)
+{
+    const int64_t n = r->fields[2], rows = r->fields[0] < ROWS ? r->fields[0] : ROWS;
+    if (n < 0)
+        return tri_fail(error, TRI_BAD_INPUT, r->window->text.name, (long)r->window->cursor.line,
+                        "the number of attributes is negative");
+    r->text->n_attributes = n < INT32_MAX ? (int32_t)n : INT32_MAX;
+    free(r->further);
+    r->further = n <= INT32_MAX ? malloc((size_t)(n * rows + 1) * sizeof *r->further) : NULL;
+    if (!r->further)
+        return tri_fail(error, TRI_NO_MEMORY, r->window->text.name, (long)r->window->cursor.line,
+                        "no memory for %lld attributes", (long long)n);
+    return n == 0 ? TRI_OK : open_array(r->text, TRI_CHECK_POINT_ATTRIBUTES, (size_t)n * sizeof(double), folder, error);
+}
+
 /* The header has been read: count, dimension, attributes, markers. */
 static enum tri_status read_vertices(struct rows *r, const char *folder, struct tri_error *error)
 {
@@ -176,6 +213,8 @@ static enum tri_status read_vertices(struct rows *r, const char *folder, struct 
         status = open_array(t, TRI_CHECK_POINTS, 2 * sizeof(double), folder, error);
     if (!status && r->fields[3] > 0)
         status = open_array(t, TRI_CHECK_POINT_MARKERS, sizeof(int32_t), folder, error);
+    if (!status)
+        status = open_attributes(r, folder, error);
     return status ? status : read_table(r, TRI_CHECK_POINTS, "vertex", parse_vertex, error);
 }
 
@@ -209,6 +248,8 @@ static enum tri_status read_ele(struct rows *r, const char *folder, struct tri_e
         status = open_array(t, TRI_CHECK_CORNERS, 3 * sizeof(int64_t), folder, error);
     if (!status && r->fields[2] > 0)
         status = open_array(t, TRI_CHECK_ATTRIBUTES, sizeof(double), folder, error);
+    if (!status && r->fields[1] == 6)
+        status = open_array(t, TRI_CHECK_MIDDLES, 3 * sizeof(int64_t), folder, error);
     if (!status)
         status = read_table(r, TRI_CHECK_CORNERS, "triangle", parse_element, error);
     if (r->fields[1] > 3) /* nodes amid edges are made last */
@@ -272,23 +313,26 @@ static enum tri_status read_all(struct rows *r, const struct judged_names *names
 enum tri_status judged_text_read(struct judged_text *t, const struct judged_names *names, const char *folder,
                                  const struct tri_executor *executor, struct tri_error *error)
 {
-    *t = (struct judged_text){.base = 1};
+    *t = (struct judged_text){.base = 1, .least_middle = INT64_MAX};
     struct rows r = {.text = t, .executor = executor, .largest = -1};
     r.reals = malloc(2 * ROWS * sizeof *r.reals);
     r.numbers = malloc(3 * ROWS * sizeof *r.numbers);
+    r.middles = malloc(3 * ROWS * sizeof *r.middles);
     r.markers = malloc(ROWS * sizeof *r.markers);
-    enum tri_status status = r.reals && r.numbers && r.markers
+    enum tri_status status = r.reals && r.numbers && r.middles && r.markers
                                  ? read_all(&r, names, folder, error)
                                  : tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");
     free(r.reals);
+    free(r.further);
     free(r.numbers);
+    free(r.middles);
     free(r.markers);
     return status;
 }
 
 void judged_text_close(struct judged_text *t)
 {
-    for (int k = 0; k <= TRI_CHECK_SEGMENT_MARKERS; k++)
+    for (int k = 0; k < TRI_CHECK_N_ARRAYS; k++)
         scratch_close(&t->array[k]);
 }
 
@@ -302,6 +346,7 @@ static enum tri_status read_slice(void *user, enum tri_check_array array, int64_
 struct tri_check_source judged_text_source(struct judged_text *t)
 {
     return (struct tri_check_source){.n_points = t->n_points, .n_triangles = t->array[TRI_CHECK_CORNERS].n,
-                                     .n_segments = t->array[TRI_CHECK_SEGMENT_ENDS].n, .given = t->given,
-                                     .read = read_slice, .user = t};
+                                     .n_segments = t->array[TRI_CHECK_SEGMENT_ENDS].n, .n_nodes = t->n_nodes,
+                                     .n_point_attributes = t->n_attributes, .given = t->given, .read = read_slice,
+                                     .user = t};
 }

@@ -12,15 +12,17 @@ struct judged_names { /* of files; NULL: there is none */
 };
 
 struct judged_text {
-    struct scratch array[TRI_CHECK_SEGMENT_MARKERS + 1]; /* by enum tri_check_array */
+    struct scratch array[TRI_CHECK_N_ARRAYS]; /* by enum tri_check_array */
     unsigned given;            /* 1 << array, of those that there are */
     int32_t base;
+    int32_t n_attributes;      /* of a point */
     int64_t n_points, n_nodes; /* points that may be corners, all points; elsewhere the nodes amid edges */
+    int64_t least_middle;      /* number of the first node amid an edge; INT64_MAX: there are none */
     bool stale_neighbors;      /* the .neigh file is of another mesh, and was not read */
 };
 
-/* A few MiB of memory; scratch files in that folder, of 20 bytes a point and 24 a triangle, 8 more where it has an
- * attribute and 24 where it has neighbours. Errors: as triangle/text/read.h, TRI_CANNOT_WRITE. */
+/* A few MiB of memory; scratch files in that folder, of 20 bytes a point and 24 a triangle, 8 more for each attribute,
+ * and 24 each where a triangle has six nodes, and neighbours. Errors: as triangle/text/read.h, TRI_CANNOT_WRITE. */
 enum tri_status judged_text_read(struct judged_text *text, const struct judged_names *names, const char *folder,
                                  const struct tri_executor *executor, struct tri_error *error);
 void judged_text_close(struct judged_text *text);

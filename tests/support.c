@@ -250,9 +250,11 @@ struct support_copy support_copy(const struct tri_mesh *mesh)
         c.markers[s] = mesh->sub[s].marker;
     }
     bool spread = mesh->n_regions > 1 && mesh->n_columns == 0;
-    c.mesh = (struct tri_check_mesh){mesh->n_vertices, c.points, mesh->n_triangles, c.triangles, c.neighbors,
-                                     mesh->n_subs, c.segments, c.markers, mesh->vertex_markers, 1,
-                                     spread ? c.attributes : NULL};
+    c.mesh = (struct tri_check_mesh){.n_points = mesh->n_vertices, .points = c.points,
+                                     .n_triangles = mesh->n_triangles, .triangles = c.triangles,
+                                     .neighbors = c.neighbors, .n_segments = mesh->n_subs, .segments = c.segments,
+                                     .segment_markers = c.markers, .point_markers = mesh->vertex_markers,
+                                     .n_attributes = 1, .attributes = spread ? c.attributes : NULL};
     return c;
 }
 

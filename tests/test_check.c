@@ -257,7 +257,8 @@ static void good_patch(void **state)
     expect_good();
     const struct tri_check_report *r = &trial.report;
     for (int k = 0; k < TRI_N_CHECKS; k++) {
-        if (k != TRI_CHECK_HULL && k != TRI_CHECK_REGIONS)
+        if (k != TRI_CHECK_HULL && k != TRI_CHECK_REGIONS && k != TRI_CHECK_NODES &&
+            k != TRI_CHECK_VERTEX_ATTRIBUTES)
             assert_int_equal(r->item[k].state, TRI_CHECK_OK);
     }
     assert_int_equal(r->n_used_points, 30);
@@ -1292,6 +1293,121 @@ static void order_is_searched_in_logarithmic_time(void **state)
     tri_check_order_clear(&order);
 }
 
+/* --- six nodes, attributes of vertices */
+
+static int32_t middles[3 * ROOM];
+static double attributes[2 * ROOM], input_attributes[2 * ROOM];
+
+static void put_node(int32_t m, int32_t a, int32_t b, bool is_subsegment)
+{
+    for (int k = 0; k < 2; k++) {
+        trial.points[2 * m + k] = (trial.points[2 * a + k] + trial.points[2 * b + k]) / 2;
+        attributes[2 * m + k] = (attributes[2 * a + k] + attributes[2 * b + k]) / 2;
+    }
+    trial.point_markers[m] = is_subsegment ? 4 : 0;
+}
+
+/* The patch with a node amid each edge, marked where it is a subsegment, and two attributes; without the nodes it is
+ * the input, too. */
+static void begin_six(void)
+{
+    begin_patch();
+    trial.mesh.segment_markers = trial.markers;
+    for (int32_t s = 0; s < trial.mesh.n_segments; s++)
+        trial.markers[s] = 4;
+    mark_points();
+    for (int32_t i = 0; i < 2 * trial.mesh.n_points; i++)
+        input_attributes[i] = attributes[i] = i % 7 - 3;
+    take_as_input();
+    trial.input.attributes = input_attributes;
+    trial.input.n_attributes = trial.mesh.n_point_attributes = 2;
+    trial.mesh.point_attributes = attributes;
+    trial.mesh.middles = middles;
+    trial.mesh.n_nodes = trial.mesh.n_points;
+    for (int32_t i = 0; i < 3 * trial.mesh.n_triangles; i++) {
+        int32_t t = i / 3, k = i % 3;
+        int32_t a = trial.triangles[3 * t + (k + 1) % 3], b = trial.triangles[3 * t + (k + 2) % 3];
+        int corner;
+        int32_t u = find_edge(b, a, &corner);
+        middles[i] = u >= 0 && u < t ? middles[3 * u + corner] : trial.mesh.n_nodes++;
+        put_node(middles[i], a, b, u < 0);
+    }
+    assert_true(trial.mesh.n_nodes == 30 + 69 && trial.mesh.n_nodes <= ROOM);
+}
+
+/* Of an edge inside, as the first of its triangles names it. */
+static int32_t *inner_middle(void)
+{
+    for (int32_t i = 0; i < 3 * trial.mesh.n_triangles; i++)
+        if (trial.neighbors[i] >= 0)
+            return &middles[i];
+    return NULL;
+}
+
+static void good_nodes(void **state)
+{
+    (void)state;
+    begin_six();
+    expect_good();
+    assert_int_equal(trial.report.item[TRI_CHECK_NODES].state, TRI_CHECK_OK);
+    assert_int_equal(trial.report.item[TRI_CHECK_VERTEX_ATTRIBUTES].state, TRI_CHECK_OK);
+    assert_int_equal(trial.report.item[TRI_CHECK_VERTEX_MARKERS].state, TRI_CHECK_OK);
+}
+
+static void broken_nodes(void **state)
+{
+    (void)state;
+    begin_six();
+    double *x = &trial.points[2 * *inner_middle()];
+    *x = nextafter(*x, 9);
+    expect(TRI_CHECK_NODES, 2, -1); /* as both triangles see it */
+    begin_six();
+    int32_t own = trial.mesh.n_nodes++;
+    memcpy(&trial.points[2 * own], &trial.points[2 * *inner_middle()], 2 * sizeof(double));
+    memcpy(&attributes[2 * own], &attributes[2 * *inner_middle()], 2 * sizeof(double));
+    *inner_middle() = own;
+    expect(TRI_CHECK_NODES, 1, -1); /* one node more than edges */
+    begin_six();
+    *inner_middle() = -1;
+    expect(TRI_CHECK_NODES, 1, -1);
+    *inner_middle() = trial.mesh.n_nodes;
+    expect(TRI_CHECK_NODES, 1, -1);
+    *inner_middle() = 0; /* a corner */
+    expect(TRI_CHECK_NODES, 1, -1);
+    begin_six();
+    trial.point_markers[*inner_middle()] = 4;
+    expect(TRI_CHECK_NODES, 2, -1);
+    begin_six();
+    for (int32_t m = trial.mesh.n_points; m < trial.mesh.n_nodes; m++)
+        trial.point_markers[m] = 0;
+    expect(TRI_CHECK_NODES, 18, -1);
+    trial.mesh.point_markers = NULL;
+    expect_good();
+}
+
+static void broken_vertex_attributes(void **state)
+{
+    (void)state;
+    begin_six();
+    attributes[2 * *inner_middle() + 1] += 1;
+    expect(TRI_CHECK_VERTEX_ATTRIBUTES, 2, -1);
+    begin_six();
+    trial.mesh.middles = NULL;
+    attributes[7] += 0.5;
+    expect(TRI_CHECK_VERTEX_ATTRIBUTES, 1, -1);
+    trial.options.renumbered = true; /* nobody knows whose it is, and it is in the range */
+    expect_good();
+    attributes[7] = 3.5;
+    expect(TRI_CHECK_VERTEX_ATTRIBUTES, 1, -1);
+    attributes[7] = NAN;
+    expect(TRI_CHECK_VERTEX_ATTRIBUTES, 1, -1);
+    begin_six();
+    trial.input.n_attributes = 1;
+    expect(TRI_CHECK_VERTEX_ATTRIBUTES, 1, -1);
+    trial.mesh.point_attributes = NULL;
+    expect_good();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -1335,6 +1451,9 @@ int main(void)
         cmocka_unit_test(small_input_angles_explain),
         cmocka_unit_test(broken_areas),
         cmocka_unit_test(broken_hull),
+        cmocka_unit_test(good_nodes),
+        cmocka_unit_test(broken_nodes),
+        cmocka_unit_test(broken_vertex_attributes),
         cmocka_unit_test(order_is_kept),
         cmocka_unit_test(order_is_searched_in_logarithmic_time),
     };

@@ -103,6 +103,25 @@ for switches in -pq30aA -pq30aAzo2n -pq30Dnj; do
     part_by_part section.1 --poly section.poly -q 30 --jettisoned
     part_by_part section.1 --poly letter.poly -q 33 -a 1 --json
 done
+
+# the last node is one amid an edge; letter.poly has an attribute
+run 0 -pq30o2 letter
+part_by_part letter.1 --poly letter.poly -q 30
+cp letter.1.node sound
+last=$(awk '!/#/ { last = $1 } END { print last }' sound)
+for change in '$2 += 0.01' '$5 += 1' '$4 += 1'; do
+    awk -v last="$last" '!/#/ && NR > 1 && $1 == last { '"$change"' } { print }' sound >letter.1.node
+    part_by_part letter.1 --poly letter.poly
+    case $change in
+    *4*) denies "^FAIL  vertex attributes: 1, first: attribute 0 of node $last" letter.1 ;;
+    *) denies "^FAIL  nodes amid edges: 1, first: node $last" letter.1 ;;
+    esac
+done
+awk 'NR > 1 && $1 == 2 { $4 = 9e9 } { print }' sound >letter.1.node
+part_by_part letter.1 --poly letter.poly
+denies "^FAIL  vertex attributes: [0-9]*, first: attribute 0 of vertex 2 is 9000000000; the input's is" \
+    letter.1 --poly letter.poly
+
 cp section.1.ele sound
 sed -n '1,11p' sound | sed '1s/^[0-9]*/10/' >section.1.ele
 part_by_part section.1 --poly section.poly

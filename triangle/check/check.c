@@ -33,6 +33,8 @@ static const char *const names[TRI_N_CHECKS] = {
     [TRI_CHECK_VERTEX_MARKERS] = "vertex markers",
     [TRI_CHECK_HOLES] = "holes",
     [TRI_CHECK_FACES] = "no face carved in vain",
+    [TRI_CHECK_NODES] = "nodes amid edges",
+    [TRI_CHECK_VERTEX_ATTRIBUTES] = "vertex attributes",
     [TRI_CHECK_REGIONS] = "regions",
     [TRI_CHECK_ANGLES] = "angles",
     [TRI_CHECK_AREAS] = "areas",
@@ -212,6 +214,15 @@ static enum tri_status read_arrays(void *user, enum tri_check_array array, int64
     case TRI_CHECK_SEGMENT_ENDS:
         widen(out, m->segments + 2 * first, 2 * n);
         break;
+    case TRI_CHECK_MIDDLES:
+        widen(out, m->middles + 3 * first, 3 * n);
+        break;
+    case TRI_CHECK_POINT_ATTRIBUTES:
+        memcpy(out, m->point_attributes + m->n_point_attributes * first,
+               (size_t)(m->n_point_attributes * n) * sizeof(double));
+        break;
+    case TRI_CHECK_N_ARRAYS:
+        break;
     case TRI_CHECK_POINT_MARKERS:
     case TRI_CHECK_SEGMENT_MARKERS:
         memcpy(out, (array == TRI_CHECK_POINT_MARKERS ? m->point_markers : m->segment_markers) + first,
@@ -229,8 +240,11 @@ struct tri_check_source tri_check_source_of(const struct tri_check_mesh *m)
     given |= (m->point_markers != NULL ? 1u : 0u) << TRI_CHECK_POINT_MARKERS;
     given |= (m->segments != NULL ? 1u : 0u) << TRI_CHECK_SEGMENT_ENDS;
     given |= (m->segments != NULL && m->segment_markers != NULL ? 1u : 0u) << TRI_CHECK_SEGMENT_MARKERS;
+    given |= (m->middles != NULL ? 1u : 0u) << TRI_CHECK_MIDDLES;
+    given |= (m->point_attributes != NULL && m->n_point_attributes > 0 ? 1u : 0u) << TRI_CHECK_POINT_ATTRIBUTES;
     return (struct tri_check_source){.n_points = m->n_points, .n_triangles = m->n_triangles,
-                                     .n_segments = m->n_segments, .given = given, .read = read_arrays,
+                                     .n_segments = m->n_segments, .n_nodes = m->n_nodes,
+                                     .n_point_attributes = m->n_point_attributes, .given = given, .read = read_arrays,
                                      .user = (void *)m, .arrays = m};
 }
 
@@ -313,6 +327,10 @@ static enum tri_status run(struct checker *c)
         return TRI_OK;
     }
     status = tri_check_match(c);
+    if (status == TRI_OK)
+        status = tri_check_attributes(c);
+    if (status == TRI_OK)
+        status = tri_check_nodes(c);
     return status == TRI_OK ? judge_frame(c) : status;
 }
 
@@ -342,7 +360,8 @@ static const double SUBSEGMENT_BYTES = 126, INPUT_BYTES = 40;
 double tri_check_least_bytes(const struct tri_check_source *source, const struct tri_pslg *input)
 {
     const double items = input != NULL ? (double)input->n_points + input->n_segments : 0;
-    return 1.25 * (double)source->n_points + SUBSEGMENT_BYTES * (double)source->n_segments + INPUT_BYTES * items;
+    const double amid = source->n_nodes > source->n_points ? (double)(source->n_nodes - source->n_points) : 0;
+    return amid + 1.25 * (double)source->n_points + SUBSEGMENT_BYTES * (double)source->n_segments + INPUT_BYTES * items;
 }
 
 /* As many triangles as the bound allows, at least a few; all, where they are in memory. */

@@ -28,13 +28,17 @@
  *       hole point.
  *   (9) Triangles on the two sides of an edge that is no subsegment have the same attribute, and it is that of the last
  *       region of the input whose point is in their face, or 0.
+ *  (10) Of triangles with six nodes: each edge has one node, half the way along it, with the marker of its subsegment.
+ *  (11) Attributes of input vertices are the input's; those of nodes amid edges lie half the way between those of the
+ *       ends.
  *
  * What is checked within a tolerance, because vertices on segments are rounded: each input segment is a chain of
  * subsegments whose vertices are at most TRI_CHECK_ULPS * 2^-52 * (the segment's largest coordinate) off its line.
  * Pieces may be missing only where they are outside the mesh (carved), or no farther than that from its boundary; that
  * is tested at three points of each missing piece.
  * Angles and areas are computed in double precision and may miss their bounds by a relative 1e-12 (of the squared
- * sine, of the area).
+ * sine, of the area). Attributes of new vertices may lie outside the range of the input's by a millionth of it: between
+ * which vertices they were interpolated nobody knows.
  *
  * What is not checked: (8) takes an input's segments outside the mesh for no walls where they meet each other, or the
  * mesh, so close that rounding turns their order round; (9) not the faces beside which a region point lies within
@@ -74,6 +78,10 @@ struct tri_check_mesh {
     const int32_t *point_markers;   /* [n_points] or NULL: not given */
     int32_t n_attributes;
     const double *attributes; /* [n_triangles][n_attributes], the last is the region's; or NULL: not given */
+    int32_t n_nodes;          /* rows of points and point_markers, if more than n_points: there are nodes amid edges */
+    const int32_t *middles;   /* [n_triangles][3] node amid the edge opposite each corner; NULL: there are none */
+    int32_t n_point_attributes;
+    const double *point_attributes; /* [n_points, or n_nodes][n_point_attributes]; or NULL: not given */
 };
 
 /* A mesh of any size, as arrays that are read in slices. */
@@ -84,11 +92,16 @@ enum tri_check_array {
     TRI_CHECK_ATTRIBUTES,      /* double: the last attribute of a triangle */
     TRI_CHECK_POINT_MARKERS,   /* int32_t */
     TRI_CHECK_SEGMENT_ENDS,    /* int64_t[2] */
-    TRI_CHECK_SEGMENT_MARKERS  /* int32_t */
+    TRI_CHECK_SEGMENT_MARKERS, /* int32_t */
+    TRI_CHECK_MIDDLES,         /* int64_t[3] */
+    TRI_CHECK_POINT_ATTRIBUTES, /* double[n_point_attributes] */
+    TRI_CHECK_N_ARRAYS
 };
 
 struct tri_check_source {
     int64_t n_points, n_triangles, n_segments;
+    int64_t n_nodes; /* rows of points and what goes with them: behind n_points the nodes amid edges, if any */
+    int32_t n_point_attributes;
     unsigned given; /* 1 << array, of each that there is; points and corners always are */
     /* Elements first .. first + n - 1 of the array into out. Called by one thread. */
     enum tri_status (*read)(void *user, enum tri_check_array array, int64_t first, int64_t n, void *out,
@@ -161,6 +174,8 @@ enum tri_check_kind {
     TRI_CHECK_VERTEX_MARKERS,
     TRI_CHECK_HOLES,
     TRI_CHECK_FACES, /* (8); not with any_holes, nor in refined meshes, which keep theirs (ignore_lost, BORDER_ANY) */
+    TRI_CHECK_NODES,             /* (10); of markers where those of points and subsegments are given */
+    TRI_CHECK_VERTEX_ATTRIBUTES, /* (11), and the range; where there are some, and an input or nodes amid edges */
     TRI_CHECK_REGIONS, /* (9); where attributes and input regions are given, not where border is BORDER_ANY */
     TRI_CHECK_ANGLES,
     TRI_CHECK_AREAS,

@@ -194,6 +194,8 @@ void tri_check_matched_neighbor(struct checker *c, const struct check_open *a, c
 void tri_check_pairs(struct checker *c); /* neighbours given, Delaunay, circles of segments, attributes: in the part */
 /* The same of two half-edges that have been matched across parts, or of one that has no other side (b is NULL). */
 void tri_check_matched(struct checker *c, const struct check_open *a, const struct check_open *b);
+enum tri_status tri_check_nodes(struct checker *c);      /* needs the number of edges, and subsegments listed */
+enum tri_status tri_check_attributes(struct checker *c); /* of vertices */
 enum tri_status tri_check_match(struct checker *c); /* when all parts have been seen: EDGES; fills boundary, counts */
 
 enum tri_status tri_check_find_twins(struct checker *c); /* fills found, or unused */

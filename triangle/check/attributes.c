@@ -1,0 +1,83 @@
+/* Attributes of vertices: those of the input keep theirs; those of others are interpolated, in triangles that nobody
+ * knows any more, so that all that can be said of them is between which numbers they lie.
+ *
+ * Interpolation rounds, the more the thinner the triangle is: hence the tolerance. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "triangle/check/internal.h"
+
+enum { SLICE = 1 << 12 }; /* vertices */
+
+static const double TOLERANCE = 1e-6; /* of the range of an attribute in the input */
+
+struct range {
+    double low, high;
+};
+
+static void find_ranges(const struct tri_pslg *input, struct range *range)
+{
+    const size_t n = (size_t)input->n_attributes;
+    for (size_t k = 0; k < n; k++)
+        range[k] = (struct range){HUGE_VAL, -HUGE_VAL};
+    for (size_t i = 0; i < (size_t)input->n_points; i++)
+        for (size_t k = 0; k < n; k++) {
+            range[k].low = fmin(range[k].low, input->attributes[n * i + k]);
+            range[k].high = fmax(range[k].high, input->attributes[n * i + k]);
+        }
+    for (size_t k = 0; k < n; k++) {
+        double more = TOLERANCE * (range[k].high - range[k].low);
+        range[k].low -= more;
+        range[k].high += more;
+    }
+}
+
+static void judge_vertex(struct checker *c, int64_t v, const double *value, const struct range *range)
+{
+    const struct tri_pslg *input = c->input;
+    const size_t n = (size_t)input->n_attributes;
+    const bool is_input = v < input->n_points && !c->options->renumbered;
+    for (size_t k = 0; k < n; k++) {
+        if (is_input && value[k] != input->attributes[n * (size_t)v + k])
+            tri_check_fault(c, TRI_CHECK_VERTEX_ATTRIBUTES,
+                            "attribute %zu of vertex %ld is %.17g; the input's is %.17g", k, check_number(c, v),
+                            value[k], input->attributes[n * (size_t)v + k]);
+        else if (!(value[k] >= range[k].low && value[k] <= range[k].high))
+            tri_check_fault(c, TRI_CHECK_VERTEX_ATTRIBUTES,
+                            "attribute %zu of vertex %ld is %.17g; the input's are from %.17g to %.17g", k,
+                            check_number(c, v), value[k], range[k].low, range[k].high);
+    }
+}
+
+static enum tri_status judge_all(struct checker *c, double *values, struct range *range)
+{
+    const int64_t n = c->input->n_attributes;
+    enum tri_status status = TRI_OK;
+    find_ranges(c->input, range);
+    for (int64_t first = 0; first < c->n_points && status == TRI_OK; first += SLICE) {
+        const int64_t end = c->n_points - first < SLICE ? c->n_points : first + SLICE;
+        status = tri_check_read(c, TRI_CHECK_POINT_ATTRIBUTES, first, end - first, values);
+        for (int64_t v = first; v < end && status == TRI_OK; v++)
+            judge_vertex(c, v, values + n * (v - first), range);
+    }
+    return status;
+}
+
+enum tri_status tri_check_attributes(struct checker *c)
+{
+    if (!check_is_given(c, TRI_CHECK_POINT_ATTRIBUTES) || c->input == NULL)
+        return TRI_OK;
+    tri_check_begin(c, TRI_CHECK_VERTEX_ATTRIBUTES);
+    if (c->source->n_point_attributes != c->input->n_attributes) {
+        tri_check_fault(c, TRI_CHECK_VERTEX_ATTRIBUTES, "vertices have %ld attributes; those of the input have %ld",
+                        (long)c->source->n_point_attributes, (long)c->input->n_attributes);
+        return TRI_OK;
+    }
+    const int64_t n = c->input->n_attributes;
+    double *values = tri_check_array(SLICE, (size_t)n * sizeof *values);
+    struct range *range = tri_check_array(n, sizeof *range);
+    enum tri_status status = values != NULL && range != NULL ? judge_all(c, values, range) : TRI_NO_MEMORY;
+    free(values);
+    free(range);
+    return status;
+}
