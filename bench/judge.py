@@ -60,6 +60,7 @@ def count(case):
 def judge(case):
     """Runs the case once, with files. Returns (Verdict, Run); raises Failure."""
     scratch = os.path.join(case.settings.scratch, "judged")
+    remove(scratch)  # of a run that was stopped
     try:
         base, run = case.write(scratch)
         ended = execute(_command(case, base), 3600, case.settings.scratch)

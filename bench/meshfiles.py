@@ -1,6 +1,21 @@
 """Triangle's text files, as far as the benchmark needs them. What it writes is plain: numbered from 0, no attributes,
 no markers, no comments, so that the smallest reader can read it."""
+import contextlib
+import os
 from array import array
+
+
+@contextlib.contextmanager
+def whole_file(path):
+    """A text file that is there as a whole or not at all, whenever the run is stopped."""
+    new = f"{path}.{os.getpid()}.new"
+    try:
+        with open(new, "w", newline="") as file:
+            yield file
+        os.replace(new, path)
+    finally:
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(new)
 
 
 def rows(path):
@@ -65,7 +80,7 @@ def _table(file, header, values, width):
 
 def write(path, pslg):
     """A .poly file, or a .node file: then of the points alone."""
-    with open(path, "w") as file:
+    with whole_file(path) as file:
         _table(file, f"{len(pslg.points) // 2} 2 0 0", pslg.points, 2)
         if path.endswith(".poly"):
             _table(file, f"{len(pslg.segments) // 2} 0", pslg.segments, 2)

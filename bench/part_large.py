@@ -107,6 +107,8 @@ def _told(report):
     """What the program says of triangles that stay below the bounds, and of what was parked."""
     with open(report, encoding="utf-8") as file:
         schedule = json.load(file)["schedule"]
+    if not schedule:
+        return []
     below = schedule["below_bounds"] or {}
     words = [f"{n:,} below the bounds {REASONS[reason]}" for reason, n in below.items() if n]
     parked = schedule["parked_bytes"]
@@ -128,6 +130,8 @@ def _judged(settings, run):
         said = execute([settings.program("trianglecheck"), path, "--json", "--no-markers", "--memory", bound, "--poly",
                         d.path, "--min-angle", repr(d.angle), "--max-area", repr(d.area)],
                        LIMIT, settings.scratch)
+        if said.code not in (0, 1):
+            return ended, None, 0, "the judge cannot read the mesh: " + said.errors.strip()
         verdict = json.loads(said.output)
         faults = "; ".join(f"{c['name']}: {c['count']}" for c in verdict["checks"] if c["state"] == "failed")
         return ended, verdict["triangles"], os.path.getsize(path), faults or "; ".join(["no fault", *words])

@@ -29,8 +29,8 @@ def _cases(settings, domain):
 
 
 def _judged(m, area):
-    """Whatever else the judge says, a mesh that does not cover the domain is another domain's."""
-    wrong = abs(m.verdict.total_area / area - 1) > 1e-9
+    """Whatever else the judge says, a mesh that does not cover the domain is another domain's. area: 0, not known."""
+    wrong = area and abs(m.verdict.total_area / area - 1) > 1e-9
     return f"covers {m.verdict.total_area / area:.6f} of the domain" if wrong else m.verdict.text
 
 

@@ -34,10 +34,13 @@ def _lines(measured):
 
 def _same(measured, settings):
     """The files of all threads are compared by their checksums."""
-    sums = {m.verdict.checksum for m in measured if m.verdict}
-    if len(sums) > 1:
+    sums = [m.verdict.checksum for m in measured if m.verdict]
+    if len(set(sums)) > 1:
         settings.fail("scaling: the files differ with the number of threads")
-    return "Same files, byte for byte, for all numbers of threads." if len(sums) == 1 else "THE FILES DIFFER."
+        return "THE FILES DIFFER."
+    if len(sums) < len(measured):
+        return f"Of {len(measured)} numbers of threads {len(sums)} made files; these do not differ."
+    return "Same files, byte for byte, for all numbers of threads."
 
 
 def run(settings):

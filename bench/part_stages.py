@@ -3,7 +3,7 @@ that speak of it."""
 import os
 import statistics
 
-from cases import Ours, Sequential, Triangle
+from cases import Failure, Ours, Sequential, Triangle
 from inputs import Domain, letter, norway, random_points, shared_coasts, square
 from measure import measure, millions_per_second, ratio, table
 
@@ -106,7 +106,11 @@ def _files(settings, domain, goals):
 def _again(settings, domain):
     """A mesh is read from text files and refined further, which is hardly any work."""
     base = os.path.join(settings.work, "inputs", "again_small" if settings.small else "again")
-    Ours(settings, domain, settings.threads).write(base)
+    try:
+        Ours(settings, domain, settings.threads).write(base)
+    except Failure as failure:
+        settings.fail(f"stages, the mesh that is read again: {failure}")
+        return f"### {domain.name}, its mesh again\n\nmissing: {failure}\n", [], []
     again = Domain("its mesh, `-r` to the same bounds", base + ".poly", domain.angle, domain.area)
     cases = [Ours(settings, again, n, "r") for n in sorted({1, settings.threads})]
     measured = measure(f"stages: {again.name}", cases, settings)

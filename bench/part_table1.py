@@ -3,7 +3,7 @@ triangles refined further, once reconstructed from its triangles and once triang
 import os
 
 import meshfiles
-from cases import Ours, Triangle
+from cases import Failure, Ours, Triangle
 from inputs import Domain, letter
 from judge import judge
 from measure import measure, table
@@ -32,12 +32,26 @@ def _cases(settings, domain, switches=""):
 
 
 def _coarse_mesh(settings):
-    """The third row's mesh, as files. Both programs start from it."""
+    """The third row's mesh, as files. Both programs start from it. None: it could not be made."""
     base = os.path.join(settings.work, "inputs", "refined_small" if settings.small else "refined")
     case = Ours(settings, letter(settings, 1e-7), settings.threads)
-    verdict, _ = judge(case)
-    case.write(base)
+    try:
+        verdict, _ = judge(case)
+        case.write(base)
+    except Failure as failure:
+        settings.fail(f"table1, the mesh that is refined further: {failure}")
+        return None
     return base + ".poly", verdict
+
+
+def _further_jobs(settings, figure):
+    """The mesh refined further: what is given, domain, switches."""
+    made = _coarse_mesh(settings)
+    if not made:
+        return []
+    path, coarse = made
+    fine, mesh = Domain("its mesh refined further", path, 20, figure.area), _counts(coarse)
+    return [(mesh, fine, "r"), ("0" + mesh[mesh.index(" /"):], fine, "")]
 
 
 def _counts(v):
@@ -58,11 +72,9 @@ def _lines(i, given, domain, measured, reconstructed):
 def run(settings):
     lines, rows = [], []
     plain = [letter(settings, PAPER[i][1]) for i in range(3)]
-    path, coarse = _coarse_mesh(settings)
-    fine = Domain("its mesh refined further", path, 20, letter(settings, 2.5e-8).area)
-    pslg, mesh = meshfiles.read(plain[0].path), _counts(coarse)
+    pslg = meshfiles.read(plain[0].path)
     start = f"0 / {len(pslg.points) // 2} / {len(pslg.segments) // 2}"
-    jobs = [(start, d, "") for d in plain] + [(mesh, fine, "r"), ("0" + mesh[mesh.index(" /"):], fine, "")]
+    jobs = [(start, d, "") for d in plain] + _further_jobs(settings, letter(settings, 2.5e-8))
     for number, (given, domain, switches) in enumerate(jobs):
         title = f"table1: {domain.name}, -{switches}{domain.switches}"
         measured = measure(title, _cases(settings, domain, switches), settings)

@@ -47,20 +47,24 @@ def parts_of(report):
     return total, (s["prerefine"], own, max(0.0, total - s["prerefine"] - own - merging), merging)
 
 
+def _measured(settings, workers):
+    """A line of the table, and rows of results.csv."""
+    domain = square(settings, AREA / workers)
+    if 1.55 / domain.area * BYTES_A_TRIANGLE > machine.memory():
+        return ("ours", workers, "left out: too little memory", *[""] * 9), []
+    m, = measure(f"table2: {workers} threads", [Ours(settings, domain, workers)], settings)
+    parts = parts_of(m.typical("quality").facts) if m.good else None
+    if not parts:
+        return ("ours", workers, m.reason or "too small for the schedule", *[""] * 9), m.rows("table2")
+    return (_line("ours", workers, parts[0], m.verdict.triangles, parts[1], domain.area, m.text("number")),
+            m.rows("table2"))
+
+
 def run(settings):
     lines, rows = [_line("paper", r[0], r[1], 1e6 * r[2], r[3:7], 1e-8 * r[7], "–") for r in PAPER], []
     for workers in settings.thread_counts():
-        domain = square(settings, AREA / workers)
-        if 1.55 / domain.area * BYTES_A_TRIANGLE > machine.memory():
-            lines.append(("ours", workers, "left out: too little memory", *[""] * 9))
-            continue
-        m, = measure(f"table2: {workers} threads", [Ours(settings, domain, workers)], settings)
-        rows += m.rows("table2")
-        parts = parts_of(m.typical("quality").facts) if m.good else None
-        if parts:
-            lines.append(_line("ours", workers, parts[0], m.verdict.triangles, parts[1], domain.area,
-                               m.text("number")))
-        else:
-            lines.append(("ours", workers, m.reason or "too small for the schedule", *[""] * 9))
+        line, more_rows = _measured(settings, workers)
+        lines.append(line)
+        rows += more_rows
         text = NOTE.format(settings.repeats) + table(HEAD, lines)
         yield {"title": "Table 2 of the paper: scaled speedup", "text": text, "rows": rows, "targets": []}

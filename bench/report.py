@@ -4,6 +4,7 @@ import json
 import os
 
 from measure import table
+from meshfiles import whole_file
 from settings import PARTS
 
 COLUMNS = ("part", "input", "switches", "program", "threads", "stage", "runs", "median_seconds", "min_seconds",
@@ -30,7 +31,7 @@ def _load(settings):
 
 
 def _write_csv(path, parts):
-    with open(path, "w", newline="") as file:
+    with whole_file(path) as file:
         writer = csv.DictWriter(file, COLUMNS, extrasaction="ignore", lineterminator="\n")
         writer.writeheader()
         for part in parts.values():
@@ -38,10 +39,10 @@ def _write_csv(path, parts):
 
 
 def _machine_table(parts):
-    """What differs between the parts is told for each."""
+    """What differs between the parts is told for each; parts of an earlier version may lack some of it."""
     lines = []
-    for key in next(iter(parts.values()))["machine"]:
-        values = {name: str(part["machine"][key]) for name, part in parts.items()}
+    for key in dict.fromkeys(key for part in parts.values() for key in part["machine"]):
+        values = {name: str(part["machine"].get(key, "unknown")) for name, part in parts.items()}
         same = len(set(values.values())) == 1
         lines.append((key, next(iter(values.values())) if same else ", ".join(f"{v} ({n})" for n, v in values.items())))
     return table(("", ""), lines)
@@ -77,5 +78,5 @@ def write(settings):
     text += [f"## {part['title']}\n\n{part['text']}" for part in parts.values()]
     text += ["## Targets\n", "Triangle 1.6 over ours in time, where a target names nothing else.\n", _targets(parts)]
     _write_csv(os.path.join(settings.results, "results.csv"), parts)
-    with open(os.path.join(settings.results, "results.md"), "w") as file:
+    with whole_file(os.path.join(settings.results, "results.md")) as file:
         file.write("\n".join(text))

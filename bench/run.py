@@ -9,6 +9,7 @@ import sys
 import time
 
 import machine
+import meshfiles
 import report
 import settings as options
 
@@ -19,7 +20,7 @@ def measure(settings, part):
         disturbance = others.average()
         where["others"] = "unknown" if disturbance is None else f"{disturbance:.2f}"
         result["machine"] = where
-        with open(report.path_of(settings, part), "w") as file:
+        with meshfiles.whole_file(report.path_of(settings, part)) as file:
             json.dump(result, file, indent=1)
         report.write(settings)
     options.say(f"{part}: {time.perf_counter() - start:.0f} s")
