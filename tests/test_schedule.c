@@ -647,6 +647,37 @@ static void test_a_long_gap_costs_no_triangles(void **state)
     }
 }
 
+/* Under -D a level goes on through all corners of a ring, across all cells: blocks that began levels of their own made
+ * twice the triangles. */
+static void test_levels_of_a_ring_are_begun_once(void **state)
+{
+    (void)state;
+    struct par_report report;
+    struct start start = {.options = support_quality(22, 0)};
+    struct par_options one_call = small_blocks(1e9, 1);
+    start.options.quality.conforming = true;
+    assert_true(support_read("regress/ring_levels.poly", &start.pslg));
+    struct tri_mesh sequential = refine(&start, &one_call, &report);
+    assert_int_equal(report.levels, 0);
+    par_report_free(&report);
+    for (int block = 60; block <= 250; block += 190) {
+        struct par_options blocks = small_blocks(block, 1);
+        struct tri_mesh mesh = refine(&start, &blocks, &report);
+        print_message("  %d triangles, in cells of %d %d\n", (int)sequential.n_triangles, block, (int)mesh.n_triangles);
+        assert_true(report.levels > 0 && mesh.n_triangles < 1.5 * sequential.n_triangles);
+        judge(&start, &mesh, INT64_MAX);
+        par_report_free(&report);
+        blocks.threads = 3;
+        struct tri_mesh again = refine(&start, &blocks, &report);
+        support_assert_same_bytes(&mesh, &again);
+        par_report_free(&report);
+        tri_mesh_free(&mesh);
+        tri_mesh_free(&again);
+    }
+    tri_mesh_free(&sequential);
+    tri_pslg_free(&start.pslg);
+}
+
 static void test_nothing_is_deferred_with_the_margin(void **state)
 {
     (void)state;
@@ -1116,6 +1147,7 @@ int main(void)
         cmocka_unit_test(test_what_is_left_does_not_multiply),
         cmocka_unit_test(test_fans_at_a_fence_are_searched_once),
         cmocka_unit_test(test_a_long_gap_costs_no_triangles),
+        cmocka_unit_test(test_levels_of_a_ring_are_begun_once),
         cmocka_unit_test(test_default_blocks_cost_no_triangles),
         cmocka_unit_test(test_a_size_test_runs_in_parallel_only_where_allowed),
         cmocka_unit_test(test_limits_and_gates_go_the_sequential_way),

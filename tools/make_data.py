@@ -912,6 +912,20 @@ def flat_hull():
     return outline([(c * x - s * y, s * x + c * y) for x, y in square])
 
 
+@case("regress/ring_levels.poly", "star of 60 narrow spikes of random length in a box",
+      "-q22D in cells of 60 and 250 triangles: about as many as in one call; once twice as many, as each block began "
+      "levels of its own")
+def ring_levels():
+    numbers = random.Random(6)
+    star = []
+    for k in range(120):
+        r, angle = 8 if k % 2 else 50 + 50 * numbers.random(), 2 * math.pi * k / 120
+        star.append((round(r * math.cos(angle), 4), round(r * math.sin(angle), 4)))
+    box = [(-150, -150), (150, -150), (150, 150), (-150, 150)]
+    sides = [(k, (k + 1) % 120) for k in range(120)]
+    return figure(star + box, sides + [(120 + k, 120 + (k + 1) % 4) for k in range(4)])
+
+
 # --- what broke once, found elsewhere: files as they are, read here for the tables; tests/cli/regress.sh says how
 
 FOUND = [

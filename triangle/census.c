@@ -68,8 +68,10 @@ static bool needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
         badness = TRI_GOOD; /* as good as it will be */
     if (badness != TRI_GOOD)
         return true;
+    if (!c->options->conforming || !tri_is_urgent(c, t->v))
+        return false;
     struct tri_disk_split split;
-    for (int e = 0; c->options->conforming && e < 3; e++)
+    for (int e = 0; e < 3; e++)
         if (t->n[e] < 0 && t->n[e] != TRI_BEYOND &&
             tri_is_encroached_from(c->mesh, &c->mesh->sub[~t->n[e]], tri_code(triangle, e), &split))
             return true;

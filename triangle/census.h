@@ -19,9 +19,9 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_r
                                  const struct tri_executor *executor, struct tri_error *error);
 
 /* found[last - first] receives the triangles from first to last - 1 at which there is something for the loop to do (an
- * angle that is bad and not hopeless, a bad size; if conforming, a subsegment that the triangle encroaches), in order;
- * returns how many. Neighbours are not asked, which may be elsewhere. To be told the bounds costs more than to judge a
- * triangle. */
+ * angle that is bad and not hopeless, a bad size; if conforming, a subsegment that the triangle encroaches; all of
+ * that only where it is urgent), in order; returns how many. Neighbours are not asked, which may be elsewhere. To be
+ * told the bounds costs more than to judge a triangle. */
 int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id first,
                       tri_triangle_id last, tri_triangle_id *found);
 

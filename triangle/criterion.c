@@ -71,11 +71,11 @@ bool tri_is_too_large(const struct tri_criterion *c, const struct tri_triangle *
     return shape->area2 > tri_area2_bound(c, t->region) || (c->options->unsuitable && tri_is_unsuitable(c, t->v));
 }
 
-static bool can_wait(const struct tri_criterion *c, const tri_vertex_id v[3])
+bool tri_is_urgent(const struct tri_criterion *c, const tri_vertex_id v[3])
 {
     const struct tri_refine_options *options = c->options;
     const struct tri_point *xy = c->mesh->xy;
-    return options->urgent && !says_yes(options->urgent, options->urgent_user, c->mesh->unit, xy[v[0]], xy[v[1]],
+    return !options->urgent || says_yes(options->urgent, options->urgent_user, c->mesh->unit, xy[v[0]], xy[v[1]],
                                         xy[v[2]], 1);
 }
 
@@ -83,7 +83,7 @@ enum tri_badness tri_judge(const struct tri_criterion *c, const struct tri_trian
 {
     double product = tri_longer_product(shape->l[0], shape->l[1], shape->l[2]);
     bool flat = shape->area2 * shape->area2 < c->bounds.sin2 * product;
-    if ((!flat && !tri_is_too_large(c, t, shape)) || can_wait(c, t->v))
+    if ((!flat && !tri_is_too_large(c, t, shape)) || !tri_is_urgent(c, t->v))
         return TRI_GOOD;
     return flat ? TRI_BAD_ANGLE : TRI_BAD_SIZE;
 }

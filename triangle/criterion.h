@@ -42,6 +42,9 @@ bool tri_is_unsuitable(const struct tri_criterion *criterion, const tri_vertex_i
 bool tri_is_too_large(const struct tri_criterion *criterion, const struct tri_triangle *t,
                       const struct tri_shape *shape);
 
+/* Does this call take a triangle with these corners (options->urgent)? */
+bool tri_is_urgent(const struct tri_criterion *criterion, const tri_vertex_id v[3]);
+
 /* A bad angle counts before a bad size. What is not urgent is good. */
 enum tri_badness tri_judge(const struct tri_criterion *criterion, const struct tri_triangle *t,
                            const struct tri_shape *shape);

@@ -93,6 +93,7 @@ struct tri_refiner {
     struct tri_entry hand;
     tri_sub_id *encroached; /* stack of subsegments to test for encroachment (conforming only) */
     int32_t n_encroached, encroached_capacity;
+    int64_t uncounted; /* points that max_steiner does not bound, see split_encroached */
     uint32_t step_of_stop; /* see tri_stop_is_due */
 };
 
@@ -606,7 +607,7 @@ static void count_point(struct tri_refiner *r)
 
 static bool at_limit(struct tri_refiner *r)
 {
-    int64_t inserted = r->report->inserted_free + r->report->inserted_on_segments;
+    int64_t inserted = r->report->inserted_free + r->report->inserted_on_segments - r->uncounted;
     assert(r->options->max_steiner < 0 || inserted <= r->options->max_steiner);
     if (r->options->max_steiner < 0 || inserted < r->options->max_steiner)
         return false;
@@ -670,6 +671,7 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
     }
 }
 
+/* A pre-refinement ends each level that it begins (see tri_refine_options.urgent), whatever its limit. */
 static bool split_encroached(struct tri_refiner *r)
 {
     while (r->n_encroached > 0) {
@@ -683,7 +685,7 @@ static bool split_encroached(struct tri_refiner *r)
         assert(s >= 0 && tri_is_live(&r->mesh->tri[beside]));
         r->n_encroached--;
         struct tri_disk_split where;
-        if (!tri_is_encroached(r->mesh, sub, &where) || at_limit(r))
+        if (!tri_is_encroached(r->mesh, sub, &where) || (!r->options->urgent && at_limit(r)))
             continue;
         r->sized = false;
         enum outcome outcome = split_at(r, s, where, beside);
@@ -691,8 +693,10 @@ static bool split_encroached(struct tri_refiner *r)
             r->encroached[r->n_encroached++] = s; /* there is room: it was there a moment ago */
             return false;
         }
-        if (outcome == DONE)
+        if (outcome == DONE) {
             count_point(r);
+            r->uncounted += r->options->urgent != NULL;
+        }
         if (outcome == REFUSED)
             give_up(r, TRI_NONE, r->excuse);
     }
@@ -954,7 +958,7 @@ void tri_refiner_free(struct tri_refiner *r)
 
 void tri_refiner_show(const struct tri_refiner *r, struct tri_pause *pause)
 {
-    assert(r->walled_off.n == 0 && !r->options->fence);
+    assert(r->walled_off.n == 0 && !r->options->fence && !r->options->urgent);
     memset(pause, 0, sizeof *pause);
     memcpy(&pause->report, r->report, sizeof pause->report);
     pause->bounds = r->criterion.bounds;
