@@ -22,7 +22,7 @@ enum tri_status launch_join(struct launch *launch, struct tri_error *error)
     *launch = (struct launch){0};
     if (tasks == 1)
         return TRI_OK;
-    launch->voice = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
+    launch->voice = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1); /* a closed one stays closed */
     if (task != 0)
         fall_silent();
     enum tri_status status = launch_ranks(launch, tasks, error);

@@ -2,6 +2,7 @@
  * tests/clients/run_formats.sh. */
 #include "triangle/text/formats.h"
 
+#include <errno.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -102,6 +103,31 @@ static void test_groups(void **state)
     tri_grouping_free(&groups);
     assert_true(tri_group_tag(0.5) == 0 && tri_group_tag(0) == 0 && tri_group_tag(-3) == 0 && tri_group_tag(7) == 7);
     assert_true(tri_group_tag(2147483647.0) == INT32_MAX && tri_group_tag(2147483648.0) == 0);
+}
+
+static void *no_extra(void *user, size_t bytes)
+{
+    (void)user, (void)bytes;
+    errno = EMFILE;
+    return NULL;
+}
+
+/* What is missing need not be memory. */
+static void test_no_room_to_group(void **state)
+{
+    (void)state;
+    struct array_grid arrays = ell();
+    struct tri_grid grid = *array_grid(&arrays);
+    const struct tri_storage storage = {.extra = no_extra};
+    struct tri_grouping groups;
+    struct tri_grouping whole = {.n = 0};
+    struct tri_parts parts;
+    struct tri_error error;
+    grid.storage = &storage;
+    assert_int_equal(tri_group(&groups, 6, tri_triangle_group, &grid, &error), TRI_NO_MEMORY);
+    assert_non_null(strstr(error.text, strerror(EMFILE)));
+    assert_int_equal(tri_parts_make(&parts, 2, &grid, &whole, &whole, &error), TRI_NO_MEMORY);
+    assert_non_null(strstr(error.text, strerror(EMFILE)));
 }
 
 static double place(const struct tri_grid *grid, int64_t i)
@@ -309,6 +335,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_boundary),
         cmocka_unit_test(test_groups),
+        cmocka_unit_test(test_no_room_to_group),
         cmocka_unit_test(test_too_many_groups_are_one),
         cmocka_unit_test(test_texts),
         cmocka_unit_test(test_sizes_of_binary_files),

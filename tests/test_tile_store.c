@@ -1,6 +1,7 @@
 /* A mesh that was kept in files tile by tile makes the files of one that was there as a whole, byte for byte. */
 #include "triangle/text/tile_store.h"
 
+#include <errno.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -113,6 +114,34 @@ static void test_no_place(void **state)
     }
 }
 
+/* Of a work array: errno after all, once there is a limit. */
+static int fault_under(const struct tri_storage *storage, int resource, rlim_t most)
+{
+    struct rlimit before, limit;
+    assert_int_equal(getrlimit(resource, &before), 0);
+    limit = (struct rlimit){most, before.rlim_max};
+    assert_int_equal(setrlimit(resource, &limit), 0);
+    errno = 0;
+    assert_null(storage->extra(storage->user, 1 << 20));
+    const int fault = errno;
+    assert_int_equal(setrlimit(resource, &before), 0);
+    return fault;
+}
+
+static void test_why_there_is_no_room(void **state)
+{
+    (void)state;
+    struct tri_tile_store *store;
+    struct tri_sink sink;
+    struct tri_grid grid;
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(tri_tile_store_new(&store, ".", &sink, NULL), TRI_OK);
+    assert_int_equal(tri_tile_store_grid(store, true, &grid, NULL), TRI_OK);
+    assert_int_equal(fault_under(grid.storage, RLIMIT_FSIZE, 1000), EFBIG);
+    assert_int_equal(fault_under(grid.storage, RLIMIT_NOFILE, 3), EMFILE);
+    tri_tile_store_free(store);
+}
+
 static void test_no_memory(void **state)
 {
     (void)state;
@@ -136,6 +165,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(test_same_bytes, remove_files),
         cmocka_unit_test_teardown(test_no_place, remove_files),
+        cmocka_unit_test(test_why_there_is_no_room),
         cmocka_unit_test_teardown(test_no_memory, remove_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -89,7 +89,8 @@ struct tri_storage {
     /* Copies so many bytes to the beginning of the array, of which no more than a little is in memory at a time. False:
      * there is no room. */
     bool (*fill)(void *user, enum tri_array array, const void *from, size_t bytes);
-    /* Returns so many bytes for a work array that grows with the mesh, until extra_free; NULL: there is no room. */
+    /* Returns so many bytes for a work array that grows with the mesh, until extra_free; NULL: there is no room, and
+     * errno says why. */
     void *(*extra)(void *user, size_t bytes);
     void (*extra_free)(void *user, void *extra);
     void *user;

@@ -196,10 +196,13 @@ static void *extra(void *user, size_t bytes)
     for (int k = TRI_ARRAYS; k < SHEETS; k++)
         if (!park->sheet[k].at) {
             void *at = reserve_sheet(park, &park->sheet[k], bytes + 1);
-            if (!at)
+            if (!at) {
                 drop_sheet(park, &park->sheet[k]);
+                errno = park->fault;
+            }
             return at;
         }
+    errno = EMFILE;
     return NULL;
 }
 

@@ -1,6 +1,7 @@
 /* The values are listed in order, then the items are sorted by counting, so that each group keeps their order. */
 #include "triangle/text/grouping.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,7 +74,8 @@ enum tri_status tri_group(struct tri_grouping *g, int64_t n, double (*value)(con
     const size_t bytes = (size_t)n * sizeof *g->order;
     g->order = g->storage ? g->storage->extra(g->storage->user, bytes) : malloc(bytes);
     if (!g->order)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to group %lld items", (long long)n);
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no room to group %lld items: %s", (long long)n,
+                        strerror(errno));
     memcpy(next, g->first, (size_t)g->n * sizeof *next);
     for (i = 0; i < n; i++)
         g->order[next[place_of(g, value(grid, i))]++] = i;

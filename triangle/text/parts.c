@@ -6,6 +6,7 @@
 #include "triangle/text/parts.h"
 
 #include <assert.h>
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -418,7 +419,7 @@ static enum tri_status get_room(struct work *w, struct tri_error *error)
     p->inner = get(p->storage, g->n_points, sizeof *p->inner);
     p->segment = get(p->storage, g->n_segments, sizeof *p->segment);
     if (!w->part || !w->user || !w->segment_part || !p->triangle || !p->inner || !p->segment)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no room to cut a mesh into parts");
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no room to cut a mesh into parts: %s", strerror(errno));
     for (int64_t i = 0; i < g->n_points; i++) {
         tri_grid_pass(g, i);
         w->user[i] = 0;

@@ -81,23 +81,27 @@ static void empty(struct sheet *sheet)
 
 /* --- room beside the arrays */
 
-/* Disk space is taken before it is used. */
+/* Disk space is taken before it is used. Where that fails errno says why. */
 static bool make_extra(struct sheet *sheet, const char *folder, size_t bytes)
 {
     sheet->file = tri_scratch_file(folder);
     sheet->bytes = bytes;
-    return sheet->file >= 0 && posix_fallocate(sheet->file, 0, (off_t)bytes) == 0 && map(sheet);
+    const int fault = sheet->file < 0 ? errno : posix_fallocate(sheet->file, 0, (off_t)bytes);
+    if (fault == 0 && map(sheet))
+        return true;
+    const int reason = fault ? fault : errno;
+    empty(sheet);
+    errno = reason;
+    return false;
 }
 
 static void *extra(void *user, size_t bytes)
 {
     struct tri_tile_store *s = user;
     for (int k = KINDS; k < SHEETS; k++)
-        if (s->sheet[k].file < 0) {
-            if (!make_extra(&s->sheet[k], s->folder, bytes + 1))
-                empty(&s->sheet[k]);
-            return s->sheet[k].at;
-        }
+        if (s->sheet[k].file < 0)
+            return make_extra(&s->sheet[k], s->folder, bytes + 1) ? s->sheet[k].at : NULL;
+    errno = EMFILE;
     return NULL;
 }
 
