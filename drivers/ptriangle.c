@@ -561,8 +561,8 @@ static int carry_out(struct program *p, const struct arguments *arguments, struc
         return EXIT_FAILURE;
     }
     const bool alone = goes_on_alone(p);
-    int64_t room;
-    struct par_carrier one = par_carrier_alone(&room);
+    int64_t room[PAR_ROOM];
+    struct par_carrier one = par_carrier_alone(room);
     p->launch.carrier = alone ? &one : p->launch.carrier;
     int code = launch_agree(&p->launch, run_program(p, arguments, error), error);
     p->launch.carrier = alone ? NULL : p->launch.carrier;

@@ -186,7 +186,8 @@ static double gather_seconds(const struct replay_how *how, double bytes)
                                        (how->n_ranks - 1) * bytes / how->bandwidth + how->lateness;
 }
 
-/* Of a phase: at its beginning one bit for each block of the plane; in each swap four numbers. */
+/* Of a phase: at its beginning one bit for each block of the plane; in each swap whether there is anything to send, how
+ * much, and whether there is memory for it; and whether there is another one. */
 static double agreements(const struct player *p)
 {
     double blocks = (2.0 * p->columns + 1) * (2.0 * p->rows + 1);

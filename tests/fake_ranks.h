@@ -9,11 +9,12 @@
 struct fake_world {
     int n_ranks;
     pthread_barrier_t barrier;
-    const int64_t **numbers;       /* [n_ranks] what each shows the others now */
+    const int64_t **numbers;       /* [n_ranks] what each shows the others now .. */
+    int32_t *width;                /* [n_ranks] .. and how many numbers; 0: one for each rank */
     const struct par_bytes **out;
     const void *spread;
     struct fake_rank *rank;
-    int64_t *of_each;              /* [n_ranks][n_ranks] */
+    int64_t *of_each;              /* [n_ranks][n_ranks * PAR_ROOM] */
 };
 
 struct fake_rank {

@@ -82,18 +82,6 @@ static bool ask_all(struct par_carrier *carrier, const int64_t *mine, int32_t n,
     return good;
 }
 
-/* The lowest rank's that has an error, or -1. `all` has room for a number of each rank. */
-static int first_to_fail(struct par_carrier *carrier, enum tri_status status, int64_t *all)
-{
-    int64_t mine = status;
-    if (!ask_all(carrier, &mine, 1, all))
-        return -2;
-    for (int p = 0; p < carrier->n_ranks; p++)
-        if (all[p] != TRI_OK)
-            return p;
-    return -1;
-}
-
 /* Everybody's error becomes that of one rank. Word by word: no memory may be left, and whoever stayed away would be
  * waited for. */
 static void share_error(struct par_carrier *carrier, int from, int64_t *all, struct tri_error *error)
@@ -111,20 +99,34 @@ static void share_error(struct par_carrier *carrier, int from, int64_t *all, str
     memcpy(error, word, sizeof *error);
 }
 
-enum tri_status par_agree(struct par_carrier *carrier, enum tri_status status, struct tri_error *error)
+/* Collective: how each rank is, and its n <= PAR_FEW numbers, which of_each[n_ranks][PAR_ROOM] receives behind that. The
+ * numbers need not be there where a rank has failed. */
+static enum tri_status agree_with(struct par_carrier *carrier, const int64_t *mine, int32_t n, enum tri_status status,
+                                  struct tri_error *error)
 {
-    assert(carrier->rank >= 0 && carrier->rank < carrier->n_ranks);
+    int64_t told[PAR_ROOM] = {status}, *said = carrier->of_each;
+    size_t from = 0, n_ranks = (size_t)carrier->n_ranks;
+    assert(carrier->rank >= 0 && carrier->rank < carrier->n_ranks && 0 <= n && n <= PAR_FEW);
     assert(carrier->ended == (carrier->status != TRI_OK));
     if (carrier->ended)
         return carrier->status;
-    int from = first_to_fail(carrier, status, carrier->of_each);
-    enum tri_status agreed = from >= 0 ? (enum tri_status)carrier->of_each[from] : TRI_OK;
-    if (agreed) {
-        share_error(carrier, from, carrier->of_each, error);
-        carrier->ended = true;
-        carrier->status = agreed;
-    }
-    return from == -2 ? out_of_touch(carrier, error) : agreed;
+    if (!status && n > 0)
+        memcpy(told + 1, mine, (size_t)n * sizeof *mine);
+    if (!ask_all(carrier, told, PAR_ROOM, said))
+        return out_of_touch(carrier, error);
+    while (from < n_ranks && said[from * PAR_ROOM] == TRI_OK)
+        from++;
+    if (from == n_ranks)
+        return TRI_OK;
+    carrier->ended = true;
+    carrier->status = (enum tri_status)said[from * PAR_ROOM];
+    share_error(carrier, (int)from, said, error);
+    return carrier->status;
+}
+
+enum tri_status par_agree(struct par_carrier *carrier, enum tri_status status, struct tri_error *error)
+{
+    return agree_with(carrier, NULL, 0, status, error);
 }
 
 static void free_all(struct par_bytes *bytes, int n)
@@ -144,23 +146,39 @@ static void count(struct par_carrier *carrier, enum par_move move, const struct 
         }
 }
 
+/* An agreement; *any: somebody has something for another. */
+static enum tri_status look_for_any(struct par_carrier *carrier, const struct par_bytes *out, bool *any,
+                                    enum tri_status status, struct tri_error *error)
+{
+    int64_t mine = 0;
+    for (int p = 0; p < carrier->n_ranks; p++)
+        mine += p != carrier->rank && out[p].n > 0;
+    status = agree_with(carrier, &mine, 1, status, error);
+    *any = false;
+    for (size_t p = 0; !status && p < (size_t)carrier->n_ranks; p++)
+        *any = *any || carrier->of_each[p * PAR_ROOM + 1] > 0;
+    return status;
+}
+
 /* Sizes are known before anything is sent, so that who has no memory for it can say so. */
 static enum tri_status prepare(struct par_carrier *carrier, const struct par_bytes *out, struct par_bytes *in,
                                struct tri_error *error)
 {
     size_t n = (size_t)carrier->n_ranks;
-    int64_t *size = calloc(2 * n, sizeof *size);
-    enum tri_status status = par_agree(carrier, size ? TRI_OK : no_memory(error), error);
+    int64_t *from = carrier->of_each, *to = from + n;
+    enum tri_status status = TRI_OK;
+    _Static_assert(PAR_ROOM >= 2, "there is room for two lists");
+    for (size_t p = 0; p < n; p++)
+        to[p] = (int64_t)out[p].n;
+    double began = tri_seconds();
+    if (!carrier->deal(carrier->self, to, from))
+        return out_of_touch(carrier, error);
+    carrier->seconds_waiting += tri_seconds() - began;
     for (size_t p = 0; !status && p < n; p++)
-        size[p] = (int64_t)out[p].n;
-    if (!status && !carrier->deal(carrier->self, size, size + n))
-        status = out_of_touch(carrier, error);
-    for (size_t p = 0; !status && p < n; p++)
-        if (p != (size_t)carrier->rank && !par_bytes_reserve(&in[p], (size_t)size[n + p]))
+        if (p != (size_t)carrier->rank && !par_bytes_reserve(&in[p], (size_t)from[p]))
             status = no_memory(error);
         else if (p != (size_t)carrier->rank)
-            in[p].n = (size_t)size[n + p];
-    free(size);
+            in[p].n = (size_t)from[p];
     return par_agree(carrier, status, error);
 }
 
@@ -174,10 +192,12 @@ static void abandon(struct par_bytes *bytes, int n)
 enum tri_status par_swap(struct par_carrier *carrier, enum par_move move, struct par_bytes *out, struct par_bytes *in,
                          enum tri_status status, struct tri_error *error)
 {
-    status = par_agree(carrier, status, error);
-    status = status ? status : prepare(carrier, out, in, error);
+    bool any;
+    status = look_for_any(carrier, out, &any, status, error);
+    if (!status && any)
+        status = prepare(carrier, out, in, error);
     double began = tri_seconds();
-    if (!status && !carrier->transfer(carrier->self, out, in)) {
+    if (!status && any && !carrier->transfer(carrier->self, out, in)) {
         status = out_of_touch(carrier, error);
         abandon(out, carrier->n_ranks);
         abandon(in, carrier->n_ranks);
@@ -208,8 +228,12 @@ enum tri_status par_spread(struct par_carrier *carrier, enum par_move move, void
 enum tri_status par_gather(struct par_carrier *carrier, const int64_t *mine, int32_t n, int64_t *all,
                            enum tri_status status, struct tri_error *error)
 {
-    status = par_agree(carrier, status, error);
-    if (!status && !ask_all(carrier, mine, n, all))
+    const bool few = n <= PAR_FEW;
+    const int64_t *said = carrier->of_each;
+    status = agree_with(carrier, mine, few ? n : 0, status, error);
+    for (size_t p = 0; !status && few && p < (size_t)carrier->n_ranks; p++) /* forwards: of_each may be `all` */
+        memmove(all + p * (size_t)n, said + p * PAR_ROOM + 1, (size_t)n * sizeof *all);
+    if (!status && !few && !ask_all(carrier, mine, n, all))
         status = out_of_touch(carrier, error);
     return status;
 }

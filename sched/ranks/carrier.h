@@ -2,7 +2,9 @@
  * tests, MPI).
  *
  * All ranks make the same calls in the same order. Each exchange begins with an agreement: where a rank has failed, all
- * learn it there, return the same error, and nobody waits for anything afterwards. */
+ * learn it there, return the same error, and nobody waits for anything afterwards. So who has failed may leave calls out:
+ * all agreements are the same exchange, whatever begins with them. Whoever comes first waits for the last in each: so a
+ * few numbers go with them, and nothing follows where there is nothing to send. */
 #ifndef SCHED_RANKS_CARRIER_H
 #define SCHED_RANKS_CARRIER_H
 
@@ -34,16 +36,18 @@ struct par_traffic {
     int64_t bytes, messages; /* sent by this rank */
 };
 
+enum { PAR_FEW = 7, PAR_ROOM = PAR_FEW + 1 }; /* so many numbers go with an agreement, which itself is one */
+
 struct par_carrier {
     int rank, n_ranks;
     void *self;
-    int64_t *of_each;        /* [n_ranks] room for agreements: these must not fail for want of memory */
+    int64_t *of_each;        /* [n_ranks * PAR_ROOM] for agreements: these must not fail for want of memory */
     /* Collective: all[n_ranks][n] receives everybody's n numbers. */
     bool (*gather)(void *self, const int64_t *mine, int32_t n, int64_t *all);
     /* Collective: from[p] receives what rank p has in to[rank]. */
     bool (*deal)(void *self, const int64_t *to, int64_t *from);
-    /* Sends out[p] to rank p and fills in[p].n bytes at in[p].at from there, for all p but the own rank where n > 0.
-     * Returns when everything has gone and come. False: the network has failed, which nobody may survive. */
+    /* Sends out[p] to rank p and fills in[p].n bytes at in[p].at from there, for all p but the own rank where n > 0, in
+     * any order. Returns when everything has gone and come. False: the network has failed, which nobody may survive. */
     bool (*transfer)(void *self, const struct par_bytes *out, const struct par_bytes *in);
     /* Collective: the n bytes of all become those of rank 0. */
     bool (*spread)(void *self, void *bytes, size_t n);
@@ -61,7 +65,7 @@ struct par_carrier {
     double seconds_moving;   /* what is sent and comes, once all are ready for it */
 };
 
-/* A rank that is alone, with nobody to wait for. `room` lives as long. */
+/* A rank that is alone, with nobody to wait for. room[PAR_ROOM] lives as long. */
 struct par_carrier par_carrier_alone(int64_t *room);
 
 bool par_bytes_reserve(struct par_bytes *bytes, size_t more);
@@ -82,7 +86,7 @@ enum tri_status par_swap(struct par_carrier *carrier, enum par_move move, struct
 enum tri_status par_spread(struct par_carrier *carrier, enum par_move move, void *bytes, size_t n,
                            enum tri_status status, struct tri_error *error);
 
-/* Collective: an agreement, then all[n_ranks][n] receives everybody's n numbers. */
+/* Collective: an agreement, and all[n_ranks][n] receives everybody's n numbers. */
 enum tri_status par_gather(struct par_carrier *carrier, const int64_t *mine, int32_t n, int64_t *all,
                            enum tri_status status, struct tri_error *error);
 

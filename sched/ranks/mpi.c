@@ -17,6 +17,7 @@ enum { TAG_BYTES, TAG_STOP };
 struct messenger {
     struct par_carrier carrier; /* first: what others see */
     MPI_Comm comm;
+    MPI_Request *request;       /* [2 * n_ranks] of what comes and goes */
     int32_t why;                /* what this rank has told by TAG_STOP; 0: nothing */
     MPI_Request *telling;       /* [n_ranks] of that */
     int heard;                  /* messages of others with TAG_STOP */
@@ -27,8 +28,7 @@ static bool wait_for(const struct messenger *m, MPI_Request *request, int n)
 {
     struct timespec pause = {0, 1000};
     int done = 0;
-    MPI_Status states[2];
-    while (MPI_Testall(n, request, &done, states) == MPI_SUCCESS && !done) {
+    while (MPI_Testall(n, request, &done, MPI_STATUSES_IGNORE) == MPI_SUCCESS && !done) {
         (void)tri_stop_is_asked(m->carrier.stop); /* who is asked passes it on: the others end what is waited for */
         nanosleep(&pause, NULL);
         pause.tv_nsec = pause.tv_nsec < 500000 ? 2 * pause.tv_nsec : pause.tv_nsec;
@@ -58,35 +58,38 @@ static int piece_of(size_t n, size_t at)
     return (int)(left < MOST_BYTES ? left : MOST_BYTES);
 }
 
-/* Sends to one rank while it receives from another, piece by piece. */
-static bool exchange(const struct messenger *m, const struct par_bytes *out, int to, const struct par_bytes *in,
-                     int from)
+/* The pieces that begin at a byte: all come and go at once, so that nobody waits for one rank before it hears another.
+ * Ranks begin with different ones. */
+static bool exchange(const struct messenger *m, const struct par_bytes *out, const struct par_bytes *in, size_t at)
 {
+    int rank = m->carrier.rank, n = m->carrier.n_ranks, posted = 0;
     bool good = true;
-    for (size_t at = 0; good && (at < out->n || at < in->n); at += MOST_BYTES) {
-        MPI_Request request[2] = {MPI_REQUEST_NULL, MPI_REQUEST_NULL};
-        if (at < in->n)
-            good = MPI_Irecv(in->at + at, piece_of(in->n, at), MPI_BYTE, from, TAG_BYTES, m->comm,
-                             &request[0]) == MPI_SUCCESS;
-        if (good && at < out->n)
-            good = MPI_Isend(out->at + at, piece_of(out->n, at), MPI_BYTE, to, TAG_BYTES, m->comm,
-                             &request[1]) == MPI_SUCCESS;
-        good = good && wait_for(m, request, 2);
+    for (int k = 1; good && k < n; k++) {
+        int p = (rank - k + n) % n;
+        if (at < in[p].n)
+            good = MPI_Irecv(in[p].at + at, piece_of(in[p].n, at), MPI_BYTE, p, TAG_BYTES, m->comm,
+                             &m->request[posted++]) == MPI_SUCCESS;
     }
-    return good;
+    for (int k = 1; good && k < n; k++) {
+        int p = (rank + k) % n;
+        if (at < out[p].n)
+            good = MPI_Isend(out[p].at + at, piece_of(out[p].n, at), MPI_BYTE, p, TAG_BYTES, m->comm,
+                             &m->request[posted++]) == MPI_SUCCESS;
+    }
+    return good && wait_for(m, m->request, posted);
 }
 
-/* Who is k further on gets something in step k, when he looks at who is k before him: so all wait for each other in the
- * same order. */
 static bool transfer(void *self, const struct par_bytes *out, const struct par_bytes *in)
 {
     const struct messenger *m = self;
+    size_t most = 0;
     bool good = true;
-    int rank = m->carrier.rank, n = m->carrier.n_ranks;
-    for (int k = 1; good && k < n; k++) {
-        int to = (rank + k) % n, from = (rank - k + n) % n;
-        good = exchange(m, &out[to], to, &in[from], from);
+    for (int p = 0; p < m->carrier.n_ranks; p++) {
+        size_t n = p == m->carrier.rank ? 0 : in[p].n > out[p].n ? in[p].n : out[p].n;
+        most = n > most ? n : most;
     }
+    for (size_t at = 0; good && at < most; at += MOST_BYTES)
+        good = exchange(m, out, in, at);
     return good;
 }
 
@@ -197,6 +200,7 @@ static void free_messenger(struct messenger *m)
 {
     if (m) {
         free(m->carrier.of_each);
+        free(m->request);
         free(m->telling);
     }
     free(m);
@@ -213,11 +217,12 @@ static struct messenger *messenger_on(MPI_Comm comm)
     MPI_Comm_rank(comm, &m->carrier.rank);
     MPI_Comm_size(comm, &m->carrier.n_ranks);
     const size_t n = (size_t)m->carrier.n_ranks;
-    m->carrier.of_each = malloc(n * sizeof *m->carrier.of_each);
+    m->carrier.of_each = malloc(n * PAR_ROOM * sizeof *m->carrier.of_each);
+    m->request = malloc(2 * n * sizeof *m->request);
     m->telling = malloc(n * sizeof *m->telling);
     for (size_t p = 0; m->telling && p < n; p++)
         m->telling[p] = MPI_REQUEST_NULL;
-    if (m->carrier.of_each && m->telling)
+    if (m->carrier.of_each && m->request && m->telling)
         return m;
     free_messenger(m);
     return NULL;
