@@ -137,57 +137,74 @@ static bool tell_side(struct par_message *m, struct par_talk *talk, const struct
     return true;
 }
 
-static bool tell_triangle(struct par_message *m, struct par_talk *talk, const struct tri_mesh *mesh, int32_t n_common,
-                          tri_triangle_id t)
-{
-    const struct tri_triangle *triangle = &mesh->tri[t];
-    struct par_told_triangle told = {.region = triangle->region};
-    int32_t own = par_talk_number(talk, t);
-    for (int k = 0; k < 3; k++) {
-        if (par_map_get(&talk->vertex_at, triangle->v[k]) == TRI_NONE &&
-            !tell_vertex(m, talk, mesh, n_common, triangle->v[k]))
-            return false;
-        told.v[k] = par_map_get(&talk->vertex_at, triangle->v[k]);
-        int32_t link = triangle->n[k], next = link >= 0 ? par_talk_number(talk, tri_of(link)) : TRI_NONE;
-        told.next[k] = next < own ? next : TRI_NONE;
-        if (link < 0 && link != TRI_BEYOND && !tell_side(m, talk, mesh, t, k))
-            return false;
-    }
-    m->triangle[m->n_triangles++] = told;
-    return true;
-}
-
 /* The talk's triangles from number `first` on, on their way to numbers in another order. */
 struct telling {
+    struct par_message *message;
+    struct par_talk *talk;
+    const struct tri_mesh *mesh;
+    int32_t n_common;
     tri_triangle_id *waiting; /* [n] by the old numbers; TRI_NONE: it has had its turn */
     int32_t n, first;
     struct par_ids stack;
 };
 
-static bool take_turn(struct telling *telling, const struct par_talk *talk, tri_triangle_id t)
+/* Whose old or new number is given: has it still to be told? */
+static bool is_waiting(const struct telling *telling, tri_triangle_id t, int32_t number)
 {
-    int32_t place = par_map_get(&talk->triangle_at, t) - telling->first;
-    if (place < 0 || place >= telling->n || telling->waiting[place] != t)
-        return false;
-    telling->waiting[place] = TRI_NONE;
-    return true;
+    int32_t place = number - telling->first;
+    return place >= 0 && place < telling->n && telling->waiting[place] == t;
+}
+
+/* The number of what lies across an edge, if it has been told; else it waits for its turn, if it is to be told.
+ * *memory: there is none left. */
+static int32_t look_across(struct telling *telling, tri_triangle_id t, bool *memory)
+{
+    const struct par_talk *talk = telling->talk;
+    int32_t number = par_map_get(&talk->triangle_at, t);
+    if (number == TRI_NONE)
+        return TRI_NONE;
+    if (is_waiting(telling, t, number)) {
+        __builtin_prefetch(&telling->mesh->tri[t]);
+        *memory = par_ids_add(&telling->stack, t) && *memory;
+        return TRI_NONE;
+    }
+    return number < talk->triangle.n && talk->triangle.item[number] == t ? number : TRI_NONE;
+}
+
+/* Of the triangle that has got its number last. */
+static bool tell_triangle(struct telling *telling, tri_triangle_id t)
+{
+    struct par_message *m = telling->message;
+    struct par_talk *talk = telling->talk;
+    const struct tri_triangle *triangle = &telling->mesh->tri[t];
+    struct par_told_triangle told = {.region = triangle->region};
+    bool memory = true;
+    for (int k = 0; memory && k < 3; k++) {
+        told.v[k] = par_map_get(&talk->vertex_at, triangle->v[k]);
+        if (told.v[k] == TRI_NONE) {
+            told.v[k] = talk->vertex.n;
+            memory = tell_vertex(m, talk, telling->mesh, telling->n_common, triangle->v[k]);
+        }
+        tri_link link = triangle->n[k];
+        told.next[k] = link >= 0 ? look_across(telling, tri_of(link), &memory) : TRI_NONE;
+        if (memory && link < 0 && link != TRI_BEYOND)
+            memory = tell_side(m, talk, telling->mesh, t, k);
+    }
+    m->triangle[m->n_triangles++] = told;
+    return memory;
 }
 
 /* Deep before wide: who comes next lies beside the last one that had anybody beside it. */
-static bool tell_from(struct telling *telling, struct par_message *m, struct par_talk *talk,
-                      const struct tri_mesh *mesh, int32_t n_common, tri_triangle_id seed)
+static bool tell_from(struct telling *telling, tri_triangle_id seed)
 {
     bool memory = par_ids_add(&telling->stack, seed);
     while (memory && telling->stack.n > 0) {
         tri_triangle_id t = telling->stack.item[--telling->stack.n];
-        if (!take_turn(telling, talk, t))
+        int32_t number = par_map_get(&telling->talk->triangle_at, t);
+        if (!is_waiting(telling, t, number))
             continue;
-        memory = par_talk_add_triangle(talk, t) && tell_triangle(m, talk, mesh, n_common, t);
-        for (int e = 0; memory && e < 3; e++)
-            if (mesh->tri[t].n[e] >= 0) {
-                __builtin_prefetch(&mesh->tri[tri_of(mesh->tri[t].n[e])]);
-                memory = par_ids_add(&telling->stack, tri_of(mesh->tri[t].n[e]));
-            }
+        telling->waiting[number - telling->first] = TRI_NONE;
+        memory = par_talk_add_triangle(telling->talk, t) && tell_triangle(telling, t);
     }
     return memory;
 }
@@ -195,7 +212,8 @@ static bool tell_from(struct telling *telling, struct par_message *m, struct par
 bool par_message_tell(struct par_message *m, struct par_talk *talk, const struct tri_mesh *mesh, int32_t n_common,
                       int32_t first)
 {
-    struct telling telling = {.n = talk->triangle.n - first, .first = first};
+    struct telling telling = {.message = m, .talk = talk, .mesh = mesh, .n_common = n_common,
+                              .n = talk->triangle.n - first, .first = first};
     assert(m->n_triangles == 0 && telling.n >= 0);
     if (telling.n == 0)
         return true;
@@ -205,7 +223,7 @@ bool par_message_tell(struct par_message *m, struct par_talk *talk, const struct
         memcpy(telling.waiting, talk->triangle.item + first, (size_t)telling.n * sizeof *telling.waiting);
     talk->triangle.n = first;
     for (int32_t i = 0; memory && i < telling.n; i++)
-        memory = telling.waiting[i] == TRI_NONE || tell_from(&telling, m, talk, mesh, n_common, telling.waiting[i]);
+        memory = telling.waiting[i] == TRI_NONE || tell_from(&telling, telling.waiting[i]);
     assert(!memory || talk->triangle.n == first + telling.n);
     free(telling.waiting);
     free(telling.stack.item);
@@ -230,25 +248,38 @@ struct writer {
     bool lost;
 };
 
-enum { LONGEST = 10, AHEAD = 1 << 12 }; /* bytes of a number; so many are reserved at once */
+enum { LONGEST = 40, AHEAD = 1 << 12 }; /* bytes of a number, or of a place; so many are reserved at once */
 
-static void put(struct writer *w, uint64_t n)
+/* Where the next LONGEST bytes may go; NULL: no memory. */
+static char *room_for_one(struct writer *w)
 {
     struct par_bytes *to = w->to;
     w->lost = w->lost || (to->capacity - to->n < LONGEST && !par_bytes_reserve(to, AHEAD));
-    if (w->lost)
-        return;
+    return w->lost ? NULL : to->at + to->n;
+}
+
+static char *write_number(char *at, uint64_t n)
+{
     for (; n >= 128; n >>= 7)
-        to->at[to->n++] = (char)((n & 127) | 128);
-    to->at[to->n++] = (char)n;
+        *at++ = (char)((n & 127) | 128);
+    *at++ = (char)n;
+    return at;
+}
+
+static void put(struct writer *w, uint64_t n)
+{
+    char *at = room_for_one(w);
+    if (at)
+        w->to->n = (size_t)(write_number(at, n) - w->to->at);
 }
 
 static void put_byte(struct writer *w, unsigned char byte)
 {
-    struct par_bytes *to = w->to;
-    w->lost = w->lost || (to->capacity == to->n && !par_bytes_reserve(to, AHEAD));
-    if (!w->lost)
-        to->at[to->n++] = (char)byte;
+    char *at = room_for_one(w);
+    if (at) {
+        *at = (char)byte;
+        w->to->n++;
+    }
 }
 
 static void put_signed(struct writer *w, int64_t n) { put(w, n < 0 ? 2 * ~(uint64_t)n + 1 : 2 * (uint64_t)n); }
@@ -282,31 +313,31 @@ static struct reals reals_of(const struct par_told_vertex *v)
     return reals;
 }
 
-static unsigned bytes_in(uint64_t word)
-{
-    unsigned n = 0;
-    for (; word > 0; word >>= 8)
-        n++;
-    return n;
-}
+static unsigned bytes_in(uint64_t word) { return word ? (unsigned)(71 - __builtin_clzll(word)) / 8 : 0; }
 
-static void put_lowest(struct writer *w, uint64_t word, unsigned n)
+/* The n lowest of eight bytes; the others are written, too, where what comes next will be. */
+static char *write_lowest(char *at, uint64_t word, unsigned n)
 {
-    for (; n > 0; n--, word >>= 8)
-        put_byte(w, (unsigned char)(word & 255));
+    for (unsigned k = 0; k < sizeof word; k++)
+        at[k] = (char)(word >> 8 * k);
+    return at + n;
 }
 
 static void put_place(struct writer *w, const struct reals *reals, struct reals *last, unsigned kind)
 {
+    char *at = room_for_one(w);
     unsigned n[REALS], header = 0;
     for (int k = REALS - 1; k >= 0; k--) {
         last->bits[k] ^= reals->bits[k];
         n[k] = bytes_in(last->bits[k]);
         header = header * LENGTHS + n[k];
     }
-    put(w, header * KINDS + kind);
-    for (int k = 0; k < REALS; k++)
-        put_lowest(w, last->bits[k], n[k]);
+    if (at) {
+        at = write_number(at, header * KINDS + kind);
+        for (int k = 0; k < REALS; k++)
+            at = write_lowest(at, last->bits[k], n[k]);
+        w->to->n = (size_t)(at - w->to->at);
+    }
     *last = *reals;
 }
 
@@ -506,15 +537,17 @@ static void get_ascending(struct reader *r, struct par_ids *list, int32_t n, int
         list->item[list->n] = last + 1 + get_below(r, (int64_t)end - last - 1);
 }
 
+/* Eight bytes lie behind whatever may be read (the hash), so that a word can be, of which the n lowest count. */
 static uint64_t get_lowest(struct reader *r, unsigned n)
 {
     uint64_t word = 0;
-    unsigned char byte = 0;
-    for (unsigned k = 0; k < n; k++) {
-        get_bytes(r, &byte, 1);
-        word |= (uint64_t)byte << 8 * k;
-    }
-    return word;
+    r->bad = r->bad || (size_t)(r->end - r->at) < n;
+    if (r->bad || n == 0)
+        return 0;
+    for (unsigned k = 0; k < sizeof word; k++)
+        word |= (uint64_t)r->at[k] << 8 * k;
+    r->at += n;
+    return word & UINT64_MAX >> 8 * (sizeof word - n);
 }
 
 static void get_place(struct reader *r, struct par_told_vertex *v, struct reals *last, unsigned header)
@@ -568,9 +601,7 @@ static void get_triangle(struct reader *r, struct par_message *m, int32_t first,
                          int32_t n_regions)
 {
     struct par_told_triangle *t = &m->triangle[i];
-    unsigned char byte = 0;
-    get_bytes(r, &byte, 1);
-    int flags = byte;
+    int flags = (int)get_lowest(r, 1);
     r->bad = r->bad || (i == 0 && flags & LAST_IS_PARENT);
     if (r->bad)
         return;
