@@ -743,7 +743,7 @@ static void clean_up(struct par_state *state)
         par_state_end(checkpoint_of(state), state);
     par_park_close(state->park, state->mesh);
     par_state_drop_pause(state);
-    if (report->way != PAR_IN_MEMORY)
+    if (report->way != PAR_IN_MEMORY || state->end == PAR_DELIVERED)
         tri_mesh_drop(state->mesh);
     free(state->worklist.item);
     free(state->key.item);
