@@ -20,33 +20,41 @@ static enum tri_status take(void *user, const struct tri_tile *tile, struct tri_
     return TRI_OK;
 }
 
-static double processor_seconds(long *kilobytes)
+enum { SECONDS, SYSTEM, FAULTS, WAITS, MEGABYTES, MEASURES };
+
+static double seconds_of(struct timeval time) { return (double)time.tv_sec + 1e-6 * (double)time.tv_usec; }
+
+/* What this process has taken so far: of the processor, of that in the system, pages, times that it waited. */
+static void look(double taken[MEASURES])
 {
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
-    *kilobytes = usage.ru_maxrss;
-    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+    taken[SYSTEM] = seconds_of(usage.ru_stime);
+    taken[SECONDS] = seconds_of(usage.ru_utime) + taken[SYSTEM];
+    taken[FAULTS] = (double)usage.ru_minflt;
+    taken[WAITS] = (double)usage.ru_nvcsw;
+    taken[MEGABYTES] = (double)usage.ru_maxrss / 1024;
 }
 
 /* Sums and largest values over the ranks, by rank 0. */
-static void print(int rank, int n_ranks, double wall, double seconds, double user, long kilobytes,
-                  const struct counts *counts, const struct par_exchanges *moved)
+static void print(int rank, int n_ranks, double wall, const double mine[MEASURES], const struct counts *counts,
+                  const struct par_exchanges *moved)
 {
-    double mine[3] = {seconds, user, (double)kilobytes}, most[3], sum[3];
+    double most[MEASURES], sum[MEASURES];
     int64_t number[2 + PAR_EXCHANGES] = {counts->triangles}, total[2 + PAR_EXCHANGES];
     for (int k = 0; k < PAR_EXCHANGES; k++) {
         number[1] += moved->messages[k];
         number[2 + k] = moved->bytes[k];
     }
-    MPI_Reduce(mine, most, 3, MPI_DOUBLE, MPI_MAX, 0, MPI_COMM_WORLD);
-    MPI_Reduce(mine, sum, 3, MPI_DOUBLE, MPI_SUM, 0, MPI_COMM_WORLD);
+    MPI_Reduce(mine, most, MEASURES, MPI_DOUBLE, MPI_MAX, 0, MPI_COMM_WORLD);
+    MPI_Reduce(mine, sum, MEASURES, MPI_DOUBLE, MPI_SUM, 0, MPI_COMM_WORLD);
     MPI_Reduce(number, total, 2 + PAR_EXCHANGES, MPI_INT64_T, MPI_SUM, 0, MPI_COMM_WORLD);
     if (rank > 0)
         return;
-    printf("%d ranks, %lld triangles, wall %.2f s, processor time %.2f s, most of a rank %.2f s, most memory of a rank "
-           "%.0f MB, %lld messages, bytes a triangle",
-           n_ranks, (long long)total[0], wall, sum[0], most[0], most[2] / 1024, (long long)total[1]);
+    printf("%d ranks, %lld triangles, wall %.2f s, processor time %.2f s (system %.2f s, %.0f page faults, %.0f waits), "
+           "most of a rank %.2f s, most memory of a rank %.0f MB, %lld messages, bytes a triangle",
+           n_ranks, (long long)total[0], wall, sum[SECONDS], sum[SYSTEM], sum[FAULTS], sum[WAITS], most[SECONDS],
+           most[MEGABYTES], (long long)total[1]);
     for (int k = 0; k < PAR_EXCHANGES; k++)
         printf(" %.3f", (double)total[2 + k] / (double)total[0]);
     printf("\n");
@@ -60,20 +68,24 @@ static int measure(int rank, char **argv, int threads)
     struct counts counts = {0, 0};
     struct par_exchanges moved;
     const struct tri_sink sink = {&counts, NULL, take, NULL};
+    double before[MEASURES], taken[MEASURES];
     int n_ranks;
-    long kilobytes;
     MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
     enum tri_status status = tri_file_read(argv[1], &figure, &error);
     settings.min_angle = atof(argv[2]);
     settings.max_area = atof(argv[3]);
     settings.threads = threads;
     MPI_Barrier(MPI_COMM_WORLD);
-    double began = MPI_Wtime(), before = processor_seconds(&kilobytes);
+    look(before);
+    double began = MPI_Wtime();
     if (!status)
         status = par_stream_on(MPI_COMM_WORLD, &figure, &settings, &sink, &moved, &error);
-    double wall = MPI_Wtime() - began, seconds = processor_seconds(&kilobytes) - before;
+    double wall = MPI_Wtime() - began;
+    look(taken);
+    for (int k = 0; k < MEGABYTES; k++)
+        taken[k] -= before[k];
     if (!status)
-        print(rank, n_ranks, wall, seconds, seconds, kilobytes, &counts, &moved);
+        print(rank, n_ranks, wall, taken, &counts, &moved);
     else if (rank == 0)
         fprintf(stderr, "%s\n", error.text);
     tri_file_free(&figure);
