@@ -51,8 +51,8 @@ static void print(int rank, int n_ranks, double wall, const double mine[MEASURES
     MPI_Reduce(number, total, 2 + PAR_EXCHANGES, MPI_INT64_T, MPI_SUM, 0, MPI_COMM_WORLD);
     if (rank > 0)
         return;
-    printf("%d ranks, %lld triangles, wall %.2f s, processor time %.2f s (system %.2f s, %.0f page faults, %.0f waits), "
-           "most of a rank %.2f s, most memory of a rank %.0f MB, %lld messages, bytes a triangle",
+    printf("%d ranks, %lld triangles, wall %.2f s, processor time %.2f s (system %.2f s, %.0f page faults, "
+           "%.0f waits), most of a rank %.2f s, most memory of a rank %.0f MB, %lld messages, bytes a triangle",
            n_ranks, (long long)total[0], wall, sum[SECONDS], sum[SYSTEM], sum[FAULTS], sum[WAITS], most[SECONDS],
            most[MEGABYTES], (long long)total[1]);
     for (int k = 0; k < PAR_EXCHANGES; k++)

@@ -88,7 +88,8 @@ void fake_world_init(struct fake_world *world, int n_ranks)
     world->out = calloc(n, sizeof *world->out);
     world->rank = calloc(n, sizeof *world->rank);
     world->of_each = calloc(n * n * PAR_ROOM, sizeof *world->of_each);
-    assert_true(world->numbers && world->width && world->out && world->rank && world->of_each);
+    assert_true(world->numbers && world->width && world->out && world->rank);
+    assert_non_null(world->of_each);
     assert_int_equal(pthread_barrier_init(&world->barrier, NULL, (unsigned)n_ranks), 0);
     for (int p = 0; p < n_ranks; p++)
         world->rank[p] = (struct fake_rank){world, p};
@@ -106,8 +107,8 @@ void fake_world_free(struct fake_world *world)
 
 struct par_carrier fake_carrier(struct fake_world *world, int rank)
 {
-    return (struct par_carrier){.rank = rank, .n_ranks = world->n_ranks,
-                                .self = &world->rank[rank], .of_each = world->of_each + rank * world->n_ranks * PAR_ROOM,
+    return (struct par_carrier){.rank = rank, .n_ranks = world->n_ranks, .self = &world->rank[rank],
+                                .of_each = world->of_each + rank * world->n_ranks * PAR_ROOM,
                                 .gather = gather, .deal = deal, .transfer = transfer, .spread = spread};
 }
 

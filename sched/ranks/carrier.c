@@ -99,8 +99,8 @@ static void share_error(struct par_carrier *carrier, int from, int64_t *all, str
     memcpy(error, word, sizeof *error);
 }
 
-/* Collective: how each rank is, and its n <= PAR_FEW numbers, which of_each[n_ranks][PAR_ROOM] receives behind that. The
- * numbers need not be there where a rank has failed. */
+/* Collective: how each rank is, and its n <= PAR_FEW numbers, which of_each[n_ranks][PAR_ROOM] receives behind that.
+ * The numbers need not be there where a rank has failed. */
 static enum tri_status agree_with(struct par_carrier *carrier, const int64_t *mine, int32_t n, enum tri_status status,
                                   struct tri_error *error)
 {

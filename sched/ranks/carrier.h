@@ -2,9 +2,9 @@
  * tests, MPI).
  *
  * All ranks make the same calls in the same order. Each exchange begins with an agreement: where a rank has failed, all
- * learn it there, return the same error, and nobody waits for anything afterwards. So who has failed may leave calls out:
- * all agreements are the same exchange, whatever begins with them. Whoever comes first waits for the last in each: so a
- * few numbers go with them, and nothing follows where there is nothing to send. */
+ * learn it there, return the same error, and nobody waits for anything afterwards. So who has failed may leave calls
+ * out: all agreements are the same exchange, whatever begins with them. Whoever comes first waits for the last in each:
+ * so a few numbers go with them, and nothing follows where there is nothing to send. */
 #ifndef SCHED_RANKS_CARRIER_H
 #define SCHED_RANKS_CARRIER_H
 
