@@ -14,6 +14,7 @@
 #include <cmocka.h>
 
 #include "tests/array_grid.h"
+#include "tests/msh_file.h"
 #include "triangle/text/boundary.h"
 #include "triangle/text/grouping.h"
 #include "triangle/text/parts.h"
@@ -271,6 +272,174 @@ static void test_parts(void **state)
     assert_is_cut(array_grid(&arrays), 2);
 }
 
+/* --- the files of parts, read again, beside that of the whole */
+
+enum { COLUMNS = 9, ROWS = 7, SQUARES = (COLUMNS - 1) * (ROWS - 1), POINTS = COLUMNS * ROWS + 1 };
+
+/* Squares of two triangles, in three regions, with segments round them and down the middle, and a point that nothing
+ * uses; with six nodes, if asked for, of which those amid edges are whatever points are near. */
+struct lattice {
+    double points[2 * POINTS], regions[2 * SQUARES];
+    int32_t nodes[12 * SQUARES], segments[2 * (2 * COLUMNS + 3 * ROWS)], segment_markers[2 * COLUMNS + 3 * ROWS];
+    int32_t n_segments;
+};
+
+static int32_t point_at(int column, int row) { return row * COLUMNS + column; }
+
+static void add_segment(struct lattice *l, int32_t a, int32_t b, int32_t marker)
+{
+    l->segments[2 * l->n_segments] = a;
+    l->segments[2 * l->n_segments + 1] = b;
+    l->segment_markers[l->n_segments++] = marker;
+}
+
+static void add_segments(struct lattice *l)
+{
+    for (int i = 0; i + 1 < COLUMNS; i++) {
+        add_segment(l, point_at(i, 0), point_at(i + 1, 0), 2);
+        add_segment(l, point_at(i + 1, ROWS - 1), point_at(i, ROWS - 1), 0);
+    }
+    for (int j = 0; j + 1 < ROWS; j++) {
+        add_segment(l, point_at(0, j + 1), point_at(0, j), 1);
+        add_segment(l, point_at(COLUMNS - 1, j), point_at(COLUMNS - 1, j + 1), 1);
+        add_segment(l, point_at(COLUMNS / 2, j), point_at(COLUMNS / 2, j + 1), 5);
+    }
+}
+
+static void add_triangle(struct lattice *l, int i, int n_nodes, const int32_t corners[3])
+{
+    for (int k = 0; k < n_nodes; k++)
+        l->nodes[n_nodes * i + k] = k < 3 ? corners[k] : corners[(k + 1) % 3];
+}
+
+static struct array_grid make_lattice(struct lattice *l, int n_nodes)
+{
+    *l = (struct lattice){.points = {[2 * POINTS - 2] = 20, [2 * POINTS - 1] = -3}};
+    for (int i = 0; i < POINTS - 1; i++) {
+        l->points[2 * i] = i % COLUMNS;
+        l->points[2 * i + 1] = i / COLUMNS + 0.1 * (i % 3);
+    }
+    for (int s = 0; s < SQUARES; s++) {
+        const int column = s % (COLUMNS - 1), row = s / (COLUMNS - 1);
+        const int32_t a = point_at(column, row), b = a + 1, c = a + COLUMNS, d = c + 1;
+        add_triangle(l, 2 * s, n_nodes, (int32_t[3]){a, b, d});
+        add_triangle(l, 2 * s + 1, n_nodes, (int32_t[3]){a, d, c});
+        l->regions[2 * s] = l->regions[2 * s + 1] = column < COLUMNS / 2 ? 3 : row < 2 ? 0.5 : 8;
+    }
+    add_segments(l);
+    return (struct array_grid){.points = l->points, .nodes = l->nodes, .columns = l->regions, .segments = l->segments,
+                               .segment_markers = l->segment_markers,
+                               .grid = {.n_points = POINTS, .n_triangles = 2 * SQUARES, .n_nodes = n_nodes,
+                                        .n_columns = 1, .n_segments = l->n_segments, .has_markers = true}};
+}
+
+static const char *part_name(int part)
+{
+    static char name[32];
+    snprintf(name, sizeof name, "test_formats_%d.msh", part + 1);
+    return name;
+}
+
+/* The file of the whole, and those of n parts. */
+static void write_and_read(const struct tri_grid *grid, int n, struct msh_file *whole, struct msh_file *parts)
+{
+    static struct tri_output_set set;
+    struct tri_output *output[MSH_MOST_PARTS + 1];
+    tri_outputs_begin(&set);
+    for (int i = 0; i <= n; i++)
+        assert_int_equal(tri_output_open(&set, part_name(i), &output[i], NULL), TRI_OK);
+    assert_int_equal(tri_write_msh_parts(output, n, grid, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_write_msh(output[n], grid, NULL, NULL), TRI_OK);
+    assert_int_equal(tri_outputs_commit(&set, NULL), TRI_OK);
+    for (int i = 0; i <= n; i++) {
+        msh_read(i < n ? &parts[i] : whole, part_name(i));
+        unlink(part_name(i));
+    }
+}
+
+/* By tag; NULL: it is not in the file. */
+static const struct msh_node *node_in(const struct msh_file *msh, int64_t tag)
+{
+    for (int64_t i = 0; i < msh->n_nodes; i++)
+        if (msh->node[i].tag == tag)
+            return &msh->node[i];
+    return NULL;
+}
+
+/* Elements of the part are those of the whole, by their tags: nodes, group and its tag; and lie on a piece of the
+ * entity that they lie on there. */
+static void assert_same_elements(const struct msh_file *whole, const struct msh_file *msh, int part, int *times)
+{
+    for (int64_t i = 0; i < msh->n_elements; i++) {
+        const struct msh_element *e = &msh->element[i];
+        assert_true(e->tag >= 1 && e->tag <= whole->n_elements);
+        const struct msh_element *same = &whole->element[e->tag - 1];
+        assert_true(same->tag == e->tag && same->n_nodes == e->n_nodes);
+        assert_memory_equal(same->nodes, e->nodes, sizeof e->nodes);
+        assert_int_equal(e->entity->physical, same->entity->physical);
+        assert_true(e->entity->parent == same->entity->tag && e->entity->parent_dimension == same->entity->dimension);
+        assert_true(e->entity->n_parts == 1 && e->entity->part[0] == part + 1);
+        for (int k = 0; k < e->n_nodes; k++)
+            assert_non_null(node_in(msh, e->nodes[k]));
+        times[e->tag]++;
+    }
+}
+
+/* A node is where it is in the whole, once in a file, and its entity names all parts that have it. */
+static void assert_same_node(const struct msh_node *node, int n, const struct msh_file *parts)
+{
+    int n_having = 0;
+    for (int part = 0; part < n; part++) {
+        const struct msh_node *same = node_in(&parts[part], node->tag);
+        if (!same)
+            continue;
+        const int place = n_having++;
+        int n_named = 0;
+        assert_memory_equal(same->at, node->at, sizeof node->at);
+        for (int64_t i = 0; i < parts[part].n_nodes; i++)
+            n_named += parts[part].node[i].tag == node->tag;
+        assert_int_equal(n_named, 1);
+        assert_int_equal(same->entity->part[place], part + 1);
+    }
+    assert_true(n_having >= 1);
+    for (int part = 0; part < n; part++)
+        if (node_in(&parts[part], node->tag))
+            assert_int_equal(node_in(&parts[part], node->tag)->entity->n_parts, n_having);
+}
+
+static void assert_parts_are_the_whole(const struct tri_grid *grid, int n)
+{
+    struct msh_file whole, parts[MSH_MOST_PARTS];
+    int times[2 * SQUARES + 2 * COLUMNS + 3 * ROWS + 1] = {0};
+    write_and_read(grid, n, &whole, parts);
+    assert_true(whole.n_parts == 0 && whole.n_nodes == grid->n_points);
+    assert_int_equal(whole.n_elements, grid->n_triangles + grid->n_segments);
+    for (int part = 0; part < n; part++) {
+        assert_int_equal(parts[part].n_parts, n);
+        assert_same_elements(&whole, &parts[part], part, times);
+        for (int64_t i = 0; i < parts[part].n_nodes; i++)
+            assert_non_null(node_in(&whole, parts[part].node[i].tag));
+    }
+    for (int64_t i = 1; i <= whole.n_elements; i++)
+        assert_int_equal(times[i], 1);
+    for (int64_t i = 0; i < whole.n_nodes; i++)
+        assert_same_node(&whole.node[i], n, parts);
+    msh_free(&whole);
+    for (int part = 0; part < n; part++)
+        msh_free(&parts[part]);
+}
+
+static void test_parts_are_the_whole(void **state)
+{
+    (void)state;
+    struct lattice lattice;
+    for (int n_nodes = 3; n_nodes <= 6; n_nodes += 3) {
+        struct array_grid arrays = make_lattice(&lattice, n_nodes);
+        for (int n = 1; n <= MSH_MOST_PARTS; n = n < 8 ? n + 1 : 2 * n)
+            assert_parts_are_the_whole(array_grid(&arrays), n);
+    }
+}
+
 /* Across the longer side, at equal places by number. */
 static void test_where_parts_meet(void **state)
 {
@@ -340,6 +509,7 @@ int main(void)
         cmocka_unit_test(test_texts),
         cmocka_unit_test(test_sizes_of_binary_files),
         cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_parts_are_the_whole),
         cmocka_unit_test(test_where_parts_meet),
         cmocka_unit_test(test_bytes_of_a_part),
         cmocka_unit_test(test_names),
