@@ -52,12 +52,22 @@ static enum tri_status parse_neighbors(struct judged_files *f, const struct tri_
     struct tri_cursor cursor = tri_cursor_begin(text);
     struct tri_fields fields;
     int64_t n = 0;
-    if (!tri_cursor_next(&cursor, &fields) || tri_fields_integer(&fields, &n) != TRI_FIELD_GOOD || n < 0 ||
-        tri_cursor_remaining(&cursor) < (size_t)n)
-        return tri_fail(error, TRI_BAD_INPUT, text->name, 1, "the number of triangles is not that of the records");
+    const bool found = tri_cursor_next(&cursor, &fields);
+    const long line = (long)cursor.line;
+    if (!found)
+        return tri_fail(error, TRI_BAD_INPUT, text->name, line > 0 ? line : 1,
+                        "unexpected end of file: the number of triangles is missing");
+    if (tri_fields_integer(&fields, &n) != TRI_FIELD_GOOD)
+        return tri_fail(error, TRI_BAD_INPUT, text->name, line, "the number of triangles is not a number");
+    if (n < 0)
+        return tri_fail(error, TRI_BAD_INPUT, text->name, line, "the number of triangles is negative");
     f->stale_neighbors = n != f->elements.n; /* left there by an earlier run */
     if (f->stale_neighbors)
         return TRI_OK;
+    if (tri_cursor_remaining(&cursor) < (size_t)n)
+        return tri_fail(error, TRI_BAD_INPUT, text->name, line,
+                        "unexpected end of file: %lld triangles are announced, but only %zu records follow",
+                        (long long)n, tri_cursor_remaining(&cursor));
     f->neighbors = malloc(3 * ((size_t)n + 1) * sizeof *f->neighbors);
     if (f->neighbors == NULL)
         return tri_fail(error, TRI_NO_MEMORY, "", 0, "out of memory");

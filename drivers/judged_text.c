@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "triangle/text/window.h"
 
@@ -30,17 +31,22 @@ static enum tri_status read_header(struct rows *r, int n, const char *nouns, str
     enum tri_status status = tri_window_next(r->window, &fields, &found, error);
     const char *name = r->window->text.name;
     long line = (long)r->window->cursor.line;
-    if (!status && !found)
-        return tri_fail(error, TRI_BAD_INPUT, name, line, "unexpected end of file: the number of %s is missing", nouns);
+    if (!status && !found) /* in an empty file, too, on a line */
+        return tri_fail(error, TRI_BAD_INPUT, name, line > 0 ? line : 1,
+                        "unexpected end of file: the number of %s is missing", nouns);
     for (int i = 0; i < n && !status; i++) {
         int64_t value;
         enum tri_field field = tri_fields_integer(&fields, &value);
-        if (field == TRI_FIELD_BAD || (i == 0 && field == TRI_FIELD_MISSING))
+        if (i == 0 && field != TRI_FIELD_GOOD)
+            return tri_fail(error, TRI_BAD_INPUT, name, line, "the number of %s is not a number", nouns);
+        if (field == TRI_FIELD_BAD)
             return tri_fail(error, TRI_BAD_INPUT, name, line, "field %d of the header of the %s is not a number", i + 1,
                             nouns);
         r->fields[i] = field == TRI_FIELD_GOOD ? value : r->fields[i];
     }
-    if (!status && (r->fields[0] < 0 || r->fields[0] > INT64_MAX / 64))
+    if (!status && r->fields[0] < 0)
+        return tri_fail(error, TRI_BAD_INPUT, name, line, "the number of %s is negative", nouns);
+    if (!status && r->fields[0] > INT64_MAX / 64)
         return tri_fail(error, TRI_BAD_INPUT, name, line, "%lld %s cannot be", (long long)r->fields[0], nouns);
     return status;
 }
@@ -59,24 +65,18 @@ static const char *parse_attributes(struct tri_fields *fields, int64_t n, double
 static const char *parse_vertex(void *user, size_t i, struct tri_fields *fields)
 {
     struct rows *r = user;
-    tri_fields_skip(fields); /* its number */
-    if (tri_fields_real(fields, &r->reals[2 * i]) != TRI_FIELD_GOOD)
-        return "has no x coordinate that is a finite number";
-    if (tri_fields_real(fields, &r->reals[2 * i + 1]) != TRI_FIELD_GOOD)
-        return "has no y coordinate that is a finite number";
-    const char *fault = parse_attributes(fields, r->fields[2], r->further + r->fields[2] * (int64_t)i, true);
+    const char *fault = tri_fields_point(fields, &r->reals[2 * i]);
+    if (!fault)
+        fault = parse_attributes(fields, r->fields[2], r->further + r->fields[2] * (int64_t)i, true);
     return fault || r->fields[3] <= 0 ? fault : tri_fields_marker(fields, &r->markers[i]);
 }
 
-/* n numbers that count from the base; beyond the vertices they stay so. */
-static bool parse_numbers(struct tri_fields *fields, size_t n, int64_t base, int64_t *out)
+/* A number that counts from the base; beyond the vertices it stays so. */
+static enum tri_field parse_number(struct tri_fields *fields, int64_t base, int64_t *out)
 {
-    bool good = true;
-    for (size_t k = 0; k < n && good; k++) {
-        good = tri_fields_integer(fields, &out[k]) == TRI_FIELD_GOOD;
-        out[k] = out[k] < 0 ? -1 : out[k] - base;
-    }
-    return good;
+    const enum tri_field field = tri_fields_integer(fields, out);
+    *out = *out < 0 ? -1 : *out - base;
+    return field;
 }
 
 static const char *parse_element(void *user, size_t i, struct tri_fields *fields)
@@ -84,11 +84,13 @@ static const char *parse_element(void *user, size_t i, struct tri_fields *fields
     struct rows *r = user;
     int64_t *corner = r->numbers + 3 * i, *middle = r->middles + 3 * i, extra;
     tri_fields_skip(fields); /* its number */
-    if (!parse_numbers(fields, 3, r->text->base, corner))
-        return "has fewer than three corners that are numbers";
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++) {
+        const enum tri_field field = parse_number(fields, r->text->base, &corner[k]);
+        if (field != TRI_FIELD_GOOD)
+            return field == TRI_FIELD_MISSING ? "has fewer than three corners" : "has a corner that is not a number";
         if (corner[k] < 0 || corner[k] >= r->text->n_nodes)
             return "has a corner that is not the number of a vertex";
+    }
     for (int64_t k = 3; k < r->fields[1]; k++) {
         const bool good = tri_fields_integer(fields, &extra) == TRI_FIELD_GOOD;
         if (!good)
@@ -105,8 +107,13 @@ static const char *parse_segment(void *user, size_t i, struct tri_fields *fields
 {
     struct rows *r = user;
     tri_fields_skip(fields); /* its number */
-    if (!parse_numbers(fields, 2, r->text->base, r->numbers + 2 * i))
-        return "has no two endpoints that are numbers";
+    for (size_t end = 0; end < 2; end++) {
+        const enum tri_field field = parse_number(fields, r->text->base, &r->numbers[2 * i + end]);
+        if (field == TRI_FIELD_BAD)
+            return "has an endpoint that is not a number";
+        if (field == TRI_FIELD_MISSING)
+            return end == 0 ? "has no endpoints" : "has no second endpoint";
+    }
     return r->fields[1] > 0 ? tri_fields_marker(fields, &r->markers[i]) : NULL;
 }
 
@@ -114,7 +121,10 @@ static const char *parse_neighbors(void *user, size_t i, struct tri_fields *fiel
 {
     struct rows *r = user;
     tri_fields_skip(fields); /* its number */
-    return parse_numbers(fields, 3, r->text->base, r->numbers + 3 * i) ? NULL : "lacks a neighbor";
+    for (size_t k = 0; k < 3; k++)
+        if (parse_number(fields, r->text->base, &r->numbers[3 * i + k]) != TRI_FIELD_GOOD)
+            return "lacks a neighbor";
+    return NULL;
 }
 
 /* --- tables */
@@ -155,12 +165,12 @@ static enum tri_status flush(void *user, size_t n, struct tri_error *error)
     return status;
 }
 
-static enum tri_status read_table(struct rows *r, enum tri_check_array array, const char *noun,
+static enum tri_status read_table(struct rows *r, enum tri_check_array array, const char *noun, const char *nouns,
                                   const char *(*row)(void *, size_t, struct tri_fields *), struct tri_error *error)
 {
     struct tri_table table = {noun, (size_t)r->fields[0], r->text->base, row, r};
     r->array = array;
-    return tri_window_table(r->window, &table, ROWS, flush, error);
+    return tri_window_table(r->window, &table, nouns, ROWS, flush, error);
 }
 
 /* Notes that the array is there, and opens its file. */
@@ -184,13 +194,30 @@ static enum tri_status detect_base(struct rows *r, struct tri_error *error)
     return status;
 }
 
+/* A few may be missing from every record. */
+static enum tri_status check_attributes(const struct rows *r, struct tri_error *error)
+{
+    enum { FREE_ATTRIBUTES = 64 };
+    const int64_t n = r->fields[2];
+    const char *name = r->window->text.name;
+    const long line = (long)r->window->cursor.line;
+    struct stat file;
+    if (n < 0)
+        return tri_fail(error, TRI_BAD_INPUT, name, line, "the number of attributes is negative");
+    if (n > FREE_ATTRIBUTES && r->fields[0] > 0 && fstat(r->window->file, &file) == 0 &&
+        (n > INT32_MAX || n > (int64_t)file.st_size / r->fields[0]))
+        return tri_fail(error, TRI_BAD_INPUT, name, line, "%lld attributes are announced, more than the file can hold",
+                        (long long)n);
+    return TRI_OK;
+}
+
 /* Room for those of as many points as may be in hand. */
 static enum tri_status open_attributes(struct rows *r, const char *folder, struct tri_error *error)
 {
     const int64_t n = r->fields[2], rows = r->fields[0] < ROWS ? r->fields[0] : ROWS;
-    if (n < 0)
-        return tri_fail(error, TRI_BAD_INPUT, r->window->text.name, (long)r->window->cursor.line,
-                        "the number of attributes is negative");
+    enum tri_status status = check_attributes(r, error);
+    if (status)
+        return status;
     r->text->n_attributes = n < INT32_MAX ? (int32_t)n : INT32_MAX;
     free(r->further);
     r->further = n <= INT32_MAX ? malloc((size_t)(n * rows + 1) * sizeof *r->further) : NULL;
@@ -215,7 +242,7 @@ static enum tri_status read_vertices(struct rows *r, const char *folder, struct 
         status = open_array(t, TRI_CHECK_POINT_MARKERS, sizeof(int32_t), folder, error);
     if (!status)
         status = open_attributes(r, folder, error);
-    return status ? status : read_table(r, TRI_CHECK_POINTS, "vertex", parse_vertex, error);
+    return status ? status : read_table(r, TRI_CHECK_POINTS, "vertex", "vertices", parse_vertex, error);
 }
 
 static enum tri_status read_segments(struct rows *r, const char *folder, struct tri_error *error)
@@ -226,7 +253,7 @@ static enum tri_status read_segments(struct rows *r, const char *folder, struct 
         status = open_array(r->text, TRI_CHECK_SEGMENT_ENDS, 2 * sizeof(int64_t), folder, error);
     if (!status && r->fields[1] > 0)
         status = open_array(r->text, TRI_CHECK_SEGMENT_MARKERS, sizeof(int32_t), folder, error);
-    return status ? status : read_table(r, TRI_CHECK_SEGMENT_ENDS, "segment", parse_segment, error);
+    return status ? status : read_table(r, TRI_CHECK_SEGMENT_ENDS, "segment", "segments", parse_segment, error);
 }
 
 static enum tri_status read_node(struct rows *r, const char *folder, struct tri_error *error)
@@ -245,13 +272,15 @@ static enum tri_status read_ele(struct rows *r, const char *folder, struct tri_e
         return tri_fail(error, TRI_BAD_INPUT, r->window->text.name, (long)r->window->cursor.line,
                         "the triangles have %lld nodes; 3 or more are needed", (long long)r->fields[1]);
     if (!status)
+        status = check_attributes(r, error);
+    if (!status)
         status = open_array(t, TRI_CHECK_CORNERS, 3 * sizeof(int64_t), folder, error);
     if (!status && r->fields[2] > 0)
         status = open_array(t, TRI_CHECK_ATTRIBUTES, sizeof(double), folder, error);
     if (!status && r->fields[1] == 6)
         status = open_array(t, TRI_CHECK_MIDDLES, 3 * sizeof(int64_t), folder, error);
     if (!status)
-        status = read_table(r, TRI_CHECK_CORNERS, "triangle", parse_element, error);
+        status = read_table(r, TRI_CHECK_CORNERS, "triangle", "triangles", parse_element, error);
     if (r->fields[1] > 3) /* nodes amid edges are made last */
         t->n_points = r->largest + 1;
     return status;
@@ -265,7 +294,7 @@ static enum tri_status read_neigh(struct rows *r, const char *folder, struct tri
     if (status || t->stale_neighbors)
         return status;
     status = open_array(t, TRI_CHECK_NEIGHBORS_GIVEN, 3 * sizeof(int64_t), folder, error);
-    return status ? status : read_table(r, TRI_CHECK_NEIGHBORS_GIVEN, "triangle", parse_neighbors, error);
+    return status ? status : read_table(r, TRI_CHECK_NEIGHBORS_GIVEN, "triangle", "triangles", parse_neighbors, error);
 }
 
 /* Reads one file, if there is one. */

@@ -132,6 +132,34 @@ sed 5d sound >section.1.ele
 check "exit code" test $? -eq 2
 complains "section\.1\.ele:[0-9]*: unexpected end of file"
 part_by_part nothing
+
+# what is wrong with a file is told in the same words
+one() { # one FILE TEXT: a mesh of one triangle, but for that file
+    printf '3 2 0 0\n1 0 0\n2 1 0\n3 2 1\n' >one.node
+    printf '1 3 0\n1 1 2 3\n' >one.ele
+    rm -f one.poly one.neigh
+    printf "%b" "$2" >"one.$1"
+    part_by_part one
+}
+one ele ''
+one ele '\n# nothing\n'
+one ele '0 3 0\n'
+one ele 'many\n'
+one ele '-1 3 0\n1 1 2 3\n'
+one ele '2 3 0\n1 1 2 3'
+one ele '1 3 0\n1 1 2\n'
+one ele '1 3 0\n1 1 2 x\n'
+one ele '1 3 -1\n1 1 2 3\n'
+one ele '1 3 500000\n1 1 2 3\n'
+one node '4 2 0 0\n1 0 0\n2 1 0\n3 2 1\n\n'
+one node '3 2 0 0\n1 0 0\n2 1\n3 2 1\n'
+one node '3 2 0 0\n1 0 0\n2 nan 0\n3 2 1\n'
+one node '3 2 -1 0\n1 0 0\n2 1 0\n3 2 1\n'
+one poly '0 2 0 0\n2 0\n1 1 2\n#\n\n'
+one poly '0 2 0 0\n1 0\n1 1\n0\n'
+one neigh ''
+one neigh '2\n1 -1 -1 -1\n'
+one neigh '1\n'
 "$bin/trianglecheck" section.1 --memory 3X >.out 2>.err
 check "exit code" test $? -eq 2
 "$bin/trianglecheck" section.1 --memory 1 --scratch /nowhere >.out 2>.err

@@ -113,18 +113,6 @@ static enum tri_status read_table(struct tri_cursor *cursor, const struct sectio
     return tri_cursor_table(cursor, &table, options->executor, error);
 }
 
-static const char *parse_point(struct tri_fields *fields, double *xy)
-{
-    tri_fields_skip(fields); /* its number */
-    const enum tri_field x = tri_fields_real(fields, &xy[0]);
-    if (x != TRI_FIELD_GOOD)
-        return x == TRI_FIELD_MISSING ? "has no x coordinate" : "has an x coordinate that is not a finite number";
-    const enum tri_field y = tri_fields_real(fields, &xy[1]);
-    if (y != TRI_FIELD_GOOD)
-        return y == TRI_FIELD_MISSING ? "has no y coordinate" : "has a y coordinate that is not a finite number";
-    return NULL;
-}
-
 static const char *parse_attributes(struct tri_fields *fields, double *attributes, int32_t n)
 {
     for (int32_t i = 0; i < n; i++)
@@ -140,7 +128,7 @@ static double *row_of(double *values, size_t i, int32_t n) { return values ? val
 static const char *parse_vertex(void *user, size_t i, struct tri_fields *fields)
 {
     const struct tri_pslg *const out = user;
-    const char *fault = parse_point(fields, &out->points[2 * i]);
+    const char *fault = tri_fields_point(fields, &out->points[2 * i]);
     if (!fault)
         fault = parse_attributes(fields, row_of(out->attributes, i, out->n_attributes), out->n_attributes);
     if (!fault && out->markers)
@@ -314,14 +302,14 @@ static enum tri_status read_segments(struct tri_cursor *cursor, const struct tri
 static const char *parse_hole(void *user, size_t i, struct tri_fields *fields)
 {
     double *const values = user;
-    return parse_point(fields, &values[2 * i]);
+    return tri_fields_point(fields, &values[2 * i]);
 }
 
 /* One value serves as both. */
 static const char *parse_region(void *user, size_t i, struct tri_fields *fields)
 {
     double *const values = (double *)user + 4 * i;
-    const char *const fault = parse_point(fields, values);
+    const char *const fault = tri_fields_point(fields, values);
     if (fault)
         return fault;
     const enum tri_field attribute = tri_fields_real(fields, &values[2]);

@@ -462,3 +462,15 @@ const char *tri_fields_marker(struct tri_fields *fields, int32_t *marker)
     memcpy(marker, &low, sizeof low);
     return NULL;
 }
+
+const char *tri_fields_point(struct tri_fields *fields, double xy[2])
+{
+    tri_fields_skip(fields);
+    const enum tri_field x = tri_fields_real(fields, &xy[0]);
+    if (x != TRI_FIELD_GOOD)
+        return x == TRI_FIELD_MISSING ? "has no x coordinate" : "has an x coordinate that is not a finite number";
+    const enum tri_field y = tri_fields_real(fields, &xy[1]);
+    if (y != TRI_FIELD_GOOD)
+        return y == TRI_FIELD_MISSING ? "has no y coordinate" : "has a y coordinate that is not a finite number";
+    return NULL;
+}

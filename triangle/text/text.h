@@ -143,6 +143,9 @@ static inline enum tri_field tri_fields_integer(struct tri_fields *fields, int64
  * name. */
 const char *tri_fields_marker(struct tri_fields *fields, int32_t *marker);
 
+/* A number, which is left out, and two coordinates. The same. */
+const char *tri_fields_point(struct tri_fields *fields, double xy[2]);
+
 /* --- records in order */
 
 struct tri_cursor {

@@ -115,18 +115,20 @@ enum tri_status tri_window_peek(struct tri_window *w, struct tri_fields *fields,
     return status;
 }
 
-enum tri_status tri_window_table(struct tri_window *w, const struct tri_table *table, size_t most,
+enum tri_status tri_window_table(struct tri_window *w, const struct tri_table *table, const char *nouns,
+                                 size_t most,
                                  enum tri_status (*flush)(void *user, size_t n, struct tri_error *error),
                                  struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
+    const long line = (long)w->cursor.line;
     for (size_t done = 0, n; done < table->n && !status; done += n) {
         bool found;
         status = seek(w, &found, error);
         if (!status && !found)
-            return tri_fail(error, TRI_BAD_INPUT, w->text.name, (long)w->cursor.line,
-                            "unexpected end of file: %zu records of a %s are announced, but only %zu follow", table->n,
-                            table->noun, done);
+            return tri_fail(error, TRI_BAD_INPUT, w->text.name, line,
+                            "unexpected end of file: %zu %s are announced, but only %zu records follow", table->n,
+                            nouns, done);
         if (status)
             return status;
         n = tri_cursor_remaining(&w->cursor);

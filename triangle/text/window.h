@@ -30,8 +30,10 @@ enum tri_status tri_window_peek(struct tri_window *window, struct tri_fields *fi
                                 struct tri_error *error);
 
 /* Parses the next table->n records, stretch by stretch: table->row counts from the begin of each, and behind each
- * flush(user, n) takes its n rows, at most `most`. Fewer records: TRI_BAD_INPUT. */
-enum tri_status tri_window_table(struct tri_window *window, const struct tri_table *table, size_t most,
+ * flush(user, n) takes its n rows, at most `most`. Fewer records: TRI_BAD_INPUT, told of the line before them, where
+ * nouns are announced. */
+enum tri_status tri_window_table(struct tri_window *window, const struct tri_table *table, const char *nouns,
+                                 size_t most,
                                  enum tri_status (*flush)(void *user, size_t n, struct tri_error *error),
                                  struct tri_error *error);
 
