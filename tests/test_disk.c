@@ -106,6 +106,17 @@ static void test_levels_are_level_in_spite_of_rounding(void **state)
     tri_pslg_free(&pslg);
 }
 
+/* So many circles are not empty, whatever the reason. */
+static int64_t circles_left(const struct tri_mesh *mesh, const struct tri_report *report)
+{
+    struct tri_refine_options options = {.conforming = true};
+    int64_t count[TRI_EXCUSES], left = 0;
+    tri_count_encroached(mesh, &options, &report->quality, count);
+    for (int k = 0; k < TRI_EXCUSES; k++)
+        left += count[k];
+    return left;
+}
+
 /* A spike 10^-8 as wide as it is long: most levels have no two places that fit, and are moved. */
 static void test_new_levels_find_places_that_fit(void **state)
 {
@@ -114,15 +125,35 @@ static void test_new_levels_find_places_that_fit(void **state)
     struct tri_report report;
     assert_true(support_read("regress/spike_levels.poly", &pslg));
     struct tri_mesh mesh = conforming(&pslg, 20, &report);
-    struct tri_refine_options options = {.conforming = true};
-    int64_t count[TRI_EXCUSES], left = 0;
-    tri_count_encroached(&mesh, &options, &report.quality, count);
-    for (int k = 0; k < TRI_EXCUSES; k++)
-        left += count[k];
-    assert_true(left < 4); /* of 7 where they are not moved */
+    assert_int_equal(circles_left(&mesh, &report), 0); /* 7 where they are not moved */
     assert_true(mesh.n_triangles < 1000);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
+}
+
+/* Both ends of a spike are input vertices, level with each other but for rounding: neither can move, a level is begun
+ * beside them. */
+static void test_levels_of_input_vertices_are_renewed(void **state)
+{
+    (void)state;
+    struct support_random random = {1};
+    int64_t left = 0;
+    for (int i = 0; i < 40; i++) {
+        struct tri_report report;
+        struct tri_pslg pslg = support_pslg(3, 3, 0, 0);
+        double turn = 6.28 * support_unit(&random), sharp = 4e-9 * (1 + support_unit(&random));
+        support_add_point(&pslg, 0.1, 0.2);
+        for (int k = 0; k < 2; k++)
+            support_add_point(&pslg, 0.1 + 3 * cos(turn + k * sharp), 0.2 + 3 * sin(turn + k * sharp));
+        for (int k = 0; k < 3; k++)
+            support_add_segment(&pslg, k, (k + 1) % 3);
+        struct tri_mesh mesh = conforming(&pslg, 0, &report);
+        left += circles_left(&mesh, &report);
+        assert_true(mesh.n_triangles < 30);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+    }
+    assert_in_range(left, 0, 2); /* 8 where they are not renewed */
 }
 
 /* The loop leaves no subsegment encroached, on anything, and no split makes a part that is shorter than half the
@@ -175,6 +206,24 @@ static void test_what_stays_is_counted(void **state)
     tri_pslg_free(&pslg);
 }
 
+/* Segments a few units in the last place apart: it is for the coordinates that circles are not empty, not for what
+ * filling the space would cost. */
+static void test_what_coordinates_do_not_resolve_is_counted_as_that(void **state)
+{
+    (void)state;
+    int64_t count[TRI_EXCUSES];
+    struct tri_pslg pslg;
+    struct tri_report report;
+    assert_true(support_read("regress/ulps_apart.poly", &pslg));
+    struct tri_mesh mesh = conforming(&pslg, 0, &report);
+    struct tri_refine_options options = {.conforming = true};
+    tri_count_encroached(&mesh, &options, &report.quality, count);
+    assert_true(count[TRI_EXCUSE_PRECISION] > 0);
+    assert_int_equal(count[TRI_EXCUSE_PRECISION], circles_left(&mesh, &report));
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
 /* On the circle is not inside it. */
 static void test_the_circle_is_not_inside(void **state)
 {
@@ -200,8 +249,10 @@ int main(void)
         cmocka_unit_test(test_bundles_part),
         cmocka_unit_test(test_levels_are_level_in_spite_of_rounding),
         cmocka_unit_test(test_new_levels_find_places_that_fit),
+        cmocka_unit_test(test_levels_of_input_vertices_are_renewed),
         cmocka_unit_test(test_nothing_stays_that_can_be_split),
         cmocka_unit_test(test_what_stays_is_counted),
+        cmocka_unit_test(test_what_coordinates_do_not_resolve_is_counted_as_that),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -204,6 +204,8 @@ static enum tri_excuse excuse_for_circle(const struct tri_mesh *mesh, const stru
         return TRI_EXCUSE_PROTECTED;
     if (report->hit_limit)
         return TRI_EXCUSE_LIMIT;
+    if (!tri_is_resolved_from(mesh, s, apex))
+        return TRI_EXCUSE_PRECISION;
     if (tri_common_end(mesh, s->parent, apex) != TRI_NONE)
         return TRI_EXCUSE_INPUT_ANGLE;
     return tri_is_on_parent(mesh, apex) ? TRI_EXCUSE_NARROW_GAP : TRI_EXCUSE_PRECISION;

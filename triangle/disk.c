@@ -43,10 +43,18 @@
  * ulp / h of itself, h changes by an ulp, and others are offered. So where the place of a new level on e has none
  * beside it on f, the next of MOST_SHIFTS radii, at most SHIFTED from it, is taken that has.
  *
+ * RENEWAL. An input vertex cannot be moved: it, v or the end a, may be level with the other but for d < ulp, and
+ * h^2 < d * length. Then a level is begun between a and the point h^2 / d from it, with places on e and f that fit: v
+ * sees a and that place at no more than 90 degrees, and all parts beyond have a level without fault before them. So one
+ * level mends what would take length * d / h^2 parts without it. By the LEMMA the chance that a radius has places that
+ * fit is about 8 h^2 / (ulp * length); so many radii are tried that there should be one, or none. Where neither is of
+ * the input, or a third parent must take the level over, nothing is renewed: a bundle has new levels that do not fit
+ * wherever a parent in it takes one over, and each renewal would beget others.
+ *
  * What stays: where v is nearer to e than the shortest edge, so that it lies on e as far as coordinates tell, or level
  * with an end of e up to rounding, and h too small to mend that. And where rounding leaves no room for the split point
- * (cavity.h); or for the point level with an end of an input segment, which cannot move; or where no radius that was
- * looked at has places that fit. */
+ * (cavity.h); or in a bundle of three parents or more for the point level with one that cannot move; or where no radius
+ * that was looked at has places that fit. */
 #include "triangle/disk.h"
 
 #include <assert.h>
@@ -65,7 +73,8 @@ bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subs
 /* A unit in the last place of the largest coordinate, in shortest edges. */
 static const double ULP = 0x1p-7;
 
-enum { NARROW = 8, MOST_PARTS = 8 }; /* see the rule; the parts that rounding may ask for */
+/* See the rule; the parts that rounding may ask for; the places tried for a level that renews another. */
+enum { NARROW = 8, MOST_PARTS = 8, MOST_RENEWALS = TRI_RENEWALS / TRI_PLACES };
 
 static double distance(struct tri_point a, struct tri_point b) { return sqrt(tri_distance2(a, b)); }
 
@@ -113,17 +122,51 @@ static double fraction_for(const struct sight *v, double usual, double shortest)
     return v->from_end ? 1 - fraction : fraction;
 }
 
+/* How far from the end that v is level with a level may begin that renews it: see RENEWAL. The usual place is not
+ * passed. */
+static double farthest_renewal(const struct tri_mesh *mesh, const struct tri_subsegment *s, const struct sight *v)
+{
+    double usual = tri_split_fraction(mesh, s), off = fabs(v->d);
+    double most = (v->from_end ? 1 - usual : usual) * v->l;
+    return off * most > v->h * v->h ? v->h * (v->h / off) : most;
+}
+
+static double nearest_renewal(const struct sight *v, double shortest) { return fmax(2 * v->h, 4 * shortest); }
+
+/* Vertex v is level with an end of s but for rounding, which leaves it in the circle, and one of them is of the input.
+ * May a new level mend that? */
+static bool may_renew(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v,
+                      const struct sight *sight, struct tri_disk_split *split)
+{
+    double most = farthest_renewal(mesh, s, sight), ulp = tri_resolution(mesh->xy[s->v[sight->from_end]]);
+    bool is_input = v < mesh->n_input || s->v[sight->from_end] < mesh->n_input;
+    if (!is_input || !(most >= nearest_renewal(sight, sqrt(mesh->limits.shortest2))))
+        return false;
+    split->fraction = sight->from_end ? 1 - most / sight->l : most / sight->l;
+    split->level = v;
+    split->renews = true;
+    return MOST_RENEWALS * sight->h * sight->h > ulp * sight->l;
+}
+
 /* Is the subsegment to be split for the sake of vertex v in its circle, and where? */
 static bool is_split_for(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v,
                          struct tri_disk_split *split)
 {
     const struct sight sight = sight_of(mesh, s, v);
     double shortest = sqrt(mesh->limits.shortest2), off = fmax(sight.d, ULP * shortest);
-    if (!tri_can_split(mesh, mesh->xy[s->v[0]], mesh->xy[s->v[1]]) || sight.h < shortest)
+    if (!tri_is_resolved_from(mesh, s, v))
         return false;
     split->fraction = fraction_for(&sight, tri_split_fraction(mesh, s), shortest);
     split->level = is_split_level(&sight, shortest) ? v : TRI_NONE;
-    return NARROW * sight.h >= sight.l || off >= shortest || off * sight.l <= MOST_PARTS * sight.h * sight.h;
+    split->renews = false;
+    return NARROW * sight.h >= sight.l || off >= shortest || off * sight.l <= MOST_PARTS * sight.h * sight.h ||
+           may_renew(mesh, s, v, &sight, split);
+}
+
+bool tri_is_resolved_from(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v)
+{
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]];
+    return tri_can_split(mesh, a, b) && tri_line_distance(a, b, mesh->xy[v]) >= sqrt(mesh->limits.shortest2);
 }
 
 bool tri_is_encroached_from(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code,
@@ -132,6 +175,25 @@ bool tri_is_encroached_from(const struct tri_mesh *mesh, const struct tri_subseg
     bool is = tri_is_in_diametral_disk(mesh, s, code) && is_split_for(mesh, s, tri_apex(mesh, code), split);
     assert(!is || (split->fraction > 0 && split->fraction < 1));
     return is;
+}
+
+/* The place on subsegment s at this fraction, level with a point. Where a level is an ulp or two from the foot of the
+ * perpendicular, that is taken, which is level as well and has been rounded once. */
+static bool place_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction,
+                        struct tri_point at, int choice, struct tri_point *p)
+{
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], between = tri_point_between(a, b, fraction);
+    double x = b.x - a.x, y = b.y - a.y, l2 = x * x + y * y, near = 4 * tri_resolution(between);
+    double off = (x * (at.x - between.x) + y * (at.y - between.y));
+    return off * off <= near * near * l2 ? tri_place_level(mesh, s, at, choice, p)
+                                         : tri_place_split(mesh, s, fraction, choice, p);
+}
+
+bool tri_place_disk_split(const struct tri_mesh *mesh, const struct tri_subsegment *s,
+                          const struct tri_disk_split *split, int choice, struct tri_point *p)
+{
+    return split->level == TRI_NONE ? tri_place_split(mesh, s, split->fraction, choice, p)
+                                    : place_level(mesh, s, split->fraction, mesh->xy[split->level], choice, p);
 }
 
 bool tri_leaves_disks_empty(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,
@@ -162,51 +224,87 @@ static double fraction_at(const struct tri_mesh *mesh, const struct tri_subsegme
     return (r - at_a) / (at_b - at_a);
 }
 
-/* Is there a place on subsegment t, level with p on s as seen from o, such that neither lies in a circle of the
- * other? */
+double tri_level_of(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,
+                    const struct tri_subsegment *t)
+{
+    tri_vertex_id end = end_between(mesh, s->parent, t->parent);
+    if (end != TRI_NONE)
+        return fraction_at(mesh, t, mesh->xy[end], distance(mesh->xy[end], p));
+    struct tri_point a = mesh->xy[t->v[0]], b = mesh->xy[t->v[1]];
+    double x = b.x - a.x, y = b.y - a.y;
+    return ((p.x - a.x) * x + (p.y - a.y) * y) / (x * x + y * y);
+}
+
+/* Is there a place on subsegment t, level with p on s, such that neither lies in a circle of the other? */
 static bool fits(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,
-                 const struct tri_subsegment *t, struct tri_point o)
+                 const struct tri_subsegment *t)
 {
     struct tri_point q;
-    double fraction = fraction_at(mesh, t, o, distance(o, p));
+    double fraction = tri_level_of(mesh, s, p, t);
     if (!(fraction > 0 && fraction < 1))
         return false;
     for (int choice = 0; choice < TRI_SPLIT_PLACES; choice++)
-        if (tri_place_split(mesh, t, fraction, choice, &q) && tri_leaves_disks_empty(mesh, t, q, p) &&
+        if (place_level(mesh, t, fraction, p, choice, &q) && tri_leaves_disks_empty(mesh, t, q, p) &&
             tri_leaves_disks_empty(mesh, s, p, q))
             return true;
     return false;
 }
 
+bool tri_takes_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,
+                     const struct tri_subsegment *t)
+{
+    struct tri_point a = mesh->xy[t->v[0]], b = mesh->xy[t->v[1]];
+    if (s->parent == t->parent || tri_dot(a, b, p) >= 0)
+        return false;
+    double l = distance(a, b), h = tri_line_distance(a, b, p), level = tri_level_of(mesh, s, p, t);
+    return NARROW * h < l && h >= sqrt(mesh->limits.shortest2) && level * l > h && (1 - level) * l > h;
+}
+
 bool tri_has_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,
                    const struct tri_subsegment *t)
 {
-    tri_vertex_id end = end_between(mesh, s->parent, t->parent);
-    struct tri_point a = mesh->xy[t->v[0]], b = mesh->xy[t->v[1]];
-    if (end == TRI_NONE || tri_dot(a, b, p) >= 0)
-        return true;
-    double l = distance(a, b), h = tri_line_distance(a, b, p);
-    double level = fraction_at(mesh, t, mesh->xy[end], distance(mesh->xy[end], p));
-    if (NARROW * h >= l || h < sqrt(mesh->limits.shortest2) || !(level * l > h && (1 - level) * l > h))
-        return true; /* it will not be split there */
-    return fits(mesh, s, p, t, mesh->xy[end]);
+    return !tri_takes_level(mesh, s, p, t) || fits(mesh, s, p, t);
+}
+
+/* By how much farther is s from the line of t, for each unit of length along it? Less than 0 where it comes nearer. */
+static double widening(const struct tri_mesh *mesh, const struct tri_subsegment *s, const struct tri_subsegment *t)
+{
+    struct tri_point a = mesh->xy[t->v[0]], b = mesh->xy[t->v[1]], from = mesh->xy[s->v[0]], to = mesh->xy[s->v[1]];
+    return (tri_line_distance(a, b, to) - tri_line_distance(a, b, from)) / distance(from, to);
 }
 
 bool tri_shift_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, const struct tri_subsegment *t,
                      double *fraction, int *choice)
 {
     struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], first = tri_point_between(a, b, *fraction), p;
-    struct tri_point o = mesh->xy[end_between(mesh, s->parent, t->parent)];
-    double r = distance(o, first), room = SHIFTED * fmin(distance(a, first), distance(first, b));
-    double h = tri_line_distance(mesh->xy[t->v[0]], mesh->xy[t->v[1]], first), step = r * (tri_resolution(first) / h);
+    double l = distance(a, b), room = SHIFTED * fmin(*fraction, 1 - *fraction), wide = widening(mesh, s, t);
+    double step = fmin(fmax(tri_resolution(first) / (fabs(wide) * l), room / MOST_SHIFTS), 2 * room);
     for (int k = 0; k < MOST_SHIFTS && k * step <= room; k++) {
-        double at = fraction_at(mesh, s, o, r - k * step);
+        double at = wide > 0 ? *fraction - k * step : *fraction + k * step;
         for (int i = 0; i < TRI_SPLIT_PLACES && at > 0 && at < 1; i++)
-            if (tri_place_split(mesh, s, at, i, &p) && fits(mesh, s, p, t, o)) {
+            if (tri_place_split(mesh, s, at, i, &p) && fits(mesh, s, p, t)) {
                 *fraction = at;
                 *choice = i;
                 return true;
             }
+    }
+    return false;
+}
+
+bool tri_renew_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, const struct tri_subsegment *t,
+                     struct tri_disk_split *split, int *trial)
+{
+    const struct sight v = sight_of(mesh, s, split->level);
+    double least = nearest_renewal(&v, sqrt(mesh->limits.shortest2)), most = farthest_renewal(mesh, s, &v);
+    struct tri_point p, at = mesh->xy[split->level];
+    for (; *trial < TRI_RENEWALS; ++*trial) {
+        int k = *trial / TRI_PLACES, choice = *trial % TRI_PLACES;
+        double d = most - k * ((most - least) / MOST_RENEWALS), fraction = v.from_end ? 1 - d / v.l : d / v.l;
+        if (tri_place_split(mesh, s, fraction, choice, &p) && tri_leaves_disks_empty(mesh, s, p, at) &&
+            (!t || fits(mesh, s, p, t))) {
+            split->fraction = fraction;
+            return true;
+        }
     }
     return false;
 }

@@ -363,10 +363,11 @@ static bool is_level(const struct tri_refiner *r, tri_sub_id s, tri_vertex_id le
 }
 
 /* The cavity of one of the places for a split; TRI_SEARCH_OUTSIDE: it has none. */
-static enum tri_search search_place(struct tri_refiner *r, tri_sub_id s, double fraction, int choice, int32_t *n_left)
+static enum tri_search search_place(struct tri_refiner *r, tri_sub_id s, const struct tri_disk_split *split, int choice,
+                                    int32_t *n_left)
 {
     struct tri_point p;
-    return tri_place_split(r->mesh, &r->mesh->sub[s], fraction, choice, &p)
+    return tri_place_disk_split(r->mesh, &r->mesh->sub[s], split, choice, &p)
                ? tri_cavity_search_split(&r->cavity, r->mesh, p, s, n_left)
                : TRI_SEARCH_OUTSIDE;
 }
@@ -380,19 +381,87 @@ static enum tri_search settle_level(struct tri_refiner *r, tri_sub_id s, struct 
     const struct tri_point p = r->cavity.p;
     for (int32_t i = 0; r->options->conforming && i < r->cavity.n_wall; i++) {
         tri_sub_id t = ~r->cavity.edge[r->cavity.wall[i]].outer;
-        double fraction = split->fraction;
+        struct tri_disk_split shifted = *split;
         int choice;
         if (t == s || tri_has_level(m, &m->sub[s], p, &m->sub[t]))
             continue;
-        if (!tri_shift_level(m, &m->sub[s], &m->sub[t], &fraction, &choice))
+        if (!tri_shift_level(m, &m->sub[s], &m->sub[t], &shifted.fraction, &choice))
             return TRI_SEARCH_FOUND;
-        enum tri_search found = search_place(r, s, fraction, choice, n_left);
+        enum tri_search found = search_place(r, s, &shifted, choice, n_left);
         if (found == TRI_SEARCH_OUTSIDE)
-            return search_place(r, s, split->fraction, first, n_left);
-        split->fraction = fraction;
+            return search_place(r, s, split, first, n_left);
+        split->fraction = shifted.fraction;
         return found;
     }
     return TRI_SEARCH_FOUND;
+}
+
+/* Can all subsegments beside a point on s, whose cavity has been found, be split level with it? */
+static bool begins_levels(const struct tri_refiner *r, tri_sub_id s)
+{
+    const struct tri_mesh *m = r->mesh;
+    for (int32_t i = 0; i < r->cavity.n_wall; i++) {
+        tri_sub_id t = ~r->cavity.edge[r->cavity.wall[i]].outer;
+        if (t != s && !tri_has_level(m, &m->sub[s], r->cavity.p, &m->sub[t]))
+            return false;
+    }
+    return true;
+}
+
+/* The subsegments that will be split level with a point on s, whose cavity has been found: how many, but for t? *last:
+ * one of them. */
+static int takers(const struct tri_refiner *r, tri_sub_id s, tri_sub_id t, tri_sub_id *last)
+{
+    const struct tri_mesh *m = r->mesh;
+    int n = 0;
+    for (int32_t i = 0; i < r->cavity.n_wall; i++) {
+        tri_sub_id wall = ~r->cavity.edge[r->cavity.wall[i]].outer;
+        if (wall == s || wall == t || !tri_takes_level(m, &m->sub[s], r->cavity.p, &m->sub[wall]))
+            continue;
+        *last = wall;
+        n++;
+    }
+    return n;
+}
+
+/* The cavity of any place for a split. */
+static enum tri_search search_any(struct tri_refiner *r, tri_sub_id s, const struct tri_disk_split *split,
+                                  int32_t *n_left)
+{
+    enum tri_search found = TRI_SEARCH_OUTSIDE;
+    for (int choice = 0; choice < TRI_SPLIT_PLACES && found == TRI_SEARCH_OUTSIDE; choice++)
+        found = search_place(r, s, split, choice, n_left);
+    return found;
+}
+
+/* The cavity of a place for a level that renews one. Such levels are begun between two subsegments alone: where others
+ * had to take them over, and had no places that fit, there would be more to renew than before. */
+static enum tri_search find_renewal(struct tri_refiner *r, tri_sub_id s, struct tri_disk_split *split, int32_t *n_left)
+{
+    enum { MOST_FITS = 8 };
+    const struct tri_mesh *m = r->mesh;
+    struct tri_disk_split begun = {split->fraction, TRI_NONE, false};
+    tri_sub_id t = TRI_NONE, other;
+    enum tri_search found = search_any(r, s, &begun, n_left);
+    if (found != TRI_SEARCH_FOUND)
+        return found;
+    if (takers(r, s, TRI_NONE, &t) > 1)
+        return TRI_SEARCH_OUTSIDE;
+    if (t != TRI_NONE) {
+        struct tri_disk_split taken = {tri_level_of(m, &m->sub[s], r->cavity.p, &m->sub[t]), TRI_NONE, false};
+        found = search_any(r, t, &taken, n_left);
+        if (found != TRI_SEARCH_FOUND || takers(r, t, s, &other) > 0)
+            return found != TRI_SEARCH_FOUND ? found : TRI_SEARCH_OUTSIDE;
+    }
+    int trial = 0;
+    const struct tri_subsegment *beside = t == TRI_NONE ? NULL : &m->sub[t];
+    for (int i = 0; i < MOST_FITS && tri_renew_level(m, &m->sub[s], beside, split, &trial); i++) {
+        begun.fraction = split->fraction;
+        found = search_place(r, s, &begun, trial++ % TRI_PLACES, n_left);
+        if (found != TRI_SEARCH_OUTSIDE)
+            return found;
+    }
+    return TRI_SEARCH_OUTSIDE;
 }
 
 /* The cavity of the point that splits subsegment s, the first of its places that has one: rounding may put a place
@@ -402,19 +471,26 @@ static enum tri_search find_split(struct tri_refiner *r, tri_sub_id s, struct tr
 {
     const struct tri_mesh *m = r->mesh;
     int first = -1;
+    bool first_is_level = false;
     if (!tri_can_split(m, m->xy[m->sub[s].v[0]], m->xy[m->sub[s].v[1]]))
         return TRI_SEARCH_OUTSIDE;
+    if (split->renews)
+        return find_renewal(r, s, split, n_left);
     for (int choice = 0; choice < TRI_SPLIT_PLACES; choice++) {
-        enum tri_search found = search_place(r, s, split->fraction, choice, n_left);
+        enum tri_search found = search_place(r, s, split, choice, n_left);
         if (found == TRI_SEARCH_OUTSIDE)
             continue;
         if (found == TRI_SEARCH_FOUND && split->level == TRI_NONE)
             return settle_level(r, s, split, choice, n_left);
-        if (found != TRI_SEARCH_FOUND || is_level(r, s, split->level))
+        if (found != TRI_SEARCH_FOUND)
             return found;
-        first = first < 0 ? choice : first;
+        bool level = is_level(r, s, split->level);
+        if (level && begins_levels(r, s))
+            return found;
+        first = first < 0 || (level && !first_is_level) ? choice : first;
+        first_is_level = first_is_level || level;
     }
-    return first < 0 ? TRI_SEARCH_OUTSIDE : search_place(r, s, split->fraction, first, n_left);
+    return first < 0 ? TRI_SEARCH_OUTSIDE : search_place(r, s, split, first, n_left);
 }
 
 /* Splits subsegment s for the sake of a triangle. */
@@ -451,7 +527,7 @@ static enum outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri_dis
 
 static enum outcome split(struct tri_refiner *r, tri_sub_id s, tri_triangle_id triangle)
 {
-    struct tri_disk_split usual = {tri_split_fraction(r->mesh, &r->mesh->sub[s]), TRI_NONE};
+    struct tri_disk_split usual = {tri_split_fraction(r->mesh, &r->mesh->sub[s]), TRI_NONE, false};
     return split_at(r, s, usual, triangle);
 }
 

@@ -43,17 +43,35 @@ static bool is_allowed(const struct tri_mesh *mesh, const struct tri_subsegment 
     return !boundary || keeps_to_itself(mesh, &mesh->parents[s->parent], from, to, p);
 }
 
+/* Is it one of the places on the parent's line? Else on the subsegment, which lies inside by now. */
+static bool is_on_line(int choice) { return choice < TRI_PLACES; }
+
+/* The place beside an exact one on the parent's line or on the subsegment. */
+static bool place(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point exact, int choice,
+                  struct tri_point *p)
+{
+    const struct tri_parent *parent = &mesh->parents[s->parent];
+    struct tri_point a = mesh->xy[parent->v[0]], b = mesh->xy[parent->v[1]];
+    double astray = ASTRAY * fmax(tri_resolution(a), tri_resolution(b));
+    *p = tri_place_beside(exact, choice % TRI_PLACES);
+    return is_allowed(mesh, s, *p) && (is_on_line(choice) || tri_line_distance(a, b, *p) <= astray);
+}
+
 bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction, int choice,
                      struct tri_point *p)
 {
     assert(fraction > 0 && fraction < 1 && s->parent >= 0 && s->parent < mesh->n_parents);
     assert(choice >= 0 && choice < TRI_SPLIT_PLACES);
-    const struct tri_parent *parent = &mesh->parents[s->parent];
-    struct tri_point a = mesh->xy[parent->v[0]], b = mesh->xy[parent->v[1]];
+    const tri_vertex_id *end = mesh->parents[s->parent].v;
     struct tri_point between = tri_point_between(mesh->xy[s->v[0]], mesh->xy[s->v[1]], fraction);
-    bool on_line = choice < TRI_PLACES; /* else on the subsegment, which lies inside by now */
-    struct tri_point exact = on_line ? tri_onto_line(a, b, between) : between;
-    *p = tri_place_beside(exact, choice % TRI_PLACES);
-    double astray = ASTRAY * fmax(tri_resolution(a), tri_resolution(b));
-    return is_allowed(mesh, s, *p) && (on_line || tri_line_distance(a, b, *p) <= astray);
+    bool on_line = is_on_line(choice);
+    return place(mesh, s, on_line ? tri_onto_line(mesh->xy[end[0]], mesh->xy[end[1]], between) : between, choice, p);
+}
+
+bool tri_place_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point at, int choice,
+                     struct tri_point *p)
+{
+    assert(s->parent >= 0 && s->parent < mesh->n_parents && choice >= 0 && choice < TRI_SPLIT_PLACES);
+    const tri_vertex_id *end = is_on_line(choice) ? mesh->parents[s->parent].v : s->v;
+    return place(mesh, s, tri_onto_line(mesh->xy[end[0]], mesh->xy[end[1]], at), choice, p);
 }

@@ -12,4 +12,8 @@ enum { TRI_SPLIT_PLACES = 2 * TRI_PLACES };
 bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction, int choice,
                      struct tri_point *p);
 
+/* The same about the foot of the perpendicular from `at`, up to rounding. */
+bool tri_place_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point at, int choice,
+                     struct tri_point *p);
+
 #endif

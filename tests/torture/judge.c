@@ -148,7 +148,7 @@ static void judge_mesh(const struct outcome *o, const struct tri_pslg *pslg, boo
         if (item->state != TRI_CHECK_FAILED)
             continue;
         if (ask.delaunay == TRI_CHECK_CONFORMING && is_conforming_fault(kind))
-            judge_conforming(o, item->count, verdict);
+            judge_conforming(o, kind, item->count, verdict);
         else
             judge_fault(verdict, tri_check_name(kind), "%lld, first: %s", (long long)item->count, item->text);
     }

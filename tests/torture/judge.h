@@ -52,8 +52,9 @@ void judge_fault(struct verdict *verdict, const char *fault, const char *format,
 /* What was carved and which regions spread where, against a naive twin. */
 void judge_carving(const struct outcome *outcome, struct verdict *verdict);
 
-/* A mesh that is not conforming Delaunay although that was asked for, with so many faults. */
-void judge_conforming(const struct outcome *outcome, int64_t faults, struct verdict *verdict);
+/* A mesh that is not conforming Delaunay although that was asked for, with so many faults of a kind (enum
+ * tri_check_kind). */
+void judge_conforming(const struct outcome *outcome, int kind, int64_t faults, struct verdict *verdict);
 
 /* Angles and areas that miss their bounds without a reason, points that a switch forbids. */
 void judge_bounds(const struct outcome *outcome, const struct tri_check_report *report, struct verdict *verdict);

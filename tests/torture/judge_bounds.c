@@ -233,13 +233,13 @@ static bool is_resolvable(const struct tri_mesh *mesh, const struct tri_subsegme
     double x = b.x - a.x, y = b.y - a.y, length = sqrt(x * x + y * y), ulp = 0x1p-52 * largest;
     double height = fabs(x * (v.y - a.y) - y * (v.x - a.x)) / length;
     double foot = (x * (v.x - a.x) + y * (v.y - a.y)) / length, off = fmin(foot, length - foot);
-    return !is_beside_flat(mesh, s, RESOLUTION * largest) &&
+    return height >= SHORTEST * ulp && length > 2 * SHORTEST * ulp && !is_beside_flat(mesh, s, RESOLUTION * largest) &&
            (off >= SHORTEST * ulp || fmax(off, ulp) * length <= MOST_PARTS * height * height);
 }
 
-/* What is not conforming must be counted, and lie at the resolution of coordinates or where filling a narrow space
- * would cost too much. The checker has found so many faults. */
-void judge_conforming(const struct outcome *o, int64_t faults, struct verdict *verdict)
+/* What is not conforming must be counted, one by one, and lie at the resolution of coordinates. The checker has found
+ * so many faults of this kind. */
+void judge_conforming(const struct outcome *o, int kind, int64_t faults, struct verdict *verdict)
 {
     struct figure_bounds box = figure_bounds(&o->of->figure.pslg);
     double largest = box.largest / o->mesh.unit;
@@ -250,12 +250,12 @@ void judge_conforming(const struct outcome *o, int64_t faults, struct verdict *v
     for (int32_t s = 0; s < o->mesh.n_subs; s++)
         resolvable += is_resolvable(&o->mesh, &o->mesh.sub[s], 0, largest) ||
                       is_resolvable(&o->mesh, &o->mesh.sub[s], 1, largest);
-    if (sum == 0)
-        judge_fault(verdict, "conforming uncounted", "%lld faults", (long long)faults);
-    if (resolvable > count[TRI_EXCUSE_NARROW_GAP])
+    if (sum == 0 || (kind == TRI_CHECK_ENCROACHMENT && sum != faults))
+        judge_fault(verdict, "conforming uncounted", "%lld faults, %lld counted", (long long)faults, (long long)sum);
+    if (resolvable > 0)
         judge_fault(verdict, "conforming",
                     "%lld subsegments without a reason (input angle %lld, gap %lld, precision %lld)",
-                    (long long)(resolvable - count[TRI_EXCUSE_NARROW_GAP]), (long long)count[TRI_EXCUSE_INPUT_ANGLE],
+                    (long long)resolvable, (long long)count[TRI_EXCUSE_INPUT_ANGLE],
                     (long long)count[TRI_EXCUSE_NARROW_GAP], (long long)count[TRI_EXCUSE_PRECISION]);
 }
 
