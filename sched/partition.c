@@ -409,16 +409,13 @@ struct tri_fence par_fence(const struct par_partition *p, int32_t column, int32_
     return fence;
 }
 
-/* The cell that holds q, the first or last one for what lies outside. */
+/* The cell that holds q, the first or last one for what lies outside. Without a branch, which could not be predicted. */
 static int32_t cell_at(const double *bounds, int32_t n, double q)
 {
-    int32_t low = 0, high = n - 1; /* bounds[low] <= q < bounds[high] */
-    while (high - low > 1) {
-        int32_t mid = low + (high - low) / 2;
-        if (bounds[mid] <= q)
-            low = mid;
-        else
-            high = mid;
+    int32_t low = 0; /* it is one of low .. low + left - 1 */
+    for (int32_t left = n - 1, half; left > 1; left -= half) {
+        half = left / 2;
+        low += half & -(int32_t)(bounds[low + half] <= q);
     }
     return low;
 }
