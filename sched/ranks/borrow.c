@@ -101,12 +101,17 @@ static int owners_of(const struct par_ranks *r, tri_triangle_id t, int owner[3],
 /* Where a triangle is to be afterwards. */
 enum place { HERE, WITH_OTHERS, BOTH };
 
-/* place[i] receives that of triangle i of the list. */
+/* place[i] receives that of triangle i of the list. Triangles lie in its order, their corners do not: these are fetched
+ * ahead. */
 static bool add_new(struct par_ranks *r, const struct par_ids *changed, unsigned char *place)
 {
+    enum { AHEAD = 8 };
+    const struct tri_mesh *mesh = r->state->mesh;
     bool memory = true, has_own;
     int owner[3] = {0};
     for (int32_t i = 0; memory && i < changed->n; i++) {
+        for (int k = 0; i + AHEAD < changed->n && k < 3; k++)
+            __builtin_prefetch(&mesh->xy[mesh->tri[changed->item[i + AHEAD]].v[k]]);
         int n = owners_of(r, changed->item[i], owner, &has_own);
         place[i] = n == 0 ? HERE : has_own ? BOTH : WITH_OTHERS;
         for (int k = 0; memory && k < n; k++)
