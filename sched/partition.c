@@ -409,7 +409,7 @@ struct tri_fence par_fence(const struct par_partition *p, int32_t column, int32_
     return fence;
 }
 
-/* The cell that holds q, the first or last one for what lies outside. Without a branch, which could not be predicted. */
+/* The cell that holds q, the first or last one for what lies outside. No branch, since it could not be predicted. */
 static int32_t cell_at(const double *bounds, int32_t n, double q)
 {
     int32_t low = 0; /* it is one of low .. low + left - 1 */
