@@ -201,7 +201,37 @@ static void test_what_stays_is_counted(void **state)
     assert_int_equal(report.quality.inserted_on_segments, 0);
     options.quality.protect = 0;
     tri_count_encroached(&mesh, &options.quality, &report.quality, count);
-    assert_true(count[TRI_EXCUSE_INPUT_ANGLE] > 0 && count[TRI_EXCUSE_PROTECTED] == 0);
+    assert_true(count[TRI_EXCUSE_PRECISION] > 0 && count[TRI_EXCUSE_PROTECTED] == 0); /* nobody says why not */
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+/* In a bundle of lines some 10^-9 of their length apart: at small angles and between segments lies what would take too
+ * many parts, and nothing that is to be split. */
+static void test_what_would_take_too_many_parts_is_counted_by_place(void **state)
+{
+    (void)state;
+    int64_t count[TRI_EXCUSES], unresolved = 0, refused = 0;
+    struct tri_pslg pslg;
+    struct tri_report report;
+    assert_true(support_read("regress/bundle_levels.poly", &pslg));
+    struct tri_mesh mesh = conforming(&pslg, 20, &report);
+    struct tri_refine_options options = {.conforming = true};
+    tri_count_encroached(&mesh, &options, &report.quality, count);
+    for (tri_sub_id i = 0; i < mesh.n_subs; i++) {
+        const struct tri_subsegment *s = &mesh.sub[i];
+        int side = s->side[0] != TRI_NONE && tri_is_in_diametral_disk(&mesh, s, s->side[0]) ? 0 : 1;
+        struct tri_disk_split split;
+        if (s->side[side] == TRI_NONE || !tri_is_in_diametral_disk(&mesh, s, s->side[side]))
+            continue;
+        if (!tri_is_resolved_from(&mesh, s, tri_apex(&mesh, s->side[side])))
+            unresolved++;
+        else
+            refused += tri_is_encroached_from(&mesh, s, s->side[side], &split) && !split.renews;
+    }
+    assert_true(unresolved > 0 && refused > 0);
+    assert_int_equal(count[TRI_EXCUSE_PRECISION], unresolved + refused);
+    assert_true(count[TRI_EXCUSE_INPUT_ANGLE] > 0 && count[TRI_EXCUSE_NARROW_GAP] > 0);
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
 }
@@ -252,6 +282,7 @@ int main(void)
         cmocka_unit_test(test_levels_of_input_vertices_are_renewed),
         cmocka_unit_test(test_nothing_stays_that_can_be_split),
         cmocka_unit_test(test_what_stays_is_counted),
+        cmocka_unit_test(test_what_would_take_too_many_parts_is_counted_by_place),
         cmocka_unit_test(test_what_coordinates_do_not_resolve_is_counted_as_that),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

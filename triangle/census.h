@@ -32,8 +32,10 @@ int32_t tri_find_work_among(const struct tri_mesh *mesh, const struct tri_refine
 /* The corner at which a triangle is obtuse, so that it encroaches a subsegment that lies opposite; -1: none. Exact. */
 int tri_obtuse_corner(const struct tri_mesh *mesh, tri_triangle_id triangle);
 
-/* Counts the subsegments with a vertex of a triangle beside them in their diametral circle, which -D could not mend, by
- * place: at a small angle of the input, between segments near to each other, and so on. */
+/* Counts the subsegments with a vertex of a triangle beside them in their diametral circle, which -D could not mend: by
+ * precision where the vertex lies on the subsegment as far as coordinates tell, or they have no place for the split;
+ * else, where the vertex is level with an end but for rounding and it would take too many parts, by place: at a small
+ * angle of the input, between segments near to each other. */
 void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                           const struct tri_refine_report *report, int64_t count[TRI_EXCUSES]);
 
