@@ -191,6 +191,8 @@ void tri_settle_counts(const struct tri_refine_report *report, const int64_t fou
         count[k] = found[k];
     if (report->gated + report->fenced > 0)
         count[TRI_EXCUSE_DEFERRED] += found[TRI_EXCUSES];
+    else if (report->hit_cap) /* which was not known when tiles that went early were counted */
+        count[TRI_EXCUSE_LIMIT] += found[TRI_EXCUSES];
     else /* behind a protected one that is far away, if any is */
         count[protected_more ? TRI_EXCUSE_PROTECTED : TRI_EXCUSE_PRECISION] += found[TRI_EXCUSES];
 }

@@ -54,7 +54,7 @@ bool tri_pause_is_head(const struct tri_pause *h, int64_t n_triangles, int64_t n
     return is_place && is_queue(&h->queue) && h->n_worklist <= n_worklist && h->next_listed >= 0 &&
            h->next_listed <= h->n_worklist && h->n_encroached >= 0 &&
            (!h->in_hand || (h->hand.t >= 0 && h->hand.t < n_triangles)) && (h->n_encroached == 0 || n_subs > 0) &&
-           h->report.inserted_free >= 0 && h->report.inserted_on_segments >= 0;
+           h->granted >= 0 && h->paid >= 0 && h->report.inserted_free >= 0 && h->report.inserted_on_segments >= 0;
 }
 
 bool tri_pause_reserve(struct tri_pause *h)

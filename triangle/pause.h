@@ -12,6 +12,7 @@
 struct tri_pause {
     struct tri_refine_report report;
     struct tri_bounds bounds; /* for the angle that is worked for now */
+    int64_t granted, paid;    /* credit.h */
     int64_t above, back;      /* see refine.c, as for what follows */
     int32_t stage, step, limit, next_listed, n_worklist, in_hand;
     struct tri_entry hand;

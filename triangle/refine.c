@@ -26,8 +26,8 @@
  * the others, which are not asked before they have changed; deferred triangles are found again by whoever comes later,
  * with other fences or none.
  *
- * Termination: for angles by the rules in small_angle.c; the points for sizes and for circles that come on top are
- * finitely many whatever the others do, see inside.c and disk.c. */
+ * Termination: for angles by the rules in small_angle.c, and credit.h says at what price; the points for sizes and for
+ * circles that come on top are finitely many whatever the others do, see inside.c and disk.c. */
 #include "triangle/refine.h"
 
 #include <assert.h>
@@ -37,6 +37,7 @@
 #include "triangle/bad_queue.h"
 #include "triangle/cavity.h"
 #include "triangle/census.h"
+#include "triangle/credit.h"
 #include "triangle/criterion.h"
 #include "triangle/disk.h"
 #include "triangle/entry_set.h"
@@ -79,6 +80,9 @@ struct tri_refiner {
     struct tri_cavity cavity;
     struct tri_bad_queue queue;
     bool sized;       /* the triangle in hand asks for a point because of sizes, not of angles */
+    bool on_credit;   /* its point, or split, is */
+    struct tri_credit credit;
+    double promised_sin2; /* as bounds.sin2, for TRI_PROMISED_ANGLE */
     int64_t above;    /* how many points more may be inserted for angles above TRI_USUAL_ANGLE */
     int64_t back;     /* and, once that was too many, for BACK_ANGLE */
     enum step step;
@@ -257,6 +261,13 @@ static const tri_vertex_id *corners_around(const struct tri_refiner *r, struct t
     return r->mesh->tri[r->cavity.tri[0]].v;
 }
 
+/* A feature size is negative where the vertex is on credit. */
+static void set_feature(const struct tri_refiner *r, tri_vertex_id v, double size)
+{
+    assert(size >= 0);
+    r->mesh->feature[v] = r->on_credit ? -size : size;
+}
+
 static void tell_changes(const struct tri_refiner *r)
 {
     if (r->options->part)
@@ -272,8 +283,8 @@ static enum outcome insert_free(struct tri_refiner *r, struct tri_point p, tri_t
         return FAILED;
     tri_vertex_id v = add_vertex(r, p, TRI_VERTEX_FREE, 0);
     const tri_vertex_id *corner = r->mesh->tri[triangle].v;
-    r->mesh->feature[v] = tri_feature_inside(r->mesh, corner[tri_next[shape->shortest]],
-                                             corner[tri_prev[shape->shortest]], p, r->sized);
+    set_feature(r, v, tri_feature_inside(r->mesh, corner[tri_next[shape->shortest]],
+                                         corner[tri_prev[shape->shortest]], p, r->sized));
     if (r->mesh->n_attributes)
         tri_interpolate_triangle(r->mesh, corners_around(r, p), v);
     tri_cavity_fill(&r->cavity, r->mesh, v);
@@ -514,7 +525,7 @@ static enum outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri_dis
     bool boundary = tri_is_boundary(&old);
     assert(r->cavity.n_edges > n_left || boundary);
     tri_vertex_id v = add_vertex(r, r->cavity.p, old.parent, old.marker ? old.marker : boundary ? 1 : 0);
-    m->feature[v] = tri_feature_on_segment(m, &r->cavity, s, r->sized);
+    set_feature(r, v, tri_feature_on_segment(m, &r->cavity, s, r->sized));
     tri_interpolate_edge(m, old.v[0], old.v[1], split.fraction, v);
     tri_sub_id second = tri_cavity_fill_split(&r->cavity, m, v, s, n_left);
     tell_changes(r);
@@ -704,6 +715,30 @@ static bool is_hopeless(const struct tri_refiner *r, tri_triangle_id triangle, c
     return r->report->hit_cap = true;
 }
 
+/* Must the triangle's point be paid for (credit.h), and is it nearly good? */
+static void see_credit(struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape,
+                       bool *nearly_good)
+{
+    const struct tri_mesh *m = r->mesh;
+    const int k = shape->shortest;
+    double longer = tri_longer_product(shape->l[0], shape->l[1], shape->l[2]);
+    *nearly_good = shape->area2 * shape->area2 >= r->promised_sin2 * longer;
+    r->on_credit = r->stage == USUAL_STAGE && r->options->min_angle > TRI_PROMISED_ANGLE &&
+                   (*nearly_good || tri_is_on_credit(m, t->v[tri_next[k]]) || tri_is_on_credit(m, t->v[tri_prev[k]]));
+}
+
+/* Is there credit for it? */
+static bool has_credit(struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape)
+{
+    bool nearly_good;
+    see_credit(r, t, shape, &nearly_good);
+    if (!r->on_credit || tri_has_credit(&r->credit, nearly_good))
+        return true;
+    r->on_credit = false;
+    r->report->hit_cap = true;
+    return false;
+}
+
 /* Somebody asks for the end: between two points the mesh is in order. */
 static bool must_stop(struct tri_refiner *r)
 {
@@ -725,7 +760,10 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         if (tri_entry_set_holds(&r->walled_off, entry))
             return defer(r, entry.t, &r->report->fenced);
         r->sized = badness == TRI_BAD_SIZE;
-        if (badness == TRI_BAD_ANGLE && is_hopeless(r, entry.t, &shape)) {
+        r->on_credit = false;
+        if (r->options->fence && badness == TRI_BAD_ANGLE && !tri_meet_corners(&r->credit, r->mesh, t->v))
+            return FAILED;
+        if (badness == TRI_BAD_ANGLE && (is_hopeless(r, entry.t, &shape) || !has_credit(r, t, &shape))) {
             if (!tri_is_too_large(&r->criterion, t, &shape))
                 return give_up(r, entry.t, TRI_EXCUSE_INPUT_ANGLE);
             r->sized = true;
@@ -736,15 +774,27 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         enum outcome outcome = resolved ? propose(r, entry.t, &shape, badness) : refuse(r, TRI_EXCUSE_PRECISION);
         if (outcome == REFUSED && tri_is_too_large(&r->criterion, t, &shape)) {
             r->sized = true;
+            r->on_credit = false;
             outcome = propose_inside(r, entry.t, &shape);
         }
-        if (outcome == DONE || outcome == AGAIN)
+        if (outcome == DONE || outcome == AGAIN) {
             count_point(r);
+            tri_count_credit(&r->credit, r->on_credit);
+        }
         if (outcome != AGAIN)
             return outcome == REFUSED ? give_up(r, entry.t, r->excuse) : outcome;
         if (must_stop(r))
             return FAILED;
     }
+}
+
+/* Is an end of the subsegment, or a vertex beside it, on credit? */
+static bool is_among_credit(const struct tri_mesh *m, const struct tri_subsegment *s)
+{
+    bool is = tri_is_on_credit(m, s->v[0]) || tri_is_on_credit(m, s->v[1]);
+    for (int side = 0; side < 2; side++)
+        is = is || (s->side[side] != TRI_NONE && tri_is_on_credit(m, tri_apex(m, s->side[side])));
+    return is;
 }
 
 /* A pre-refinement ends each level that it begins (see tri_refine_options.urgent), whatever its limit. */
@@ -764,6 +814,7 @@ static bool split_encroached(struct tri_refiner *r)
         if (!tri_is_encroached(r->mesh, sub, &where) || (!r->options->urgent && at_limit(r)))
             continue;
         r->sized = false;
+        r->on_credit = is_among_credit(r->mesh, sub);
         enum outcome outcome = split_at(r, s, where, beside);
         if (outcome == FAILED) {
             r->encroached[r->n_encroached++] = s; /* there is room: it was there a moment ago */
@@ -848,6 +899,17 @@ static bool queue_chunk(struct tri_refiner *r)
     return true;
 }
 
+/* What the worklist grants (credit.h), where points may be on credit. */
+static void list_corners(struct tri_refiner *r)
+{
+    const struct tri_mesh *m = r->mesh;
+    if (r->options->fence || r->stage != USUAL_STAGE || r->options->min_angle <= TRI_PROMISED_ANGLE)
+        return;
+    for (int32_t i = 0; i < r->n_worklist; i++)
+        if (tri_is_live(&m->tri[listed(r, i)]))
+            tri_list_corners(&r->credit, m, m->tri[listed(r, i)].v);
+}
+
 /* Passes over the worklist. First, chunk by chunk, the bad angles beside the shorter half of the edges: the order by
  * shortest edge (bad_queue.h) then nearly holds for the whole mesh, but the work stays in the cache, if triangles that
  * are neighbours in the list are neighbours in the plane. Then what is left of the bad angles, in the same order, and,
@@ -859,6 +921,7 @@ static bool refine_worklist(struct tri_refiner *r)
         r->n_worklist = listed_count(r);
         r->next_listed = 0;
         r->step = FIRST_PASS;
+        list_corners(r);
     }
     while (r->step == FIRST_PASS) {
         if (!work_off(r))
@@ -998,6 +1061,7 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
     r->mesh = mesh;
     r->options = options;
     r->criterion = tri_criterion_for(mesh, options);
+    r->promised_sin2 = tri_bounds_for(TRI_PROMISED_ANGLE, options->conforming).sin2;
     r->report = report;
     begin_stages(r);
     frexp(mesh->limits.shortest2, &r->least_exponent);
@@ -1027,6 +1091,7 @@ void tri_refiner_free(struct tri_refiner *r)
     tri_cavity_free(&r->cavity);
     tri_bad_queue_free(&r->queue);
     tri_entry_set_free(&r->walled_off);
+    tri_credit_free(&r->credit);
     free(r->searched);
     free(r->encroached);
     free(r);
@@ -1040,6 +1105,8 @@ void tri_refiner_show(const struct tri_refiner *r, struct tri_pause *pause)
     pause->bounds = r->criterion.bounds;
     pause->above = r->above;
     pause->back = r->back;
+    pause->granted = r->credit.granted;
+    pause->paid = r->credit.paid;
     pause->stage = (int32_t)r->stage;
     pause->step = (int32_t)r->step;
     pause->limit = r->limit;
@@ -1060,6 +1127,8 @@ void tri_refiner_go_on(struct tri_refiner *r, struct tri_pause *pause)
     r->criterion.bounds = pause->bounds;
     r->above = pause->above;
     r->back = pause->back;
+    r->credit.granted = pause->granted;
+    r->credit.paid = pause->paid;
     r->stage = (enum stage)pause->stage;
     r->step = (enum step)pause->step;
     r->limit = pause->limit;

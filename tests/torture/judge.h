@@ -4,13 +4,14 @@
  *   - angles below the bound that the checker explains by a small angle of the input; beside gaps too dear to fill, and
  *     where vertices ran away, as many as the mesher counts. The latter, outside narrow spaces: none up to 20.7 degrees
  *     (Ruppert 1995 promises them), 20 up to 25, which theory promises for another order of insertion (Chew 1993,
- *     Shewchuk 2002), and above, where nothing is proved, 2% of the triangles more;
+ *     Shewchuk 2002), and above, where nothing is proved, 2% of the triangles more; a third of them where their
+ *     points would have cost too much (credit.h);
  *   - angles and circles at the resolution of coordinates, told one by one: a flat triangle, a subsegment beside one
  *     (judge_bounds.c); and ten angles around each flat triangle, from behind which their points would be seen;
  *   - areas: none, but of triangles thinner than that resolution, and with -Y;
  *   - the number of triangles: 2.5 times that at 34 degrees for any bound above, which is proved (refine.c), 5 times
- *     with sizes or -D, which is measured; up to 34, 64 times that at 25, which is measured, too (feature_size.c); by
- *     the schedule, see judge_schedule_size;
+ *     with sizes or -D, which is measured; up to 34, 19.5 times that at 28 (credit.h: 13
+ *     for what else is there, which is measured); by the schedule, see judge_schedule_size;
  *   - time: 60 s of processor time for meshes of some 100,000 triangles, which take below 1 s each and are made up to
  *     seven times and judged by naive twins; with -Y more, as a point there may cost as much as there are points. */
 #ifndef TESTS_TORTURE_JUDGE_H

@@ -1,0 +1,109 @@
+/* Points on credit: how they are counted, and that no call inserts more than it may. */
+#include "sched/schedule.h"
+#include "support.h"
+#include "triangle/credit.h"
+
+static double sizes[4] = {1, -1, 2, 3};
+static const struct tri_mesh mesh_of_four = {.feature = sizes, .n_vertices = 4};
+
+static void test_corners_grant_credit(void **state)
+{
+    (void)state;
+    static const tri_vertex_id first[3] = {0, 1, 2}, second[3] = {2, 1, 3};
+    struct tri_credit credit = {0};
+    assert_false(tri_has_credit(&credit, false));
+    assert_true(tri_meet_corners(&credit, &mesh_of_four, first) && tri_meet_corners(&credit, &mesh_of_four, first));
+    assert_int_equal(credit.granted, 6 * 2 * TRI_CREDIT); /* vertex 1 is on credit, the others are met once */
+    assert_true(tri_meet_corners(&credit, &mesh_of_four, second));
+    assert_int_equal(credit.granted, 6 * 3 * TRI_CREDIT);
+    tri_list_corners(&credit, &mesh_of_four, second); /* a sixth of each */
+    assert_int_equal(credit.granted, (6 * 3 + 2) * TRI_CREDIT);
+    tri_credit_free(&credit);
+}
+
+static void test_points_are_counted(void **state)
+{
+    (void)state;
+    struct tri_credit credit = {0};
+    tri_count_credit(&credit, false);
+    for (int i = 0; i < TRI_CREDIT; i++) {
+        assert_true(tri_has_credit(&credit, false));
+        assert_true(tri_has_credit(&credit, true) == (4 * i < 3 * TRI_CREDIT));
+        tri_count_credit(&credit, true);
+    }
+    assert_false(tri_has_credit(&credit, false));
+}
+
+struct count {
+    int32_t on_credit, others, triangles;
+    bool capped;
+};
+
+static struct count count_points(const struct tri_mesh *mesh, const struct tri_refine_report *report)
+{
+    struct count count = {.triangles = mesh->n_triangles, .capped = report->hit_cap};
+    for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
+        *(tri_is_on_credit(mesh, v) ? &count.on_credit : &count.others) += 1;
+    return count;
+}
+
+/* cell > 0: by the schedule, with so many triangles in a cell. */
+static struct count refine(const struct tri_pslg *pslg, double angle, int32_t cell)
+{
+    struct tri_options options = support_quality(angle, 0);
+    struct tri_report report;
+    struct par_report schedule = {0};
+    options.keep_hull = true;
+    options.refine = cell == 0;
+    struct tri_mesh mesh = support_generate(pslg, &options, &report);
+    struct par_options how = par_defaults();
+    how.threads = 1;
+    how.cell_triangles = cell;
+    if (cell > 0)
+        assert_int_equal(par_refine(&mesh, &options.quality, &how, &schedule, NULL), TRI_OK);
+    struct count count = count_points(&mesh, cell > 0 ? &schedule.total : &report.quality);
+    par_report_free(&schedule);
+    tri_mesh_free(&mesh);
+    return count;
+}
+
+static void test_no_more_than_may_be(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"regress/credit_grid.poly", "regress/ranaway_zigzag.poly", "cracked_plate.poly",
+                                        "naca2412_box.poly"};
+    static const double angles[] = {28, 30, 33, 34};
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 4; k++) {
+            struct tri_pslg pslg;
+            assert_true(support_read(names[i], &pslg));
+            struct count whole = refine(&pslg, angles[k], 0), cells = refine(&pslg, angles[k], 60);
+            assert_true(angles[k] > TRI_PROMISED_ANGLE || whole.on_credit + cells.on_credit == 0);
+            assert_true(whole.on_credit <= TRI_CREDIT * whole.others);
+            assert_true(cells.on_credit <= 2 * TRI_CREDIT * cells.others); /* those in several blocks grant more */
+            assert_true(!whole.capped || i < 2);
+            tri_pslg_free(&pslg);
+        }
+}
+
+/* Eighteen points on a turned grid: 43 triangles at 28 degrees, and once 5,356 at 34. */
+static void test_a_mesh_does_not_run_on(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg;
+    assert_true(support_read("regress/credit_grid.poly", &pslg));
+    struct count promised = refine(&pslg, TRI_PROMISED_ANGLE, 0), usual = refine(&pslg, TRI_USUAL_ANGLE, 0);
+    assert_true(usual.capped && usual.triangles <= (TRI_CREDIT + 1) * promised.triangles);
+    tri_pslg_free(&pslg);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_corners_grant_credit),
+        cmocka_unit_test(test_points_are_counted),
+        cmocka_unit_test(test_no_more_than_may_be),
+        cmocka_unit_test(test_a_mesh_does_not_run_on),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

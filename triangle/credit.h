@@ -1,0 +1,61 @@
+/* What points for angles above TRI_PROMISED_ANGLE may cost.
+ *
+ * A point is on credit if it is inserted, or a subsegment split, for the angle of a triangle that is no smaller than
+ * TRI_PROMISED_ANGLE, or whose shortest edge has an end that is on credit itself. The others are the features of the
+ * input, what sizes ask for, and what refinement for TRI_PROMISED_ANGLE inserts among these: their insertion radii
+ * come from each other's alone, so that they are as far apart as theory promises for that angle (Shewchuk 2002),
+ * whatever lies between them. Under -D a vertex of a subsegment whose circle is not empty is on credit if that is so
+ * for an end of it or a vertex beside it; that split is not paid for, since it must be made.
+ *
+ * RULE. Each point that is not on credit grants TRI_CREDIT points; each on credit takes one. Triangles that are no
+ * smaller than TRI_PROMISED_ANGLE get three quarters of them: the rest is left for what comes of their points. Without
+ * credit a triangle is not refined for its angle.
+ *
+ * THEOREM. A call inserts no more points on credit than TRI_CREDIT for each point that it inserts otherwise, and for
+ * each vertex that it finds and that is not on credit; those count as often as a sixth of the triangles in its worklist
+ * that have them for a corner, which is once on average, and once at most within a fence. Proof: it counts them. Those
+ * on credit grant nothing, so it does not matter for the sum of a schedule's calls that they grow in number from phase
+ * to phase: a vertex lies in one block of each phase. */
+#ifndef TRIANGLE_CREDIT_H
+#define TRIANGLE_CREDIT_H
+
+#include <math.h>
+
+#include "triangle/entry_set.h"
+#include "triangle/mesh.h"
+
+/* In degrees: up to here theory promises that refinement ends, where no segments meet at small angles. */
+#define TRI_PROMISED_ANGLE 28.0
+
+enum { TRI_CREDIT = 12 };
+
+struct tri_credit {
+    int64_t granted, paid;    /* in sixths of a point */
+    struct tri_entry_set met; /* within a fence: vertices that have granted theirs, as entries of life 0 */
+};
+
+static inline bool tri_is_on_credit(const struct tri_mesh *mesh, tri_vertex_id v) { return signbit(mesh->feature[v]); }
+
+/* A point has been inserted. */
+static inline void tri_count_credit(struct tri_credit *credit, bool on_credit)
+{
+    if (on_credit)
+        credit->paid += 6;
+    else
+        credit->granted += INT64_C(6) * TRI_CREDIT;
+}
+
+/* What the corners of a triangle grant: in the worklist of a call without a fence; when it asks within one, which is
+ * O(1), amortised. False: no memory. */
+void tri_list_corners(struct tri_credit *credit, const struct tri_mesh *mesh, const tri_vertex_id corner[3]);
+bool tri_meet_corners(struct tri_credit *credit, const struct tri_mesh *mesh, const tri_vertex_id corner[3]);
+
+/* Is there credit for a point? Nearly good: for a triangle that is no smaller than TRI_PROMISED_ANGLE. */
+static inline bool tri_has_credit(const struct tri_credit *credit, bool nearly_good)
+{
+    return nearly_good ? 4 * credit->paid < 3 * credit->granted : credit->paid < credit->granted;
+}
+
+void tri_credit_free(struct tri_credit *credit);
+
+#endif
