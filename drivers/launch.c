@@ -56,23 +56,24 @@ int launch_agree(struct launch *launch, int code, struct tri_error *error)
     return code;
 }
 
-static void pause_for(int tenths)
+/* False: a signal has come before that. */
+static bool pause_for(int tenths)
 {
-    struct timespec left = {tenths / 10, tenths % 10 * 100000000L};
-    nanosleep(&left, NULL);
+    const struct timespec time = {tenths / 10, tenths % 10 * 100000000L};
+    return nanosleep(&time, NULL) == 0;
 }
 
 /* The launcher kills the others when this one aborts, so that the first one may say nothing, or only that it was asked
- * to end. Where that one has met the same it has told, and is given the time to end all. Afterwards the launcher needs
- * some to pass the words on: that of MPICH drops what it has not read by then. */
+ * to end. Where that one has met the same it has told, and is given the time to end all; so is a lower one by those
+ * behind it, up to some: whoever is told to end by then is silent. Afterwards the launcher needs some to pass the words
+ * on: that of MPICH drops what it has not read by then. */
 static void tell_loss(const struct launch *launch, bool told)
 {
-    enum { ENDING = 10, READING = 5 };
-    if (launch->rank > 0)
-        pause_for(ENDING);
-    if (launch->rank > 0 || !told)
+    enum { ENDING = 10, EACH = 20, LAST = 5, READING = 5 };
+    const int before = (launch->rank < LAST ? launch->rank : LAST) - 1;
+    if (launch->rank > 0 ? pause_for(ENDING + EACH * before) : !told)
         dprintf(launch->voice, "ptriangle: task %d cannot reach the others\n", launch->rank);
-    pause_for(READING);
+    (void)pause_for(READING);
 }
 
 int launch_leave(struct launch *launch, int code, struct tri_error *error)

@@ -156,6 +156,14 @@ if [ -n "${PTRIANGLE_LOST:-}" ]; then
             check "look $k of task $one: no file" sh -c '! ls two.* 2>/dev/null'
         done
     done
+    what="three ranks, two of which are lost"
+    checks=$((checks + 1))
+    # shellcheck disable=SC2086
+    timeout 100 "$MPIEXEC" -n 3 sh -c '[ "${OMPI_COMM_WORLD_RANK:-$PMI_RANK}" -eq 0 ] ||
+        export LD_PRELOAD=./.lost.so PTRIANGLE_LOST_AT=40; exec "$0" "$@"' "$bin/ptriangle" -Qpq30a0.01 letter $outputs \
+        >.out 2>.err
+    check "a failure" test $? -eq 1
+    check "one line" test "$(grep -c '^ptriangle: .* cannot reach' .err)" -eq 1
 fi
 
 # --- memory that runs out in one task, wherever: exit code 1, one line, no file; or all files
