@@ -18,6 +18,7 @@ struct messenger {
     struct par_carrier carrier; /* first: what others see */
     MPI_Comm comm;
     MPI_Request *request;       /* [2 * n_ranks] of what comes and goes */
+    MPI_Status *state;          /* [2 * n_ranks] of these */
     int32_t why;                /* what this rank has told by TAG_STOP; 0: nothing */
     MPI_Request *telling;       /* [n_ranks] of that */
     int heard;                  /* messages of others with TAG_STOP */
@@ -28,7 +29,7 @@ static bool wait_for(const struct messenger *m, MPI_Request *request, int n)
 {
     struct timespec pause = {0, 1000};
     int done = 0;
-    while (MPI_Testall(n, request, &done, MPI_STATUSES_IGNORE) == MPI_SUCCESS && !done) {
+    while (MPI_Testall(n, request, &done, m->state) == MPI_SUCCESS && !done) {
         (void)tri_stop_is_asked(m->carrier.stop); /* who is asked passes it on: the others end what is waited for */
         nanosleep(&pause, NULL);
         pause.tv_nsec = pause.tv_nsec < 500000 ? 2 * pause.tv_nsec : pause.tv_nsec;
@@ -201,6 +202,7 @@ static void free_messenger(struct messenger *m)
     if (m) {
         free(m->carrier.of_each);
         free(m->request);
+        free(m->state);
         free(m->telling);
     }
     free(m);
@@ -219,10 +221,11 @@ static struct messenger *messenger_on(MPI_Comm comm)
     const size_t n = (size_t)m->carrier.n_ranks;
     m->carrier.of_each = malloc(n * PAR_ROOM * sizeof *m->carrier.of_each);
     m->request = malloc(2 * n * sizeof *m->request);
+    m->state = malloc(2 * n * sizeof *m->state);
     m->telling = malloc(n * sizeof *m->telling);
     for (size_t p = 0; m->telling && p < n; p++)
         m->telling[p] = MPI_REQUEST_NULL;
-    if (m->carrier.of_each && m->request && m->telling)
+    if (m->carrier.of_each && m->request && m->state && m->telling)
         return m;
     free_messenger(m);
     return NULL;
