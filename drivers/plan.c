@@ -308,6 +308,25 @@ enum tri_status plan_make(struct run_plan *plan, const struct run *run, const st
     return status;
 }
 
+/* A number that is about right: below 10,000 as it is, else in three digits. */
+static void print_count(const char *what, double count)
+{
+    if (count < 9999.5)
+        printf("  %s: %.0f\n", what, count);
+    else
+        printf("  %s: %.3g %s\n", what, count < 999500 ? 1e-3 * count : 1e-6 * count,
+               count < 999500 ? "thousand" : "million");
+}
+
+static void print_seconds(double seconds, int threads)
+{
+    if (seconds < 0.01)
+        printf("  Time: under 0.01 s");
+    else
+        printf("  Time: %.2g s", seconds);
+    printf(" on %d thread%s\n", threads, threads > 1 ? "s" : "");
+}
+
 /* there: what there is, which is `left`, or all there is. */
 static void print_bytes(const char *what, double needed, double there, const char *left)
 {
@@ -332,8 +351,9 @@ void plan_print(const struct run *run, const struct estimate *e)
     struct disk_place places[DISK_PLACES];
     double left = plan_memory_left(run), more = run->plan.swept ? fmin(n->held, fmax(left, n->floor)) : n->whole;
     list_places(places, run, n, left);
-    printf("\nEstimate:\n\n  Triangles: %.3g million\n  Vertices: %.3g million\n", 1e-6 * n->triangles,
-           1e-6 * e->vertices);
+    printf("\nEstimate:\n\n");
+    print_count("Triangles", n->triangles);
+    print_count("Vertices", e->vertices);
     if (run->options.refine)
         printf("  Way: %s\n", way_of(run, e));
     const double used = resources_memory_used();
@@ -343,5 +363,5 @@ void plan_print(const struct run *run, const struct estimate *e)
         print_bytes("Disk for what does not fit in memory", places[1].bytes, disk_left(&places[1]), "left");
     if (places[2].bytes > 0)
         print_bytes("Disk for the checkpoint", places[2].bytes, disk_left(&places[2]), "left");
-    printf("  Time: %.2g s on %d thread%s\n", e->seconds, threads, threads > 1 ? "s" : "");
+    print_seconds(e->seconds, threads);
 }

@@ -85,6 +85,8 @@ if [ -x "$bin/ptriangle" ]; then
     wait $job 2>/dev/null
     check "exit code" test $? -eq 143
     complains "stopped by SIGTERM .* while refining: [0-9]+ triangles, [0-9]+ of them below the bounds; the mesh so far is written"
+    counted=$(sed -n 's/.*while refining: \([0-9]*\) triangles.*/\1/p' .err)
+    check "all triangles are counted, those of blocks at work, too" sh -c "head -1 letter.1.ele | grep -q '^$counted '"
     wrote letter.1.node letter.1.ele letter.1.poly report.json
     judge letter.1 --poly letter.poly
     check "the report tells" grep -q '"stopped": "SIGTERM"' report.json
@@ -130,11 +132,14 @@ if [ -x "$bin/ptriangle" ]; then
     # --- estimates
     fresh letter.poly
     mesher 0 ptriangle -pq30a0.001 letter --dry-run
-    matches '^  Triangles: 0\.1[0-9]* million$'
+    matches '^  Triangles: 1[0-9][0-9] thousand$'
     matches '^  Memory: [0-9.]+ MB'
     matches '^  Disk: [0-9.]+ [kM]B'
-    matches '^  Time: [0-9.e+-]+ s on [0-9]+ thread'
+    matches '^  Time: (under )?[0-9.]+ s on [0-9]+ thread'
     wrote
+    mesher 0 ptriangle -pq30a0.1 letter --dry-run
+    matches '^  Triangles: [1-9][0-9]+$'
+    matches '^  Vertices: [1-9][0-9]+$'
     mesher 1 ptriangle -pna0.0000001 letter --dry-run
     matches '^  Triangles: [0-9.e+]+ million$'
     complains 'triangles, and a mesh holds 536 million where it must be in memory as a whole, as for -n .neighbours.$'
