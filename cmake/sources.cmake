@@ -44,6 +44,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/refine.c
     triangle/pause.c
     triangle/census.c
+    triangle/crowd.c
     triangle/estimate.c
     triangle/stats.c
     triangle/generate.c

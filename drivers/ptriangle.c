@@ -27,6 +27,7 @@
 #include "sched/sweep/queue.h"
 #include "sched/threads.h"
 #include "triangle/census.h"
+#include "triangle/crowd.h"
 #include "triangle/estimate.h"
 #include "triangle/size_text.h"
 #include "triangle/text/formats.h"
@@ -307,6 +308,8 @@ static double estimate(void *user, const struct tri_mesh *mesh, const struct tri
     struct program *p = user;
     const struct tri_executor executor = par_executor(&p->threads);
     double sure;
+    if (!quality->unsuitable)
+        return tri_forecast(mesh, quality);
     return tri_estimate(mesh, quality, &executor, &sure);
 }
 

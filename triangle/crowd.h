@@ -1,0 +1,12 @@
+/* How many triangles refinement will end with, from how crowded the features of a mesh are: the better part of what
+ * --dry-run says. Blocks are cut by the quicker measure of triangle/estimate.h. */
+#ifndef TRIANGLE_CROWD_H
+#define TRIANGLE_CROWD_H
+
+#include "triangle/refine.h"
+
+/* For angles and areas, not for a size test. The mesh has been made ready for refinement (triangle/groundwork.h). Looks
+ * at no more than 32,768 triangles, in each for a time that grows with the logarithms of ratios of sizes in it. */
+double tri_forecast(const struct tri_mesh *mesh, const struct tri_refine_options *options);
+
+#endif
