@@ -1,7 +1,10 @@
-/* Linear interpolation of vertex attributes along an edge and over a triangle. */
+/* Linear interpolation of vertex attributes along an edge and over a triangle. Rounding may put a vertex beyond the ends
+ * of its edge or outside its triangle, where that is a few units in the last place long or high, by far more than its
+ * size: what comes out keeps to the range of what goes in. */
 #include "triangle/interpolate.h"
 
 #include <assert.h>
+#include <math.h>
 
 static double *attributes_of(const struct tri_mesh *mesh, tri_vertex_id v)
 {
@@ -14,7 +17,7 @@ void tri_interpolate_edge(struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id 
     assert(to_vertex < mesh->n_vertices && to_vertex != a && to_vertex != b);
     for (int32_t k = 0; k < mesh->n_attributes; k++) {
         double from = attributes_of(mesh, a)[k], to = attributes_of(mesh, b)[k];
-        attributes_of(mesh, to_vertex)[k] = from + fraction * (to - from);
+        attributes_of(mesh, to_vertex)[k] = fmax(fmin(from + fraction * (to - from), fmax(from, to)), fmin(from, to));
     }
 }
 
@@ -29,6 +32,7 @@ void tri_interpolate_triangle(struct tri_mesh *mesh, const tri_vertex_id corners
     for (int32_t k = 0; k < mesh->n_attributes; k++) {
         double at_a = attributes_of(mesh, corners[0])[k];
         double at_b = attributes_of(mesh, corners[1])[k], at_c = attributes_of(mesh, corners[2])[k];
-        attributes_of(mesh, v)[k] = at_a + to_b * (at_b - at_a) + to_c * (at_c - at_a);
+        double value = at_a + to_b * (at_b - at_a) + to_c * (at_c - at_a);
+        attributes_of(mesh, v)[k] = fmax(fmin(value, fmax(at_a, fmax(at_b, at_c))), fmin(at_a, fmin(at_b, at_c)));
     }
 }

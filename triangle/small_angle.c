@@ -319,9 +319,17 @@ static double demand_of(const struct tri_mesh *mesh, tri_triangle_id triangle)
 
 enum { CHEAP = 10, OCTAVES = 64 };
 
+/* 2^(octave - 1) <= cost < 2^octave; beyond the last one, the last one. */
+static int octave_of(double cost)
+{
+    int octave;
+    frexp(cost, &octave);
+    return octave < OCTAVES ? octave : OCTAVES - 1;
+}
+
 /* Costs and numbers of the triangles that are not cheap, by octave of their cost, in a share of the mesh. */
 struct demand {
-    double cost[OCTAVES], count[OCTAVES], all;
+    double cost[OCTAVES], count[OCTAVES], all, dearest;
 };
 
 struct demands {
@@ -334,16 +342,15 @@ static void demand_share(void *context, size_t index)
     struct demands *d = context;
     struct demand *sum = &d->share[index];
     struct tri_range range = tri_share(index, d->mesh->n_triangles);
-    *sum = (struct demand){{0}, {0}, 0};
+    *sum = (struct demand){{0}, {0}, 0, 0};
     for (tri_triangle_id t = range.first; t < range.last; t++) {
         double cost = demand_of(d->mesh, t);
-        int octave; /* 2^(octave - 1) <= cost < 2^octave */
-        frexp(cost, &octave);
+        int octave = octave_of(cost);
         if (octave > CHEAP) {
-            octave = octave < OCTAVES ? octave : OCTAVES - 1;
             sum->cost[octave] += cost;
             sum->count[octave]++;
             sum->all += cost;
+            sum->dearest = fmax(sum->dearest, cost);
         }
     }
 }
@@ -358,15 +365,17 @@ static struct demand whole_demand(const struct tri_mesh *mesh, const struct tri_
             d.share[0].count[octave] += d.share[i].count[octave];
         }
         d.share[0].all += d.share[i].all;
+        d.share[0].dearest = fmax(d.share[0].dearest, d.share[i].dearest);
     }
     return d.share[0];
 }
 
-/* Which narrow spaces are filled, by their cost. All of them, where a quarter of a million points is enough for
+/* Which narrow spaces are filled, by their cost. All that are seen, where a quarter of a million points is enough for
  * that: thin layers and slits of ordinary parts. Else, where there are spikes of no width or lines a few units in
  * the last place apart, the cheap ones: up to the largest power of two, 2^10 or more, such that filling every space
  * as far as this cost goes takes no more than PER_VERTEX points for each vertex of the input, or each end of a segment
- * if there are fewer, and an ALLOWANCE. (A dearer space is still filled where it is wide.) */
+ * if there are fewer, and an ALLOWANCE. (A dearer space is still filled where it is wide.) Vertices that lie in a space
+ * may hide it here: none, hidden or not, is filled at more than what has been seen costs, or all that was allowed. */
 void tri_choose_gaps(struct tri_mesh *mesh, const struct tri_executor *executor)
 {
     const double ALL = 250000, ALLOWANCE = 20000, PER_VERTEX = 4;
@@ -374,8 +383,8 @@ void tri_choose_gaps(struct tri_mesh *mesh, const struct tri_executor *executor)
     double dearer = 0, cheaper = 0;
     for (int octave = CHEAP + 1; octave < OCTAVES; octave++)
         dearer += demand.count[octave];
-    int limit = demand.all <= ALL ? OCTAVES : CHEAP;
     double affordable = ALLOWANCE + PER_VERTEX * fmin(mesh->n_input, 2.0 * mesh->n_parents);
+    int limit = demand.all <= ALL ? octave_of(fmax(demand.dearest, affordable)) : CHEAP;
     mesh->limits.gap_points = demand.all <= ALL ? demand.all : affordable;
     for (int octave = CHEAP + 1; octave < OCTAVES && demand.all > ALL; octave++) {
         cheaper += demand.cost[octave];
