@@ -1008,6 +1008,8 @@ FOUND = [
     Case("regress/wide_fans.poly", None, "segments nearly on one line, two decimals, in a figure of long walls",
          "-cq31 in blocks: about as many steps as triangles; each triangle of a fan at a fence searched all others",
          ()),
+    Case("regress/hidden_gap.poly", None, "two walls side by side, three vertices in the space between hide it",
+         "-q20: some hundred triangles; once without end, as the space was filled at any price", ()),
 ]
 
 
