@@ -1,6 +1,6 @@
-/* Linear interpolation of vertex attributes along an edge and over a triangle. Rounding may put a vertex beyond the ends
- * of its edge or outside its triangle, where that is a few units in the last place long or high, by far more than its
- * size: what comes out keeps to the range of what goes in. */
+/* Linear interpolation of vertex attributes along an edge and over a triangle. Where that is a few units in the last
+ * place long or high, rounding may put a vertex beyond the ends of its edge or outside its triangle by far more than
+ * its size: what comes out keeps to the range of what goes in. */
 #include "triangle/interpolate.h"
 
 #include <assert.h>
