@@ -16,6 +16,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/delaunay.c
     triangle/crossing.c
     triangle/recover.c
+    triangle/flip_history.c
     triangle/flip.c
     triangle/overlap.c
     triangle/bundle.c

@@ -43,6 +43,18 @@ static double sure_work(const struct tri_mesh *mesh, const struct tri_refine_opt
     return sure;
 }
 
+/* What bounds may ask for where they are met is no part of what is sure. */
+static void test_bounds_that_are_met(void **state)
+{
+    (void)state;
+    struct tri_mesh mesh = coarse_square(30);
+    struct tri_refine_options quality = support_quality(20, 0.5).quality;
+    assert_true(sure_work(&mesh, &quality) == mesh.n_triangles);
+    quality.max_area = 1e-4;
+    assert_true(sure_work(&mesh, &quality) > 1e4);
+    tri_mesh_free(&mesh);
+}
+
 /* A size test that asks for the same as an area bound is probed for about as much. */
 static void test_size_test_is_probed(void **state)
 {
@@ -147,6 +159,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_areas),
+        cmocka_unit_test(test_bounds_that_are_met),
         cmocka_unit_test(test_size_test_is_probed),
         cmocka_unit_test(test_shares),
         cmocka_unit_test(test_samples),

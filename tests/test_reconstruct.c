@@ -645,6 +645,50 @@ static int32_t original_of(const struct tri_mesh *old, const struct tri_mesh *me
     return 0;
 }
 
+/* Flips leave values where they were, however many follow one another at one place. */
+static void values_stay_when_edges_are_flipped(void **state)
+{
+    (void)state;
+    int32_t moved = 0;
+    for (int32_t n = 5; n < 400; n = 2 * n + 1) {
+        struct input in = fan(n, 0.75);
+        in.elements.areas = malloc((size_t)in.elements.n * sizeof(double));
+        for (int32_t t = 0; t < in.elements.n; t++)
+            in.elements.areas[t] = t + 1;
+        struct tri_mesh old = rebuild(&in, &(struct tri_reconstruct_options){0});
+        struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){.refine = true});
+        for (int32_t t = 0; t < mesh.n_triangles; t++) {
+            const int32_t original = original_of(&old, &mesh, t);
+            assert_true(mesh.regions[mesh.tri[t].region].max_area == original + 1);
+            moved += original != t;
+        }
+        tri_mesh_free(&old);
+        tri_mesh_free(&mesh);
+        free_input(&in);
+    }
+    assert_true(moved > 0);
+}
+
+/* A sliver that already meets its bound has nothing to say about the ground beside it. */
+static void bound_of_a_sliver_stays_on_it(void **state)
+{
+    (void)state;
+    struct input in = {.pslg = support_pslg(4, 0, 0, 0), .elements = {.n = 2, .n_nodes = 3}};
+    in.elements.corners = malloc(6 * sizeof *in.elements.corners);
+    in.elements.areas = malloc(2 * sizeof *in.elements.areas);
+    memcpy(in.elements.corners, (int32_t[]){0, 1, 2, 0, 3, 1}, 6 * sizeof *in.elements.corners);
+    memcpy(in.elements.areas, (double[]){1e-10, -1}, 2 * sizeof *in.elements.areas);
+    support_add_point(&in.pslg, 0, 0);
+    support_add_point(&in.pslg, 1, 0);
+    support_add_point(&in.pslg, 0.5, 1e-9);
+    support_add_point(&in.pslg, 0.5, -1);
+    struct tri_mesh mesh = rebuild(&in, &(struct tri_reconstruct_options){.refine = true});
+    add_steiner(&mesh, 0, 0);
+    assert_int_equal(mesh.n_triangles, 2);
+    tri_mesh_free(&mesh);
+    free_input(&in);
+}
+
 /* Where segments part them, the values of a place stay what they were. */
 static void values_do_not_cross_segments(void **state)
 {
@@ -834,6 +878,8 @@ int main(void)
         cmocka_unit_test(ties_stay),
         cmocka_unit_test(vertex_of_high_degree),
         cmocka_unit_test(values_become_regions),
+        cmocka_unit_test(values_stay_when_edges_are_flipped),
+        cmocka_unit_test(bound_of_a_sliver_stays_on_it),
         cmocka_unit_test(values_do_not_cross_segments),
         cmocka_unit_test(values_are_copied),
         cmocka_unit_test(fails_cleanly_without_memory),

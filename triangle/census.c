@@ -25,8 +25,11 @@ static void add_demand(void *context, size_t share)
     struct tri_range range = tri_share(share, mesh->n_triangles);
     double sum = 0;
     for (tri_triangle_id t = range.first; t < range.last; t++)
-        if (tri_is_live(&mesh->tri[t]))
-            sum += tri_shape_of(mesh->xy, mesh->tri[t].v).area2 / tri_area2_bound(d->criterion, mesh->tri[t].region);
+        if (tri_is_live(&mesh->tri[t])) {
+            double area2 = tri_shape_of(mesh->xy, mesh->tri[t].v).area2;
+            double bound = tri_area2_bound(d->criterion, mesh->tri[t].region);
+            sum += area2 > bound ? area2 / bound : 0;
+        }
     d->triangles[share] = sum;
 }
 

@@ -8,8 +8,8 @@
 extern "C" {
 #endif
 
-/* Triangles that the area bounds ask for at least: the sum of all areas over their bounds, and a third more, since no
- * mesh fills its bounds; 0 without. O(triangles). */
+/* Triangles that the area bounds ask for at least, where they are not met yet: the sum of areas over their bounds, and
+ * a third more, since no mesh fills its bounds; 0 without. O(triangles). */
 double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                        const struct tri_executor *executor);
 

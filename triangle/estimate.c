@@ -178,6 +178,21 @@ static double angle_of_live(const struct estimator *e, tri_triangle_id t)
     return tri_is_live(&e->mesh->tri[t]) ? angle_work(e->mesh, e->options, t) : 0;
 }
 
+/* What areas ask for in a triangle that meets its bound already: likely, since new vertices come near, but not sure. */
+static double unsure_of_live(const struct estimator *e, tri_triangle_id t)
+{
+    const struct tri_triangle *triangle = &e->mesh->tri[t];
+    if (!tri_is_live(triangle))
+        return 0;
+    double area2 = tri_shape_of(e->mesh->xy, triangle->v).area2;
+    return area2 <= tri_area2_bound(&e->criterion, triangle->region) ? 0.5 * area2 * density(e, triangle->region) : 0;
+}
+
+static struct works unsure_works(const struct estimator *e)
+{
+    return (struct works){.e = e, .of = unsure_of_live, .step = 1, .n = e->mesh->n_triangles};
+}
+
 static struct works area_works(const struct estimator *e)
 {
     return (struct works){.e = e, .of = area_of_live, .step = 1, .n = e->mesh->n_triangles};
@@ -241,7 +256,7 @@ double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options
 {
     const struct estimator e = estimator_for(mesh, options);
     double areas = tri_has_sizes(options) ? sum_of(area_works(&e), executor) : 0;
-    *sure = mesh->n_triangles + areas;
+    *sure = mesh->n_triangles + (areas > 0 ? fmax(areas - sum_of(unsure_works(&e), executor), 0) : 0);
     return areas + sum_of(angle_works(&e), executor);
 }
 

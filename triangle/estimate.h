@@ -10,7 +10,8 @@ extern "C" {
 
 /* Estimates the number of triangles that refinement will end with: for bounded areas from the areas, for a bounded
  * angle from the edges' lengths, for a size test by probing it with triangles that get smaller. It may be more than any
- * mesh can hold. *sure: that part of it which is no guess: what there is, and what areas and the size test ask for.
+ * mesh can hold. *sure: that part of it which is no guess: what there is, and what areas and the size test ask for
+ * where they are not met yet.
  * O(triangles), and a probe for each thousand triangles or so of those to come. */
 double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                     const struct tri_executor *executor, double *sure);

@@ -7,6 +7,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
+#include "triangle/flip_history.h"
 #include "triangle/grow.h"
 #include "triangle/predicates.h"
 
@@ -86,6 +87,8 @@ bool tri_flip_legalise(struct tri_flips *f)
         int e = tri_edge(code);
         if (mesh->tri[t].n[e] < 0 || !is_illegal(f, t, e) || !is_convex(mesh, t, e))
             continue;
+        if (f->history && !tri_flip_history_add(f->history, mesh, t, e))
+            return false;
         tri_triangle_id u = flip(f, t, e);
         if (!tri_flip_touch(f, t) || !tri_flip_touch(f, u))
             return false;
@@ -149,12 +152,19 @@ static enum tri_status flip_suspects(const struct suspicion *s, struct tri_error
 enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, const struct tri_executor *executor,
                                      struct tri_error *error)
 {
-    struct tri_flips f = {.mesh = mesh, .ties_stay = true};
+    struct tri_flip_history history = {0};
+    struct tri_flips f = {.mesh = mesh, .ties_stay = true, .history = mesh->n_regions > 1 ? &history : NULL};
     struct suspicion s = {&f, malloc(((size_t)mesh->n_triangles + 1) * sizeof *s.suspect), {0}};
-    if (!s.suspect)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
-    tri_execute(executor, tri_shares(mesh->n_triangles), suspect_share, &s);
-    enum tri_status status = flip_suspects(&s, error);
+    enum tri_status status = TRI_OK;
+    if (!s.suspect || (f.history && !tri_flip_history_begin(f.history, mesh)))
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for flips");
+    if (!status) {
+        tri_execute(executor, tri_shares(mesh->n_triangles), suspect_share, &s);
+        status = flip_suspects(&s, error);
+    }
+    if (!status && f.history)
+        tri_flip_history_settle(f.history, mesh);
+    tri_flip_history_free(&history);
     tri_flips_free(&f);
     free(s.suspect);
     return status;

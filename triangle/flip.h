@@ -9,14 +9,20 @@ extern "C" {
 #endif
 
 /* Flips edges that are no subsegments until the mesh is constrained Delaunay; where four points lie on one circle it
- * stays as it is. A triangle keeps its region. O(triangles) where little is to do, and near that in practice; flips may
- * be quadratic (a fan of n triangles over a thin ellipse). On TRI_NO_MEMORY the mesh is valid. */
+ * stays as it is. Regions stay on their ground: a triangle that was flipped has the one in which its centroid lay in
+ * the mesh as it was; ground too narrow for any centroid gives its region up. O(triangles) where little is to do, and
+ * near that in practice; flips may be quadratic (a fan of n triangles over a thin ellipse), and their history is
+ * then taken in parts. On TRI_NO_MEMORY the mesh is valid, but for its regions. */
 enum tri_status tri_flip_to_delaunay(struct tri_mesh *mesh, const struct tri_executor *executor,
                                      struct tri_error *error);
 
-/* The same at one place: whoever changes triangles touches them, then makes them legal. */
+struct tri_flip_history; /* triangle/flip_history.h */
+
+/* The same at one place: whoever changes triangles touches them, then makes them legal. Without a history a triangle
+ * keeps the region of its number. */
 struct tri_flips {
     struct tri_mesh *mesh;
+    struct tri_flip_history *history; /* NULL, or hears of each flip before it is made; not owned */
     tri_triangle_id *corner; /* NULL, or for each vertex a live triangle that has it as a corner, kept so; not owned */
     bool ties_stay;          /* of four points on one circle nothing is flipped; else coordinates break the tie */
     tri_halfedge *touched;   /* stack of edges to test for the Delaunay property */

@@ -34,8 +34,9 @@ struct tri_reconstruct_options {
  *
  * A vertex without marker takes that of a segment at it, else 1 on the boundary; a boundary edge without one has 1.
  * Attributes and area bounds: triangles with the same ones share a region (mesh->regions, mesh->columns), in the order
- * in which they come; region 0 has none. What flips and refinement make takes the region of a triangle there: values
- * are copied, never averaged, and cross no subsegment; where none parts them their border frays.
+ * in which they come; region 0 has none. What flips and refinement make takes the region of the triangle in which its
+ * centroid lies, for flips of the triangle given: values are copied, never averaged, and cross no subsegment; where
+ * none parts them their border frays, and ground too narrow for any centroid gives its values up.
  *
  * Two triangles share an edge if they name its ends by the same indices: vertices at the same place are different
  * ones. Triangles that overlap without sharing an edge are not noticed; the result is then as good as they are.

@@ -117,6 +117,15 @@ cp four.1.ele five.ele
 run 0 -r five
 check "same triangles" same_file five.ele five.1.ele
 
+# A sliver that meets its bound, beside a triangle that has none: the edge between them is flipped.
+printf '4 2 0 0\n1 0 0\n2 1 0\n3 .5 1e-9\n4 .5 -1\n' >sliver.node
+printf '2 3 0\n1 1 2 3\n2 1 4 2\n' >sliver.ele
+for bound in 1e-4 1e-6 1e-10; do
+    printf '2\n1 %s\n2 -1\n' $bound >sliver.area
+    run 0 -ra sliver
+    header sliver.1.ele "2 3 0"
+done
+
 # --- clockwise triangles, six nodes, segments that are no edges
 printf '4 3 0\n1 1 5 2\n2 2 3 5\n3 5 4 3\n4 4 1 5\n' >four.ele
 run 0 -rC four
