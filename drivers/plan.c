@@ -91,8 +91,8 @@ enum tri_status plan_check_input(const struct run *run, const struct console *co
     const double all = resources_memory_used() + plan_memory_left(run);
     if ((is_strict(run) ? needed : SURE_SHARE * needed) > all)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                        "to triangulate the input, %.3g million points and %.3g million segments, takes about %s "
-                        "of memory; there are %s", 1e-6 * run->pslg.n_points, 1e-6 * run->pslg.n_segments,
+                        "to triangulate the input, %s points and %s segments, takes about %s of memory; there are %s",
+                        tri_count_text(run->pslg.n_points).text, tri_count_text(run->pslg.n_segments).text,
                         tri_size_text(needed).text, tri_size_text(all).text);
     if (needed > all)
         console_warn(console, "to triangulate the input may take about %s of memory; there are %s.\n",

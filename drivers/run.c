@@ -106,7 +106,7 @@ static enum tri_status read_mesh(struct runner *r, const struct tri_names *names
     if (status || !run->arguments->switches.area_lists)
         return status;
     console_say(&r->console, "Opening %s.\n", names->area);
-    return tri_read_area(names->area, options, &run->elements, r->error);
+    return tri_read_area(names->area, options, run->base, &run->elements, r->error);
 }
 
 /* Where the file that was named is there, but not of a kind that is read, the error says which kinds are. */

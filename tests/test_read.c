@@ -145,7 +145,7 @@ static void read_kind(enum kind kind, struct tri_read_options options, struct du
     else if (kind == ELE)
         status = tri_read_ele(ele_path, &options, 1, 4, &elements, &error);
     else if (kind == AREA)
-        status = tri_read_area(area_path, &options, &elements, &error);
+        status = tri_read_area(area_path, &options, 1, &elements, &error);
     else
         status = tri_read_poly(poly_path, node_path, &options, &pslg, &base, &points_in_poly, &error);
     assert_int_equal(status, error.status);

@@ -59,7 +59,7 @@ static enum tri_status read_elements(struct tri_error *error)
 {
     struct tri_elements elements;
     enum tri_status status = tri_read_ele("memory.ele", &from_zero, 0, 24, &elements, error);
-    status = status ? status : tri_read_area("memory.area", &from_zero, &elements, error);
+    status = status ? status : tri_read_area("memory.area", &from_zero, 0, &elements, error);
     tri_elements_free(&elements);
     return status;
 }

@@ -15,8 +15,20 @@ static void test_units_fit(void **state)
         assert_string_equal(tri_size_text(cases[i].bytes).text, cases[i].text);
 }
 
+static void test_counts_can_be_read(void **state)
+{
+    static const struct {
+        double n;
+        const char *text;
+    } cases[] = {{0, "0"}, {57, "57"}, {9999, "9999"}, {45200, "45.2 thousand"}, {999600, "1 million"},
+                 {1.874e6, "1.87 million"}};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        assert_string_equal(tri_count_text(cases[i].n).text, cases[i].text);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_units_fit)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_units_fit), cmocka_unit_test(test_counts_can_be_read)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,3 +14,15 @@ struct tri_size_text tri_size_text(double bytes)
     snprintf(size.text, sizeof size.text, "%.3g %s", value, units[unit]);
     return size;
 }
+
+struct tri_size_text tri_count_text(double n)
+{
+    struct tri_size_text count;
+    if (n < 9999.5)
+        snprintf(count.text, sizeof count.text, "%.0f", n);
+    else if (n < 999.5e3)
+        snprintf(count.text, sizeof count.text, "%.3g thousand", 1e-3 * n);
+    else
+        snprintf(count.text, sizeof count.text, "%.3g million", 1e-6 * n);
+    return count;
+}

@@ -1,4 +1,4 @@
-/* Sizes in messages. */
+/* Sizes and numbers in messages. */
 #ifndef TRIANGLE_SIZE_TEXT_H
 #define TRIANGLE_SIZE_TEXT_H
 
@@ -13,6 +13,9 @@ struct tri_size_text {
 
 /* bytes >= 0; the largest unit is PB. */
 struct tri_size_text tri_size_text(double bytes);
+
+/* How many there are, n >= 0: "57", "45.2 thousand", "1.87 million". */
+struct tri_size_text tri_count_text(double n);
 
 #ifdef __cplusplus
 }

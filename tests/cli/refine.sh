@@ -190,6 +190,14 @@ bad "triangle 3 has an edge that two other triangles have" "3 3 0
 2 1 3 4
 3 1 5 3
 "
+for base in 0 1; do # an area bound that is none has the number that the file gives it
+    printf '3 2 0 0\n%s 0 0\n%s 1 0\n%s 0 1\n' $base $((base + 1)) $((base + 2)) >bad.node
+    printf '1 3 0\n%s %s %s %s\n' $base $base $((base + 1)) $((base + 2)) >bad.ele
+    printf '1\n%s nan\n' $base >bad.area
+    run 1 -ra bad
+    complains "^bad\.area:2: area bound $base is not a finite number"
+done
+rm bad.area
 wrote
 
 # --- the same mesh for any number of threads

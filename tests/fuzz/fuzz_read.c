@@ -49,7 +49,7 @@ static struct reading read_as(enum format format, const char *first, const char 
     else
         r.status = tri_read_ele(first, options, 1, 100, &r.elements, &r.error);
     if (format == AREA && !r.status)
-        r.status = tri_read_area(second, options, &r.elements, &r.error);
+        r.status = tri_read_area(second, options, 1, &r.elements, &r.error);
     return r;
 }
 

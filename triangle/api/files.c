@@ -23,7 +23,7 @@ static enum tri_status read_mesh(const struct tri_names *names, struct tri_read_
                                       : tri_read_node(names->node, options, pslg, &base, error);
     status = status ? status : tri_read_ele(names->ele, options, base, pslg->n_points, elements, error);
     if (!status && access(names->area, R_OK) == 0)
-        status = tri_read_area(names->area, options, elements, error);
+        status = tri_read_area(names->area, options, base, elements, error);
     return status;
 }
 

@@ -487,7 +487,7 @@ static const char *parse_bound(void *user, size_t i, struct tri_fields *fields)
     return tri_fields_real(fields, &areas[i]) == TRI_FIELD_BAD ? "is not a finite number" : NULL;
 }
 
-static enum tri_status read_area_text(const struct tri_text *text, const struct tri_read_options *options,
+static enum tri_status read_area_text(const struct tri_text *text, const struct tri_read_options *options, int32_t base,
                                       struct tri_elements *elements, struct tri_error *error)
 {
     struct tri_cursor cursor = tri_cursor_begin(text);
@@ -499,17 +499,17 @@ static enum tri_status read_area_text(const struct tri_text *text, const struct 
     elements->areas = allocate(&status, (size_t)header.count, sizeof *elements->areas, &cursor, error);
     if (status != TRI_OK)
         return status;
-    return read_table(&cursor, &bounds, elements->n, 1, parse_bound, elements->areas, options, error);
+    return read_table(&cursor, &bounds, elements->n, base, parse_bound, elements->areas, options, error);
 }
 
-enum tri_status tri_read_area(const char *path, const struct tri_read_options *options, struct tri_elements *elements,
-                              struct tri_error *error)
+enum tri_status tri_read_area(const char *path, const struct tri_read_options *options, int32_t base,
+                              struct tri_elements *elements, struct tri_error *error)
 {
     elements->areas = NULL;
     struct tri_text text;
     enum tri_status status = tri_text_load(&text, path, options->chunk_bytes, options->executor, options->stop, error);
     if (status == TRI_OK)
-        status = read_area_text(&text, options, elements, error);
+        status = read_area_text(&text, options, base, elements, error);
     tri_text_free(&text);
     if (status != TRI_OK) {
         free(elements->areas);

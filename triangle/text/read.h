@@ -56,9 +56,9 @@ enum tri_status tri_read_ele(const char *path, const struct tri_read_options *op
                              struct tri_elements *out, struct tri_error *error);
 
 /* Reads area bounds of the triangles, which must be as many as the file has, into elements->areas (malloc'ed); <= 0:
- * none, as where the file has no value. */
-enum tri_status tri_read_area(const char *path, const struct tri_read_options *options, struct tri_elements *elements,
-                              struct tri_error *error);
+ * none, as where the file has no value. Errors count triangles from base, as tri_read_ele does. */
+enum tri_status tri_read_area(const char *path, const struct tri_read_options *options, int32_t base,
+                              struct tri_elements *elements, struct tri_error *error);
 
 #ifdef __cplusplus
 }
