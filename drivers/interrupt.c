@@ -21,6 +21,7 @@
 #include "drivers/interrupt.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -30,7 +31,8 @@
 
 #include "triangle/clock.h"
 
-_Static_assert(ATOMIC_INT_LOCK_FREE == 2 && ATOMIC_POINTER_LOCK_FREE == 2, "handlers need lock-free atomics");
+_Static_assert(ATOMIC_INT_LOCK_FREE == 2 && ATOMIC_LONG_LOCK_FREE == 2 && ATOMIC_POINTER_LOCK_FREE == 2,
+               "handlers need lock-free atomics");
 
 static const struct timespec GRACE = {0, 800000000};
 
@@ -47,7 +49,8 @@ enum {
 enum { NOBODY = 0, TIME_UP = 255 }; /* who, else the number of a signal */
 
 static atomic_uint state;
-static _Atomic(const char *) stage;
+static _Atomic(const char *) stage, reached_what;
+static atomic_long reached;
 static _Atomic(const char *) temporaries[TRI_MAX_OUTPUTS];
 static const char *name; /* these are set before the first handler can run */
 static bool patience, has_timer;
@@ -107,6 +110,16 @@ int interrupt_code(void)
     return number == NOBODY ? 0 : number == TIME_UP ? INTERRUPT_TIME_UP : 128 + number;
 }
 
+static void say_number(long n)
+{
+    char digits[3 * sizeof n + 1], *first = digits + sizeof digits - 1;
+    *first = '\0';
+    do
+        *--first = (char)('0' + n % 10);
+    while ((n /= 10) > 0);
+    say(first);
+}
+
 static void tell(void)
 {
     say(name);
@@ -114,6 +127,12 @@ static void tell(void)
     say(interrupt_cause());
     say(" while ");
     say(interrupt_stage_now());
+    const long n = atomic_load(&reached);
+    if (n > 0) {
+        say(": about ");
+        say_number(n);
+        say(atomic_load(&reached_what));
+    }
     say("; nothing was written\n");
 }
 
@@ -309,7 +328,25 @@ const struct tri_stop *interrupt_stop(void)
     return &stop;
 }
 
-void interrupt_stage(const char *what) { atomic_store(&stage, what); }
+void interrupt_stage(const char *what)
+{
+    atomic_store(&reached, 0);
+    atomic_store(&stage, what);
+}
+
+void interrupt_reached(int64_t n, const char *what)
+{
+    if (n <= atomic_load(&reached))
+        return;
+    atomic_store(&reached_what, what);
+    atomic_store(&reached, n < LONG_MAX ? (long)n : LONG_MAX);
+}
+
+int64_t interrupt_reached_now(const char **what)
+{
+    *what = atomic_load(&reached_what);
+    return atomic_load(&reached);
+}
 
 const char *interrupt_stage_now(void)
 {

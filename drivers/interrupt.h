@@ -6,6 +6,8 @@
 #ifndef DRIVERS_INTERRUPT_H
 #define DRIVERS_INTERRUPT_H
 
+#include <stdint.h>
+
 #include "triangle/text/output.h"
 #include "triangle/stop.h"
 
@@ -24,6 +26,11 @@ const struct tri_stop *interrupt_stop(void);
 /* What is done now, for the message of the handler: "reading". The text lives as long as the program. */
 void interrupt_stage(const char *what);
 const char *interrupt_stage_now(void);
+
+/* How far the stage is, for that message: about n of these: " triangles"; less than was told before changes nothing.
+ * The text lives as long as the program. The next stage begins at 0, which is what is not known. */
+void interrupt_reached(int64_t n, const char *what);
+int64_t interrupt_reached_now(const char **what);
 
 /* From now on interrupt_stop() says no, though somebody has asked: what is left is to be done. */
 void interrupt_go_on(void);

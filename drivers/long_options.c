@@ -227,6 +227,13 @@ static enum tri_status add_file(const char **names, int *n, const char *value, s
     return TRI_OK;
 }
 
+/* Is its last part a name that suffixes can go behind? */
+static bool is_base(const char *value)
+{
+    const char *slash = strrchr(value, '/'), *last = slash ? slash + 1 : value;
+    return *last && strcmp(last, ".") != 0 && strcmp(last, "..") != 0 && strcmp(last, ".h5") != 0;
+}
+
 static enum tri_status take_output(struct long_options *options, const struct kind *kind, const char *value,
                                    struct tri_error *error)
 {
@@ -234,6 +241,9 @@ static enum tri_status take_output(struct long_options *options, const struct ki
         return add_file(options->streams, &options->n_streams, value, error);
     if (tri_format_of(value))
         return add_file(options->exports, &options->n_exports, value, error);
+    if (*value && !is_base(value))
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0,
+                        "--output: \"%.40s\" does not end in a name that .node and so on could go behind", value);
     return take_name(&options->output, kind, value, error);
 }
 

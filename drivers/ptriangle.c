@@ -78,10 +78,19 @@ static bool sweep_for_tests(void)
 
 /* --- hooks */
 
+/* A rank knows of its own part. */
+static void tell_reached(const struct program *p, int64_t triangles)
+{
+    const bool in_parts = p->launch.carrier && p->launch.carrier->n_ranks > 1;
+    interrupt_reached(triangles, in_parts ? " triangles in the part of the first task" : " triangles");
+}
+
 static void follow(void *user, int round, int phase, int64_t triangles)
 {
     struct program *p = user;
     interrupt_stage(phase == PAR_NUMBERING ? "numbering" : "refining");
+    if (phase != PAR_NUMBERING)
+        tell_reached(p, triangles);
     progress_step(&p->progress, round, phase, triangles);
 }
 
@@ -123,6 +132,8 @@ static enum tri_status refine_with(struct program *p, struct run *run, const str
     progress_end(&p->progress, options->sweep ? handed_out(p, 1) : mesh->n_triangles,
                  options->sweep ? 0 : p->schedule.seconds_number);
     p->refined = true;
+    if (status == TRI_STOPPED)
+        tell_reached(p, mesh->n_triangles + (options->carrier ? 0 : p->streams.triangles)); /* ranks refine first */
     return status;
 }
 

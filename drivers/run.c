@@ -320,6 +320,7 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
         return status;
     console_say(&r->console, "Adding vertices until the bounds are kept.\n");
     interrupt_stage("refining");
+    interrupt_reached(mesh->n_triangles, " triangles");
     status = r->run.plan.swept ? begin_sweep(r, mesh) : count_unused(r, mesh, error);
     if (!status)
         status = hooks->refine ? hooks->refine(hooks->user, &r->run, &outputs, mesh, quality, report, error)
@@ -392,16 +393,29 @@ static int64_t count_bad(const struct runner *r)
     return sum;
 }
 
+/* What there is of the mesh, as far as this process knows: on several ranks each has a part. */
+static void tell_how_far(const struct runner *r, char *far, size_t size)
+{
+    const struct run *run = &r->run;
+    const int64_t bad = r->built ? count_bad(r) : -1;
+    if (run->plan.swept) {
+        const char *what;
+        const int64_t reached = interrupt_reached_now(&what);
+        if (reached > 0)
+            snprintf(far, size, ": about %" PRId64 "%s", reached, what);
+        return;
+    }
+    int length = r->built ? snprintf(far, size, ": %ld triangles", (long)run->mesh.n_triangles) : 0;
+    if (bad >= 0)
+        snprintf(far + length, size - (size_t)length, ", %" PRId64 " of them below the bounds", bad);
+}
+
 /* One line: by what, when, where, how far. */
 static void tell_of_stop(struct runner *r, bool partial)
 {
     struct tri_error line = {.status = TRI_STOPPED};
     char far[160] = "";
-    int64_t bad = r->built ? count_bad(r) : -1;
-    bool counted = r->built && !r->run.plan.swept;
-    int length = counted ? snprintf(far, sizeof far, ": %ld triangles", (long)r->run.mesh.n_triangles) : 0;
-    if (bad >= 0)
-        snprintf(far + length, sizeof far - (size_t)length, ", %" PRId64 " of them below the bounds", bad);
+    tell_how_far(r, far, sizeof far);
     tri_fail(&line, TRI_STOPPED, NULL, 0, "stopped by %s after %.1f s while %s%s; %s", interrupt_cause(),
              tri_seconds() - r->begin, interrupt_stage_now(), far,
              partial ? "the mesh so far is written" : "nothing was written");

@@ -1,8 +1,14 @@
 #include "drivers/start.h"
 
+#include "drivers/tasks.h"
+
 #ifndef PTRIANGLE_MODULE
 
-int main(int argc, char **argv) { return program_main(argc, argv); }
+int main(int argc, char **argv)
+{
+    tasks_wait_idly(argv);
+    return program_main(argc, argv);
+}
 
 #else /* its path from the folder of the executable */
 
@@ -11,8 +17,6 @@ int main(int argc, char **argv) { return program_main(argc, argv); }
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-
-#include "drivers/tasks.h"
 
 static bool names_hdf5(const char *word)
 {
@@ -59,6 +63,7 @@ static int run_module(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
+    tasks_wait_idly(argv);
     return needs_module(argc, argv) ? run_module(argc, argv) : program_main(argc, argv);
 }
 

@@ -1,7 +1,9 @@
 #include "drivers/tasks.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 static long number_of(const char *name)
 {
@@ -22,4 +24,31 @@ int tasks_started(int *task)
         }
     *task = 0;
     return 1;
+}
+
+/* Of OpenMP, GCC's library and LLVM's. */
+static const char *const ways_to_wait[] = {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT", "KMP_BLOCKTIME"};
+
+static bool is_way_told(void)
+{
+    for (size_t i = 0; i < sizeof ways_to_wait / sizeof *ways_to_wait; i++)
+        if (getenv(ways_to_wait[i]))
+            return true;
+    return false;
+}
+
+/* What is set tells the new start that it is one. The descriptors by which a launcher is reached stay open: whoever is
+ * at main() has not yet opened any. */
+void tasks_wait_idly(char **argv)
+{
+    char path[4096];
+    int task;
+    if (tasks_started(&task) == 1 || is_way_told())
+        return;
+    const ssize_t n = readlink("/proc/self/exe", path, sizeof path);
+    if (n <= 0 || (size_t)n == sizeof path)
+        return;
+    path[n] = '\0';
+    if (setenv("OMP_WAIT_POLICY", "passive", 1) == 0)
+        execv(path, argv);
 }

@@ -128,7 +128,9 @@ static void test_refused(void **state)
         {"--output", ""},         {"--report", NULL},       {"--progress=1", NULL},   {"--help=", NULL},
         {"--numbering", "block"}, {"--numbering=", NULL},   {"--numbering", NULL},    {"--numbers", "curve"},
         {"--holes", "none"},      {"--holes", NULL},        {"--holes=", NULL},       {"--hole", "auto"},
-        {"--thread", "2"},        {"--threadss", "2"},      {"--", "letter"},         {"--=1", NULL},
+        {"--output", "/"},        {"--output", "a/"},       {"--output", "."},        {"--output", "a/.."},
+        {"--output=.h5", NULL},   {"--thread", "2"},        {"--threadss", "2"},      {"--", "letter"},
+        {"--=1", NULL},
     };
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         struct taken t = nothing(), before = nothing();

@@ -184,3 +184,7 @@ if "$bin/ptriangle" -pq30aAQ --output section.h5 section.poly >.out 2>&1 && [ -f
     check "exit code" test $? -eq 2
     check "one line" test "$(wc -l <.err)" -eq 1
 fi
+
+# --- segments may be missing where faces flatter than rounding have gone: it says so
+"$bin/trianglecheck" --help >.out
+matches 'they are outside the mesh, or within rounding of its boundary'

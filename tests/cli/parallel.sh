@@ -94,6 +94,10 @@ for number in 61 -1 nan x; do
 done
 program 1 --output= letter
 complains 'output: the name is empty'
+for base in / ./ . .. ./.. .h5; do
+    program 1 letter --output "$base"
+    complains 'output: .* does not end in a name that'
+done
 program 1 --progress=yes letter
 complains 'progress takes no value'
 program 1 -- letter

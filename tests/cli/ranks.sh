@@ -371,6 +371,22 @@ check "it is told once" test "$(grep -c 'stopped by SIGTERM after .* nothing was
 check "the state is kept" grep -q 'to go on: ptriangle -Qpq30a0.00001e letter --output two --every 0 --resume state' .err
 rm -rf state
 
+# --- the same where each refines its part: the first one says how far it is
+what="a signal to one of two that refine"
+checks=$((checks + 1))
+timeout 100 "$MPIEXEC" -n 2 sh -c 'rank=${OMPI_COMM_WORLD_RANK:-$PMI_RANK}
+    "$0" "$@" &
+    echo $! >".pid$rank"
+    wait $!' "$bin/ptriangle" -Qpq30a0.00001 letter --output two --checkpoint state --every 0 >.out 2>.err &
+launcher=$!
+while [ ! -e state/piece-0-0 ] && kill -0 $launcher; do
+    sleep 0.05
+done
+kill -TERM "$(cat .pid1)"
+wait $launcher
+complains 'stopped by .* while [a-z]+: about [0-9]+ triangles in the part of the first task; nothing was written'
+rm -rf state two.*
+
 # --- stopped by the limit of time, the first task writes what it has
 ranks 124 2 -Qpq30a0.000003 letter --output two --write-partial --time-limit 2
 check "it says so" grep -q 'the mesh so far is written' .err
