@@ -3,7 +3,8 @@
 
 # One of several tasks has threads that sleep where they wait, unless the caller wants it otherwise.
 waits() { # waits WORDS...: how the last start of the program waits, by what OpenMP's library tells
-    OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0 OMP_DISPLAY_ENV=verbose env "$@" "$bin/ptriangle" --version 2>&1 |
+    OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0 OMP_DISPLAY_ENV=verbose env -u OMP_WAIT_POLICY -u GOMP_SPINCOUNT \
+        -u KMP_BLOCKTIME "$@" "$bin/ptriangle" --version 2>&1 |
         sed -n "s/.*\(GOMP_SPINCOUNT\|KMP_BLOCKTIME\) *= *'\([0-9]*\).*/\2/p" | tr '\n' ' '
 }
 what="how tasks wait"
