@@ -306,10 +306,10 @@ static void add_segments(struct lattice *l)
     }
 }
 
-static void add_triangle(struct lattice *l, int i, int n_nodes, const int32_t corners[3])
+static void add_triangle(struct lattice *l, int i, int n_nodes, const int32_t corner[3])
 {
     for (int k = 0; k < n_nodes; k++)
-        l->nodes[n_nodes * i + k] = k < 3 ? corners[k] : corners[(k + 1) % 3];
+        l->nodes[n_nodes * i + k] = k < 3 ? corner[k] : corner[(k + 1) % 3];
 }
 
 static struct array_grid make_lattice(struct lattice *l, int n_nodes)

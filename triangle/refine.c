@@ -732,7 +732,7 @@ static bool has_credit(struct tri_refiner *r, const struct tri_triangle *t, cons
 {
     bool nearly_good;
     see_credit(r, t, shape, &nearly_good);
-    if (!r->on_credit || tri_has_credit(&r->credit, nearly_good))
+    if (!r->on_credit || !nearly_good || tri_has_credit(&r->credit))
         return true;
     r->on_credit = false;
     r->report->hit_cap = true;
@@ -905,6 +905,7 @@ static void list_corners(struct tri_refiner *r)
     const struct tri_mesh *m = r->mesh;
     if (r->options->fence || r->stage != USUAL_STAGE || r->options->min_angle <= TRI_PROMISED_ANGLE)
         return;
+    r->credit.granted += INT64_C(6) * TRI_ALLOWANCE;
     for (int32_t i = 0; i < r->n_worklist; i++)
         if (tri_is_live(&m->tri[listed(r, i)]))
             tri_list_corners(&r->credit, m, m->tri[listed(r, i)].v);

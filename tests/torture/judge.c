@@ -257,13 +257,14 @@ static void judge_schedule_size(const struct outcome *first, const struct tri_ps
 
 /* Above the usual angle at most so many times the triangles at that, which is proved (refine.c) but where sizes or -D
  * ask for more because of it: there 3.9 times is the most that was seen. Up to it, at most so many times those at
- * the angle that theory promises: points on credit are TRI_CREDIT for each of the others at most in each call, which is
- * proved (credit.h); the others are hardly more than the vertices at that angle, and a call's part of the schedule. */
+ * the angle that theory promises, and some: points on credit for triangles above it are TRI_ALLOWANCE, and TRI_CREDIT
+ * for each of the others, at most in each call (credit.h); the others are hardly more than the vertices at that angle,
+ * and a call's part of the schedule. */
 static void judge_amount(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
     const struct tri_refine_options *asked = &first->options.quality;
     const double PROMISED = TRI_PROMISED_ANGLE, BEYOND = tri_has_sizes(asked) || asked->conforming ? 5 : 2.5;
-    const double USUAL = 1.5 * (TRI_CREDIT + 1);
+    const double USUAL = 2 * (TRI_CREDIT + 1);
     enum { FEW = 1000 };
     struct outcome less = *first;
     double angle = first->options.quality.min_angle;
@@ -273,7 +274,7 @@ static void judge_amount(const struct outcome *first, const struct tri_pslg *psl
     enter(verdict, "meshing at a smaller angle");
     less.options.quality.min_angle = beyond ? TRI_USUAL_ANGLE : PROMISED;
     int32_t n = triangles_of(first->of, &less, pslg, verdict);
-    if (first->mesh.n_triangles > (beyond ? BEYOND * n + 1204 : USUAL * n))
+    if (first->mesh.n_triangles > (beyond ? BEYOND * n + 1204 : USUAL * n + 3 * TRI_ALLOWANCE))
         judge_fault(verdict, "too many", "%d triangles at %g degrees, %d at %g", (int)first->mesh.n_triangles, angle,
                     (int)n, less.options.quality.min_angle);
 }

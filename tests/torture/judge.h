@@ -10,8 +10,8 @@
  *     (judge_bounds.c); and ten angles around each flat triangle, from behind which their points would be seen;
  *   - areas: none, but of triangles thinner than that resolution, and with -Y;
  *   - the number of triangles: 2.5 times that at 34 degrees for any bound above, which is proved (refine.c), 5 times
- *     with sizes or -D, which is measured; up to 34, 19.5 times that at 28 (credit.h: 13
- *     for what else is there, which is measured); by the schedule, see judge_schedule_size;
+ *     with sizes or -D, which is measured; up to 34, 20 times that at 28 and 3,000
+ *     (credit.h, and as much again for what theory promises then); by the schedule, see judge_schedule_size;
  *   - time: 60 s of processor time for meshes of some 100,000 triangles, which take below 1 s each and are made up to
  *     seven times and judged by naive twins; with -Y more, as a point there may cost as much as there are points. */
 #ifndef TESTS_TORTURE_JUDGE_H
