@@ -230,11 +230,11 @@ static bool keeps_to(const struct layer *l, int32_t segment, tri_vertex_id v, do
 /* By its ends: files may count from 0 or from 1. */
 static enum tri_status cannot_keep(const struct layer *l, int32_t segment)
 {
-    const int32_t *ends = &l->pslg->segments[2 * segment];
-    const double *a = &l->pslg->points[2 * (size_t)ends[0]], *b = &l->pslg->points[2 * (size_t)ends[1]];
+    const double unit = l->mesh->unit; /* a power of two */
+    struct tri_point a = end_of(l, segment, 0), b = end_of(l, segment, 1);
     return tri_fail(l->error, TRI_BAD_INPUT, NULL, 0,
                     "the segment from (%.17g, %.17g) to (%.17g, %.17g) cannot be kept to its line: "
-                    "too much lies within rounding of it", a[0], a[1], b[0], b[1]);
+                    "too much lies within rounding of it", unit * a.x, unit * a.y, unit * b.x, unit * b.y);
 }
 
 static enum tri_status check_distance(struct layer *l, struct tri_course course, tri_vertex_id v)

@@ -9,8 +9,8 @@
  *
  * RULE. Triangles smaller than TRI_PROMISED_ANGLE are always refined. Those that are no smaller are refined while there
  * is credit: each point that is not on credit grants TRI_CREDIT points, each on credit takes one, whatever it is for;
- * and a call without a fence grants TRI_ALLOWANCE more, which is what a small figure whose features differ by twelve
- * orders of magnitude takes for 34 degrees.
+ * and each call grants TRI_ALLOWANCE more, which is what a small figure whose features differ by twelve orders of
+ * magnitude takes for 34 degrees.
  *
  * THEOREM. For triangles that are no smaller than TRI_PROMISED_ANGLE a call inserts no more than TRI_ALLOWANCE points,
  * and TRI_CREDIT for each point that it inserts otherwise, and for each vertex that it finds and that is not on credit;

@@ -905,7 +905,6 @@ static void list_corners(struct tri_refiner *r)
     const struct tri_mesh *m = r->mesh;
     if (r->options->fence || r->stage != USUAL_STAGE || r->options->min_angle <= TRI_PROMISED_ANGLE)
         return;
-    r->credit.granted += INT64_C(6) * TRI_ALLOWANCE;
     for (int32_t i = 0; i < r->n_worklist; i++)
         if (tri_is_live(&m->tri[listed(r, i)]))
             tri_list_corners(&r->credit, m, m->tri[listed(r, i)].v);
@@ -1062,6 +1061,7 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
     r->mesh = mesh;
     r->options = options;
     r->criterion = tri_criterion_for(mesh, options);
+    r->credit.granted = INT64_C(6) * TRI_ALLOWANCE;
     r->promised_sin2 = tri_bounds_for(TRI_PROMISED_ANGLE, options->conforming).sin2;
     r->report = report;
     begin_stages(r);
