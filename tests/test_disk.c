@@ -156,6 +156,20 @@ static void test_levels_of_input_vertices_are_renewed(void **state)
     assert_in_range(left, 0, 2); /* 8 where they are not renewed */
 }
 
+/* For a vertex level with an end but for rounding there is no place to split: no reason not to split for the sake of
+ * the one on the other side of the subsegment. */
+static void test_both_apexes_of_a_circle_have_their_split(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg;
+    struct tri_report report;
+    assert_true(support_read("regress/circle_of_two.poly", &pslg));
+    struct tri_mesh mesh = conforming(&pslg, 0, &report);
+    assert_int_equal(circles_left(&mesh, &report), 0);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
 /* The loop leaves no subsegment encroached, on anything, and no split makes a part that is shorter than half the
  * shortest edge. */
 static void test_nothing_stays_that_can_be_split(void **state)
@@ -280,6 +294,7 @@ int main(void)
         cmocka_unit_test(test_levels_are_level_in_spite_of_rounding),
         cmocka_unit_test(test_new_levels_find_places_that_fit),
         cmocka_unit_test(test_levels_of_input_vertices_are_renewed),
+        cmocka_unit_test(test_both_apexes_of_a_circle_have_their_split),
         cmocka_unit_test(test_nothing_stays_that_can_be_split),
         cmocka_unit_test(test_what_stays_is_counted),
         cmocka_unit_test(test_what_would_take_too_many_parts_is_counted_by_place),

@@ -797,6 +797,21 @@ static bool is_among_credit(const struct tri_mesh *m, const struct tri_subsegmen
     return is;
 }
 
+/* Splits subsegment s, as `where` says, for the sake of the first apex in its circle. Where coordinates have no place
+ * for that, they may have one for the sake of the apex on its other side. */
+static enum outcome split_for_either(struct tri_refiner *r, tri_sub_id s, struct tri_disk_split where)
+{
+    const struct tri_mesh *m = r->mesh;
+    const struct tri_subsegment *sub = &m->sub[s];
+    const tri_halfedge left = sub->side[0], right = sub->side[1];
+    const tri_triangle_id beside = tri_of(left == TRI_NONE ? right : left);
+    assert(s >= 0 && tri_is_live(&m->tri[beside]));
+    enum outcome outcome = split_at(r, s, where, beside);
+    if (outcome != REFUSED || left == TRI_NONE || right == TRI_NONE || !tri_is_in_diametral_disk(m, sub, left))
+        return outcome;
+    return tri_is_encroached_from(m, sub, right, &where) ? split_at(r, s, where, beside) : outcome;
+}
+
 /* A pre-refinement ends each level that it begins (see tri_refine_options.urgent), whatever its limit. */
 static bool split_encroached(struct tri_refiner *r)
 {
@@ -807,15 +822,13 @@ static bool split_encroached(struct tri_refiner *r)
         const struct tri_subsegment *sub = &r->mesh->sub[s];
         if (sub->side[0] == TRI_BEYOND || sub->side[1] == TRI_BEYOND)
             return wait_for_more(r, sub->v) != FAILED;
-        tri_triangle_id beside = tri_of(sub->side[sub->side[0] == TRI_NONE]);
-        assert(s >= 0 && tri_is_live(&r->mesh->tri[beside]));
         r->n_encroached--;
         struct tri_disk_split where;
         if (!tri_is_encroached(r->mesh, sub, &where) || (!r->options->urgent && at_limit(r)))
             continue;
         r->sized = false;
         r->on_credit = is_among_credit(r->mesh, sub);
-        enum outcome outcome = split_at(r, s, where, beside);
+        enum outcome outcome = split_for_either(r, s, where);
         if (outcome == FAILED) {
             r->encroached[r->n_encroached++] = s; /* there is room: it was there a moment ago */
             return false;
