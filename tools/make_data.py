@@ -1008,6 +1008,10 @@ FOUND = [
     Case("regress/wide_fans.poly", None, "segments nearly on one line, two decimals, in a figure of long walls",
          "-cq31 in blocks: about as many steps as triangles; each triangle of a fan at a fence searched all others",
          ()),
+    Case("regress/ulp_lattice.poly", None, "three segments that cross within a few units in the last place",
+         "keeps all; once they led each other to and fro, and one could not be kept", ()),
+    Case("regress/no_room_to_cross.poly", None, "segments nearly on one line in a hull that is as thin as they are",
+         "keeps all; once a crossing found no place in the hull, and one could not be kept", ()),
     Case("regress/hidden_gap.poly", None, "two walls side by side, three vertices in the space between hide it",
          "-q20: some hundred triangles; once without end, as the space was filled at any price", ()),
 ]

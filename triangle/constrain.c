@@ -12,7 +12,8 @@
  *      pieces run along the same vertices they are shared (bundle.h).
  *   3. Where the piece crosses a subsegment, both get a vertex in common: one that is within APART of the crossing,
  *      else a new one, the rounded crossing of the two input segments (of the pieces, where bends have moved the
- *      crossing away from that). The subsegment is taken up, and its two parts and those of the piece are laid by the
+ *      crossing away from that), else, where rounding leaves no room for that, the end of one that is nearest to the
+ *      other. The subsegment is taken up, and its two parts and those of the piece are laid by the
  *      same rules.
  *   4. When all are laid, a subsegment with an apex of its triangles beside it, as rule 2 has it, is taken up and runs
  *      through that: it was an edge before it was laid, or the apex came later. Else a face would open there through a
@@ -24,7 +25,9 @@
  * subsegment: more than TRI_SEGMENT_ULPS is an error that names the segment.
  * Termination: a piece is replaced by two shorter ones (rules 1, 2), or a new vertex appears, farther than APART from
  * its neighbours (rule 3), or the subsegment in the way is bent round a vertex that it was too near to (rule 3, shared
- * vertex). That this ends soon is experience, not proved: a bound on the number of pieces makes it an error otherwise.
+ * vertex). On lattices of a few units in the last place that may go to and fro for ever: from half a bound on the
+ * number of pieces on, the end of one that lies between those of the other comes first in rule 3, so that nothing but
+ * the other is cut. That this ends soon is experience, not proved: at the bound it is an error.
  * Rule 4 replaces a subsegment by two shorter ones, edges of the same triangle, of which there are finitely many.
  *
  * INVARIANT: between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v]
@@ -73,6 +76,7 @@ struct layer {
     struct tri_piece *piece; /* stack of what remains of the segment, and of earlier ones that had to be taken up */
     int32_t n_pieces, piece_capacity;
     int32_t segment; /* the input segment that is being laid */
+    bool runs_on;    /* are there so many pieces that they may go to and fro? See cross(). */
     bool runs_along; /* has one met a vertex before its end? */
     uint32_t step; /* see tri_stop_is_due */
     struct tri_constrain_report *report;
@@ -237,13 +241,18 @@ static enum tri_status cannot_keep(const struct layer *l, int32_t segment)
                     "too much lies within rounding of it", unit * a.x, unit * a.y, unit * b.x, unit * b.y);
 }
 
-static enum tri_status check_distance(struct layer *l, struct tri_course course, tri_vertex_id v)
+/* The first of these segments that v is too far from; TRI_NONE if there is none. */
+static int32_t strays_from(const struct layer *l, struct tri_course course, tri_vertex_id v)
 {
-    int32_t segment[2] = {course.first, course.marked};
-    for (int k = 0; k < 2; k++)
-        if (segment[k] != TRI_NONE && !keeps_to(l, segment[k], v, TRI_SEGMENT_ULPS))
-            return cannot_keep(l, segment[k]);
-    return TRI_OK;
+    if (course.first != TRI_NONE && !keeps_to(l, course.first, v, TRI_SEGMENT_ULPS))
+        return course.first;
+    return course.marked == TRI_NONE || keeps_to(l, course.marked, v, TRI_SEGMENT_ULPS) ? TRI_NONE : course.marked;
+}
+
+static enum tri_status check_distance(const struct layer *l, struct tri_course course, tri_vertex_id v)
+{
+    int32_t segment = strays_from(l, course, v);
+    return segment == TRI_NONE ? TRI_OK : cannot_keep(l, segment);
 }
 
 /* Makes ab, whose gap begins in triangle t, a subsegment. */
@@ -450,6 +459,25 @@ static struct tri_point crossing_of(const struct layer *l, const struct tri_piec
     return fabs(there.x - here.x) <= reach && fabs(there.y - here.y) <= reach ? there : here;
 }
 
+/* Where there is no room for a crossing of the last pieces from number `first` on: the end of one that lies between
+ * those of another, the nearest to that, and keeps to its segment; TRI_NONE where there is none. */
+static tri_vertex_id nearest_end(const struct layer *l, int32_t first)
+{
+    tri_vertex_id nearest = TRI_NONE;
+    double least = HUGE_VAL;
+    for (int32_t i = first; i < l->n_pieces; i++)
+        for (int32_t k = 2 * first; k < 2 * l->n_pieces; k++) {
+            const struct tri_piece *piece = &l->piece[i], *other = &l->piece[k / 2];
+            tri_vertex_id v = k % 2 == 0 ? other->from : other->to;
+            if (v == piece->from || v == piece->to || !lies_between(l, v, piece))
+                continue;
+            double distance = tri_line_distance(l->mesh->xy[piece->from], l->mesh->xy[piece->to], l->mesh->xy[v]);
+            if (distance < least && strays_from(l, piece->course, v) == TRI_NONE)
+                least = distance, nearest = v;
+        }
+    return nearest;
+}
+
 /* Rule 3: the piece crosses subsegment s. */
 static enum tri_status cross(struct layer *l, const struct tri_piece *piece, tri_sub_id s)
 {
@@ -473,9 +501,14 @@ static enum tri_status cross(struct layer *l, const struct tri_piece *piece, tri
     enum tri_search found = t == TRI_NONE ? TRI_SEARCH_OUTSIDE : tri_cavity_search(&l->cavity, l->mesh, p, t);
     if (found == TRI_SEARCH_NO_MEMORY)
         return no_memory(l);
-    tri_vertex_id v = choose_vertex(l, first, t, p, APART * tri_resolution(p));
-    if (v == TRI_NONE && found != TRI_SEARCH_FOUND)
-        return cannot_keep(l, l->segment);
+    tri_vertex_id v = l->runs_on ? nearest_end(l, first) : TRI_NONE;
+    if (v == TRI_NONE)
+        v = choose_vertex(l, first, t, p, APART * tri_resolution(p));
+    if (v == TRI_NONE && found != TRI_SEARCH_FOUND) {
+        v = nearest_end(l, first);
+        if (v == TRI_NONE)
+            return cannot_keep(l, l->segment);
+    }
     if (v != TRI_NONE) {
         l->report->bent++;
     } else {
@@ -594,6 +627,7 @@ static enum tri_status lay_pieces(struct layer *l)
         if (tri_stop_is_due(l->mesh->stop, &l->step))
             return tri_fail_stopped(l->error);
         struct tri_piece next = l->piece[--l->n_pieces];
+        l->runs_on = n >= bound / 2;
         if (n >= bound)
             return cannot_keep(l, l->segment);
         enum tri_status status = lay_piece(l, next);
