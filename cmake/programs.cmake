@@ -8,7 +8,8 @@ find_path(HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial)
 find_library(HDF5_LIBRARY NAMES hdf5_serial hdf5 PATH_SUFFIXES hdf5/serial)
 if(HDF5_INCLUDE AND HDF5_LIBRARY AND ZLIB_FOUND)
     set(CMAKE_REQUIRED_INCLUDES ${HDF5_INCLUDE})
-    check_c_source_compiles("#include <hdf5.h>\n#if !H5_VERSION_GE(1, 10, 5) || defined(H5_HAVE_PARALLEL)\n#error\n#endif\n\
+    check_c_source_compiles("#include <hdf5.h>\n\
+        #if !H5_VERSION_GE(1, 10, 5) || defined(H5_HAVE_PARALLEL)\n#error\n#endif\n\
         int main(void) { return 0; }" PTRIANGLE_HDF5)
     unset(CMAKE_REQUIRED_INCLUDES)
 endif()
@@ -63,7 +64,8 @@ function(ptriangle_program name)
     set_property(GLOBAL APPEND PROPERTY PTRIANGLE_EXECUTABLES ${name})
 endfunction()
 
-# A program that may need MPI or HDF5: the objects <name>_parts; the executable; and, where modules are used, <name>_module.
+# A program that may need MPI or HDF5: the objects <name>_parts; the executable; and, where modules are used,
+# <name>_module.
 # Sources are added to the parts, libraries by ptriangle_link_parts.
 function(ptriangle_program_of_parts name)
     ptriangle_program(${name} SOURCES drivers/start.c $<TARGET_OBJECTS:${name}_parts>)
@@ -78,6 +80,7 @@ function(ptriangle_program_of_parts name)
         ptriangle_compile_program(${name}_module ${output})
         ptriangle_static_runtime(${name}_module)
         target_link_libraries(${name}_module PRIVATE libtrihdf5)
+        target_link_options(${name}_module PRIVATE -Wl,--exclude-libs,ALL) # the runtime inside is for itself alone
         target_compile_definitions(${name} PRIVATE PTRIANGLE_MODULE="${PTRIANGLE_MODULE_DIR}/${output}.so")
         target_link_libraries(${name} PRIVATE libtrinohdf5 ${CMAKE_DL_LIBS})
         add_dependencies(${name} ${name}_module)

@@ -186,8 +186,8 @@ set(PTRIANGLE_PUBLIC_HEADERS
     include/ptriangle/files.h
     include/ptriangle/check.h)
 
-# Folder drivers/: the executables, each from drivers/<name>.c. The second list of programs needs the folder sched/ and its
-# library.
+# Folder drivers/: the executables, each from drivers/<name>.c. The second list of programs needs the folder sched/ and
+# its library.
 set(PTRIANGLE_SEQUENTIAL_PROGRAMS triangle)
 set(PTRIANGLE_JUDGE_SOURCES drivers/verdict.c sched/threads.c)
 set(PTRIANGLE_JUDGED_SOURCES # reading of meshes that are there, for the judge and for meshplot

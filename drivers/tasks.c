@@ -3,6 +3,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 static long number_of(const char *name)
@@ -19,7 +20,7 @@ int tasks_started(int *task)
 {
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
         if (number_of(sizes[i]) > 1) {
-            *task = (int)number_of(ranks[i]);
+            *task = number_of(ranks[i]) > 0 ? (int)number_of(ranks[i]) : 0;
             return (int)number_of(sizes[i]);
         }
     *task = 0;
@@ -37,6 +38,13 @@ static bool is_way_told(void)
     return false;
 }
 
+/* Is this file the program that argv names, rather than a loader that was given it? */
+static bool is_program(const char *path, const char *argv0)
+{
+    const char *file = strrchr(path, '/'), *name = strrchr(argv0, '/');
+    return strcmp(file ? file + 1 : path, name ? name + 1 : argv0) == 0;
+}
+
 /* What is set tells the new start that it is one. The descriptors by which a launcher is reached stay open: whoever is
  * at main() has not yet opened any. */
 void tasks_wait_idly(char **argv)
@@ -49,6 +57,6 @@ void tasks_wait_idly(char **argv)
     if (n <= 0 || (size_t)n == sizeof path)
         return;
     path[n] = '\0';
-    if (setenv("OMP_WAIT_POLICY", "passive", 1) == 0)
+    if (argv[0] && is_program(path, argv[0]) && setenv("OMP_WAIT_POLICY", "passive", 1) == 0)
         execv(path, argv);
 }

@@ -1010,6 +1010,8 @@ FOUND = [
          ()),
     Case("regress/ulp_lattice.poly", None, "three segments that cross within a few units in the last place",
          "keeps all; once they led each other to and fro, and one could not be kept", ()),
+    Case("regress/to_and_fro.poly", None, "segments between seven points, three of them neighbours in the last place",
+         "keeps all; once two led each other to and fro, and one could not be kept", ()),
     Case("regress/no_room_to_cross.poly", None, "segments nearly on one line in a hull that is as thin as they are",
          "keeps all; once a crossing found no place in the hull, and one could not be kept", ()),
     Case("regress/hidden_gap.poly", None, "two walls side by side, three vertices in the space between hide it",

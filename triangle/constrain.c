@@ -25,9 +25,10 @@
  * subsegment: more than TRI_SEGMENT_ULPS is an error that names the segment.
  * Termination: a piece is replaced by two shorter ones (rules 1, 2), or a new vertex appears, farther than APART from
  * its neighbours (rule 3), or the subsegment in the way is bent round a vertex that it was too near to (rule 3, shared
- * vertex). On lattices of a few units in the last place that may go to and fro for ever: from half a bound on the
- * number of pieces on, the end of one that lies between those of the other comes first in rule 3, so that nothing but
- * the other is cut. That this ends soon is experience, not proved: at the bound it is an error.
+ * vertex). On lattices of a few units in the last place that may go to and fro for ever. So from half a bound on the
+ * number of pieces on rule 3 cuts the piece at an end of the subsegment, which stays: then nothing happens but that
+ * pieces become shorter, of which there are finitely many. Where neither end can be had it is as before, and at the
+ * bound an error.
  * Rule 4 replaces a subsegment by two shorter ones, edges of the same triangle, of which there are finitely many.
  *
  * INVARIANT: between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v]
@@ -385,8 +386,9 @@ struct choice {
 static bool lies_between(const struct layer *l, tri_vertex_id v, const struct tri_piece *piece)
 {
     struct tri_point a = l->mesh->xy[piece->from], b = l->mesh->xy[piece->to], q = l->mesh->xy[v];
-    double x = b.x - a.x, y = b.y - a.y, at = x * (q.x - a.x) + y * (q.y - a.y);
-    return v == piece->from || v == piece->to || (at > 0 && at < x * x + y * y);
+    double x = b.x - a.x, y = b.y - a.y; /* from either end, since q may be next to it */
+    bool before = x * (q.x - a.x) + y * (q.y - a.y) <= 0, beyond = x * (q.x - b.x) + y * (q.y - b.y) >= 0;
+    return v == piece->from || v == piece->to || (!before && !beyond);
 }
 
 /* The vertex that leads the fewest of the pieces from number `first` on back, then the nearest. */
@@ -459,22 +461,34 @@ static struct tri_point crossing_of(const struct layer *l, const struct tri_piec
     return fabs(there.x - here.x) <= reach && fabs(there.y - here.y) <= reach ? there : here;
 }
 
-/* Where there is no room for a crossing of the last pieces from number `first` on: the end of one that lies between
- * those of another, the nearest to that, and keeps to its segment; TRI_NONE where there is none. */
+/* Is this end of another piece a place to cut the piece, nearer to it than *least? It lies between its ends then, and
+ * keeps to its segment. */
+static void try_end(const struct layer *l, const struct tri_piece *piece, tri_vertex_id end, tri_vertex_id *nearest,
+                    double *least)
+{
+    if (end == piece->from || end == piece->to || !lies_between(l, end, piece) ||
+        strays_from(l, piece->course, end) != TRI_NONE)
+        return;
+    double distance = tri_line_distance(l->mesh->xy[piece->from], l->mesh->xy[piece->to], l->mesh->xy[end]);
+    if (distance < *least)
+        *nearest = end, *least = distance;
+}
+
+/* The end of what piece number `first` crosses, the pieces behind it on the stack, where that piece can be cut, so that
+ * they stay as they are; else an end of it where they can; TRI_NONE where there is none. */
 static tri_vertex_id nearest_end(const struct layer *l, int32_t first)
 {
     tri_vertex_id nearest = TRI_NONE;
     double least = HUGE_VAL;
-    for (int32_t i = first; i < l->n_pieces; i++)
-        for (int32_t k = 2 * first; k < 2 * l->n_pieces; k++) {
-            const struct tri_piece *piece = &l->piece[i], *other = &l->piece[k / 2];
-            tri_vertex_id v = k % 2 == 0 ? other->from : other->to;
-            if (v == piece->from || v == piece->to || !lies_between(l, v, piece))
-                continue;
-            double distance = tri_line_distance(l->mesh->xy[piece->from], l->mesh->xy[piece->to], l->mesh->xy[v]);
-            if (distance < least && strays_from(l, piece->course, v) == TRI_NONE)
-                least = distance, nearest = v;
-        }
+    const struct tri_piece *piece = &l->piece[first];
+    for (int32_t i = first + 1; i < l->n_pieces; i++) {
+        try_end(l, piece, l->piece[i].from, &nearest, &least);
+        try_end(l, piece, l->piece[i].to, &nearest, &least);
+    }
+    for (int32_t i = first + 1; nearest == TRI_NONE && i < l->n_pieces; i++) {
+        try_end(l, &l->piece[i], piece->from, &nearest, &least);
+        try_end(l, &l->piece[i], piece->to, &nearest, &least);
+    }
     return nearest;
 }
 

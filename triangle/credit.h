@@ -17,8 +17,8 @@
  * those count as often as a sixth of the triangles in its worklist that have them for a corner, which is once on
  * average, and once at most within a fence. Proof: it counts them. Those on credit grant nothing, so it does not matter
  * for the sum of a schedule's calls that they grow in number from phase to phase: a vertex lies in one block of each
- * phase. What comes of these points in triangles smaller than TRI_PROMISED_ANGLE is what theory promises for a figure
- * with these vertices: about as many again (measured). */
+ * phase; the allowance is there for each block. What comes of these points in triangles smaller than
+ * TRI_PROMISED_ANGLE is what theory promises for a figure with these vertices: about as many again (measured). */
 #ifndef TRIANGLE_CREDIT_H
 #define TRIANGLE_CREDIT_H
 

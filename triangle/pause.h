@@ -14,7 +14,7 @@ struct tri_pause {
     struct tri_bounds bounds; /* for the angle that is worked for now */
     int64_t granted, paid;    /* credit.h */
     int64_t above, back;      /* see refine.c, as for what follows */
-    int32_t stage, step, limit, next_listed, n_worklist, in_hand;
+    int32_t stage, step, limit, next_listed, n_worklist, in_hand, left_above;
     struct tri_entry hand;
     struct tri_bad_queue queue;
     tri_sub_id *encroached;

@@ -85,6 +85,7 @@ struct tri_refiner {
     double promised_sin2; /* as bounds.sin2, for TRI_PROMISED_ANGLE */
     int64_t above;    /* how many points more may be inserted for angles above TRI_USUAL_ANGLE */
     int64_t back;     /* and, once that was too many, for BACK_ANGLE */
+    bool left_above;  /* has a triangle been left in ABOVE_STAGE for what it would cost? */
     enum step step;
     int limit;        /* buckets from here on wait for the second pass */
     int32_t next_listed, n_worklist;
@@ -689,7 +690,7 @@ static void count_point(struct tri_refiner *r)
     if (left != -1)
         return;
     lower_bound(r, is_above ? BACK_ANGLE : 0);
-    r->report->hit_cap = true;
+    r->left_above = r->report->hit_cap = true;
 }
 
 static bool at_limit(struct tri_refiner *r)
@@ -703,7 +704,7 @@ static bool at_limit(struct tri_refiner *r)
 
 /* Above the usual angle edges must be twice as long, so that afterwards there is room for better angles around
  * them. */
-static bool is_hopeless(const struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape)
+static bool is_hopeless(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape)
 {
     const tri_vertex_id *v = r->mesh->tri[triangle].v;
     const double angle = tri_final_angle(r->options);
@@ -712,7 +713,13 @@ static bool is_hopeless(const struct tri_refiner *r, tri_triangle_id triangle, c
         return true;
     if (r->stage != ABOVE_STAGE || !tri_has_run_away(r->mesh, angle, v[tri_next[k]], v[tri_prev[k]], shape->l[k] / 4))
         return false;
-    return r->report->hit_cap = true;
+    return r->left_above = r->report->hit_cap = true;
+}
+
+/* Are there points on credit? */
+static bool gives_credit(const struct tri_refiner *r)
+{
+    return r->stage == USUAL_STAGE && r->options->min_angle > TRI_PROMISED_ANGLE;
 }
 
 /* Must the triangle's point be paid for (credit.h), and is it nearly good? */
@@ -723,8 +730,8 @@ static void see_credit(struct tri_refiner *r, const struct tri_triangle *t, cons
     const int k = shape->shortest;
     double longer = tri_longer_product(shape->l[0], shape->l[1], shape->l[2]);
     *nearly_good = shape->area2 * shape->area2 >= r->promised_sin2 * longer;
-    r->on_credit = r->stage == USUAL_STAGE && r->options->min_angle > TRI_PROMISED_ANGLE &&
-                   (*nearly_good || tri_is_on_credit(m, t->v[tri_next[k]]) || tri_is_on_credit(m, t->v[tri_prev[k]]));
+    r->on_credit = gives_credit(r) && (*nearly_good || tri_is_on_credit(m, t->v[tri_next[k]]) ||
+                                       tri_is_on_credit(m, t->v[tri_prev[k]]));
 }
 
 /* Is there credit for it? */
@@ -761,7 +768,8 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
             return defer(r, entry.t, &r->report->fenced);
         r->sized = badness == TRI_BAD_SIZE;
         r->on_credit = false;
-        if (r->options->fence && badness == TRI_BAD_ANGLE && !tri_meet_corners(&r->credit, r->mesh, t->v))
+        if (r->options->fence && badness == TRI_BAD_ANGLE && gives_credit(r) &&
+            !tri_meet_corners(&r->credit, r->mesh, t->v))
             return FAILED;
         if (badness == TRI_BAD_ANGLE && (is_hopeless(r, entry.t, &shape) || !has_credit(r, t, &shape))) {
             if (!tri_is_too_large(&r->criterion, t, &shape))
@@ -779,7 +787,8 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         }
         if (outcome == DONE || outcome == AGAIN) {
             count_point(r);
-            tri_count_credit(&r->credit, r->on_credit);
+            if (gives_credit(r))
+                tri_count_credit(&r->credit, r->on_credit);
         }
         if (outcome != AGAIN)
             return outcome == REFUSED ? give_up(r, entry.t, r->excuse) : outcome;
@@ -916,7 +925,7 @@ static bool queue_chunk(struct tri_refiner *r)
 static void list_corners(struct tri_refiner *r)
 {
     const struct tri_mesh *m = r->mesh;
-    if (r->options->fence || r->stage != USUAL_STAGE || r->options->min_angle <= TRI_PROMISED_ANGLE)
+    if (r->options->fence || !gives_credit(r))
         return;
     for (int32_t i = 0; i < r->n_worklist; i++)
         if (tri_is_live(&m->tri[listed(r, i)]))
@@ -1032,7 +1041,7 @@ static void next_stage(struct tri_refiner *r)
         return;
     case ABOVE_STAGE:
         r->stage = LAST_STAGE;
-        if (r->report->hit_cap && r->back >= 0) {
+        if (r->left_above && r->back >= 0) {
             r->above = -1;
             lower_bound(r, BACK_ANGLE);
             r->stage = BACK_STAGE;
@@ -1119,6 +1128,7 @@ void tri_refiner_show(const struct tri_refiner *r, struct tri_pause *pause)
     pause->bounds = r->criterion.bounds;
     pause->above = r->above;
     pause->back = r->back;
+    pause->left_above = r->left_above;
     pause->granted = r->credit.granted;
     pause->paid = r->credit.paid;
     pause->stage = (int32_t)r->stage;
@@ -1141,6 +1151,7 @@ void tri_refiner_go_on(struct tri_refiner *r, struct tri_pause *pause)
     r->criterion.bounds = pause->bounds;
     r->above = pause->above;
     r->back = pause->back;
+    r->left_above = pause->left_above != 0;
     r->credit.granted = pause->granted;
     r->credit.paid = pause->paid;
     r->stage = (enum stage)pause->stage;

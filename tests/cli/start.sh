@@ -27,6 +27,10 @@ names=$(for module in "$modules"/*.so; do basename "$module" .so; done)
 
 fresh letter.poly
 for each in $names; do
+    if command -v nm >/dev/null; then
+        check "$each.so lets out program_main alone" sh -c \
+            '[ "$(nm -D --defined-only "$1" | awk "{ print \$3 }" | grep -v "^program_")" = "" ]' sh "$modules/$each.so"
+    fi
     if command -v readelf >/dev/null; then
         check "$each needs MPI or HDF5" sh -c '! readelf -d "$1" | grep -E "NEEDED.*lib(mpi|hdf5)"' sh "$bin/$each"
     fi
