@@ -26,9 +26,8 @@
  * Termination: a piece is replaced by two shorter ones (rules 1, 2), or a new vertex appears, farther than APART from
  * its neighbours (rule 3), or the subsegment in the way is bent round a vertex that it was too near to (rule 3, shared
  * vertex). On lattices of a few units in the last place that may go to and fro for ever. So from half a bound on the
- * number of pieces on rule 3 cuts the piece at an end of the subsegment, which stays: then nothing happens but that
- * pieces become shorter, of which there are finitely many. Where neither end can be had it is as before, and at the
- * bound an error.
+ * number of pieces on rule 3 cuts the piece at an end of the subsegment, which stays, where one is near enough. That
+ * this ends is experience, not proved: at the bound it is an error.
  * Rule 4 replaces a subsegment by two shorter ones, edges of the same triangle, of which there are finitely many.
  *
  * INVARIANT: between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v]
@@ -461,13 +460,19 @@ static struct tri_point crossing_of(const struct layer *l, const struct tri_piec
     return fabs(there.x - here.x) <= reach && fabs(there.y - here.y) <= reach ? there : here;
 }
 
+/* So near to a segment that v keeps to whatever shares a piece with it, too: that lies within BESIDE of it. */
+static bool keeps_near(const struct layer *l, int32_t segment, tri_vertex_id v)
+{
+    return segment == TRI_NONE || keeps_to(l, segment, v, TRI_SEGMENT_ULPS - BESIDE);
+}
+
 /* Is this end of another piece a place to cut the piece, nearer to it than *least? It lies between its ends then, and
- * keeps to its segment. */
+ * near its segment. */
 static void try_end(const struct layer *l, const struct tri_piece *piece, tri_vertex_id end, tri_vertex_id *nearest,
                     double *least)
 {
     if (end == piece->from || end == piece->to || !lies_between(l, end, piece) ||
-        strays_from(l, piece->course, end) != TRI_NONE)
+        !keeps_near(l, piece->course.first, end) || !keeps_near(l, piece->course.marked, end))
         return;
     double distance = tri_line_distance(l->mesh->xy[piece->from], l->mesh->xy[piece->to], l->mesh->xy[end]);
     if (distance < *least)
