@@ -11,6 +11,7 @@
 #include "triangle/crowd.h"
 
 #include "triangle/criterion.h"
+#include "triangle/estimate.h"
 #include "triangle/quality.h"
 #include "triangle/small_angle.h"
 
@@ -180,23 +181,12 @@ struct forecast {
     double fineness; /* triangles for each square of the size of features */
 };
 
-/* Measured: mean area over bound. */
-static const double MEAN_OVER_BOUND = 0.655;
-
-/* log2(x) for x >= 1, within 0.09: the exponent, and the mantissa for the rest. */
-static double rough_log2(double x)
-{
-    int exponent;
-    double mantissa = frexp(x, &exponent);
-    return exponent + 2 * mantissa - 2;
-}
-
 /* How many times its shortest edge has to be doubled until it is as long as its longest, or as `most`. */
 static double octaves_of(const struct tri_shape *shape, double most)
 {
     double longest2 = tri_larger(shape->l[0], tri_larger(shape->l[1], shape->l[2]));
     double ratio2 = fmin(longest2, most * most) / shape->l[shape->shortest];
-    return ratio2 > 1 ? 0.5 * rough_log2(ratio2) : 0;
+    return ratio2 > 1 ? 0.5 * tri_rough_log2(ratio2) : 0;
 }
 
 /* How many times a gap between segments that the shortest edge of the triangle bridges is longer than wide, as far as
@@ -216,7 +206,7 @@ static double triangles_of(const struct forecast *e, tri_triangle_id t)
     const double AN_OCTAVE = 0.4, A_GAP = 4;
     const struct tri_mesh *mesh = e->mesh;
     const struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
-    const double asked = 2 / (MEAN_OVER_BOUND * tri_area2_bound(&e->areas, mesh->tri[t].region));
+    const double asked = 2 / (TRI_MEAN_OVER_BOUND * tri_area2_bound(&e->areas, mesh->tri[t].region));
     const double itself = fmax(0.5 * shape.area2 * asked, 1);
     if (!(e->fineness > 0) || tri_is_hopeless(mesh, tri_final_angle(e->options), t, &shape))
         return itself;

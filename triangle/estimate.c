@@ -15,9 +15,6 @@ enum { DEEPEST_CUT = 12, SURVEY = 1 << 17 };
 /* More than anybody will have, and no infinity: bounds may ask for any number. */
 static const double MOST_WORK = 1e15;
 
-/* Measured: mean area over bound. */
-static const double MEAN_OVER_BOUND = 0.655;
-
 struct corners {
     struct tri_point a, b, c;
 };
@@ -33,7 +30,7 @@ struct estimator {
 /* Triangles that the bounds ask for on one unit of area in this region; 0 without bound. */
 static double density(const struct estimator *e, tri_region_id region)
 {
-    return 2 / (MEAN_OVER_BOUND * tri_area2_bound(&e->criterion, region));
+    return 2 / (TRI_MEAN_OVER_BOUND * tri_area2_bound(&e->criterion, region));
 }
 
 /* Triangles that the caller's size test asks for in this one, by probing: it is asked about the triangle shrunk to a
@@ -105,14 +102,6 @@ static double area_work(const struct estimator *e, tri_triangle_id t)
     return tri_has_sizes(e->options) ? work_inside(e, e->mesh->tri[t].region, &corners) : 0;
 }
 
-/* log2(x) for x >= 1, within 0.09: the exponent, and the mantissa for the rest. */
-static double rough_log2(double x)
-{
-    int exponent;
-    double mantissa = frexp(x, &exponent);
-    return exponent + 2 * mantissa - 2;
-}
-
 /* Triangles that an angle bound makes of one. Sizes grow by a factor from row to row, so that an octave between the
  * shortest edge and the longest takes a number of triangles that the bound alone decides; a narrow space between
  * segments takes as many as it is times longer than wide, and the triangle bridges as much of it as it is long. A
@@ -123,7 +112,7 @@ static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_op
 {
     struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
     double longest2 = tri_larger(shape.l[0], tri_larger(shape.l[1], shape.l[2]));
-    double octaves = 0.5 * rough_log2(longest2 / shape.l[shape.shortest]);
+    double octaves = 0.5 * tri_rough_log2(longest2 / shape.l[shape.shortest]);
     double gap = tri_gap_cost(mesh, t, &shape), angle = fmin(options->min_angle, TRI_USUAL_ANGLE);
     if (tri_is_hopeless(mesh, tri_final_angle(options), t, &shape))
         return 1;
