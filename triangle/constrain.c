@@ -241,18 +241,13 @@ static enum tri_status cannot_keep(const struct layer *l, int32_t segment)
                     "too much lies within rounding of it", unit * a.x, unit * a.y, unit * b.x, unit * b.y);
 }
 
-/* The first of these segments that v is too far from; TRI_NONE if there is none. */
-static int32_t strays_from(const struct layer *l, struct tri_course course, tri_vertex_id v)
-{
-    if (course.first != TRI_NONE && !keeps_to(l, course.first, v, TRI_SEGMENT_ULPS))
-        return course.first;
-    return course.marked == TRI_NONE || keeps_to(l, course.marked, v, TRI_SEGMENT_ULPS) ? TRI_NONE : course.marked;
-}
-
 static enum tri_status check_distance(const struct layer *l, struct tri_course course, tri_vertex_id v)
 {
-    int32_t segment = strays_from(l, course, v);
-    return segment == TRI_NONE ? TRI_OK : cannot_keep(l, segment);
+    int32_t segment[2] = {course.first, course.marked};
+    for (int k = 0; k < 2; k++)
+        if (segment[k] != TRI_NONE && !keeps_to(l, segment[k], v, TRI_SEGMENT_ULPS))
+            return cannot_keep(l, segment[k]);
+    return TRI_OK;
 }
 
 /* Makes ab, whose gap begins in triangle t, a subsegment. */

@@ -4,7 +4,10 @@
 #include "triangle/interpolate.h"
 
 #include <assert.h>
-#include <math.h>
+
+#include "triangle/quality.h"
+
+static double within(double value, double least, double most) { return tri_larger(tri_lesser(value, most), least); }
 
 static double *attributes_of(const struct tri_mesh *mesh, tri_vertex_id v)
 {
@@ -17,7 +20,8 @@ void tri_interpolate_edge(struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id 
     assert(to_vertex < mesh->n_vertices && to_vertex != a && to_vertex != b);
     for (int32_t k = 0; k < mesh->n_attributes; k++) {
         double from = attributes_of(mesh, a)[k], to = attributes_of(mesh, b)[k];
-        attributes_of(mesh, to_vertex)[k] = fmax(fmin(from + fraction * (to - from), fmax(from, to)), fmin(from, to));
+        double value = from + fraction * (to - from);
+        attributes_of(mesh, to_vertex)[k] = within(value, tri_lesser(from, to), tri_larger(from, to));
     }
 }
 
@@ -33,6 +37,7 @@ void tri_interpolate_triangle(struct tri_mesh *mesh, const tri_vertex_id corners
         double at_a = attributes_of(mesh, corners[0])[k];
         double at_b = attributes_of(mesh, corners[1])[k], at_c = attributes_of(mesh, corners[2])[k];
         double value = at_a + to_b * (at_b - at_a) + to_c * (at_c - at_a);
-        attributes_of(mesh, v)[k] = fmax(fmin(value, fmax(at_a, fmax(at_b, at_c))), fmin(at_a, fmin(at_b, at_c)));
+        double least = tri_lesser(at_a, tri_lesser(at_b, at_c)), most = tri_larger(at_a, tri_larger(at_b, at_c));
+        attributes_of(mesh, v)[k] = within(value, least, most);
     }
 }
