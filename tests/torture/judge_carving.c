@@ -110,7 +110,7 @@ static void compare(const struct flood *f, const struct outcome *o, double *area
     for (int32_t t = 0; t < f->mesh.n_triangles; t++) {
         double area = area_of(&f->mesh, t);
         left += f->mark[t] != GONE;
-        whole += area;
+        whole += fabs(area); /* a flat triangle's may come out below zero */
         if (f->mark[t] != GONE)
             areas[f->mark[t]] += area;
     }
