@@ -22,7 +22,7 @@ char *export_name(const struct export *export, const char *name, int file)
     if (text && export->n_parts == 0)
         snprintf(text, room, "%s", name);
     else if (text)
-        snprintf(text, room, "%.*s_%d%s", stem, name, file + 1, export->format->suffix);
+        snprintf(text, room, "%.*s_%d%s", stem, name, file + 1, name + stem);
     return text;
 }
 

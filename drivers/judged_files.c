@@ -238,12 +238,6 @@ static enum tri_status read_mesh(struct judged_files *f, const struct judged_ask
     return status;
 }
 
-static bool is_hdf5(const char *name)
-{
-    size_t n = strlen(name);
-    return n > 3 && strcmp(name + n - 3, ".h5") == 0;
-}
-
 static enum tri_status open_h5(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
 {
     enum tri_status status = judged_h5_open(&f->h5, ask->base, error);
@@ -257,7 +251,7 @@ static enum tri_status open_h5(struct judged_files *f, const struct judged_ask *
 
 enum tri_status judged_read(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
 {
-    enum tri_status status = is_hdf5(ask->base) ? open_h5(f, ask, error) : read_mesh(f, ask, error);
+    enum tri_status status = tri_name_ends(ask->base, ".h5") ? open_h5(f, ask, error) : read_mesh(f, ask, error);
     if (status == TRI_OK && ask->input != NULL)
         status = read_input(f, ask, error);
     if (status == TRI_OK)

@@ -231,7 +231,7 @@ static enum tri_status add_file(const char **names, int *n, const char *value, s
 static bool is_base(const char *value)
 {
     const char *slash = strrchr(value, '/'), *last = slash ? slash + 1 : value;
-    return *last && strcmp(last, ".") != 0 && strcmp(last, "..") != 0 && strcmp(last, ".h5") != 0;
+    return *last && strcmp(last, ".") != 0 && strcmp(last, "..") != 0 && !tri_name_ends(last, STREAM_SUFFIX);
 }
 
 static enum tri_status take_output(struct long_options *options, const struct kind *kind, const char *value,

@@ -86,12 +86,6 @@ static int fail_with(const struct tri_error *e)
                        : fail(TROUBLE, "%s: %s", e->file, e->text);
 }
 
-static bool ends_with(const char *text, const char *suffix)
-{
-    const size_t n = strlen(text), m = strlen(suffix);
-    return n > m && strcmp(text + n - m, suffix) == 0;
-}
-
 /* --- reading */
 
 static enum tri_status read_text(struct files *f, const char *stem, struct tri_error *error)
@@ -241,7 +235,7 @@ static enum tri_status read_part(struct settings *s, struct files *f, double mem
 static enum tri_status read_mesh(struct settings *s, struct files *f, struct tri_error *error)
 {
     const double memory = 0.8 * resources_memory();
-    if (s->colour == BY_DENSITY || ends_with(s->base, ".h5") || !judged_fits(s->base, memory))
+    if (s->colour == BY_DENSITY || tri_name_ends(s->base, ".h5") || !judged_fits(s->base, memory))
         return read_part(s, f, memory, error);
     enum tri_status status = read_text(f, s->base, error);
     f->all_points = f->mesh.n_points;
@@ -291,7 +285,7 @@ static enum tri_status cairo_failure(cairo_status_t status, const char *path, st
 static enum tri_status draw(const struct settings *s, const struct plot_mesh *mesh, const struct plot_shading *shading,
                             struct tri_output *output, struct tri_error *error)
 {
-    const bool vector = ends_with(s->output, ".svg");
+    const bool vector = tri_name_ends(s->output, ".svg");
     const double width = s->style.width, height = plot_height(&s->style, shading);
     cairo_surface_t *surface = vector ? cairo_svg_surface_create_for_stream(write_bytes, output, width, height)
                                       : cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)width, (int)height);
@@ -431,7 +425,7 @@ static bool apply(void *settings, int option)
     switch (option) {
     case 'o':
         s->output = optarg;
-        return ends_with(optarg, ".png") || ends_with(optarg, ".svg");
+        return tri_name_ends(optarg, ".png") || tri_name_ends(optarg, ".svg");
     case 'c':
         return parse_colouring(optarg, &s->colour);
     case 's':

@@ -18,18 +18,14 @@ int main(int argc, char **argv)
 #include <string.h>
 #include <unistd.h>
 
-static bool names_hdf5(const char *word)
-{
-    const size_t n = strlen(word);
-    return n >= 3 && strcmp(word + n - 3, ".h5") == 0;
-}
+#include "triangle/text/names.h"
 
 static bool needs_module(int argc, char **argv)
 {
     int task;
     bool needed = tasks_started(&task) > 1;
     for (int i = 1; i < argc; i++)
-        needed = needed || names_hdf5(argv[i]);
+        needed = needed || tri_name_ends(argv[i], ".h5");
     return needed;
 }
 

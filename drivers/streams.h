@@ -9,6 +9,7 @@
 #include "ptriangle/tiles.h"
 #include "triangle/hdf5/write.h"
 #include "triangle/text/formats.h"
+#include "triangle/text/names.h"
 #include "triangle/text/stream.h"
 #include "triangle/text/tile_store.h"
 
@@ -43,8 +44,7 @@ struct streams {
 /* Does this name ask for such a file? */
 static inline bool stream_is_wanted(const char *name)
 {
-    size_t n = strlen(name), m = strlen(STREAM_SUFFIX);
-    return n > m && strcmp(name + n - m, STREAM_SUFFIX) == 0;
+    return strlen(name) > strlen(STREAM_SUFFIX) && tri_name_ends(name, STREAM_SUFFIX);
 }
 
 /* The name of the text beside a file of that name, malloc'ed; NULL: no memory. */

@@ -494,6 +494,8 @@ static void test_names(void **state)
     (void)state;
     assert_ptr_equal(tri_format_of("a.b/x.vtu")->write, tri_write_vtu);
     assert_ptr_equal(tri_format_of("fort.14")->write, tri_write_14);
+    assert_ptr_equal(tri_format_of("X.MSH")->write, tri_write_msh); /* capitals are as good */
+    assert_ptr_equal(tri_format_of("x.Vtu")->write, tri_write_vtu);
     assert_null(tri_format_of("x.1"));
     assert_null(tri_format_of("vtu"));
     assert_null(tri_format_of(""));

@@ -129,8 +129,8 @@ static void test_refused(void **state)
         {"--numbering", "block"}, {"--numbering=", NULL},   {"--numbering", NULL},    {"--numbers", "curve"},
         {"--holes", "none"},      {"--holes", NULL},        {"--holes=", NULL},       {"--hole", "auto"},
         {"--output", "/"},        {"--output", "a/"},       {"--output", "."},        {"--output", "a/.."},
-        {"--output=.h5", NULL},   {"--thread", "2"},        {"--threadss", "2"},      {"--", "letter"},
-        {"--=1", NULL},
+        {"--output=.h5", NULL},   {"--output=.H5", NULL},   {"--thread", "2"},        {"--threadss", "2"},
+        {"--", "letter"},         {"--=1", NULL},
     };
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         struct taken t = nothing(), before = nothing();

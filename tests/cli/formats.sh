@@ -17,6 +17,10 @@ says "Writing fort.14."
 judge base --poly letter.poly --min-angle 30
 check "ADCIRC's two suffixes" cmp fort.14 x.grd
 
+fresh letter.poly
+program 0 -p --output X.MSH --output y.2DM --parts 2 letter.poly
+wrote X_1.MSH X_2.MSH y.2DM
+
 # parts: the same on any number of threads, swept or not
 fresh section.poly letter.poly
 PTRIANGLE_TEST_BLOCK=60

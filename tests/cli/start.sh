@@ -78,6 +78,9 @@ if "$bin/ptriangle" -Qpq30 letter.poly --output whole.h5 2>/dev/null; then
         check "the same bytes" cmp whole.h5 letter.h5
         from "$folder" 0 trianglecheck --quiet letter.h5 --poly letter.poly -q 30
     done
+    from alone/bin 0 ptriangle -Qpq30 letter.poly --output LETTER.H5
+    check "in capitals, too" cmp whole.h5 LETTER.H5
+    from alone/bin 0 trianglecheck --quiet LETTER.H5 --poly letter.poly -q 30
     (PATH=$PWD/alone/links:$PATH && rm letter.h5 && ptriangle -Qpq30 letter.poly --output letter.h5)
     check "found by PATH" cmp whole.h5 letter.h5
 fi

@@ -1,7 +1,9 @@
 /* Which writer a name asks for. */
 #include "triangle/text/formats.h"
 
-#include <string.h>
+#include <stddef.h>
+
+#include "triangle/text/names.h"
 
 static const struct tri_format formats[] = {
     {".vtu", "VTK", true, tri_write_vtu, NULL},    {".msh", "Gmsh", true, tri_write_msh, tri_write_msh_parts},
@@ -11,11 +13,8 @@ static const struct tri_format formats[] = {
 
 const struct tri_format *tri_format_of(const char *name)
 {
-    const size_t n = strlen(name);
-    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
-        const size_t m = strlen(formats[i].suffix);
-        if (n >= m && strcmp(name + n - m, formats[i].suffix) == 0)
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        if (tri_name_ends(name, formats[i].suffix))
             return &formats[i];
-    }
     return NULL;
 }

@@ -26,14 +26,14 @@ typedef enum tri_status tri_write_parts_call(struct tri_output *const *outputs, 
 tri_write_parts_call tri_write_msh_parts;
 
 struct tri_format {
-    const char *suffix; /* of the files' names */
+    const char *suffix; /* of the files' names, in small letters */
     const char *name;   /* whose format */
     bool second_order;  /* it can hold second-order triangles */
     tri_write_call *write;
     tri_write_parts_call *write_parts; /* NULL: it has no parts */
 };
 
-/* The format that the name of a file asks for by its end; NULL: none of these. */
+/* The format that the name of a file asks for by its end (tri_name_ends); NULL: none of these. */
 const struct tri_format *tri_format_of(const char *name);
 
 #ifdef __cplusplus

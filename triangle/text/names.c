@@ -13,6 +13,18 @@ char *tri_name(const char *stem, size_t length, const char *ending)
     return name;
 }
 
+/* Whatever the locale. */
+static char small(char c) { return (char)(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c); }
+
+bool tri_name_ends(const char *name, const char *ending)
+{
+    const size_t n = strlen(name), m = strlen(ending);
+    bool ends = n >= m;
+    for (size_t i = 0; ends && i < m; i++)
+        ends = small(name[n - m + i]) == ending[i];
+    return ends;
+}
+
 enum tri_status tri_names_make(struct tri_names *names, const char *stem, size_t length, struct tri_error *error)
 {
     *names = (struct tri_names){tri_name(stem, length, ".node"), tri_name(stem, length, ".poly"),

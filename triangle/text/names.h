@@ -2,6 +2,7 @@
 #ifndef TRIANGLE_TEXT_NAMES_H
 #define TRIANGLE_TEXT_NAMES_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -15,6 +16,10 @@ extern "C" {
 char *tri_name(const char *stem, size_t length, const char *ending);
 
 static inline char *tri_joined(const char *first, const char *second) { return tri_name(first, strlen(first), second); }
+
+/* Does the name end in this, given in small letters? In the name capitals are as good: systems that tell files apart by
+ * their letters get names from such as do not. (The endings of Triangle's own files are in small letters alone.) */
+bool tri_name_ends(const char *name, const char *ending);
 
 /* The input files of a mesh: stem.node, and so on. */
 struct tri_names {
