@@ -122,24 +122,40 @@ static struct totals take_totals(struct bytes *b)
     return t;
 }
 
+/* What stands before the nodes or elements of an entity. */
+struct block {
+    const struct msh_entity *entity;
+    int32_t kind; /* of nodes whether they have parameters, of elements their type */
+    int64_t n;
+};
+
+static struct block take_block(const struct msh_file *msh, struct bytes *b)
+{
+    const int32_t dimension = take_i32(b), tag = take_i32(b), kind = take_i32(b);
+    return (struct block){entity_of(msh, dimension, tag), kind, take_i64(b)};
+}
+
+static int64_t take_tag(struct bytes *b, const struct totals *t)
+{
+    const int64_t tag = take_i64(b);
+    assert_true(tag >= t->least && tag <= t->greatest);
+    return tag;
+}
+
 static void take_nodes(struct msh_file *msh, struct bytes *b)
 {
     const struct totals t = take_totals(b);
     msh->node = calloc((size_t)t.n + 1, sizeof *msh->node);
-    for (int64_t block = 0; block < t.blocks; block++) {
-        const int32_t dimension = take_i32(b), tag = take_i32(b), parametric = take_i32(b);
-        const int64_t n = take_i64(b);
+    for (int64_t i = 0; i < t.blocks; i++) {
+        const struct block block = take_block(msh, b);
         struct msh_node *node = msh->node + msh->n_nodes;
-        assert_true(parametric == 0 && msh->n_nodes + n <= t.n);
-        for (int64_t i = 0; i < n; i++) {
-            node[i].tag = take_i64(b);
-            node[i].entity = entity_of(msh, dimension, tag);
-            assert_true(node[i].tag >= t.least && node[i].tag <= t.greatest);
-        }
-        for (int64_t i = 0; i < n; i++)
-            for (int k = 0; k < 3; k++)
-                node[i].at[k] = take_f64(b);
-        msh->n_nodes += n;
+        assert_true(block.kind == 0 && msh->n_nodes + block.n <= t.n);
+        for (int64_t k = 0; k < block.n; k++)
+            node[k] = (struct msh_node){.tag = take_tag(b, &t), .entity = block.entity};
+        for (int64_t k = 0; k < block.n; k++)
+            for (int axis = 0; axis < 3; axis++)
+                node[k].at[axis] = take_f64(b);
+        msh->n_nodes += block.n;
     }
     assert_true(msh->n_nodes == t.n && b->at == b->end);
 }
@@ -154,18 +170,16 @@ static void take_elements(struct msh_file *msh, struct bytes *b)
 {
     const struct totals t = take_totals(b);
     msh->element = calloc((size_t)t.n + 1, sizeof *msh->element);
-    for (int64_t block = 0; block < t.blocks; block++) {
-        const int32_t dimension = take_i32(b), tag = take_i32(b), type = take_i32(b);
-        const int64_t n = take_i64(b);
-        assert_true(n > 0 && msh->n_elements + n <= t.n && dimension == (type == 1 ? 1 : 2));
-        for (int64_t i = 0; i < n; i++) {
+    for (int64_t i = 0; i < t.blocks; i++) {
+        const struct block block = take_block(msh, b);
+        assert_true(block.n > 0 && msh->n_elements + block.n <= t.n);
+        assert_int_equal(block.entity->dimension, block.kind == 1 ? 1 : 2);
+        for (int64_t k = 0; k < block.n; k++) {
             struct msh_element *e = &msh->element[msh->n_elements++];
-            e->tag = take_i64(b);
-            e->n_nodes = nodes_of_type(type);
-            e->entity = entity_of(msh, dimension, tag);
-            assert_true(e->tag >= t.least && e->tag <= t.greatest);
-            for (int k = 0; k < e->n_nodes; k++)
-                e->nodes[k] = take_i64(b);
+            *e = (struct msh_element){
+                .tag = take_tag(b, &t), .n_nodes = nodes_of_type(block.kind), .entity = block.entity};
+            for (int corner = 0; corner < e->n_nodes; corner++)
+                e->nodes[corner] = take_i64(b);
         }
     }
     assert_true(msh->n_elements == t.n && b->at == b->end);
