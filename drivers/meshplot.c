@@ -472,6 +472,7 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
 }
 
 const int program_trouble = TROUBLE;
+const char program_version[] = PTRIANGLE_VERSION;
 
 int program_main(int argc, char **argv)
 {

@@ -585,6 +585,7 @@ static int carry_out(struct program *p, const struct arguments *arguments, struc
 }
 
 const int program_trouble = EXIT_FAILURE;
+const char program_version[] = PTRIANGLE_VERSION;
 
 int program_main(int argc, char **argv)
 {

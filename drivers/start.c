@@ -16,8 +16,8 @@ int main(int argc, char **argv)
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "drivers/own_path.h"
 #include "triangle/text/names.h"
 
 static bool needs_module(int argc, char **argv)
@@ -30,31 +30,42 @@ static bool needs_module(int argc, char **argv)
 }
 
 /* Beside the executable itself, by whatever links it was found; false: the system does not tell where that is. */
-static bool module_path(char *path, size_t size)
+static bool module_path(char path[OWN_PATH])
 {
-    const ssize_t n = readlink("/proc/self/exe", path, size);
-    if (n <= 0 || (size_t)n + sizeof "/" PTRIANGLE_MODULE > size)
+    if (!own_path(path) || strlen(path) + sizeof "/" PTRIANGLE_MODULE > OWN_PATH)
         return false;
-    path[n] = '\0';
     strcpy(strrchr(path, '/') + 1, PTRIANGLE_MODULE);
     return true;
+}
+
+static int complain(const char *what)
+{
+    fprintf(stderr, "%s: the module for MPI and HDF5 cannot be loaded: %s\n", PTRIANGLE_NAME, what);
+    return program_trouble;
+}
+
+static int complain_of_version(const char *path, const char *version)
+{
+    fprintf(stderr, "%s %s: %s is that of version %s: programs and lib/ptriangle must be of one build\n",
+            PTRIANGLE_NAME, program_version, path, version);
+    return program_trouble;
 }
 
 /* Its symbols are for all, since an MPI loads parts of its own that look for those of others. It stays: what it brings
  * along leaves threads and handlers behind. */
 static int run_module(int argc, char **argv)
 {
-    char path[4096];
-    const bool found = module_path(path, sizeof path);
-    void *module = found ? dlopen(path, RTLD_NOW | RTLD_GLOBAL) : NULL;
+    char path[OWN_PATH];
+    if (!module_path(path))
+        return complain("/proc/self/exe does not tell where this program is");
+    void *module = dlopen(path, RTLD_NOW | RTLD_GLOBAL);
+    const char *version = module ? dlsym(module, "program_version") : NULL;
+    if (version && strcmp(version, program_version) != 0)
+        return complain_of_version(path, version);
     int (*begin)(int, char **) = NULL;
-    if (module)
+    if (version)
         *(void **)&begin = dlsym(module, "program_main");
-    if (begin)
-        return begin(argc, argv);
-    fprintf(stderr, "%s: the module for MPI and HDF5 cannot be loaded: %s\n", PTRIANGLE_NAME,
-            found ? dlerror() : "/proc/self/exe does not tell where this program is");
-    return program_trouble;
+    return begin ? begin(argc, argv) : complain(dlerror());
 }
 
 int main(int argc, char **argv)

@@ -11,6 +11,9 @@
 /* The program: its main(), which the module lets out. */
 __attribute__((visibility("default"))) int program_main(int argc, char **argv);
 
+/* Of which version it is: a module of another one is refused. */
+__attribute__((visibility("default"))) extern const char program_version[];
+
 /* Its exit code where the module cannot be loaded. */
 extern const int program_trouble;
 

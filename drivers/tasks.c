@@ -1,10 +1,12 @@
 #include "drivers/tasks.h"
 
-#include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+#include "drivers/own_path.h"
 
 static long number_of(const char *name)
 {
@@ -45,18 +47,31 @@ static bool is_program(const char *path, const char *argv0)
     return strcmp(file ? file + 1 : path, name ? name + 1 : argv0) == 0;
 }
 
+bool tasks_is_busy(const char *loadavg, long processors)
+{
+    long running;
+    return sscanf(loadavg, "%*s %*s %*s %ld/", &running) == 1 && running > (processors + 1) / 2;
+}
+
+static bool is_machine_busy(void)
+{
+    char text[128] = "";
+    FILE *file = fopen("/proc/loadavg", "r");
+    if (!file)
+        return false;
+    const bool is_read = fgets(text, sizeof text, file) != NULL;
+    fclose(file);
+    return is_read && tasks_is_busy(text, sysconf(_SC_NPROCESSORS_ONLN));
+}
+
 /* What is set tells the new start that it is one. The descriptors by which a launcher is reached stay open: whoever is
  * at main() has not yet opened any. */
 void tasks_wait_idly(char **argv)
 {
-    char path[4096];
+    char path[OWN_PATH];
     int task;
-    if (tasks_started(&task) == 1 || is_way_told())
+    if (is_way_told() || (tasks_started(&task) == 1 && !is_machine_busy()))
         return;
-    const ssize_t n = readlink("/proc/self/exe", path, sizeof path);
-    if (n <= 0 || (size_t)n == sizeof path)
-        return;
-    path[n] = '\0';
-    if (argv[0] && is_program(path, argv[0]) && setenv("OMP_WAIT_POLICY", "passive", 1) == 0)
+    if (own_path(path) && argv[0] && is_program(path, argv[0]) && setenv("OMP_WAIT_POLICY", "passive", 1) == 0)
         execv(path, argv);
 }

@@ -325,6 +325,7 @@ static int run(const struct settings *s, struct judged_files *f)
 }
 
 const int program_trouble = TROUBLE;
+const char program_version[] = PTRIANGLE_VERSION;
 
 int program_main(int argc, char **argv)
 {
