@@ -189,7 +189,7 @@ static struct needs needs_of_rank(const struct run *run, double grown)
 {
     const double own = fmin(BUSIEST * grown / run->hooks->n_ranks, grown), column = column_of(run, grown);
     const double work = RANK_PIECES + fmin(RANK_COLUMN * column, RANK_WORK * own) + RANK_COARSE * grown;
-    struct needs n = {.triangles = grown, .whole = own > TRI_MAX_TRIANGLES ? HUGE_VAL : own * RANK_BYTES};
+    struct needs n = {.triangles = grown, .whole = own * RANK_BYTES};
     n.held = n.whole + BUFFERS;
     n.floor = floor_of(run, n.held, work + PAGES * fmax(run->hooks->threads, 1));
     n.away = PARKED_BYTES * own;
@@ -204,7 +204,7 @@ static struct needs needs_of(const struct run *run, double grown, double whole, 
         return needs_of_rank(run, grown);
     const double column = column_of(run, grown), pages = PAGES * fmax(run->hooks->threads, 1);
     const double work = sweeps ? COLUMNS_WORK * column + SWEPT_BYTES * grown : PARKED_WORK * grown;
-    struct needs n = {.triangles = grown, .whole = grown > TRI_MAX_TRIANGLES ? HUGE_VAL : whole};
+    struct needs n = {.triangles = grown, .whole = whole};
     n.held = sweeps ? BUFFERS + COLUMNS_HELD * column + SWEPT_BYTES * grown : n.whole;
     n.floor = floor_of(run, n.held, work + pages);
     n.away = sweeps ? COLUMNS_AWAY * column : PARKED_BYTES * grown;

@@ -7,7 +7,7 @@
 /* Bytes of a number of triangles, beyond what is taken now. */
 struct needs {
     double triangles;
-    double whole;      /* memory of a mesh that is in memory as a whole; +oo: it is too large for one */
+    double whole;      /* memory of a mesh that is in memory as a whole, were it not too large for one */
     double held;       /* memory of one that is handed out as it is made, where its arrays are in memory, */
     double floor;      /* and where they are in files: it cannot be less */
     double away;       /* of these files */

@@ -135,14 +135,12 @@ const char *plan_obstacle(const struct run *run)
 
 /* --- refusals and warnings */
 
-static double millions(double triangles) { return fmin(1e-6 * triangles, 1e9); }
-
 /* Why all triangles of a mesh must be there at a time. */
 static enum tri_status fail_too_many(const struct needs *n, const char *why, struct tri_error *error)
 {
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
-                    "the area bounds ask for at least %.0f million triangles, and a mesh holds %d million%s%s",
-                    millions(n->triangles), TRI_MAX_TRIANGLES / 1000000,
+                    "the area bounds ask for at least %s triangles, and a mesh holds %s%s%s",
+                    tri_count_text(n->triangles).text, tri_count_text(TRI_MAX_TRIANGLES).text,
                     *why ? " where it must be in memory as a whole, as for " : "", why);
 }
 
@@ -150,8 +148,8 @@ static enum tri_status fail_memory(const struct needs *n, bool sure, double need
                                    struct tri_error *error)
 {
     return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                    "the %sbounds ask for %s %.3g million triangles, which take %s of memory; %s are left%s%s",
-                    sure ? "area " : "", sure ? "at least" : "about", millions(n->triangles),
+                    "the %sbounds ask for %s %s triangles, which take %s of memory; %s are left%s%s",
+                    sure ? "area " : "", sure ? "at least" : "about", tri_count_text(n->triangles).text,
                     tri_size_text(needed).text, tri_size_text(left).text, *obstacle ? "; less would do but for " : "",
                     obstacle);
 }
@@ -165,8 +163,8 @@ static void warn_of_memory(const struct console *console, double needed, double 
 
 static void warn_of_triangles(const struct console *console)
 {
-    console_warn(console, "the bounds may ask for more triangles than the %d million that a mesh holds.\n",
-                 TRI_MAX_TRIANGLES / 1000000);
+    console_warn(console, "the bounds may ask for more triangles than the %s that a mesh holds.\n",
+                 tri_count_text(TRI_MAX_TRIANGLES).text);
 }
 
 static enum tri_status check_whole(const struct run *run, const struct estimate *e, double left, const char *obstacle,
@@ -230,8 +228,8 @@ static enum tri_status check_disk(const struct run *run, const struct estimate *
     const struct disk_place *place = sum_of(sure) > WORTH_A_LOOK ? disk_too_small(sure, &needed) : NULL;
     if (place)
         return tri_fail(error, TRI_CANNOT_WRITE, place->path, 0,
-                        "the area bounds ask for at least %.3g million triangles; %s and what else comes onto that "
-                        "disk take %s, and %s are left there", millions(e->least.triangles), place->what,
+                        "the area bounds ask for at least %s triangles; %s and what else comes onto that disk take %s, "
+                        "and %s are left there", tri_count_text(e->least.triangles).text, place->what,
                         tri_size_text(needed).text, tri_size_text(disk_left(place)).text);
     place = sum_of(likely) > WORTH_A_LOOK ? disk_too_small(likely, &needed) : NULL;
     if (place)
@@ -269,17 +267,17 @@ static void say_way(const struct console *console, const struct run *run, const 
 {
     const struct needs *n = &e->likely;
     char whole[64] = "are too many for a mesh in memory";
-    if (n->whole < HUGE_VAL)
+    if (n->triangles <= TRI_MAX_TRIANGLES)
         snprintf(whole, sizeof whole, "would take %s of memory", tri_size_text(n->whole).text);
     if (e->sweeps && run->hooks->n_ranks > 0)
-        console_say(console, "Sharing: about %.3g million triangles among %d tasks, up to %s of memory each.\n",
-                    millions(n->triangles), run->hooks->n_ranks, tri_size_text(n->held).text);
+        console_say(console, "Sharing: about %s triangles among %d tasks, up to %s of memory each.\n",
+                    tri_count_text(n->triangles).text, run->hooks->n_ranks, tri_size_text(n->held).text);
     else if (run->hooks->n_ranks > 1)
         console_say(console, "Each of %d tasks makes all of the mesh: angles above 34 degrees and -S are not shared.\n",
                     run->hooks->n_ranks);
     else if (e->sweeps)
-        console_say(console, "Sweeping: about %.3g million triangles %s, a few columns of them %s.\n",
-                    millions(n->triangles), whole, tri_size_text(n->held).text);
+        console_say(console, "Sweeping: about %s triangles %s, a few columns of them %s.\n",
+                    tri_count_text(n->triangles).text, whole, tri_size_text(n->held).text);
     if (n->held > left)
         console_say(console, "Parking: what does not fit in memory goes to %s, about %s.\n",
                     run->hooks->limits.scratch, tri_size_text(n->away).text);
@@ -306,16 +304,6 @@ enum tri_status plan_make(struct run_plan *plan, const struct run *run, const st
     if (!status && plan->swept)
         say_way(console, run, e, left);
     return status;
-}
-
-/* A number that is about right: below 10,000 as it is, else in three digits. */
-static void print_count(const char *what, double count)
-{
-    if (count < 9999.5)
-        printf("  %s: %.0f\n", what, count);
-    else
-        printf("  %s: %.3g %s\n", what, count < 999500 ? 1e-3 * count : 1e-6 * count,
-               count < 999500 ? "thousand" : "million");
 }
 
 static void print_seconds(double seconds, int threads)
@@ -352,8 +340,8 @@ void plan_print(const struct run *run, const struct estimate *e)
     double left = plan_memory_left(run), more = run->plan.swept ? fmin(n->held, fmax(left, n->floor)) : n->whole;
     list_places(places, run, n, left);
     printf("\nEstimate:\n\n");
-    print_count("Triangles", n->triangles);
-    print_count("Vertices", e->vertices);
+    printf("  Triangles: %s\n", tri_count_text(n->triangles).text);
+    printf("  Vertices: %s\n", tri_count_text(e->vertices).text);
     if (run->options.refine)
         printf("  Way: %s\n", way_of(run, e));
     const double used = resources_memory_used();

@@ -9,6 +9,7 @@
 #include "drivers/resources.h"
 #include "sched/schedule.h"
 #include "triangle/clock.h"
+#include "triangle/size_text.h"
 
 static const double SECONDS_BETWEEN_LINES = 0.1;
 
@@ -38,11 +39,11 @@ void progress_begin(struct progress *progress, int64_t triangles, double estimat
                 threads == 1 ? "" : "s");
 }
 
-/* Million triangles made in a second. */
+/* Triangles made in a second. */
 static double rate(const struct progress *progress, double time, int64_t triangles)
 {
     double seconds = time - progress->began;
-    return seconds > 0 ? 1e-6 * (double)(triangles - progress->first) / seconds : 0;
+    return seconds > 0 ? (double)(triangles - progress->first) / seconds : 0;
 }
 
 /* A time as people write it: 42 s, 12:07 min, 3:05 h. */
@@ -69,23 +70,25 @@ static int print_outlook(const struct progress *p, double time, int64_t triangle
     return memory > 0 ? width + fprintf(stderr, ", %.0f MB", 1e-6 * memory) : width;
 }
 
-static int print_step(const struct progress *p, double time, int round, int phase, int64_t triangles)
+static int print_step(const struct progress *p, double time, int round, int phase, double done, int64_t triangles)
 {
     char where[64] = "pre-refinement";
     if (phase == PAR_NUMBERING)
         return fprintf(stderr, "%s: numbering", p->program);
     if (phase > 0)
         snprintf(where, sizeof where, "round %d, phase %d of 4", round + 1, phase);
-    int width = fprintf(stderr, "%s: refining: %s, %" PRId64 " triangles, %.2f million/s", p->program, where, triangles,
-                        rate(p, time, triangles));
+    if (done > 0)
+        return fprintf(stderr, "%s: refining: %s, %.0f%% of it", p->program, where, floor(100 * done));
+    int width = fprintf(stderr, "%s: refining: %s, %" PRId64 " triangles, %s/s", p->program, where, triangles,
+                        tri_count_text(rate(p, time, triangles)).text);
     return phase > 0 ? width + print_outlook(p, time, triangles) : width;
 }
 
 /* The rest of a longer line that was there is covered with blanks. */
-static void rewrite(struct progress *p, double time, int round, int phase, int64_t triangles)
+static void rewrite(struct progress *p, double time, int round, int phase, double done, int64_t triangles)
 {
     fputc('\r', stderr);
-    int width = print_step(p, time, round, phase, triangles);
+    int width = print_step(p, time, round, phase, done, triangles);
     if (width < p->width)
         fprintf(stderr, "%*s", p->width - width, "");
     p->width = width;
@@ -98,15 +101,15 @@ static bool is_news(const struct progress *p, double time, int round, int phase)
     return phase == 0 || phase == PAR_NUMBERING || round != p->round || time - p->told >= PROGRESS_LOG_SECONDS;
 }
 
-void progress_step(void *user, int round, int phase, int64_t triangles)
+void progress_step(void *user, int round, int phase, double done, int64_t triangles)
 {
     struct progress *p = user;
     double time = tri_seconds();
     bool soon = time - p->told < SECONDS_BETWEEN_LINES && phase != PAR_NUMBERING;
     if (p->mode == PROGRESS_LINE && !soon) {
-        rewrite(p, time, round, phase, triangles);
+        rewrite(p, time, round, phase, done, triangles);
     } else if (p->mode == PROGRESS_LOG && is_news(p, time, round, phase)) {
-        print_step(p, time, round, phase, triangles);
+        print_step(p, time, round, phase, done, triangles);
         fputc('\n', stderr);
     } else {
         return;
@@ -124,7 +127,7 @@ void progress_end(struct progress *p, int64_t triangles, double numbering)
         fflush(stderr);
         p->width = 0;
     } else if (p->mode == PROGRESS_LOG) {
-        fprintf(stderr, "%s: refined to %" PRId64 " triangles in %.2f s, %.2f million/s\n", p->program, triangles,
-                time - p->began, rate(p, time, triangles));
+        fprintf(stderr, "%s: refined to %" PRId64 " triangles in %.2f s, %s/s\n", p->program, triangles,
+                time - p->began, tri_count_text(rate(p, time, triangles)).text);
     }
 }

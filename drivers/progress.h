@@ -32,7 +32,7 @@ void progress_stage(struct progress *progress, const char *what);
  * that do not count. */
 enum { PROGRESS_LOG_SECONDS = 30 };
 void progress_begin(struct progress *progress, int64_t triangles, double estimate, int threads);
-void progress_step(void *user, int round, int phase, int64_t triangles);
+void progress_step(void *user, int round, int phase, double done, int64_t triangles);
 void progress_end(struct progress *progress, int64_t triangles, double numbering);
 
 #endif

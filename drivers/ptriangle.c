@@ -85,13 +85,13 @@ static void tell_reached(const struct program *p, int64_t triangles)
     interrupt_reached(triangles, in_parts ? " triangles in the part of the first task" : " triangles");
 }
 
-static void follow(void *user, int round, int phase, int64_t triangles)
+static void follow(void *user, int round, int phase, double done, int64_t triangles)
 {
     struct program *p = user;
     interrupt_stage(phase == PAR_NUMBERING ? "numbering" : "refining");
     if (phase != PAR_NUMBERING)
         tell_reached(p, triangles);
-    progress_step(&p->progress, round, phase, triangles);
+    progress_step(&p->progress, round, phase, done, triangles);
 }
 
 static struct par_options options_of(struct program *p, const struct run *run)

@@ -34,6 +34,8 @@ enum tri_status restart_open(struct restart *restart, const struct long_options 
     const char *directory = o->resume ? o->resume : o->checkpoint;
     *restart = (struct restart){.follows = carrier && carrier->rank > 0};
     enum tri_status status = check_options(o, error);
+    if (!status && o->dry_run && o->resume && !o->checkpoint)
+        status = par_checkpoint_look(directory, par_hash(0, version, sizeof version), error);
     bool wanted = !status && directory && !o->dry_run;
     status = wanted ? open_directory(restart, o, directory, error) : status;
     restart->wanted = wanted && !status;

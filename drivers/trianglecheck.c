@@ -15,6 +15,7 @@
 #include "drivers/verdict.h"
 #include "sched/threads.h"
 #include "triangle/check/check.h"
+#include "triangle/size_text.h"
 
 enum { FAULTS = 1, TROUBLE = 2, WORTH_THREADS = 1 << 15 };
 
@@ -108,9 +109,10 @@ static enum tri_status check_memory(const struct judged_files *f, const struct t
     if (allowed <= 0 || needed < JUDGED_WORTH_A_LOOK || needed <= allowed)
         return TRI_OK;
     return tri_fail(error, TRI_NO_MEMORY, "", 0,
-                    "to judge %.3g million vertices and %.3g million subsegments, and what they are compared with, "
-                    "takes about %.3g MB of memory; %.3g MB may be used", 1e-6 * (double)f->source.n_points,
-                    1e-6 * (double)f->source.n_segments, 1e-6 * needed, 1e-6 * allowed);
+                    "to judge %s vertices and %s subsegments, and what they are compared with, takes about %s of "
+                    "memory; %s may be used", tri_count_text((double)f->source.n_points).text,
+                    tri_count_text((double)f->source.n_segments).text, tri_size_text(needed).text,
+                    tri_size_text(allowed).text);
 }
 
 static enum tri_status judge(const struct settings *s, struct judged_files *f, const struct tri_executor *executor,

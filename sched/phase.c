@@ -56,6 +56,9 @@ struct phase {
     struct task *tasks;
     int32_t n_tasks;
     int32_t *order;     /* [n_tasks] in which tasks are started */
+    int64_t expected;   /* triangles of all tasks, to the order */
+    _Atomic(int64_t) done; /* of these, in tasks that have ended */
+    const void *caller; /* address of the own one's `here` */
     int32_t *mark;      /* [n_marks] debug builds: which block changed each triangle, see triangle/owners.h */
     size_t n_marks;
 };
@@ -330,12 +333,12 @@ static int32_t more_for(const struct task *task)
     return (int32_t)fmin(more, 2 * inserted + 256);
 }
 
-static enum tri_status reserve_room(const struct phase *p, struct tri_error *error)
+static enum tri_status reserve_room(struct phase *p, struct tri_error *error)
 {
-    int64_t expected = 0;
+    p->expected = 0;
     for (int32_t i = 0; i < p->n_tasks; i++)
-        expected += p->tasks[i].expected;
-    return par_room_reserve(&p->state->spare, p->state->mesh, expected, error);
+        p->expected += p->tasks[i].expected;
+    return par_room_reserve(&p->state->spare, p->state->mesh, p->expected, error);
 }
 
 /* Room for a task that is full, in triangles. Where places for subsegments alone have run out, as beside a coast, those
@@ -425,12 +428,35 @@ static void run_task(struct phase *p, struct task *task)
     task->seconds += tri_seconds() - began;
 }
 
+/* Each thread has one at an address of its own. */
+static _Thread_local char here;
+
+static void tell(const struct par_state *state, int phase, double done)
+{
+    const struct par_options *options = state->options;
+    if (options->progress)
+        options->progress(options->progress_user, state->round, phase, done, state->gone + state->mesh->n_triangles);
+}
+
+void par_tell(const struct par_state *state, int phase) { tell(state, phase, 0); }
+
+/* The calling thread tells of what all have done, as often as it has ended a task itself. */
+static void note_end(struct phase *p, const struct task *task)
+{
+    int64_t done = atomic_fetch_add_explicit(&p->done, task->expected, memory_order_relaxed) + task->expected;
+    if (p->caller == &here)
+        tell(p->state, p->phase + 1, (double)done / (double)p->expected);
+}
+
 static void run_next(void *context, size_t index)
 {
     struct phase *p = context;
     struct task *task = &p->tasks[p->order[index]];
-    if (task->progress != TASK_ENDED)
-        run_task(p, task);
+    if (task->progress == TASK_ENDED)
+        return;
+    run_task(p, task);
+    if (task->progress == TASK_ENDED)
+        note_end(p, task);
 }
 
 /* Runs every task that has not ended; returns whether any waits for room. */
@@ -441,6 +467,7 @@ static bool run_tasks(struct phase *p)
     struct par_report *report = p->state->report;
     double shared[PAR_SHARINGS]; /* blocks are no equal shares */
     memcpy(shared, report->seconds_shared, sizeof shared);
+    p->caller = &here;
     tri_execute(&p->state->executor, (size_t)p->n_tasks, run_next, p);
     memcpy(report->seconds_shared, shared, sizeof shared);
     for (int32_t i = 0; i < p->n_tasks; i++)
@@ -492,13 +519,6 @@ static bool report_block(const struct phase *p, const struct task *task)
         p->state->n_schedules - 1, p->state->round, p->phase, task->block, task->n_worklist,
         task->report.inserted_free + task->report.inserted_on_segments, task->report.fenced, task->seconds};
     return true;
-}
-
-void par_tell(const struct par_state *state, int phase)
-{
-    const struct par_options *options = state->options;
-    if (options->progress)
-        options->progress(options->progress_user, state->round, phase, state->gone + state->mesh->n_triangles);
 }
 
 void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add)

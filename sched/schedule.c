@@ -790,7 +790,8 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
                               .n_kept = mesh->n_vertices};
     bool sequential = must_be_sequential(quality, options);
     bool can_sweep = options->sink && !sequential && quality->min_angle <= TRI_EASY_ANGLE;
-    enum tri_status status = can_sweep ? TRI_OK : tri_refine_check(mesh, quality, &state.executor, error);
+    enum tri_status status = tri_refine_prepare(mesh, &state.executor, error);
+    status = status || can_sweep ? status : tri_refine_check(mesh, quality, &state.executor, error);
     status = check_ranks(&state, status, error);
     if (!status && is_bounded(options))
         status = par_park_open(&state.park, mesh, options->sink ? options->scratch : NULL, options->memory, error);

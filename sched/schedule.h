@@ -58,9 +58,10 @@ struct par_options {
                                 whole, and rank 0 gets all tiles. Whoever makes the call ends with par_agree */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
     int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, and pause often */
-    /* Told by the calling thread: the phase that begins (0: pre-refinement, then 1 to 4, at last PAR_NUMBERING),
-     * triangles so far (with the room that blocks have been dealt). */
-    void (*progress)(void *user, int round, int phase, int64_t triangles);
+    /* Told by the calling thread: the phase (0: pre-refinement, then 1 to 4, at last PAR_NUMBERING) when it begins
+     * (done: 0), and after blocks of it (done: the share of its work that is, up to 1, whatever thread did it);
+     * triangles when the phase began (with the room that blocks have been dealt). */
+    void (*progress)(void *user, int round, int phase, double done, int64_t triangles);
     void *progress_user;
 };
 

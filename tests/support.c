@@ -317,6 +317,7 @@ struct tri_mesh support_generate(const struct tri_pslg *pslg, const struct tri_o
     struct tri_report own;
     if (tri_generate(&mesh, pslg, options, report ? report : &own, &error) != TRI_OK)
         fail_msg("tri_generate: %s", error.text);
+    assert_int_equal(tri_refine_prepare(&mesh, NULL, &error), TRI_OK);
     return mesh;
 }
 

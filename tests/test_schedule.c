@@ -917,20 +917,25 @@ static void test_calls_can_follow_each_other(void **state)
 struct told {
     pthread_t thread;
     int round, phase;
+    double done;
     int64_t triangles;
-    int n;
+    int n, within; /* phases that began, and what was told within them */
 };
 
-static void tell(void *user, int round, int phase, int64_t triangles)
+static void tell(void *user, int round, int phase, double done, int64_t triangles)
 {
     struct told *told = user;
     assert_true(pthread_equal(told->thread, pthread_self()));
     assert_true(phase >= 0 && phase <= PAR_NUMBERING && round >= 0);
-    assert_true(phase == 0 || round > told->round || phase > told->phase || told->phase == 0);
+    if (done > 0)
+        assert_true(round == told->round && phase == told->phase && done > told->done && done <= 1);
+    else
+        assert_true(phase == 0 || round > told->round || phase > told->phase || told->phase == 0);
     told->round = round;
     told->phase = phase;
+    told->done = done;
     told->triangles = triangles;
-    told->n++;
+    *(done > 0 ? &told->within : &told->n) += 1;
 }
 
 static void test_progress_is_told_by_the_caller(void **state)
@@ -943,7 +948,7 @@ static void test_progress_is_told_by_the_caller(void **state)
     options.progress = tell;
     options.progress_user = &told;
     struct tri_mesh mesh = refine(&start, &options, &report);
-    assert_true(told.n >= 5 && told.triangles > 1000);
+    assert_true(told.n >= 5 && told.within > 9 && told.triangles > 1000);
     par_report_free(&report);
     tri_mesh_free(&mesh);
     tri_pslg_free(&start.pslg);

@@ -7,6 +7,7 @@
 #include "triangle/criterion.h"
 #include "triangle/disk.h"
 #include "triangle/predicates.h"
+#include "triangle/size_text.h"
 #include "triangle/small_angle.h"
 
 /* No mesh has triangles of more than this share of their bounds on average. (Measured: 0.63 to 0.67.) */
@@ -53,10 +54,9 @@ enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_r
     double triangles = options->max_steiner < 0 ? tri_area_demand(mesh, options, executor) : 0;
     if (triangles <= TRI_MAX_TRIANGLES)
         return TRI_OK;
-    /* Far beyond, a lower bound that can be read will do. */
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
-                    "the area bounds ask for at least %.0f million triangles, and a mesh holds %d million",
-                    fmin(1e-6 * triangles, 1e9), TRI_MAX_TRIANGLES / 1000000);
+                    "the area bounds ask for at least %s triangles, and a mesh holds %s",
+                    tri_count_text(triangles).text, tri_count_text(TRI_MAX_TRIANGLES).text);
 }
 
 static bool needs_work(const struct tri_criterion *c, tri_triangle_id triangle)

@@ -78,10 +78,10 @@ static enum tri_status make(struct tri_mesh *mesh, const struct tri_pslg *pslg, 
     status = status ? status : tri_mesh_init(mesh, error);
     mesh->stop = options->stop;
     status = status ? status : triangulate(mesh, pslg, options, report, error);
-    if (!status) {
+    if (!status)
         tri_mark_boundary(mesh);
+    if (!status && options->refine)
         status = tri_refine_prepare(mesh, options->executor, error);
-    }
     if (status)
         tri_mesh_free(mesh);
     return status;

@@ -144,8 +144,12 @@ static enum tri_status list_parents(struct tri_mesh *mesh, struct tri_error *err
     assert(!mesh->incidence.start && !mesh->incidence.parent);
     mesh->incidence.start = malloc(((size_t)mesh->n_vertices + 2) * sizeof *mesh->incidence.start);
     mesh->incidence.parent = malloc((2 * (size_t)mesh->n_parents + 1) * sizeof *mesh->incidence.parent);
-    if (!mesh->incidence.start || !mesh->incidence.parent)
+    if (!mesh->incidence.start || !mesh->incidence.parent) {
+        free(mesh->incidence.start);
+        free(mesh->incidence.parent);
+        mesh->incidence = (struct tri_incidence){0};
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)mesh->n_parents);
+    }
     mesh->incidence.n_vertices = mesh->n_vertices;
     tri_incidence_fill(mesh);
     return TRI_OK;
@@ -164,6 +168,8 @@ double tri_shortest_edge2(const struct tri_mesh *mesh)
 
 enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)
 {
+    if (mesh->incidence.start)
+        return TRI_OK;
     mesh->limits.shortest2 = tri_shortest_edge2(mesh);
     tri_estimate_features(mesh, executor);
     find_acute(mesh);

@@ -533,10 +533,10 @@ static enum tri_status build(struct matcher *m)
     if (status)
         return status;
     tri_mark_boundary(mesh);
-    if (m->options->refine)
-        status = tri_flip_to_delaunay(mesh, m->options->executor, m->error);
-    if (!status && m->options->refine)
-        status = tri_unite_chains(mesh, m->error);
+    if (!m->options->refine)
+        return TRI_OK;
+    status = tri_flip_to_delaunay(mesh, m->options->executor, m->error);
+    status = status ? status : tri_unite_chains(mesh, m->error);
     return status ? status : tri_refine_prepare(mesh, m->options->executor, m->error);
 }
 

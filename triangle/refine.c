@@ -1175,9 +1175,9 @@ enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_option
                            struct tri_refine_report *report, struct tri_error *error)
 {
     struct tri_refiner *refiner = NULL;
-    enum tri_status status = tri_refiner_new(&refiner, mesh, options, report, error);
-    if (!status)
-        status = tri_refiner_run(refiner, error);
+    enum tri_status status = tri_refine_prepare(mesh, NULL, error);
+    status = status ? status : tri_refiner_new(&refiner, mesh, options, report, error);
+    status = status ? status : tri_refiner_run(refiner, error);
     tri_refiner_free(refiner);
     assert(options->more_room || tri_mesh_is_sound(mesh)); /* a view's counts are not those of the mesh */
     return status;

@@ -11,10 +11,10 @@ struct tri_size_text {
     char text[24];
 };
 
-/* bytes >= 0; the largest unit is PB. */
+/* bytes >= 0, or +oo: "over 1000 EB". */
 struct tri_size_text tri_size_text(double bytes);
 
-/* How many there are, n >= 0: "57", "45.2 thousand", "1.87 million". */
+/* How many there are, n >= 0, or +oo: "57", "45.2 thousand", "1.87 million", "over 1000 trillion". */
 struct tri_size_text tri_count_text(double n);
 
 #ifdef __cplusplus

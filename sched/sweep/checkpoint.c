@@ -175,6 +175,12 @@ static enum tri_status check_run(const struct par_checkpoint *c, bool resume, ui
     return status;
 }
 
+enum tri_status par_checkpoint_look(const char *directory, uint64_t of, struct tri_error *error)
+{
+    const struct par_checkpoint c = par_checkpoint_closed(directory);
+    return check_run(&c, true, of, error);
+}
+
 /* The lock, and then, of a run that goes on, what no other process changes any more. */
 static enum tri_status take(struct par_checkpoint *c, bool resume, struct tri_error *error)
 {

@@ -66,6 +66,10 @@ static inline struct par_checkpoint par_checkpoint_closed(const char *directory)
 enum tri_status par_checkpoint_open(struct par_checkpoint *checkpoint, const char *directory, bool resume, uint64_t of,
                                     struct tri_error *error);
 
+/* Could a run of this `of` go on from the directory, as far as can be told without its lock? Errors as when it is
+ * opened for that. */
+enum tri_status par_checkpoint_look(const char *directory, uint64_t of, struct tri_error *error);
+
 /* Is there a run in the directory? */
 bool par_checkpoint_is_there(const char *directory);
 

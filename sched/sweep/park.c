@@ -312,8 +312,8 @@ static enum tri_status leave(void *user, struct tri_mesh *mesh, struct tri_error
                         tri_size_text(park->memory).text);
     if (!park->folder)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                        "the mesh, %.3g million triangles so far, outgrows the %s of memory that are allowed",
-                        1e-6 * mesh->n_triangles, tri_size_text(park->memory).text);
+                        "the mesh, %s triangles so far, outgrows the %s of memory that are allowed",
+                        tri_count_text(mesh->n_triangles).text, tri_size_text(park->memory).text);
     for (int k = 0; k < TRI_ARRAYS; k++) /* of a mesh that was dropped */
         drop_sheet(park, &park->sheet[k]);
     enum tri_status status = tri_mesh_move(mesh, &park->storage, error);

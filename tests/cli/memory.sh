@@ -51,7 +51,7 @@ if (ulimit -v 300000 && "$bin/ptriangle" -h) >/dev/null 2>&1; then
         "$bin/ptriangle" -Qpq20a0.0000002S100000000 s --output out.h5 --threads 2 >.out 2>.err
     )
     check "exit code" test $? -eq 1
-    complains 'the bounds ask for about [0-9.]+ million triangles, which take [0-9.]+ [kMG]?B of memory; [0-9.]+ [kMG]?B are left'
+    complains 'the bounds ask for about [0-9.]+ [a-z]+ triangles, which take [0-9.]+ [kMG]?B of memory; [0-9.]+ [kMG]?B are left'
     what="ulimit -v, little to do"
     (
         ulimit -s 8192
@@ -105,4 +105,4 @@ what="trianglecheck of many subsegments"
 check "with enough memory: exit code" test $? -eq 0
 "$bin/trianglecheck" --quiet g1 --poly g.poly --memory 12M >.out 2>.err
 check "with little memory: exit code" test $? -eq 2
-complains '^trianglecheck: to judge 0.04 million vertices .* takes about [0-9.]+ MB of memory; 12.6 MB may be used$'
+complains '^trianglecheck: to judge 40 thousand vertices .* takes about [0-9.]+ MB of memory; 12.6 MB may be used$'

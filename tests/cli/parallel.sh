@@ -172,7 +172,7 @@ check "the nodes of triangle" alike one.node letter.1.node
 check "the triangles of triangle" alike one.ele letter.1.ele
 program 0 -pq30a0.001 --progress letter
 says 'All triangles keep the bounds.'
-complains '^ptriangle: refining: round 1, phase 1 of 4, [0-9]+ triangles, [0-9.]+ million/s(, [0-9]+%, [0-9]+ s to go)?, [0-9]+ MB$'
+complains '^ptriangle: refining: round 1, phase 1 of 4, [0-9]+ triangles, [0-9.]+( thousand| million)?/s(, [0-9]+%, [0-9]+ s to go)?, [0-9]+ MB$'
 complains '^ptriangle: numbering$'
 complains '^ptriangle: refined to [0-9]+ triangles in '
 program 0 -pq30a0.01 letter
