@@ -156,6 +156,44 @@ static void test_levels_of_input_vertices_are_renewed(void **state)
     assert_in_range(left, 0, 2); /* 8 where they are not renewed */
 }
 
+/* Lines of a fan that meet at a point of which one coordinate is far smaller than the other: there are places that fit
+ * among those that only it tells apart. */
+static void test_finer_coordinates_resolve_more(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *file;
+        int angle;
+        int64_t most; /* and where only places beside the rounded one are looked at: */
+    } cases[] = {{"regress/endless_q36_fan.poly", 0, 60}, /* 98 */
+                 {"regress/endless_q36_fan.poly", 20, 80}, /* 178 */
+                 {"regress/hidden_gap.poly", 30, 0}}; /* 3 */
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct tri_pslg pslg;
+        struct tri_report report;
+        assert_true(support_read(cases[i].file, &pslg));
+        struct tri_mesh mesh = conforming(&pslg, cases[i].angle, &report);
+        assert_in_range(circles_left(&mesh, &report), 0, cases[i].most);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+    }
+}
+
+/* A wall on the boundary, high and narrow: rounding puts split points units of its height beside it, and they come back
+ * to its line, instead of moving inwards until no place is left to split. */
+static void test_boundaries_come_back_to_their_lines(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg;
+    struct tri_report report;
+    assert_true(support_read("regress/chord_within.poly", &pslg));
+    struct tri_mesh mesh = conforming(&pslg, 30, &report);
+    judge_conforming(&mesh, &pslg, &report);
+    assert_true(mesh.n_triangles < 3000);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
 /* For a vertex level with an end but for rounding there is no place to split: no reason not to split for the sake of
  * the one on the other side of the subsegment. */
 static void test_both_apexes_of_a_circle_have_their_split(void **state)
@@ -294,6 +332,8 @@ int main(void)
         cmocka_unit_test(test_levels_are_level_in_spite_of_rounding),
         cmocka_unit_test(test_new_levels_find_places_that_fit),
         cmocka_unit_test(test_levels_of_input_vertices_are_renewed),
+        cmocka_unit_test(test_finer_coordinates_resolve_more),
+        cmocka_unit_test(test_boundaries_come_back_to_their_lines),
         cmocka_unit_test(test_both_apexes_of_a_circle_have_their_split),
         cmocka_unit_test(test_nothing_stays_that_can_be_split),
         cmocka_unit_test(test_what_stays_is_counted),

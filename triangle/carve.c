@@ -365,8 +365,10 @@ static void guard_boundary(const struct flood *f, tri_triangle_id t)
                                  tri_round_coordinate((a.y + b.y + c.y) / 3)};
     bool inside = tri_is_inside(a, b, c, centroid);
     for (int e = 0; e < 3; e++)
-        if (at->n[e] < 0)
-            mesh->parents[mesh->sub[~at->n[e]].parent].guard = inside ? centroid : mesh->xy[at->v[tri_next[e]]];
+        if (at->n[e] < 0) {
+            struct tri_parent *parent = &mesh->parents[mesh->sub[~at->n[e]].parent];
+            parent->guard = inside ? centroid : mesh->xy[parent->v[1]];
+        }
 }
 
 static void remove_dead(struct flood *f)

@@ -37,6 +37,13 @@
  * 16 times shorter than it would be without rounding, which is no feature. With more of them the triangles on their
  * other sides would have edges too short to be refined (feature_size.c), and would be given up.
  *
+ * COLUMNS. A place need not be level with v exactly, but within h^2 / length, which may be far less than an ulp. The
+ * places beside the rounded one are few, and about as far from that as it. In each column of coordinates there is one
+ * that is nearest to the line on which all is level with v; it is off by half a unit in the last place of the other
+ * coordinate, or less where e is steep against it. The coordinate whose unit counts less along e is worked out, the
+ * other one stepped: so no place near e that fits is passed over but for the width looked at. Where one coordinate is
+ * much smaller than the other, its units are finer, and so is what can be level.
+ *
  * LEMMA (new levels). Whether two points at distance r from o fit, without a circle of one holding the other, depends
  * on their difference alone: a vector of the lattice of coordinates, about h long, in a cone as wide as the angle of
  * the parents, that of their perpendiculars. Other places beside theirs offer few others. But where r changes by
@@ -58,6 +65,7 @@
 #include "triangle/disk.h"
 
 #include <assert.h>
+#include <float.h>
 
 #include "triangle/predicates.h"
 #include "triangle/small_angle.h"
@@ -189,11 +197,62 @@ static bool place_level(const struct tri_mesh *mesh, const struct tri_subsegment
                                          : tri_place_split(mesh, s, fraction, choice, p);
 }
 
+/* A unit in the last place. */
+static double unit_of(double x)
+{
+    int exponent;
+    frexp(x, &exponent);
+    return x == 0 ? 0 : ldexp(1, exponent - DBL_MANT_DIG);
+}
+
+/* Of the two coordinates that lie next to a + d, the nearest, or the one on its other side. */
+static double coordinate_beside(double a, double d, bool other)
+{
+    double x = a + d;
+    return tri_round_coordinate(other ? nextafter(x, x - a > d ? -HUGE_VAL : HUGE_VAL) : x);
+}
+
+/* See COLUMNS. end: the common end of the parents, or TRI_NONE. Is it level, and may it be there? */
+static bool place_in_column(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction,
+                            struct tri_point at, tri_vertex_id end, int i, struct tri_point *p)
+{
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], q;
+    place_level(mesh, s, fraction, at, 0, &q);
+    double x = b.x - a.x, y = b.y - a.y, dx = unit_of(q.x), dy = unit_of(q.y);
+    int column = i / 2 % 2 ? (i / 2 + 1) / 2 : -(i / 2 / 2);
+    bool other = i % 2;
+    if (end != TRI_NONE) {
+        struct tri_point o = mesh->xy[end];
+        x = (q.x - o.x) + (at.x - o.x);
+        y = (q.y - o.y) + (at.y - o.y);
+    }
+    if (x == 0 || (y != 0 && fabs(y) * dy < fabs(x) * dx)) {
+        q.x = tri_round_coordinate(q.x + column * dx);
+        q.y = coordinate_beside(at.y, -(q.x - at.x) * (x / y), other);
+    } else {
+        q.y = tri_round_coordinate(q.y + column * dy);
+        q.x = coordinate_beside(at.x, -(q.y - at.y) * (y / x), other);
+    }
+    *p = q;
+    return tri_leaves_disks_empty(mesh, s, q, at) && tri_may_split_at(mesh, s, q);
+}
+
+/* The place of this choice; from TRI_SPLIT_PLACES on in a column. */
+static bool place_beside_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction,
+                               struct tri_point at, tri_vertex_id end, int choice, struct tri_point *p)
+{
+    return choice < TRI_SPLIT_PLACES ? place_level(mesh, s, fraction, at, choice, p)
+                                     : place_in_column(mesh, s, fraction, at, end, choice - TRI_SPLIT_PLACES, p);
+}
+
 bool tri_place_disk_split(const struct tri_mesh *mesh, const struct tri_subsegment *s,
                           const struct tri_disk_split *split, int choice, struct tri_point *p)
 {
-    return split->level == TRI_NONE ? tri_place_split(mesh, s, split->fraction, choice, p)
-                                    : place_level(mesh, s, split->fraction, mesh->xy[split->level], choice, p);
+    if (split->level == TRI_NONE)
+        return choice < TRI_SPLIT_PLACES && tri_place_split(mesh, s, split->fraction, choice, p);
+    struct tri_point at = mesh->xy[split->level];
+    tri_vertex_id end = choice < TRI_SPLIT_PLACES ? TRI_NONE : tri_common_end(mesh, s->parent, split->level);
+    return place_beside_level(mesh, s, split->fraction, at, end, choice, p);
 }
 
 bool tri_leaves_disks_empty(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,
@@ -241,10 +300,11 @@ static bool fits(const struct tri_mesh *mesh, const struct tri_subsegment *s, st
 {
     struct tri_point q;
     double fraction = tri_level_of(mesh, s, p, t);
+    tri_vertex_id end = end_between(mesh, s->parent, t->parent);
     if (!(fraction > 0 && fraction < 1))
         return false;
-    for (int choice = 0; choice < TRI_SPLIT_PLACES; choice++)
-        if (place_level(mesh, t, fraction, p, choice, &q) && tri_leaves_disks_empty(mesh, t, q, p) &&
+    for (int i = 0; i < TRI_DISK_PLACES; i++)
+        if (place_beside_level(mesh, t, fraction, p, end, i, &q) && tri_leaves_disks_empty(mesh, t, q, p) &&
             tri_leaves_disks_empty(mesh, s, p, q))
             return true;
     return false;

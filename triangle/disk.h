@@ -23,7 +23,9 @@ bool tri_is_resolved_from(const struct tri_mesh *mesh, const struct tri_subsegme
 bool tri_is_encroached_from(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code,
                             struct tri_disk_split *split);
 
-/* The places for a split, as tri_place_split. */
+/* The places for a split, as tri_place_split; those from TRI_SPLIT_PLACES on are for a point level with a vertex alone,
+ * and nearer to being so than the others. */
+enum { TRI_COLUMNS = 9, TRI_DISK_PLACES = TRI_SPLIT_PLACES + 2 * TRI_COLUMNS };
 bool tri_place_disk_split(const struct tri_mesh *mesh, const struct tri_subsegment *s,
                           const struct tri_disk_split *split, int choice, struct tri_point *p);
 

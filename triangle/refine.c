@@ -488,7 +488,7 @@ static enum tri_search find_split(struct tri_refiner *r, tri_sub_id s, struct tr
         return TRI_SEARCH_OUTSIDE;
     if (split->renews)
         return find_renewal(r, s, split, n_left);
-    for (int choice = 0; choice < TRI_SPLIT_PLACES; choice++) {
+    for (int choice = 0; choice < TRI_DISK_PLACES; choice++) {
         enum tri_search found = search_place(r, s, split, choice, n_left);
         if (found == TRI_SEARCH_OUTSIDE)
             continue;

@@ -10,11 +10,15 @@
  * can be seen; for a point that shall be level with a vertex (disk.c), the first of these that is, if any.
  * 2. THEOREM (boundary). Each parent on the boundary has an empty triangle of its own outside: its ends and its guard,
  * the centroid of the triangle of the constrained Delaunay triangulation that was carved there. If every split point
- * of a boundary subsegment lies on the inner side of it (or on it), or in the parent's own triangle, the boundary never
- * meets itself, and never passes a vertex that is not its own. Proof: by induction, what the mesh covers outside its
- * first domain lies in the triangles of the parents that cover it: a point inside only takes from the domain; a point p
- * in the triangle adds the triangle of p and the subsegment's ends, whose part outside is in the parent's triangle,
- * which is convex. These triangles do not overlap, and hold no vertex and no part of the domain. */
+ * of a boundary subsegment lies on the inner side of it (or on it), in the parent's own triangle, or between it and the
+ * parent's line, the boundary never meets itself, and never passes a vertex that is not its own. Proof: by induction,
+ * what the mesh covers outside its first domain lies in the triangles of the parents that cover it: a point inside only
+ * takes from the domain; a point p in the triangle adds the triangle of p and the subsegment's ends, whose part outside
+ * is in the parent's triangle, which is convex. These triangles do not overlap, and hold no vertex and no part of the
+ * domain. What lies between a subsegment and its parent's line on the inner side the chain has been given and has given
+ * up, with no vertex in it: it is nobody else's. (But a parent of a mesh that was read need not have begun as its
+ * line: its guard is its first end.) So a chain that rounding has put inside comes back to its line: else it would move
+ * inwards by a unit with each split, until no place is left. */
 #include "triangle/split.h"
 
 #include <assert.h>
@@ -25,6 +29,18 @@
  * finer than at an end, a part from a point near that end is as far off. */
 static const double ASTRAY = 4;
 
+/* Its own resolutions, where it is chosen for other reasons: no farther than the places beside one on the line. */
+static const double BESIDE = 2;
+
+/* Is p on the line of the parent, or on that side of it that is left of the way from `from` to `to`, subsegments being
+ * far longer than they are off it? */
+static bool is_inside_line(struct tri_point a, struct tri_point b, struct tri_point from, struct tri_point to,
+                           struct tri_point p)
+{
+    bool along = (b.x - a.x) * (to.x - from.x) + (b.y - a.y) * (to.y - from.y) > 0;
+    return (along ? tri_orient2d(a, b, p) : tri_orient2d(b, a, p)) >= 0;
+}
+
 /* May a boundary subsegment from `from` to `to`, the mesh on its left, be split at p? */
 static bool keeps_to_itself(const struct tri_mesh *mesh, const struct tri_parent *parent, struct tri_point from,
                             struct tri_point to, struct tri_point p)
@@ -32,7 +48,9 @@ static bool keeps_to_itself(const struct tri_mesh *mesh, const struct tri_parent
     struct tri_point a = mesh->xy[parent->v[0]], b = mesh->xy[parent->v[1]], guard = parent->guard;
     if (tri_orient2d(from, to, p) >= 0 || isnan(guard.x))
         return true;
-    return tri_is_inside(a, b, guard, p) || tri_is_inside(b, a, guard, p);
+    bool began_as_line = tri_compare_places(guard, a) != 0;
+    return (began_as_line && is_inside_line(a, b, from, to, p)) || tri_is_inside(a, b, guard, p) ||
+           tri_is_inside(b, a, guard, p);
 }
 
 /* May the subsegment be split at p, as far as the boundary is concerned? */
@@ -55,6 +73,13 @@ static bool place(const struct tri_mesh *mesh, const struct tri_subsegment *s, s
     double astray = ASTRAY * fmax(tri_resolution(a), tri_resolution(b));
     *p = tri_place_beside(exact, choice % TRI_PLACES);
     return is_allowed(mesh, s, *p) && (is_on_line(choice) || tri_line_distance(a, b, *p) <= astray);
+}
+
+bool tri_may_split_at(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p)
+{
+    const tri_vertex_id *end = mesh->parents[s->parent].v;
+    return tri_line_distance(mesh->xy[end[0]], mesh->xy[end[1]], p) <= BESIDE * tri_resolution(p) &&
+           is_allowed(mesh, s, p);
 }
 
 bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction, int choice,
