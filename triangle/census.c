@@ -224,11 +224,14 @@ void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_refine_o
         count[k] = 0;
     for (tri_sub_id s = 0; s < mesh->n_subs; s++) {
         const struct tri_subsegment *sub = &mesh->sub[s];
+        enum tri_excuse first = TRI_EXCUSES;
         for (int side = 0; side < 2; side++)
             if (sub->side[side] != TRI_NONE && tri_is_in_diametral_disk(mesh, sub, sub->side[side])) {
-                count[excuse_for_circle(mesh, options, report, sub, sub->side[side])]++;
-                break;
+                const enum tri_excuse excuse = excuse_for_circle(mesh, options, report, sub, sub->side[side]);
+                first = excuse < first ? excuse : first;
             }
+        if (first < TRI_EXCUSES)
+            count[first]++;
     }
 }
 

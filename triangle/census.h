@@ -35,7 +35,7 @@ int tri_obtuse_corner(const struct tri_mesh *mesh, tri_triangle_id triangle);
 /* Counts the subsegments with a vertex of a triangle beside them in their diametral circle, which -D could not mend: by
  * precision where the vertex lies on the subsegment as far as coordinates tell, or they have no place for the split;
  * else, where the vertex is level with an end but for rounding and it would take too many parts, by place: at a small
- * angle of the input, between segments near to each other. */
+ * angle of the input, between segments near to each other. With such vertices on both sides the first reason counts. */
 void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                           const struct tri_refine_report *report, int64_t count[TRI_EXCUSES]);
 
