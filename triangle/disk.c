@@ -212,12 +212,12 @@ static double coordinate_beside(double a, double d, bool other)
     return tri_round_coordinate(other ? nextafter(x, x - a > d ? -HUGE_VAL : HUGE_VAL) : x);
 }
 
-/* See COLUMNS. end: the common end of the parents, or TRI_NONE. Is it level, and may it be there? */
-static bool place_in_column(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction,
+/* See COLUMNS. q: the rounded place; end: the common end of the parents, or TRI_NONE. Is it level, and may it be
+ * there? */
+static bool place_in_column(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point q,
                             struct tri_point at, tri_vertex_id end, int i, struct tri_point *p)
 {
-    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], q;
-    place_level(mesh, s, fraction, at, 0, &q);
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]];
     double x = b.x - a.x, y = b.y - a.y, dx = unit_of(q.x), dy = unit_of(q.y);
     int column = i / 2 % 2 ? (i / 2 + 1) / 2 : -(i / 2 / 2);
     bool other = i % 2;
@@ -237,22 +237,17 @@ static bool place_in_column(const struct tri_mesh *mesh, const struct tri_subseg
     return tri_leaves_disks_empty(mesh, s, q, at) && tri_may_split_at(mesh, s, q);
 }
 
-/* The place of this choice; from TRI_SPLIT_PLACES on in a column. */
-static bool place_beside_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction,
-                               struct tri_point at, tri_vertex_id end, int choice, struct tri_point *p)
-{
-    return choice < TRI_SPLIT_PLACES ? place_level(mesh, s, fraction, at, choice, p)
-                                     : place_in_column(mesh, s, fraction, at, end, choice - TRI_SPLIT_PLACES, p);
-}
-
 bool tri_place_disk_split(const struct tri_mesh *mesh, const struct tri_subsegment *s,
                           const struct tri_disk_split *split, int choice, struct tri_point *p)
 {
     if (split->level == TRI_NONE)
         return choice < TRI_SPLIT_PLACES && tri_place_split(mesh, s, split->fraction, choice, p);
     struct tri_point at = mesh->xy[split->level];
-    tri_vertex_id end = choice < TRI_SPLIT_PLACES ? TRI_NONE : tri_common_end(mesh, s->parent, split->level);
-    return place_beside_level(mesh, s, split->fraction, at, end, choice, p);
+    if (choice < TRI_SPLIT_PLACES)
+        return place_level(mesh, s, split->fraction, at, choice, p);
+    tri_vertex_id end = tri_common_end(mesh, s->parent, split->level);
+    place_level(mesh, s, split->fraction, at, 0, p);
+    return place_in_column(mesh, s, *p, at, end, choice - TRI_SPLIT_PLACES, p);
 }
 
 bool tri_leaves_disks_empty(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,
@@ -298,14 +293,18 @@ double tri_level_of(const struct tri_mesh *mesh, const struct tri_subsegment *s,
 static bool fits(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p,
                  const struct tri_subsegment *t)
 {
-    struct tri_point q;
+    struct tri_point q, rounded;
     double fraction = tri_level_of(mesh, s, p, t);
-    tri_vertex_id end = end_between(mesh, s->parent, t->parent);
     if (!(fraction > 0 && fraction < 1))
         return false;
-    for (int i = 0; i < TRI_DISK_PLACES; i++)
-        if (place_beside_level(mesh, t, fraction, p, end, i, &q) && tri_leaves_disks_empty(mesh, t, q, p) &&
+    for (int choice = 0; choice < TRI_SPLIT_PLACES; choice++)
+        if (place_level(mesh, t, fraction, p, choice, &q) && tri_leaves_disks_empty(mesh, t, q, p) &&
             tri_leaves_disks_empty(mesh, s, p, q))
+            return true;
+    tri_vertex_id end = end_between(mesh, s->parent, t->parent);
+    place_level(mesh, t, fraction, p, 0, &rounded);
+    for (int i = 0; i < 2 * TRI_COLUMNS; i++)
+        if (place_in_column(mesh, t, rounded, p, end, i, &q) && tri_leaves_disks_empty(mesh, s, p, q))
             return true;
     return false;
 }
