@@ -108,6 +108,21 @@ static void test_a_mesh_does_not_run_on(void **state)
     tri_pslg_free(&pslg);
 }
 
+/* Seven slits, some of which seams of small blocks cut lengthwise: their halves were filled with points beside the
+ * other, unfilled ones (30 degrees: 4,618 and 6,166 triangles, 34: 5,836 and 10,428). */
+static void test_seams_gather_no_points(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg;
+    assert_true(support_read("regress/slits_by_seams.poly", &pslg));
+    for (int angle = 30; angle <= 34; angle += 2) {
+        struct count whole = refine(&pslg, angle, 0), cells = refine(&pslg, angle, 250);
+        assert_false(whole.capped || cells.capped);
+        assert_true(5 * cells.triangles <= 6 * whole.triangles);
+    }
+    tri_pslg_free(&pslg);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -116,6 +131,7 @@ int main(void)
         cmocka_unit_test(test_no_more_than_may_be),
         cmocka_unit_test(test_graded_figures_are_not_capped),
         cmocka_unit_test(test_a_mesh_does_not_run_on),
+        cmocka_unit_test(test_seams_gather_no_points),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

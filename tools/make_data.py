@@ -981,6 +981,8 @@ FOUND = [
          "-cq34: at most 64 times the 328 triangles of 25 degrees", ()),
     Case("regress/credit_grid.poly", None, "turned grid of few points",
          "-cq34: at most 3,000 triangles, 43 at 28 degrees; once 5,356", ()),
+    Case("regress/slits_by_seams.poly", None, "comb of eight teeth with slits 0.01 wide",
+         "-cq30 to 34 in cells of 250 triangles: at most 1.2 times one call's; once 1.3 and 1.8 times", ()),
     Case("regress/layered_world.poly", None, "layers of ground around a round body",
          "any bound: triangles in proportion to what its features ask for", ()),
     Case("regress/tangle.poly", None, "closed chain that crosses itself",

@@ -26,6 +26,13 @@
  * the others, which are not asked before they have changed; deferred triangles are found again by whoever comes later,
  * with other fences or none.
  *
+ * SEAMS. Bad triangles that reach beyond a fence stay; around them a bound above TRI_PROMISED_ANGLE can only be reached
+ * by points that are ever denser, and whoever refines them later has to keep all of these. RULE: for such a bound a
+ * triangle is refined only where it lies within the fence with a margin in proportion to its shortest edge; others are
+ * deferred as they are. They are somebody else's inner ones in the next phase. (A comb of 22 slits, some of them cut
+ * lengthwise by seams, at 30 and 34 degrees: 131,985 and 277,516 triangles without the rule, 103,137 and 141,714 with
+ * it; one call makes 101,327 and 135,661. Twice the shortest edge, since with once it tiny cells gain half of that.)
+ *
  * Termination: for angles by the rules in small_angle.c, and credit.h says at what price; the points for sizes and for
  * circles that come on top are finitely many whatever the others do, see inside.c and disk.c. */
 #include "triangle/refine.h"
@@ -734,6 +741,20 @@ static void see_credit(struct tri_refiner *r, const struct tri_triangle *t, cons
                                        tri_is_on_credit(m, t->v[tri_prev[k]]));
 }
 
+/* Does the triangle lie within the fence with MARGIN times its shortest edge to spare? See SEAMS. */
+static bool keeps_margin(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape)
+{
+    const double MARGIN = 2, margin = MARGIN * sqrt(shape->l[shape->shortest]);
+    const struct tri_fence *f = r->options->fence;
+    bool keeps = true;
+    for (int k = 0; k < 3; k++) {
+        struct tri_point p = r->mesh->xy[t->v[k]];
+        keeps = keeps && p.x - margin >= f->x_min && p.x + margin < f->x_max && p.y - margin >= f->y_min &&
+                p.y + margin < f->y_max;
+    }
+    return keeps;
+}
+
 /* Is there credit for it? */
 static bool has_credit(struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape)
 {
@@ -768,9 +789,12 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
             return defer(r, entry.t, &r->report->fenced);
         r->sized = badness == TRI_BAD_SIZE;
         r->on_credit = false;
-        if (r->options->fence && badness == TRI_BAD_ANGLE && gives_credit(r) &&
-            !tri_meet_corners(&r->credit, r->mesh, t->v))
-            return FAILED;
+        if (r->options->fence && badness == TRI_BAD_ANGLE && gives_credit(r)) {
+            if (!keeps_margin(r, t, &shape))
+                return defer(r, entry.t, &r->report->fenced);
+            if (!tri_meet_corners(&r->credit, r->mesh, t->v))
+                return FAILED;
+        }
         if (badness == TRI_BAD_ANGLE && (is_hopeless(r, entry.t, &shape) || !has_credit(r, t, &shape))) {
             if (!tri_is_too_large(&r->criterion, t, &shape))
                 return give_up(r, entry.t, TRI_EXCUSE_INPUT_ANGLE);

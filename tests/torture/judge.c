@@ -279,6 +279,42 @@ static void judge_amount(const struct outcome *first, const struct tri_pslg *psl
                     (int)n, less.options.quality.min_angle);
 }
 
+/* --- whether it ends */
+
+/* Is this many points enough for a sequential call? */
+static bool suffices(struct outcome *first, const struct tri_pslg *pslg, int64_t points, double *asked,
+                     struct verdict *verdict)
+{
+    const double PER_GAP_POINT = 40, PER_VERTEX = 1000, SIZES = 200000;
+    struct tri_error error = {0};
+    struct torture_case sequential = *first->of;
+    struct outcome o = {.of = &sequential, .switches = first->switches, .options = first->options};
+    sequential.block = 0;
+    o.options.quality.max_steiner = points;
+    if (generate(&o, pslg, 1, &error))
+        judge_fault(verdict, "error", "%s", error.text);
+    bool enough = !o.report.quality.hit_limit;
+    *asked = SIZES + PER_VERTEX * o.mesh.n_input + PER_GAP_POINT * o.mesh.limits.gap_points;
+    tri_mesh_free(&o.mesh);
+    return enough;
+}
+
+/* A mesh that does not end is one with more points than its figure can ask for: those of its narrow spaces (the most
+ * seen are 20 for each that the mesher counts on at 30 degrees, and twice that at 34), of its features, which differ by
+ * twelve orders of magnitude at most, and of its sizes, see draw_sizes. One that asks for more than is AFFORDABLE to
+ * make over and over, but no more than that, is judged as with a limit of so many points. */
+static void judge_end(struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
+{
+    enum { AFFORDABLE = 300000 };
+    double asked;
+    enter(verdict, "seeing whether it ends");
+    if (suffices(first, pslg, AFFORDABLE, &asked, verdict))
+        return;
+    if (asked <= AFFORDABLE || !suffices(first, pslg, (int64_t)asked, &asked, verdict))
+        judge_fault(verdict, "endless", "more than %.0f points", fmax(asked, AFFORDABLE));
+    first->options.quality.max_steiner = AFFORDABLE;
+}
+
 /* --- the second step: the mesh as input */
 
 static struct tri_pslg pslg_of(const struct tri_mesh *mesh, const struct support_copy *copy)
@@ -347,6 +383,8 @@ void judge_case(const struct torture_case *c, struct verdict *verdict)
     if (o.switches.user_test)
         add_size_test(&o.options, &test, pslg);
     judge_points(c, verdict);
+    if (!verdict->fault[0] && !tri_pslg_is_one_place(pslg) && o.options.refine && o.options.quality.max_steiner < 0)
+        judge_end(&o, pslg, verdict);
     if (!verdict->fault[0] && !tri_pslg_is_one_place(pslg))
         judge_first(&o, pslg, verdict);
     if (!verdict->fault[0] && o.options.refine && o.options.quality.max_steiner < 0)

@@ -12,8 +12,9 @@
  *   - the number of triangles: 2.5 times that at 34 degrees for any bound above, which is proved (refine.c), 5 times
  *     with sizes or -D, which is measured; up to 34, 20 times that at 28 and 3,000
  *     (credit.h, and as much again for what theory promises then); by the schedule, see judge_schedule_size;
- *   - time: 60 s of processor time for meshes of some 100,000 triangles, which take below 1 s each and are made up to
- *     seven times and judged by naive twins; with -Y more, as a point there may cost as much as there are points. */
+ *   - meshes of more than 300,000 points that their figures do ask for: these are made with that limit.
+ * A case that inserts more than its figure can ask for is endless, however long that takes; the limit on time is for
+ * those that go on without a point. */
 #ifndef TESTS_TORTURE_JUDGE_H
 #define TESTS_TORTURE_JUDGE_H
 

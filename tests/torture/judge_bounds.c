@@ -108,9 +108,9 @@ static int64_t outside_gaps(const struct outcome *o, const struct tri_refine_opt
     return n;
 }
 
-/* Where vertices ran away triangles are given up, beside small angles and dear spaces at any bound: there the checker
- * finds the reason itself. Elsewhere none are up to the angle that theory promises (Ruppert 1995: 20.7 degrees), next
- * to none up to 25, and few above, as long as their points did not cost too much (credit.h). */
+/* Where vertices ran away triangles are given up, at any bound: beside small angles, where the checker finds the reason
+ * itself, and in dear spaces. Elsewhere none are up to the angle that theory promises (Ruppert 1995: 20.7 degrees),
+ * next to none up to 25, and few above, as long as their points did not cost too much (credit.h). */
 static int64_t may_run_away(const struct outcome *o, const struct tri_refine_options *angles, int64_t count,
                             struct verdict *verdict)
 {
@@ -118,7 +118,7 @@ static int64_t may_run_away(const struct outcome *o, const struct tri_refine_opt
     double share = angle <= LIKELY ? 0 : o->report.quality.hit_cap ? CAPPED : 0.02;
     double few = 20 + share * o->mesh.n_triangles;
     if (angle <= PROMISED)
-        return 0;
+        return count > 0 ? count - outside_gaps(o, angles) : 0;
     int64_t outside = count > few ? outside_gaps(o, angles) : 0;
     if (outside > few)
         judge_fault(verdict, "angle limit", "%lld of %d triangles given up at %g degrees", (long long)outside,

@@ -28,7 +28,7 @@ static const char usage[] =
     "  --out DIR         write the figures of failures there\n"
     "  --minimise        make them small first\n"
     "  --ignore A,B,..   these kinds of faults are no failure\n"
-    "  --seconds S       processor time for a case (60); with -Y five times as much\n"
+    "  --seconds S       processor time for a case (300)\n"
     "  --verbose         name all cases\n"
     "Prints a line for each failure and a table of them. Exit code 1: there were some.\n";
 
@@ -65,14 +65,6 @@ struct torture {
 #define SANITIZED 1
 #endif
 #endif
-
-/* In proportion to what a point costs: where walls must not be split, up to as many steps as there are points
- * (triangle/refine.c, COST). */
-static double seconds_for(const struct torture *t, const struct torture_case *c)
-{
-    const double PROTECTED = 5;
-    return strchr(c->switches, 'Y') ? PROTECTED * t->seconds : t->seconds;
-}
 
 static void set_limits(double seconds)
 {
@@ -132,7 +124,7 @@ static void run_case(struct torture *t, const struct torture_case *c)
     }
     if (child == 0) {
         dup2(fileno(words), STDERR_FILENO);
-        set_limits(seconds_for(t, c));
+        set_limits(t->seconds);
         judge_case(c, t->verdict);
         fflush(NULL);
         exit(EXIT_SUCCESS); /* with the leak checker's look */
@@ -337,7 +329,7 @@ static void run_all(struct torture *t)
 
 int main(int argc, char **argv)
 {
-    struct torture t = {.seed = 1, .count = 500, .seconds = 60};
+    struct torture t = {.seed = 1, .count = 500, .seconds = 300};
     t.range.families = t.families;
     t.verdict = mmap(NULL, sizeof *t.verdict, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (t.verdict == MAP_FAILED || !take_arguments(&t, argc, argv)) {
