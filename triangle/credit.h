@@ -15,10 +15,18 @@
  * THEOREM. For triangles that are no smaller than TRI_PROMISED_ANGLE a call inserts no more than TRI_ALLOWANCE points,
  * and TRI_CREDIT for each point that it inserts otherwise, and for each vertex that it finds and that is not on credit;
  * those count as often as a sixth of the triangles in its worklist that have them for a corner, which is once on
- * average, and once at most within a fence. Proof: it counts them. Those on credit grant nothing, so it does not matter
- * for the sum of a schedule's calls that they grow in number from phase to phase: a vertex lies in one block of each
- * phase; the allowance is there for each block. What comes of these points in triangles smaller than
- * TRI_PROMISED_ANGLE is what theory promises for a figure with these vertices: about as many again (measured). */
+ * average, and within a fence once, and once more where the call has inserted it. Proof: it counts them. What comes of
+ * these points in triangles smaller than TRI_PROMISED_ANGLE is what theory promises for a figure with these vertices:
+ * about as many again (measured).
+ *
+ * SCHEDULES. Those on credit grant nothing, so it does not matter that they grow in number from phase to phase; and a
+ * vertex lies in one block of each phase. So a schedule of b blocks in p phases inserts for such triangles no more than
+ * b times TRI_ALLOWANCE, and p + 1 times TRI_CREDIT for each vertex that is not on credit. That is in proportion to the
+ * mesh that theory promises where blocks are as large as was estimated: up to four cells of 8,192 triangles and more,
+ * against 1,000 points. Measured at 34 degrees, 105 figures: blocks without an allowance make 0.07% fewer triangles, in
+ * cells of 1,000, 250 and 60 triangles 0.3, 0.7 and 1%, and leave more of these below the bound. What seams would add
+ * is kept low by refine.c (SEAMS).
+ */
 #ifndef TRIANGLE_CREDIT_H
 #define TRIANGLE_CREDIT_H
 
