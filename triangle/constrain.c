@@ -23,12 +23,24 @@
  * Distance: a chain is made of vertices of the input within BESIDE resolutions of the segment's line, of rounded
  * crossings, within one of it, and of vertices within APART of a crossing. What bends add up to is checked for every
  * subsegment: more than TRI_SEGMENT_ULPS is an error that names the segment.
- * Termination: a piece is replaced by two shorter ones (rules 1, 2), or a new vertex appears, farther than APART from
- * its neighbours (rule 3), or the subsegment in the way is bent round a vertex that it was too near to (rule 3, shared
- * vertex). On lattices of a few units in the last place that may go to and fro for ever. So from half a bound on the
- * number of pieces on rule 3 cuts the piece at an end of the subsegment, which stays, where one is near enough. That
- * this ends is experience, not proved: at the bound it is an error.
- * Rule 4 replaces a subsegment by two shorter ones, edges of the same triangle, of which there are finitely many.
+ *
+ * THEOREM (end). Laying ends, with all segments laid or with an error that names one.
+ * Proof: each input segment orders all places by how far along it they are, those as far as each other across it
+ * (advance). Let m be the number of vertices that come strictly between the ends of a piece or of a subsegment in the
+ * order of the first segment along it, and S the sum over all pieces and subsegments. With r, how often rule 3 may
+ * still be applied, (r, S, pieces) decreases lexicographically in every step:
+ *   - Rules 1, 2 and 4 cut at a vertex v that comes between the ends: of those between, none comes between both ends of
+ *     both parts, and v of neither, so m becomes m1 + m2 <= m - 1. Rule 2 demands it; a vertex on a piece is between
+ *     its ends in either order. That a subsegment which rule 4 takes up is a piece then changes no m.
+ *   - A piece that is laid becomes a subsegment, or is one with what lies there, by the order of the earlier segment:
+ *     S does not grow, and there is a piece less.
+ *   - Rule 3 makes r smaller, whatever becomes of S. r begins anew for each segment and once for rule 4, finite. q.e.d.
+ * Debug builds assert each comes_between. Rule 3 may lead pieces to and fro on lattices of a few units in the last
+ * place, where each way round a vertex crosses another: in the second half of r it cuts the piece at an end of the
+ * subsegment, which stays, where one is near, so that what crosses becomes shorter. That this is enough in practice is
+ * experience; where it is not the segment is named.
+ * A chain follows its segment's order but where rule 3 leaves no choice: pieces that cross between two neighbouring
+ * rows of a lattice share an end of one of them, which may be before the start of the other by some resolutions.
  *
  * INVARIANT: between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v]
  * is a live triangle at v (TRI_NONE for points that are in no triangle). The mesh fills the convex hull.
@@ -76,7 +88,7 @@ struct layer {
     struct tri_piece *piece; /* stack of what remains of the segment, and of earlier ones that had to be taken up */
     int32_t n_pieces, piece_capacity;
     int32_t segment; /* the input segment that is being laid */
-    bool runs_on;    /* are there so many pieces that they may go to and fro? See cross(). */
+    int64_t crossings, crossings_left; /* how often rule 3 may be applied, in all and from here on */
     bool runs_along; /* has one met a vertex before its end? */
     uint32_t step; /* see tri_stop_is_due */
     struct tri_constrain_report *report;
@@ -231,6 +243,31 @@ static bool keeps_to(const struct layer *l, int32_t segment, tri_vertex_id v, do
     return tri_line_distance(a, b, l->mesh->xy[v]) <= resolutions * resolution;
 }
 
+/* > 0: q comes after p in the order along an input segment; 0: they are one place. What is as far along it is ordered
+ * across it. The sign is exact: that of a turn, for the first of them with both points turned by a right angle. */
+static double advance(const struct layer *l, int32_t segment, struct tri_point p, struct tri_point q)
+{
+    struct tri_point a = end_of(l, segment, 0), b = end_of(l, segment, 1), from = {-p.y, p.x}, to = {-q.y, q.x};
+    double along = tri_turn(a, b, from, to);
+    return along != 0 ? along : tri_turn(a, b, p, q);
+}
+
+/* Does q come between the ends of the piece, in the order along its segment? See THEOREM. */
+static bool comes_between(const struct layer *l, struct tri_point q, const struct tri_piece *piece)
+{
+    struct tri_point a = l->mesh->xy[piece->from], b = l->mesh->xy[piece->to];
+    double first = advance(l, piece->course.first, a, q), second = advance(l, piece->course.first, q, b);
+    return (first > 0 && second > 0) || (first < 0 && second < 0);
+}
+
+/* Does q lie between the ends of the piece, along the piece itself? */
+static bool lies_between(const struct layer *l, struct tri_point q, const struct tri_piece *piece)
+{
+    struct tri_point a = l->mesh->xy[piece->from], b = l->mesh->xy[piece->to];
+    double x = b.x - a.x, y = b.y - a.y; /* from either end, since q may be next to it */
+    return x * (q.x - a.x) + y * (q.y - a.y) > 0 && x * (q.x - b.x) + y * (q.y - b.y) < 0;
+}
+
 /* By its ends: files may count from 0 or from 1. */
 static enum tri_status cannot_keep(const struct layer *l, int32_t segment)
 {
@@ -355,13 +392,14 @@ static bool take_apart(struct layer *l, tri_sub_id s)
     return (tri_is_boundary(&old) || take_up(l, s)) && push_piece(l, old.v[0], old.v[1], course);
 }
 
-/* Cuts the last n - first pieces of the stack at vertex v. */
+/* Cuts the pieces from number `first` on, the last of the stack, at vertex v: the first two of them, which cross there,
+ * in any case, the others where it lies between their ends. */
 static bool finish_parts(struct layer *l, int32_t first, tri_vertex_id v)
 {
     assert(first >= 0 && first < l->n_pieces && v != TRI_NONE);
     for (int32_t i = l->n_pieces - 1; i >= first; i--) {
         struct tri_piece whole = l->piece[i];
-        if (whole.from == v || whole.to == v)
+        if (whole.from == v || whole.to == v || (i > first + 1 && !lies_between(l, l->mesh->xy[v], &whole)))
             continue;
         l->piece[i].from = v;
         if (!push_piece(l, whole.from, v, whole.course))
@@ -372,40 +410,33 @@ static bool finish_parts(struct layer *l, int32_t first, tri_vertex_id v)
 
 /* A vertex that pieces may share instead of a crossing of their own. */
 struct choice {
-    tri_vertex_id vertex;  /* TRI_NONE: none yet */
-    int before;      /* of how many pieces it lies before the start or beyond the end */
-    double distance; /* squared, from the crossing */
+    tri_vertex_id vertex; /* TRI_NONE: none yet */
+    int astray;           /* of the two pieces that cross, how many have it not between their ends */
+    double distance;      /* squared, from the crossing */
 };
 
-static bool lies_between(const struct layer *l, tri_vertex_id v, const struct tri_piece *piece)
-{
-    struct tri_point a = l->mesh->xy[piece->from], b = l->mesh->xy[piece->to], q = l->mesh->xy[v];
-    double x = b.x - a.x, y = b.y - a.y; /* from either end, since q may be next to it */
-    bool before = x * (q.x - a.x) + y * (q.y - a.y) <= 0, beyond = x * (q.x - b.x) + y * (q.y - b.y) >= 0;
-    return v == piece->from || v == piece->to || (!before && !beyond);
-}
-
-/* The vertex that leads the fewest of the pieces from number `first` on back, then the nearest. */
+/* Of the pieces from number `first` on the first two are those that cross. */
 static void try_vertex(const struct layer *l, int32_t first, tri_vertex_id v, struct tri_point p, double within,
                        struct choice *best)
 {
     struct choice now = {v, 0, tri_distance2(l->mesh->xy[v], p)};
     if (now.distance > within * within)
         return;
-    for (int32_t i = first; i < l->n_pieces; i++)
-        now.before += !lies_between(l, v, &l->piece[i]);
-    if (best->vertex == TRI_NONE || now.before < best->before ||
-        (now.before == best->before && now.distance < best->distance))
+    for (int32_t i = first; i < first + 2; i++)
+        now.astray += l->piece[i].from != v && l->piece[i].to != v && !lies_between(l, l->mesh->xy[v], &l->piece[i]);
+    if (best->vertex == TRI_NONE || now.astray < best->astray ||
+        (now.astray == best->astray && now.distance < best->distance))
         *best = now;
 }
 
 /* The best of the ends of those pieces, the corners of triangle t (where there is one) and the vertices around the
- * cavity of p, as far as they are within a distance of it; TRI_NONE if there is none. */
-static tri_vertex_id choose_vertex(const struct layer *l, int32_t first, tri_triangle_id t, struct tri_point p,
+ * cavity of p, as far as they are within a distance of it: the one that leads fewest of the two astray, then the
+ * nearest. */
+static struct choice choose_vertex(const struct layer *l, int32_t first, tri_triangle_id t, struct tri_point p,
                                    double within)
 {
     struct choice best = {TRI_NONE, 0, 0};
-    assert(first < l->n_pieces && within >= 0);
+    assert(first + 2 <= l->n_pieces && within >= 0);
     for (int32_t i = first; i < l->n_pieces; i++) {
         try_vertex(l, first, l->piece[i].from, p, within, &best);
         try_vertex(l, first, l->piece[i].to, p, within, &best);
@@ -414,7 +445,7 @@ static tri_vertex_id choose_vertex(const struct layer *l, int32_t first, tri_tri
         try_vertex(l, first, l->mesh->tri[t].v[k], p, within, &best);
     for (int32_t i = 0; t != TRI_NONE && i < l->cavity.n_edges; i++)
         try_vertex(l, first, l->cavity.edge[i].a, p, within, &best);
-    return best.vertex;
+    return best;
 }
 
 /* A vertex at p, whose cavity has been found, with marker and attributes of the piece `along`. */
@@ -462,15 +493,15 @@ static bool keeps_near(const struct layer *l, int32_t segment, tri_vertex_id v)
 }
 
 /* Is this end of another piece a place to cut the piece, nearer to it than *least? It lies between its ends then, and
- * near its segment. */
+ * near its segment and, as what else runs along the piece may have finer coordinates, near the piece where it is. */
 static void try_end(const struct layer *l, const struct tri_piece *piece, tri_vertex_id end, tri_vertex_id *nearest,
                     double *least)
 {
-    if (end == piece->from || end == piece->to || !lies_between(l, end, piece) ||
-        !keeps_near(l, piece->course.first, end) || !keeps_near(l, piece->course.marked, end))
+    if (!lies_between(l, l->mesh->xy[end], piece) || !keeps_near(l, piece->course.first, end) ||
+        !keeps_near(l, piece->course.marked, end))
         return;
     double distance = tri_line_distance(l->mesh->xy[piece->from], l->mesh->xy[piece->to], l->mesh->xy[end]);
-    if (distance < *least)
+    if (distance < *least && distance <= (TRI_SEGMENT_ULPS - BESIDE) * tri_resolution(l->mesh->xy[end]))
         *nearest = end, *least = distance;
 }
 
@@ -496,6 +527,8 @@ static tri_vertex_id nearest_end(const struct layer *l, int32_t first)
 static enum tri_status cross(struct layer *l, const struct tri_piece *piece, tri_sub_id s)
 {
     assert(s >= 0 && s < l->mesh->n_subs && !tri_is_boundary(&l->mesh->sub[s])); /* no piece leaves the hull */
+    if (l->crossings_left-- == 0)
+        return cannot_keep(l, l->segment);
     const int32_t first = l->n_pieces;
     const tri_vertex_id near = l->mesh->sub[s].v[0];
     tri_sub_id on;
@@ -515,11 +548,15 @@ static enum tri_status cross(struct layer *l, const struct tri_piece *piece, tri
     enum tri_search found = t == TRI_NONE ? TRI_SEARCH_OUTSIDE : tri_cavity_search(&l->cavity, l->mesh, p, t);
     if (found == TRI_SEARCH_NO_MEMORY)
         return no_memory(l);
-    tri_vertex_id v = l->runs_on ? nearest_end(l, first) : TRI_NONE;
-    if (v == TRI_NONE)
-        v = choose_vertex(l, first, t, p, APART * tri_resolution(p));
-    if (v == TRI_NONE && found != TRI_SEARCH_FOUND) {
-        v = nearest_end(l, first);
+    bool late = l->crossings_left < l->crossings / 2;
+    bool room = found == TRI_SEARCH_FOUND && lies_between(l, p, &l->piece[first]) &&
+                lies_between(l, p, &l->piece[first + 1]);
+    struct choice shared = choose_vertex(l, first, t, p, APART * tri_resolution(p));
+    tri_vertex_id v = late ? nearest_end(l, first) : TRI_NONE;
+    if (v == TRI_NONE && shared.astray == 0)
+        v = shared.vertex;
+    if (v == TRI_NONE && !room) {
+        v = shared.vertex == TRI_NONE && !late ? nearest_end(l, first) : shared.vertex;
         if (v == TRI_NONE)
             return cannot_keep(l, l->segment);
     }
@@ -555,7 +592,7 @@ static void consider(const struct layer *l, const struct tri_piece *piece, tri_v
         return;
     double distance = tri_line_distance(a, b, q), near = NEAR * tri_resolution(q);
     if (distance > near || fmin(at, length2 - at) <= near * sqrt(length2) ||
-        !keeps_to(l, piece->course.first, v, BESIDE) ||
+        !keeps_to(l, piece->course.first, v, BESIDE) || !comes_between(l, q, piece) ||
         (met->beside != TRI_NONE && met->distance <= distance))
         return;
     met->beside = v;
@@ -605,7 +642,7 @@ static struct meeting look_ahead(const struct layer *l, const struct tri_piece *
 /* The piece ends at vertex v for now; the rest waits below it on the stack. */
 static enum tri_status stop_at(struct layer *l, const struct tri_piece *piece, tri_vertex_id v)
 {
-    assert(v != piece->from && v != piece->to);
+    assert(comes_between(l, l->mesh->xy[v], piece));
     bool room = push_piece(l, v, piece->to, piece->course) && push_piece(l, piece->from, v, piece->course);
     return room ? TRI_OK : no_memory(l);
 }
@@ -626,25 +663,27 @@ static enum tri_status lay_piece(struct layer *l, struct tri_piece piece)
     if (met.across != TRI_NONE)
         return cross(l, &piece, met.across);
     assert(met.end != TRI_NONE); /* the hull is convex */
+    assert(met.end == piece.to || comes_between(l, l->mesh->xy[met.end], &piece));
     enum tri_status status = lay_edge(l, t, piece.from, met.end, piece.course);
     if (status)
         return status;
     return push_piece(l, met.end, piece.to, piece.course) ? TRI_OK : no_memory(l);
 }
 
+/* Rule 3 may be applied so often from now on. */
+static void allow_crossings(struct layer *l)
+{
+    /* One for each subsegment crossed is usual. */
+    l->crossings = l->crossings_left = 200 + 10 * ((int64_t)l->mesh->n_subs + l->mesh->n_vertices);
+}
+
 /* Lays what is on the stack. */
 static enum tri_status lay_pieces(struct layer *l)
 {
-    /* Five pieces for each subsegment crossed and two for each vertex are usual. */
-    int64_t bound = 1000 + 50 * ((int64_t)l->mesh->n_subs + l->mesh->n_vertices);
-    for (int64_t n = 0; l->n_pieces > 0; n++) {
+    while (l->n_pieces > 0) {
         if (tri_stop_is_due(l->mesh->stop, &l->step))
             return tri_fail_stopped(l->error);
-        struct tri_piece next = l->piece[--l->n_pieces];
-        l->runs_on = n >= bound / 2;
-        if (n >= bound)
-            return cannot_keep(l, l->segment);
-        enum tri_status status = lay_piece(l, next);
+        enum tri_status status = lay_piece(l, l->piece[--l->n_pieces]);
         if (status)
             return status;
     }
@@ -655,6 +694,7 @@ static enum tri_status lay_segment(struct layer *l, const struct tri_piece *segm
 {
     l->n_pieces = 0;
     l->segment = segment->course.first;
+    allow_crossings(l);
     return push_piece(l, segment->from, segment->to, segment->course) ? lay_pieces(l) : no_memory(l);
 }
 
@@ -686,6 +726,7 @@ static enum tri_status lead_through(struct layer *l, tri_sub_id s, tri_vertex_id
 
 static enum tri_status close_slits(struct layer *l)
 {
+    allow_crossings(l);
     for (bool again = true; again;) {
         again = false;
         for (tri_sub_id s = 0; s < l->mesh->n_subs;) {
