@@ -131,6 +131,30 @@ static void test_protection_is_no_excuse_for_sizes(void **state)
     }
 }
 
+/* Points beside a wall that must not be split: the circumdisks of all their triangles reach beyond it. (Each searched
+ * all of the others before it was given up; 1,000 points show that it is still given up, and counted.) */
+static void test_triangles_beside_a_protected_wall_are_given_up(void **state)
+{
+    (void)state;
+    enum { N = 1000 };
+    for (int protect = 1; protect <= PROTECT_ALL; protect++) {
+        struct tri_report report;
+        struct tri_pslg pslg = support_square(4e5, N, 3);
+        for (int32_t i = 4; i < pslg.n_points; i++) {
+            pslg.points[2 * i] = 4e5 * (i - 3) / (N + 1);
+            pslg.points[2 * i + 1] = 1e-5 * (1 + i * i % 97 / 97.0);
+        }
+        struct tri_options options = support_quality(20, 0);
+        options.quality.protect = protect;
+        struct tri_mesh mesh = support_generate(&pslg, &options, &report);
+        struct tri_check_options check = {.max_bad = mesh.n_triangles, .min_angle = 20};
+        support_judge(&mesh, &pslg, &check, false, NULL);
+        assert_true(report.quality.given_up[TRI_EXCUSE_PROTECTED] > N / 2);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+    }
+}
+
 static void test_coasts_are_refined(void **state)
 {
     (void)state;
@@ -790,6 +814,7 @@ int main(void)
         cmocka_unit_test(test_area_bounds_are_met),
         cmocka_unit_test(test_tangles_are_refined),
         cmocka_unit_test(test_protection_is_no_excuse_for_sizes),
+        cmocka_unit_test(test_triangles_beside_a_protected_wall_are_given_up),
         cmocka_unit_test(test_coasts_are_refined),
         cmocka_unit_test(test_region_areas),
         cmocka_unit_test(test_user_size_test),
