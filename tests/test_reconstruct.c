@@ -859,11 +859,39 @@ static void a_mesh_above_the_usual_angle_is_not_refined_again(void **state)
     tri_pslg_free(&pslg);
 }
 
+/* Two arcs of many short sides with a space between them that is too narrow to be filled. At the corners the angle
+ * of two pieces is beyond rounding; that of the sides is not, and what each of their pieces has beside it is cheap. */
+static void what_was_given_up_stays_given_up(void **state)
+{
+    (void)state;
+    enum { N = 34 };
+    struct tri_pslg pslg = support_pslg(2 * N, 2 * N, 0, 0);
+    for (int i = 0; i < 2 * N; i++) {
+        double x = (i < N ? i : 2 * N - i) / (double)N;
+        support_add_point(&pslg, x, (i < N ? -4e-9 : 4e-9) * x * (1 - x));
+        support_add_segment(&pslg, i, (i + 1) % (2 * N));
+    }
+    struct tri_options options = support_quality(28, 0);
+    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+    assert_in_range(mesh.n_triangles, 500, 2000);
+    struct input in = input_of(&mesh);
+    struct tri_mesh back = rebuild(&in, &(struct tri_reconstruct_options){.use_segments = true, .refine = true});
+    assert_int_equal(back.n_parents, 2 * N);
+    struct tri_refine_report report;
+    assert_int_equal(tri_refine(&back, &options.quality, &report, NULL), TRI_OK);
+    assert_in_range(back.n_triangles, mesh.n_triangles, 1.2 * mesh.n_triangles); /* once 45 times as many */
+    tri_mesh_free(&back);
+    free_input(&in);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shares_leave_no_trace),
         cmocka_unit_test(a_mesh_above_the_usual_angle_is_not_refined_again),
+        cmocka_unit_test(what_was_given_up_stays_given_up),
         cmocka_unit_test(faults_in_shares),
         cmocka_unit_test(what_was_meshed_comes_back),
         cmocka_unit_test(boundary_becomes_subsegments),

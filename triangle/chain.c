@@ -2,7 +2,13 @@
  *
  * A vertex is a joint where exactly two subsegments end, of one marker and both on the boundary or both inside, and run
  * on as far as rounding tells. Between two vertices that are none lies a chain of joints. It becomes one parent where
- * all of it keeps to the line between its ends: one joint after the other might go round a curve.
+ * all of it keeps to the line between its ends. Else it goes round: beside a corner of a segment or of a smooth curve
+ * pieces may be so short that no joint shows how far the next one leaves their line. Then it is cut where it is
+ * farthest from that line, which is at a corner (Douglas & Peucker 1973), and so on. Of vertices that are as far up to
+ * the tolerance it is the first, since refinement numbers the vertices that it makes after those that it finds.
+ *
+ * COST. Cuts at the farthest vertex may leave one piece nearly as long as the chain. From the DEEP-th cut within a cut
+ * on they halve it: n vertices cost at most n * (DEEP + log2(n)).
  *
  * The tolerance is what split points and arranged vertices may be off their lines (split.c, constrain.c), so the
  * parents of a refined mesh come back: with them its corners (small_angle.h), narrow spaces and sizes are what they
@@ -17,17 +23,16 @@
 /* In resolutions. */
 static const double ASTRAY = 8;
 
-enum { MANY = -2 };
+enum { MANY = -2, DEEP = 32 };
 
 struct chains {
     struct tri_mesh *mesh;
     tri_sub_id *at; /* [n_vertices][2] the subsegments that end at each; TRI_NONE: none; first MANY: more than two */
-};
-
-/* One of them: from a vertex to another, the subsegments at these. */
-struct chain {
-    tri_sub_id first, last;
-    tri_vertex_id from, to;
+    bool *seen;     /* [n_subs] */
+    /* The chain in hand: from vertex[0] by sub[0] to vertex[1], and so on to vertex[n]. */
+    tri_vertex_id *vertex; /* [n_subs + 1] */
+    tri_sub_id *sub;       /* [n_subs] */
+    int32_t n;
 };
 
 static void list_ends(struct chains *c)
@@ -47,12 +52,25 @@ static tri_vertex_id other_end(const struct tri_mesh *mesh, tri_sub_id s, tri_ve
     return mesh->sub[s].v[mesh->sub[s].v[0] == v];
 }
 
+/* Of v from the segment between a and b. */
+static double distance_from(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, tri_vertex_id v)
+{
+    struct tri_point p = mesh->xy[a], q = mesh->xy[b], at = mesh->xy[v];
+    double dot = (p.x - at.x) * (q.x - at.x) + (p.y - at.y) * (q.y - at.y);
+    return dot < 0 ? tri_line_distance(p, q, at) : sqrt(fmin(tri_distance2(p, at), tri_distance2(q, at)));
+}
+
+static double tolerance(const struct tri_mesh *mesh, tri_vertex_id v)
+{
+    return ASTRAY * tri_resolution(mesh->xy[v]);
+}
+
 /* Does v lie between a and b on their line? */
 static bool is_between(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, tri_vertex_id v)
 {
     struct tri_point p = mesh->xy[a], q = mesh->xy[b], at = mesh->xy[v];
     double dot = (p.x - at.x) * (q.x - at.x) + (p.y - at.y) * (q.y - at.y);
-    return dot < 0 && tri_line_distance(p, q, at) <= ASTRAY * tri_resolution(at);
+    return dot < 0 && tri_line_distance(p, q, at) <= tolerance(mesh, v);
 }
 
 static bool is_joint(const struct chains *c, tri_vertex_id v)
@@ -74,29 +92,61 @@ static tri_sub_id beyond(const struct chains *c, tri_vertex_id v, tri_sub_id s)
     return at[at[0] == s];
 }
 
-/* The chain that starts or ends with subsegment s at a vertex, and runs its way. */
-static struct chain follow(const struct chains *c, tri_sub_id s, tri_vertex_id from)
+static void append(struct chains *c, tri_sub_id s)
 {
-    struct chain chain = {s, s, from, other_end(c->mesh, s, from)};
-    while (is_joint(c, chain.to)) {
-        chain.last = beyond(c, chain.to, chain.last);
-        chain.to = other_end(c->mesh, chain.last, chain.to);
-    }
-    if (c->mesh->sub[s].v[0] == from)
-        return chain;
-    return (struct chain){chain.last, chain.first, chain.to, chain.from};
+    assert(c->n < c->mesh->n_subs && !c->seen[s]);
+    c->seen[s] = true;
+    c->sub[c->n] = s;
+    c->vertex[c->n + 1] = other_end(c->mesh, s, c->vertex[c->n]);
+    c->n++;
 }
 
-static bool is_straight(const struct chains *c, const struct chain *chain)
+static void turn_chain(struct chains *c)
 {
-    tri_sub_id s = chain->first;
-    tri_vertex_id v = other_end(c->mesh, s, chain->from);
-    for (; v != chain->to; v = other_end(c->mesh, s, v)) {
-        if (!is_between(c->mesh, chain->from, chain->to, v))
-            return false;
-        s = beyond(c, v, s);
+    for (int32_t i = 0, k = c->n; i < k; i++, k--) {
+        tri_vertex_id v = c->vertex[i];
+        c->vertex[i] = c->vertex[k];
+        c->vertex[k] = v;
     }
-    return true;
+    for (int32_t i = 0, k = c->n - 1; i < k; i++, k--) {
+        tri_sub_id s = c->sub[i];
+        c->sub[i] = c->sub[k];
+        c->sub[k] = s;
+    }
+}
+
+/* Takes in hand the chain that begins with subsegment s at a vertex, and lets it run the way of s. It ends where it
+ * began if it is closed. */
+static void follow(struct chains *c, tri_sub_id s, tri_vertex_id from)
+{
+    c->n = 0;
+    c->vertex[0] = from;
+    append(c, s);
+    for (tri_vertex_id v = c->vertex[1]; v != from && is_joint(c, v); v = c->vertex[c->n])
+        append(c, beyond(c, v, c->sub[c->n - 1]));
+    if (c->mesh->sub[s].v[0] != from)
+        turn_chain(c);
+}
+
+/* Where the chain from its vertex i to its vertex k has to be cut; 0: nowhere. */
+static int32_t farthest(const struct chains *c, int32_t i, int32_t k)
+{
+    const struct tri_mesh *mesh = c->mesh;
+    const tri_vertex_id *v = c->vertex;
+    bool straight = true;
+    double most = 0;
+    for (int32_t j = i + 1; j < k; j++) {
+        straight = straight && is_between(mesh, v[i], v[k], v[j]);
+        most = fmax(most, distance_from(mesh, v[i], v[k], v[j]));
+    }
+    int32_t cut = 0;
+    for (int32_t j = i + 1; j < k && !straight; j++) {
+        double distance = distance_from(mesh, v[i], v[k], v[j]);
+        if (distance >= fmax(0.5 * most, most - tolerance(mesh, v[j])) && (cut == 0 || v[j] < v[cut]))
+            cut = j;
+    }
+    assert(straight == (cut == 0));
+    return cut;
 }
 
 /* All subsegments of a parent run its way. */
@@ -110,25 +160,36 @@ static void turn(struct tri_subsegment *s)
     s->side[1] = side;
 }
 
-static void unite(const struct chains *c, const struct chain *chain)
+/* From its vertex i to its vertex k. */
+static void unite(const struct chains *c, int32_t i, int32_t k)
 {
     struct tri_mesh *mesh = c->mesh;
-    tri_sub_id s = chain->first;
-    tri_vertex_id v = chain->from;
-    tri_parent_id parent = mesh->sub[s].parent;
-    mesh->parents[parent].v[0] = chain->from;
-    mesh->parents[parent].v[1] = chain->to;
-    mesh->parents[parent].guard = mesh->xy[chain->from];
-    for (;;) {
-        if (mesh->sub[s].v[0] != v)
-            turn(&mesh->sub[s]);
-        mesh->sub[s].parent = parent;
-        v = mesh->sub[s].v[1];
-        if (v == chain->to)
-            return;
-        mesh->on[v] = parent;
-        s = beyond(c, v, s);
+    tri_parent_id parent = mesh->sub[c->sub[i]].parent;
+    mesh->parents[parent].v[0] = c->vertex[i];
+    mesh->parents[parent].v[1] = c->vertex[k];
+    mesh->parents[parent].guard = mesh->xy[c->vertex[i]];
+    for (int32_t j = i; j < k; j++) {
+        struct tri_subsegment *s = &mesh->sub[c->sub[j]];
+        if (s->v[0] != c->vertex[j])
+            turn(s);
+        s->parent = parent;
+        if (j > i)
+            mesh->on[c->vertex[j]] = parent;
     }
+}
+
+static void unite_straight(const struct chains *c, int32_t i, int32_t k, int depth)
+{
+    if (k - i == 1)
+        return;
+    int32_t cut = farthest(c, i, k);
+    if (cut == 0) {
+        unite(c, i, k);
+        return;
+    }
+    cut = depth < DEEP ? cut : i + (k - i) / 2;
+    unite_straight(c, i, cut, depth + 1);
+    unite_straight(c, cut, k, depth + 1);
 }
 
 /* Parents without a subsegment go. */
@@ -159,28 +220,37 @@ static void unite_all(struct chains *c)
 {
     struct tri_mesh *mesh = c->mesh;
     for (tri_sub_id s = 0; s < mesh->n_subs; s++)
-        for (int k = 0; k < 2; k++) {
-            tri_vertex_id from = mesh->sub[s].v[k], next = mesh->sub[s].v[1 - k];
-            if (is_joint(c, from) || !is_joint(c, next) || mesh->on[next] >= 0)
-                continue; /* in the middle of a chain, none, or done */
-            struct chain chain = follow(c, s, from);
-            if (is_straight(c, &chain))
-                unite(c, &chain);
+        for (int k = 0; k < 2; k++)
+            if (!c->seen[s] && !is_joint(c, mesh->sub[s].v[k])) {
+                follow(c, s, mesh->sub[s].v[k]);
+                unite_straight(c, 0, c->n, 0);
+            }
+    for (tri_sub_id s = 0; s < mesh->n_subs; s++)
+        if (!c->seen[s]) { /* closed */
+            follow(c, s, mesh->sub[s].v[0]);
+            unite_straight(c, 0, c->n, 0);
         }
 }
 
 enum tri_status tri_unite_chains(struct tri_mesh *mesh, struct tri_error *error)
 {
-    size_t n = 2 * (size_t)mesh->n_vertices;
-    struct chains c = {mesh, malloc(n * sizeof *c.at + 1)};
+    size_t n = (size_t)mesh->n_subs;
+    struct chains c = {.mesh = mesh,
+                       .at = malloc(2 * (size_t)mesh->n_vertices * sizeof *c.at + 1),
+                       .seen = calloc(n + 1, sizeof *c.seen),
+                       .vertex = malloc((n + 1) * sizeof *c.vertex),
+                       .sub = malloc(n * sizeof *c.sub + 1)};
     tri_parent_id *number = malloc((size_t)mesh->n_parents * sizeof *number + 1);
-    if (c.at && number) {
+    bool done = c.at && c.seen && c.vertex && c.sub && number;
+    if (done) {
         list_ends(&c);
         unite_all(&c);
         number_parents(mesh, number);
     }
-    bool done = c.at && number;
     free(number);
+    free(c.sub);
+    free(c.vertex);
+    free(c.seen);
     free(c.at);
     return done ? TRI_OK : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d segments", (int)mesh->n_subs);
 }

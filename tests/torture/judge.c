@@ -327,22 +327,58 @@ static struct tri_pslg pslg_of(const struct tri_mesh *mesh, const struct support
                              .segment_markers = copy->markers};
 }
 
+/* The mesh of a first one, ready to be refined again. */
+static enum tri_status rebuild(const struct outcome *first, struct outcome *o, struct support_copy *copy,
+                               struct tri_pslg *pslg, struct tri_error *error)
+{
+    *copy = support_copy(&first->mesh);
+    *pslg = pslg_of(&first->mesh, copy);
+    struct tri_elements elements = {
+        .n = first->mesh.n_triangles, .corners = copy->triangles, .n_nodes = 3, .areas = copy->max_areas};
+    struct tri_reconstruct_options how = {.use_segments = true, .refine = true, .base = 1};
+    *o = (struct outcome){.of = first->of, .switches = first->switches, .options = first->options};
+    return tri_reconstruct(&o->mesh, pslg, &elements, &how, error);
+}
+
+/* A mesh that is refined again, with the same bounds, stays about as it is: what was given up is given up again
+ * (chain.h). Above the angle that theory promises it does not: its points were on credit once, and each is a vertex
+ * like any other then, that grants credit for more (credit.h). Nor where segments must stay as they are: the order
+ * decides which points they hinder. */
+static void judge_amount_again(const struct outcome *first, struct verdict *verdict)
+{
+    const double AGAIN = 1.2;
+    enum { FEW = 1000 };
+    struct tri_error error = {0};
+    struct outcome o;
+    struct support_copy copy;
+    struct tri_pslg pslg;
+    enter(verdict, "refining for nothing");
+    enum tri_status status = rebuild(first, &o, &copy, &pslg, &error);
+    status = status ? status : refine(&o, 1, &error);
+    if (!status)
+        tri_mesh_compact(&o.mesh);
+    if (status)
+        judge_fault(verdict, "error", "for nothing: %s", error.text);
+    else if (o.mesh.n_triangles > AGAIN * first->mesh.n_triangles + FEW)
+        judge_fault(verdict, "again", "%d triangles, and %d when they are refined once more",
+                    (int)first->mesh.n_triangles, (int)o.mesh.n_triangles);
+    tri_mesh_free(&o.mesh);
+    support_copy_free(&copy);
+}
+
 static void judge_again(const struct outcome *first, struct verdict *verdict)
 {
     struct tri_error error = {0};
-    struct support_copy copy = support_copy(&first->mesh);
-    struct tri_pslg pslg = pslg_of(&first->mesh, &copy);
-    struct tri_elements elements = {
-        .n = first->mesh.n_triangles, .corners = copy.triangles, .n_nodes = 3, .areas = copy.max_areas};
-    struct outcome o = {.of = first->of, .switches = first->switches, .options = first->options};
-    struct tri_reconstruct_options how = {.use_segments = true, .refine = true, .base = 1};
+    struct outcome o;
+    struct support_copy copy;
+    struct tri_pslg pslg;
     enter(verdict, "rebuilding");
+    enum tri_status status = rebuild(first, &o, &copy, &pslg, &error);
     o.options.quality.max_area /= 2;
+    o.options.quality.region_areas = true;
     /* Short edges that a bound above the usual one has left are features of the mesh: asked again it would go on. */
     if (o.options.quality.min_angle > TRI_USUAL_ANGLE)
         o.options.quality.min_angle = 30;
-    o.options.quality.region_areas = true;
-    enum tri_status status = tri_reconstruct(&o.mesh, &pslg, &elements, &how, &error);
     enter(verdict, "refining again");
     status = status ? status : refine(&o, 1, &error);
     if (!status)
@@ -394,6 +430,10 @@ void judge_case(const struct torture_case *c, struct verdict *verdict)
     if (!verdict->fault[0] && o.options.refine && o.options.quality.max_steiner < 0 && c->block > 0 &&
         o.options.quality.min_angle <= TRI_USUAL_ANGLE)
         judge_schedule_size(&o, pslg, verdict);
+    if (!verdict->fault[0] && o.mesh.n_triangles > 0 && o.options.refine && c->again &&
+        o.options.quality.max_steiner < 0 && o.options.quality.min_angle <= TRI_PROMISED_ANGLE &&
+        o.switches.protect == 0)
+        judge_amount_again(&o, verdict);
     if (!verdict->fault[0] && o.mesh.n_triangles > 0 && o.options.refine && c->again)
         judge_again(&o, verdict);
     enter(verdict, "freeing");
