@@ -78,6 +78,7 @@ struct par_state {
     struct tri_pause *paused; /* where a sequential call goes on that a checkpoint's state is amid; else NULL */
     struct par_share *share; /* NULL: all blocks are done here, with all that they may look at */
     int32_t n_kept;          /* vertices there were before */
+    bool sizes_first;        /* a schedule for sizes comes before that for all bounds (tri_sizes_come_first) */
     const struct tri_refine_options *then; /* what is asked for behind this schedule, on its cells, before the mesh is
                                 numbered; NULL: nothing, or something else */
     bool may_number;         /* nothing is refined after this schedule, and what it makes is to be numbered */

@@ -55,6 +55,7 @@
 #include "triangle/criterion.h"
 #include "triangle/disk.h"
 #include "triangle/entry_set.h"
+#include "triangle/estimate.h"
 #include "triangle/feature_size.h"
 #include "triangle/grow.h"
 #include "triangle/hidden_wall.h"
@@ -1040,9 +1041,8 @@ static bool refine_worklist(struct tri_refiner *r)
     return true;
 }
 
-/* Where there are sizes to reach and the angle bound is above TRI_EASY_ANGLE, sizes come first, with an easy bound: bad
- * angles are dear to mend where triangles of different sizes meet, and in a mesh of one size they seldom do
- * (docs/performance.md: up to a sixth fewer triangles). Above TRI_USUAL_ANGLE refinement feeds on itself, until edges
+/* Where areas decide on the mesh and the angle bound is above TRI_EASY_ANGLE, sizes come first, with an easy bound
+ * (tri_sizes_come_first: up to a sixth fewer triangles). Above TRI_USUAL_ANGLE refinement feeds on itself, until edges
  * are as short as feature_size.c allows. So the whole mesh is refined for the usual angle; then for more, if it is
  * nearly reached (FEW_BAD), and as long as that adds less than half as many points again; where it did not end so, what
  * is left is mended for BACK_ANGLE (for the usual angle it would take several times as many points), and given up where
@@ -1094,8 +1094,8 @@ static void go_above(struct tri_refiner *r)
 static void begin_stages(struct tri_refiner *r)
 {
     double usual = fmin(r->options->min_angle, TRI_USUAL_ANGLE);
-    bool easy = usual > TRI_EASY_ANGLE && tri_has_sizes(r->options) && !r->options->fence &&
-                !r->options->worklist && !r->options->above;
+    bool easy = !r->options->fence && !r->options->worklist && !r->options->above &&
+                tri_sizes_come_first(r->mesh, r->options, NULL);
     assert(!r->options->above || (!r->options->worklist && r->options->min_angle > TRI_USUAL_ANGLE));
     r->stage = easy ? EASY_STAGE : USUAL_STAGE;
     r->criterion.bounds = tri_bounds_for(easy ? TRI_SIZES_ANGLE : usual, r->options->conforming);
