@@ -46,6 +46,28 @@ static void test_thin_rectangles_are_filled_while_that_is_cheap(void **state)
     assert_true(in_narrow_gap > 0);
 }
 
+/* Two segments of length 1, `width` apart where they begin and `spread` more where they end: what filling the space
+ * between them costs, seen from there, over the integral of 1 / width. */
+static double cost_over_integral(double width, double spread)
+{
+    struct tri_point xy[] = {{0, 0}, {1, 0}, {0, width}, {1, width + spread}};
+    struct tri_parent parents[] = {{.v = {0, 1}}, {.v = {2, 3}}};
+    struct tri_mesh mesh = {.xy = xy, .parents = parents, .limits.shortest2 = 0x1p-90};
+    double cost = tri_filling_cost(&mesh, 0, 1, xy[0], xy[2]);
+    return cost / (spread > 0 ? log1p(spread / width) / spread : 1 / width);
+}
+
+static void test_filling_costs_what_the_width_takes_all_along(void **state)
+{
+    (void)state;
+    const double WIDTHS[] = {1e-9, 1e-6, 1e-3, 0.1}, SPREADS[] = {0, 1e-9, 1e-6, 1e-3, 0.1};
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 5; k++) {
+            double ratio = cost_over_integral(WIDTHS[i], SPREADS[k]);
+            assert_true(ratio > 0.99 && ratio < 1.6);
+        }
+}
+
 /* Subsegments at an acute vertex are split at powers of two from it, others in the middle. */
 static void test_shells_are_powers_of_two(void **state)
 {
@@ -131,6 +153,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_thin_rectangles_are_filled_while_that_is_cheap),
+        cmocka_unit_test(test_filling_costs_what_the_width_takes_all_along),
         cmocka_unit_test(test_shells_are_powers_of_two),
         cmocka_unit_test(test_shells_are_near_the_middle),
         cmocka_unit_test(test_flat_neighbour_keeps_the_mesh_delaunay),

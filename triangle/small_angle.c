@@ -25,6 +25,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "triangle/estimate.h"
 #include "triangle/feature_size.h"
 #include "triangle/predicates.h"
 
@@ -171,7 +172,9 @@ tri_vertex_id tri_common_end(const struct tri_mesh *mesh, tri_parent_id parent, 
     return TRI_NONE;
 }
 
-/* At the far end of the shorter one, of length l, they are at most width + l * sine apart. */
+/* The integral of 1 / width along the shorter one. If they spread by no more than the width they have, that is about
+ * length / width; else each octave of width takes about length / spread. Widths that coordinates do not resolve count
+ * as the least one that they do. */
 double tri_filling_cost(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
                         struct tri_point v)
 {
@@ -181,8 +184,9 @@ double tri_filling_cost(const struct tri_mesh *mesh, tri_parent_id first, tri_pa
     double px = b.x - a.x, py = b.y - a.y, qx = d.x - c.x, qy = d.y - c.y;
     double lp = px * px + py * py, lq = qx * qx + qy * qy, cross = fabs(px * qy - py * qx);
     double shorter = sqrt(lp < lq ? lp : lq), longer = sqrt(lp < lq ? lq : lp);
-    double width = fabs(px * (v.y - u.y) - py * (v.x - u.x)) / sqrt(lp);
-    return shorter / (width + cross / longer); /* cross / longer = shorter * sine */
+    double width = fabs(px * (v.y - u.y) - py * (v.x - u.x)) / sqrt(lp), spread = cross / longer;
+    width = fmax(width, sqrt(mesh->limits.shortest2));
+    return spread <= width ? shorter / width : shorter / spread * tri_rough_log2(1 + spread / width);
 }
 
 static bool is_end(const struct tri_parent *p, tri_vertex_id v) { return p->v[0] == v || p->v[1] == v; }

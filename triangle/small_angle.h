@@ -36,7 +36,8 @@ bool tri_is_hopeless(const struct tri_mesh *mesh, double angle, tri_triangle_id 
                      const struct tri_shape *shape);
 
 /* How many points, to the order, would it take to fill the space between two parents, the first through u, the second
- * through v, that are as far apart there as v is from the line of the first? */
+ * through v, that are nearest to each other there, as far apart as v is from the line of the first? The integral of
+ * 1 / width along it: Ruppert's of 1 / size^2 (1995), each place being as wide as its features. */
 double tri_filling_cost(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
                         struct tri_point v);
 

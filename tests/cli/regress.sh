@@ -260,7 +260,8 @@ done
 # --- points for angles that ran away: triangles, at most. (test_feature_size tries all inputs and bounds.)
 fresh regress/endless_q36_small.poly regress/endless_q36_fan.poly regress/endless_q35_graded.poly \
     regress/slow_q41D_2369.poly regress/ranaway30.poly regress/thin_comb.poly \
-    regress/ranaway_fan.poly regress/ranaway_zigzag.poly regress/hidden_gap.poly
+    regress/ranaway_fan.poly regress/ranaway_zigzag.poly regress/hidden_gap.poly \
+    regress/hatching.poly regress/cut_wedge.poly regress/nearly_straight.poly
 few() { # few TRIANGLES WORDS...: no more of them, in a right mesh
     every 3 || return 0
     most=$1
@@ -282,6 +283,9 @@ few 40000 -pq30 ranaway30
 few 10000 -pcq33 ranaway_fan
 few 2000 -pq1S10000 hidden_gap
 few 2000 -pq30S10000 hidden_gap
+few 40000 -pcq30S50000 hatching
+few 5000 -pq30S50000 cut_wedge
+few 1000 -pcq30S50000 nearly_straight
 few 16000 -pcq34 ranaway_fan
 few 20992 -pcq34 ranaway_zigzag
 few 10000 -pq33 thin_comb # each bar is a narrow space that no edge of the triangulation bridges
