@@ -292,6 +292,72 @@ static void test_edge_length(void **state)
     tri_mesh_delete(mesh);
 }
 
+static double same_everywhere(void *user, const double at[2])
+{
+    (void)at;
+    return *(const double *)user;
+}
+
+static void test_edge_lengths_without_meaning(void **state)
+{
+    (void)state;
+    double odd[] = {0, -0.01, NAN, INFINITY, -INFINITY};
+    struct tri_figure figure = plate();
+    struct tri_settings settings = tri_no_settings();
+    settings.min_angle = 30;
+    struct tri_mesh *plain = mesh_of(&figure, &settings);
+    settings.edge_length = same_everywhere;
+    settings.most_new_points = 10000;
+    for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
+        settings.edge_length_user = &odd[i];
+        struct tri_mesh *mesh = mesh_of(&figure, &settings);
+        assert_true(same_meshes(plain, mesh));
+        tri_mesh_delete(mesh);
+    }
+    tri_mesh_delete(plain);
+}
+
+static void test_too_large_leaves_no_mesh(void **state)
+{
+    (void)state;
+    struct tri_figure figure = plate();
+    struct tri_settings settings = fine();
+    struct tri_mesh *mesh;
+    settings.max_area = 1e-15;
+    assert_int_equal(tri_mesh_new(&mesh, &figure, &settings, NULL), TRI_TOO_LARGE);
+    assert_null(mesh);
+    assert_int_equal(par_mesh_new(&mesh, &figure, &settings, NULL), TRI_TOO_LARGE);
+    assert_null(mesh);
+}
+
+static void test_input_that_is_not_finite(void **state)
+{
+    (void)state;
+    const double odd[] = {NAN, INFINITY, -INFINITY};
+    const struct tri_figure figure = plate();
+    const struct tri_settings settings = fine();
+    struct tri_mesh *mesh = mesh_of(&figure, &settings);
+    struct tri_figure made = tri_no_figure();
+    tri_mesh_figure(mesh, &made);
+    for (int i = 0; i < 9; i++) {
+        double xy[10][2], empty[2], region[2][4];
+        double *const one[] = {&xy[1][0], &empty[1], &region[1][0]};
+        struct tri_figure input = figure;
+        struct tri_verdict verdict;
+        struct tri_error error = {0};
+        memcpy(xy, figure.points.at, sizeof xy);
+        memcpy(empty, figure.holes.at, sizeof empty);
+        memcpy(region, figure.regions.at, sizeof region);
+        *one[i / 3] = odd[i % 3];
+        input.points = tri_reals_of(xy[0], 10, 2);
+        input.holes = tri_reals_of(empty, 1, 2);
+        input.regions = tri_reals_of(region[0], 2, 4);
+        assert_int_equal(tri_check_figure(&made, &input, NULL, &verdict, &error), TRI_BAD_INPUT);
+        assert_non_null(strstr(error.text, "finite"));
+    }
+    tri_mesh_delete(mesh);
+}
+
 struct fence_test {
     bool open;
     int64_t asked;
@@ -604,6 +670,9 @@ int main(void)
         cmocka_unit_test(test_any_unit),
         cmocka_unit_test(test_even_odd),
         cmocka_unit_test(test_edge_length),
+        cmocka_unit_test(test_edge_lengths_without_meaning),
+        cmocka_unit_test(test_too_large_leaves_no_mesh),
+        cmocka_unit_test(test_input_that_is_not_finite),
         cmocka_unit_test(test_gate_and_fence),
         cmocka_unit_test(test_stop),
         cmocka_unit_test(test_figures_without_meaning),

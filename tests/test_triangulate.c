@@ -989,6 +989,23 @@ static void test_loose_segments(void **state)
     release("rp", &out, &vorout);
 }
 
+/* Triangles have their corners, or these and the middles of their edges. */
+static void test_bad_corners(void **state)
+{
+    (void)state;
+    static REAL xy[] = {0, 0, 1, 0, 1, 1, 0, 1};
+    static int corners[] = {0, 1, 2, 0, 1, 2};
+    static const int odd[] = {INT32_MIN, -1, 0, 2, 4, 5, 7, INT32_MAX};
+    struct triangulateio mesh = points_only(xy, 4);
+    mesh.trianglelist = corners;
+    mesh.numberoftriangles = 1;
+    mesh.numberoftriangleattributes = 0;
+    for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
+        mesh.numberofcorners = odd[i];
+        assert_fails("rz", &mesh, true, TRIANGULATE_BAD_INPUT, "corners");
+    }
+}
+
 /* A mesh that is not Delaunay is kept as it is, but made Delaunay before it is refined, also where it is fine. */
 static void test_not_delaunay(void **state)
 {
@@ -1311,6 +1328,7 @@ int main(void)
         cmocka_unit_test(test_comma_locale),
         cmocka_unit_test(test_refine_a_mesh),
         cmocka_unit_test(test_loose_segments),
+        cmocka_unit_test(test_bad_corners),
         cmocka_unit_test(test_not_delaunay),
         cmocka_unit_test(test_areas_of_triangles),
         cmocka_unit_test(test_attributes_keep_their_side),

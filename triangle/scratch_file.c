@@ -1,7 +1,10 @@
-/* A name that nobody has, taken back before a signal to this thread can end the process. */
+/* A file that never had a name, where the system makes such; else one whose name nobody has, taken back before a signal
+ * to this thread can end the process (but for SIGKILL). */
+#define _GNU_SOURCE /* O_TMPFILE */
 #include "triangle/scratch_file.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +23,8 @@ static int make_nameless(char *path)
     return file;
 }
 
-int tri_scratch_file(const char *folder)
+/* For any system and file system. */
+static int make_and_unlink(const char *folder)
 {
     static const char name[] = "/ptriangle-XXXXXX";
     const size_t n = strlen(folder);
@@ -35,4 +39,14 @@ int tri_scratch_file(const char *folder)
     free(path);
     errno = fault;
     return file;
+}
+
+int tri_scratch_file(const char *folder)
+{
+#ifdef O_TMPFILE
+    const int file = open(folder, O_TMPFILE | O_RDWR | O_EXCL, S_IRUSR | S_IWUSR);
+    if (file >= 0)
+        return file;
+#endif
+    return make_and_unlink(folder);
 }

@@ -55,8 +55,9 @@ struct tri_verdict {
 
 /* Judges points, triangles and segments of `mesh` (its segments not given: the boundary edges take their place). input
  * is what it was made of, compared where it is given; NULL: unknown. TRI_OK says that the judgement took place, not
- * how it came out. TRI_NO_MEMORY, TRI_TOO_LARGE, TRI_BAD_INPUT: an array has not the shape it should have.
- * O(n + b log b) for n triangles and b boundary edges; about 60 bytes a triangle. */
+ * how it came out. TRI_NO_MEMORY, TRI_TOO_LARGE, TRI_BAD_INPUT: an array has not the shape it should have, or
+ * a point, hole or region of the input is not finite. O(n + b log b) for n triangles and b boundary edges; about 60
+ * bytes a triangle. */
 enum tri_status tri_check_figure(const struct tri_figure *mesh, const struct tri_figure *input,
                           const struct tri_demands *demands, struct tri_verdict *verdict, struct tri_error *error);
 

@@ -30,7 +30,8 @@ enum tri_status tri_api_settings_take(struct tri_settings *settings, const struc
     return TRI_OK;
 }
 
-/* Is the area above that of an equilateral triangle with edges of the least length that is wanted here? */
+/* Is the area above that of an equilateral triangle with edges of the least length that is wanted here? A length that
+ * is not above 0 wants nothing: no mesh could have it. */
 static bool is_above_length(const struct tri_settings *s, const double a[2], const double b[2], const double c[2],
                             double area)
 {
@@ -39,7 +40,7 @@ static bool is_above_length(const struct tri_settings *s, const double a[2], con
     const double *places[4] = {centroid, a, b, c};
     for (int k = 0; k < 4; k++) {
         double length = s->edge_length(s->edge_length_user, places[k]);
-        if (area > share * length * length)
+        if (length > 0 && area > share * length * length)
             return true;
     }
     return false;
@@ -217,10 +218,10 @@ enum tri_status tri_api_mesh_new(struct tri_mesh **mesh, const struct tri_figure
     enum tri_status status = tri_api_figure_take(&taken, figure, error);
     status = status ? status : make(m, &taken, settings, way, error);
     tri_api_figure_free(&taken);
-    if (!m->mesh.regions) /* empty */
-        tri_mesh_delete(&m->mesh);
-    else
+    if (m->mesh.regions && (!status || status == TRI_NO_MEMORY || status == TRI_STOPPED))
         *mesh = &m->mesh;
+    else /* empty, or refused */
+        tri_mesh_delete(&m->mesh);
     return status;
 }
 

@@ -381,12 +381,34 @@ static enum tri_status choose_part(struct checker *c)
     return status;
 }
 
+static enum tri_status check_finite(const char *what, int32_t n, const double *values, int width,
+                                    struct tri_error *error)
+{
+    for (int32_t i = 0; i < n; i++) {
+        const double *at = values + (size_t)i * (size_t)width;
+        if (!isfinite(at[0]) || !isfinite(at[1]))
+            return tri_fail(error, TRI_BAD_INPUT, "", 0, "the input's %s %d (from 0) is not finite", what, (int)i);
+    }
+    return TRI_OK;
+}
+
+/* NaN is at no place, not even its own: it cannot be looked up. */
+static enum tri_status check_input(const struct tri_pslg *input, struct tri_error *error)
+{
+    enum tri_status status = check_finite("vertex", input->n_points, input->points, 2, error);
+    status = status != TRI_OK ? status : check_finite("hole", input->n_holes, input->holes, 2, error);
+    return status != TRI_OK ? status : check_finite("region", input->n_regions, input->regions, 4, error);
+}
+
 enum tri_status tri_check_from(const struct tri_check_source *source, const struct tri_pslg *input,
                                const struct tri_check_options *options, struct tri_check_report *report,
                                struct tri_error *error)
 {
     struct tri_error own = {0};
     assert(source->n_points >= 0 && source->n_triangles >= 0 && source->n_segments >= 0);
+    const enum tri_status fault = input != NULL ? check_input(input, error) : TRI_OK;
+    if (fault != TRI_OK)
+        return fault;
     if (source->n_triangles > INT64_MAX / 8 || source->n_segments > INT32_MAX / 2)
         return tri_fail(error, TRI_TOO_LARGE, "", 0, "the mesh is too large to be checked");
     memset(report, 0, sizeof *report);

@@ -207,7 +207,7 @@ struct tri_check_report {
 
 /* Judges the mesh; the input (NULL: unknown) is compared where it is given. TRI_OK says that the judgement took place,
  * not how it came out: see tri_check_passed. TRI_NO_MEMORY, TRI_TOO_LARGE (more than 2^30 subsegments or boundary
- * edges). */
+ * edges), TRI_BAD_INPUT (a coordinate of the input is not finite). */
 enum tri_status tri_check(const struct tri_check_mesh *mesh, const struct tri_pslg *input,
                           const struct tri_check_options *options, struct tri_check_report *report,
                           struct tri_error *error);

@@ -2,12 +2,12 @@
 #include "triangle/check/store.h"
 
 #include <errno.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "triangle/grow.h"
+#include "triangle/scratch_file.h"
 
 enum { MOST_BITS = 9, N_FILES = 1 << MOST_BITS, LEAST_ROOM = 256 };
 
@@ -89,16 +89,8 @@ static enum tri_status fail(struct checker *c)
 
 static bool open_file(const struct checker *c, struct file *file)
 {
-    char name[1024];
-    if (file->descriptor >= 0)
-        return true;
-    if (snprintf(name, sizeof name, "%s/trianglecheck-XXXXXX", folder_of(c)) >= (int)sizeof name) {
-        errno = ENAMETOOLONG;
-        return false;
-    }
-    file->descriptor = mkstemp(name);
-    if (file->descriptor >= 0)
-        (void)unlink(name); /* it goes with the process, however that ends */
+    if (file->descriptor < 0)
+        file->descriptor = tri_scratch_file(folder_of(c));
     return file->descriptor >= 0;
 }
 

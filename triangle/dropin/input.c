@@ -155,7 +155,7 @@ static enum tri_status take_triangles(struct tri_io_input *input, const struct t
     elements->n_nodes = in->numberofcorners;
     elements->n_attributes = attributes;
     enum tri_status status = check("triangles", n, in->trianglelist, error);
-    if (!status && in->numberofcorners < 3)
+    if (!status && in->numberofcorners != 3 && in->numberofcorners != 6)
         status = tri_fail(error, TRI_BAD_INPUT, NULL, 0, "triangles with %d corners", in->numberofcorners);
     if (!status)
         status = check("attributes of a triangle", attributes, in->triangleattributelist, error);
