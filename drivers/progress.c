@@ -78,7 +78,9 @@ static int print_step(const struct progress *p, double time, int round, int phas
     if (phase > 0)
         snprintf(where, sizeof where, "round %d, phase %d of 4", round + 1, phase);
     if (done > 0)
-        return fprintf(stderr, "%s: refining: %s, %.0f%% of it", p->program, where, floor(100 * done));
+        return fprintf(stderr, "%s: refining: %s, %.0f%% of it, %" PRId64 " triangles before", p->program, where,
+                       floor(100 * done), p->triangles) +
+               print_outlook(p, p->at, p->triangles);
     int width = fprintf(stderr, "%s: refining: %s, %" PRId64 " triangles, %s/s", p->program, where, triangles,
                         tri_count_text(rate(p, time, triangles)).text);
     return phase > 0 ? width + print_outlook(p, time, triangles) : width;
@@ -105,6 +107,10 @@ void progress_step(void *user, int round, int phase, double done, int64_t triang
 {
     struct progress *p = user;
     double time = tri_seconds();
+    if (done == 0) {
+        p->at = time;
+        p->triangles = triangles;
+    }
     bool soon = time - p->told < SECONDS_BETWEEN_LINES && phase != PAR_NUMBERING;
     if (p->mode == PROGRESS_LINE && !soon) {
         rewrite(p, time, round, phase, done, triangles);

@@ -17,6 +17,8 @@ struct progress {
     int64_t first;        /* triangles when refinement began */
     double estimate;      /* of them at the end */
     int round, phase;     /* last ones told */
+    double at;            /* when the phase began, */
+    int64_t triangles;    /* and with so many */
     int width;            /* characters of the line on the terminal */
 };
 

@@ -1,11 +1,12 @@
 /* Subsegments that are one straight segment.
  *
  * A vertex is a joint where exactly two subsegments end, of one marker and both on the boundary or both inside, and run
- * on as far as rounding tells. Between two vertices that are none lies a chain of joints. It becomes one parent where
- * all of it keeps to the line between its ends. Else it goes round: beside a corner of a segment or of a smooth curve
- * pieces may be so short that no joint shows how far the next one leaves their line. Then it is cut where it is
- * farthest from that line, which is at a corner (Douglas & Peucker 1973), and so on. Of vertices that are as far up to
- * the tolerance it is the first, since refinement numbers the vertices that it makes after those that it finds.
+ * on as far as rounding tells. Between two vertices that are none lies a chain of joints; or it is closed. It becomes
+ * one parent where all of it keeps to the line between its ends. Else it goes round: beside a corner of a segment or of
+ * a smooth curve pieces may be so short that no joint shows how far the next one leaves their line. Then it is cut
+ * where it is farthest from that line, which is at a corner (Douglas & Peucker 1973), and so on. Of vertices that are
+ * as far up to the tolerance, or half of that distance if it is less, it is the first, since refinement numbers the
+ * vertices that it makes after those that it finds.
  *
  * COST. Cuts at the farthest vertex may leave one piece nearly as long as the chain. From the DEEP-th cut within a cut
  * on they halve it: n vertices cost at most n * (DEEP + log2(n)).

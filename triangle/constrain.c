@@ -12,9 +12,9 @@
  *      pieces run along the same vertices they are shared (bundle.h).
  *   3. Where the piece crosses a subsegment, both get a vertex in common: one that is within APART of the crossing,
  *      else a new one, the rounded crossing of the two input segments (of the pieces, where bends have moved the
- *      crossing away from that), else, where rounding leaves no room for that, the end of one that is nearest to the
- *      other. The subsegment is taken up, and its two parts and those of the piece are laid by the
- *      same rules.
+ *      crossing away from that), else, where rounding leaves no room for that, one within APART that is not between the
+ *      ends of both, else the end of one that is nearest to the other. The subsegment is taken up, and its two parts
+ *      and those of the piece are laid by the same rules.
  *   4. When all are laid, a subsegment with an apex of its triangles beside it, as rule 2 has it, is taken up and runs
  *      through that: it was an edge before it was laid, or the apex came later. Else a face would open there through a
  *      slit of no width.

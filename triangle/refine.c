@@ -18,12 +18,12 @@
  * vertices that see it from nearby share circumdisks, so that each of n points there, and each triangle given up, may
  * cost n. (Between a wall 4e5 long and features of 1e-5: 50 triangles a point, 1,180 a search, for 4,000 points.)
  *
- * BARRIERS. Where no subsegment may be split, most of those are given up for points behind the wall. RULE: a point
- * behind the subsegment that was in the way last is refused without a search. THEOREM: with one it would be, too, or
- * deferred. Proof: let the way from a corner of the triangle, across the opposite edge, to the point p cross the
- * barrier, and no vertex (else a way beside it does). As long as it crosses edges that are no subsegments, the next
- * triangle, too, has p in its circumdisk (cavity.h), and belongs to the cavity. So it does not reach p, behind the
- * barrier. It meets a subsegment, a wall of the cavity with p behind it, which must not be split.
+ * BARRIERS. Where no subsegment may be split (-YY; -Y where none lies inside), most of those are given up for points
+ * behind the wall. RULE: a point behind the subsegment that was in the way last is refused without a search. THEOREM:
+ * with one it would be, too, or deferred. Proof: let the way from a corner of the triangle, across the opposite edge,
+ * to the point p cross the barrier, and no vertex (else a way beside it does). As long as it crosses edges that are no
+ * subsegments, the next triangle, too, has p in its circumdisk (cavity.h), and belongs to the cavity. So it does not
+ * reach p, behind the barrier. It meets a subsegment, a wall of the cavity with p behind it, which must not be split.
  *
  * FENCES. The walls beyond a fence stay coarse while its own side is refined, so that such fans of n triangles come to
  * lie there; each asks for a point, searches all of them, is led to a wall, and finds that the cavity of its split lies
@@ -38,7 +38,7 @@
  * triangle is refined only where it lies within the fence with a margin in proportion to its shortest edge; others are
  * deferred as they are. They are somebody else's inner ones in the next phase. (A comb of 22 slits, some of them cut
  * lengthwise by seams, at 30 and 34 degrees: 131,985 and 277,516 triangles without the rule, 103,137 and 141,714 with
- * it; one call makes 101,327 and 135,661. Twice the shortest edge, since with once it tiny cells gain half of that.)
+ * it; one call makes 101,327 and 135,661. Twice the shortest edge, since with once that tiny cells gain half as much.)
  *
  * Termination: for angles by the rules in small_angle.c, and credit.h says at what price; the points for sizes and for
  * circles that come on top are finitely many whatever the others do, see inside.c and disk.c. */

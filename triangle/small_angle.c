@@ -374,12 +374,13 @@ static struct demand whole_demand(const struct tri_mesh *mesh, const struct tri_
     return d.share[0];
 }
 
-/* Which narrow spaces are filled, by their cost. All that are seen, where a quarter of a million points is enough for
- * that: thin layers and slits of ordinary parts. Else, where there are spikes of no width or lines a few units in
- * the last place apart, the cheap ones: up to the largest power of two, 2^10 or more, such that filling every space
- * as far as this cost goes takes no more than PER_VERTEX points for each vertex of the input, or each end of a segment
- * if there are fewer, and an ALLOWANCE. (A dearer space is still filled where it is wide.) Vertices that lie in a space
- * may hide it here: none, hidden or not, is filled at more than what has been seen costs, or all that was allowed. */
+/* Which narrow spaces are filled, by their cost. All that are seen, where their costs, each counted for every triangle
+ * in its space, come to a quarter of a million: thin layers and slits of ordinary parts. Else, where there are spikes
+ * of no width or lines a few units in the last place apart, the cheap ones: up to the largest power of two, 2^10 or
+ * more, such that filling every space as far as this cost goes takes no more than PER_VERTEX points for each vertex of
+ * the input, or each end of a segment if there are fewer, and an ALLOWANCE. (A dearer space is still filled where it is
+ * wide.) Vertices that lie in a space may hide it here: none, hidden or not, is filled at more than what has been seen
+ * costs, or all that was allowed. */
 void tri_choose_gaps(struct tri_mesh *mesh, const struct tri_executor *executor)
 {
     const double ALL = 250000, ALLOWANCE = 20000, PER_VERTEX = 4;
