@@ -2,8 +2,6 @@
 #ifndef TRIANGLE_ESTIMATE_H
 #define TRIANGLE_ESTIMATE_H
 
-#include <math.h>
-
 #include "triangle/refine.h"
 
 #ifdef __cplusplus
@@ -11,14 +9,6 @@ extern "C" {
 #endif
 
 #define TRI_MEAN_OVER_BOUND 0.655 /* measured: mean area over bound */
-
-/* log2(x) for x >= 1, within 0.09: the exponent, and the mantissa for the rest. */
-static inline double tri_rough_log2(double x)
-{
-    int exponent;
-    double mantissa = frexp(x, &exponent);
-    return exponent + 2 * mantissa - 2;
-}
 
 /* Estimates the number of triangles that refinement will end with: for bounded areas from the areas, for a bounded
  * angle from the edges' lengths, for a size test by probing it with triangles that get smaller. It may be more than any

@@ -24,6 +24,14 @@ struct tri_bounds tri_bounds_for(double min_angle, bool conforming);
 static inline double tri_lesser(double a, double b) { return a < b ? a : b; }
 static inline double tri_larger(double a, double b) { return a > b ? a : b; }
 
+/* log2(x) for x >= 1, within 0.09: the exponent, and the mantissa for the rest. */
+static inline double tri_rough_log2(double x)
+{
+    int exponent;
+    double mantissa = frexp(x, &exponent);
+    return exponent + 2 * mantissa - 2;
+}
+
 /* A triangle's shape: squared lengths opposite the corners, twice its area. */
 struct tri_shape {
     double l[3], area2;

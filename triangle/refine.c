@@ -788,12 +788,11 @@ static void see_credit(struct tri_refiner *r, const struct tri_triangle *t, cons
 static bool keeps_margin(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape)
 {
     const double MARGIN = 2, margin = MARGIN * sqrt(shape->l[shape->shortest]);
-    const struct tri_fence *f = r->options->fence;
     bool keeps = true;
     for (int k = 0; k < 3; k++) {
         struct tri_point p = r->mesh->xy[t->v[k]];
-        keeps = keeps && p.x - margin >= f->x_min && p.x + margin < f->x_max && p.y - margin >= f->y_min &&
-                p.y + margin < f->y_max;
+        struct tri_point low = {p.x - margin, p.y - margin}, high = {p.x + margin, p.y + margin};
+        keeps = keeps && tri_fence_holds(r->options->fence, low) && tri_fence_holds(r->options->fence, high);
     }
     return keeps;
 }

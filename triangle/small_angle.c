@@ -25,7 +25,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "triangle/estimate.h"
 #include "triangle/feature_size.h"
 #include "triangle/predicates.h"
 
