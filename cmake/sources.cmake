@@ -127,7 +127,8 @@ set(PTRIANGLE_NO_HDF5_SOURCES triangle/hdf5/none.c triangle/hdf5/rows.c triangle
 
 # What text and judge need of the mesher: all that their shared libraries have of it.
 set(PTRIANGLE_TEXT_NEEDS triangle/status.c triangle/scratch_file.c triangle/pslg.c triangle/api/figure.c)
-set(PTRIANGLE_CHECK_NEEDS triangle/status.c triangle/pslg.c triangle/api/figure.c triangle/predicates.c)
+set(PTRIANGLE_CHECK_NEEDS triangle/status.c triangle/scratch_file.c triangle/pslg.c triangle/api/figure.c
+    triangle/predicates.c)
 
 # Folder sched/, the parallel schedule: compiled with OpenMP, as are the programs ptriangle and trianglecheck, which
 # hand out threads (sched/threads.h), and nothing else.

@@ -13,6 +13,9 @@ client=$root/tests/client
 
 fail() { echo "package: $*" >&2; exit 1; }
 
+# errors LOG: what went wrong in a build of several jobs, whose last lines may be those of a job that went well
+errors() { grep -iE -A 2 'error|undefined' "$1" | head -n 20; tail -n 5 "$1"; }
+
 configure() { # configure FOLDER OPTION...
     folder=$1
     shift
@@ -47,7 +50,7 @@ use "$work/static" static_clients
 
 echo "== shared, under another prefix of names"
 configure shared -DBUILD_SHARED_LIBS=ON -DPTRIANGLE_PROGRAMS=OFF -DPTRIANGLE_PREFIX=pt-
-"$cmake" --build shared --parallel 2 >shared.log 2>&1 || fail "shared: $(tail -n 20 shared.log)"
+"$cmake" --build shared --parallel 2 >shared.log 2>&1 || fail "shared: $(errors shared.log)"
 "$cmake" --install shared --prefix "$work/staged" >install.log
 mv staged prefix # an installed tree may be moved
 [ -z "$(find prefix -name '*.a')" ] || fail "static libraries among the shared ones"
@@ -81,7 +84,7 @@ unset PKG_CONFIG_PATH LD_LIBRARY_PATH
 
 echo "== where there is no OpenMP; names of programs; the C++ runtime of the system"
 configure sequential -DCMAKE_DISABLE_FIND_PACKAGE_OpenMP=ON -DPTRIANGLE_PREFIX=pt- -DPTRIANGLE_STATIC_RUNTIME=OFF
-"$cmake" --build sequential --parallel 2 >sequential.log 2>&1 || fail "sequential: $(tail -n 20 sequential.log)"
+"$cmake" --build sequential --parallel 2 >sequential.log 2>&1 || fail "sequential: $(errors sequential.log)"
 "$cmake" --install sequential --prefix "$work/alone" >install.log
 [ -z "$(find alone -name 'libptriangle.*' -o -path '*/bin/ptriangle')" ] || fail "a parallel library without OpenMP"
 for name in pt-triangle pt-trianglecheck; do
@@ -107,7 +110,7 @@ configure sequential_tests -DCMAKE_DISABLE_FIND_PACKAGE_OpenMP=ON -DPTRIANGLE_TE
 echo "== subproject"
 "$cmake" -S "$client/cxx" -B sub -DSUBPROJECT="$root" -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" >sub.log 2>&1 ||
     fail "subproject: $(tail -n 5 sub.log)"
-"$cmake" --build sub --target triangle --parallel 2 >sub.log 2>&1 || fail "subproject: $(tail -n 20 sub.log)"
+"$cmake" --build sub --target triangle --parallel 2 >sub.log 2>&1 || fail "subproject: $(errors sub.log)"
 sub/triangle
 "$cmake" --install sub --prefix "$work/sub_installed" >install.log
 [ "$(find sub_installed -type f | wc -l)" -eq 1 ] || fail "the subproject installs files of its own"
