@@ -983,6 +983,8 @@ FOUND = [
          "-cq34: at most 3,000 triangles, 43 at 28 degrees; once 5,356", ()),
     Case("regress/slits_by_seams.poly", None, "comb of eight teeth with slits 0.01 wide",
          "-cq30 to 34 in cells of 250 triangles: at most 1.2 times one call's; once 1.3 and 1.8 times", ()),
+    Case("regress/star_by_seams.poly", None, "star of twelve spikes around a small hub",
+         "-cq30 to 33 with -D in cells of 60 triangles: at most 1.2 times one call's; once 2.1 to 2.8 times", ()),
     Case("regress/layered_world.poly", None, "layers of ground around a round body",
          "any bound: triangles in proportion to what its features ask for", ()),
     Case("regress/tangle.poly", None, "closed chain that crosses itself",
@@ -1003,6 +1005,8 @@ FOUND = [
          ()),
     Case("regress/bundle_levels.poly", None, "segments side by side, their ends nearer to each other than they are",
          "-a0.00065D: some thousand triangles; once each new point in the bundle asked for more, without end", ()),
+    Case("regress/chord_within.poly", None, "a wall, high and narrow, and crossing segments",
+         "-q30D: no circle is left; one was, of a boundary that had moved inwards until it had no place to split", ()),
     Case("regress/near_path.poly", None, "a path to and fro through points that rounding keeps from lying on one line",
          "-pc: one chain, in as many steps as vertices; once n * n", ()),
     Case("regress/side_ulp_off.poly", None, "a segment along 200 vertices, its end an ulp off their line",
@@ -1018,6 +1022,12 @@ FOUND = [
          "keeps all; once a crossing found no place in the hull, and one could not be kept", ()),
     Case("regress/hidden_gap.poly", None, "two walls side by side, three vertices in the space between hide it",
          "-q20: some hundred triangles; once without end, as the space was filled at any price", ()),
+    Case("regress/hatching.poly", None, "two hatchings of three lines at 1/1000, which all but cross where they end",
+         "-cq30: some ten thousand triangles; once 457,770, as the narrow ends of wedges were not counted", ()),
+    Case("regress/cut_wedge.poly", None, "a wedge of 1/25,000 whose tip is cut off, 1e-12 wide there",
+         "-q30: a thousand triangles; once 1.9 million, the same", ()),
+    Case("regress/nearly_straight.poly", None, "a polygon, one side of it in five pieces that lie 1e-5 beside its line",
+         "-cq20: some ten triangles; once 3.3 million, the same", ()),
 ]
 
 
