@@ -67,8 +67,7 @@ struct flattening {
 static bool is_flat(const struct flattening *w, tri_triangle_id t)
 {
     struct tri_shape shape = tri_shape_of(w->f->mesh->xy, w->f->mesh->tri[t].v);
-    double longest2 = tri_larger(shape.l[0], tri_larger(shape.l[1], shape.l[2]));
-    return shape.area2 * shape.area2 < w->height2 * longest2;
+    return shape.area2 * shape.area2 < w->height2 * tri_longest2(&shape);
 }
 
 /* Each of the first n triangles on the stack adds this to the uses of its corners; is there one for all of them? */

@@ -95,6 +95,5 @@ bool tri_is_protected(const struct tri_refine_options *options, const struct tri
 
 bool tri_is_flat(const struct tri_mesh *mesh, const struct tri_shape *shape)
 {
-    double longest2 = fmax(shape->l[0], fmax(shape->l[1], shape->l[2]));
-    return shape->area2 * shape->area2 < mesh->limits.shortest2 * longest2;
+    return shape->area2 * shape->area2 < mesh->limits.shortest2 * tri_longest2(shape);
 }

@@ -184,7 +184,7 @@ struct forecast {
 /* How many times its shortest edge has to be doubled until it is as long as its longest, or as `most`. */
 static double octaves_of(const struct tri_shape *shape, double most)
 {
-    double longest2 = tri_larger(shape->l[0], tri_larger(shape->l[1], shape->l[2]));
+    double longest2 = tri_longest2(shape);
     double ratio2 = fmin(longest2, most * most) / shape->l[shape->shortest];
     return ratio2 > 1 ? 0.5 * tri_rough_log2(ratio2) : 0;
 }
@@ -193,7 +193,7 @@ static double octaves_of(const struct tri_shape *shape, double most)
  * the triangle reaches; 0 where there is none, or it is wider than `most`. */
 static double gap_of(const struct tri_mesh *mesh, tri_triangle_id t, const struct tri_shape *shape, double most)
 {
-    double longest2 = tri_larger(shape->l[0], tri_larger(shape->l[1], shape->l[2])), width2 = shape->l[shape->shortest];
+    double longest2 = tri_longest2(shape), width2 = shape->l[shape->shortest];
     return width2 < most * most ? fmin(tri_gap_cost(mesh, t, shape), sqrt(longest2 / width2)) : 0;
 }
 

@@ -111,7 +111,7 @@ static double area_work(const struct estimator *e, tri_triangle_id t)
 static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id t)
 {
     struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
-    double longest2 = tri_larger(shape.l[0], tri_larger(shape.l[1], shape.l[2]));
+    double longest2 = tri_longest2(&shape);
     double octaves = 0.5 * tri_rough_log2(longest2 / shape.l[shape.shortest]);
     double gap = tri_gap_cost(mesh, t, &shape), angle = fmin(options->min_angle, TRI_USUAL_ANGLE);
     if (tri_is_hopeless(mesh, tri_final_angle(options), t, &shape))

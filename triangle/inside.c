@@ -24,14 +24,12 @@
 
 #include "triangle/predicates.h"
 
-static double longest2(const struct tri_shape *shape) { return fmax(shape->l[0], fmax(shape->l[1], shape->l[2])); }
-
 tri_sub_id tri_long_wall(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                          tri_triangle_id triangle, const struct tri_shape *shape)
 {
     assert(tri_is_live(&mesh->tri[triangle]));
     tri_sub_id found = TRI_NONE;
-    double length2 = 0.25 * longest2(shape);
+    double length2 = 0.25 * tri_longest2(shape);
     for (int e = 0; e < 3; e++) {
         tri_link link = mesh->tri[triangle].n[e];
         if (link < 0 && shape->l[e] >= length2 && !tri_is_protected(options, &mesh->sub[~link])) {
@@ -50,7 +48,7 @@ bool tri_centroid(const struct tri_mesh *mesh, tri_triangle_id triangle, const s
     struct tri_point a = mesh->xy[v[0]], b = mesh->xy[v[1]], c = mesh->xy[v[2]];
     p->x = tri_round_coordinate(a.x + ((b.x - a.x) + (c.x - a.x)) / 3);
     p->y = tri_round_coordinate(a.y + ((b.y - a.y) + (c.y - a.y)) / 3);
-    if (shape->area2 * shape->area2 < 9 * mesh->limits.shortest2 * longest2(shape))
+    if (shape->area2 * shape->area2 < 9 * mesh->limits.shortest2 * tri_longest2(shape))
         return false;
     return tri_is_inside(a, b, c, *p);
 }

@@ -49,6 +49,12 @@ static inline struct tri_shape tri_shape_of(const struct tri_point *xy, const tr
     return s;
 }
 
+/* The square of its longest edge. */
+static inline double tri_longest2(const struct tri_shape *shape)
+{
+    return tri_larger(shape->l[0], tri_larger(shape->l[1], shape->l[2]));
+}
+
 /* sin^2 of the smallest angle is area2^2 over the product of the two longer squared edges. That is the largest of the
  * three products: which two edges are the longer ones is as good as random, and a branch on it would be predicted
  * wrongly half the time; of products the processor takes the larger without one. */

@@ -789,8 +789,7 @@ static void see_credit(struct tri_refiner *r, const struct tri_triangle *t, cons
 /* Does the triangle lie within the fence with a margin to spare? See SEAMS. */
 static bool keeps_margin(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape)
 {
-    const double longest2 = fmax(fmax(shape->l[0], shape->l[1]), shape->l[2]);
-    const double margin = sqrt(fmax(4 * shape->l[shape->shortest], longest2));
+    const double margin = sqrt(tri_larger(4 * shape->l[shape->shortest], tri_longest2(shape)));
     bool keeps = true;
     for (int k = 0; k < 3; k++) {
         struct tri_point p = r->mesh->xy[t->v[k]];

@@ -97,18 +97,15 @@ static int angle_bin(double cosine, const double limits[TRI_ANGLE_BINS])
     return bin;
 }
 
-/* The library's fmin and fmax look out for NaN, which there is none of here, and are calls. */
-static double greater(double a, double b) { return a > b ? a : b; }
-
 static void measure(struct tri_shapes *shapes, struct extremes *x, const struct tri_shape *s,
                     const double limits[TRI_ANGLE_BINS])
 {
     const double root[3] = {sqrt(s->l[0]), sqrt(s->l[1]), sqrt(s->l[2])};
-    double longest2 = greater(s->l[0], greater(s->l[1], s->l[2])), aspect = longest2 / s->area2;
+    double longest2 = tri_longest2(s), aspect = longest2 / s->area2;
     widen(x->area2, s->area2);
     x->total_area2 += s->area2;
     x->least_altitude2 = tri_lesser(x->least_altitude2, s->area2 / longest2 * s->area2);
-    x->greatest_aspect = greater(x->greatest_aspect, aspect);
+    x->greatest_aspect = tri_larger(x->greatest_aspect, aspect);
     x->least_sine2 = tri_lesser(x->least_sine2, s->area2 / tri_longer_product(s->l[0], s->l[1], s->l[2]) * s->area2);
     shapes->aspects[aspect_bin(aspect)]++;
     for (int k = 0; k < 3; k++) {
@@ -172,7 +169,7 @@ static void add_tally(struct tally *sum, const struct tally *add)
     }
     x->total_area2 += y->total_area2;
     x->least_altitude2 = tri_lesser(x->least_altitude2, y->least_altitude2);
-    x->greatest_aspect = greater(x->greatest_aspect, y->greatest_aspect);
+    x->greatest_aspect = tri_larger(x->greatest_aspect, y->greatest_aspect);
     x->least_sine2 = tri_lesser(x->least_sine2, y->least_sine2);
     x->least_cosine = tri_lesser(x->least_cosine, y->least_cosine);
 }
