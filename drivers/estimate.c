@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "drivers/resources.h"
+#include "drivers/self_check.h"
 #include "triangle/census.h"
 #include "triangle/clock.h"
 
@@ -23,6 +24,8 @@ static const double BUFFERS = 3e7, PAGES = 3e7, COLUMNS_HELD = 260, COLUMNS_AWAY
                     COLUMNS_STATE = 520, SWEPT_BYTES = 1.3;
 /* The same a triangle, of a mesh that stays as a whole; of two states of it; and of the tiles in a checkpoint. */
 static const double PARKED_WORK = 6, PARKED_BYTES = 90, WHOLE_STATES = 120, TILES_BYTES = 26;
+/* The same of the lists of edges that lie beside it (tri_edge_list_make). */
+static const double LISTS_BYTES = 18;
 /* And of tiles that wait until all are there (triangle/text/tile_store.h), and what cutting them into parts adds. The
  * boundary that a .14 wants then, a byte a vertex in memory, does not show at the peak (measured at 5 million
  * triangles). */
@@ -32,6 +35,8 @@ static const double KEPT_BYTES = 46, PART_BYTES = 17;
  * pass through the first rank; and, for each triangle of all ranks, of the coarse mesh and what begins with it. */
 static const double RANK_BYTES = 62, BUSIEST = 1.15, RANK_STATES = 32, RANK_COLUMN = 45, RANK_PIECES = 3.5e7,
                     RANK_COARSE = 0.1, RANK_WORK = 20;
+/* Of HDF5 files to which a mesh that is there as a whole goes: at least, a triangle, and at the most. */
+static const double LEAST_STREAMED = 2e7, STREAM_BYTES = 40, MOST_STREAMED = 6e7;
 /* Text that one thread writes in a second where a triangle takes it the usual time. */
 static const double TEXT_BYTES = 6.5e8, USUAL_SECONDS = 1.25e-7;
 
@@ -101,14 +106,36 @@ static double bytes_a_triangle(const struct run *run)
            (s->second_order ? 12 : 0);
 }
 
+/* What -C takes beside the mesh; what it must where there is a bound. */
+static double bytes_of_check(const struct run *run, double grown)
+{
+    if (!run->arguments->switches.check)
+        return 0;
+    if (run->hooks->limits.memory > 0)
+        return grown + 2 * self_check_least_bytes(&run->mesh);
+    return SELF_CHECK_BYTES * (grown + run->mesh.n_triangles) + SELF_CHECK_SUB_BYTES * (double)run->mesh.n_subs;
+}
+
+double estimate_streams(int n_files, double triangles)
+{
+    return n_files * fmin(LEAST_STREAMED + STREAM_BYTES * triangles, MOST_STREAMED);
+}
+
+/* What is done with a mesh that is finished, one after the other. */
+static double bytes_beside(const struct run *run, double grown)
+{
+    return fmax(bytes_of_check(run, grown), estimate_streams(run->hooks->n_streamed, grown));
+}
+
 /* At the peak, of a mesh that grows by so many triangles, of which areas demand some. */
 static double bytes_whole(const struct run *run, double grown, double demand)
 {
     if (!run->hooks->refine || grown <= 0)
         return grown * bytes_a_triangle(run);
     double places = grown + EMPTY_PLACES * fmax(grown - demand, 0);
-    return places * bytes_a_triangle(run) + (run->mesh.n_triangles + places) * NUMBERING_BYTES +
-           run->mesh.n_subs * NUMBERING_SUB_BYTES;
+    double refined = places * bytes_a_triangle(run) + (run->mesh.n_triangles + places) * NUMBERING_BYTES +
+                     run->mesh.n_subs * NUMBERING_SUB_BYTES;
+    return fmax(refined, grown * bytes_a_triangle(run) + bytes_beside(run, grown));
 }
 
 /* --- seconds */
@@ -208,6 +235,8 @@ static struct needs needs_of(const struct run *run, double grown, double whole, 
     n.held = sweeps ? BUFFERS + COLUMNS_HELD * column + SWEPT_BYTES * grown : n.whole;
     n.floor = floor_of(run, n.held, work + pages);
     n.away = sweeps ? COLUMNS_AWAY * column : PARKED_BYTES * grown;
+    n.filed = floor_of(run, whole, PARKED_WORK * grown + pages + bytes_beside(run, grown));
+    n.filed_away = (PARKED_BYTES + LISTS_BYTES) * grown;
     n.kept = run->hooks->exports.n > 0 ? (KEPT_BYTES + (run->hooks->n_parts > 0 ? PART_BYTES : 0)) * grown : 0;
     n.states = WHOLE_STATES * grown;
     n.checkpoint = sweeps ? TILES_BYTES * grown + COLUMNS_STATE * column : n.states;

@@ -12,6 +12,9 @@
 
 enum { MESH_FILES_MOST_NAMES = 16 };
 
+/* Bytes of memory for rows on their way to a file: a triangle, and at the most. */
+enum { MESH_FILES_ROW_BYTES = 64, MESH_FILES_BYTES = 20 << 20 };
+
 /* Names of files, borrowed. */
 struct file_names {
     int n;

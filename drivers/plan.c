@@ -144,21 +144,40 @@ static enum tri_status fail_too_many(const struct needs *n, const char *why, str
                     *why ? " where it must be in memory as a whole, as for " : "", why);
 }
 
-static enum tri_status fail_memory(const struct needs *n, bool sure, double needed, double left, const char *obstacle,
-                                   struct tri_error *error)
+/* What would do of --memory, where that is what is short. */
+static void suggest(const struct run *run, double needed, char *text, size_t size)
 {
-    return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                    "the %sbounds ask for %s %s triangles, which take %s of memory; %s are left%s%s",
-                    sure ? "area " : "", sure ? "at least" : "about", tri_count_text(n->triangles).text,
-                    tri_size_text(needed).text, tri_size_text(left).text, *obstacle ? "; less would do but for " : "",
-                    obstacle);
+    *text = 0;
+    if (run->hooks->limits.memory > 0 && needed <= system_memory_left(run))
+        snprintf(text, size, "; --memory %.0fM would do", ceil((resources_memory_used() + needed) / 0x1p20) + 1);
 }
 
-static void warn_of_memory(const struct console *console, double needed, double left)
+static enum tri_status fail_memory(const struct run *run, const struct needs *n, bool sure, double needed, double left,
+                                   const char *obstacle, struct tri_error *error)
 {
-    if (needed > left)
+    char would_do[64];
+    suggest(run, needed, would_do, sizeof would_do);
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
+                    "the %sbounds ask for %s %s triangles, which take %s of memory; %s are left%s%s%s",
+                    sure ? "area " : "", sure ? "at least" : "about", tri_count_text(n->triangles).text,
+                    tri_size_text(needed).text, tri_size_text(left).text, would_do,
+                    *obstacle ? "; less would do but for " : "", obstacle);
+}
+
+/* least, likely: bytes of memory. Where what is likely refuses, it does so first: who gives what is then said to be
+ * needed is not refused again. */
+static enum tri_status check_memory(const struct run *run, const struct estimate *e, double least, double likely,
+                                    double left, const char *obstacle, const struct console *console,
+                                    struct tri_error *error)
+{
+    if (is_strict(run) && likely > left && likely >= least)
+        return fail_memory(run, &e->likely, false, likely, left, obstacle, error);
+    if (least > left)
+        return fail_memory(run, &e->least, true, least, left, obstacle, error);
+    if (likely > left)
         console_warn(console, "the bounds may take about %s of memory; %s are left.\n",
-                     tri_size_text(needed).text, tri_size_text(left).text);
+                     tri_size_text(likely).text, tri_size_text(left).text);
+    return TRI_OK;
 }
 
 static void warn_of_triangles(const struct console *console)
@@ -172,15 +191,11 @@ static enum tri_status check_whole(const struct run *run, const struct estimate 
 {
     if (e->least.triangles > TRI_MAX_TRIANGLES)
         return fail_too_many(&e->least, obstacle, error);
-    if (e->least.whole > left)
-        return fail_memory(&e->least, true, e->least.whole, left, obstacle, error);
     if (e->likely.triangles > TRI_MAX_TRIANGLES)
         warn_of_triangles(console);
-    else if (is_strict(run) && e->likely.whole > left)
-        return fail_memory(&e->likely, false, e->likely.whole, left, obstacle, error);
-    else
-        warn_of_memory(console, e->likely.whole, left);
-    return TRI_OK;
+    if (run->plan.filed)
+        return check_memory(run, e, e->least.filed, e->likely.filed, left, "", console, error);
+    return check_memory(run, e, e->least.whole, e->likely.whole, left, obstacle, console, error);
 }
 
 /* A mesh that is handed out, but never swept, is there as a whole, if not in memory. */
@@ -192,12 +207,7 @@ static enum tri_status check_stream(const struct run *run, const struct estimate
         return fail_too_many(&e->least, why, error);
     if (!e->sweeps && e->likely.triangles > TRI_MAX_TRIANGLES)
         warn_of_triangles(console);
-    if (e->least.floor > left)
-        return fail_memory(&e->least, true, e->least.floor, left, "", error);
-    if (is_strict(run) && e->likely.floor > left)
-        return fail_memory(&e->likely, false, e->likely.floor, left, "", error);
-    warn_of_memory(console, e->likely.floor, left);
-    return TRI_OK;
+    return check_memory(run, e, e->least.floor, e->likely.floor, left, "", console, error);
 }
 
 /* What a run puts on disk. */
@@ -207,8 +217,9 @@ static void list_places(struct disk_place places[DISK_PLACES], const struct run 
     const struct run_limits *limits = &run->hooks->limits;
     places[0] = (struct disk_place){"the files", run->hooks->first_file ? run->hooks->first_file
                                                                        : run->arguments->output, n->files};
+    const double whole = run->plan.filed && n->whole > left ? n->filed_away : 0;
     places[1] = (struct disk_place){"what does not fit in memory", limits->scratch,
-                                    run->plan.swept ? (n->held > left ? n->away : 0) + n->kept : 0};
+                                    run->plan.swept ? (n->held > left ? n->away : 0) + n->kept : whole};
     const double states = run->plan.swept ? n->checkpoint : n->states;
     places[2] = (struct disk_place){"the checkpoint", limits->checkpoint, limits->checkpoint ? states : 0};
 }
@@ -263,6 +274,12 @@ static bool fits(const struct run *run, const struct estimate *e, double left)
     return fmax(e->likely.triangles, e->least.triangles) <= TRI_MAX_TRIANGLES && margin * e->likely.whole <= left;
 }
 
+static void say_parking(const struct console *console, const struct run *run, double bytes)
+{
+    console_say(console, "Parking: what does not fit in memory goes to %s, about %s.\n", run->hooks->limits.scratch,
+                tri_size_text(bytes).text);
+}
+
 static void say_way(const struct console *console, const struct run *run, const struct estimate *e, double left)
 {
     const struct needs *n = &e->likely;
@@ -279,15 +296,16 @@ static void say_way(const struct console *console, const struct run *run, const 
         console_say(console, "Sweeping: about %s triangles %s, a few columns of them %s.\n",
                     tri_count_text(n->triangles).text, whole, tri_size_text(n->held).text);
     if (n->held > left)
-        console_say(console, "Parking: what does not fit in memory goes to %s, about %s.\n",
-                    run->hooks->limits.scratch, tri_size_text(n->away).text);
+        say_parking(console, run, n->away);
 }
 
-static enum tri_status check_stream_all(const struct run *run, const struct estimate *e, double left,
-                                        const struct console *console, struct tri_error *error)
+/* A mesh that stays one, where --memory bounds what is in memory of it. Of several tasks one makes all of it, whose
+ * needs nobody has estimated. */
+static bool may_lie_in_files(const struct run *run, const struct estimate *e)
 {
-    enum tri_status status = check_stream(run, e, left, console, error);
-    return status ? status : check_scratch(run->hooks->limits.scratch, error);
+    const struct run_hooks *hooks = run->hooks;
+    return hooks->streams && hooks->n_ranks == 0 && hooks->limits.memory > 0 && run->options.refine &&
+           estimate_can_park(run, e->likely.whole);
 }
 
 enum tri_status plan_make(struct run_plan *plan, const struct run *run, const struct estimate *e,
@@ -297,12 +315,18 @@ enum tri_status plan_make(struct run_plan *plan, const struct run *run, const st
     double left = look ? plan_memory_left(run) : HUGE_VAL;
     const char *obstacle = plan_obstacle(run);
     bool stream = run->hooks->always_sweep || !fits(run, e, left);
-    *plan = (struct run_plan){stream && !obstacle, resources_memory_used() + left, e->likely.triangles};
-    enum tri_status status = plan->swept ? check_stream_all(run, e, left, console, error)
+    *plan = (struct run_plan){.swept = stream && !obstacle, .memory = resources_memory_used() + left,
+                              .triangles = e->likely.triangles};
+    plan->filed = !plan->swept && may_lie_in_files(run, e);
+    enum tri_status status = plan->swept ? check_stream(run, e, left, console, error)
                                          : check_whole(run, e, left, obstacle, console, error);
+    if (!status && (plan->swept || (plan->filed && stream)))
+        status = check_scratch(run->hooks->limits.scratch, error);
     status = status ? status : check_disk(run, e, left, console, error);
     if (!status && plan->swept)
         say_way(console, run, e, left);
+    else if (!status && plan->filed && e->likely.whole > left)
+        say_parking(console, run, e->likely.filed_away);
     return status;
 }
 
@@ -328,8 +352,10 @@ static const char *way_of(const struct run *run, const struct estimate *e)
 {
     if (run->hooks->n_ranks > 0 && e->sweeps)
         return "shared by all tasks";
-    return !run->plan.swept ? "all in memory" : e->sweeps ? "swept, a few columns in memory at a time"
-                                                          : "all in memory, or in files as far as it does not fit";
+    if (run->plan.swept && e->sweeps)
+        return "swept, a few columns in memory at a time";
+    return run->plan.swept || run->plan.filed ? "all in memory, or in files as far as it does not fit"
+                                              : "all in memory";
 }
 
 void plan_print(const struct run *run, const struct estimate *e)
@@ -337,7 +363,9 @@ void plan_print(const struct run *run, const struct estimate *e)
     int threads = run->hooks->threads > 1 ? run->hooks->threads : 1;
     const struct needs *n = &e->likely;
     struct disk_place places[DISK_PLACES];
-    double left = plan_memory_left(run), more = run->plan.swept ? fmin(n->held, fmax(left, n->floor)) : n->whole;
+    const double left = plan_memory_left(run), most = run->plan.swept ? n->held : n->whole;
+    const double floor = run->plan.swept ? n->floor : run->plan.filed ? n->filed : n->whole;
+    const double more = fmin(most, fmax(left, floor));
     list_places(places, run, n, left);
     printf("\nEstimate:\n\n");
     printf("  Triangles: %s\n", tri_count_text(n->triangles).text);
@@ -345,7 +373,7 @@ void plan_print(const struct run *run, const struct estimate *e)
     if (run->options.refine)
         printf("  Way: %s\n", way_of(run, e));
     const double used = resources_memory_used();
-    print_bytes("Memory", used + more, used + left, "in all");
+    print_bytes("Memory", fmax(used + more, input_bytes(run)), used + left, "in all");
     print_bytes("Disk", n->files, disk_left(&places[0]), "left");
     if (places[1].bytes > 0)
         print_bytes("Disk for what does not fit in memory", places[1].bytes, disk_left(&places[1]), "left");

@@ -1,11 +1,12 @@
-/* How a run is carried out: with the whole mesh in memory, or swept, with a few columns of it there at a time and files
- * written meanwhile. Decided by what the run will need and what there is, before it begins to refine. */
+/* How a run is carried out: with the whole mesh in memory, or, where --memory bounds that, in files as far as it does
+ * not fit; or swept, with a few columns of it there at a time and files written meanwhile. Decided by what the run will
+ * need and what there is, before it begins to refine. */
 #ifndef DRIVERS_PLAN_H
 #define DRIVERS_PLAN_H
 
 #include "drivers/estimate.h"
 
-/* What of this run asks for the whole mesh in memory: "-n (neighbours)"; "": the program; NULL: nothing, it can be
+/* What of this run asks for the whole mesh at a time: "-n (neighbours)"; "": the program; NULL: nothing, it can be
  * swept. */
 const char *plan_obstacle(const struct run *run);
 

@@ -7,6 +7,7 @@
 
 #include "drivers/blocks_file.h"
 #include "drivers/console.h"
+#include "drivers/estimate.h"
 #include "drivers/help.h"
 #include "drivers/interrupt.h"
 #include "drivers/joint_files.h"
@@ -24,6 +25,7 @@
 #include "sched/cells.h"
 #include "sched/ranks/relay.h"
 #include "sched/schedule.h"
+#include "sched/sweep/park.h"
 #include "sched/sweep/queue.h"
 #include "sched/threads.h"
 #include "triangle/census.h"
@@ -46,6 +48,7 @@ struct program {
     struct file_names h5;      /* HDF5 files that are wanted */
     char *xdmf[STREAMS_MOST];  /* [h5.n] names of the texts beside them */
     struct streams streams;
+    struct par_park *park;     /* of the mesh, as long as that lives */
     struct joint_files joint;  /* on several ranks */
     int32_t n_before;          /* vertices there were before refinement */
     bool refined;              /* the schedule has run: its report is filled */
@@ -306,12 +309,20 @@ static enum tri_status refine(void *user, struct run *run, struct tri_output_set
         status = TRI_OK; /* the first rank makes the whole, and keeps its checkpoints as one task does */
     } else {
         struct par_options options = options_of(p, run);
+        options.park = run->plan.filed ? &p->park : NULL;
         status = refine_with(p, run, &options, mesh, quality, error);
+        tell_of_parking(p, run->arguments->switches.quiet);
         if (!status)
             progress_stage(&p->progress, "writing");
     }
     *report = p->schedule.total;
     return p->launch.carrier ? report_ranks(p, run, status, error) : status;
+}
+
+static enum tri_status make_room(void *user, struct tri_mesh *mesh, double bytes, struct tri_error *error)
+{
+    const struct program *p = user;
+    return par_park_expect(p->park, mesh, (size_t)bytes, error);
 }
 
 static double estimate(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *quality)
@@ -336,14 +347,15 @@ static enum tri_status agree(void *user, enum tri_status status, struct tri_erro
     return par_agree(p->launch.carrier, status, error);
 }
 
-/* Of a mesh that is in memory. */
-static enum tri_status write_streams(struct program *p, const struct run *run, struct tri_output_set *set,
+/* Of a mesh that is there as a whole. */
+static enum tri_status write_streams(struct program *p, struct run *run, struct tri_output_set *set,
                                      struct tri_error *error)
 {
     const struct tri_sink sink = streams_sink(&p->streams);
     if (p->h5.n == 0)
         return TRI_OK;
-    enum tri_status status = streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
+    enum tri_status status = make_room(p, &run->mesh, estimate_streams(p->h5.n, run->mesh.n_triangles), error);
+    status = status ? status : streams_open(&p->streams, &p->h5, !run->arguments->switches.no_markers, set, error);
     int32_t n_before = p->refined ? p->n_before : run->mesh.n_vertices;
     status = status ? status : streams_hand_out(run, n_before, &sink, error);
     streams_close(&p->streams);
@@ -363,7 +375,7 @@ static void count_remaining(struct program *p, const struct run *run)
     p->schedule.remain_known = true;
 }
 
-static enum tri_status write_further(void *user, const struct run *run, struct tri_output_set *set,
+static enum tri_status write_further(void *user, struct run *run, struct tri_output_set *set,
                                      struct tri_error *error)
 {
     struct program *p = user;
@@ -495,8 +507,8 @@ static struct run_hooks hooks_of(struct program *p)
 {
     const struct long_options *o = &p->options;
     bool goes_on = p->restart.wanted && par_checkpoint_has_sweep(&p->restart.checkpoint);
-    struct run_hooks hooks = {.program = PROGRAM, .refine = refine, .estimate = estimate, .write = write_further,
-                              .streams = true,
+    struct run_hooks hooks = {.program = PROGRAM, .refine = refine, .make_room = make_room, .estimate = estimate,
+                              .write = write_further, .streams = true,
                               .always_sweep = goes_on || p->launch.carrier || sweep_for_tests(),
                               .written_elsewhere = p->launch.rank > 0,
                               .n_ranks = p->launch.carrier ? p->launch.carrier->n_ranks : 0,
@@ -544,6 +556,7 @@ static int run_program(struct program *p, const struct arguments *arguments, str
 
 static void free_program(struct program *p)
 {
+    par_park_close(p->park, NULL); /* the mesh has gone with its run */
     par_report_free(&p->schedule);
     free(p->scratch);
     free(p->ranks.number);

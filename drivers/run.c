@@ -446,6 +446,12 @@ static void tell_of_input(const struct runner *r)
 
 /* --- output */
 
+static enum tri_status make_room(struct runner *r, double bytes)
+{
+    const struct run_hooks *hooks = r->run.hooks;
+    return hooks->make_room ? hooks->make_room(hooks->user, &r->run.mesh, bytes, r->error) : TRI_OK;
+}
+
 static enum tri_status write_mesh(struct runner *r, const struct mesh_files *files)
 {
     struct run *run = &r->run;
@@ -453,13 +459,27 @@ static enum tri_status write_mesh(struct runner *r, const struct mesh_files *fil
         console_say(&r->console, "Adding nodes amid edges.\n");
     console_say(&r->console, "\n");
     r->mark = tri_seconds();
-    enum tri_status status = mesh_files_write(files, &outputs, r->error);
+    const double waiting = fmin(MESH_FILES_BYTES, MESH_FILES_ROW_BYTES * (double)run->mesh.n_triangles);
+    enum tri_status status = make_room(r, waiting);
+    status = status ? status : mesh_files_write(files, &outputs, r->error);
     end_stage(r, RUN_WRITE);
     if (status)
         return status;
     console_say(&r->console, "\n");
     say_milliseconds(r, "Output", run->seconds[RUN_WRITE]);
     return TRI_OK;
+}
+
+/* -C. The judge keeps to what is left of a bound; pages of a mesh that lies in files take some of that, too. */
+static enum tri_status check(struct runner *r)
+{
+    const double OF_FILES = 0.75;
+    const struct run *run = &r->run;
+    const struct run_limits *limits = &run->hooks->limits;
+    enum tri_status status = make_room(r, 2 * self_check_least_bytes(&run->mesh));
+    const double left = run->mesh.storage ? OF_FILES * plan_memory_left(run) : plan_memory_left(run);
+    const struct self_check_room room = {limits->memory > 0 ? left : 0, limits->scratch};
+    return status ? status : self_check(&r->console, &run->arguments->switches, &run->mesh, run->base, &room, r->error);
 }
 
 static enum tri_status tell(struct runner *r)
@@ -480,7 +500,7 @@ static enum tri_status tell(struct runner *r)
     summary_counts(&r->console, s, &run->pslg, run->elements.n, &run->counts);
     if (s->verbosity > 0)
         summary_shapes(&r->console, &run->mesh, &run->report, run->hooks->executor);
-    return s->check ? self_check(&r->console, s, &run->mesh, run->base, r->error) : TRI_OK;
+    return s->check ? check(r) : TRI_OK;
 }
 
 static enum tri_status write_all(struct runner *r, const struct mesh_files *files)

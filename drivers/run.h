@@ -25,7 +25,8 @@ enum run_stage {
 
 /* How the mesh is made: see drivers/plan.h. */
 struct run_plan {
-    bool swept;    /* files are written meanwhile, and the mesh goes; else it stays in memory */
+    bool swept;    /* files are written meanwhile, and the mesh goes; else it stays a mesh .. */
+    bool filed;    /* .. which lies in files as far as it does not fit in memory; else in memory */
     double memory; /* bytes of memory that the process may take; HUGE_VAL: not known */
     double triangles; /* that are expected */
 };
@@ -69,6 +70,9 @@ struct run_hooks {
     enum tri_status (*refine)(void *user, struct run *run, struct tri_output_set *set, struct tri_mesh *mesh,
                               const struct tri_refine_options *options, struct tri_refine_report *report,
                               struct tri_error *error);
+    /* Beside a mesh that is not swept, so many bytes of memory will be needed: what of it does not fit then, moves to
+     * files. NULL: nothing moves. */
+    enum tri_status (*make_room)(void *user, struct tri_mesh *mesh, double bytes, struct tri_error *error);
     /* How many triangles the mesh will have, to the order; NULL: what areas ask for is all that is known. */
     double (*estimate)(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *options);
     bool streams;                   /* refine follows run->plan, and can write files meanwhile */
@@ -91,7 +95,7 @@ struct run_hooks {
     int n_streamed;                 /* HDF5 files, which refine or write makes */
     struct file_names further;      /* files that are written beside the mesh .. */
     /* .. by this, into the guarded set of files (drivers/interrupt.h) that holds those of the mesh; NULL: none. */
-    enum tri_status (*write)(void *user, const struct run *run, struct tri_output_set *set, struct tri_error *error);
+    enum tri_status (*write)(void *user, struct run *run, struct tri_output_set *set, struct tri_error *error);
     void *user;
     struct run_limits limits;
 };

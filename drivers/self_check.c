@@ -1,35 +1,60 @@
-/* Plain arrays out of the mesh, the judgement, and its lines. */
+/* The mesh as the judge reads it, the judgement, and its lines. */
 #include "drivers/self_check.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
 
 #include "triangle/check/check.h"
 #include "triangle/generate.h"
 
-struct arrays {
-    double *points;
-    int32_t *triangles, *segments;
-};
-
-static bool copy_mesh(struct arrays *arrays, const struct tri_mesh *mesh)
+static void read_points(const struct tri_mesh *mesh, int64_t first, int64_t n, double (*out)[2])
 {
-    arrays->points = malloc(((size_t)mesh->n_vertices + 1) * 2 * sizeof *arrays->points);
-    arrays->triangles = malloc(((size_t)mesh->n_triangles + 1) * 3 * sizeof *arrays->triangles);
-    arrays->segments = malloc(((size_t)mesh->n_subs + 1) * 2 * sizeof *arrays->segments);
-    if (!arrays->points || !arrays->triangles || !arrays->segments)
-        return false;
-    for (int32_t v = 0; v < mesh->n_vertices; v++) {
-        arrays->points[2 * (size_t)v] = mesh->xy[v].x;
-        arrays->points[2 * (size_t)v + 1] = mesh->xy[v].y;
+    for (int64_t i = 0; i < n; i++) {
+        out[i][0] = mesh->xy[first + i].x;
+        out[i][1] = mesh->xy[first + i].y;
     }
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
-        for (size_t k = 0; k < 3; k++)
-            arrays->triangles[3 * (size_t)t + k] = mesh->tri[t].v[k];
-    for (int32_t s = 0; s < mesh->n_subs; s++)
-        for (size_t k = 0; k < 2; k++)
-            arrays->segments[2 * (size_t)s + k] = mesh->sub[s].v[k];
-    return true;
+}
+
+static void read_corners(const struct tri_mesh *mesh, int64_t first, int64_t n, int64_t (*out)[3])
+{
+    for (int64_t i = 0; i < n; i++)
+        for (int k = 0; k < 3; k++)
+            out[i][k] = mesh->tri[first + i].v[k];
+}
+
+static void read_ends(const struct tri_mesh *mesh, int64_t first, int64_t n, int64_t (*out)[2])
+{
+    for (int64_t i = 0; i < n; i++)
+        for (int k = 0; k < 2; k++)
+            out[i][k] = mesh->sub[first + i].v[k];
+}
+
+static enum tri_status read_mesh(void *user, enum tri_check_array array, int64_t first, int64_t n, void *out,
+                                 struct tri_error *error)
+{
+    const struct tri_mesh *mesh = user;
+    (void)error;
+    if (array == TRI_CHECK_POINTS)
+        read_points(mesh, first, n, out);
+    else if (array == TRI_CHECK_CORNERS)
+        read_corners(mesh, first, n, out);
+    else
+        read_ends(mesh, first, n, out);
+    return TRI_OK;
+}
+
+static struct tri_check_source source_of(const struct tri_mesh *mesh)
+{
+    return (struct tri_check_source){.n_points = mesh->n_vertices, .n_triangles = mesh->n_triangles,
+                                     .n_segments = mesh->n_subs, .n_nodes = mesh->n_vertices,
+                                     .given = 1u << TRI_CHECK_POINTS | 1u << TRI_CHECK_CORNERS |
+                                              1u << TRI_CHECK_SEGMENT_ENDS,
+                                     .read = read_mesh, .user = (void *)mesh};
+}
+
+double self_check_least_bytes(const struct tri_mesh *mesh)
+{
+    const struct tri_check_source source = source_of(mesh);
+    return tri_check_least_bytes(&source, NULL);
 }
 
 static void tell(const struct console *console, const struct tri_check_report *report, bool conforming)
@@ -52,25 +77,18 @@ static void tell(const struct console *console, const struct tri_check_report *r
 }
 
 enum tri_status self_check(const struct console *console, const struct tri_switches *switches,
-                           const struct tri_mesh *mesh, int32_t base, struct tri_error *error)
+                           const struct tri_mesh *mesh, int32_t base, const struct self_check_room *room,
+                           struct tri_error *error)
 {
-    struct arrays arrays = {0};
     struct tri_check_report report;
     struct tri_check_options options = {.max_bad = INT64_MAX, .ignore_lost = true, .base = base};
     options.delaunay = switches->conforming ? TRI_CHECK_CONFORMING : TRI_CHECK_CONSTRAINED;
-    enum tri_status status = TRI_OK;
-    if (!copy_mesh(&arrays, mesh))
-        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to check %d triangles", (int)mesh->n_triangles);
-    struct tri_check_mesh trial = {.n_points = mesh->n_vertices, .points = arrays.points,
-                                   .n_triangles = mesh->n_triangles,
-                                   .triangles = arrays.triangles, .n_segments = mesh->n_subs,
-                                   .segments = arrays.segments};
+    struct tri_check_source source = source_of(mesh);
+    source.memory = room->memory;
+    source.scratch = room->scratch;
     console_say(console, "Checking the mesh.\n");
-    status = status ? status : tri_check(&trial, NULL, &options, &report, error);
+    enum tri_status status = tri_check_from(&source, NULL, &options, &report, error);
     if (!status)
         tell(console, &report, switches->conforming);
-    free(arrays.points);
-    free(arrays.triangles);
-    free(arrays.segments);
     return status;
 }

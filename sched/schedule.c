@@ -739,9 +739,12 @@ static void clean_up(struct par_state *state)
         report->way = PAR_PARKED;
     if (checkpoint_of(state))
         par_state_end(checkpoint_of(state), state);
-    par_park_close(state->park, state->mesh);
     par_state_drop_pause(state);
-    if (report->way != PAR_IN_MEMORY || state->end == PAR_DELIVERED)
+    if (state->options->park)
+        *state->options->park = state->park;
+    else
+        par_park_close(state->park, state->mesh);
+    if (state->end == PAR_DELIVERED || (report->way != PAR_IN_MEMORY && !state->options->park))
         tri_mesh_drop(state->mesh);
     free(state->worklist.item);
     free(state->key.item);
@@ -781,7 +784,10 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
 {
     double began = tri_seconds();
     assert(tri_mesh_is_sound(mesh));
+    assert(!options->park || !options->sink);
     *report = (struct par_report){.threads = par_threads(options->threads, false)};
+    if (options->park)
+        *options->park = NULL;
     struct timed timed = {par_executor(&report->threads), report->seconds_shared};
     struct par_state state = {.mesh = mesh, .quality = quality, .options = options, .report = report,
                               .executor = {run_timed, &timed},
@@ -792,7 +798,8 @@ enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_option
     status = status || can_sweep ? status : tri_refine_check(mesh, quality, &state.executor, error);
     status = check_ranks(&state, status, error);
     if (!status && is_bounded(options))
-        status = par_park_open(&state.park, mesh, options->sink ? options->scratch : NULL, options->memory, error);
+        status = par_park_open(&state.park, mesh, options->sink || options->park ? options->scratch : NULL,
+                               options->memory, error);
     if (status)
         return status;
     if (state.park)

@@ -20,6 +20,7 @@ extern "C" {
 
 struct par_carrier;
 struct par_checkpoint;
+struct par_park;
 
 enum { PAR_NUMBERING = PAR_PHASES + 1 }; /* told as a phase, see progress */
 
@@ -44,10 +45,12 @@ struct par_options {
                                 it would not fit, it is swept from left to right: few columns are there at a time, and
                                 *mesh is not a mesh afterwards, to be freed and no more. What does not fit then, lies in
                                 files in `scratch` (sched/sweep/park.h). The tiles are the same for any bound. Without a
-                                sink: TRI_NO_MEMORY as soon as it would not fit. On ranks each has a bound of its own,
-                                and keeps it by files */
+                                sink, see `park`. On ranks each has a bound of its own, and keeps it by files */
     const char *scratch;     /* directory for these files; NULL: with a sink, the bound decides on the sweep alone, and
                                 a mesh that cannot be swept is TRI_TOO_LARGE */
+    struct par_park **park;  /* without a sink: receives the files in `scratch` that the mesh, which stays a mesh, lies
+                                in from where it does not fit in `memory`; to be closed once nobody needs it. NULL is
+                                received where there is no bound. NULL: a mesh that does not fit is TRI_NO_MEMORY */
     struct par_checkpoint *checkpoint; /* where the state of the run is kept, and taken from (sched/sweep/state.h);
                                           NULL: nowhere */
     bool count_remaining;    /* of a mesh that is handed out those triangles that stay below the bounds, by reason */

@@ -13,8 +13,10 @@
 
 #include "sched/schedule.h"
 #include "sched/sweep/numbering.h"
+#include "sched/sweep/park.h"
 #include "sched/threads.h"
 #include "tile_order.h"
+#include "triangle/topology.h"
 #include "trials.h"
 
 /* The first twelve are run by every test that looks for differences; the rest are inputs of the unkind sort. */
@@ -486,6 +488,58 @@ static void test_scratch_that_cannot_be_used(void **state)
     tri_pslg_free(&start.pslg);
 }
 
+static struct start square(int32_t points, double angle, double max_area)
+{
+    return (struct start){support_square(1, points, 5), support_quality(angle, max_area)};
+}
+
+static void assert_same_edges(const struct tri_mesh *a, const struct tri_mesh *b)
+{
+    struct tri_edge_list one, other;
+    assert_int_equal(tri_edge_list_make(&one, a, true, NULL), TRI_OK);
+    assert_int_equal(tri_edge_list_make(&other, b, true, NULL), TRI_OK);
+    assert_int_equal(one.n, other.n);
+    assert_memory_equal(one.codes, other.codes, (size_t)one.n * sizeof *one.codes);
+    assert_memory_equal(one.number, other.number, 3 * (size_t)a->n_triangles * sizeof *one.number);
+    tri_edge_list_free(&one);
+    tri_edge_list_free(&other);
+}
+
+/* Without a sink a mesh that does not fit stays a mesh, in files if somebody keeps them; swept or not, the same. */
+static void test_a_mesh_lies_in_files(void **state)
+{
+    (void)state;
+    static const double angles[] = {20, 33, 35};
+    for (int i = 0; i < 3; i++) {
+        struct start start = square(100, angles[i], 4e-4);
+        struct par_options options = small_blocks(256, 2);
+        struct par_report report;
+        struct par_park *park;
+        struct tri_error error = {0};
+        options.park = &park;
+        struct tri_mesh whole = refine(&start, &options, &report);
+        assert_null(park);
+        par_report_free(&report);
+        options.memory = 1000;
+        options.scratch = ".";
+        struct tri_mesh filed = refine(&start, &options, &report);
+        assert_true(park && filed.storage && report.way == PAR_PARKED && report.parked > 0);
+        par_report_free(&report);
+        support_assert_same_bytes(&whole, &filed);
+        assert_same_edges(&whole, &filed);
+        judge(&start, &filed, INT64_MAX);
+        tri_mesh_free(&filed);
+        par_park_close(park, NULL);
+        options.park = NULL;
+        filed = trials_coarse_mesh(&start);
+        assert_int_equal(par_refine(&filed, &start.options.quality, &options, &report, &error), TRI_NO_MEMORY);
+        par_report_free(&report);
+        tri_mesh_free(&filed);
+        tri_mesh_free(&whole);
+        tri_pslg_free(&start.pslg);
+    }
+}
+
 /* Tiles that have been handed out give their memory to those that follow. */
 static void test_a_sweep_holds_few_columns(void **state)
 {
@@ -503,11 +557,6 @@ static void test_a_sweep_holds_few_columns(void **state)
     par_report_free(&report);
     tri_mesh_free(&mesh);
     tri_pslg_free(&start.pslg);
-}
-
-static struct start square(int32_t points, double angle, double max_area)
-{
-    return (struct start){support_square(1, points, 5), support_quality(angle, max_area)};
 }
 
 /* Definition 3: with the paper's margin, and fences that are wide against the radii, no cavity meets a fence. */
@@ -1046,12 +1095,15 @@ static bool fail_once(const struct start *start, const struct par_options *optio
 {
     struct tri_error error = {0}, fault = {0};
     struct par_report report;
+    struct par_options how = *options;
+    struct par_park *park = NULL;
     long long before = support_held;
     struct tri_mesh mesh = trials_coarse_mesh(start);
+    how.park = how.memory > 0 ? &park : NULL;
     support_calls = 0;
     support_fail_ever_after = ever_after;
     support_fail_at = k;
-    enum tri_status status = par_refine(&mesh, &start->options.quality, options, &report, &error);
+    enum tri_status status = par_refine(&mesh, &start->options.quality, &how, &report, &error);
     bool failed = support_calls >= k;
     support_fail_at = INT64_MAX;
     if (status == TRI_OK) {
@@ -1066,6 +1118,7 @@ static bool fail_once(const struct start *start, const struct par_options *optio
     judge(start, &mesh, INT64_MAX); /* whatever is bad: a legal mesh */
     par_report_free(&report);
     tri_mesh_free(&mesh);
+    par_park_close(park, NULL);
     assert_int_equal(support_held, before);
     return failed;
 }
@@ -1124,11 +1177,13 @@ static void test_every_allocation_may_fail_on_the_way_to_a_sink(void **state)
 static void test_every_allocation_may_fail(void **state)
 {
     (void)state;
-    for (int run = 0; run < 4; run++) {
+    for (int run = 0; run < 5; run++) {
         struct start start = square(60, 25, 4e-4);
         struct par_options options = small_blocks(256, run < 2 ? 1 : 2);
         int64_t k = 1;
         options.tight_room = run % 2 ? 20 : 0;
+        options.memory = run == 4 ? 1000 : 0; /* in files */
+        options.scratch = ".";
         while (fail_once(&start, &options, k, run % 2))
             k += 1 + k / 24;
         assert_true(k > 100);
@@ -1150,6 +1205,7 @@ int main(void)
         cmocka_unit_test(test_a_stream_has_the_numbers_of_the_mesh),
         cmocka_unit_test(test_a_sweep_holds_few_columns),
         cmocka_unit_test(test_scratch_that_cannot_be_used),
+        cmocka_unit_test(test_a_mesh_lies_in_files),
         cmocka_unit_test(test_room_moves_ids_alone),
         cmocka_unit_test(test_the_way_of_numbering_moves_ids_alone),
         cmocka_unit_test(test_nothing_is_deferred_with_the_margin),

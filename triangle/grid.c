@@ -189,8 +189,9 @@ static struct tri_grid describe(const struct source *s, const struct tri_grid_op
     struct tri_grid grid = {.user = s, .base = options->base, .has_markers = options->markers,
                             .n_triangles = mesh->n_triangles, .n_segments = (int64_t)mesh->n_subs + s->n_loose,
                             .n_edges = count_edges(mesh), .n_attributes = mesh->n_attributes, .n_nodes = s->n_nodes,
-                            .figure = options->pslg, .point = point, .attribute = attribute, .triangle = triangle,
-                            .column = column, .neighbors = neighbors, .segment = segment, .edge = edge};
+                            .figure = options->pslg, .storage = mesh->storage, .point = point,
+                            .attribute = attribute, .triangle = triangle, .column = column,
+                            .neighbors = neighbors, .segment = segment, .edge = edge};
     grid.n_points = s->n_vertices + (options->second_order ? grid.n_edges : 0);
     grid.n_columns = options->elements ? mesh->n_columns : options->regions;
     assert(!s->edges.codes || s->edges.n == grid.n_edges);

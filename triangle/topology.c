@@ -2,7 +2,6 @@
 #include "triangle/topology.h"
 
 #include <assert.h>
-#include <stdlib.h>
 
 #include "triangle/predicates.h"
 
@@ -52,10 +51,10 @@ static void list_edges(struct tri_edge_list *list, const struct tri_mesh *mesh)
 enum tri_status tri_edge_list_make(struct tri_edge_list *list, const struct tri_mesh *mesh, bool with_numbers,
                                    struct tri_error *error)
 {
-    *list = (struct tri_edge_list){.n = count_edges(mesh)};
-    list->codes = malloc(((size_t)list->n + 1) * sizeof *list->codes);
+    *list = (struct tri_edge_list){.n = count_edges(mesh), .mesh = mesh};
+    list->codes = tri_mesh_extra(mesh, ((size_t)list->n + 1) * sizeof *list->codes);
     if (with_numbers)
-        list->number = malloc(3 * ((size_t)mesh->n_triangles + 1) * sizeof *list->number);
+        list->number = tri_mesh_extra(mesh, 3 * ((size_t)mesh->n_triangles + 1) * sizeof *list->number);
     if (!list->codes || (with_numbers && !list->number)) {
         tri_edge_list_free(list);
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the edges of %d triangles",
@@ -67,8 +66,10 @@ enum tri_status tri_edge_list_make(struct tri_edge_list *list, const struct tri_
 
 void tri_edge_list_free(struct tri_edge_list *list)
 {
-    free(list->codes);
-    free(list->number);
+    if (list->mesh) {
+        tri_mesh_extra_free(list->mesh, list->codes);
+        tri_mesh_extra_free(list->mesh, list->number);
+    }
     *list = (struct tri_edge_list){0};
 }
 
@@ -118,7 +119,8 @@ void tri_voronoi_edge(const struct tri_mesh *mesh, tri_halfedge code, tri_triang
 enum tri_status tri_used_make(struct tri_used *used, const struct tri_mesh *mesh, struct tri_error *error)
 {
     size_t size = (size_t)mesh->n_vertices + 1;
-    *used = (struct tri_used){0, malloc(size * sizeof *used->vertex), malloc(size * sizeof *used->number)};
+    *used = (struct tri_used){0, tri_mesh_extra(mesh, size * sizeof *used->vertex),
+                              tri_mesh_extra(mesh, size * sizeof *used->number), mesh};
     if (!used->vertex || !used->number) {
         tri_used_free(used);
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to number %d vertices", (int)mesh->n_vertices);
@@ -138,7 +140,9 @@ enum tri_status tri_used_make(struct tri_used *used, const struct tri_mesh *mesh
 
 void tri_used_free(struct tri_used *used)
 {
-    free(used->vertex);
-    free(used->number);
+    if (used->mesh) {
+        tri_mesh_extra_free(used->mesh, used->vertex);
+        tri_mesh_extra_free(used->mesh, used->number);
+    }
     *used = (struct tri_used){0};
 }

@@ -34,9 +34,11 @@ struct tri_edge_list {
     int32_t n;
     tri_halfedge *codes; /* [n] */
     int32_t *number;     /* [n_triangles][3] number of the edge opposite each corner; NULL: not asked for */
+    const struct tri_mesh *mesh; /* whose extras these are; NULL: there are none */
 };
 
-/* Lists the edges. O(triangles); 6 bytes a triangle, with numbers 12 more. TRI_NO_MEMORY. */
+/* Lists the edges. O(triangles); 6 bytes a triangle, with numbers 12 more, where the mesh is. The list lives no longer
+ * than the mesh. TRI_NO_MEMORY. */
 enum tri_status tri_edge_list_make(struct tri_edge_list *list, const struct tri_mesh *mesh, bool with_numbers,
                                    struct tri_error *error);
 void tri_edge_list_free(struct tri_edge_list *list);
@@ -67,9 +69,10 @@ struct tri_used {
     int32_t n;
     tri_vertex_id *vertex; /* [n] ascending */
     int32_t *number;       /* [n_vertices] place in `vertex`, or TRI_NONE */
+    const struct tri_mesh *mesh; /* whose extras these are; NULL: there are none */
 };
 
-/* O(vertices + triangles). TRI_NO_MEMORY. */
+/* O(vertices + triangles); 8 bytes a vertex, where the mesh is. Lives no longer than the mesh. TRI_NO_MEMORY. */
 enum tri_status tri_used_make(struct tri_used *used, const struct tri_mesh *mesh, struct tri_error *error);
 void tri_used_free(struct tri_used *used);
 

@@ -366,10 +366,12 @@ void par_park_close(struct par_park *park, struct tri_mesh *mesh)
 {
     if (!park)
         return;
-    if (mesh->storage == &park->storage)
+    if (mesh && mesh->storage == &park->storage)
         tri_mesh_drop(mesh);
-    mesh->bound = NULL;
-    mesh->stop = park->outer;
+    if (mesh) {
+        mesh->bound = NULL;
+        mesh->stop = park->outer;
+    }
     atomic_store(&park->over, true);
     if (park->watched)
         pthread_join(park->watch, NULL);

@@ -36,7 +36,8 @@ enum tri_status par_park_status(const struct par_park *park, enum tri_status sta
 /* The most bytes of disk so far; 0: the mesh never left memory. */
 int64_t par_park_bytes(const struct par_park *park);
 
-/* The files go, and what the mesh had in them: then it is no mesh, to be freed and no more. NULL: nothing happens. */
+/* The files go, and what the mesh had in them: then it is no mesh, to be freed and no more. mesh NULL: it has been
+ * freed. park NULL: nothing happens. */
 void par_park_close(struct par_park *park, struct tri_mesh *mesh);
 
 #endif

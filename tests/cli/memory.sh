@@ -37,6 +37,34 @@ for switches in q20a0.000003 q33a0.000004 q20a0.000003S200000; do # swept, parke
         esac
     done
 done
+
+# --- what wants the whole mesh gets it, in files as far as it does not fit; what is refused says what would do, and that does.
+for switches in "q20a0.000003 --write-partial" q20a0.000003evn q33a0.000004o2 "q20a0.000003C --output out.h5"; do
+    every 2 || continue
+    rm -f out*
+    # shellcheck disable=SC2086 # several words
+    program 0 -Qp$switches s --output out --threads 2
+    sed '/^# Generated/d' out* | cksum >.whole
+    for budget in 30 50 60; do
+        what="ptriangle -p$switches --memory ${budget}000000"
+        rm -f out*
+        # shellcheck disable=SC2086
+        "$python" "$data/../tests/cli/peak.py" "$budget"000000 "$bin/ptriangle" -Qp$switches s --output out \
+            --memory "$budget"000000 --threads 2 >.out 2>.err
+        found=$?
+        checks=$((checks + 1))
+        if [ $found -eq 1 ]; then
+            complains 'which take [0-9.]+ [kMG]?B of memory; [0-9.]+ [kMG]?B are left; --memory [0-9]+M would do$'
+            check "no file" test -z "$(ls out* .tri-* 2>/dev/null)"
+            enough=$(sed -n 's/.*--memory \([0-9]*M\) would do.*/\1/p' .err)
+            # shellcheck disable=SC2086
+            program 0 -Qp$switches s --output out --threads 2 --memory "$enough"
+            found=$?
+        fi
+        [ $found -eq 0 ] || fault "exit code $found: $(head -n 1 .err)"
+        check "the same bytes" sh -c "sed '/^# Generated/d' out* | cksum | cmp -s - .whole"
+    done
+done
 full && least=3 || least=1
 check "some runs are kept within ($kept), others refused ($refused)" \
     test $kept -ge $((2 * least)) -a $refused -ge $least

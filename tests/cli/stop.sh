@@ -150,7 +150,7 @@ if [ -x "$bin/ptriangle" ]; then
     for words in "" --dry-run; do
         # shellcheck disable=SC2086 # none or one
         mesher 1 ptriangle -pqna0.00000003 square --memory 200M $words
-        complains 'the area bounds ask for at least [0-9.]+ [mb]illion triangles, which take [0-9.]+ GB of memory; [1-9][0-9]+ MB are left'
+        complains 'the bounds ask for about [0-9.]+ [mb]illion triangles, which take [0-9.]+ [MG]B of memory; [1-9][0-9]+ MB are left; --memory [0-9]+M would do$'
         wrote
     done
     mesher 1 ptriangle -p square --memory 4GB
@@ -172,7 +172,7 @@ if (ulimit -v 400000 && "$bin/triangle" -h) >/dev/null 2>&1; then
         "$bin/triangle" -pqa0.00000003 square >.out 2>.err
     )
     check "exit code" test $? -eq 1
-    complains 'the area bounds ask for at least [0-9.]+ [mb]illion triangles, which take [0-9.]+ GB of memory; [0-9.]+ [kMG]?B are left'
+    complains 'the bounds ask for about [0-9.]+ [mb]illion triangles, which take [0-9.]+ GB of memory; [0-9.]+ [kMG]?B are left'
     wrote
 fi
 

@@ -107,7 +107,7 @@ PTRIANGLE_TEST_SWEEP=1 program 1 -Qpq30a0.002 letter --output swept.vtu --output
 complains 'nowhere: cannot park'
 rm -f swept* whole*
 
-# --- what cannot be swept stays in memory, and what cannot stay there is refused
+# --- what cannot be swept is there as a whole, and what is too large for that is refused
 fresh square.poly
 for words in "-e" "-n" "-v" "-o2" "-j" "--blocks b" "--write-partial"; do
     # shellcheck disable=SC2086
