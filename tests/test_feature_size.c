@@ -5,6 +5,7 @@
 
 #include "triangle/credit.h"
 #include "triangle/feature_size.h"
+#include "triangle/small_angle.h"
 
 static double distance(struct tri_point a, struct tri_point b) { return hypot(b.x - a.x, b.y - a.y); }
 
@@ -18,6 +19,27 @@ static void test_features_of_an_input(void **state)
     static const double want[] = {4, 4, 8, 8, 1}; /* the last: its height over the lower side */
     for (int v = 0; v < 5; v++)
         assert_true(v < 2 ? mesh.feature[v] > 4 && mesh.feature[v] < 4.2 : mesh.feature[v] == want[v]);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
+/* A vertex less than an ulp off the hull, and two an ulp from each other. */
+static void test_what_coordinates_do_not_resolve_is_no_feature(void **state)
+{
+    (void)state;
+    static const double at[][2] = {{0, 0}, {8, 0}, {8, 8}, {0, 8}, {4, 0x1p-52}, {4, 3}, {4, 3 + 0x1p-51}};
+    struct tri_pslg pslg = support_pslg(7, 0, 0, 0);
+    for (int i = 0; i < 7; i++)
+        support_add_point(&pslg, at[i][0], at[i][1]);
+    struct tri_options options = {.use_segments = true, .keep_hull = true};
+    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+    for (int v = 0; v < 7; v++)
+        assert_true(mesh.feature[v] >= 3 && mesh.feature[v] <= 8);
+    for (tri_parent_id p = 0; p < mesh.n_parents; p++) {
+        const tri_vertex_id *end = mesh.parents[p].v;
+        assert_true(tri_touches(&mesh, p, end[0]) && tri_touches(&mesh, p, end[1]) && !tri_touches(&mesh, p, 5));
+        assert_true(tri_touches(&mesh, p, 4) == (mesh.xy[end[0]].y + mesh.xy[end[1]].y == 0));
+    }
     tri_mesh_free(&mesh);
     tri_pslg_free(&pslg);
 }
@@ -125,6 +147,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_features_of_an_input),
+        cmocka_unit_test(test_what_coordinates_do_not_resolve_is_no_feature),
         cmocka_unit_test(test_sizes_are_inherited_and_grow),
         cmocka_unit_test(test_no_vertex_forgets_its_sources),
         cmocka_unit_test(test_no_bound_runs_away),

@@ -125,17 +125,6 @@ static tri_sub_id wall_around(const struct tri_mesh *mesh, tri_triangle_id t, in
     return TRI_NONE;
 }
 
-/* Is the space between them one that will be filled? u, v: ends of an edge from the first to the second. */
-static bool is_gap(const struct tri_mesh *mesh, tri_parent_id p, tri_parent_id q, struct tri_point u,
-                   struct tri_point v)
-{
-    if (p == q)
-        return false;
-    enum tri_corner corner = tri_corner_between(mesh, p, q);
-    return corner == TRI_NARROW_CORNER ||
-           (corner == TRI_APART && tri_filling_cost(mesh, p, q, u, v) <= mesh->limits.dearest_gap);
-}
-
 static void find_strips(struct field *f, const struct tri_mesh *mesh, tri_triangle_id triangle)
 {
     const struct tri_triangle *t = &mesh->tri[triangle];
@@ -146,8 +135,8 @@ static void find_strips(struct field *f, const struct tri_mesh *mesh, tri_triang
         const struct tri_subsegment *base = &mesh->sub[~t->n[k]];
         for (int side = 0; side < 2; side++) {
             tri_sub_id other = wall_around(mesh, triangle, k, side ? tri_prev : tri_next);
-            if (other == TRI_NONE || !is_gap(mesh, base->parent, mesh->sub[other].parent,
-                                             mesh->xy[t->v[tri_next[k]]], mesh->xy[t->v[k]]))
+            if (other == TRI_NONE || !tri_is_filled(mesh, base->parent, mesh->sub[other].parent,
+                                                    mesh->xy[t->v[tri_next[k]]], mesh->xy[t->v[k]]))
                 continue;
             f->strip[f->n_strips][0] = wall_of(mesh, base);
             f->strip[f->n_strips++][1] = wall_of(mesh, &mesh->sub[other]);

@@ -188,6 +188,47 @@ double tri_filling_cost(const struct tri_mesh *mesh, tri_parent_id first, tri_pa
     return spread <= width ? shorter / width : shorter / spread * tri_rough_log2(1 + spread / width);
 }
 
+bool tri_touches(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id v)
+{
+    const struct tri_parent *p = &mesh->parents[parent];
+    struct tri_relative a = tri_relative(&mesh->xy[p->v[0]], mesh->xy[v]);
+    struct tri_relative b = tri_relative(&mesh->xy[p->v[1]], mesh->xy[v]);
+    double x = b.x - a.x, y = b.y - a.y, l = x * x + y * y, cross = tri_cross(a, b);
+    if (a.l > b.l + l || b.l > a.l + l)
+        return tri_lesser(a.l, b.l) < mesh->limits.shortest2;
+    return cross * cross < mesh->limits.shortest2 * l;
+}
+
+static bool do_touch(const struct tri_mesh *mesh, tri_parent_id p, tri_parent_id q)
+{
+    const tri_vertex_id *a = mesh->parents[p].v, *b = mesh->parents[q].v;
+    return tri_touches(mesh, p, b[0]) || tri_touches(mesh, p, b[1]) || tri_touches(mesh, q, a[0]) ||
+           tri_touches(mesh, q, a[1]);
+}
+
+/* Do the lines of two parents meet at 60 degrees or more? */
+static bool is_wide(const struct tri_mesh *mesh, tri_parent_id p, tri_parent_id q)
+{
+    const struct tri_point a = mesh->xy[mesh->parents[p].v[0]], b = mesh->xy[mesh->parents[p].v[1]];
+    const struct tri_point c = mesh->xy[mesh->parents[q].v[0]], d = mesh->xy[mesh->parents[q].v[1]];
+    double px = b.x - a.x, py = b.y - a.y, qx = d.x - c.x, qy = d.y - c.y;
+    double dot = px * qx + py * qy, cross = px * qy - py * qx;
+    return 3 * dot * dot <= cross * cross;
+}
+
+bool tri_is_filled(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
+                   struct tri_point v)
+{
+    if (first == second)
+        return false;
+    enum tri_corner corner = tri_corner_between(mesh, first, second);
+    if (corner != TRI_APART)
+        return corner == TRI_NARROW_CORNER;
+    if (tri_filling_cost(mesh, first, second, u, v) > mesh->limits.dearest_gap)
+        return false;
+    return !is_wide(mesh, first, second) || !do_touch(mesh, first, second);
+}
+
 static bool is_end(const struct tri_parent *p, tri_vertex_id v) { return p->v[0] == v || p->v[1] == v; }
 
 /* Does w lie ahead of v on the parent, rather than behind the end that v is? */

@@ -21,6 +21,10 @@ enum tri_corner {
 };
 enum tri_corner tri_corner_between(const struct tri_mesh *mesh, tri_parent_id p, tri_parent_id q);
 
+/* Does the vertex touch the parent, as far as coordinates tell: is it an end of it, or nearer than the square root of
+ * limits.shortest2? */
+bool tri_touches(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id v);
+
 /* Does the shortest edge of the triangle join two segments that touch? */
 bool tri_crosses_angle(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape);
 
@@ -40,6 +44,11 @@ bool tri_is_hopeless(const struct tri_mesh *mesh, double angle, tri_triangle_id 
  * 1 / width along it: Ruppert's of 1 / size^2 (1995), each place being as wide as its features. */
 double tri_filling_cost(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
                         struct tri_point v);
+
+/* Is the space between them one that will be filled, so that its width is a feature? Not where an end of one touches
+ * the other and they do not meet at less than 60 degrees. u and v as above. */
+bool tri_is_filled(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
+                   struct tri_point v);
 
 /* About so many points it would take to fill the space between two parents that the shortest edge of the triangle
  * bridges; 0 where it bridges none. */
