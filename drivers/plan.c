@@ -1,6 +1,7 @@
 /* RULE. What is sure refuses, what is likely warns: areas ask for so many triangles beyond doubt, angles for about so
- * many. A bound that somebody has set, --memory or a limit of the process, refuses what is likely, too. A mesh that
- * fits stays in memory, which is quicker. */
+ * many. A bound that somebody has set, --memory or a limit of the process, refuses what is likely, too; so does what a
+ * mesh holds where areas decide, since a mesh fails at that after all the work. A mesh that fits stays in memory, which
+ * is quicker. */
 #define _DEFAULT_SOURCE /* access */
 
 #include "drivers/plan.h"
@@ -20,6 +21,10 @@
  * or diametral circles without vertices are asked for as well, of which an estimate knows least. Less than the last is
  * not worth looking for. */
 static const double MARGIN = 1.15, STRICT_MARGIN = 1.5, STEEP_MARGIN = 2.5, CONFORMING_MARGIN = 4, WORTH_A_LOOK = 1e8;
+
+/* Areas decide on a mesh that has hardly more triangles than they ask for beyond doubt: 1.14 times as many, as a rule.
+ * Up to such a share of what a mesh holds it surely fits in one: blocks have room that they do not use. */
+static const double AREAS_DECIDE = 1.3, SURELY_ONE_MESH = 0.8;
 
 /* Measured: bytes at the peak of triangulating, of the process, a point, an attribute of one, a segment, and of a mesh
  * that is rebuilt, a point and a triangle; of text on its way into files, a point and at the most; and the share of all
@@ -135,13 +140,28 @@ const char *plan_obstacle(const struct run *run)
 
 /* --- refusals and warnings */
 
-/* Why all triangles of a mesh must be there at a time. */
-static enum tri_status fail_too_many(const struct needs *n, const char *why, struct tri_error *error)
+static enum tri_status fail_too_many(const struct needs *n, bool sure, const char *why, struct tri_error *error)
 {
     return tri_fail(error, TRI_TOO_LARGE, NULL, 0,
-                    "the area bounds ask for at least %s triangles, and a mesh holds %s%s%s",
-                    tri_count_text(n->triangles).text, tri_count_text(TRI_MAX_TRIANGLES).text,
+                    "the %sbounds ask for %s %s triangles, and a mesh holds %s%s%s", sure ? "area " : "",
+                    sure ? "at least" : "about", tri_count_text(n->triangles).text,
+                    tri_count_text(TRI_MAX_TRIANGLES).text,
                     *why ? " where it must be in memory as a whole, as for " : "", why);
+}
+
+/* why: all triangles of the mesh must be there at a time. */
+static enum tri_status check_number(const struct estimate *e, const char *why, const struct console *console,
+                                    struct tri_error *error)
+{
+    const double most = TRI_MAX_TRIANGLES, likely = e->likely.triangles, least = e->least.triangles;
+    if (least > most)
+        return fail_too_many(&e->least, true, why, error);
+    if (likely > most && likely <= AREAS_DECIDE * least)
+        return fail_too_many(&e->likely, false, why, error);
+    if (likely > most)
+        console_warn(console, "the bounds may ask for more triangles than the %s that a mesh holds.\n",
+                     tri_count_text(most).text);
+    return TRI_OK;
 }
 
 /* What would do of --memory, where that is what is short. */
@@ -180,19 +200,12 @@ static enum tri_status check_memory(const struct run *run, const struct estimate
     return TRI_OK;
 }
 
-static void warn_of_triangles(const struct console *console)
-{
-    console_warn(console, "the bounds may ask for more triangles than the %s that a mesh holds.\n",
-                 tri_count_text(TRI_MAX_TRIANGLES).text);
-}
-
 static enum tri_status check_whole(const struct run *run, const struct estimate *e, double left, const char *obstacle,
                                    const struct console *console, struct tri_error *error)
 {
-    if (e->least.triangles > TRI_MAX_TRIANGLES)
-        return fail_too_many(&e->least, obstacle, error);
-    if (e->likely.triangles > TRI_MAX_TRIANGLES)
-        warn_of_triangles(console);
+    enum tri_status status = check_number(e, obstacle, console, error);
+    if (status)
+        return status;
     if (run->plan.filed)
         return check_memory(run, e, e->least.filed, e->likely.filed, left, "", console, error);
     return check_memory(run, e, e->least.whole, e->likely.whole, left, obstacle, console, error);
@@ -203,10 +216,9 @@ static enum tri_status check_stream(const struct run *run, const struct estimate
                                     const struct console *console, struct tri_error *error)
 {
     const char *why = run->hooks->n_ranks > 0 ? "angles above 34 degrees and -S" : "bounds above 31 degrees and -S";
-    if (!e->sweeps && e->least.triangles > TRI_MAX_TRIANGLES)
-        return fail_too_many(&e->least, why, error);
-    if (!e->sweeps && e->likely.triangles > TRI_MAX_TRIANGLES)
-        warn_of_triangles(console);
+    enum tri_status status = e->sweeps ? TRI_OK : check_number(e, why, console, error);
+    if (status)
+        return status;
     return check_memory(run, e, e->least.floor, e->likely.floor, left, "", console, error);
 }
 
@@ -271,7 +283,9 @@ static double margin_of(const struct run *run)
 static bool fits(const struct run *run, const struct estimate *e, double left)
 {
     const double margin = e->sweeps || estimate_can_park(run, e->likely.held) ? margin_of(run) : 1;
-    return fmax(e->likely.triangles, e->least.triangles) <= TRI_MAX_TRIANGLES && margin * e->likely.whole <= left;
+    const double share = e->sweeps ? SURELY_ONE_MESH : 1;
+    return fmax(e->likely.triangles, e->least.triangles) <= share * TRI_MAX_TRIANGLES &&
+           margin * e->likely.whole <= left;
 }
 
 static void say_parking(const struct console *console, const struct run *run, double bytes)

@@ -144,6 +144,11 @@ if [ -x "$bin/ptriangle" ]; then
     matches '^  Triangles: [0-9.]+ [mb]illion$'
     complains 'triangles, and a mesh holds 537 million where it must be in memory as a whole, as for -n .neighbours.$'
     wrote
+    # 0.95 of it beyond doubt, likely 1.09
+    fresh square.poly
+    mesher 1 ptriangle -pna0.0000000026 square.poly --dry-run
+    complains '^ptriangle: the bounds ask for about 5[789][0-9] million triangles, and a mesh holds 537 million where it must '
+    wrote
 
     # --- a bound on memory
     fresh square.poly
