@@ -322,13 +322,19 @@ static bool may_lie_in_files(const struct run *run, const struct estimate *e)
            estimate_can_park(run, e->likely.whole);
 }
 
+/* Buffers of what is written while it is made may be more than a small mesh. */
+static bool takes_less_whole(const struct run *run, const struct estimate *e, double left)
+{
+    return may_lie_in_files(run, e) && e->likely.floor > left && e->likely.filed <= left;
+}
+
 enum tri_status plan_make(struct run_plan *plan, const struct run *run, const struct estimate *e,
                           const struct console *console, struct tri_error *error)
 {
     bool look = fmax(e->likely.whole, e->least.whole) > WORTH_A_LOOK || is_strict(run);
     double left = look ? plan_memory_left(run) : HUGE_VAL;
     const char *obstacle = plan_obstacle(run);
-    bool stream = run->hooks->always_sweep || !fits(run, e, left);
+    bool stream = run->hooks->always_sweep || (!fits(run, e, left) && !takes_less_whole(run, e, left));
     *plan = (struct run_plan){.swept = stream && !obstacle, .memory = resources_memory_used() + left,
                               .triangles = e->likely.triangles};
     plan->filed = !plan->swept && may_lie_in_files(run, e);

@@ -69,6 +69,13 @@ full && least=3 || least=1
 check "some runs are kept within ($kept), others refused ($refused)" \
     test $kept -ge $((2 * least)) -a $refused -ge $least
 
+# --- a small mesh takes less than the buffers of a sweep
+cp "$data/coast/borders.poly" .
+what="ptriangle --memory as the dry run says"
+"$bin/ptriangle" -Qpq20 borders --output b.h5 --dry-run >.out
+enough=$(sed -n 's/^  Memory: \([0-9]*\)[.0-9]* MB .*/\1/p' .out)
+program 0 -Qpq20 borders --output b.h5 --memory "$((enough + 2))000000"
+
 # --- a limit of the process binds as the option does: refused before the work where it cannot do
 if (ulimit -v 300000 && "$bin/ptriangle" -h) >/dev/null 2>&1; then
     what="ulimit -v, much to do"
