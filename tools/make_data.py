@@ -983,6 +983,8 @@ FOUND = [
          "-cq34: at most 1,000 triangles, 43 at 28 degrees; once 5,356", ()),
     Case("regress/ulp_beside.poly", None, "turned grid, two of its vertices an ulp off the convex hull",
          "-cq34 in cells of 60 triangles: at most 4,000; once 4,958 (torture, seed 13101813)", ()),
+    Case("regress/credit_wedge.poly", None, "two segments that end an ulp apart, in a turned grid of few points",
+         "-cq34: at most 500 triangles, 36 at 28 degrees; once 5,693", ()),
     Case("regress/slits_by_seams.poly", None, "comb of eight teeth with slits 0.01 wide",
          "-cq30 to 34 in cells of 250 triangles: at most 1.2 times one call's; once 1.3 and 1.8 times", ()),
     Case("regress/star_by_seams.poly", None, "star of twelve spikes around a small hub",

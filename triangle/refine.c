@@ -115,7 +115,7 @@ struct tri_refiner {
     bool sized;       /* the triangle in hand asks for a point because of sizes, not of angles */
     bool on_credit;   /* its point, or split, is */
     struct tri_credit credit;
-    double promised_sin2; /* as bounds.sin2, for TRI_PROMISED_ANGLE */
+    double promised_sin2, poor_sin2; /* as bounds.sin2, for TRI_PROMISED_ANGLE and TRI_POOR_ANGLE */
     int64_t above;    /* how many points more may be inserted for angles above TRI_USUAL_ANGLE */
     int64_t back;     /* and, once that was too many, for BACK_ANGLE */
     bool left_above;  /* has a triangle been left in ABOVE_STAGE for what it would cost? */
@@ -792,16 +792,13 @@ static bool gives_credit(const struct tri_refiner *r)
     return r->stage == USUAL_STAGE && r->options->min_angle > TRI_PROMISED_ANGLE;
 }
 
-/* Must the triangle's point be paid for (credit.h), and is it nearly good? */
-static void see_credit(struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape,
-                       bool *nearly_good)
+/* What the triangle's angle may claim of the credit. */
+static enum tri_claim claim_of(const struct tri_refiner *r, const struct tri_shape *shape)
 {
-    const struct tri_mesh *m = r->mesh;
-    const int k = shape->shortest;
-    double longer = tri_longer_product(shape->l[0], shape->l[1], shape->l[2]);
-    *nearly_good = shape->area2 * shape->area2 >= r->promised_sin2 * longer;
-    r->on_credit = gives_credit(r) && (*nearly_good || tri_is_on_credit(m, t->v[tri_next[k]]) ||
-                                       tri_is_on_credit(m, t->v[tri_prev[k]]));
+    double longer = tri_longer_product(shape->l[0], shape->l[1], shape->l[2]), area4 = shape->area2 * shape->area2;
+    return area4 >= r->promised_sin2 * longer ? TRI_CLAIM_NEARLY_GOOD
+           : area4 >= r->poor_sin2 * longer   ? TRI_CLAIM_FAIR
+                                              : TRI_CLAIM_POOR;
 }
 
 /* Does the triangle lie within the fence with a margin to spare? See SEAMS. */
@@ -817,12 +814,15 @@ static bool keeps_margin(const struct tri_refiner *r, const struct tri_triangle 
     return keeps;
 }
 
-/* Is there credit for it? */
+/* Is there credit for it, where it must be paid for (credit.h)? */
 static bool has_credit(struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape)
 {
-    bool nearly_good;
-    see_credit(r, t, shape, &nearly_good);
-    if (!r->on_credit || !nearly_good || tri_has_credit(&r->credit))
+    const struct tri_mesh *m = r->mesh;
+    const int k = shape->shortest;
+    const enum tri_claim claim = claim_of(r, shape);
+    r->on_credit = gives_credit(r) && (claim == TRI_CLAIM_NEARLY_GOOD || tri_is_on_credit(m, t->v[tri_next[k]]) ||
+                                       tri_is_on_credit(m, t->v[tri_prev[k]]));
+    if (!r->on_credit || tri_has_credit(&r->credit, claim))
         return true;
     r->on_credit = false;
     r->report->hit_cap = true;
@@ -1181,6 +1181,7 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
     r->criterion = tri_criterion_for(mesh, options);
     r->credit.granted = INT64_C(6) * TRI_ALLOWANCE;
     r->promised_sin2 = tri_bounds_for(TRI_PROMISED_ANGLE, options->conforming).sin2;
+    r->poor_sin2 = tri_bounds_for(TRI_POOR_ANGLE, options->conforming).sin2;
     r->report = report;
     r->none_splits = may_none_split(mesh, options);
     begin_stages(r);
