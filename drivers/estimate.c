@@ -112,7 +112,7 @@ static double bytes_of_check(const struct run *run, double grown)
     if (!run->arguments->switches.check)
         return 0;
     if (run->hooks->limits.memory > 0)
-        return grown + 2 * self_check_least_bytes(&run->mesh);
+        return grown + self_check_least_bytes(&run->mesh);
     return SELF_CHECK_BYTES * (grown + run->mesh.n_triangles) + SELF_CHECK_SUB_BYTES * (double)run->mesh.n_subs;
 }
 

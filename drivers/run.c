@@ -476,7 +476,7 @@ static enum tri_status check(struct runner *r)
     const double OF_FILES = 0.75;
     const struct run *run = &r->run;
     const struct run_limits *limits = &run->hooks->limits;
-    enum tri_status status = make_room(r, 2 * self_check_least_bytes(&run->mesh));
+    enum tri_status status = make_room(r, self_check_least_bytes(&run->mesh));
     const double left = run->mesh.storage ? OF_FILES * plan_memory_left(run) : plan_memory_left(run);
     const struct self_check_room room = {limits->memory > 0 ? left : 0, limits->scratch};
     return status ? status : self_check(&r->console, &run->arguments->switches, &run->mesh, run->base, &room, r->error);

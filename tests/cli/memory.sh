@@ -132,6 +132,19 @@ check "with much memory runs are kept within ($kept), with little refused ($refu
 program 1 p --output out --memory 1M
 complains '^ptriangle: the input has [0-9.]+ [kM]?B of text, which is read into memory; 0 B are left$'
 
+# --- the self check keeps to what the mesh leaves, though all subsegments bound the mesh
+awk 'BEGIN { n = 30000; print n + 2, 2, 0, 0; for (i = 0; i < n; i++) print i + 1, i, 2 + i % 2
+    print n + 1, n - 1, 0; print n + 2, 0, 0; print n + 2, 0
+    for (i = 1; i <= n + 2; i++) print i, i, i % (n + 2) + 1; print 0 }' >z.poly
+for budget in 24 28; do
+    what="ptriangle -pqC, --memory ${budget}000000"
+    "$python" "$data/../tests/cli/peak.py" "$budget"000000 "$bin/ptriangle" -Qpq20C z --output z1 \
+        --memory "$budget"000000 --threads 2 >.out 2>.err
+    found=$?
+    check "within the bound, or refused: exit code $found" test $found -le 1
+    [ $found -eq 0 ] || complains '--memory [0-9]+M would do$'
+done
+
 # --- the judge: what stays in memory beside the parts of a mesh fits, or the trial is refused before
 program 0 -Qp g.poly --output g1
 what="trianglecheck of many subsegments"
