@@ -55,8 +55,9 @@
  * sees a and that place at no more than 90 degrees, and all parts beyond have a level without fault before them. So one
  * level mends what would take length * d / h^2 parts without it. By the LEMMA the chance that a radius has places that
  * fit is about 8 h^2 / (ulp * length); so many radii are tried that there should be one, or none. Where neither is of
- * the input, or a third parent must take the level over, nothing is renewed: a bundle has new levels that do not fit
- * wherever a parent in it takes one over, and each renewal would beget others.
+ * the input but amid a parent (so that it is the place of a level, in a mesh that is read, too), or a third parent must
+ * take the level over, nothing is renewed: a bundle has new levels that do not fit wherever a parent in it takes one
+ * over, and each renewal would beget others.
  *
  * What stays: where v is nearer to e than the shortest edge, so that it lies on e as far as coordinates tell, or level
  * with an end of e up to rounding, and h too small to mend that. And where rounding leaves no room for the split point
@@ -141,14 +142,17 @@ static double farthest_renewal(const struct tri_mesh *mesh, const struct tri_sub
 
 static double nearest_renewal(const struct sight *v, double shortest) { return fmax(2 * v->h, 4 * shortest); }
 
-/* Vertex v is level with an end of s but for rounding, which leaves it in the circle, and one of them is of the input.
- * May a new level mend that? */
+/* Is it of the input, and not amid a parent? In a mesh that is read all are of the input. */
+static bool is_fixed(const struct tri_mesh *mesh, tri_vertex_id v) { return v < mesh->n_input && mesh->on[v] < 0; }
+
+/* Vertex v is level with an end of s but for rounding, which leaves it in the circle, and one of them is fixed. May a
+ * new level mend that? */
 static bool may_renew(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v,
                       const struct sight *sight, struct tri_disk_split *split)
 {
     double most = farthest_renewal(mesh, s, sight), ulp = tri_resolution(mesh->xy[s->v[sight->from_end]]);
-    bool is_input = v < mesh->n_input || s->v[sight->from_end] < mesh->n_input;
-    if (!is_input || !(most >= nearest_renewal(sight, sqrt(mesh->limits.shortest2))))
+    if ((!is_fixed(mesh, v) && !is_fixed(mesh, s->v[sight->from_end])) ||
+        !(most >= nearest_renewal(sight, sqrt(mesh->limits.shortest2))))
         return false;
     split->fraction = sight->from_end ? 1 - most / sight->l : most / sight->l;
     split->level = v;

@@ -223,10 +223,22 @@ static void judge_angles(const struct outcome *o, const struct bounds *b, const 
                     (long long)count[TRI_EXCUSE_PRECISION]);
 }
 
+/* Is another subsegment as near to the place as rounding? Then the place may come to lie beyond it. */
+static bool is_place_crowded(const struct tri_mesh *mesh, int32_t s, struct tri_point place, double ulp)
+{
+    for (int32_t i = 0; i < mesh->n_subs; i++) {
+        struct tri_point a = mesh->xy[mesh->sub[i].v[0]], b = mesh->xy[mesh->sub[i].v[1]];
+        if (i != s && tri_dot(a, b, place) < 0 && tri_line_distance(a, b, place) < 2 * ulp)
+            return true;
+    }
+    return false;
+}
+
 /* Is the apex on this side in the circle of the subsegment, although coordinates resolve parts whose circles it is not
  * in? */
-static bool is_resolvable(const struct tri_mesh *mesh, const struct tri_subsegment *s, int side, double largest)
+static bool is_resolvable(const struct tri_mesh *mesh, int32_t i, int side, double largest)
 {
+    const struct tri_subsegment *s = &mesh->sub[i];
     if (s->side[side] == TRI_NONE || !tri_is_in_diametral_disk(mesh, s, s->side[side]))
         return false;
     struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]];
@@ -234,8 +246,11 @@ static bool is_resolvable(const struct tri_mesh *mesh, const struct tri_subsegme
     double x = b.x - a.x, y = b.y - a.y, length = sqrt(x * x + y * y), ulp = 0x1p-52 * largest;
     double height = fabs(x * (v.y - a.y) - y * (v.x - a.x)) / length;
     double foot = (x * (v.x - a.x) + y * (v.y - a.y)) / length, off = fmin(foot, length - foot);
-    return height >= SHORTEST * ulp && length > 2 * SHORTEST * ulp && !is_beside_flat(mesh, s, RESOLUTION * largest) &&
-           (off >= SHORTEST * ulp || fmax(off, ulp) * length <= MOST_PARTS * height * height);
+    struct tri_point place = {a.x + foot / length * x, a.y + foot / length * y};
+    if (height < SHORTEST * ulp || length <= 2 * SHORTEST * ulp || is_beside_flat(mesh, s, RESOLUTION * largest))
+        return false;
+    return off >= SHORTEST * ulp ? !is_place_crowded(mesh, i, place, ulp)
+                                 : (off + 2 * ulp) * length <= MOST_PARTS * height * height;
 }
 
 /* What is not conforming must be counted, one by one, and lie at the resolution of coordinates. The checker has found
@@ -249,8 +264,7 @@ void judge_conforming(const struct outcome *o, int kind, int64_t faults, struct 
     for (int k = 0; k < TRI_EXCUSES; k++)
         sum += count[k];
     for (int32_t s = 0; s < o->mesh.n_subs; s++)
-        resolvable += is_resolvable(&o->mesh, &o->mesh.sub[s], 0, largest) ||
-                      is_resolvable(&o->mesh, &o->mesh.sub[s], 1, largest);
+        resolvable += is_resolvable(&o->mesh, s, 0, largest) || is_resolvable(&o->mesh, s, 1, largest);
     if (sum == 0 || (kind == TRI_CHECK_ENCROACHMENT && sum != faults))
         judge_fault(verdict, "conforming uncounted", "%lld faults, %lld counted", (long long)faults, (long long)sum);
     if (resolvable > 0)
