@@ -989,6 +989,8 @@ FOUND = [
          "-cq30 to 34 in cells of 250 triangles: at most 1.2 times one call's; once 1.3 and 1.8 times", ()),
     Case("regress/star_by_seams.poly", None, "star of twelve spikes around a small hub",
          "-cq30 to 33 with -D in cells of 60 triangles: at most 1.2 times one call's; once 2.1 to 2.8 times", ()),
+    Case("regress/credit_star.poly", None, "star of 14 spikes that meet in a hub",
+         "-q33: no fewer triangles than with -q28; once 5,400 for 8,706, and 2,228 of them bad", ()),
     Case("regress/walls_stay.poly", None, "two parabolas that nearly touch in a box",
          "-q30Y: at most 60 triangles below the bound, which have sides of the box; once a third of the mesh", ()),
     Case("regress/layered_world.poly", None, "layers of ground around a round body",

@@ -9,31 +9,35 @@
  *
  * RULE. Each point that is not on credit grants TRI_CREDIT points, each on credit takes one, whatever it is for; and
  * each call grants TRI_ALLOWANCE more, which is what a small figure whose features differ by twelve orders of magnitude
- * takes for 34 degrees. Triangles that are no smaller than TRI_PROMISED_ANGLE are refined while no more is taken than
- * granted. Smaller ones that must be on credit come of such points: they are refined until 4/3 of it are taken, those
- * smaller than TRI_POOR_ANGLE until 3/2 are. Smaller ones that need not be on credit are always refined.
+ * takes for 34 degrees; within a fence TRI_BLOCK_ALLOWANCE, as there are many such calls. Triangles that are no smaller
+ * than TRI_PROMISED_ANGLE are refined while no more is taken than granted. Smaller ones that must be on credit come of
+ * such points: they are refined until three times that is taken, those smaller than TRI_POOR_ANGLE until four times is.
+ * Smaller ones that need not be on credit are always refined.
  *
- * THEOREM. A call inserts for angles no more points on credit than 3/2 of: TRI_ALLOWANCE, and TRI_CREDIT for each
+ * THEOREM. A call inserts for angles no more points on credit than four times: its allowance, and TRI_CREDIT for each
  * point that it inserts otherwise, and for each vertex that it finds and that is not on credit; those count as often as
  * a sixth of the triangles in its worklist that have them for a corner, which is once on average, and within a fence
  * once, and once more where the call has inserted it. Proof: it counts them. So without -D one call makes no more than
- * 3 TRI_ALLOWANCE + (2 + 3 TRI_CREDIT) n triangles of a figure, n being the vertices that are not on credit.
+ * 8 TRI_ALLOWANCE + (2 + 8 TRI_CREDIT) n triangles of a figure, n being the vertices that are not on credit.
  *
  * CLAIMS. What comes of points on credit in smaller triangles need not be in proportion to them: where one of them
  * splits a subsegment, features may lie beside it that are ever finer towards a place, and to grade that takes 60
  * points for each factor of two at 34 degrees. (A turned grid of 19 points with segments that end an ulp apart, when
  * such gaps were features yet: 448 points for triangles of 28 degrees and more, 2,408 for smaller ones.) Elsewhere the
- * claims were never reached, on 197 figures at 30 to 34 degrees; those random ones of 7,900 whose meshes were more than
- * three times those at 28 took up to 1.2 of what is granted. The last sixth is for TRI_POOR_ANGLE: with the same claim
- * for all angles 23 of 3,737 triangles of that grid stayed below it, with these 5 of 3,459, as without any.
+ * claims were never reached, on 197 figures at 30 to 34 degrees; random ones whose meshes were more than three times
+ * those at 28 took up to 1.2 of what is granted. But points on credit may also stand where others would be needed for
+ * 28 degrees, and must be followed by as many: a star of 14 spikes that meet in a hub has 9,437 triangles at 33
+ * degrees, 1,498 of them bad, if nothing is claimed, 9,174 and 1,553 with these claims, and 5,400 and 2,228 with half
+ * of them. The last quarter is for TRI_POOR_ANGLE: with one claim for all angles more of that grid stayed below it.
  *
  * SCHEDULES. Those on credit grant nothing, so it does not matter that they grow in number from phase to phase; and a
- * vertex lies in one block of each phase. So a schedule of b blocks in p phases inserts no more of them than 3/2 of:
- * b times TRI_ALLOWANCE, and p + 1 times TRI_CREDIT for each vertex that is not on credit. That is in proportion to the
- * mesh that theory promises where blocks are as large as was estimated: up to four cells of 8,192 triangles and more,
- * against 1,000 points. Measured at 34 degrees, 105 figures: blocks without an allowance make 0.07% fewer triangles, in
- * cells of 1,000, 250 and 60 triangles 0.3, 0.7 and 1%, and leave more of these below the bound. What seams would add
- * is kept low by refine.c (SEAMS).
+ * vertex lies in one block of each phase. So a schedule of b blocks in p phases inserts no more of them than four
+ * times: b times TRI_BLOCK_ALLOWANCE, and p + 1 times TRI_CREDIT for each vertex that is not on credit. That is in
+ * proportion to the mesh that theory promises where blocks are as large as was estimated: up to four cells of 8,192
+ * triangles and more, against 200 points. Measured at 34 degrees with and without -D, 150 figures: with an allowance of
+ * 1,000 in blocks no mesh differs; in cells of 250 triangles 7 do, with 0.4% more triangles in all and 2% fewer below
+ * the bound; but circles that share arcs up to rounding, in cells of 100 triangles, took 30,220 instead of 9,714 (372
+ * at 28 degrees). What seams would add is kept low by refine.c (SEAMS).
  */
 #ifndef TRIANGLE_CREDIT_H
 #define TRIANGLE_CREDIT_H
@@ -48,10 +52,10 @@
 /* And up to here for any input without small angles (Ruppert 1995). */
 #define TRI_POOR_ANGLE 20.7
 
-enum { TRI_CREDIT = 9, TRI_ALLOWANCE = 1000 };
+enum { TRI_CREDIT = 9, TRI_ALLOWANCE = 1000, TRI_BLOCK_ALLOWANCE = 200 };
 
 /* So many sixths of what is granted may be taken before a triangle is left: by its angle. */
-enum tri_claim { TRI_CLAIM_NEARLY_GOOD = 6, TRI_CLAIM_FAIR = 8, TRI_CLAIM_POOR = 9 };
+enum tri_claim { TRI_CLAIM_NEARLY_GOOD = 6, TRI_CLAIM_FAIR = 18, TRI_CLAIM_POOR = 24 };
 
 struct tri_credit {
     int64_t granted, paid;    /* in sixths of a point */

@@ -1179,7 +1179,7 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
     r->mesh = mesh;
     r->options = options;
     r->criterion = tri_criterion_for(mesh, options);
-    r->credit.granted = INT64_C(6) * TRI_ALLOWANCE;
+    r->credit.granted = INT64_C(6) * (options->fence ? TRI_BLOCK_ALLOWANCE : TRI_ALLOWANCE);
     r->promised_sin2 = tri_bounds_for(TRI_PROMISED_ANGLE, options->conforming).sin2;
     r->poor_sin2 = tri_bounds_for(TRI_POOR_ANGLE, options->conforming).sin2;
     r->report = report;

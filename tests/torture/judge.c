@@ -256,10 +256,10 @@ static void judge_schedule_size(const struct outcome *first, const struct tri_ps
 }
 
 /* Above the usual angle at most so many times the triangles at that, which is proved (refine.c) but where sizes or -D
- * ask for more because of it: there 3.9 times is the most that was seen. Up to it, at most so many times those at
- * the angle that theory promises, and some: points on credit are 3/2 of TRI_ALLOWANCE, and of TRI_CREDIT for each of
- * the others, at most in each call (credit.h); the others are hardly more than the vertices at that angle, and a call's
- * part of the schedule. */
+ * ask for more because of it: there 3.9 times is the most that was seen. Up to it, at most so many times those at the
+ * angle that theory promises, and some: points on credit are hardly more than TRI_ALLOWANCE, and TRI_CREDIT for each
+ * of the others, at most four times that in each call (credit.h); the others are hardly more than the vertices at that
+ * angle, and a call's part of the schedule. */
 static void judge_amount(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
     const struct tri_refine_options *asked = &first->options.quality;
