@@ -21,9 +21,9 @@ enum tri_status plan_check_files(const struct run *run, const struct file_names 
  * or where a bound that was asked for (--memory) would hardly be kept; else at most a warning. */
 enum tri_status plan_check_input(const struct run *run, const struct console *console, struct tri_error *error);
 
-/* Decides, and says a line where the mesh is swept. The run is to be refused, with what it needs and what there is,
- * where memory or disk cannot do beyond doubt: TRI_TOO_LARGE, TRI_NO_MEMORY, TRI_CANNOT_WRITE; where they hardly can,
- * there is a warning. */
+/* Decides, and says a line where the mesh is swept, or lies in files. The run is to be refused, with what it needs and
+ * what there is, where memory or disk cannot do beyond doubt: TRI_TOO_LARGE, TRI_NO_MEMORY, TRI_CANNOT_WRITE; where
+ * they hardly can, there is a warning. */
 enum tri_status plan_make(struct run_plan *plan, const struct run *run, const struct estimate *estimate,
                           const struct console *console, struct tri_error *error);
 

@@ -52,6 +52,7 @@ struct program {
     struct joint_files joint;  /* on several ranks */
     int32_t n_before;          /* vertices there were before refinement */
     bool refined;              /* the schedule has run: its report is filled */
+    bool quiet;                /* errors and warnings alone are said */
     struct par_report schedule;
     struct launch launch;
     struct rank_report ranks;
@@ -251,9 +252,9 @@ static enum tri_status help_others(struct program *p, struct run *run, struct tr
 }
 
 /* What did not fit in memory, or could not be swept. */
-static void tell_of_parking(const struct program *p, bool quiet)
+static void tell_of_parking(const struct program *p)
 {
-    const struct console console = {.program = PROGRAM, .quiet = quiet};
+    const struct console console = {.program = PROGRAM, .quiet = p->quiet};
     if (p->schedule.parked > 0)
         console_say(&console, "%s parked in %s: %s.\n",
                     p->schedule.way == PAR_SWEPT ? "What did not fit in memory was" : "The mesh was not swept, and was",
@@ -277,7 +278,7 @@ static enum tri_status sweep(struct program *p, struct run *run, struct tri_outp
         status = refine_into(p, run, &streams, mesh, quality, error);
     streams_close(&p->streams);
     tri_mesh_free(mesh); /* what is left of it is no mesh */
-    tell_of_parking(p, run->arguments->switches.quiet);
+    tell_of_parking(p);
     if (!status)
         count_streamed(&run->counts, &before, unused, p);
     run->remain_known = !status && p->schedule.remain_known;
@@ -311,7 +312,7 @@ static enum tri_status refine(void *user, struct run *run, struct tri_output_set
         struct par_options options = options_of(p, run);
         options.park = run->plan.filed ? &p->park : NULL;
         status = refine_with(p, run, &options, mesh, quality, error);
-        tell_of_parking(p, run->arguments->switches.quiet);
+        tell_of_parking(p);
         if (!status)
             progress_stage(&p->progress, "writing");
     }
@@ -321,8 +322,16 @@ static enum tri_status refine(void *user, struct run *run, struct tri_output_set
 
 static enum tri_status make_room(void *user, struct tri_mesh *mesh, double bytes, struct tri_error *error)
 {
-    const struct program *p = user;
-    return par_park_expect(p->park, mesh, (size_t)bytes, error);
+    struct program *p = user;
+    const enum tri_status status = par_park_expect(p->park, mesh, (size_t)bytes, error);
+    if (!p->park)
+        return status;
+    p->schedule.parked = par_park_bytes(p->park);
+    if (p->schedule.parked > 0 && p->schedule.way == PAR_IN_MEMORY) {
+        p->schedule.way = PAR_PARKED;
+        tell_of_parking(p);
+    }
+    return status;
 }
 
 static double estimate(void *user, const struct tri_mesh *mesh, const struct tri_refine_options *quality)
@@ -497,7 +506,7 @@ static enum tri_status name_streams(struct program *p, struct run_hooks *hooks, 
     return TRI_OK;
 }
 
-/* What of the long options asks for the whole mesh in memory. */
+/* What of the long options asks for the whole mesh at a time. */
 static const char *whole_mesh(const struct long_options *o)
 {
     return o->blocks ? "--blocks" : o->by_block ? "--numbering blocks" : o->write_partial ? "--write-partial" : NULL;
@@ -532,7 +541,8 @@ static struct run_hooks hooks_of(struct program *p)
 static int run_program(struct program *p, const struct arguments *arguments, struct tri_error *error)
 {
     p->threads = par_threads(long_options_threads(&p->options), true);
-    p->progress = progress_start(PROGRAM, p->options.progress, arguments->switches.quiet);
+    p->quiet = arguments->switches.quiet;
+    p->progress = progress_start(PROGRAM, p->options.progress, p->quiet);
     const struct tri_executor executor = par_executor(&p->threads);
     p->scratch = scratch_of(&p->options, arguments);
     struct run_hooks hooks = hooks_of(p);

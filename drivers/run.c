@@ -452,6 +452,14 @@ static enum tri_status make_room(struct runner *r, double bytes)
     return hooks->make_room ? hooks->make_room(hooks->user, &r->run.mesh, bytes, r->error) : TRI_OK;
 }
 
+/* Lists beside the mesh (topology.h): 4 bytes an edge, of which there are 3 for 2 triangles, and 12 a triangle for the
+ * nodes amid them; 8 a vertex where those without triangles are left out. */
+static double list_bytes(const struct tri_switches *s, const struct tri_mesh *mesh)
+{
+    const bool edges = s->edges || s->voronoi || s->off;
+    return ((s->second_order ? 18 : edges ? 6 : 0) + (s->jettison ? 4 : 0)) * (double)mesh->n_triangles;
+}
+
 static enum tri_status write_mesh(struct runner *r, const struct mesh_files *files)
 {
     struct run *run = &r->run;
@@ -460,7 +468,7 @@ static enum tri_status write_mesh(struct runner *r, const struct mesh_files *fil
     console_say(&r->console, "\n");
     r->mark = tri_seconds();
     const double waiting = fmin(MESH_FILES_BYTES, MESH_FILES_ROW_BYTES * (double)run->mesh.n_triangles);
-    enum tri_status status = make_room(r, waiting);
+    enum tri_status status = make_room(r, waiting + list_bytes(&run->arguments->switches, &run->mesh));
     status = status ? status : mesh_files_write(files, &outputs, r->error);
     end_stage(r, RUN_WRITE);
     if (status)
@@ -478,7 +486,7 @@ static enum tri_status check(struct runner *r)
     const struct run_limits *limits = &run->hooks->limits;
     enum tri_status status = make_room(r, self_check_least_bytes(&run->mesh));
     const double left = run->mesh.storage ? OF_FILES * plan_memory_left(run) : plan_memory_left(run);
-    const struct self_check_room room = {limits->memory > 0 ? left : 0, limits->scratch};
+    const struct self_check_room room = {limits->memory > 0 ? fmax(left, 1) : 0, limits->scratch};
     return status ? status : self_check(&r->console, &run->arguments->switches, &run->mesh, run->base, &room, r->error);
 }
 

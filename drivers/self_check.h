@@ -10,11 +10,11 @@
 enum { SELF_CHECK_BYTES = 72, SELF_CHECK_SUB_BYTES = 400 };
 
 struct self_check_room {
-    double memory;       /* bytes that it may use, at least self_check_least_bytes; 0: no bound */
+    double memory;       /* bytes that it may use; where that is less, self_check_least_bytes; 0: no bound */
     const char *scratch; /* folder for what does not fit; NULL: /tmp */
 };
 
-/* What it takes whatever its bound. */
+/* What it takes whatever its bound, in parts that are not too small. */
 double self_check_least_bytes(const struct tri_mesh *mesh);
 
 /* Checks the mesh with triangle/check/check.h, which reads it part by part, and says two lines, or one per kind of

@@ -49,8 +49,9 @@ struct par_options {
     const char *scratch;     /* directory for these files; NULL: with a sink, the bound decides on the sweep alone, and
                                 a mesh that cannot be swept is TRI_TOO_LARGE */
     struct par_park **park;  /* without a sink: receives the files in `scratch` that the mesh, which stays a mesh, lies
-                                in from where it does not fit in `memory`; to be closed once nobody needs it. NULL is
-                                received where there is no bound. NULL: a mesh that does not fit is TRI_NO_MEMORY */
+                                in from where it does not fit in `memory`; to be closed once nobody needs it, after
+                                the mesh is freed, which holds on to it. NULL is received where there is no bound.
+                                NULL: a mesh that does not fit is TRI_NO_MEMORY */
     struct par_checkpoint *checkpoint; /* where the state of the run is kept, and taken from (sched/sweep/state.h);
                                           NULL: nowhere */
     bool count_remaining;    /* of a mesh that is handed out those triangles that stay below the bounds, by reason */

@@ -17,18 +17,19 @@
  * THEOREM. A call inserts for angles no more points on credit than four times: its allowance, and TRI_CREDIT for each
  * point that it inserts otherwise, and for each vertex that it finds and that is not on credit; those count as often as
  * a sixth of the triangles in its worklist that have them for a corner, which is once on average, and within a fence
- * once, and once more where the call has inserted it. Proof: it counts them. So without -D one call makes no more than
- * 8 TRI_ALLOWANCE + (2 + 8 TRI_CREDIT) n triangles of a figure, n being the vertices that are not on credit.
+ * once, and once more where the call has inserted it. Proof: it counts them. So up to 34 degrees (TRI_USUAL_ANGLE),
+ * without -D, one call makes no more than 8 TRI_ALLOWANCE + (2 + 8 TRI_CREDIT) n triangles of a figure, n being the
+ * vertices that are not on credit.
  *
  * CLAIMS. What comes of points on credit in smaller triangles need not be in proportion to them: where one of them
  * splits a subsegment, features may lie beside it that are ever finer towards a place, and to grade that takes 60
- * points for each factor of two at 34 degrees. (A turned grid of 19 points with segments that end an ulp apart, when
- * such gaps were features yet: 448 points for triangles of 28 degrees and more, 2,408 for smaller ones.) Elsewhere the
- * claims were never reached, on 197 figures at 30 to 34 degrees; random ones whose meshes were more than three times
- * those at 28 took up to 1.2 of what is granted. But points on credit may also stand where others would be needed for
- * 28 degrees, and must be followed by as many: a star of 14 spikes that meet in a hub has 9,437 triangles at 33
- * degrees, 1,498 of them bad, if nothing is claimed, 9,174 and 1,553 with these claims, and 5,400 and 2,228 with half
- * of them. The last quarter is for TRI_POOR_ANGLE: with one claim for all angles more of that grid stayed below it.
+ * points for each factor of two at 34 degrees. (Two segments that end an ulp apart, in a turned grid, when such gaps
+ * were features yet: 448 points for triangles of 28 degrees and more, 2,408 for smaller ones.) Elsewhere the claims
+ * were never reached, on 197 figures at 30 to 34 degrees; random ones whose meshes were more than three times those at
+ * 28 took up to 1.2 of what is granted. But points on credit may also stand where others would be needed for 28
+ * degrees, and must be followed by as many: a star of 14 spikes that meet in a hub has 9,437 triangles at 33 degrees,
+ * 1,498 of them bad, without limits, 9,174 and 1,553 with these claims, and 5,400 and 2,228 with claims of 4/3 and 3/2.
+ * The last quarter is for TRI_POOR_ANGLE: with one claim for all angles more of them stayed below it.
  *
  * SCHEDULES. Those on credit grant nothing, so it does not matter that they grow in number from phase to phase; and a
  * vertex lies in one block of each phase. So a schedule of b blocks in p phases inserts no more of them than four

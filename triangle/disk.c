@@ -50,14 +50,14 @@
  * ulp / h of itself, h changes by an ulp, and others are offered. So where the place of a new level on e has none
  * beside it on f, the next of MOST_SHIFTS radii, at most SHIFTED from it, is taken that has.
  *
- * RENEWAL. An input vertex cannot be moved: it, v or the end a, may be level with the other but for d < ulp, and
- * h^2 < d * length. Then a level is begun between a and the point h^2 / d from it, with places on e and f that fit: v
- * sees a and that place at no more than 90 degrees, and all parts beyond have a level without fault before them. So one
- * level mends what would take length * d / h^2 parts without it. By the LEMMA the chance that a radius has places that
- * fit is about 8 h^2 / (ulp * length); so many radii are tried that there should be one, or none. Where neither is of
- * the input but amid a parent (so that it is the place of a level, in a mesh that is read, too), or a third parent must
- * take the level over, nothing is renewed: a bundle has new levels that do not fit wherever a parent in it takes one
- * over, and each renewal would beget others.
+ * RENEWAL. An input vertex cannot be moved: it, v or the end a, may be level with the other but for d < ulp, and h^2 <
+ * d * length. Then a level is begun between a and the point h^2 / d from it, with places on e and f that fit: v sees a
+ * and that place at no more than 90 degrees, and all parts beyond have a level without fault before them. So one level
+ * mends what would take length * d / h^2 parts without it. By the LEMMA the chance that a radius has places that fit is
+ * about 8 h^2 / (ulp * length); so many radii are tried that there should be one, or none. Where each of them was
+ * inserted, or lies amid a parent (so that it is the place of a level, in a mesh that is read, too), or a third parent
+ * must take the level over, nothing is renewed: a bundle has new levels that do not fit wherever a parent in it takes
+ * one over, and each renewal would beget others.
  *
  * What stays: where v is nearer to e than the shortest edge, so that it lies on e as far as coordinates tell, or level
  * with an end of e up to rounding, and h too small to mend that. And where rounding leaves no room for the split point

@@ -18,15 +18,15 @@
  * vertices close to it share circumdisks, so that each of n points there, and each triangle given up, may cost n.
  *
  * PROTECTED WALLS. A subsegment that must not be split stays as long as it is. If its lens were closed to points, as
- * those of others are, a long one would keep everything coarse that lies in its sight. RULE: a point before such a
- * wall may see it under any angle, if it is farther from it than CLEARANCE times the shortest edge of the triangle that
- * asks. THEOREM: what is said of distances between points still holds, and of their number. Proof: it lies as far from
- * all vertices as it would elsewhere; half of a disk around it of a fixed share of that edge, or more, lies on its
- * side of all walls, so that the disks of all points still take up area in proportion (feature_size.c). Measured on 160
- * to 183 figures: -Y at 20 and 30 degrees 0.8 and 1.5% more triangles and 3 and 5% fewer bad ones (two parabolas in a
- * box: 33 of 1,028,092 bad, not 62,200 of 761,342); -YY at 30 and 33 degrees 4 and 5% more, and as many bad ones. A
- * clearance of 0 or 1 fills slits where that helps nobody (-YY at 33: 32 and 14% more, more of them bad); 4 gains less
- * for -Y.
+ * those of others are, a long one would keep everything coarse that lies in its sight. RULE: a point in the lens of
+ * such a wall, before it, is inserted if it is farther from it than CLEARANCE times the shortest edge of the triangle
+ * that asks, be it for sizes or for angles; for sizes inside.c has another where it is not. THEOREM: what is said of
+ * distances between points still holds, and of their number. Proof: it lies as far from all vertices as it would
+ * elsewhere; half of a disk around it of a fixed share of that edge, or more, lies on its side of all walls, so that
+ * the disks of all points still take up area in proportion (feature_size.c). Measured on 160 to 183 figures: -Y at 20
+ * and 30 degrees 0.8 and 1.5% more triangles and 3 and 5% fewer bad ones (two parabolas in a box: 33 of 1,028,092 bad,
+ * not 62,200 of 761,342); -YY at 30 and 33 degrees 4 and 5% more, and as many bad ones. A clearance of 0 or 1 fills
+ * slits where that helps nobody (-YY at 33: 32 and 14% more, more of them bad); 4 gains less for -Y.
  *
  * BARRIERS. Where no subsegment may be split (-YY; -Y where none lies inside), most of those are given up for points
  * behind the wall. RULE: a point behind the subsegment that was in the way last is refused without a search. THEOREM:

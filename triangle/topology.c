@@ -2,6 +2,8 @@
 #include "triangle/topology.h"
 
 #include <assert.h>
+#include <errno.h>
+#include <string.h>
 
 #include "triangle/predicates.h"
 
@@ -56,9 +58,10 @@ enum tri_status tri_edge_list_make(struct tri_edge_list *list, const struct tri_
     if (with_numbers)
         list->number = tri_mesh_extra(mesh, 3 * ((size_t)mesh->n_triangles + 1) * sizeof *list->number);
     if (!list->codes || (with_numbers && !list->number)) {
+        const int fault = errno;
         tri_edge_list_free(list);
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the edges of %d triangles",
-                        (int)mesh->n_triangles);
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no room for the edges of %d triangles: %s",
+                        (int)mesh->n_triangles, strerror(fault));
     }
     list_edges(list, mesh);
     return TRI_OK;
@@ -122,8 +125,10 @@ enum tri_status tri_used_make(struct tri_used *used, const struct tri_mesh *mesh
     *used = (struct tri_used){0, tri_mesh_extra(mesh, size * sizeof *used->vertex),
                               tri_mesh_extra(mesh, size * sizeof *used->number), mesh};
     if (!used->vertex || !used->number) {
+        const int fault = errno;
         tri_used_free(used);
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory to number %d vertices", (int)mesh->n_vertices);
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "no room to number %d vertices: %s", (int)mesh->n_vertices,
+                        strerror(fault));
     }
     for (tri_vertex_id v = 0; v < mesh->n_vertices; v++)
         used->number[v] = TRI_NONE;

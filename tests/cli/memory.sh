@@ -38,8 +38,10 @@ for switches in q20a0.000003 q33a0.000004 q20a0.000003S200000; do # swept, parke
     done
 done
 
-# --- what wants the whole mesh gets it, in files as far as it does not fit; what is refused says what would do, and that does.
-for switches in "q20a0.000003 --write-partial" q20a0.000003evn q33a0.000004o2 "q20a0.000003C --output out.h5"; do
+# --- what wants the whole mesh gets it, in files as far as it does not fit; what is refused says what would do, and
+# --- that does
+for switches in "q20a0.000003 --write-partial" q20a0.000003evn q33a0.000004o2 "q20a0.000003C --output out.h5" \
+    q20a0.000002o2jS260000; do
     every 2 || continue
     rm -f out*
     # shellcheck disable=SC2086 # several words

@@ -142,7 +142,7 @@ if [ -x "$bin/ptriangle" ]; then
     matches '^  Vertices: [1-9][0-9]+$'
     mesher 1 ptriangle -pna0.0000001 letter --dry-run
     matches '^  Triangles: [0-9.]+ [mb]illion$'
-    complains 'triangles, and a mesh holds 537 million where it must be in memory as a whole, as for -n .neighbours.$'
+    complains 'triangles, and a mesh holds 537 million where it must be there as a whole, as for -n .neighbours.$'
     wrote
     # 0.95 of it beyond doubt, likely 1.09
     fresh square.poly

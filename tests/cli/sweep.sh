@@ -112,7 +112,7 @@ fresh square.poly
 for words in "-e" "-n" "-v" "-o2" "-j" "--blocks b" "--write-partial"; do
     # shellcheck disable=SC2086
     program 1 -pqa square.poly --max-area 1e-9 --output x $words
-    complains 'where it must be in memory as a whole, as for |less would do but for '
+    complains 'where it must be there as a whole, as for |less would do but for '
     wrote
 done
 program 0 -pqa square.poly --max-area 1e-7 --output x.h5 --memory 500M --checkpoint x --dry-run
