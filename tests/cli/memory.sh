@@ -40,8 +40,7 @@ done
 
 # --- what wants the whole mesh gets it, in files as far as it does not fit; what is refused says what would do, and
 # --- that does
-for switches in "q20a0.000003 --write-partial" q20a0.000003evn q33a0.000004o2 "q20a0.000003C --output out.h5" \
-    q20a0.000002o2jS260000; do
+for switches in "q20a0.000003 --write-partial" q20a0.000003evn q33a0.000004o2 "q20a0.000003C --output out.h5"; do
     every 2 || continue
     rm -f out*
     # shellcheck disable=SC2086 # several words
@@ -67,6 +66,11 @@ for switches in "q20a0.000003 --write-partial" q20a0.000003evn q33a0.000004o2 "q
         check "the same bytes" sh -c "sed '/^# Generated/d' out* | cksum | cmp -s - .whole"
     done
 done
+# What parks only when it is written, for the lists beside it, says so as well.
+what="ptriangle -o2j -S --memory"
+rm -f out*
+program 0 -Qpq20a0.000002o2jS260000 s --output out --threads 2 --memory 55M --report out.json
+check "parked is told" grep -q '"way": "parked"' out.json
 full && least=3 || least=1
 check "some runs are kept within ($kept), others refused ($refused)" \
     test $kept -ge $((2 * least)) -a $refused -ge $least
