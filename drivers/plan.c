@@ -146,7 +146,7 @@ static enum tri_status fail_too_many(const struct needs *n, bool sure, const cha
                     "the %sbounds ask for %s %s triangles, and a mesh holds %s%s%s", sure ? "area " : "",
                     sure ? "at least" : "about", tri_count_text(n->triangles).text,
                     tri_count_text(TRI_MAX_TRIANGLES).text,
-                    *why ? " where it must be there as a whole, as for " : "", why);
+                    why && *why ? " where it must be there as a whole, as for " : "", why ? why : "");
 }
 
 /* why: all triangles of the mesh must be there at a time. */
