@@ -146,7 +146,7 @@ static enum tri_status fail_too_many(const struct needs *n, bool sure, const cha
                     "the %sbounds ask for %s %s triangles, and a mesh holds %s%s%s", sure ? "area " : "",
                     sure ? "at least" : "about", tri_count_text(n->triangles).text,
                     tri_count_text(TRI_MAX_TRIANGLES).text,
-                    why && *why ? " where it must be there as a whole, as for " : "", why ? why : "");
+                    *why ? " where it must be there as a whole, as for " : "", why);
 }
 
 /* why: all triangles of the mesh must be there at a time. */
@@ -181,7 +181,7 @@ static enum tri_status fail_memory(const struct run *run, const struct needs *n,
                     "the %sbounds ask for %s %s triangles, which take %s of memory; %s are left%s%s%s",
                     sure ? "area " : "", sure ? "at least" : "about", tri_count_text(n->triangles).text,
                     tri_size_text(needed).text, tri_size_text(left).text, would_do,
-                    obstacle && *obstacle ? "; less would do but for " : "", obstacle ? obstacle : "");
+                    *obstacle ? "; less would do but for " : "", obstacle);
 }
 
 /* least, likely: bytes of memory. Where what is likely refuses, it does so first: who gives what is then said to be
@@ -339,7 +339,7 @@ enum tri_status plan_make(struct run_plan *plan, const struct run *run, const st
                               .triangles = e->likely.triangles};
     plan->filed = !plan->swept && may_lie_in_files(run, e);
     enum tri_status status = plan->swept ? check_stream(run, e, left, console, error)
-                                         : check_whole(run, e, left, obstacle, console, error);
+                                         : check_whole(run, e, left, obstacle ? obstacle : "", console, error);
     if (!status && (plan->swept || (plan->filed && (stream || e->likely.whole > left))))
         status = check_scratch(run->hooks->limits.scratch, error);
     status = status ? status : check_disk(run, e, left, console, error);

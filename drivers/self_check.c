@@ -55,13 +55,13 @@ static struct tri_check_source source_of(const struct tri_mesh *mesh)
 /* Measured on coasts, against what the judge reckons with: there each subsegment is an edge of the boundary, too. */
 static const double ON_COASTS = 3;
 
-/* The share of its bound that the judge works with (check.c), and bytes for parts that are worth it. */
-static const double JUDGES_SHARE = 0.75, PARTS = 4e6;
+/* Bytes for parts that are worth it. */
+static const double PARTS = 4e6;
 
 /* What the judge must be told at least. */
 static double judges_least(const struct tri_check_source *source)
 {
-    return tri_check_least_bytes(source, NULL) / JUDGES_SHARE + PARTS;
+    return tri_check_least_bytes(source, NULL) / TRI_CHECK_SHARE + PARTS;
 }
 
 /* What it takes that it does not know of. */

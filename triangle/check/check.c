@@ -372,7 +372,7 @@ static enum tri_status choose_part(struct checker *c)
     double vertices = 1, most = INT32_MAX / 3 - 1;
     enum tri_status status = source->memory > 0 ? tri_check_sample(c, &vertices) : TRI_OK;
     if (source->memory > 0) {
-        double rest = source->memory * 0.75 - tri_check_least_bytes(source, c->input);
+        double rest = source->memory * TRI_CHECK_SHARE - tri_check_least_bytes(source, c->input);
         most = fmax(LEAST, fmin(most, rest / bytes_of_triangle(source, vertices)));
     }
     bool all = (double)c->n_triangles <= most;

@@ -119,6 +119,9 @@ struct tri_check_source {
 /* Bytes that a trial takes whatever its bound: a byte for each vertex, subsegments, and the input (NULL: none). */
 double tri_check_least_bytes(const struct tri_check_source *source, const struct tri_pslg *input);
 
+/* The share of its bound that it reckons with. */
+#define TRI_CHECK_SHARE 0.75
+
 enum tri_check_delaunay { TRI_CHECK_CONSTRAINED, TRI_CHECK_CONFORMING, TRI_CHECK_NOT_DELAUNAY };
 
 /* Where the mesh may end, beside along segments of the input. */
