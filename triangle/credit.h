@@ -35,10 +35,10 @@
  * vertex lies in one block of each phase. So a schedule of b blocks in p phases inserts no more of them than four
  * times: b times TRI_BLOCK_ALLOWANCE, and p + 1 times TRI_CREDIT for each vertex that is not on credit. That is in
  * proportion to the mesh that theory promises where blocks are as large as was estimated: up to four cells of 8,192
- * triangles and more, against 200 points. Measured at 34 degrees with and without -D, 150 figures: with an allowance of
- * 1,000 in blocks no mesh differs; in cells of 250 triangles 7 do, with 0.4% more triangles in all and 2% fewer below
- * the bound; but circles that share arcs up to rounding, in cells of 100 triangles, took 30,220 instead of 9,714 (372
- * at 28 degrees). What seams would add is kept low by refine.c (SEAMS).
+ * triangles and more, against 200 points. Measured at 34 degrees with and without -D, 192 figures: with an allowance of
+ * 1,000 in blocks no mesh differs; in cells of 250 triangles 15 of 382 do, with 0.7% more triangles in all and 2% fewer
+ * below the bound; but circles that share arcs up to rounding, in cells of 100 triangles, take 25,071 instead of 9,865
+ * (374 at 28 degrees). What seams would add is kept low by refine.c (SEAMS).
  */
 #ifndef TRIANGLE_CREDIT_H
 #define TRIANGLE_CREDIT_H
