@@ -14,6 +14,7 @@
 
 /* Bytes of memory for each byte of text: the text itself, arrays, and the judge's own. */
 #define TEXT_SHARE 4.0
+#define BOUNDARY_SHARE 10.0 /* of a .poly file, all of whose subsegments may bound the mesh */
 
 /* Cuts one of the suffixes off. */
 bool judged_cut_suffix(char *path, const char *suffix)
@@ -189,14 +190,15 @@ static void leave_out_nodes(struct judged_files *f)
 
 bool judged_fits(const char *base, double memory)
 {
-    static const char *const suffixes[] = {".node", ".ele", ".poly", ".neigh"};
+    enum { NODE, ELE, POLY, NEIGH, N_SUFFIXES };
+    static const char *const suffixes[N_SUFFIXES] = {".node", ".ele", ".poly", ".neigh"};
     double bytes = 0;
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < N_SUFFIXES; i++) {
         char *path = tri_joined(base, suffixes[i]);
-        bytes += size_of(path);
+        bytes += (i == POLY ? BOUNDARY_SHARE : TEXT_SHARE) * size_of(path);
         free(path);
     }
-    return bytes * TEXT_SHARE <= memory;
+    return bytes <= memory;
 }
 
 /* Into memory, if they and the judge fit. */

@@ -52,28 +52,19 @@ static struct tri_check_source source_of(const struct tri_mesh *mesh)
                                      .read = read_mesh, .user = (void *)mesh};
 }
 
-/* Measured on coasts, against what the judge reckons with: there each subsegment is an edge of the boundary, too. */
-static const double ON_COASTS = 3;
-
 /* Bytes for parts that are worth it. */
 static const double PARTS = 4e6;
 
 /* What the judge must be told at least. */
-static double judges_least(const struct tri_check_source *source)
+static double least_bytes(const struct tri_check_source *source)
 {
     return tri_check_least_bytes(source, NULL) / TRI_CHECK_SHARE + PARTS;
-}
-
-/* What it takes that it does not know of. */
-static double unknown(const struct tri_check_source *source)
-{
-    return (ON_COASTS - 1) * tri_check_least_bytes(source, NULL);
 }
 
 double self_check_least_bytes(const struct tri_mesh *mesh)
 {
     const struct tri_check_source source = source_of(mesh);
-    return judges_least(&source) + unknown(&source);
+    return least_bytes(&source);
 }
 
 static void tell(const struct console *console, const struct tri_check_report *report, bool conforming)
@@ -103,7 +94,7 @@ enum tri_status self_check(const struct console *console, const struct tri_switc
     struct tri_check_options options = {.max_bad = INT64_MAX, .ignore_lost = true, .base = base};
     options.delaunay = switches->conforming ? TRI_CHECK_CONFORMING : TRI_CHECK_CONSTRAINED;
     struct tri_check_source source = source_of(mesh);
-    source.memory = room->memory > 0 ? fmax(room->memory - unknown(&source), judges_least(&source)) : 0;
+    source.memory = room->memory > 0 ? fmax(room->memory, least_bytes(&source)) : 0;
     source.scratch = room->scratch;
     console_say(console, "Checking the mesh.\n");
     enum tri_status status = tri_check_from(&source, NULL, &options, &report, error);

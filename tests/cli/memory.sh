@@ -160,3 +160,28 @@ check "with enough memory: exit code" test $? -eq 0
 "$bin/trianglecheck" --quiet g1 --poly g.poly --memory 12M >.out 2>.err
 check "with little memory: exit code" test $? -eq 2
 complains '^trianglecheck: to judge 40 thousand vertices .* takes about [0-9.]+ MB of memory; 12.6 MB may be used$'
+
+# --- where all subsegments bound the mesh, the judge keeps to its bound as well, or says what it takes
+program 0 -Qp z.poly --output z2
+kept=0
+refused=0
+for words in "" "--poly z.poly"; do
+    for budget in 11 14 18 30; do
+        what="trianglecheck $words of a boundary, --memory ${budget}000000"
+        # shellcheck disable=SC2086 # several words
+        "$python" "$data/../tests/cli/peak.py" "$budget"000000 "$bin/trianglecheck" --quiet z2 $words \
+            --memory "$budget"000000 --threads 2 >.out 2>.err
+        found=$?
+        checks=$((checks + 1))
+        case $found in
+        0) kept=$((kept + 1)) ;;
+        2)
+            refused=$((refused + 1))
+            complains '^trianglecheck: to judge 30 thousand vertices .* takes about [0-9.]+ MB of memory; '
+            ;;
+        *) fault "exit code $found: $(head -n 1 .err)" ;;
+        esac
+    done
+done
+check "with much memory trials are kept within ($kept), with little refused ($refused)" \
+    test $kept -ge 2 -a $refused -ge 2

@@ -300,6 +300,8 @@ static enum tri_status judge_frame(struct checker *c)
     if (status != TRI_OK || !pairs_are_good(c))
         return status;
     tri_check_stars(c);
+    if (c->whole == NULL)
+        tri_check_release_part(c); /* the sweep takes its place */
     status = tri_check_overlap(c);
     if (status != TRI_OK || !check_good(c, TRI_CHECK_OVERLAP))
         return status;
@@ -354,14 +356,27 @@ static double bytes_of_triangle(const struct tri_check_source *source, double ve
            (source->given >> TRI_CHECK_NEIGHBORS_GIVEN & 1) * 24 + (source->given >> TRI_CHECK_ATTRIBUTES & 1) * 8;
 }
 
-/* Measured: bytes at the peak for each subsegment, and for each point and segment of the input. */
-static const double SUBSEGMENT_BYTES = 126, INPUT_BYTES = 40;
+/* Measured: bytes for each subsegment of the frame, each boundary edge besides, each edge that the sweep of overlap.c
+ * has in hand, when there is no part any more, and each point and segment of the input. */
+static const double SUBSEGMENT_BYTES = 126, BOUNDARY_BYTES = 48, SWEEP_BYTES = 196, INPUT_BYTES = 40;
+
+/* Boundary edges, at most: a mesh is a plane graph, whose 3/2 triangles + boundary/2 edges are fewer than 3 vertices
+ * (Euler). Where subsegments are listed they are among these. */
+static double most_boundary_edges(const struct tri_check_source *source)
+{
+    const double most = fmax(0, 6 * (double)source->n_points - 3 * (double)source->n_triangles);
+    return source->given >> TRI_CHECK_SEGMENT_ENDS & 1 ? fmin(most, (double)source->n_segments) : most;
+}
 
 double tri_check_least_bytes(const struct tri_check_source *source, const struct tri_pslg *input)
 {
     const double items = input != NULL ? (double)input->n_points + input->n_segments : 0;
     const double amid = source->n_nodes > source->n_points ? (double)(source->n_nodes - source->n_points) : 0;
-    return amid + 1.25 * (double)source->n_points + SUBSEGMENT_BYTES * (double)source->n_segments + INPUT_BYTES * items;
+    const double boundary = most_boundary_edges(source), subsegments = fmax(boundary, (double)source->n_segments);
+    const double beside = amid + 1.25 * (double)source->n_points + SUBSEGMENT_BYTES * subsegments +
+                          BOUNDARY_BYTES * boundary + INPUT_BYTES * items;
+    const double swept = beside + SWEEP_BYTES * (input != NULL ? subsegments : boundary); /* with regions: all */
+    return fmax(beside, TRI_CHECK_SHARE * swept);
 }
 
 /* As many triangles as the bound allows, at least a few; all, where they are in memory. */

@@ -116,11 +116,12 @@ struct tri_check_source {
     const char *scratch;
 };
 
-/* Bytes that a trial takes whatever its bound: a byte for each vertex, subsegments, and the input (NULL: none). */
-double tri_check_least_bytes(const struct tri_check_source *source, const struct tri_pslg *input);
-
-/* The share of its bound that it reckons with. */
+/* The share of its bound that a trial reckons with. */
 #define TRI_CHECK_SHARE 0.75
+
+/* That share of the bytes that it takes whatever its bound: a byte for each vertex, up to 370 for each subsegment, and
+ * the input (NULL: none). */
+double tri_check_least_bytes(const struct tri_check_source *source, const struct tri_pslg *input);
 
 enum tri_check_delaunay { TRI_CHECK_CONSTRAINED, TRI_CHECK_CONFORMING, TRI_CHECK_NOT_DELAUNAY };
 

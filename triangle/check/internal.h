@@ -54,7 +54,7 @@ struct check_side {
     bool more;         /* another part has one, too */
 };
 
-/* A half-edge whose other side is not in its part; a boundary edge, at last. */
+/* A half-edge whose other side is not in its part. */
 struct check_open {
     int64_t from, to, half_edge, apex; /* apex: the vertex of its triangle that is not on it */
     int64_t neighbor;                  /* triangle on the other side as it is given; -1: none, or nothing given */
@@ -66,6 +66,18 @@ struct check_open {
 struct check_opens {
     int64_t n, room;
     struct check_open *at;
+};
+
+/* A half-edge that has no other side in any part: what is needed of it beside the frame. */
+struct check_boundary_edge {
+    int64_t from, to, half_edge;
+    double attribute; /* of its triangle */
+    bool constrained;
+};
+
+struct check_boundary {
+    int64_t n, room;
+    struct check_boundary_edge *at;
 };
 
 /* Triangles in a row. Of a part the first arrays lie in its room; where the whole mesh is one part they are the
@@ -129,7 +141,7 @@ struct checker {
     int64_t part_triangles; /* in a part, at most */
     struct check_part part;
     struct check_store *store;
-    struct check_opens boundary; /* what is left at last: boundary edges, by half-edge */
+    struct check_boundary boundary; /* what is left at last, by half-edge */
 
     /* quality.c */
     struct check_quality *quality;
@@ -145,7 +157,7 @@ struct checker {
     const int32_t *segments; /* [n_segments][2] vertices of the frame; -1, -1 where an end is no vertex or they equal */
     const int32_t *segment_markers;     /* [n_segments] or NULL: not given */
     struct check_side (*sides)[2];      /* [n_segments] left of it, from its first end to the second, and right */
-    int64_t *listed;                    /* [n_segments][2] as they are given */
+    int64_t *listed;                    /* [n_segments][2] as they are given; NULL once `segments` is there */
     int32_t *own_segments, *own_markers;
     int32_t (*border)[2];               /* [boundary.n] ends of the boundary edges, as vertices of the frame */
     int32_t *fan_first;                 /* [n_frame + 1] into fan */

@@ -5,12 +5,18 @@
 #include <stdlib.h>
 
 #include "triangle/check/store.h"
+#include "triangle/grow.h"
+
+static int compare_ends(int64_t from, int64_t to, int64_t begin, int64_t end)
+{
+    int64_t low = from < to ? from : to, other = begin < end ? begin : end;
+    int64_t high = from + to - low, far = begin + end - other;
+    return low != other ? (low < other ? -1 : 1) : (high > far) - (high < far);
+}
 
 static int compare_edges(const struct check_open *a, const struct check_open *b)
 {
-    int64_t low = a->from < a->to ? a->from : a->to, other = b->from < b->to ? b->from : b->to;
-    int64_t high = a->from + a->to - low, far = b->from + b->to - other;
-    return low != other ? (low < other ? -1 : 1) : (high > far) - (high < far);
+    return compare_ends(a->from, a->to, b->from, b->to);
 }
 
 static int compare_opens(const void *left, const void *right)
@@ -20,9 +26,15 @@ static int compare_opens(const void *left, const void *right)
     return order != 0 ? order : (a->half_edge > b->half_edge) - (a->half_edge < b->half_edge);
 }
 
+static int compare_by_edge(const void *left, const void *right)
+{
+    const struct check_boundary_edge *a = left, *b = right;
+    return compare_ends(a->from, a->to, b->from, b->to);
+}
+
 static int compare_half_edges(const void *left, const void *right)
 {
-    const struct check_open *a = left, *b = right;
+    const struct check_boundary_edge *a = left, *b = right;
     return (a->half_edge > b->half_edge) - (a->half_edge < b->half_edge);
 }
 
@@ -40,6 +52,15 @@ static void tell_bad(struct checker *c, const struct check_open *at, int64_t n)
     c->report->item[TRI_CHECK_EDGES].count += n - 1;
 }
 
+static enum tri_status keep(struct checker *c, const struct check_open *e)
+{
+    struct check_boundary *b = &c->boundary;
+    if (!tri_grow_far(&b->at, &b->room, b->n + 1, sizeof *b->at))
+        return TRI_NO_MEMORY;
+    b->at[b->n++] = (struct check_boundary_edge){e->from, e->to, e->half_edge, e->attribute, e->constrained};
+    return TRI_OK;
+}
+
 /* The half-edges of one edge. */
 static enum tri_status match_edge(struct checker *c, const struct check_open *at, int64_t n)
 {
@@ -53,7 +74,7 @@ static enum tri_status match_edge(struct checker *c, const struct check_open *at
         tell_bad(c, at, n);
     enum tri_status status = TRI_OK;
     for (int64_t i = 0; i < n && status == TRI_OK; i++)
-        status = tri_check_append(&c->boundary, &at[i]);
+        status = keep(c, &at[i]);
     return status;
 }
 
@@ -70,8 +91,17 @@ static enum tri_status match_all(struct checker *c, struct check_open *at, int64
     return status;
 }
 
-/* Pairs of the part that lie on the edge, too. */
-static enum tri_status add_pairs(struct checker *c, const struct check_open *e)
+/* The half-edge itself, if it is of the part. */
+static enum tri_status add_again(struct checker *c, const struct check_boundary_edge *e)
+{
+    int64_t h = e->half_edge - 3 * c->part.first;
+    if (h >= 0 && h < c->part.n_half_edges)
+        return tri_check_store_add(c, tri_check_open(c, (int32_t)h));
+    return TRI_OK;
+}
+
+/* Pairs of the part that lie on the edge. */
+static enum tri_status add_pairs(struct checker *c, const struct check_boundary_edge *e)
 {
     int32_t a = tri_check_local(c, e->from), b = a < 0 ? -1 : tri_check_local(c, e->to);
     struct check_edge edge = b < 0 ? (struct check_edge){-1, -1, 0, 0} : tri_check_find_edge(c, a, b);
@@ -86,18 +116,17 @@ static enum tri_status match_again(struct checker *c)
 {
     enum tri_status status = TRI_OK;
     bool good;
-    qsort(c->boundary.at, (size_t)c->boundary.n, sizeof *c->boundary.at, compare_opens);
+    qsort(c->boundary.at, (size_t)c->boundary.n, sizeof *c->boundary.at, compare_by_edge);
     for (int64_t t = 0; t < c->n_triangles && status == TRI_OK; t += c->part_triangles) {
         status = tri_check_load(c, t, &good);
         status = status == TRI_OK ? tri_check_pair(c) : status;
         for (int64_t i = 0; i < c->boundary.n && status == TRI_OK; i++) {
-            const struct check_open *e = &c->boundary.at[i];
-            if (i == 0 || compare_edges(e - 1, e) != 0)
+            const struct check_boundary_edge *e = &c->boundary.at[i];
+            status = add_again(c, e);
+            if (status == TRI_OK && (i == 0 || compare_by_edge(e - 1, e) != 0))
                 status = add_pairs(c, e);
         }
     }
-    for (int64_t i = 0; i < c->boundary.n && status == TRI_OK; i++)
-        status = tri_check_store_add(c, c->boundary.at[i]);
     c->boundary.n = 0;
     tri_check_unask(c, TRI_CHECK_EDGES);
     tri_check_begin(c, TRI_CHECK_EDGES);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "triangle/check/internal.h"
+#include "triangle/grow.h"
 
 enum { NEAR_ENOUGH = 1 << 12, WINDOW = 1 << 14 }; /* vertices */
 
@@ -72,8 +73,9 @@ static enum tri_status list_vertices(struct checker *c)
     }
     if (k > INT32_MAX / 2)
         return TRI_TOO_LARGE;
+    (void)tri_resize(&c->own_vertex, (size_t)k + 1, sizeof *v); /* those that are left */
     c->n_frame = (int32_t)k;
-    c->vertex = v;
+    c->vertex = c->own_vertex;
     return TRI_OK;
 }
 
@@ -142,6 +144,8 @@ static enum tri_status translate(struct checker *c)
     for (int32_t i = 0; c->input != NULL && i < c->input->n_points; i++)
         c->twin[i] = tri_check_in_frame(c, c->found[i]);
     c->segments = c->own_segments;
+    free(c->listed);
+    c->listed = NULL;
     return TRI_OK;
 }
 
@@ -213,7 +217,7 @@ static void judge_boundary(struct checker *c)
 {
     tri_check_begin(c, TRI_CHECK_BOUNDARY);
     for (int64_t i = 0; i < c->boundary.n; i++) {
-        const struct check_open *e = &c->boundary.at[i];
+        const struct check_boundary_edge *e = &c->boundary.at[i];
         if (!e->constrained)
             tri_check_fault(c, TRI_CHECK_BOUNDARY, "boundary edge %ld-%ld of triangle %ld is not a subsegment",
                             check_number(c, e->from), check_number(c, e->to), check_number(c, e->half_edge / 3));
