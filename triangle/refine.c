@@ -43,6 +43,15 @@
  * the others, which are not asked before they have changed; deferred triangles are found again by whoever comes later,
  * with other fences or none.
  *
+ * FLAT TRIANGLES. Where segments lie an ulp apart, a subsegment beside a flat triangle has no place for a split before
+ * the subsegment behind that triangle has one, on the same level. In one call the flat triangles come first, and all
+ * are split in step. Within a fence the one behind may be another's, or be kept for the margin below; for sizes the
+ * point would then be a centroid (inside.c), a third as far from the subsegment each time, down to what coordinates
+ * resolve, and angles grade the mesh around each of these. RULE: within a fence a triangle whose subsegment has no
+ * place is deferred, where it would get its centroid. What is still without in a call for the whole mesh gets it there.
+ * (Grids of 12 segments with a size test, in cells of 60 triangles: 4,790 triangles at 30 degrees, 511 with the rule,
+ * 545 by one call; at 22 degrees another left 42 triangles of 1,084 below the bound, now none.)
+ *
  * SEAMS. Bad triangles that reach beyond a fence stay; around them a bound above TRI_PROMISED_ANGLE can only be
  * reached by points that are ever denser, and whoever refines them later has to keep all of these. RULE: for such a
  * bound a triangle is refined only where it lies within the fence with a margin of its longest edge, and of twice
@@ -124,6 +133,7 @@ struct tri_refiner {
     int32_t next_listed, n_worklist;
     enum stage stage;
     enum tri_excuse excuse; /* of the last refusal */
+    bool lacks_place;       /* that was of a subsegment that should be split, and has no place for it */
     struct tri_entry_set walled_off; /* triangles that are deferred as they are, see FENCES */
     tri_triangle_id *searched; /* [n_searched] the cavity before a split was searched, if that is wide */
     int32_t n_searched, searched_capacity;
@@ -381,6 +391,15 @@ static enum outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
 {
     assert(excuse < TRI_EXCUSES);
     r->excuse = excuse;
+    r->lacks_place = false;
+    return REFUSED;
+}
+
+/* The subsegment that should be split has no place for it. */
+static enum outcome refuse_place(struct tri_refiner *r)
+{
+    refuse(r, TRI_EXCUSE_PRECISION);
+    r->lacks_place = true;
     return REFUSED;
 }
 
@@ -557,7 +576,7 @@ static enum outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri_dis
     if (found == TRI_SEARCH_BEYOND)
         return wait_for_more(r, r->cavity.beyond);
     if (found == TRI_SEARCH_OUTSIDE)
-        return refuse(r, TRI_EXCUSE_PRECISION);
+        return refuse_place(r);
     if (found == TRI_SEARCH_NO_MEMORY || make_room(r))
         return FAILED;
     bool boundary = tri_is_boundary(&old);
@@ -727,7 +746,7 @@ static enum outcome propose(struct tri_refiner *r, tri_triangle_id triangle, con
     return outcome == DONE ? AGAIN : outcome;
 }
 
-/* For sizes, where the usual point is refused: see inside.c. */
+/* For sizes, where the usual point is refused: see inside.c, and FLAT TRIANGLES. */
 static enum outcome propose_inside(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape)
 {
     tri_sub_id s = tri_long_wall(r->mesh, r->options, triangle, shape);
@@ -737,6 +756,8 @@ static enum outcome propose_inside(struct tri_refiner *r, tri_triangle_id triang
     struct tri_point p;
     if (!tri_centroid(r->mesh, triangle, shape, &p))
         return refuse(r, TRI_EXCUSE_PRECISION);
+    if (r->options->fence && r->lacks_place)
+        return defer(r, triangle, &r->report->fenced);
     outcome = find_cavity(r, triangle, p);
     return outcome == DONE ? insert_free(r, p, triangle, shape) : outcome;
 }
