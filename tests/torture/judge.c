@@ -326,12 +326,21 @@ static void judge_amount(const struct outcome *first, const struct tri_pslg *psl
 
 /* --- whether it ends */
 
+/* So many points a figure can ask for at most, as the mesh that has been made counts them; see judge_end. */
+static double most_points(const struct outcome *o, const struct tri_pslg *pslg)
+{
+    const double PER_VERTEX = 1000, PER_GAP_POINT = 40, SIZED_GAP_POINT = 60, SIZES = 200000;
+    const double PER_WALL = 20000, WALLS = 1800000;
+    const struct tri_refine_options *asked = &o->options.quality;
+    bool refuses_walls = o->switches.protect > 0 && asked->unsuitable;
+    return SIZES + PER_VERTEX * o->mesh.n_input + (refuses_walls ? fmin(PER_WALL * pslg->n_segments, WALLS) : 0) +
+           (tri_has_sizes(asked) ? SIZED_GAP_POINT : PER_GAP_POINT) * o->mesh.limits.gap_points;
+}
+
 /* Is this many points enough for a sequential call? */
 static bool suffices(struct outcome *first, const struct tri_pslg *pslg, int64_t points, double *asked,
                      struct verdict *verdict)
 {
-    const double PER_GAP_POINT = 60, PER_VERTEX = 1000, SIZES = 200000, REFUSED_SIZES = 10 * SIZES;
-    const double sizes = first->switches.protect > 0 && first->of->with_size_test ? REFUSED_SIZES : SIZES;
     struct tri_error error = {0};
     struct torture_case sequential = *first->of;
     struct outcome o = {.of = &sequential, .switches = first->switches, .options = first->options};
@@ -340,16 +349,17 @@ static bool suffices(struct outcome *first, const struct tri_pslg *pslg, int64_t
     if (generate(&o, pslg, 1, &error))
         judge_fault(verdict, "error", "%s", error.text);
     bool enough = !o.report.quality.hit_limit;
-    *asked = sizes + PER_VERTEX * o.mesh.n_input + PER_GAP_POINT * o.mesh.limits.gap_points;
+    *asked = most_points(&o, pslg);
     tri_mesh_free(&o.mesh);
     return enough;
 }
 
 /* A mesh that does not end is one with more points than its figure can ask for: those of its narrow spaces (the most
- * seen are 20 for each that the mesher counts on at 30 degrees, and 40 at 34, half as many again with areas), of its
- * features, which differ by twelve orders of magnitude at most, and of its sizes, see draw_sizes: beside walls that
- * must not be split a size test refuses all triangles, down to what coordinates resolve. One that asks for more than is
- * AFFORDABLE to make over and over, but no more than that, is judged as with a limit of so many points. */
+ * seen are 20 for each that the mesher counts on at 30 degrees, and 40 at 34, half as many again with sizes), of its
+ * features, which differ by twelve orders of magnitude at most, and of its sizes, see draw_sizes. Beside a wall that
+ * must not be split a size test refuses all triangles, down to what coordinates resolve: the most seen are 6,000 points
+ * for a side of one, at 34 degrees. One that asks for more than is AFFORDABLE to make over and over, but no more than
+ * that, is judged as with a limit of so many points. */
 static void judge_end(struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
     enum { AFFORDABLE = 300000 };
@@ -408,8 +418,13 @@ static bool has_grown(const struct outcome *before, const struct outcome *after,
 {
     const double AGAIN = before->options.quality.conforming ? 2 : 1.2;
     enum { FEW = 1000 };
-    return after->mesh.limits.dearest_gap <= before->mesh.limits.dearest_gap &&
-           after->mesh.n_triangles > AGAIN * before->mesh.n_triangles + FEW + asked;
+    return after->mesh.n_triangles > AGAIN * before->mesh.n_triangles + FEW + asked;
+}
+
+/* Are spaces filled that were left before? */
+static bool fills_more(const struct outcome *before, const struct outcome *after)
+{
+    return after->mesh.limits.dearest_gap > before->mesh.limits.dearest_gap;
 }
 
 /* What triangles may ask for again that were given up where vertices ran away: see judge_amount_again. */
@@ -429,8 +444,10 @@ static double asked_again(const struct outcome *first)
  * (chain.h). Above the angle that theory promises it does not: its points were on credit once, and each is a vertex
  * like any other then, that grants credit for more (credit.h). Nor where segments must stay as they are: the order
  * decides which points they hinder. Under -D it decides on circles in narrow spaces, too: 1.41 times as many is the
- * most that was seen. And a narrow space that vertices hid, so that it was left, may be seen in the mesh that is read,
- * and be filled then (tri_choose_gaps).
+ * most that was seen.
+ *
+ * A narrow space that was left may be filled: what such spaces cost is reckoned with the triangles in them, which are
+ * shorter in a mesh that is read (tri_choose_gaps). That is done once: the mesh that comes of it stays.
  *
  * Where vertices ran away more is asked for, once. An edge had run away because it was short for the sizes that its
  * ends had inherited, and these are written nowhere (feature_size.h): in a mesh that is read its neighbours are as near
@@ -442,7 +459,7 @@ static void judge_amount_again(const struct outcome *first, struct verdict *verd
     struct outcome second = {0}, third = {0};
     enter(verdict, "refining for nothing");
     if (refine_for_nothing(first, &second, verdict) && has_grown(first, &second, 0)) {
-        if (has_grown(first, &second, asked_again(first)))
+        if (!fills_more(first, &second) && has_grown(first, &second, asked_again(first)))
             judge_fault(verdict, "again", "%d triangles, and %d when they are refined once more",
                         (int)first->mesh.n_triangles, (int)second.mesh.n_triangles);
         else if (refine_for_nothing(&second, &third, verdict) && has_grown(&second, &third, 0))

@@ -13,8 +13,8 @@
  *     with sizes or -D, which is measured; up to 34, 20 times that at 28 and 3,000
  *     (credit.h, and as much again for what theory promises then); by the schedule, see judge_schedule_size;
  *   - the number of triangles of a mesh that is refined once more with the same bounds, up to 28 degrees and without
- *     -Y: 1.2 times as many, with -D twice, and 1,000; where vertices ran away once more than that, see
- *     judge_amount_again;
+ *     -Y: 1.2 times as many, with -D twice, and 1,000; where vertices ran away, or spaces are filled that were left,
+ *     once more than that, see judge_amount_again;
  *   - meshes of more than 300,000 points that their figures do ask for: these are made with that limit.
  * A case that inserts more than its figure can ask for is endless, however long that takes; the limit on time is for
  * those that go on without a point. */

@@ -223,12 +223,15 @@ static void judge_angles(const struct outcome *o, const struct bounds *b, const 
                     (long long)count[TRI_EXCUSE_PRECISION]);
 }
 
-/* Is another subsegment as near to the place as rounding? Then the place may come to lie beyond it. */
-static bool is_place_crowded(const struct tri_mesh *mesh, int32_t s, struct tri_point place, double ulp)
+/* Is another subsegment as near as rounding to both these places, and so to all in between? Then a point there may come
+ * to lie beyond it. */
+static bool is_crowded_between(const struct tri_mesh *mesh, int32_t s, struct tri_point from, struct tri_point to,
+                               double ulp)
 {
     for (int32_t i = 0; i < mesh->n_subs; i++) {
         struct tri_point a = mesh->xy[mesh->sub[i].v[0]], b = mesh->xy[mesh->sub[i].v[1]];
-        if (i != s && tri_dot(a, b, place) < 0 && tri_line_distance(a, b, place) < 2 * ulp)
+        if (i != s && tri_dot(a, b, from) < 0 && tri_dot(a, b, to) < 0 && tri_line_distance(a, b, from) < 2 * ulp &&
+            tri_line_distance(a, b, to) < 2 * ulp)
             return true;
     }
     return false;
@@ -246,11 +249,15 @@ static bool is_resolvable(const struct tri_mesh *mesh, int32_t i, int side, doub
     double x = b.x - a.x, y = b.y - a.y, length = sqrt(x * x + y * y), ulp = 0x1p-52 * largest;
     double height = fabs(x * (v.y - a.y) - y * (v.x - a.x)) / length;
     double foot = (x * (v.x - a.x) + y * (v.y - a.y)) / length, off = fmin(foot, length - foot);
-    struct tri_point place = {a.x + foot / length * x, a.y + foot / length * y};
+    /* Any split from the foot on to where a right angle at the vertex ends leaves it out of both circles (disk.c). */
+    double farthest = fmin(off + height * (height / off), length / 2), way = foot > length / 2 ? -1 : 1;
+    double last = foot + way * (farthest - off);
+    struct tri_point from = {a.x + foot / length * x, a.y + foot / length * y};
+    struct tri_point to = {a.x + last / length * x, a.y + last / length * y};
     if (height < SHORTEST * ulp || length <= 2 * SHORTEST * ulp || is_beside_flat(mesh, s, RESOLUTION * largest))
         return false;
-    return off >= SHORTEST * ulp ? !is_place_crowded(mesh, i, place, ulp)
-                                 : (off + 2 * ulp) * length <= MOST_PARTS * height * height;
+    return off >= SHORTEST * ulp ? !is_crowded_between(mesh, i, from, to, ulp)
+                                 : (off + ulp) * length <= MOST_PARTS * height * height;
 }
 
 /* What is not conforming must be counted, one by one, and lie at the resolution of coordinates. The checker has found
