@@ -6,6 +6,9 @@
 #include "allocations.h"
 #include "full.h"
 #include "support.h"
+#include "triangle/census.h"
+#include "triangle/chain.h"
+#include "triangle/crossing.h"
 #include "triangle/reconstruct.h"
 #include "triangle/topology.h"
 
@@ -908,10 +911,57 @@ static void levels_are_not_renewed_again(void **state)
     tri_pslg_free(&pslg);
 }
 
+/* In resolutions of the parent's larger end: how far do ends of subsegments lie off its line, at most? */
+static double farthest_astray(const struct tri_mesh *mesh)
+{
+    double most = 0;
+    for (int32_t i = 0; i < 2 * mesh->n_subs; i++) {
+        const struct tri_subsegment *s = &mesh->sub[i / 2];
+        struct tri_point a = mesh->xy[mesh->parents[s->parent].v[0]], b = mesh->xy[mesh->parents[s->parent].v[1]];
+        double off = tri_line_distance(a, b, mesh->xy[s->v[i % 2]]);
+        most = fmax(most, off / fmax(tri_resolution(a), tri_resolution(b)));
+    }
+    return most;
+}
+
+/* Boundaries far higher than wide, read again: they must keep inside what was read, and do so by units of the finer
+ * coordinate, not of the larger one, which left no place to split: 4 and 154 circles stayed. The chains of the first
+ * keep to their lines; the second has corners five units or so inside, and yet they are chains. */
+static void boundaries_that_are_read_have_places(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *file;
+        double angle, area, most; /* most: resolutions off the line */
+    } cases[] = {{"regress/high_kite.poly", 37, 312819811.76, 0.1},
+                 {"regress/bent_strip.poly", 0, 0, TRI_CHAIN_ASTRAY}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct tri_pslg pslg;
+        struct tri_refine_report report;
+        int64_t count[TRI_EXCUSES];
+        assert_true(support_read(cases[i].file, &pslg));
+        struct tri_options first = support_quality(cases[i].angle, cases[i].area), then = support_quality(20, 0);
+        first.quality.conforming = then.quality.conforming = true;
+        struct tri_mesh mesh = support_generate(&pslg, &first, NULL);
+        struct input in = input_of(&mesh);
+        struct tri_mesh back = rebuild(&in, &(struct tri_reconstruct_options){.use_segments = true, .refine = true});
+        assert_int_equal(tri_refine(&back, &then.quality, &report, NULL), TRI_OK);
+        tri_count_encroached(&back, &then.quality, &report, count);
+        for (int k = 0; k < TRI_EXCUSES; k++)
+            assert_int_equal(count[k], 0);
+        assert_true(farthest_astray(&back) <= cases[i].most);
+        tri_mesh_free(&back);
+        free_input(&in);
+        tri_mesh_free(&mesh);
+        tri_pslg_free(&pslg);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shares_leave_no_trace),
+        cmocka_unit_test(boundaries_that_are_read_have_places),
         cmocka_unit_test(levels_are_not_renewed_again),
         cmocka_unit_test(a_mesh_above_the_usual_angle_is_not_refined_again),
         cmocka_unit_test(what_was_given_up_stays_given_up),

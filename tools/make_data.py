@@ -1015,6 +1015,11 @@ FOUND = [
          "-a0.00065D: some thousand triangles; once each new point in the bundle asked for more, without end", ()),
     Case("regress/chord_within.poly", None, "a wall, high and narrow, and crossing segments",
          "-q30D: no circle is left; one was, of a boundary that had moved inwards until it had no place to split", ()),
+    Case("regress/high_kite.poly", None, "a polygon 200 wide and 8e6 high, corners nearly on its lines",
+         "-q37a312819811.76D, then -rq20D: no circle is left; four were, of a boundary that had moved inwards by units "
+         "of the larger coordinate until it had no place to split (torture, seed 25014125)", ()),
+    Case("regress/bent_strip.poly", None, "a strip 1 wide and 11,000 high, corners five units or so inside its sides",
+         "-D, then -rq20D: no circle is left; 154 were, of what was read farther inside than a place might be", ()),
     Case("regress/near_path.poly", None, "a path to and fro through points that rounding keeps from lying on one line",
          "-pc: one chain, in as many steps as vertices; once n * n", ()),
     Case("regress/side_ulp_off.poly", None, "a segment along 200 vertices, its end an ulp off their line",

@@ -21,9 +21,6 @@
 
 #include "triangle/crossing.h"
 
-/* In resolutions. */
-static const double ASTRAY = 8;
-
 enum { MANY = -2, DEEP = 32 };
 
 struct chains {
@@ -63,7 +60,7 @@ static double distance_from(const struct tri_mesh *mesh, tri_vertex_id a, tri_ve
 
 static double tolerance(const struct tri_mesh *mesh, tri_vertex_id v)
 {
-    return ASTRAY * tri_resolution(mesh->xy[v]);
+    return TRI_CHAIN_ASTRAY * tri_resolution(mesh->xy[v]);
 }
 
 /* Does v lie between a and b on their line? */

@@ -370,8 +370,9 @@ static tri_sub_id sub_under(const struct tri_mesh *mesh, tri_triangle_id t, stru
  * place. TRI_NONE where there is none. */
 static tri_triangle_id find_place(const struct layer *l, tri_vertex_id near, struct tri_point *p)
 {
+    const struct tri_point step = {tri_resolution(*p), tri_resolution(*p)};
     for (int i = 0; i < TRI_PLACES; i++) {
-        struct tri_point q = tri_place_beside(*p, i);
+        struct tri_point q = tri_place_beside(*p, step, i);
         tri_triangle_id t = locate(l->mesh, l->corner[near], q);
         tri_sub_id s = t == TRI_NONE ? TRI_NONE : sub_under(l->mesh, t, q);
         if (t != TRI_NONE && (s == TRI_NONE || !tri_is_boundary(&l->mesh->sub[s]))) {

@@ -17,13 +17,13 @@ static inline double tri_resolution(struct tri_point p)
 
 enum { TRI_PLACES = 9 };
 
-/* p itself (i = 0) and the places one resolution away from it, the nearer ones first: i < TRI_PLACES. */
-static inline struct tri_point tri_place_beside(struct tri_point p, int i)
+/* p itself (i = 0) and the places one step away from it in either coordinate or both: i < TRI_PLACES. */
+static inline struct tri_point tri_place_beside(struct tri_point p, struct tri_point step, int i)
 {
     static const int way[TRI_PLACES][2] = {{0, 0}, {1, 0},  {-1, 0}, {0, 1},  {0, -1},
                                            {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
-    double step = tri_resolution(p);
-    struct tri_point q = {tri_round_coordinate(p.x + way[i][0] * step), tri_round_coordinate(p.y + way[i][1] * step)};
+    struct tri_point q = {tri_round_coordinate(p.x + way[i][0] * step.x),
+                          tri_round_coordinate(p.y + way[i][1] * step.y)};
     return q;
 }
 

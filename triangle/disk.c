@@ -190,12 +190,13 @@ bool tri_is_encroached_from(const struct tri_mesh *mesh, const struct tri_subseg
 }
 
 /* The place on subsegment s at this fraction, level with a point. Where a level is an ulp or two from the foot of the
- * perpendicular, that is taken, which is level as well and has been rounded once. */
+ * perpendicular, ulps of the end to which the fraction was worked out, that is taken, which is level as well and has
+ * been rounded once. */
 static bool place_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction,
                         struct tri_point at, int choice, struct tri_point *p)
 {
     struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], between = tri_point_between(a, b, fraction);
-    double x = b.x - a.x, y = b.y - a.y, l2 = x * x + y * y, near = 4 * tri_resolution(between);
+    double x = b.x - a.x, y = b.y - a.y, l2 = x * x + y * y, near = 4 * fmax(tri_resolution(a), tri_resolution(b));
     double off = (x * (at.x - between.x) + y * (at.y - between.y));
     return off * off <= near * near * l2 ? tri_place_level(mesh, s, at, choice, p)
                                          : tri_place_split(mesh, s, fraction, choice, p);

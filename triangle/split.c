@@ -5,9 +5,15 @@
  * boundary, which is no longer known once what is outside has been carved.
  *
  * 1. The place is that on the parent's line, rounded once, or, for the sake of 2, a neighbour of it or of the place on
- * the subsegment, not more than ASTRAY away from the line. So a chain keeps to its line however often it is split;
- * where it cannot it is not split. Which of these places is taken the cavity decides: the first from which all of it
+ * the subsegment, not more than ASTRAY away from the line; in a mesh that was read, where a chain may be found that is
+ * TRI_CHAIN_ASTRAY away (chain.h), not more than that. So a chain keeps to its line however often it is split; where it
+ * cannot it is not split. Which of these places is taken the cavity decides: the first from which all of it
  * can be seen; for a point that shall be level with a vertex (disk.c), the first of these that is, if any.
+ * GRAIN. What rounding does to a coordinate goes by that coordinate at the subsegment's ends, not by the larger one.
+ * Where one is 100 and the other 10^7, a line along the latter is met to units of the former. So a neighbour is a unit
+ * away in each coordinate's own measure: enough to come to either side of what has been rounded, and no more. A chain
+ * that must keep inside moves off its line by no more than that from split to split; by units of the larger coordinate
+ * it would come to the limit within a few. Neighbours by these are tried last: they see more, and offer other levels.
  * 2. THEOREM (boundary). Each parent on the boundary has an empty triangle of its own outside: its ends and its guard,
  * the centroid of the triangle of the constrained Delaunay triangulation that was carved there. If every split point
  * of a boundary subsegment lies on the inner side of it (or on it), in the parent's own triangle, or between it and the
@@ -23,6 +29,7 @@
 
 #include <assert.h>
 
+#include "triangle/chain.h"
 #include "triangle/predicates.h"
 
 /* Resolutions, those of the parent's largest coordinate, that a split point may lie off its line: where coordinates are
@@ -41,6 +48,12 @@ static bool is_inside_line(struct tri_point a, struct tri_point b, struct tri_po
     return (along ? tri_orient2d(a, b, p) : tri_orient2d(b, a, p)) >= 0;
 }
 
+/* Else it is one of a mesh that was read, and found as a chain. */
+static bool began_as_line(const struct tri_mesh *mesh, const struct tri_parent *parent)
+{
+    return tri_compare_places(parent->guard, mesh->xy[parent->v[0]]) != 0;
+}
+
 /* May a boundary subsegment from `from` to `to`, the mesh on its left, be split at p? */
 static bool keeps_to_itself(const struct tri_mesh *mesh, const struct tri_parent *parent, struct tri_point from,
                             struct tri_point to, struct tri_point p)
@@ -48,8 +61,7 @@ static bool keeps_to_itself(const struct tri_mesh *mesh, const struct tri_parent
     struct tri_point a = mesh->xy[parent->v[0]], b = mesh->xy[parent->v[1]], guard = parent->guard;
     if (tri_orient2d(from, to, p) >= 0 || isnan(guard.x))
         return true;
-    bool began_as_line = tri_compare_places(guard, a) != 0;
-    return (began_as_line && is_inside_line(a, b, from, to, p)) || tri_is_inside(a, b, guard, p) ||
+    return (began_as_line(mesh, parent) && is_inside_line(a, b, from, to, p)) || tri_is_inside(a, b, guard, p) ||
            tri_is_inside(b, a, guard, p);
 }
 
@@ -62,16 +74,27 @@ static bool is_allowed(const struct tri_mesh *mesh, const struct tri_subsegment 
 }
 
 /* Is it one of the places on the parent's line? Else on the subsegment, which lies inside by now. */
-static bool is_on_line(int choice) { return choice < TRI_PLACES; }
+static bool is_on_line(int choice) { return choice / TRI_PLACES % 2 == 0; }
 
-/* The place beside an exact one on the parent's line or on the subsegment. */
-static bool place(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point exact, int choice,
+/* How far a neighbour lies from the rounded place in each coordinate: see GRAIN. */
+static struct tri_point step(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point rounded,
+                             int choice)
+{
+    struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]];
+    struct tri_point grain = {0x1p-52 * fmax(fabs(a.x), fabs(b.x)), 0x1p-52 * fmax(fabs(a.y), fabs(b.y))};
+    double coarse = tri_resolution(rounded);
+    return choice < 2 * TRI_PLACES ? grain : (struct tri_point){coarse, coarse};
+}
+
+/* The place beside a rounded one on the parent's line or on the subsegment. */
+static bool place(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point rounded, int choice,
                   struct tri_point *p)
 {
     const struct tri_parent *parent = &mesh->parents[s->parent];
     struct tri_point a = mesh->xy[parent->v[0]], b = mesh->xy[parent->v[1]];
-    double astray = ASTRAY * fmax(tri_resolution(a), tri_resolution(b));
-    *p = tri_place_beside(exact, choice % TRI_PLACES);
+    double most = began_as_line(mesh, parent) ? ASTRAY : TRI_CHAIN_ASTRAY;
+    double astray = most * fmax(tri_resolution(a), tri_resolution(b));
+    *p = tri_place_beside(rounded, step(mesh, s, rounded, choice), choice % TRI_PLACES);
     return is_allowed(mesh, s, *p) && (is_on_line(choice) || tri_line_distance(a, b, *p) <= astray);
 }
 

@@ -4,11 +4,11 @@
 
 #include "triangle/crossing.h"
 
-enum { TRI_SPLIT_PLACES = 2 * TRI_PLACES };
+enum { TRI_SPLIT_PLACES = 4 * TRI_PLACES };
 
 /* *p: a place at this fraction of the subsegment, on its parent's line or its own up to about one resolution
- * (crossing.h); choice: which one, the best are the first. False where that does not keep the boundary to itself, see
- * split.c. */
+ * (crossing.h); choice: which one, the best are the first. False where that does not keep the boundary to itself, or is
+ * too far from the line: see split.c. */
 bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction, int choice,
                      struct tri_point *p);
 
