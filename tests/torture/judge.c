@@ -289,7 +289,7 @@ static void judge_schedule_size(const struct outcome *first, const struct tri_ps
     enter(verdict, "meshing in the schedule's own cells");
     int32_t own = triangles_of(&by_itself, first, pslg, verdict);
     bool large = own > OWN_CELLS * one_call + FEW || first->mesh.n_triangles > TINY_CELLS * one_call + FEW;
-    if (large && first->options.quality.min_angle > TRI_PROMISED_ANGLE && !first->of->with_size_test) {
+    if (large && first->options.quality.min_angle > TRI_PROMISED_ANGLE && !first->switches.user_test) {
         int32_t most = most_of_images(&sequential, first, pslg, verdict);
         one_call = most > one_call ? most : one_call;
     }
