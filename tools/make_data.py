@@ -1020,6 +1020,8 @@ FOUND = [
          "of the larger coordinate until it had no place to split (torture, seed 25014125)", ()),
     Case("regress/bent_strip.poly", None, "a strip 1 wide and 11,000 high, corners five units or so inside its sides",
          "-D, then -rq20D: no circle is left; 154 were, of what was read farther inside than a place might be", ()),
+    Case("regress/bent_valley.poly", None, "a polygon 4,100 wide and 1,000 high, both sides side by side",
+         "-D leaves no circle; five were left where levels were renewed at places in fine steps alone", ()),
     Case("regress/near_path.poly", None, "a path to and fro through points that rounding keeps from lying on one line",
          "-pc: one chain, in as many steps as vertices; once n * n", ()),
     Case("regress/side_ulp_off.poly", None, "a segment along 200 vertices, its end an ulp off their line",

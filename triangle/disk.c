@@ -83,7 +83,7 @@ bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subs
 static const double ULP = 0x1p-7;
 
 /* See the rule; the parts that rounding may ask for; the places tried for a level that renews another. */
-enum { NARROW = 8, MOST_PARTS = 8, MOST_RENEWALS = TRI_RENEWALS / TRI_PLACES };
+enum { NARROW = 8, MOST_PARTS = 8, MOST_RENEWALS = TRI_RENEWALS / (2 * TRI_PLACES) };
 
 static double distance(struct tri_point a, struct tri_point b) { return sqrt(tri_distance2(a, b)); }
 
@@ -362,7 +362,7 @@ bool tri_renew_level(const struct tri_mesh *mesh, const struct tri_subsegment *s
     double least = nearest_renewal(&v, sqrt(mesh->limits.shortest2)), most = farthest_renewal(mesh, s, &v);
     struct tri_point p, at = mesh->xy[split->level];
     for (; *trial < TRI_RENEWALS; ++*trial) {
-        int k = *trial / TRI_PLACES, choice = *trial % TRI_PLACES;
+        int k = *trial / TRI_PLACES % MOST_RENEWALS, choice = tri_renewal_place(*trial);
         double d = most - k * ((most - least) / MOST_RENEWALS), fraction = v.from_end ? 1 - d / v.l : d / v.l;
         if (tri_place_split(mesh, s, fraction, choice, &p) && tri_leaves_disks_empty(mesh, s, p, at) &&
             (!t || fits(mesh, s, p, t))) {

@@ -53,11 +53,17 @@ bool tri_shift_level(const struct tri_mesh *mesh, const struct tri_subsegment *s
 
 /* Where s is split to renew a level (split->renews): sets the fraction to the next at which there is a place from which
  * the vertex lies in the circle of neither part, and that has a place on t level with it; t: the subsegment that will
- * be split level with it, NULL where there is none. The place is that of choice *trial % TRI_PLACES. False: there is no
- * other. *trial is 0 at first, one more than last time afterwards, and TRI_RENEWALS at most. */
-enum { TRI_RENEWALS = 512 * TRI_PLACES };
+ * be split level with it, NULL where there is none. The place is that of choice tri_renewal_place(*trial). False: there
+ * is no other. *trial is 0 at first, one more than last time afterwards, and TRI_RENEWALS at most. */
+enum { TRI_RENEWALS = 2 * 512 * TRI_PLACES };
 bool tri_renew_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, const struct tri_subsegment *t,
                      struct tri_disk_split *split, int *trial);
+
+/* The choice of place in a trial: at all fractions those in fine steps, then at all those in coarse steps (split.c). */
+static inline int tri_renewal_place(int trial)
+{
+    return trial % TRI_PLACES + (trial < TRI_RENEWALS / 2 ? 0 : 2 * TRI_PLACES);
+}
 
 /* Does the apex of a triangle beside the subsegment lie in its circle, and do coordinates resolve a split because of
  * it? */

@@ -522,7 +522,7 @@ static enum tri_search find_renewal(struct tri_refiner *r, tri_sub_id s, struct 
     const struct tri_subsegment *beside = t == TRI_NONE ? NULL : &m->sub[t];
     for (int i = 0; i < MOST_FITS && tri_renew_level(m, &m->sub[s], beside, split, &trial); i++) {
         begun.fraction = split->fraction;
-        found = search_place(r, s, &begun, trial++ % TRI_PLACES, n_left);
+        found = search_place(r, s, &begun, tri_renewal_place(trial++), n_left);
         if (found != TRI_SEARCH_OUTSIDE)
             return found;
     }
