@@ -257,7 +257,7 @@ static bool is_resolvable(const struct tri_mesh *mesh, int32_t i, int side, doub
     if (height < SHORTEST * ulp || length <= 2 * SHORTEST * ulp || is_beside_flat(mesh, s, RESOLUTION * largest))
         return false;
     return off >= SHORTEST * ulp ? !is_crowded_between(mesh, i, from, to, ulp)
-                                 : (off + ulp) * length <= MOST_PARTS * height * height;
+                                 : (fmax(off, 0) + ulp) * length <= MOST_PARTS * height * height;
 }
 
 /* What is not conforming must be counted, one by one, and lie at the resolution of coordinates. The checker has found
