@@ -63,6 +63,45 @@ static void test_a_size_test_is_kept_at_small_angles(void **state)
     }
 }
 
+/* Refuses edges above this length, of which a protected side may be one. */
+static int is_too_long(void *user, const double a[2], const double b[2], const double c[2], double area)
+{
+    const double *p[] = {a, b, c, a}, most = *(const double *)user;
+    (void)area;
+    for (int k = 0; k < 3; k++)
+        if (hypot(p[k + 1][0] - p[k][0], p[k + 1][1] - p[k][1]) > most)
+            return 1;
+    return 0;
+}
+
+/* What is refused for a side that stays long gets no centroids down to what coordinates resolve (16,755 triangles), and
+ * covers next to no ground. */
+static void test_walls_that_are_refused_end_it(void **state)
+{
+    (void)state;
+    struct tri_pslg pslg = load("letter.poly");
+    double most = 0.5, all = 0, refused = 0;
+    struct tri_options options = support_quality(20, 0);
+    options.quality.protect = 1;
+    options.quality.unsuitable = is_too_long;
+    options.quality.unsuitable_user = &most;
+    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
+    for (int32_t t = 0; t < mesh.n_triangles; t++) {
+        double at[3][2];
+        for (int k = 0; k < 3; k++)
+            tri_mesh_place(&mesh, mesh.tri[t].v[k], at[k]);
+        double area = tri_shape_of(mesh.xy, mesh.tri[t].v).area2;
+        all += area;
+        refused += is_too_long(&most, at[0], at[1], at[2], area) ? area : 0;
+    }
+    assert_true(mesh.n_triangles < 8000);
+    assert_true(refused > 0 && refused < 0.002 * all);
+    struct tri_check_options check = {.max_bad = mesh.n_triangles};
+    support_judge(&mesh, &pslg, &check, false, NULL);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
 /* The theorem: a centroid is no nearer to any edge than a third of the least height, however flat the triangle. */
 static void test_centroids_are_inside(void **state)
 {
@@ -114,6 +153,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_areas_are_kept_beside_slivers),
         cmocka_unit_test(test_a_size_test_is_kept_at_small_angles),
+        cmocka_unit_test(test_walls_that_are_refused_end_it),
         cmocka_unit_test(test_centroids_are_inside),
         cmocka_unit_test(test_long_walls),
     };

@@ -16,6 +16,12 @@
  * refuses triangles of any size, the shortest edge (limits.shortest2) bounds both: the disk's radius and the
  * subsegment's length are no less.
  *
+ * A size test may refuse a triangle for the length of an edge, which is that of a wall, or leads along one: no centroid
+ * ever shortens these, and at a wall that must not be split thousands would be inserted, each a third as far from it as
+ * the last. RULE: where there are such walls, a triangle 4,096 times as long as high that only the test refuses gets no
+ * centroid, if the test refuses the lowest triangle on its longest edge, too. (The letter R with edges of 0.5, its
+ * sides protected, at 20 degrees: 5,103 triangles for 16,755; those with longer edges cover 0.07% of it.)
+ *
  * So the bound on areas is kept by every triangle whose least height is more than three shortest edges, some 400 ulps
  * of the largest coordinate. */
 #include "triangle/inside.h"
@@ -38,6 +44,29 @@ tri_sub_id tri_long_wall(const struct tri_mesh *mesh, const struct tri_refine_op
         }
     }
     return found;
+}
+
+/* The apex of a triangle on the same edge ab that is as low as one with a centroid may be. */
+static struct tri_point lowest_apex(const struct tri_mesh *mesh, struct tri_point a, struct tri_point b,
+                                    struct tri_point apex, double height)
+{
+    const double share = fmin(3 * sqrt(mesh->limits.shortest2) / height, 1);
+    const struct tri_point m = tri_point_between(a, b, 0.5);
+    return (struct tri_point){m.x + share * (apex.x - m.x), m.y + share * (apex.y - m.y)};
+}
+
+bool tri_is_walled_in(const struct tri_criterion *criterion, tri_triangle_id triangle, const struct tri_shape *shape)
+{
+    const struct tri_mesh *mesh = criterion->mesh;
+    const struct tri_triangle *t = &mesh->tri[triangle];
+    const double longest2 = tri_longest2(shape), LOW = 4096;
+    const int e = shape->l[0] == longest2 ? 0 : shape->l[1] == longest2 ? 1 : 2;
+    if (!criterion->options->unsuitable || criterion->options->protect == 0 || LOW * shape->area2 > longest2 ||
+        shape->area2 > tri_area2_bound(criterion, t->region))
+        return false;
+    const struct tri_point a = mesh->xy[t->v[tri_next[e]]], b = mesh->xy[t->v[tri_prev[e]]];
+    const struct tri_point low = lowest_apex(mesh, a, b, mesh->xy[t->v[e]], shape->area2 / sqrt(longest2));
+    return tri_is_refused(criterion->options, mesh->unit, a, b, low, tri_area_scale(criterion->options));
 }
 
 bool tri_centroid(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape,

@@ -833,6 +833,8 @@ static enum outcome propose_inside(struct tri_refiner *r, tri_triangle_id triang
     struct tri_point p;
     if (!tri_centroid(r->mesh, triangle, shape, &p))
         return refuse(r, TRI_EXCUSE_PRECISION);
+    if (tri_is_walled_in(&r->criterion, triangle, shape))
+        return refuse(r, TRI_EXCUSE_PROTECTED);
     outcome = leave_to_others(r, triangle);
     outcome = outcome == DONE ? find_cavity(r, triangle, p) : outcome;
     return outcome == DONE ? insert_free(r, p, triangle, shape) : outcome;
