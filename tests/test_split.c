@@ -398,6 +398,31 @@ static void test_places_are_at_the_fraction(void **state)
     }
 }
 
+/* A strip a few units in the last place high and 10^6 wide, with areas: where its boundary had places in units of the
+ * larger coordinate alone, points gathered beside it without end (15 million triangles, and no end of it, in a strip
+ * 5 * 10^10 wide). */
+static void test_strips_of_a_few_ulps_end(void **state)
+{
+    (void)state;
+    const double wide = 1e6, ulp = 0x1p-52;
+    const double corner[][2] = {{0, 1}, {wide, 1}, {wide, 1 + ulp}, {0.7 * wide, 1 + 4 * ulp}, {0, 1 + 2 * ulp}};
+    enum { CORNERS = sizeof corner / sizeof *corner };
+    struct tri_pslg pslg = support_pslg(CORNERS, CORNERS, 0, 0);
+    for (int32_t i = 0; i < CORNERS; i++) {
+        support_add_point(&pslg, corner[i][0], corner[i][1]);
+        support_add_segment(&pslg, i, (i + 1) % CORNERS);
+    }
+    struct tri_options options = support_quality(0, wide * ulp / 100);
+    struct tri_report report;
+    options.quality.max_steiner = 2000; /* a tenth of that is plenty */
+    struct tri_mesh mesh = support_generate(&pslg, &options, &report);
+    assert_false(report.quality.hit_limit);
+    assert_true(mesh.n_triangles < 200);
+    support_judge(&mesh, &pslg, &(struct tri_check_options){.max_bad = INT64_MAX}, false, NULL);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -406,6 +431,7 @@ int main(void)
         cmocka_unit_test(test_guards_do_not_overlap),
         cmocka_unit_test(test_without_guards_boundaries_move_inwards),
         cmocka_unit_test(test_places_are_at_the_fraction),
+        cmocka_unit_test(test_strips_of_a_few_ulps_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

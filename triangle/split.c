@@ -13,7 +13,8 @@
  * Where one is 100 and the other 10^7, a line along the latter is met to units of the former. So a neighbour is a unit
  * away in each coordinate's own measure: enough to come to either side of what has been rounded, and no more. A chain
  * that must keep inside moves off its line by no more than that from split to split; by units of the larger coordinate
- * it would come to the limit within a few. Neighbours by these are tried last: they see more, and offer other levels.
+ * it would come to the limit within a few. Neighbours that are such units away are tried last: they see more, and offer
+ * other levels.
  * 2. THEOREM (boundary). Each parent on the boundary has an empty triangle of its own outside: its ends and its guard,
  * the centroid of the triangle of the constrained Delaunay triangulation that was carved there. If every split point
  * of a boundary subsegment lies on the inner side of it (or on it), in the parent's own triangle, or between it and the
