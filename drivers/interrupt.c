@@ -1,7 +1,8 @@
 /* Handlers and the program share one word, the state, and the names of the temporary files.
  *
  * THE STATE says who has asked for the end, whether the time to end in is over (LATE), whether the program is changing
- * the set of files (HELD), whether it must end as soon as it no longer is (DUE), and whether somebody ends it (ENDING).
+ * the set of files, or telling of its end (HELD), whether it must end as soon as it no longer is (DUE), and whether
+ * somebody ends it (ENDING).
  * Every transition is one compare-and-exchange of the word:
  *
  *     nobody has asked    -- first request -->          asked; the grace begins
@@ -11,8 +12,9 @@
  *     HELD                -- the set is changed -->     not HELD, or, if DUE, ENDING, by the program
  *     HELD                -- all have their names -->   DONE: from then on no request ends the program
  *
- * So a handler never waits, no request is lost, and one alone ends the program, while nobody changes the set. Handlers
- * may run on any thread.
+ * So a handler never waits, no request is lost, and one alone ends the program, while nobody changes the set, and with
+ * one line, neither two nor none. (Where nobody reads that line, a handler ends the write.) Handlers may run on any
+ * thread.
  *
  * INVARIANT: while the state is not HELD, every temporary file there is stands in `temporaries`.
  *
@@ -354,7 +356,13 @@ const char *interrupt_stage_now(void)
     return what ? what : "starting";
 }
 
-void interrupt_told(void) { set_unless(TOLD, 0); }
+void interrupt_tell(void) { hold(); }
+
+void interrupt_told(void)
+{
+    set_unless(TOLD, 0);
+    release();
+}
 
 void interrupt_go_on(void) { set_unless(GOING_ON, 0); }
 

@@ -35,7 +35,9 @@ int64_t interrupt_reached_now(const char **what);
 /* From now on interrupt_stop() says no, though somebody has asked: what is left is to be done. */
 void interrupt_go_on(void);
 
-/* The program has told of the stop itself: a handler that ends it now is silent. */
+/* The program tells of the stop itself between these two: a handler that would end it meanwhile lets it, and one that
+ * ends it afterwards is silent. The second may be called alone. */
+void interrupt_tell(void);
 void interrupt_told(void);
 
 /* Where a run is several tasks, all end when one is asked to: interrupt_stop() calls this now and then, on no thread

@@ -487,9 +487,11 @@ int program_main(int argc, char **argv)
         return fail(TROUBLE, "the system does not take a handler for the end");
     enum tri_status status = plot(&settings, &files, &error);
     if (status == TRI_STOPPED)
-        interrupt_told();
+        interrupt_tell();
     if (status != TRI_OK)
         code = fail_with(&error);
+    if (status == TRI_STOPPED)
+        interrupt_told();
     code = status == TRI_STOPPED ? interrupt_code() : code;
     tri_pslg_free(&files.mesh);
     tri_elements_free(&files.elements);

@@ -420,8 +420,10 @@ static void tell_of_stop(struct runner *r, bool partial)
              tri_seconds() - r->begin, interrupt_stage_now(), far,
              partial ? "the mesh so far is written" : "nothing was written");
     if (!partial)
-        interrupt_told(); /* before: rather no line, if the handler comes between, than two */
+        interrupt_tell();
     console_error(&r->console, &line);
+    if (!partial)
+        interrupt_told();
 }
 
 /* After a stop: is there a mesh, and is it wanted? Then on with it. */
