@@ -101,12 +101,13 @@ static double memory_to_use(const struct settings *s)
     return resources_memory() * (s->memory_share > 0 ? s->memory_share : USUAL_PERCENT / 100.0);
 }
 
-/* What stays in memory beside the parts leaves room for them, or the trial is refused. */
+/* What stays in memory beside the parts leaves room for them, and for the program itself, or the trial is refused. */
 static enum tri_status check_memory(const struct judged_files *f, const struct tri_pslg *input, struct tri_error *error)
 {
-    static const double MOST_SHARE = 0.7;
-    const double needed = tri_check_least_bytes(&f->source, input) / MOST_SHARE, allowed = f->source.memory;
-    if (allowed <= 0 || needed < JUDGED_WORTH_A_LOOK || needed <= allowed)
+    static const double MOST_SHARE = 0.7, TO_COME = 4e6; /* of the program itself: code, stacks, what allocators keep */
+    const double least = tri_check_least_bytes(&f->source, input), allowed = f->source.memory;
+    const double needed = fmax(least / MOST_SHARE, least + resources_memory_used() + TO_COME);
+    if (allowed <= 0 || least / MOST_SHARE < JUDGED_WORTH_A_LOOK || needed <= allowed)
         return TRI_OK;
     return tri_fail(error, TRI_NO_MEMORY, "", 0,
                     "to judge %s vertices and %s subsegments, and what they are compared with, takes about %s of "
