@@ -13,6 +13,22 @@ rm -f .try.*
 case $(file -b "$bin/ptriangle" 2>/dev/null; ldd "$bin/ptriangle" 2>/dev/null) in
 *libasan* | *libtsan* | *libubsan*) echo "cli memory: sanitizers have memory of their own"; checks=1; return ;;
 esac
+# BUDGET CODE MESSAGE COMMAND...: within so many MB, which `kept` counts; or refused with this code and message
+within() {
+    budget=${1}000000
+    code=$2
+    message=$3
+    shift 3
+    "$python" "$data/../tests/cli/peak.py" "$budget" "$@" --memory "$budget" --threads 2 >.out 2>.err
+    found=$?
+    checks=$((checks + 1))
+    case $found in
+    0) kept=$((kept + 1)) ;;
+    "$code") refused=$((refused + 1)) && complains "$message" ;;
+    *) fault "exit code $found: $(head -n 1 .err)" ;;
+    esac
+}
+
 kept=0
 refused=0
 for switches in q20a0.000003 q33a0.000004 q20a0.000003S200000; do # swept, parked, one sequential call
@@ -22,18 +38,11 @@ for switches in q20a0.000003 q33a0.000004 q20a0.000003S200000; do # swept, parke
     for budget in 20 40 50 70 100; do
         what="ptriangle -p$switches --memory ${budget}000000"
         rm -f out.h5 out.xdmf
-        "$python" "$data/../tests/cli/peak.py" "$budget"000000 "$bin/ptriangle" "-p$switches" s --output out.h5 \
-            --memory "$budget"000000 --threads 2 >.out 2>.err
-        found=$?
-        checks=$((checks + 1))
+        within $budget 1 'which take [0-9.]+ [kMG]?B of memory; [0-9.]+ [kMG]?B are left' \
+            "$bin/ptriangle" "-p$switches" s --output out.h5
         case $found in
-        0) kept=$((kept + 1)) && check "the same bytes" cmp whole.h5 out.h5 ;;
-        1)
-            refused=$((refused + 1))
-            complains 'which take [0-9.]+ [kMG]?B of memory; [0-9.]+ [kMG]?B are left'
-            check "no file" test -z "$(ls out* .tri-* 2>/dev/null)"
-            ;;
-        *) fault "exit code $found: $(head -n 1 .err)" ;;
+        0) check "the same bytes" cmp whole.h5 out.h5 ;;
+        *) check "no file" test -z "$(ls out* .tri-* 2>/dev/null)" ;;
         esac
     done
 done
@@ -117,20 +126,11 @@ refused=0
 for input in "-Qe p" "-Qp g.poly" "-QrI q"; do
     for budget in 18 44; do
         what="ptriangle $input --memory ${budget}000000"
-        # shellcheck disable=SC2086
-        "$python" "$data/../tests/cli/peak.py" "$budget"000000 "$bin/ptriangle" $input --output out \
-            --memory "$budget"000000 --threads 2 >.out 2>.err
-        found=$?
-        checks=$((checks + 1))
-        case $found in
-        0) kept=$((kept + 1)) ;;
-        1)
-            refused=$((refused + 1))
-            complains ' takes about [0-9.]+ [kMG]?B of memory; there are [0-9.]+ [kMG]?B$|the input has [0-9.]+ [kMG]?B of text, which is read into memory; '
-            check "no file" test -z "$(ls out* .tri-* 2>/dev/null)"
-            ;;
-        *) fault "exit code $found: $(head -n 1 .err)" ;;
-        esac
+        message=' takes about [0-9.]+ [kMG]?B of memory; there are [0-9.]+ [kMG]?B$'
+        message="$message|the input has [0-9.]+ [kMG]?B of text, which is read into memory; "
+        # shellcheck disable=SC2086 # several words
+        within $budget 1 "$message" "$bin/ptriangle" $input --output out
+        [ $found -eq 0 ] || check "no file" test -z "$(ls out* .tri-* 2>/dev/null)"
         rm -f out.*
     done
 done
@@ -169,18 +169,8 @@ for words in "" "--poly z.poly"; do
     for budget in 11 14 18 30; do
         what="trianglecheck $words of a boundary, --memory ${budget}000000"
         # shellcheck disable=SC2086 # several words
-        "$python" "$data/../tests/cli/peak.py" "$budget"000000 "$bin/trianglecheck" --quiet z2 $words \
-            --memory "$budget"000000 --threads 2 >.out 2>.err
-        found=$?
-        checks=$((checks + 1))
-        case $found in
-        0) kept=$((kept + 1)) ;;
-        2)
-            refused=$((refused + 1))
-            complains '^trianglecheck: to judge 30 thousand vertices .* takes about [0-9.]+ MB of memory; '
-            ;;
-        *) fault "exit code $found: $(head -n 1 .err)" ;;
-        esac
+        within $budget 2 '^trianglecheck: to judge 30 thousand vertices .* takes about [0-9.]+ MB of memory; ' \
+            "$bin/trianglecheck" --quiet z2 $words
     done
 done
 check "with much memory trials are kept within ($kept), with little refused ($refused)" \
