@@ -76,7 +76,7 @@ set(PTRIANGLE_CHECK_SOURCES
     triangle/check/missing.c
     triangle/check/overlap.c
     triangle/check/hull.c
-    triangle/check/line.c
+    triangle/check/tube.c
     triangle/check/chain.c
     triangle/check/border.c
     triangle/check/vertex_markers.c

@@ -63,6 +63,40 @@ awk 'NR == 2 { $NF = 7 } { print }' letter.1.node >changed && mv changed letter.
 denies "^FAIL  vertex markers: 1, first: vertex 1 has marker 7" letter.1 --poly letter.poly
 judge letter.1 --poly letter.poly --no-markers
 
+# --- input segments that overlap, exactly (their markers and pieces count), and within rounding: in the mesh, and where
+# --- nothing is left of them, in next to no memory
+fresh
+to_and_fro() { # to_and_fro N STEP: a path in a box that goes to and fro over one line, by steps of a lattice
+    awk -v n="$1" -v step="$2" 'BEGIN { m = n + 5; print m, 2, 0, 0
+        for (i = 0; i <= n; i++) {
+            x = (i * 617 % 1009) / 1024
+            printf "%d %.17g %.17g\n", i + 1, x, x / 2 + step * (i % 5)
+        }
+        print n + 2, -1, -1; print n + 3, 2, -1; print n + 4, 2, 2; print n + 5, -1, 2; print n + 4, 1
+        for (i = 1; i <= n; i++) print i, i, i + 1, 5
+        for (i = 1; i < 4; i++) print n + i, n + i + 1, n + i + 2, 1
+        print n + 4, n + 5, n + 2, 1; print 0 }'
+}
+to_and_fro 500 0 >straight.poly
+to_and_fro 500 1e-17 >nearly.poly
+for path in straight nearly; do
+    run 0 -p $path
+    judge $path.1 --poly $path.poly
+    cp $path.1.poly sound
+    awk 'NF == 4 && $4 == 5 && ++n == 90 { $4 = 6 } { print }' sound >$path.1.poly
+    denies "^FAIL  segment markers: 1, first: .* has marker 6" $path.1 --poly $path.poly --no-regions
+done
+cp straight.1.poly sound
+awk 'NR == 2 { $1-- } NF == 4 && NR > 2 && ($4 == 5 || $4 == 6) && !gone { gone = 1; next } { print }' sound |
+    awk 'NF == 4 && NR > 2 { $1 = ++n } { print }' >straight.1.poly
+denies "^FAIL  input segments: [0-9]+, first: " straight.1 --poly straight.poly
+awk 'BEGIN { n = 3000; print n + 1, 2, 0, 0
+    for (i = 0; i <= n; i++) { x = i * 6170 % 30011; print i + 1, x, 2 * x }
+    print n, 0; for (i = 1; i <= n; i++) print i, i, i + 1; print 0 }' >flat.poly
+run 0 -p flat
+(ulimit -v 300000 && "$bin/trianglecheck" --quiet --threads 1 flat.1 --poly flat.poly >.out 2>.err)
+check "trianglecheck of overlapping segments without a mesh: exit code" test $? -eq 0
+
 # --- one verdict for any number of threads
 fresh letter.poly
 full && area=0.0008 || area=0.002

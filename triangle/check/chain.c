@@ -1,7 +1,5 @@
 /* Input segments as chains of subsegments.
  *
- *   0. Where exactly straight subsegments lead from its one end to the other, and none leaves nearly straight on, they
- *      are it (line.h): that is looked up, however many input segments overlap. Else:
  *   1. From the first end of the input segment, depth first along subsegments whose far end lies on its line within
  *      the tolerance, not back and not beyond the end; the best aligned first. Each vertex is visited once per segment,
  *      for what can be reached from it does not depend on the way there. Where nearly coincident segments leave several
@@ -9,17 +7,20 @@
  *      along, and their markers are right if some choice makes them so.
  *   2. Should the second end not be reached, pieces may have been carved. Then all subsegment vertices on the line are
  *      fetched from a grid and sorted along it; chains are followed from each that lies beyond what is covered so far.
- *   3. Whatever stays uncovered must lie outside the mesh: the sweep is asked about points of it. */
+ *   3. Whatever stays uncovered must lie outside the mesh: the sweep is asked about points of it.
+ *   4. Where input segments overlap so much that this would take too long, what lies along one line is put in order
+ *      (tube.h). An input segment that is covered there may run along all that lies between its ends within the
+ *      tolerance, whether a search would have come there or not. */
 #include "triangle/check/chain.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "triangle/check/line.h"
+#include "triangle/check/tube.h"
 #include "triangle/grow.h"
 #include "triangle/predicates.h"
 
-enum { MAX_GRID_SIDE = 2048, HUB = 16 };
+enum { MAX_GRID_SIDE = 2048, HUB = 16, MOST_PASSES = 16 };
 
 struct line { /* the input segment in question */
     int32_t id, marker;
@@ -48,14 +49,16 @@ struct chains {
     int32_t *stack;    /* [2 * n_segments + 1] each subsegment is pushed once from each end at most */
     int32_t *certain;  /* [n_segments] first input segment with a marker that runs along the subsegment, -1: none */
     int32_t *possible; /* [n_segments] first one with the subsegment's own marker that may run along it, -1: none */
-    int32_t *unmarked; /* [n_segments + 1] nearest place from each on whose subsegment nobody with a marker runs along
-                          yet, or one on the way there */
-    int32_t *passed;   /* [n_segments + 1] how many more input segments run along a place than along the one before */
-    struct check_lines lines;
-    struct check_stretch *stretch; /* [input segments] */
+    int64_t n_steps;   /* of searches */
+    struct check_tubes tubes;
     struct stop *stop; /* [n_points at most] */
     int32_t n_stops, stop_capacity;
     struct grid grid;
+};
+
+struct line_in_chains {
+    struct chains *k;
+    const struct line *l;
 };
 
 static double along(const struct line *l, struct tri_point p)
@@ -93,6 +96,7 @@ static int32_t push_ways(struct chains *k, const struct line *l, int32_t u, int3
     struct tri_point from = check_point(c, u);
     double best = INFINITY;
     int ways = 0;
+    k->n_steps++;
     for (int32_t i = c->fan_first[u]; i < c->fan_first[u + 1]; i++) {
         int32_t w = other_end(k, c->fan[i]);
         struct tri_point to = check_point(c, w);
@@ -352,27 +356,6 @@ static bool names_points(const struct tri_pslg *input, int32_t id)
     return ends[0] >= 0 && ends[0] < input->n_points && ends[1] >= 0 && ends[1] < input->n_points;
 }
 
-static void find_stretches(void *chains, const struct check_share *share)
-{
-    struct chains *k = chains;
-    const struct checker *c = k->c;
-    for (int64_t id = share->first; id < share->end; id++) {
-        const int32_t *ends = c->input->segments + 2 * (size_t)id;
-        int32_t a = names_points(c->input, (int32_t)id) ? c->twin[ends[0]] : -1, b = a >= 0 ? c->twin[ends[1]] : -1;
-        k->stretch[id] = b >= 0 && a != b ? tri_check_stretch(&k->lines, a, b) : (struct check_stretch){-1, -1};
-    }
-}
-
-/* The first unmarked place from i on; what was passed is shortened (Tarjan 1975, by halving). */
-static int32_t skip_marked(struct chains *k, int32_t i)
-{
-    while (k->unmarked[i] != i) {
-        k->unmarked[i] = k->unmarked[k->unmarked[i]];
-        i = k->unmarked[i];
-    }
-    return i;
-}
-
 /* Do many subsegments end at this input point? */
 static bool is_hub(const struct checker *c, int32_t point)
 {
@@ -380,20 +363,46 @@ static bool is_hub(const struct checker *c, int32_t point)
     return v >= 0 && c->fan_first[v + 1] - c->fan_first[v] > HUB;
 }
 
-/* Step 0 has found it. */
-static void take_stretch(struct chains *k, int32_t id)
+static void take_any(void *chains, int32_t subsegment)
 {
-    struct check_stretch stretch = k->stretch[id];
-    const int32_t *markers = k->c->input->segment_markers;
-    k->passed[stretch.first]++;
-    k->passed[stretch.last]--;
-    if (markers == NULL || markers[id] == 0)
-        return;
-    for (int32_t i = skip_marked(k, stretch.first); i < stretch.last; i = skip_marked(k, i)) {
-        int32_t *certain = &k->certain[k->lines.at[i]];
-        *certain = *certain < 0 ? id : *certain;
-        k->unmarked[i] = i + 1;
+    struct chains *k = chains;
+    k->c->is_along[subsegment] = 1;
+}
+
+static void take_own(void *line_in_chains, int32_t subsegment)
+{
+    struct line_in_chains *u = line_in_chains;
+    may_run_along(u->k, u->l, subsegment);
+}
+
+/* Step 4: up (1) or down (0) from vertex v, as far as there is one way. What is certain already is passed over. */
+static void mark_in_tube(struct chains *k, const struct line *l, const struct check_span *span, int32_t v, int up)
+{
+    struct check_tube_entry *entry = k->tubes.entry;
+    int32_t i = tri_check_tube_sole_way(&k->tubes, span->tube, v, up);
+    while (i >= 0 && entry[i].low >= span->low && entry[i].high <= span->high) {
+        int32_t *certain = &k->certain[entry[i].subsegment], *onward = &entry[i].onward[up];
+        *certain = *certain < 0 ? l->id : *certain;
+        if (*onward >= 0 && k->certain[entry[*onward].subsegment] >= 0)
+            *onward = entry[*onward].onward[up];
+        i = *onward;
     }
+}
+
+static bool take_from_tube(struct chains *k, const struct line *l, int32_t from, int32_t to)
+{
+    const int32_t ends[2] = {from, to};
+    struct line_in_chains in_chains = {k, l};
+    struct check_span span;
+    if (!tri_check_tube_span(&k->tubes, l->id, ends, l->tolerance, &span))
+        return false;
+    tri_check_tube_take(&k->tubes, &span, NULL, take_any, k);
+    if (l->marker == 0)
+        return true;
+    if (k->c->segment_markers != NULL)
+        tri_check_tube_take(&k->tubes, &span, &l->marker, take_own, &in_chains);
+    mark_in_tube(k, l, &span, from, tri_check_tube_ascends(&k->tubes, span.tube, from, to));
+    return true;
 }
 
 static enum tri_status check_line(struct chains *k, int32_t id)
@@ -414,6 +423,8 @@ static enum tri_status check_line(struct chains *k, int32_t id)
     if (!(l.length > 0) || !isfinite(l.length))
         return TRI_OK;
     int32_t from = k->c->twin[a], to = k->c->twin[b];
+    if (from >= 0 && to >= 0 && take_from_tube(k, &l, from, to))
+        return TRI_OK;
     k->search++;
     if (from >= 0 && to >= 0 && follow(k, &l, from, to) == to) {
         mark(k, &l, to, true);
@@ -450,14 +461,9 @@ static enum tri_status allocate(struct chains *k)
     k->forked = tri_check_zeros(n, sizeof *k->forked);
     k->certain = tri_check_array(n_segments, sizeof *k->certain);
     k->possible = tri_check_array(n_segments, sizeof *k->possible);
-    k->unmarked = tri_check_array(n_segments, sizeof *k->unmarked);
-    k->passed = tri_check_zeros(n_segments, sizeof *k->passed);
-    k->stretch = tri_check_array(c->input->n_segments, sizeof *k->stretch);
     c->is_along = tri_check_zeros(n_segments, 1);
-    return k->seen && k->via && k->stack && k->forked && k->certain && k->possible && k->unmarked && k->passed &&
-                   k->stretch && c->is_along
-               ? tri_check_lines_make(&k->lines, c)
-               : TRI_NO_MEMORY;
+    bool room = k->seen && k->via && k->stack && k->forked && k->certain && k->possible && c->is_along;
+    return room ? TRI_OK : TRI_NO_MEMORY;
 }
 
 static void release(struct chains *k)
@@ -468,34 +474,30 @@ static void release(struct chains *k)
     free(k->forked);
     free(k->certain);
     free(k->possible);
-    free(k->unmarked);
-    free(k->passed);
-    free(k->stretch);
     free(k->stop);
     free(k->grid.first);
     free(k->grid.vertex);
-    tri_check_lines_free(&k->lines);
+    tri_check_tubes_free(&k->tubes);
+}
+
+/* Have searches passed the same places again and again? */
+static bool is_slow(const struct chains *k)
+{
+    const struct checker *c = k->c;
+    return k->n_steps / MOST_PASSES > (int64_t)c->n_frame + c->n_segments + c->input->n_segments;
 }
 
 static enum tri_status check_lines(struct chains *k)
 {
     struct checker *c = k->c;
     enum tri_status status = TRI_OK;
-    for (int32_t s = 0; s < c->n_segments; s++) {
+    for (int32_t s = 0; s < c->n_segments; s++)
         k->certain[s] = k->possible[s] = -1;
-        k->unmarked[s] = s;
-    }
-    k->unmarked[c->n_segments] = c->n_segments;
-    tri_check_in_shares(k->c, k->c->input->n_segments, find_stretches, k);
     for (int32_t id = 0; id < c->input->n_segments && status == TRI_OK; id++) {
-        if (k->stretch[id].first >= 0)
-            take_stretch(k, id);
-        else
+        if (k->tubes.of_line == NULL && is_slow(k))
+            status = tri_check_tubes_make(&k->tubes, c, id);
+        if (status == TRI_OK)
             status = check_line(k, id);
-    }
-    for (int32_t i = 0, n = 0; i < k->lines.begin[k->lines.n_lines]; i++) {
-        n += k->passed[i];
-        c->is_along[k->lines.at[i]] |= n > 0;
     }
     return status;
 }

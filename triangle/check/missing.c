@@ -1,8 +1,9 @@
 /* Missing pieces, cut where they meet.
  *
- *   1. In order of their left ends, each is compared with those that begin before it ends.
- *   2. An end of one that surely lies on the other cuts that there; where no end does, but the two cross
- *      (exactly decided), both are cut at the rounded crossing.
+ *   1. In order of their left ends, each is compared with those that begin before it ends. Those that run along it
+ *      (exactly decided) are joined to it, and cut it where they begin and end: so that many may lie upon each other.
+ *   2. Of those that are left, an end of one that surely lies on the other cuts that there; where no end does, but the
+ *      two cross (exactly decided), both are cut at the rounded crossing.
  *   3. What lies between the cuts of a piece, in order, are the pieces wanted; of equal ones one is kept. */
 #include "triangle/check/missing.h"
 
@@ -10,18 +11,18 @@
 
 #include "triangle/grow.h"
 
-enum { MOST_TRIALS = 1 << 27 };
+enum { MOST_TRIALS = 1 << 27, MOST_CUTS = 1 << 20 };
 
 struct cut {
     int32_t piece;
-    double at; /* distance from the piece's first end */
+    double at; /* distance from the piece's first end; known when all pieces are */
     struct tri_point point;
 };
 
 struct cutting {
     double tolerance;
     int32_t n;
-    struct check_piece *piece; /* [n] from left to right, in order */
+    struct check_piece *piece; /* [n] from left to right, in order; of no length: joined to another one */
     int64_t n_trials;
     int32_t n_cuts, capacity;
     struct cut *cut;
@@ -58,11 +59,13 @@ static enum tri_status add_cut(struct cutting *k, int32_t i, struct tri_point p)
 {
     if (!tri_grow(&k->cut, &k->capacity, k->n_cuts + 1, sizeof *k->cut))
         return TRI_NO_MEMORY;
-    const struct check_piece *s = &k->piece[i];
-    double x = s->to.x - s->from.x, y = s->to.y - s->from.y;
-    double at = ((p.x - s->from.x) * x + (p.y - s->from.y) * y) / sqrt(x * x + y * y);
-    k->cut[k->n_cuts++] = (struct cut){i, at, p};
+    k->cut[k->n_cuts++] = (struct cut){i, 0, p};
     return TRI_OK;
+}
+
+static bool is_too_long(const struct cutting *k)
+{
+    return k->n_trials > MOST_TRIALS || k->n_cuts > MOST_CUTS;
 }
 
 /* Between the ends of the piece, surely on it? */
@@ -107,24 +110,61 @@ static enum tri_status meet(struct cutting *k, int32_t i, int32_t j)
     return status == TRI_OK && tri_is_exact_point(p) ? add_cut(k, j, p) : status;
 }
 
-/* Step 1; also cuts every piece at its ends. */
-static enum tri_status find_cuts(struct cutting *k)
+/* Step 1: joins piece j to i, if it runs along it for more than a point. */
+static enum tri_status join(struct cutting *k, int32_t i, int32_t j)
+{
+    struct check_piece *s = &k->piece[i], *r = &k->piece[j];
+    if (tri_compare_places(r->from, s->to) >= 0 || tri_orient2d(s->from, s->to, r->from) != 0 ||
+        tri_orient2d(s->from, s->to, r->to) != 0)
+        return TRI_OK;
+    const bool beyond = tri_compare_places(s->to, r->to) < 0;
+    enum tri_status status = add_cut(k, i, r->from);
+    if (status == TRI_OK)
+        status = add_cut(k, i, beyond ? s->to : r->to);
+    s->to = beyond ? r->to : s->to;
+    r->to = r->from;
+    return status;
+}
+
+/* Does `act` for all pairs that may meet. */
+static enum tri_status each_pair(struct cutting *k, enum tri_status (*act)(struct cutting *k, int32_t i, int32_t j))
 {
     enum tri_status status = TRI_OK;
-    for (int32_t i = 0; i < k->n && status == TRI_OK; i++) {
+    for (int32_t i = 0; i < k->n; i++) {
         const struct check_piece *s = &k->piece[i];
-        double low = fmin(s->from.y, s->to.y) - k->tolerance, high = fmax(s->from.y, s->to.y) + k->tolerance;
-        status = add_cut(k, i, s->from);
-        status = status == TRI_OK ? add_cut(k, i, s->to) : status;
-        for (int32_t j = i + 1; j < k->n && k->piece[j].from.x <= s->to.x + k->tolerance && status == TRI_OK; j++) {
+        for (int32_t j = i + 1; j < k->n && k->piece[j].from.x <= s->to.x + k->tolerance; j++) {
             const struct check_piece *r = &k->piece[j];
-            if (k->n_trials++ > MOST_TRIALS)
-                return TRI_OK;
-            if (fmax(r->from.y, r->to.y) >= low && fmin(r->from.y, r->to.y) <= high)
-                status = meet(k, i, j);
+            if (status != TRI_OK || check_same_place(s->from, s->to) || is_too_long(k))
+                break;
+            k->n_trials++;
+            if (!check_same_place(r->from, r->to) &&
+                fmax(r->from.y, r->to.y) >= fmin(s->from.y, s->to.y) - k->tolerance &&
+                fmin(r->from.y, r->to.y) <= fmax(s->from.y, s->to.y) + k->tolerance)
+                status = act(k, i, j);
         }
     }
     return status;
+}
+
+/* At the ends of all pieces, and where they meet. */
+static enum tri_status find_cuts(struct cutting *k)
+{
+    enum tri_status status = each_pair(k, join);
+    for (int32_t i = 0; i < k->n && status == TRI_OK; i++) {
+        status = add_cut(k, i, k->piece[i].from);
+        status = status == TRI_OK ? add_cut(k, i, k->piece[i].to) : status;
+    }
+    return status == TRI_OK ? each_pair(k, meet) : status;
+}
+
+static void measure(struct cutting *k)
+{
+    for (int32_t i = 0; i < k->n_cuts; i++) {
+        struct cut *cut = &k->cut[i];
+        const struct check_piece *s = &k->piece[cut->piece];
+        double x = s->to.x - s->from.x, y = s->to.y - s->from.y, length = sqrt(x * x + y * y);
+        cut->at = length > 0 ? ((cut->point.x - s->from.x) * x + (cut->point.y - s->from.y) * y) / length : 0;
+    }
 }
 
 /* Step 3. */
@@ -133,6 +173,7 @@ static enum tri_status take_between(struct cutting *k, struct check_pieces *out)
     out->at = tri_check_array(k->n_cuts, sizeof *out->at);
     if (out->at == NULL)
         return TRI_NO_MEMORY;
+    measure(k);
     qsort(k->cut, (size_t)k->n_cuts, sizeof *k->cut, compare_cuts);
     int32_t n = 0;
     for (int32_t i = 1; i < k->n_cuts; i++) {
@@ -155,7 +196,7 @@ enum tri_status tri_check_split_missing(const struct checker *c, struct check_pi
     struct cutting k = {.tolerance = c->tolerance, .n = c->n_missing, .piece = c->missing};
     sort(k.piece, k.n);
     enum tri_status status = find_cuts(&k);
-    if (status == TRI_OK && k.n_trials <= MOST_TRIALS)
+    if (status == TRI_OK && !is_too_long(&k))
         status = take_between(&k, pieces);
     free(k.cut);
     return status;

@@ -10,7 +10,7 @@ struct check_pieces {
 };
 
 /* c->missing, cut wherever pieces meet and each but once: they share nothing then but end points, up to rounding. None
- * where that would take too long. About n sqrt(n) steps where they are short and apart. */
+ * where that would take too long, or too much memory. About n sqrt(n) steps where they are short and apart. */
 enum tri_status tri_check_split_missing(const struct checker *c, struct check_pieces *pieces);
 
 #endif
