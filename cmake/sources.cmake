@@ -152,11 +152,13 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/sweep/park.c
     sched/sweep/spool.c
     sched/sweep/checkpoint.c
+    sched/sweep/carry_halt.c
     sched/sweep/state.c
     sched/sweep/ahead.c
     sched/sweep/remain.c
     sched/sweep/sweep.c
     sched/worklist.c
+    sched/halt.c
     sched/phase.c
     sched/ranks/carrier.c
     sched/ranks/borrow.c

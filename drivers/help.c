@@ -61,7 +61,7 @@ static const char exit_codes[] =
 /* Where there are long options. */
 static const char further_exit_codes[] =
     "Exit code: 0; 1 after an error; 124 when --time-limit is over; 128 + n after signal n (one that would end\n"
-    "a program: it ends within a second, with --checkpoint after the phase at hand, and says how far it got).\n"
+    "a program: it ends within a second, with --checkpoint once that is written, and says how far it got).\n"
     "Files appear together, when all are complete and nothing can fail any more: with any other code than 0 no\n"
     "file has been touched, but partial meshes and checkpoints where they are asked for, and devices and pipes.\n";
 

@@ -14,12 +14,6 @@
 
 enum { GONE = -2 }; /* in phase.block_of: the triangle is no more */
 
-enum progress {
-    TASK_NEW,    /* waits for its first room */
-    TASK_PAUSED, /* waits for more room, or for what others hold */
-    TASK_ENDED
-};
-
 /* A block at work. Every field is its own while the phase runs; others read it before and after. */
 struct task {
     int32_t block;
@@ -33,13 +27,14 @@ struct task {
     struct tri_refine_options options;
     struct tri_refine_report report;
     struct tri_refiner *refiner;
+    struct tri_pause *pause; /* where a new refiner goes on; NULL: at the beginning */
     struct par_ids left;  /* what gate and fence left */
     struct par_ids given_up;
     struct par_ids changed, asked; /* where others hold a part of the block: made by it, waited for */
     bool lost;              /* no memory for one of these lists */
     struct tri_part part;
-    enum progress progress;
-    int pauses;             /* so far, for triangles */
+    enum par_progress progress;
+    int32_t pauses;         /* so far, for triangles */
     enum tri_status status;
     struct tri_error error;
     double seconds;
@@ -354,19 +349,26 @@ static int32_t refill(struct task *task)
     return more;
 }
 
+static enum tri_status extend_room(struct phase *p, struct task *task, struct tri_error *error)
+{
+    int32_t more = task->progress == PAR_NEW ? task->expected : refill(task);
+    if (p->state->options->tight_room > 0)
+        more = p->state->options->tight_room;
+    p->state->report->pauses += task->progress == PAR_FULL;
+    return par_room_extend(&task->view.room, &p->state->spare, p->state->mesh, more, error);
+}
+
 /* Room for the tasks that wait for it, in canonical order. */
 static enum tri_status deal_room(struct phase *p, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     for (int32_t i = 0; !status && i < p->n_tasks; i++) {
         struct task *task = &p->tasks[i];
-        if (task->progress == TASK_ENDED || task->asked.n > 0)
+        if (task->progress == PAR_ENDED)
             continue;
-        int32_t more = task->progress == TASK_NEW ? task->expected : refill(task);
-        if (p->state->options->tight_room > 0)
-            more = p->state->options->tight_room;
-        p->state->report->pauses += task->progress == TASK_PAUSED;
-        status = par_room_extend(&task->view.room, &p->state->spare, p->state->mesh, more, error);
+        if (task->asked.n == 0)
+            status = extend_room(p, task, error);
+        task->progress = PAR_READY;
     }
     return status;
 }
@@ -406,22 +408,41 @@ static bool watch_owners(struct phase *p)
     return true;
 }
 
+static void drop_pause(struct task *task)
+{
+    if (task->pause)
+        tri_pause_free(task->pause);
+    free(task->pause);
+    task->pause = NULL;
+}
+
+static enum tri_status new_refiner(struct task *task)
+{
+    enum tri_status status =
+        tri_refiner_new(&task->refiner, &task->view.mesh, &task->options, &task->report, &task->error);
+    if (!status && task->pause)
+        tri_refiner_go_on(task->refiner, task->pause);
+    if (!status)
+        drop_pause(task); /* nothing is left in it */
+    return status;
+}
+
 static void run_task(struct phase *p, struct task *task)
 {
     double began = tri_seconds();
-    assert(task->progress != TASK_ENDED);
+    assert(task->progress == PAR_READY);
     task->owners = (struct tri_owners){p->mark, task->block + 1};
     task->options.owners = p->mark ? &task->owners : NULL;
     par_view_begin(&task->view, p->state->mesh);
     task->asked.n = 0;
     task->status = TRI_OK;
     if (!task->refiner)
-        task->status = tri_refiner_new(&task->refiner, &task->view.mesh, &task->options, &task->report, &task->error);
+        task->status = new_refiner(task);
     if (!task->status)
         task->status = tri_refiner_run(task->refiner, &task->error);
     par_view_end(&task->view);
-    task->progress = task->status == TRI_NO_ROOM ? TASK_PAUSED : TASK_ENDED;
-    if (task->progress == TASK_ENDED) {
+    task->progress = task->status == TRI_NO_ROOM ? PAR_FULL : task->status == TRI_STOPPED ? PAR_READY : PAR_ENDED;
+    if (task->progress == PAR_ENDED) {
         tri_refiner_free(task->refiner);
         task->refiner = NULL;
     }
@@ -452,30 +473,34 @@ static void run_next(void *context, size_t index)
 {
     struct phase *p = context;
     struct task *task = &p->tasks[p->order[index]];
-    if (task->progress == TASK_ENDED)
+    if (task->progress != PAR_READY || tri_stop_is_asked(p->state->mesh->stop))
         return;
     run_task(p, task);
-    if (task->progress == TASK_ENDED)
+    if (task->progress == PAR_ENDED)
         note_end(p, task);
 }
 
-/* Runs every task that has not ended; returns whether any waits for room. */
-static bool run_tasks(struct phase *p)
+/* Runs every task that is ready, until it has ended, is full, or somebody asks for the end. */
+static void run_tasks(struct phase *p)
 {
     double began = tri_seconds();
-    bool waiting = false;
     struct par_report *report = p->state->report;
     double shared[PAR_SHARINGS]; /* blocks are no equal shares */
     memcpy(shared, report->seconds_shared, sizeof shared);
     p->caller = &here;
     tri_execute(&p->state->executor, (size_t)p->n_tasks, run_next, p);
     memcpy(report->seconds_shared, shared, sizeof shared);
-    for (int32_t i = 0; i < p->n_tasks; i++)
-        waiting |= p->tasks[i].progress == TASK_PAUSED;
     double seconds = tri_seconds() - began;
     report->seconds_refine += seconds;
     report->phase_seconds[p->phase] += seconds;
-    return waiting;
+}
+
+static bool is_any(const struct phase *p, enum par_progress progress)
+{
+    for (int32_t i = 0; i < p->n_tasks; i++)
+        if (p->tasks[i].progress == progress)
+            return true;
+    return false;
 }
 
 struct queued {
@@ -687,6 +712,7 @@ static enum tri_status collect(struct phase *p, struct tri_error *error)
         free(task->given_up.item);
         free(task->changed.item);
         free(task->asked.item);
+        drop_pause(task);
         tri_refiner_free(task->refiner);
     }
     return status || memory ? status : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for bad triangles");
@@ -703,39 +729,127 @@ static enum tri_status begin_tasks(struct phase *p, struct tri_error *error)
     for (int32_t i = 0; memory && i < p->n_tasks; i++)
         set_up(p, &p->tasks[i]);
     assert(!p->state->options->margin || blocks_are_independent(p));
-    if (!memory || !order_tasks(p))
+    if (!memory)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks of a phase");
     report->seconds_find += assigned - began;
     report->seconds_deal += tri_seconds() - assigned;
     return TRI_OK;
 }
 
-/* Gives room and runs, again and again, until no task waits. */
+/* Room for those that wait, once all others have ended: so what each gets does not depend on when others stopped. */
+static enum tri_status give_room(struct phase *p, struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    double dealing = tri_seconds();
+    if (!is_any(p, PAR_READY))
+        status = deal_room(p, error);
+    if (!status && !watch_owners(p))
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the owners of triangles");
+    p->state->report->seconds_room += tri_seconds() - dealing;
+    return status;
+}
+
+/* Gives room and runs, again and again, until no task waits. TRI_STOPPED: some are ready to go on. */
 static enum tri_status run_to_end(struct phase *p, struct tri_error *error)
 {
-    double *seconds_room = &p->state->report->seconds_room, reserving = tri_seconds();
+    double reserving = tri_seconds();
     enum tri_status status = reserve_room(p, error);
-    *seconds_room += tri_seconds() - reserving;
-    for (bool waiting = true; waiting && !status;) {
-        double dealing = tri_seconds();
-        status = deal_room(p, error);
-        if (!status && !watch_owners(p))
-            status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the owners of triangles");
-        *seconds_room += tri_seconds() - dealing;
-        waiting = !status && run_tasks(p);
-        status = status ? status : fetch_more(p, error);
-    }
+    p->state->report->seconds_room += tri_seconds() - reserving;
+    do {
+        status = status ? status : give_room(p, error);
+        if (status)
+            break;
+        run_tasks(p);
+        status = is_any(p, PAR_READY) ? tri_fail_stopped(error) : fetch_more(p, error);
+    } while (!status && is_any(p, PAR_FULL));
     free(p->mark);
     p->mark = NULL;
     return status;
 }
 
+/* --- a phase that is halted, and goes on */
+
+/* The tasks of a phase that has been halted. */
+static enum tri_status take_up(struct phase *p, struct tri_error *error)
+{
+    struct par_halt *halt = &p->state->halt;
+    p->tasks = calloc((size_t)halt->n_blocks, sizeof *p->tasks);
+    if (!p->tasks)
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the blocks of a phase");
+    free(p->worklist);
+    p->worklist = halt->worklist;
+    for (int32_t i = 0, at = 0; i < halt->n_blocks; at += halt->block[i++].n_worklist) {
+        const struct par_halted *h = &halt->block[i];
+        p->tasks[p->n_tasks++] = (struct task){.block = h->block, .worklist = p->worklist + at,
+                                               .n_worklist = h->n_worklist, .expected = h->expected,
+                                               .pauses = h->pauses, .progress = h->progress, .seconds = h->seconds,
+                                               .report = h->report, .view.room = h->room, .left = h->left,
+                                               .pause = h->pause};
+        set_up(p, &p->tasks[i]);
+        p->done += h->progress == PAR_ENDED ? h->expected : 0;
+    }
+    free(halt->block);
+    *halt = (struct par_halt){0};
+    return TRI_OK;
+}
+
+/* A refiner is taken apart: its task may go on in another process. */
+static bool leave_refiner(struct task *task)
+{
+    if (!task->refiner)
+        return true;
+    assert(!task->pause);
+    task->pause = malloc(sizeof *task->pause);
+    if (!task->pause)
+        return false;
+    tri_refiner_leave(task->refiner, task->pause);
+    tri_refiner_free(task->refiner);
+    task->refiner = NULL;
+    return true;
+}
+
+static bool has_failed(const struct task *task)
+{
+    return task->lost || (task->status && task->status != TRI_NO_ROOM && task->status != TRI_STOPPED);
+}
+
+/* Where all tasks are, for who goes on; nothing is left here. False: one has failed, or there is no memory, and it is
+ * not halted. */
+static bool halt_tasks(struct phase *p)
+{
+    struct par_halt *halt = &p->state->halt;
+    struct par_halted *block = calloc((size_t)p->n_tasks, sizeof *block);
+    bool memory = block;
+    for (int32_t i = 0; i < p->n_tasks; i++)
+        memory = memory && !has_failed(&p->tasks[i]) && leave_refiner(&p->tasks[i]);
+    if (!memory) {
+        free(block);
+        return false;
+    }
+    *halt = (struct par_halt){.block = block, .worklist = p->worklist};
+    for (int32_t i = 0; i < p->n_tasks; i++) {
+        const struct task *task = &p->tasks[i];
+        block[halt->n_blocks++] = (struct par_halted){task->block, task->n_worklist, task->expected, task->pauses,
+                                                      task->progress, task->seconds, task->report, task->view.room,
+                                                      task->left, task->pause};
+        halt->n_worklist += task->n_worklist;
+    }
+    p->worklist = NULL;
+    p->n_tasks = 0;
+    return true;
+}
+
+/* Begins, or goes on; halts where that is wanted, or collects what tasks have done. */
 static enum tri_status run_phase(struct phase *p, struct tri_error *error)
 {
-    enum tri_status status = begin_tasks(p, error);
+    enum tri_status status = p->state->halt.n_blocks > 0 ? take_up(p, error) : begin_tasks(p, error);
     if (status)
         return status;
-    status = run_to_end(p, error);
+    if (!order_tasks(p))
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the order of blocks");
+    status = status ? status : run_to_end(p, error);
+    if (status == TRI_STOPPED && p->state->may_halt && halt_tasks(p))
+        return status;
     double merging = tri_seconds();
     enum tri_status collected = collect(p, error);
     p->state->report->seconds_merge += tri_seconds() - merging;

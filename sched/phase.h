@@ -6,6 +6,7 @@
 #ifndef SCHED_PHASE_H
 #define SCHED_PHASE_H
 
+#include "sched/halt.h"
 #include "sched/schedule.h"
 #include "sched/partition.h"
 #include "sched/worklist.h"
@@ -76,6 +77,8 @@ struct par_state {
     bool amid;               /* in this stage's schedule: `cells` are its blocks before the first round */
     int round, phase;        /* of that, the second from 0 */
     struct tri_pause *paused; /* where a sequential call goes on that a checkpoint's state is amid; else NULL */
+    bool may_halt;           /* a phase that is stopped is to be kept in `halt`, rather than ended as it is */
+    struct par_halt halt;    /* of phase `phase`, which goes on from there */
     struct par_share *share; /* NULL: all blocks are done here, with all that they may look at */
     int32_t n_kept;          /* vertices there were before */
     bool sizes_first;        /* a schedule for sizes comes before that for all bounds (tri_sizes_come_first) */
@@ -102,7 +105,10 @@ uint64_t par_key_of(const struct par_partition *partition, int round, int phase,
  * what is left are the same, up to ids. For blocks change only what lies in their fences, and fences of two columns
  * meet only if the columns are neighbours or the same; and a block finds its share of the worklist in the same order,
  * that of the keys: by round, by the column of who left it, by phase, by row, and as they were left. Only a column or
- * its neighbours leave something for it. */
+ * its neighbours leave something for it.
+ *
+ * TRI_STOPPED: somebody asks for the end, between any two points; where the state may halt the phase is in its `halt`
+ * then, and the next call goes on with it (sched/halt.h). */
 enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int phase, int32_t only,
                           struct tri_error *error);
 

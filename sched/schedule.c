@@ -288,14 +288,26 @@ static void let_stop(struct par_state *state)
         par_state_let_stop(checkpoint_of(state), state);
 }
 
+/* Of the whole mesh a state may be kept between any two points. */
+static enum tri_status run_phase(struct par_state *state, const struct par_partition *partition,
+                                 struct tri_error *error)
+{
+    struct par_checkpoint *checkpoint = state->amid ? checkpoint_of(state) : NULL;
+    return checkpoint ? par_state_phase(checkpoint, state, partition, error)
+                      : par_phase(state, partition, state->phase, TRI_NONE, error);
+}
+
+/* A phase that has been halted may have all of the worklist in its hands. */
+static bool is_work_left(const struct par_state *state) { return state->worklist.n > 0 || state->halt.n_blocks > 0; }
+
 static enum tri_status run_phases(struct par_state *state, const struct par_partition *partition,
                                   struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    for (; !status && state->phase < PAR_PHASES && state->worklist.n > 0; state->phase++) {
+    for (; !status && state->phase < PAR_PHASES && is_work_left(state); state->phase++) {
         status = state->amid ? come_to_border(state, error) : TRI_OK;
         par_tell(state, state->phase + 1);
-        status = status ? status : par_phase(state, partition, state->phase, TRI_NONE, error);
+        status = status ? status : run_phase(state, partition, error);
     }
     return status;
 }
@@ -438,6 +450,7 @@ static enum tri_status finish_schedule(struct par_state *state, const struct tri
                                        enum tri_status status, struct tri_error *error)
 {
     double last = tri_seconds();
+    par_halt_drop(&state->halt, &state->spare); /* where it has been stopped; a state that is kept has it */
     if (!status && state->worklist.n > 0) { /* in the order of the worklist, which ids do not show in */
         par_room_mark(&state->spare, state->mesh, &state->executor);
         status = refine_rest(state, quality, false, top, error);
@@ -740,6 +753,7 @@ static void clean_up(struct par_state *state)
     if (checkpoint_of(state))
         par_state_end(checkpoint_of(state), state);
     par_state_drop_pause(state);
+    par_halt_drop(&state->halt, &state->spare);
     if (state->options->park)
         *state->options->park = state->park;
     else

@@ -367,20 +367,22 @@ struct way {
     bool has_sink, by_block;
     int64_t memory, max_steiner;
     enum par_way expected; /* of what has never been stopped */
+    int32_t tight_room;    /* as in par_options */
 };
 
 static const struct way ways[] = {
-    {{"letter.poly", 30, 6000, 300, false, false, 0}, false, true, 0, -1, PAR_IN_MEMORY},
-    {{"section.poly", 28, 8000, 300, false, true, 0}, true, false, 0, -1, PAR_IN_MEMORY},
-    {{"naca2412_box.poly", 32, 6000, 256, false, false, 0}, true, false, 1000, -1, PAR_PARKED}, /* two schedules */
-    {{"cracked_plate.poly", 28, 6000, 256, false, false, 1}, true, false, 1000, -1, PAR_PARKED}, /* swept at first */
-    {{"section.poly", 35, 6000, 300, true, true, 0}, false, false, 0, -1, PAR_IN_MEMORY}, /* beyond the schedule */
-    {{"letter.poly", 20, 6000, 300, false, false, 0}, true, false, 0, 1500, PAR_IN_MEMORY}, /* no schedule */
+    {{"letter.poly", 30, 6000, 300, false, false, 0}, false, true, 0, -1, PAR_IN_MEMORY, 0},
+    {{"section.poly", 28, 8000, 300, false, true, 0}, true, false, 0, -1, PAR_IN_MEMORY, 0},
+    {{"naca2412_box.poly", 32, 6000, 256, false, false, 0}, true, false, 1000, -1, PAR_PARKED, 0}, /* two schedules */
+    {{"cracked_plate.poly", 28, 6000, 256, false, false, 1}, true, false, 1000, -1, PAR_PARKED, 0}, /* swept at first */
+    {{"section.poly", 35, 6000, 300, true, true, 0}, false, false, 0, -1, PAR_IN_MEMORY, 0}, /* beyond the schedule */
+    {{"letter.poly", 20, 6000, 300, false, false, 0}, true, false, 0, 1500, PAR_IN_MEMORY, 0}, /* no schedule */
+    {{"letter.poly", 33, 18000, 1000, false, false, 0}, false, true, 0, -1, PAR_IN_MEMORY, 400}, /* amid large blocks */
 };
 
 enum { N_WAYS = sizeof ways / sizeof *ways };
 
-/* A run to be stopped after so many phases were told of. */
+/* A run to be stopped after so many phases were told of, or once so many have asked whether it is to stop. */
 struct whole_run {
     const struct way *way;
     struct par_checkpoint *checkpoint;
@@ -427,7 +429,8 @@ static enum tri_status refine_whole(struct whole_run *r)
     const struct tri_sink sink = {&r->taker, begin, take, end};
     const struct tri_stop stop = {is_told_enough, r};
     struct par_options options = {.threads = r->threads, .cell_triangles = r->way->trial.block, .memory = r->memory,
-                                  .by_block = r->way->by_block, .sink = r->way->has_sink ? &sink : NULL,
+                                  .by_block = r->way->by_block, .tight_room = r->way->tight_room,
+                                  .sink = r->way->has_sink ? &sink : NULL,
                                   .scratch = ".", .progress = count_phases, .progress_user = r,
                                   .checkpoint = r->checkpoint};
     struct par_report report;
@@ -448,7 +451,8 @@ static struct whole_run whole_run_of(const struct way *way, struct par_checkpoin
                               .most_told = INT32_MAX, .taker = {.fail_at = -1}};
 }
 
-/* Stopped again and again; with other threads each time, and with the mesh in memory or in files. */
+/* Stopped again and again, in a phase or between two; with other threads each time, and with the mesh in memory or in
+ * files. A run from a state that stops in its first phase has done nothing. */
 static void go_on_until_done(const struct way *way, const struct whole_run *wanted)
 {
     enum tri_status status = TRI_STOPPED;
@@ -459,7 +463,7 @@ static void go_on_until_done(const struct way *way, const struct whole_run *want
         open_it(&c, rounds > 0);
         struct whole_run r = whole_run_of(way, &c);
         with_state += par_checkpoint_has_state(&c);
-        r.most_told = par_checkpoint_has_state(&c) ? rounds % 2 : rounds + 1;
+        r.most_told = par_checkpoint_has_state(&c) ? rounds % 3 : rounds + 1;
         r.threads = rounds % 3 + 1;
         if (c.manifest.kind == PAR_WHOLE_STATE && way->has_sink)
             r.memory = rounds % 2 * 1000;
@@ -484,7 +488,7 @@ static void test_whole_meshes_go_on(void **state)
     }
 }
 
-/* Stopped again and again amid the call of one that has no schedule, or what comes after it. */
+/* Stopped again and again amid phases, and amid the call of one that has no schedule, or what comes after it. */
 static void test_calls_go_on(void **state)
 {
     (void)state;
@@ -543,7 +547,7 @@ static void test_a_finished_mesh_is_kept(void **state)
 static void test_a_sweep_is_not_taken_for_a_whole(void **state)
 {
     (void)state;
-    struct way way = {{"letter.poly", 30, 20000, 500, false, false, 0}, true, false, 0, -1, PAR_IN_MEMORY};
+    struct way way = {{"letter.poly", 30, 20000, 500, false, false, 0}, true, false, 0, -1, PAR_IN_MEMORY, 0};
     struct par_checkpoint c;
     remove_all();
     open_it(&c, false);

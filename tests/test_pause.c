@@ -33,6 +33,12 @@ static struct kept keep(const struct tri_refiner *refiner)
     return kept;
 }
 
+static void drop(struct kept *kept)
+{
+    for (int k = 0; k < TRI_PAUSE_ARRAYS; k++)
+        free(kept->array[k]);
+}
+
 static struct tri_pause restored(const struct kept *kept, const struct tri_mesh *mesh)
 {
     struct tri_pause pause = kept->head;
@@ -43,7 +49,6 @@ static struct tri_pause restored(const struct kept *kept, const struct tri_mesh 
     for (int k = 0; k < TRI_PAUSE_ARRAYS; k++) {
         if (to[k].bytes > 0)
             memcpy(to[k].at, kept->array[k], to[k].bytes);
-        free(kept->array[k]);
     }
     return pause;
 }
@@ -61,6 +66,20 @@ static struct tri_mesh coarse(const char *name, const struct tri_options *option
     return support_generate(pslg, &coarse, &report);
 }
 
+/* Does it show what has been kept? */
+static void assert_shows(const struct tri_refiner *refiner, const struct kept *kept)
+{
+    struct kept again = keep(refiner);
+    struct tri_pause_array bytes[TRI_PAUSE_ARRAYS];
+    tri_pause_arrays(&kept->head, bytes);
+    const struct tri_pause *head = &kept->head;
+    again.head.queue.block_capacity = head->queue.block_capacity; /* of the arrays, which have been made anew */
+    assert_memory_equal(&again.head, head, sizeof *head);
+    for (int k = 0; k < TRI_PAUSE_ARRAYS; k++)
+        assert_memory_equal(again.array[k], kept->array[k], bytes[k].bytes);
+    drop(&again);
+}
+
 /* A new one in the place of the old. */
 static struct tri_refiner *moved(struct tri_refiner *refiner, struct tri_mesh *mesh,
                                  const struct tri_refine_options *options, struct tri_refine_report *report)
@@ -72,6 +91,8 @@ static struct tri_refiner *moved(struct tri_refiner *refiner, struct tri_mesh *m
     struct tri_pause pause = restored(&kept, mesh);
     tri_refiner_go_on(refiner, &pause);
     tri_pause_free(&pause); /* nothing is left in it */
+    assert_shows(refiner, &kept);
+    drop(&kept);
     return refiner;
 }
 
@@ -186,8 +207,26 @@ static enum tri_status not_now(void *user, struct tri_mesh *mesh, struct tri_err
     return TRI_NO_ROOM;
 }
 
-/* Before each point that needs room there is none: so it pauses also behind the split of a subsegment, with a triangle
- * in hand, when others wait to be tested for encroachment. */
+/* Runs a refiner that finds no room before each point that needs some: so it pauses also behind the split of a
+ * subsegment, with a triangle in hand, when others wait to be tested for encroachment. Goes on with a new one. */
+static struct tri_refiner *step(struct tri_refiner *refiner, struct tri_mesh *mesh,
+                                const struct tri_refine_options *options, struct tri_refine_report *report,
+                                int *pauses)
+{
+    enum tri_status status;
+    mesh->vertex_capacity = mesh->n_vertices;
+    for (*pauses = 0; (status = tri_refiner_run(refiner, NULL)) == TRI_NO_ROOM; ++*pauses) {
+        mesh->vertex_capacity = mesh->n_vertices;
+        assert_int_equal(tri_mesh_reserve_vertices(mesh, 1, NULL), TRI_OK);
+        mesh->vertex_capacity = mesh->n_vertices + 1;
+        assert_int_equal(tri_mesh_reserve_triangles(mesh, 2, NULL), TRI_OK);
+        assert_int_equal(tri_mesh_reserve_subs(mesh, 1, NULL), TRI_OK);
+        refiner = moved(refiner, mesh, options, report);
+    }
+    assert_int_equal(status, TRI_OK);
+    return refiner;
+}
+
 static void compare_step_by_step(const char *name, const struct tri_options *options)
 {
     struct tri_pslg pslg, same;
@@ -195,20 +234,12 @@ static void compare_step_by_step(const char *name, const struct tri_options *opt
     struct tri_refine_options stepping = options->quality;
     struct tri_refine_report report;
     struct tri_refiner *refiner;
-    enum tri_status status;
+    int pauses;
     assert_int_equal(tri_refine(&twin, &options->quality, &report, NULL), TRI_OK);
     stepping.more_room = not_now;
     assert_int_equal(tri_refiner_new(&refiner, &mesh, &stepping, &report, NULL), TRI_OK);
-    while ((status = tri_refiner_run(refiner, NULL)) == TRI_NO_ROOM) {
-        mesh.vertex_capacity = mesh.n_vertices;
-        assert_int_equal(tri_mesh_reserve_vertices(&mesh, 1, NULL), TRI_OK);
-        mesh.vertex_capacity = mesh.n_vertices + 1;
-        assert_int_equal(tri_mesh_reserve_triangles(&mesh, 2, NULL), TRI_OK);
-        assert_int_equal(tri_mesh_reserve_subs(&mesh, 1, NULL), TRI_OK);
-        refiner = moved(refiner, &mesh, &stepping, &report);
-    }
+    refiner = step(refiner, &mesh, &stepping, &report, &pauses);
     tri_refiner_free(refiner);
-    assert_int_equal(status, TRI_OK);
     support_assert_same_bytes(&mesh, &twin);
     tri_mesh_free(&mesh);
     tri_mesh_free(&twin);
@@ -228,11 +259,76 @@ static void test_step_by_step(void **state)
         }
 }
 
+/* Points on a circle, whose centre has all of it for a cavity; and a strip beside it. */
+static struct tri_pslg disk(void)
+{
+    enum { CORNERS = 200 };
+    struct tri_pslg pslg = support_pslg(CORNERS + 4, CORNERS + 4, 0, 0);
+    for (int32_t i = 0; i < CORNERS; i++) {
+        const double angle = 2 * 3.14159265358979324 * i / CORNERS;
+        support_add_point(&pslg, cos(angle), sin(angle));
+        support_add_segment(&pslg, i, (i + 1) % CORNERS);
+    }
+    for (int32_t i = 0; i < 4; i++) {
+        support_add_point(&pslg, i % 3 == 0 ? -3 : -2, i < 2 ? -2 : -1.9);
+        support_add_segment(&pslg, CORNERS + i, CORNERS + (i + 1) % 4);
+    }
+    return pslg;
+}
+
+static void add_deferred(void *user, tri_triangle_id triangle)
+{
+    int64_t *sum = user;
+    *sum += triangle + 1;
+}
+
+/* A block of a phase: what it knows of the fence, and who has granted credit, goes on with it. */
+static void test_within_a_fence(void **state)
+{
+    (void)state;
+    int64_t deferred[2] = {0, 0};
+    struct tri_refine_report report[2];
+    struct tri_mesh mesh[2];
+    for (int stepping = 0; stepping < 2; stepping++) {
+        struct tri_options options = support_quality(33, 0);
+        struct tri_report made;
+        struct tri_pslg pslg = disk();
+        struct tri_refiner *refiner;
+        int pauses = 0;
+        options.refine = false;
+        mesh[stepping] = support_generate(&pslg, &options, &made);
+        assert_int_equal(tri_refine_prepare(&mesh[stepping], NULL, NULL), TRI_OK);
+        const double unit = mesh[stepping].unit;
+        const struct tri_fence fence = {-9 / unit, -9 / unit, 0.7 / unit, 0.7 / unit};
+        options.quality.fence = &fence;
+        options.quality.more_room = stepping ? not_now : NULL;
+        options.quality.deferred = add_deferred;
+        options.quality.deferred_user = &deferred[stepping];
+        assert_int_equal(
+            tri_refiner_new(&refiner, &mesh[stepping], &options.quality, &report[stepping], NULL), TRI_OK);
+        if (stepping)
+            refiner = step(refiner, &mesh[stepping], &options.quality, &report[stepping], &pauses);
+        assert_int_equal(tri_refiner_run(refiner, NULL), TRI_OK);
+        struct tri_pause pause;
+        tri_refiner_show(refiner, &pause);
+        assert_true(pause.walled_off.n > 0 && pause.met.n > 0);
+        assert_int_equal(pauses > 5, stepping);
+        tri_refiner_free(refiner);
+        tri_pslg_free(&pslg);
+    }
+    support_assert_same_bytes(&mesh[0], &mesh[1]);
+    assert_memory_equal(&report[0], &report[1], sizeof *report);
+    assert_int_equal(deferred[0], deferred[1]);
+    tri_mesh_free(&mesh[0]);
+    tri_mesh_free(&mesh[1]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_goes_on_elsewhere),
         cmocka_unit_test(test_step_by_step),
+        cmocka_unit_test(test_within_a_fence),
         cmocka_unit_test(test_heads_that_cannot_be),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,12 +1,13 @@
-/* A refiner between two runs: all that the next run depends on, beside the mesh and the options (a barrier,
- * refine.c, only saves searches). Who keeps it in a file
- * keeps the struct and then the arrays; who reads it gives it to a new refiner. */
+/* A refiner between two runs: all that the next run depends on, beside the mesh and the options (a barrier, refine.c,
+ * only saves searches). Who keeps it in a file keeps the struct and then the arrays; who reads it gives it to a new
+ * refiner. */
 #ifndef TRIANGLE_PAUSE_H
 #define TRIANGLE_PAUSE_H
 
 #include <stdbool.h>
 
 #include "triangle/bad_queue.h"
+#include "triangle/entry_set.h"
 #include "triangle/quality.h"
 #include "triangle/refine.h"
 
@@ -20,16 +21,20 @@ struct tri_pause {
     struct tri_bad_queue queue;
     tri_sub_id *encroached;
     int32_t n_encroached, encroached_capacity;
+    struct tri_entry_set walled_off, met; /* within a fence; the second: credit.h */
 };
 
 /* The refiner's arrays are borrowed, until it runs again or is freed. */
 void tri_refiner_show(const struct tri_refiner *refiner, struct tri_pause *pause);
 
+/* The same with arrays of the pause's own: the refiner can be freed and nothing else. */
+void tri_refiner_leave(struct tri_refiner *refiner, struct tri_pause *pause);
+
 /* What a new refiner of the same options, on the mesh as it was, goes on with: the arrays are its own then. The report
  * becomes what it was. */
 void tri_refiner_go_on(struct tri_refiner *refiner, struct tri_pause *pause);
 
-enum { TRI_PAUSE_ARRAYS = 4, TRI_PAUSE_LAST_STAGE = 4, TRI_PAUSE_LAST_STEP = 2 }; /* as refine.c has them */
+enum { TRI_PAUSE_ARRAYS = 6, TRI_PAUSE_LAST_STAGE = 4, TRI_PAUSE_LAST_STEP = 2 }; /* as refine.c has them */
 
 struct tri_pause_array {
     void *at;

@@ -1300,7 +1300,7 @@ void tri_refiner_free(struct tri_refiner *r)
 
 void tri_refiner_show(const struct tri_refiner *r, struct tri_pause *pause)
 {
-    assert(r->walled_off.n == 0 && !r->options->fence && !r->options->urgent);
+    assert(!r->options->urgent);
     memset(pause, 0, sizeof *pause);
     memcpy(&pause->report, r->report, sizeof pause->report);
     pause->bounds = r->criterion.bounds;
@@ -1320,6 +1320,17 @@ void tri_refiner_show(const struct tri_refiner *r, struct tri_pause *pause)
     pause->encroached = r->encroached;
     pause->n_encroached = r->n_encroached;
     pause->encroached_capacity = r->encroached_capacity;
+    pause->walled_off = r->walled_off;
+    pause->met = r->credit.met;
+}
+
+void tri_refiner_leave(struct tri_refiner *r, struct tri_pause *pause)
+{
+    tri_refiner_show(r, pause);
+    r->queue = (struct tri_bad_queue){0};
+    r->encroached = NULL;
+    r->n_encroached = r->encroached_capacity = 0;
+    r->walled_off = r->credit.met = (struct tri_entry_set){0};
 }
 
 void tri_refiner_go_on(struct tri_refiner *r, struct tri_pause *pause)
@@ -1344,9 +1355,12 @@ void tri_refiner_go_on(struct tri_refiner *r, struct tri_pause *pause)
     r->encroached = pause->encroached;
     r->n_encroached = pause->n_encroached;
     r->encroached_capacity = pause->encroached_capacity;
+    r->walled_off = pause->walled_off;
+    r->credit.met = pause->met;
     pause->queue = (struct tri_bad_queue){0};
     pause->encroached = NULL;
     pause->n_encroached = pause->encroached_capacity = 0;
+    pause->walled_off = pause->met = (struct tri_entry_set){0};
 }
 
 enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,

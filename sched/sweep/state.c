@@ -6,11 +6,12 @@
 #include <string.h>
 
 #include "sched/phase.h"
+#include "sched/sweep/carry_halt.h"
 #include "triangle/clock.h"
 #include "triangle/grow.h"
 #include "triangle/pause.h"
 
-static const uint64_t STATE = UINT64_C(0x3765746174736974); /* a version, too */
+static const uint64_t STATE = UINT64_C(0x3865746174736974); /* a version, too */
 
 /* --- of which run */
 
@@ -62,6 +63,7 @@ struct head {
     uint64_t word;
     int64_t odd, stage, amid, paused, round, phase, numbered; /* the first: 0, or the column of a sweep */
     int64_t n_vertices, n_triangles, n_subs, n_worklist, n_keys, n_held, n_spare[PAR_KINDS];
+    int64_t n_halted; /* blocks of a phase that has been halted; 0: none has */
     int64_t tiles_vertices, tiles_triangles, tiles_segments;
     int64_t counts_remaining, n_remaining, remained[TRI_EXCUSES + 1];
     int64_t n_schedules, rounds, levels, schedule, prerefined, pauses, most_live, deferred, left_over;
@@ -104,10 +106,11 @@ static struct head head_of(const struct par_state *state, const struct par_tiles
                      .n_schedules = state->n_schedules, .radius = state->radius};
     set_report(&h, state->report);
     for (int k = 0; k < PAR_KINDS; k++) {
-        assert(state->spare.ranges[k].dealt == 0); /* no block is at work */
+        assert(state->spare.ranges[k].dealt == 0 || state->halt.n_blocks > 0); /* no block is at work */
         h.n_spare[k] = state->spare.ranges[k].n;
     }
     if (!tiles) {
+        h.n_halted = state->halt.n_blocks;
         h.cells = cells_of(&state->cells);
         h.first = cells_of(&state->report->partition);
         return h;
@@ -141,12 +144,26 @@ static void carry_mesh(struct par_state_file *f, const struct head *h, struct tr
     par_carry(f, m->sub, (size_t)h->n_subs * sizeof *m->sub);
 }
 
-static void carry_pause(struct par_state_file *f, const struct tri_pause *pause)
+static struct par_carried_counts counts_of(const struct head *h)
 {
-    struct tri_pause_array array[TRI_PAUSE_ARRAYS];
-    tri_pause_arrays(pause, array);
-    for (int k = 0; k < TRI_PAUSE_ARRAYS; k++)
-        par_carry(f, array[k].at, array[k].bytes);
+    return (struct par_carried_counts){h->n_triangles, h->n_subs, h->cells.n_columns * h->cells.n_rows};
+}
+
+/* Where the call at hand is. */
+static enum tri_status carry_call(struct par_state_file *f, const struct head *h, struct par_state *state,
+                                  struct tri_error *error)
+{
+    const struct par_carried_counts counts = counts_of(h);
+    const int64_t listed = h->amid ? h->n_worklist : h->n_triangles; /* what the call goes through */
+    return h->paused ? par_carry_pause(f, &state->paused, &counts, listed, error) : TRI_OK;
+}
+
+/* Where the phase at hand is. */
+static enum tri_status carry_halt(struct par_state_file *f, const struct head *h, struct par_state *state,
+                                  struct tri_error *error)
+{
+    const struct par_carried_counts counts = counts_of(h);
+    return h->n_halted > 0 ? par_carry_halt(f, &state->halt, &state->spare, &counts, h->n_halted, error) : TRI_OK;
 }
 
 /* tiles: NULL, or those of a sweep. */
@@ -181,16 +198,10 @@ static enum tri_status put(struct par_state_file *f, void *user, struct tri_erro
 {
     const struct cargo *cargo = user;
     struct head h = head_of(cargo->state, cargo->tiles, *cargo->odd);
-    (void)error;
     par_carry_head(f, &h, sizeof h);
-    if (h.paused) {
-        struct tri_pause pause;
-        tri_pause_head(cargo->state->paused, &pause);
-        par_carry_head(f, &pause, sizeof pause);
-        carry_pause(f, cargo->state->paused);
-    }
+    enum tri_status status = carry_call(f, &h, cargo->state, error);
     carry_arrays(f, &h, cargo->state, cargo->tiles);
-    return TRI_OK;
+    return status ? status : carry_halt(f, &h, cargo->state, error);
 }
 
 static enum tri_status save(struct par_checkpoint *c, const struct par_state *state, const struct par_tiles *tiles,
@@ -221,7 +232,7 @@ static bool is_place(const struct head *h, const struct par_tiles *tiles)
     if (tiles)
         return h->odd > 1 && h->odd % 2 == 1 && h->odd <= tiles->partition->n_columns + 2;
     return h->odd == 0 && h->stage >= 0 && h->stage <= PAR_FINISHED && h->round >= 0 && h->phase >= 0 &&
-           h->phase < PAR_PHASES && (!h->amid || h->cells.n_columns > 0);
+           h->phase < PAR_PHASES && (!h->amid || h->cells.n_columns > 0) && (h->n_halted == 0 || h->amid);
 }
 
 /* Could this be the head of a state of this run? */
@@ -230,7 +241,7 @@ static bool is_head(const struct head *h, const struct par_state *state, const s
     const struct tri_mesh *m = state->mesh;
     bool counts = is_count(h->n_vertices, m->n_vertices) && is_count(h->n_triangles, 0) &&
                   is_count(h->n_subs, m->n_subs) && is_count(h->n_worklist, 0) && is_count(h->n_held, 0) &&
-                  is_count(h->n_remaining, 0) &&
+                  is_count(h->n_remaining, 0) && is_count(h->n_halted, 0) &&
                   (h->n_keys == 0 || h->n_keys == h->n_worklist);
     for (int k = 0; k < PAR_KINDS; k++)
         counts = counts && is_count(h->n_spare[k], 0);
@@ -336,31 +347,7 @@ static bool is_state_sound(const struct par_state *state)
 }
 #endif
 
-/* Where in a call it goes on. Sets file->failed also where that cannot be. */
-static enum tri_status get_pause(struct par_state_file *f, const struct head *h, struct par_state *state,
-                                 struct tri_error *error)
-{
-    struct tri_pause pause;
-    par_carry_head(f, &pause, sizeof pause);
-    const int64_t listed = h->amid ? h->n_worklist : h->n_triangles; /* what the call goes through */
-    f->failed = f->failed || !tri_pause_is_head(&pause, h->n_triangles, h->n_subs, listed);
-    if (f->failed)
-        return TRI_OK;
-    if (f->way == PAR_READ) {
-        par_state_drop_pause(state);
-        state->paused = malloc(sizeof *state->paused);
-        if (!state->paused || !tri_pause_reserve(&pause)) {
-            free(state->paused);
-            state->paused = NULL;
-            return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the state of a checkpoint");
-        }
-        *state->paused = pause;
-    }
-    carry_pause(f, &pause);
-    return TRI_OK;
-}
-
-/* Nothing that counts changes before all has been read. */
+/* Nothing that counts changes before all has been checked. */
 static enum tri_status get(struct par_state_file *f, void *user, struct tri_error *error)
 {
     const struct cargo *cargo = user;
@@ -368,7 +355,7 @@ static enum tri_status get(struct par_state_file *f, void *user, struct tri_erro
     struct head h = {0};
     par_carry_head(f, &h, sizeof h);
     f->failed = f->failed || !is_head(&h, state, cargo->tiles);
-    enum tri_status status = !f->failed && h.paused ? get_pause(f, &h, state, error) : TRI_OK;
+    enum tri_status status = f->failed ? TRI_OK : carry_call(f, &h, state, error);
     if (!f->failed && !status && f->way == PAR_READ) {
         status = reserve_mesh(&h, state->mesh, error);
         if (!status && !reserve_lists(&h, state, cargo->tiles))
@@ -382,7 +369,7 @@ static enum tri_status get(struct par_state_file *f, void *user, struct tri_erro
         *cargo->odd = (int32_t)h.odd;
         assert(is_state_sound(state));
     }
-    return TRI_OK;
+    return f->failed ? TRI_OK : carry_halt(f, &h, state, error);
 }
 
 static enum tri_status load(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles, int32_t *odd,
@@ -432,12 +419,32 @@ enum tri_status par_state_border(struct par_checkpoint *c, struct par_state *sta
 
 void par_state_let_stop(struct par_checkpoint *c, struct par_state *state) { state->mesh->stop = c->stop; }
 
-/* Asked by a refiner that may pause. It does not stay true: pauses end. */
+/* Asked by refiners that may pause. It does not stay true: pauses end. */
 static bool is_pause_due(void *user)
 {
     const struct par_checkpoint *c = user;
     const double passed = tri_seconds() - c->last;
     return tri_stop_is_asked(c->stop) || (passed >= c->seconds && passed >= 9 * c->cost);
+}
+
+enum tri_status par_state_phase(struct par_checkpoint *c, struct par_state *state,
+                                const struct par_partition *partition, struct tri_error *error)
+{
+    const struct tri_stop pauses = {is_pause_due, c};
+    enum tri_status status;
+    state->may_halt = true;
+    do {
+        state->mesh->stop = &pauses;
+        status = par_phase(state, partition, state->phase, TRI_NONE, error);
+        state->mesh->stop = NULL;
+        if (status != TRI_STOPPED)
+            break;
+        status = save(c, state, NULL, 0, error);
+        if (!status && tri_stop_is_asked(c->stop))
+            status = tri_fail_stopped(error);
+    } while (!status);
+    state->may_halt = false;
+    return status;
 }
 
 /* The refiner has paused: the state is kept, and it goes on unless somebody asks for the end. */

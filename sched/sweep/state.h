@@ -1,9 +1,9 @@
 /* What a checkpoint keeps of a run, and when.
  *
- * Between two columns of a sweep: what is in memory then, and which column is next. Between two phases of a schedule
- * whose mesh stays as a whole, in memory or parked, and before the calls beyond the schedule: all of the mesh, and
- * which phase of which round, or which call, is next. Between two points of such a call also where it is
- * (triangle/pause.h). A run that gives up its sweep goes over to the second.
+ * Between two columns of a sweep: what is in memory then, and which column is next. Of a schedule whose mesh stays as
+ * a whole, in memory or parked, and of the calls beyond the schedule: all of the mesh, and which phase of which round,
+ * or which call, is next; between two points of a phase (sched/halt.h) or of a call (triangle/pause.h) also where they
+ * are. A run that gives up its sweep goes over to the second.
  *
  * THEOREM. A run that goes on ends with the bytes of one that was never stopped. For what is still to come depends on
  * the mesh, the lists of what is left, the free ranges of the arrays, the cells and the counts alone: all of them are
@@ -18,6 +18,7 @@
 #include "sched/sweep/checkpoint.h"
 #include "sched/sweep/tiles.h"
 
+struct par_partition;
 struct par_state;
 struct tri_refiner;
 
@@ -44,9 +45,12 @@ enum tri_status par_state_border(struct par_checkpoint *checkpoint, struct par_s
  * stopped is lost: the run goes on from the last state. */
 void par_state_let_stop(struct par_checkpoint *checkpoint, struct par_state *state);
 
-/* Runs a refiner of the whole mesh to its end, from where a state was amid such a call, and keeps states of it on the
- * way: where it is time to, unless more than a tenth of the time would go into that, and where somebody asks for the
- * end (TRI_STOPPED then). Also TRI_CANNOT_WRITE, or what the refiner says. */
+/* Runs a phase of the whole mesh to its end, or a refiner of it, from where a state was amid such a one, and keeps
+ * states of it on the way: where it is time to, unless more than a tenth of the time would go into that, and where
+ * somebody asks for the end (TRI_STOPPED then; a phase remains halted). Also TRI_CANNOT_WRITE, or what the phase or the
+ * refiner says. */
+enum tri_status par_state_phase(struct par_checkpoint *checkpoint, struct par_state *state,
+                                const struct par_partition *partition, struct tri_error *error);
 enum tri_status par_state_call(struct par_checkpoint *checkpoint, struct par_state *state,
                                struct tri_refiner *refiner, struct tri_error *error);
 
