@@ -977,6 +977,24 @@ static void markers_at_forks(void **state)
     expect(TRI_CHECK_MARKERS, 1, -1);
 }
 
+/* Of either chain of the lens one half is missing, not the same: all places of the long segment are beside some
+ * subsegment, but no way leads from one half to the other. */
+static void halves_beside_each_other(void **state)
+{
+    (void)state;
+    begin_lens(true);
+    trial.mesh.segment_markers = NULL;
+    remove_segment(4); /* 3 to 4 */
+    remove_segment(1); /* 1 to 2 */
+    for (int s = 0; s < 5; s++) { /* of the input: 1 to 3, and 2 to 4 */
+        trial.input.segments[2 * s] = s % 2 == 1 ? 1 : 2;
+        trial.input.segments[2 * s + 1] = s % 2 == 1 ? 3 : 4;
+    }
+    expect_good();
+    trial.input.segments[0] = 0;
+    expect(TRI_CHECK_INPUT_SEGMENTS, 1, -1);
+}
+
 /* A chain whose inner vertex is so many units of its larger coordinate off the line. */
 static void begin_bend(double ulps)
 {
@@ -1440,6 +1458,7 @@ int main(void)
         cmocka_unit_test(broken_border),
         cmocka_unit_test(border_of_points),
         cmocka_unit_test(markers_at_forks),
+        cmocka_unit_test(halves_beside_each_other),
         cmocka_unit_test(bent_segments),
         cmocka_unit_test(marker_beyond_the_end),
         cmocka_unit_test(what_is_missing_beside_the_boundary),

@@ -7,7 +7,9 @@
  *      along, and their markers are right if some choice makes them so.
  *   2. Should the second end not be reached, pieces may have been carved. Then all subsegment vertices on the line are
  *      fetched from a grid and sorted along it; chains are followed from each that lies beyond what is covered so far.
- *   3. Whatever stays uncovered must lie outside the mesh: the sweep is asked about points of it.
+ *   3. Whatever stays uncovered must lie outside the mesh: the sweep is asked about points of it. If nothing does, and
+ *      no chain leads from end to end, a piece is missing beside others within rounding of it. It may have been carved
+ *      where one of these bounds the mesh; else it should be there.
  *   4. Where input segments overlap so much that this would take too long, what lies along one line is put in order
  *      (tube.h). An input segment that is covered there may run along all that lies between its ends within the
  *      tolerance, whether a search would have come there or not. */
@@ -49,6 +51,7 @@ struct chains {
     int32_t *stack;    /* [2 * n_segments + 1] each subsegment is pushed once from each end at most */
     int32_t *certain;  /* [n_segments] first input segment with a marker that runs along the subsegment, -1: none */
     int32_t *possible; /* [n_segments] first one with the subsegment's own marker that may run along it, -1: none */
+    bool beside_border; /* does the mesh end at a subsegment along the input segment in question? */
     int64_t n_steps;   /* of searches */
     struct check_tubes tubes;
     struct stop *stop; /* [n_points at most] */
@@ -103,6 +106,7 @@ static int32_t push_ways(struct chains *k, const struct line *l, int32_t u, int3
         if (c->fan[i] == (k->via[u] ^ 1) || along(l, to) - along(l, from) <= -l->tolerance || !is_on(l, to))
             continue;
         may_run_along(k, l, c->fan[i] >> 1);
+        k->beside_border |= check_is_border(c, c->fan[i] >> 1);
         c->is_along[c->fan[i] >> 1] = 1;
         ways++;
         if (k->seen[w] == k->search)
@@ -426,11 +430,18 @@ static enum tri_status check_line(struct chains *k, int32_t id)
     if (from >= 0 && to >= 0 && take_from_tube(k, &l, from, to))
         return TRI_OK;
     k->search++;
-    if (from >= 0 && to >= 0 && follow(k, &l, from, to) == to) {
+    k->beside_border = false;
+    int32_t reached = from >= 0 && to >= 0 ? follow(k, &l, from, to) : -1;
+    if (reached >= 0 && reached == to) {
         mark(k, &l, to, true);
         return TRI_OK;
     }
-    return cover(k, &l);
+    const int64_t n_asked = (int64_t)k->c->n_queries + k->c->n_missing;
+    enum tri_status status = cover(k, &l);
+    const bool covered = n_asked == (int64_t)k->c->n_queries + k->c->n_missing;
+    if (status != TRI_OK || reached < 0 || !covered || k->beside_border)
+        return status;
+    return tri_check_ask(k->c, check_point(k->c, reached), TRI_CHECK_INPUT_SEGMENTS, id, l.tolerance);
 }
 
 static void check_markers(struct chains *k)
@@ -440,7 +451,7 @@ static void check_markers(struct chains *k)
     for (int32_t s = 0; s < c->n_segments; s++) {
         if (!check_is_listed_well(c, s))
             continue;
-        bool boundary = c->sides[s][0].half_edge < 0 || c->sides[s][1].half_edge < 0;
+        bool boundary = check_is_border(c, s);
         int32_t given = c->segment_markers[s], first = k->certain[s], own = k->possible[s];
         int32_t expected = first >= 0 ? c->input->segment_markers[first] : boundary;
         if (given == expected || (own >= 0 && (first < 0 || own < first)))

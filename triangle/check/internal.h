@@ -351,6 +351,11 @@ static inline bool check_is_listed_well(const struct checker *c, int32_t s)
 {
     return c->segments[2 * (size_t)s] >= 0;
 }
+/* Does the mesh lie on one side of it at most? */
+static inline bool check_is_border(const struct checker *c, int32_t s)
+{
+    return c->sides[s][0].half_edge < 0 || c->sides[s][1].half_edge < 0;
+}
 
 /* --- names */
 
