@@ -14,6 +14,7 @@
 
 /* Bytes of memory for each byte of text: the text itself, arrays, and the judge's own. */
 #define TEXT_SHARE 4.0
+#define UNLISTED_SHARE 8.0  /* without a .poly file, should the mesh be full of holes */
 #define BOUNDARY_SHARE 10.0 /* of a .poly file, all of whose subsegments may bound the mesh */
 
 /* Cuts one of the suffixes off. */
@@ -190,15 +191,16 @@ static void leave_out_nodes(struct judged_files *f)
 
 bool judged_fits(const char *base, double memory)
 {
-    enum { NODE, ELE, POLY, NEIGH, N_SUFFIXES };
-    static const char *const suffixes[N_SUFFIXES] = {".node", ".ele", ".poly", ".neigh"};
-    double bytes = 0;
+    enum { POLY, NODE, ELE, NEIGH, N_SUFFIXES };
+    static const char *const suffixes[N_SUFFIXES] = {".poly", ".node", ".ele", ".neigh"};
+    double size[N_SUFFIXES];
     for (int i = 0; i < N_SUFFIXES; i++) {
         char *path = tri_joined(base, suffixes[i]);
-        bytes += (i == POLY ? BOUNDARY_SHARE : TEXT_SHARE) * size_of(path);
+        size[i] = size_of(path);
         free(path);
     }
-    return bytes <= memory;
+    const double share = size[POLY] > 0 ? TEXT_SHARE : UNLISTED_SHARE;
+    return BOUNDARY_SHARE * size[POLY] + share * (size[NODE] + size[ELE] + size[NEIGH]) <= memory;
 }
 
 /* Into memory, if they and the judge fit. */

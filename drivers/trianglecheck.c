@@ -101,19 +101,20 @@ static double memory_to_use(const struct settings *s)
     return resources_memory() * (s->memory_share > 0 ? s->memory_share : USUAL_PERCENT / 100.0);
 }
 
+/* Of the program itself: code, stacks, what allocators keep. */
+static const double TO_COME = 4e6;
+
 /* What stays in memory beside the parts leaves room for them, and for the program itself, or the trial is refused. */
 static enum tri_status check_memory(const struct judged_files *f, const struct tri_pslg *input, struct tri_error *error)
 {
-    static const double MOST_SHARE = 0.7, TO_COME = 4e6; /* of the program itself: code, stacks, what allocators keep */
-    const double least = tri_check_least_bytes(&f->source, input), allowed = f->source.memory;
-    const double needed = fmax(least / MOST_SHARE, least + resources_memory_used() + TO_COME);
-    if (allowed <= 0 || least / MOST_SHARE < JUDGED_WORTH_A_LOOK || needed <= allowed)
+    const double needed = tri_check_bound(&f->source, tri_check_least_bytes(&f->source, input));
+    if (f->source.memory <= 0 || needed <= f->source.memory)
         return TRI_OK;
     return tri_fail(error, TRI_NO_MEMORY, "", 0,
                     "to judge %s vertices and %s subsegments, and what they are compared with, takes about %s of "
                     "memory; %s may be used", tri_count_text((double)f->source.n_points).text,
                     tri_count_text((double)f->source.n_segments).text, tri_size_text(needed).text,
-                    tri_size_text(allowed).text);
+                    tri_size_text(f->source.memory).text);
 }
 
 static enum tri_status judge(const struct settings *s, struct judged_files *f, const struct tri_executor *executor,
@@ -132,6 +133,7 @@ static enum tri_status judge(const struct settings *s, struct judged_files *f, c
         options.n_threads = threads;
     }
     const struct tri_pslg *input = s->input != NULL ? &f->input : NULL;
+    f->source.beside = resources_memory_used() + TO_COME;
     enum tri_status status = check_memory(f, input, error);
     return status != TRI_OK ? status : tri_check_from(&f->source, input, &options, report, error);
 }

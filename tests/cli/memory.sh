@@ -175,3 +175,19 @@ for words in "" "--poly z.poly"; do
 done
 check "with much memory trials are kept within ($kept), with little refused ($refused)" \
     test $kept -ge 2 -a $refused -ge 2
+
+# --- where no list says what the boundary is, that is seen on the way: holes make it three times as long
+rm z2.poly
+within 18 2 none "$bin/trianglecheck" --quiet z2
+check "a mesh without a list is judged in little memory" test $found -eq 0
+cp q.node q3.node # every third triangle is a hole
+awk '!/#/ && NF > 3 && $1 % 3 { print ++n, $2, $3, $4 }' q.ele >rows
+{ echo "$(wc -l <rows) 3 0" && cat rows; } >q3.ele
+kept=0
+refused=0
+for budget in 20 40 60 100; do
+    what="trianglecheck of many holes, --memory ${budget}000000"
+    within $budget 2 '^trianglecheck: to judge .* takes about [0-9.]+ MB of memory; ' "$bin/trianglecheck" --quiet q3
+done
+check "with much memory trials are kept within ($kept), with little refused ($refused)" \
+    test $kept -ge 1 -a $refused -ge 1

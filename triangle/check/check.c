@@ -248,6 +248,82 @@ struct tri_check_source tri_check_source_of(const struct tri_check_mesh *m)
                                      .user = (void *)m, .arrays = m};
 }
 
+/* --- its memory */
+
+/* Bytes for each triangle of a part: corners twice (edges.c takes the place of the ones as they are read), links,
+ * vertices, and what else is given. */
+static double bytes_of_triangle(const struct tri_check_source *source, double vertices)
+{
+    return 24 + 12 + 12 + 1.1 * vertices * (16 + 8 + 4 + 4 + 1) +
+           (source->given >> TRI_CHECK_NEIGHBORS_GIVEN & 1) * 24 + (source->given >> TRI_CHECK_ATTRIBUTES & 1) * 8;
+}
+
+/* Measured: bytes for each subsegment of the frame, each boundary edge besides, each edge that the sweep of overlap.c
+ * has in hand, when there is no part any more, and each point and segment of the input. */
+static const double SUBSEGMENT_BYTES = 126, BOUNDARY_BYTES = 48, SWEEP_BYTES = 196, INPUT_BYTES = 40;
+
+/* Boundary edges, at first. A mesh is a plane graph (Euler): in one piece without holes it has 2 vertices - triangles,
+ * less 2. With holes there are fewer than three times as many; or as many as subsegments are listed, which they are. */
+static double likely_boundary_edges(const struct tri_check_source *source)
+{
+    const double simple = fmax(0, 2 * (double)source->n_points - (double)source->n_triangles);
+    return source->given >> TRI_CHECK_SEGMENT_ENDS & 1 ? fmin(3 * simple, (double)source->n_segments) : simple;
+}
+
+static double least_bytes(const struct tri_check_source *source, const struct tri_pslg *input, double boundary)
+{
+    const double items = input != NULL ? (double)input->n_points + input->n_segments : 0;
+    const double amid = source->n_nodes > source->n_points ? (double)(source->n_nodes - source->n_points) : 0;
+    const double subsegments = fmax(boundary, (double)source->n_segments);
+    const double beside = amid + 1.25 * (double)source->n_points + SUBSEGMENT_BYTES * subsegments +
+                          BOUNDARY_BYTES * boundary + INPUT_BYTES * items;
+    const double swept = beside + SWEEP_BYTES * (input != NULL ? subsegments : boundary); /* with regions: all */
+    return fmax(beside, TRI_CHECK_SHARE * swept);
+}
+
+double tri_check_least_bytes(const struct tri_check_source *source, const struct tri_pslg *input)
+{
+    return least_bytes(source, input, likely_boundary_edges(source));
+}
+
+double tri_check_bound(const struct tri_check_source *source, double least)
+{
+    static const double MOST_SHARE = 0.7, WORTH_A_LOOK = 1e7; /* the parts need some as well */
+    const double bound = fmax(least / MOST_SHARE, least + source->beside);
+    return least / MOST_SHARE < WORTH_A_LOOK ? 0 : bound;
+}
+
+/* As many triangles as the bound allows beside these bytes, at least a few; all, where they are in memory. */
+static enum tri_status choose_part(struct checker *c, double least)
+{
+    enum { LEAST = 16 };
+    const struct tri_check_source *source = c->source;
+    double vertices = 1, most = INT32_MAX / 3 - 1;
+    enum tri_status status = source->memory > 0 ? tri_check_sample(c, &vertices) : TRI_OK;
+    if (source->memory > 0) {
+        double rest = source->memory * TRI_CHECK_SHARE - least;
+        most = fmax(LEAST, fmin(most, rest / bytes_of_triangle(source, vertices)));
+    }
+    bool all = (double)c->n_triangles <= most;
+    c->part_triangles = all ? (c->n_triangles > 0 ? c->n_triangles : 1) : (int64_t)most;
+    c->whole = all ? source->arrays : NULL;
+    return status;
+}
+
+/* The boundary is known now: are there more edges than were likely? The parts are read again later, if at all. */
+static enum tri_status reckon_again(struct checker *c)
+{
+    const struct tri_check_source *source = c->source;
+    const double n = (double)c->boundary.n, least = least_bytes(source, c->input, n);
+    if (source->memory <= 0 || c->whole != NULL || n <= likely_boundary_edges(source))
+        return TRI_OK;
+    if (tri_check_bound(source, least) <= source->memory)
+        return choose_part(c, least);
+    return tri_fail(c->error, TRI_NO_MEMORY, "", 0,
+                    "to judge a mesh with %.0f boundary edges takes about %.3g MB of memory; %.3g MB may be used", n,
+                    1e-6 * tri_check_bound(source, least), 1e-6 * source->memory);
+}
+
 /* --- the trial */
 
 /* What triangles and pairs of them say. *good: corners and coordinates are what they should be. */
@@ -330,6 +406,8 @@ static enum tri_status run(struct checker *c)
     }
     status = tri_check_match(c);
     if (status == TRI_OK)
+        status = reckon_again(c);
+    if (status == TRI_OK)
         status = tri_check_attributes(c);
     if (status == TRI_OK)
         status = tri_check_nodes(c);
@@ -346,54 +424,6 @@ static void release(struct checker *c)
     tri_check_release_part(c);
     tri_check_store_free(c->store);
     tri_check_release_quality(c);
-}
-
-/* Bytes for each triangle of a part: corners twice (edges.c takes the place of the ones as they are read), links,
- * vertices, and what else is given. */
-static double bytes_of_triangle(const struct tri_check_source *source, double vertices)
-{
-    return 24 + 12 + 12 + 1.1 * vertices * (16 + 8 + 4 + 4 + 1) +
-           (source->given >> TRI_CHECK_NEIGHBORS_GIVEN & 1) * 24 + (source->given >> TRI_CHECK_ATTRIBUTES & 1) * 8;
-}
-
-/* Measured: bytes for each subsegment of the frame, each boundary edge besides, each edge that the sweep of overlap.c
- * has in hand, when there is no part any more, and each point and segment of the input. */
-static const double SUBSEGMENT_BYTES = 126, BOUNDARY_BYTES = 48, SWEEP_BYTES = 196, INPUT_BYTES = 40;
-
-/* Boundary edges, at most: a mesh is a plane graph, whose 3/2 triangles + boundary/2 edges are fewer than 3 vertices
- * (Euler). Where subsegments are listed they are among these. */
-static double most_boundary_edges(const struct tri_check_source *source)
-{
-    const double most = fmax(0, 6 * (double)source->n_points - 3 * (double)source->n_triangles);
-    return source->given >> TRI_CHECK_SEGMENT_ENDS & 1 ? fmin(most, (double)source->n_segments) : most;
-}
-
-double tri_check_least_bytes(const struct tri_check_source *source, const struct tri_pslg *input)
-{
-    const double items = input != NULL ? (double)input->n_points + input->n_segments : 0;
-    const double amid = source->n_nodes > source->n_points ? (double)(source->n_nodes - source->n_points) : 0;
-    const double boundary = most_boundary_edges(source), subsegments = fmax(boundary, (double)source->n_segments);
-    const double beside = amid + 1.25 * (double)source->n_points + SUBSEGMENT_BYTES * subsegments +
-                          BOUNDARY_BYTES * boundary + INPUT_BYTES * items;
-    const double swept = beside + SWEEP_BYTES * (input != NULL ? subsegments : boundary); /* with regions: all */
-    return fmax(beside, TRI_CHECK_SHARE * swept);
-}
-
-/* As many triangles as the bound allows, at least a few; all, where they are in memory. */
-static enum tri_status choose_part(struct checker *c)
-{
-    enum { LEAST = 16 };
-    const struct tri_check_source *source = c->source;
-    double vertices = 1, most = INT32_MAX / 3 - 1;
-    enum tri_status status = source->memory > 0 ? tri_check_sample(c, &vertices) : TRI_OK;
-    if (source->memory > 0) {
-        double rest = source->memory * TRI_CHECK_SHARE - tri_check_least_bytes(source, c->input);
-        most = fmax(LEAST, fmin(most, rest / bytes_of_triangle(source, vertices)));
-    }
-    bool all = (double)c->n_triangles <= most;
-    c->part_triangles = all ? (c->n_triangles > 0 ? c->n_triangles : 1) : (int64_t)most;
-    c->whole = all ? source->arrays : NULL;
-    return status;
 }
 
 static enum tri_status check_finite(const char *what, int32_t n, const double *values, int width,
@@ -430,7 +460,7 @@ enum tri_status tri_check_from(const struct tri_check_source *source, const stru
     struct checker c = {.source = source, .input = input, .options = options, .report = report, .error = &own,
                         .n_points = source->n_points, .n_triangles = source->n_triangles};
     c.state = tri_check_zeros(c.n_points, 1);
-    enum tri_status status = c.state == NULL ? TRI_NO_MEMORY : choose_part(&c);
+    enum tri_status status = c.state == NULL ? TRI_NO_MEMORY : choose_part(&c, tri_check_least_bytes(source, input));
     if (status == TRI_OK)
         status = tri_check_store_new(&c);
     if (status == TRI_OK)

@@ -113,6 +113,7 @@ struct tri_check_source {
      * Half-edges that wait for their other side are kept in nameless files in the folder `scratch` (NULL: /tmp)
      * where they are too many: few, if numbers are local; up to 3 for each triangle, 112 bytes each, if not. */
     double memory;
+    double beside; /* bytes that the program takes beside the trial, within that bound */
     const char *scratch;
 };
 
@@ -120,8 +121,12 @@ struct tri_check_source {
 #define TRI_CHECK_SHARE 0.75
 
 /* That share of the bytes that it takes whatever its bound: a byte for each vertex, up to 370 for each subsegment, and
- * the input (NULL: none). */
+ * the input (NULL: none). Where no subsegments are listed the mesh is thought to have no holes; a trial that finds out
+ * otherwise, and that its bound will not do, ends with TRI_NO_MEMORY and says so. */
 double tri_check_least_bytes(const struct tri_check_source *source, const struct tri_pslg *input);
+
+/* The bound that a trial should have which takes so many of them; 0: so little that any will do. */
+double tri_check_bound(const struct tri_check_source *source, double least);
 
 enum tri_check_delaunay { TRI_CHECK_CONSTRAINED, TRI_CHECK_CONFORMING, TRI_CHECK_NOT_DELAUNAY };
 
