@@ -204,6 +204,23 @@ static enum tri_status put(struct par_state_file *f, void *user, struct tri_erro
     return status ? status : carry_halt(f, &h, cargo->state, error);
 }
 
+static int64_t unused_in(const struct par_ranges *ranges)
+{
+    int64_t n = 0;
+    for (int32_t i = 0; i < ranges->n; i++)
+        n += ranges->item[i].end - ranges->item[i].next;
+    return n;
+}
+
+/* Without those that nobody has used yet. */
+static int64_t triangles_of(const struct par_state *state)
+{
+    int64_t n = state->mesh->n_triangles - unused_in(&state->spare.ranges[PAR_TRIANGLES]);
+    for (int32_t i = 0; i < state->halt.n_blocks; i++)
+        n -= unused_in(&state->halt.block[i].room.ranges[PAR_TRIANGLES]);
+    return n;
+}
+
 static enum tri_status save(struct par_checkpoint *c, const struct par_state *state, const struct par_tiles *tiles,
                             int32_t odd, struct tri_error *error)
 {
@@ -211,7 +228,7 @@ static enum tri_status save(struct par_checkpoint *c, const struct par_state *st
     const double began = tri_seconds();
     enum tri_status status =
         par_checkpoint_write(c, tiles ? PAR_SWEPT_STATE : PAR_WHOLE_STATE,
-                             tiles ? tiles->n_triangles : state->mesh->n_triangles, put, &cargo, error);
+                             tiles ? tiles->n_triangles : triangles_of(state), put, &cargo, error);
     c->last = tri_seconds();
     c->cost = c->last - began;
     return status;
