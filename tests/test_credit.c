@@ -16,9 +16,24 @@ static void test_corners_grant_credit(void **state)
     assert_int_equal(credit.granted, 6 * 2 * TRI_CREDIT); /* vertex 1 is on credit, the others are met once */
     assert_true(tri_meet_corners(&credit, &mesh_of_four, second));
     assert_int_equal(credit.granted, 6 * 3 * TRI_CREDIT);
-    tri_list_corners(&credit, &mesh_of_four, second); /* a sixth of each */
-    assert_int_equal(credit.granted, (6 * 3 + 2) * TRI_CREDIT);
     tri_credit_free(&credit);
+}
+
+/* Of a worklist: a sixth of each corner that is not on credit, if at least half of them belong to triangles that ask,
+ * and twice those that do if fewer. */
+static void test_triangles_that_ask_grant_credit(void **state)
+{
+    (void)state;
+    static const tri_vertex_id all[3] = {0, 2, 3}, some[3] = {2, 1, 3};
+    for (int good = 0; good < 5; good++) {
+        struct tri_grantors grantors = {0};
+        struct tri_credit credit = {0};
+        tri_list_corners(&grantors, &mesh_of_four, some, true);
+        for (int i = 0; i < good; i++)
+            tri_list_corners(&grantors, &mesh_of_four, all, false);
+        tri_grant(&credit, &grantors);
+        assert_int_equal(credit.granted, (good > 0 ? 4 : 2) * TRI_CREDIT);
+    }
 }
 
 static void take(struct tri_credit *credit, int points, enum tri_claim claim)
@@ -207,6 +222,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_corners_grant_credit),
+        cmocka_unit_test(test_triangles_that_ask_grant_credit),
         cmocka_unit_test(test_points_are_counted),
         cmocka_unit_test(test_no_more_than_may_be),
         cmocka_unit_test(test_what_credit_begets_is_counted),

@@ -3,10 +3,20 @@
 
 #include <assert.h>
 
-void tri_list_corners(struct tri_credit *credit, const struct tri_mesh *mesh, const tri_vertex_id corner[3])
+void tri_list_corners(struct tri_grantors *grantors, const struct tri_mesh *mesh, const tri_vertex_id corner[3],
+                      bool asks)
 {
-    for (int k = 0; k < 3; k++)
-        credit->granted += tri_is_on_credit(mesh, corner[k]) ? 0 : TRI_CREDIT;
+    for (int k = 0; k < 3; k++) {
+        const bool grants = !tri_is_on_credit(mesh, corner[k]);
+        grantors->all += grants;
+        grantors->asking += grants && asks;
+    }
+}
+
+void tri_grant(struct tri_credit *credit, const struct tri_grantors *grantors)
+{
+    const int64_t twice = 2 * grantors->asking;
+    credit->granted += TRI_CREDIT * (twice < grantors->all ? twice : grantors->all);
 }
 
 bool tri_meet_corners(struct tri_credit *credit, const struct tri_mesh *mesh, const tri_vertex_id corner[3])

@@ -1098,15 +1098,28 @@ static bool queue_chunk(struct tri_refiner *r)
     return true;
 }
 
-/* What the worklist grants (credit.h), where points may be on credit. */
-static void list_corners(struct tri_refiner *r)
+/* Does the triangle ask for a point because of its angle, as it is? */
+static bool asks_for_angle(struct tri_refiner *r, tri_triangle_id triangle)
 {
-    const struct tri_mesh *m = r->mesh;
+    const struct tri_triangle *t = &r->mesh->tri[triangle];
+    const struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
+    const double longer = tri_longer_product(shape.l[0], shape.l[1], shape.l[2]);
+    return shape.area2 * shape.area2 < r->criterion.bounds.sin2 * longer && tri_is_urgent(&r->criterion, t->v) &&
+           !is_hopeless(r, triangle, &shape);
+}
+
+/* What the worklist grants (credit.h), where points may be on credit. */
+static void grant_for_worklist(struct tri_refiner *r)
+{
+    struct tri_grantors listed_corners = {0};
     if (r->options->fence || !gives_credit(r))
         return;
-    for (int32_t i = 0; i < r->n_worklist; i++)
-        if (tri_is_live(&m->tri[listed(r, i)]))
-            tri_list_corners(&r->credit, m, m->tri[listed(r, i)].v);
+    for (int32_t i = 0; i < r->n_worklist; i++) {
+        const tri_triangle_id t = listed(r, i);
+        if (tri_is_live(&r->mesh->tri[t]))
+            tri_list_corners(&listed_corners, r->mesh, r->mesh->tri[t].v, asks_for_angle(r, t));
+    }
+    tri_grant(&r->credit, &listed_corners);
 }
 
 /* Passes over the worklist. First, chunk by chunk, the bad angles beside the shorter half of the edges: the order by
@@ -1120,7 +1133,7 @@ static bool refine_worklist(struct tri_refiner *r)
         r->n_worklist = listed_count(r);
         r->next_listed = 0;
         r->step = FIRST_PASS;
-        list_corners(r);
+        grant_for_worklist(r);
     }
     while (r->step == FIRST_PASS) {
         if (!work_off(r))

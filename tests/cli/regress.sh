@@ -292,6 +292,12 @@ few 10000 -pq33 thin_comb # each bar is a narrow space that no edge of the trian
 fresh regress/bundle_levels.poly # circles in a bundle of segments whose ends are not level
 few 10000 -pD bundle_levels
 few 10000 -pa0.00065D bundle_levels
+fresh regress/graded_1899.poly # what was left for want of credit asked for as many points each time that it was read
+run 0 -pq34 graded_1899
+run 0 -rpq34 graded_1899.1
+found=$(records graded_1899.2.ele | sed -n 1p | cut -d' ' -f1)
+check "$found triangles when read again, more than 20000" test "$found" -le 20000
+judge graded_1899.2 --poly graded_1899.poly
 fresh regress/flat_hole.poly # beside it there is nothing small: the sliver itself is empty
 run 0 -pq33 flat_hole
 says "All triangles keep the bounds."
