@@ -865,25 +865,30 @@ static const struct flat_figure {
      2, {{1, 0}, {3, 2}}},
 };
 
+/* The size test, for the figure that is to be filled to its hull. */
+static void ask_for_growing(struct start *start, struct growing *growing)
+{
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    for (int k = 0; k < 2 * start->pslg.n_points; k++) {
+        low[k % 2] = fmin(low[k % 2], start->pslg.points[k]);
+        high[k % 2] = fmax(high[k % 2], start->pslg.points[k]);
+    }
+    const double size = fmax(high[0] - low[0], high[1] - low[1]);
+    *growing = (struct growing){{low[0], low[1]}, size * size / 1e4};
+    start->options.keep_hull = true;
+    start->options.quality.unsuitable = is_too_long;
+    start->options.quality.unsuitable_user = growing;
+}
+
 /* The figure, with the size test. */
 static struct start flat_start(const struct flat_figure *figure, struct growing *growing)
 {
     struct start start = {.pslg = support_pslg(FLAT_POINTS, 2, 0, 0), .options = support_quality(figure->angle, 0)};
-    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
-    for (int k = 0; k < FLAT_POINTS; k++) {
+    for (int k = 0; k < FLAT_POINTS; k++)
         support_add_point(&start.pslg, figure->place[k][0], figure->place[k][1]);
-        for (int axis = 0; axis < 2; axis++) {
-            low[axis] = fmin(low[axis], figure->place[k][axis]);
-            high[axis] = fmax(high[axis], figure->place[k][axis]);
-        }
-    }
     for (int k = 0; k < figure->n_segments; k++)
         support_add_segment(&start.pslg, figure->ends[k][0], figure->ends[k][1]);
-    const double size = fmax(high[0] - low[0], high[1] - low[1]);
-    *growing = (struct growing){{low[0], low[1]}, size * size / 1e4};
-    start.options.keep_hull = true;
-    start.options.quality.unsuitable = is_too_long;
-    start.options.quality.unsuitable_user = growing;
+    ask_for_growing(&start, growing);
     return start;
 }
 
@@ -909,6 +914,27 @@ static void test_flat_triangles_at_fences_take_no_points(void **state)
         tri_mesh_free(&mesh);
         tri_pslg_free(&start.pslg);
     }
+}
+
+/* A square and its copy 10^-6 beside it: what was too large beside an edge that had run away got points as near to it
+ * as angles ask (8,788 triangles, by one call 2,321; now 2,391). */
+static void test_no_sizes_beside_what_ran_away(void **state)
+{
+    (void)state;
+    struct growing growing;
+    struct start start = {.options = support_quality(25, 0)};
+    struct par_options options = small_blocks(60, 2);
+    struct par_report report;
+    options.size_test_in_parallel = true;
+    assert_true(support_read("regress/shifted_square.poly", &start.pslg));
+    ask_for_growing(&start, &growing);
+    start.options.quality.conforming = true;
+    struct tri_mesh mesh = refine(&start, &options, &report);
+    print_message("  in cells of 60 %d triangles\n", (int)mesh.n_triangles);
+    assert_true(report.n_blocks > 0 && mesh.n_triangles < 3000);
+    par_report_free(&report);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&start.pslg);
 }
 
 static bool open_gate(void *user, const double p[2])
@@ -1306,6 +1332,7 @@ int main(void)
         cmocka_unit_test(test_default_blocks_cost_no_triangles),
         cmocka_unit_test(test_a_size_test_runs_in_parallel_only_where_allowed),
         cmocka_unit_test(test_flat_triangles_at_fences_take_no_points),
+        cmocka_unit_test(test_no_sizes_beside_what_ran_away),
         cmocka_unit_test(test_limits_and_gates_go_the_sequential_way),
         cmocka_unit_test(test_protected_segments_stay_whole),
         cmocka_unit_test(test_any_unit_makes_the_same_mesh),

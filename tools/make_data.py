@@ -1022,6 +1022,9 @@ FOUND = [
          "-D, then -rq20D: no circle is left; 154 were, of what was read farther inside than a place might be", ()),
     Case("regress/bent_valley.poly", None, "a polygon 4,100 wide and 1,000 high, both sides side by side",
          "-D leaves no circle; five were left where levels were renewed at places in fine steps alone", ()),
+    Case("regress/shifted_square.poly", None, "a square and its copy, 10^-6 beside it",
+         "-cq25D in cells of 60 triangles, with a size test: 2,391 triangles; once 8,788, for sizes beside edges that "
+         "had run away", ()),
     Case("regress/near_path.poly", None, "a path to and fro through points that rounding keeps from lying on one line",
          "-pc: one chain, in as many steps as vertices; once n * n", ()),
     Case("regress/side_ulp_off.poly", None, "a segment along 200 vertices, its end an ulp off their line",
