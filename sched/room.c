@@ -26,6 +26,14 @@ bool par_ranges_reserve(struct par_ranges *ranges, int32_t need)
     return tri_grow_together(arrays, 2, &ranges->capacity, need, 0);
 }
 
+int64_t par_ranges_unused(const struct par_ranges *ranges)
+{
+    int64_t n = 0;
+    for (int32_t i = 0; i < ranges->n; i++)
+        n += ranges->item[i].end - ranges->item[i].next;
+    return n;
+}
+
 /* How many items of a kind there are in a mesh, and how many there can be. */
 struct counts {
     int32_t *used, *capacity;
@@ -200,8 +208,7 @@ enum tri_status par_room_reserve(const struct par_room *spare, struct tri_mesh *
         return TRI_OK;
     for (enum par_kind kind = PAR_VERTICES; !status && kind < PAR_KINDS; kind++) {
         int64_t need = wanted_of(kind, triangles, LEAST_ON_SEGMENTS);
-        for (int32_t i = 0; i < spare->ranges[kind].n; i++)
-            need -= spare->ranges[kind].item[i].end - spare->ranges[kind].item[i].next;
+        need -= par_ranges_unused(&spare->ranges[kind]);
         if (need > 0)
             status = reserve(shared, kind, need < INT32_MAX ? (int32_t)need : INT32_MAX, error);
     }

@@ -27,6 +27,9 @@ struct par_ranges {
 /* Room for `need` ranges in all; amortised O(1) a range. False: no memory. */
 bool par_ranges_reserve(struct par_ranges *ranges, int32_t need);
 
+/* Items in them. */
+int64_t par_ranges_unused(const struct par_ranges *ranges);
+
 /* What one block has, or what nobody has. */
 struct par_room {
     struct par_ranges ranges[PAR_KINDS];

@@ -204,20 +204,12 @@ static enum tri_status put(struct par_state_file *f, void *user, struct tri_erro
     return status ? status : carry_halt(f, &h, cargo->state, error);
 }
 
-static int64_t unused_in(const struct par_ranges *ranges)
-{
-    int64_t n = 0;
-    for (int32_t i = 0; i < ranges->n; i++)
-        n += ranges->item[i].end - ranges->item[i].next;
-    return n;
-}
-
 /* Without those that nobody has used yet. */
 static int64_t triangles_of(const struct par_state *state)
 {
-    int64_t n = state->mesh->n_triangles - unused_in(&state->spare.ranges[PAR_TRIANGLES]);
+    int64_t n = state->mesh->n_triangles - par_ranges_unused(&state->spare.ranges[PAR_TRIANGLES]);
     for (int32_t i = 0; i < state->halt.n_blocks; i++)
-        n -= unused_in(&state->halt.block[i].room.ranges[PAR_TRIANGLES]);
+        n -= par_ranges_unused(&state->halt.block[i].room.ranges[PAR_TRIANGLES]);
     return n;
 }
 
