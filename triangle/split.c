@@ -34,11 +34,10 @@
 #include "triangle/predicates.h"
 
 /* Resolutions, those of the parent's largest coordinate, that a split point may lie off its line: where coordinates are
- * finer than at an end, a part from a point near that end is as far off. */
+ * finer than at an end, a part from a point near that end is as far off. Its own resolutions, where it is chosen to be
+ * level with a vertex: the wider, the more places coordinates offer (disk.c, columns). 200 fans and bundles of 3 to 12
+ * lines 3e-7 to 3e-10 of their length apart keep 1,624 circles, with two of its own 2,201. */
 static const double ASTRAY = 4;
-
-/* Its own resolutions, where it is chosen for other reasons: no farther than the places beside one on the line. */
-static const double BESIDE = 2;
 
 /* Is p on the line of the parent, or on that side of it that is left of the way from `from` to `to`, subsegments being
  * far longer than they are off it? */
@@ -102,7 +101,7 @@ static bool place(const struct tri_mesh *mesh, const struct tri_subsegment *s, s
 bool tri_may_split_at(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p)
 {
     const tri_vertex_id *end = mesh->parents[s->parent].v;
-    return tri_line_distance(mesh->xy[end[0]], mesh->xy[end[1]], p) <= BESIDE * tri_resolution(p) &&
+    return tri_line_distance(mesh->xy[end[0]], mesh->xy[end[1]], p) <= ASTRAY * tri_resolution(p) &&
            is_allowed(mesh, s, p);
 }
 

@@ -16,7 +16,7 @@ bool tri_place_split(const struct tri_mesh *mesh, const struct tri_subsegment *s
 bool tri_place_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point at, int choice,
                      struct tri_point *p);
 
-/* Does a split of s at p keep within two resolutions of its parent's line, and the boundary to itself? */
+/* Does a split of s at p keep within four resolutions of its parent's line, and the boundary to itself? */
 bool tri_may_split_at(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point p);
 
 #endif
