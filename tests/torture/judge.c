@@ -330,10 +330,12 @@ static void judge_amount(const struct outcome *first, const struct tri_pslg *psl
 static double most_points(const struct outcome *o, const struct tri_pslg *pslg)
 {
     const double PER_VERTEX = 1000, PER_GAP_POINT = 40, SIZED_GAP_POINT = 60, SIZES = 200000;
-    const double PER_WALL = 4000, WALLS = 1800000;
+    const double PER_WALL = 4000, WALLS = 1800000, ABOVE = 2;
     const struct tri_refine_options *asked = &o->options.quality;
     bool refuses_walls = o->switches.protect > 0 && asked->unsuitable;
-    return SIZES + PER_VERTEX * o->mesh.n_input + (refuses_walls ? fmin(PER_WALL * pslg->n_segments, WALLS) : 0) +
+    bool is_above = asked->min_angle > TRI_USUAL_ANGLE && tri_has_sizes(asked);
+    return (is_above ? ABOVE : 1) * SIZES + PER_VERTEX * o->mesh.n_input +
+           (refuses_walls ? fmin(PER_WALL * pslg->n_segments, WALLS) : 0) +
            (tri_has_sizes(asked) ? SIZED_GAP_POINT : PER_GAP_POINT) * o->mesh.limits.gap_points;
 }
 
@@ -356,7 +358,8 @@ static bool suffices(struct outcome *first, const struct tri_pslg *pslg, int64_t
 
 /* A mesh that does not end is one with more points than its figure can ask for: those of its narrow spaces (the most
  * seen are 20 for each that the mesher counts on at 30 degrees, and 40 at 34, half as many again with sizes), of its
- * features, which differ by twelve orders of magnitude at most, and of its sizes, see draw_sizes. Beside a wall that
+ * features, which differ by twelve orders of magnitude at most, and of its sizes, see draw_sizes; above the usual angle
+ * these may be twice as many (249,000 points at 34 degrees were 460,000 at 37; judge_amount). Beside a wall that
  * must not be split a size test refuses all triangles, down to some 4,096 times as long as high: the most seen are 800
  * points for a side of one, at 34 degrees. One that asks for more than is AFFORDABLE to make over and over, but no more
  * than that, is judged as with a limit of so many points. */
