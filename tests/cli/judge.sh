@@ -94,8 +94,10 @@ awk 'BEGIN { n = 3000; print n + 1, 2, 0, 0
     for (i = 0; i <= n; i++) { x = i * 6170 % 30011; print i + 1, x, 2 * x }
     print n, 0; for (i = 1; i <= n; i++) print i, i, i + 1; print 0 }' >flat.poly
 run 0 -p flat
-(ulimit -v 300000 && "$bin/trianglecheck" --quiet --threads 1 flat.1 --poly flat.poly >.out 2>.err)
-check "trianglecheck of overlapping segments without a mesh: exit code" test $? -eq 0
+if (ulimit -v 300000 && "$bin/trianglecheck" --help) >/dev/null 2>&1; then # sanitizers take more
+    (ulimit -v 300000 && "$bin/trianglecheck" --quiet --threads 1 flat.1 --poly flat.poly >.out 2>.err)
+    check "trianglecheck of overlapping segments without a mesh: exit code" test $? -eq 0
+fi
 
 # --- one verdict for any number of threads
 fresh letter.poly
