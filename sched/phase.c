@@ -694,14 +694,21 @@ static bool take_back(struct phase *p)
     return memory;
 }
 
-/* In canonical order: room and left triangles of each task go back, and its report is added up. */
+/* Otherwise than for room, or since somebody asks for the end? */
+static bool has_failed(const struct task *task)
+{
+    return task->status && task->status != TRI_NO_ROOM && task->status != TRI_STOPPED;
+}
+
+/* In canonical order: room and left triangles of each task go back, and its report is added up. Returns what the first
+ * one that has failed says. */
 static enum tri_status collect(struct phase *p, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     bool memory = take_back(p);
     for (int32_t i = 0; i < p->n_tasks; i++) {
         struct task *task = &p->tasks[i];
-        if (!status && task->status && task->status != TRI_NO_ROOM) { /* that: paused when the phase failed */
+        if (!status && has_failed(task)) {
             status = task->status;
             tri_fail(error, status, task->error.file, task->error.line, "%s", task->error.text);
         }
@@ -808,11 +815,6 @@ static bool leave_refiner(struct task *task)
     return true;
 }
 
-static bool has_failed(const struct task *task)
-{
-    return task->lost || (task->status && task->status != TRI_NO_ROOM && task->status != TRI_STOPPED);
-}
-
 /* Where all tasks are, for who goes on; nothing is left here. False: one has failed, or there is no memory, and it is
  * not halted. */
 static bool halt_tasks(struct phase *p)
@@ -821,7 +823,7 @@ static bool halt_tasks(struct phase *p)
     struct par_halted *block = calloc((size_t)p->n_tasks, sizeof *block);
     bool memory = block;
     for (int32_t i = 0; i < p->n_tasks; i++)
-        memory = memory && !has_failed(&p->tasks[i]) && leave_refiner(&p->tasks[i]);
+        memory = memory && !p->tasks[i].lost && !has_failed(&p->tasks[i]) && leave_refiner(&p->tasks[i]);
     if (!memory) {
         free(block);
         return false;
@@ -848,12 +850,15 @@ static enum tri_status run_phase(struct phase *p, struct tri_error *error)
     if (!order_tasks(p))
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the order of blocks");
     status = status ? status : run_to_end(p, error);
-    if (status == TRI_STOPPED && p->state->may_halt && halt_tasks(p))
-        return status;
+    if (status == TRI_STOPPED && p->state->may_halt) {
+        if (halt_tasks(p))
+            return status;
+        status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for blocks that are to go on later");
+    }
     double merging = tri_seconds();
     enum tri_status collected = collect(p, error);
     p->state->report->seconds_merge += tri_seconds() - merging;
-    return status ? status : collected;
+    return collected ? collected : status; /* a failure is told before a stop */
 }
 
 enum tri_status par_phase(struct par_state *state, const struct par_partition *partition, int phase, int32_t only,

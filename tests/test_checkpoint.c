@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "allocations.h"
 #include "sched/schedule.h"
 #include "sched/sweep/checkpoint.h"
 #include "trials.h"
@@ -520,6 +521,46 @@ static void test_calls_go_on(void **state)
     }
 }
 
+/* A run that is stopped amid a phase, when this allocation fails; *calls: so many it asked for. Whoever goes on from
+ * what it has kept, be it nothing, makes the same mesh. */
+static enum tri_status stop_short_of_memory(const struct way *way, const struct whole_run *wanted, int64_t fail_at,
+                                            int64_t *calls)
+{
+    struct par_checkpoint c;
+    remove_all();
+    open_it(&c, false);
+    struct whole_run r = whole_run_of(way, &c);
+    r.threads = 1;
+    r.most_asked = 9;
+    support_calls = 0;
+    support_fail_at = fail_at;
+    const enum tri_status status = refine_whole(&r);
+    support_fail_at = INT64_MAX;
+    *calls = support_calls;
+    par_checkpoint_close(&c, false);
+    open_it(&c, true);
+    r = whole_run_of(way, &c);
+    assert_int_equal(refine_whole(&r), TRI_OK);
+    assert_true(r.hash == wanted->hash);
+    par_checkpoint_close(&c, true);
+    return status;
+}
+
+/* Each of its last allocations fails, those for the halt among them: it says so. */
+static void test_memory_is_short_for_a_halt(void **state)
+{
+    (void)state;
+    static const struct way way = {{"letter.poly", 30, 4000, 300, false, false, 0},
+                                   false, true, 0, -1, PAR_IN_MEMORY, 0};
+    enum { LAST = 20 };
+    int64_t all, calls;
+    struct whole_run wanted = whole_run_of(&way, NULL);
+    assert_int_equal(refine_whole(&wanted), TRI_OK);
+    assert_int_equal(stop_short_of_memory(&way, &wanted, INT64_MAX, &all), TRI_STOPPED);
+    for (int k = 0; k < LAST; k += every(5))
+        assert_int_equal(stop_short_of_memory(&way, &wanted, all - k, &calls), TRI_NO_MEMORY);
+}
+
 /* A state after each step changes nothing, and whoever fails to take a tile finds all of the mesh again. */
 static void test_a_finished_mesh_is_kept(void **state)
 {
@@ -580,6 +621,7 @@ int main(void)
         cmocka_unit_test(test_damage_is_found),
         cmocka_unit_test(test_whole_meshes_go_on),
         cmocka_unit_test(test_calls_go_on),
+        cmocka_unit_test(test_memory_is_short_for_a_halt),
         cmocka_unit_test(test_a_finished_mesh_is_kept),
         cmocka_unit_test(test_a_sweep_is_not_taken_for_a_whole),
     };
