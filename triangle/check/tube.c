@@ -23,6 +23,7 @@ struct making {
     struct check_tubes *t;
     uint32_t *seen;    /* [n_frame] last tube that reached the vertex, from 1 */
     int32_t *stack;    /* [max(n_frame, n_segments) + 1] */
+    int32_t *root;     /* [n_frame] of vertices of the last tube: one nearer to that of their piece, or themselves */
 };
 
 static double place(const struct check_tube *u, struct tri_point p)
@@ -150,6 +151,28 @@ static void find_next(struct making *m, const struct check_tube *u)
     }
 }
 
+/* The root of a vertex' piece; what was passed is shortened (Tarjan 1975, by halving). */
+static int32_t root_of(struct making *m, int32_t v)
+{
+    while (m->root[v] != v)
+        v = m->root[v] = m->root[m->root[v]];
+    return v;
+}
+
+/* Which entries are connected with each other? */
+static void find_pieces(struct making *m, const struct check_tube *u)
+{
+    struct check_tube_entry *entry = m->t->entry;
+    const int32_t *segments = m->t->c->segments;
+    for (int32_t i = u->first; i < u->last; i++)
+        for (int end = 0; end < 2; end++)
+            m->root[segments[2 * entry[i].subsegment + end]] = segments[2 * entry[i].subsegment + end];
+    for (int32_t i = u->first; i < u->last; i++)
+        m->root[root_of(m, segments[2 * entry[i].subsegment])] = root_of(m, segments[2 * entry[i].subsegment + 1]);
+    for (int32_t i = u->first; i < u->last; i++)
+        entry[i].piece = root_of(m, segments[2 * entry[i].subsegment]);
+}
+
 /* --- places */
 
 /* The first entry that begins no lower than that. */
@@ -174,6 +197,16 @@ static int32_t find_entry(const struct check_tubes *t, const struct check_tube *
         if (t->entry[i].subsegment == s)
             return i;
     return -1;
+}
+
+/* The piece that a vertex is of, -1: none, or too many subsegments end there. */
+static int32_t piece_at(const struct check_tubes *t, const struct check_tube *u, int32_t v)
+{
+    const struct checker *c = t->c;
+    int32_t entry = -1;
+    for (int32_t i = c->fan_first[v]; degree(c, v) <= HUB && entry < 0 && i < c->fan_first[v + 1]; i++)
+        entry = find_entry(t, u, c->fan[i] >> 1);
+    return entry < 0 ? -1 : t->entry[entry].piece;
 }
 
 bool tri_check_tube_ascends(const struct check_tubes *t, int32_t tube, int32_t from, int32_t to)
@@ -247,6 +280,7 @@ static enum tri_status make_tube(struct making *m, const struct candidate *s)
     lay_line(t, u);
     lay_entries(t, u);
     find_next(m, u);
+    find_pieces(m, u);
     find_onward(t, t->n_tubes - 1);
     for (int32_t i = u->first; i < u->last; i++) {
         int32_t *of = &t->tube_of[t->entry[i].subsegment];
@@ -308,13 +342,15 @@ static enum tri_status find_all(struct check_tubes *t, int32_t first)
 {
     const struct checker *c = t->c;
     int32_t most = c->n_frame > c->n_segments ? c->n_frame : c->n_segments, n = c->input->n_segments - first;
-    struct making m = {t, tri_check_zeros(c->n_frame, sizeof *m.seen), tri_check_array(most, sizeof *m.stack)};
+    struct making m = {t, tri_check_zeros(c->n_frame, sizeof *m.seen), tri_check_array(most, sizeof *m.stack),
+                       tri_check_array(c->n_frame, sizeof *m.root)};
     struct candidate *candidate = tri_check_array(n, sizeof *candidate);
     enum tri_status status = TRI_NO_MEMORY;
-    if (m.seen != NULL && m.stack != NULL && candidate != NULL)
+    if (m.seen != NULL && m.stack != NULL && m.root != NULL && candidate != NULL)
         status = make_all(&m, candidate, list_candidates(c, first, candidate));
     free(m.seen);
     free(m.stack);
+    free(m.root);
     free(candidate);
     return status;
 }
@@ -440,6 +476,9 @@ bool tri_check_tube_span(const struct check_tubes *t, int32_t id, const int32_t 
     *span = (struct check_span){tube, low, high, tolerance};
     const int32_t first = find_low(t, u, low), last = find_low(t, u, high);
     if (first == u->last || t->entry[first].low != low || t->entry[first].high > high)
+        return false;
+    const int32_t from = piece_at(t, u, ends[0]), to = piece_at(t, u, ends[1]);
+    if (from >= 0 && to >= 0 && from != to) /* pieces beside each other */
         return false;
     const double most = most_off(t, find_low(t, u, low - tolerance), find_low(t, u, high + tolerance));
     return most + fmax(off(u, p), off(u, q)) <= tolerance && is_covered(t, first, last, high);

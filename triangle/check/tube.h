@@ -15,6 +15,7 @@ struct check_tube_entry {
     double low, high, off; /* places of its ends, and their largest distance from the line */
     int32_t subsegment;
     int32_t next, jump, depth; /* see tri_check_tube_span */
+    int32_t piece;     /* equal where subsegments of the tube lead from one to the other */
     int32_t onward[2]; /* entry down, up beyond its end if nothing else leaves there nearly along the line; else -1 */
 };
 
@@ -46,7 +47,8 @@ enum tri_status tri_check_tubes_make(struct check_tubes *tubes, const struct che
 void tri_check_tubes_free(struct check_tubes *tubes);
 
 /* Is the input segment between these vertices covered by subsegments of a tube, all of them between its ends, and is
- * everything in the tube between these within the tolerance of it? False may also mean: not known. O(log n) mostly. */
+ * everything in the tube between these within the tolerance of it, and does some way in the tube lead from end to end
+ * (that is known where neither is a hub)? False may also mean: not known. O(log n) mostly. */
 bool tri_check_tube_span(const struct check_tubes *tubes, int32_t id, const int32_t *ends, double tolerance,
                          struct check_span *span);
 
