@@ -11,8 +11,8 @@
  *      no chain leads from end to end, a piece is missing beside others within rounding of it. It may have been carved
  *      where one of these bounds the mesh; else it should be there.
  *   4. Where input segments overlap so much that this would take too long, what lies along one line is put in order
- *      (tube.h). An input segment that is covered there may run along all that lies between its ends within the
- *      tolerance, whether a search would have come there or not. */
+ *      (tube.h). An input segment that is covered there by a way from end to end may run along all that lies
+ *      between its ends within the tolerance, whether a search would have come there or not. */
 #include "triangle/check/chain.h"
 
 #include <math.h>
