@@ -15,11 +15,11 @@
  * Smaller ones that need not be on credit are always refined.
  *
  * THEOREM. A call inserts for angles no more points on credit than four times: its allowance, and TRI_CREDIT for each
- * point that it inserts otherwise, and for each vertex that it finds and that is not on credit; those count as often as
- * a third of the triangles in its worklist that ask and have them for a corner, but no more than a sixth of all that
- * have, which is once on average; and within a fence once, and once more where the call has inserted it. Proof: it
- * counts them. So up to 34 degrees (TRI_USUAL_ANGLE), without -D, one call makes no more than 8 TRI_ALLOWANCE +
- * (2 + 8 TRI_CREDIT) n triangles of a figure, n being the vertices that are not on credit.
+ * point that it inserts otherwise, and for each vertex that it finds and that is not on credit; those count, in all, as
+ * often as a third of the triangles in its worklist that ask and have them for a corner, but no more than a sixth of
+ * all that have, which is once on average; and within a fence once, and once more where the call has inserted it.
+ * Proof: it counts them. So up to 34 degrees (TRI_USUAL_ANGLE), without -D, one call makes no more than 8 TRI_ALLOWANCE
+ * + (2 + 8 TRI_CREDIT) n triangles of a figure, n being the vertices that are not on credit.
  *
  * CLAIMS. What comes of points on credit in smaller triangles need not be in proportion to them: where one of them
  * splits a subsegment, features may lie beside it that are ever finer towards a place, and to grade that takes 60
