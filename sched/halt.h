@@ -39,6 +39,4 @@ struct par_halt {
 /* Ends the phase where it is: room goes back to `spare`, all else is forgotten. Nothing to do where there is none. */
 void par_halt_drop(struct par_halt *halt, struct par_room *spare);
 
-void par_halted_drop_pause(struct par_halted *halted);
-
 #endif

@@ -330,10 +330,13 @@ static int32_t more_for(const struct task *task)
 
 static enum tri_status reserve_room(struct phase *p, struct tri_error *error)
 {
+    int64_t to_come = 0; /* who goes on has room */
     p->expected = 0;
-    for (int32_t i = 0; i < p->n_tasks; i++)
+    for (int32_t i = 0; i < p->n_tasks; i++) {
         p->expected += p->tasks[i].expected;
-    return par_room_reserve(&p->state->spare, p->state->mesh, p->expected, error);
+        to_come += p->tasks[i].progress == PAR_NEW ? p->tasks[i].expected : 0;
+    }
+    return par_room_reserve(&p->state->spare, p->state->mesh, to_come, error);
 }
 
 /* Room for a task that is full, in triangles. Where places for subsegments alone have run out, as beside a coast, those
@@ -408,14 +411,6 @@ static bool watch_owners(struct phase *p)
     return true;
 }
 
-static void drop_pause(struct task *task)
-{
-    if (task->pause)
-        tri_pause_free(task->pause);
-    free(task->pause);
-    task->pause = NULL;
-}
-
 static enum tri_status new_refiner(struct task *task)
 {
     enum tri_status status =
@@ -423,7 +418,7 @@ static enum tri_status new_refiner(struct task *task)
     if (!status && task->pause)
         tri_refiner_go_on(task->refiner, task->pause);
     if (!status)
-        drop_pause(task); /* nothing is left in it */
+        tri_pause_drop(&task->pause); /* nothing is left in it */
     return status;
 }
 
@@ -719,7 +714,7 @@ static enum tri_status collect(struct phase *p, struct tri_error *error)
         free(task->given_up.item);
         free(task->changed.item);
         free(task->asked.item);
-        drop_pause(task);
+        tri_pause_drop(&task->pause);
         tri_refiner_free(task->refiner);
     }
     return status || memory ? status : tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for bad triangles");

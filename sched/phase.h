@@ -77,7 +77,8 @@ struct par_state {
     bool amid;               /* in this stage's schedule: `cells` are its blocks before the first round */
     int round, phase;        /* of that, the second from 0 */
     struct tri_pause *paused; /* where a sequential call goes on that a checkpoint's state is amid; else NULL */
-    bool may_halt;           /* a phase that is stopped is to be kept in `halt`, rather than ended as it is */
+    bool may_halt;           /* a phase that is stopped is to be kept in `halt`, rather than ended as it is; where that
+                                cannot be it fails */
     struct par_halt halt;    /* of phase `phase`, which goes on from there */
     struct par_share *share; /* NULL: all blocks are done here, with all that they may look at */
     int32_t n_kept;          /* vertices there were before */

@@ -445,12 +445,20 @@ static enum tri_status leave_memory(struct par_state *state, const struct par_pa
     return tri_refine_check(state->mesh, state->quality, &state->executor, error);
 }
 
+/* A phase that has been halted ends as it is; a state that has been kept has what is needed to go on. */
+static void end_halt(struct par_state *state)
+{
+    for (int32_t i = 0; i < state->halt.n_blocks; i++)
+        par_add_up(&state->report->total, &state->halt.block[i].report);
+    par_halt_drop(&state->halt, &state->spare);
+}
+
 /* What no block could do, and what blocks have left unused. */
 static enum tri_status finish_schedule(struct par_state *state, const struct tri_refine_options *quality, bool top,
                                        enum tri_status status, struct tri_error *error)
 {
     double last = tri_seconds();
-    par_halt_drop(&state->halt, &state->spare); /* where it has been stopped; a state that is kept has it */
+    end_halt(state);
     if (!status && state->worklist.n > 0) { /* in the order of the worklist, which ids do not show in */
         par_room_mark(&state->spare, state->mesh, &state->executor);
         status = refine_rest(state, quality, false, top, error);
@@ -752,7 +760,7 @@ static void clean_up(struct par_state *state)
         report->way = PAR_PARKED;
     if (checkpoint_of(state))
         par_state_end(checkpoint_of(state), state);
-    par_state_drop_pause(state);
+    tri_pause_drop(&state->paused);
     par_halt_drop(&state->halt, &state->spare);
     if (state->options->park)
         *state->options->park = state->park;

@@ -97,3 +97,11 @@ void tri_pause_free(struct tri_pause *p)
     p->encroached = NULL;
     p->n_encroached = p->encroached_capacity = 0;
 }
+
+void tri_pause_drop(struct tri_pause **pause)
+{
+    if (*pause)
+        tri_pause_free(*pause);
+    free(*pause);
+    *pause = NULL;
+}

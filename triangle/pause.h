@@ -55,4 +55,7 @@ bool tri_pause_reserve(struct tri_pause *head);
 
 void tri_pause_free(struct tri_pause *pause);
 
+/* Frees one that lies in memory of its own, too; NULL afterwards, or before. */
+void tri_pause_drop(struct tri_pause **pause);
+
 #endif

@@ -75,7 +75,7 @@ static bool is_count(int64_t n) { return n >= 0 && n <= INT32_MAX; }
 static bool is_head(const struct block_head *h, const struct par_carried_counts *counts)
 {
     bool is = h->block >= 0 && h->block < counts->blocks && h->n_worklist > 0 && is_count(h->n_worklist) &&
-              is_count(h->expected) && is_count(h->pauses) && is_count(h->n_left) && h->progress >= PAR_NEW &&
+              is_count(h->expected) && is_count(h->pauses) && is_count(h->n_left) && h->progress >= PAR_READY &&
               h->progress <= PAR_ENDED && (!h->paused || h->progress == PAR_READY || h->progress == PAR_FULL);
     for (int k = 0; k < PAR_KINDS; k++)
         is = is && is_count(h->n_ranges[k]) && h->current[k] >= 0 && h->current[k] <= h->n_ranges[k];

@@ -475,7 +475,7 @@ enum tri_status par_state_call(struct par_checkpoint *c, struct par_state *state
     enum tri_status status;
     if (state->paused)
         tri_refiner_go_on(refiner, state->paused);
-    par_state_drop_pause(state);
+    tri_pause_drop(&state->paused);
     do {
         state->mesh->stop = &pauses;
         status = tri_refiner_run(refiner, error);
@@ -485,14 +485,6 @@ enum tri_status par_state_call(struct par_checkpoint *c, struct par_state *state
         status = save_call(c, state, refiner, error);
     } while (!status);
     return status;
-}
-
-void par_state_drop_pause(struct par_state *state)
-{
-    if (state->paused)
-        tri_pause_free(state->paused);
-    free(state->paused);
-    state->paused = NULL;
 }
 
 /* --- a sweep */

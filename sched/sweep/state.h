@@ -54,9 +54,6 @@ enum tri_status par_state_phase(struct par_checkpoint *checkpoint, struct par_st
 enum tri_status par_state_call(struct par_checkpoint *checkpoint, struct par_state *state,
                                struct tri_refiner *refiner, struct tri_error *error);
 
-/* Frees state->paused, which may be NULL. */
-void par_state_drop_pause(struct par_state *state);
-
 /* --- a sweep */
 
 /* When a sweep begins: the tiles' sink becomes the checkpoint's, which may hand out tiles again, and, once a
