@@ -24,6 +24,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/sweep_line.c
     triangle/locate.c
     triangle/carve.c
+    triangle/why_empty.c
     triangle/chain.c
     triangle/reconstruct.c
     triangle/cavity.c

@@ -62,6 +62,12 @@ static void warn(const struct io_run *run, const char *text)
         run->options->message(run->options->message_user, 0, text);
 }
 
+static void warn_note(const struct io_run *run, const char *note)
+{
+    if (note[0])
+        warn(run, note);
+}
+
 static void warn_number(const struct io_run *run, int n, const char *what)
 {
     char text[160];
@@ -82,8 +88,9 @@ static void warn_of_input(const struct io_run *run)
     warn_number(run, report->loose,
                 "segments are no edges of the mesh: they are passed on, but the mesh does not keep them");
     warn_number(run, report->duplicates, "points lie where a point of lower number lies, and are not used");
-    warn_number(run, report->constrain.skipped, "segments name no point, or the same point twice, and are skipped");
-    warn_number(run, report->holes_between, "hole points lie on segments, and empty nothing");
+    warn_note(run, report->notes.skipped);
+    warn_note(run, report->notes.empty);
+    warn_number(run, report->carve.between, "hole points lie on segments, and empty nothing");
     if (report->quality.hit_limit && run->how.quality.conforming)
         warn(run, "the limit of S was reached before the mesh was conforming");
 }
