@@ -107,6 +107,11 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/vtu.c
     triangle/text/gmsh.c
     triangle/text/hydro.c
+    triangle/text/bytes.c
+    triangle/text/tags.c
+    triangle/text/read_vtu.c
+    triangle/text/read_gmsh.c
+    triangle/text/read_hydro.c
     triangle/text/formats.c
     triangle/api/files.c)
 
