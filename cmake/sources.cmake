@@ -214,6 +214,7 @@ set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
 set(PTRIANGLE_PLOT_SOURCES
     drivers/interrupt.c
     drivers/plot_part.c
+    drivers/plot_density.c
     drivers/plot_colour.c
     drivers/plot_shade.c
     drivers/plot_field.c

@@ -40,7 +40,8 @@ tri_read_call tri_read_14;
 struct tri_format {
     const char *suffix; /* of the files' names, in small letters */
     const char *name;   /* whose format */
-    bool second_order;  /* it can hold second-order triangles */
+    bool second_order;   /* it can hold second-order triangles, */
+    bool inner_segments; /* and segments that are not on the boundary */
     tri_write_call *write;
     tri_write_parts_call *write_parts; /* NULL: it has no parts */
     tri_read_call *read;
