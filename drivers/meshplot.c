@@ -31,14 +31,16 @@ static const char usage[] = "Usage: " PTRIANGLE_NAME " BASE -o FILE.png|FILE.svg
 static const char help[] = /* in the form that cmake/help.awk makes a manual page of */
     "\n"
     "Draws the mesh in BASE.node and BASE.ele, with the segments of BASE.poly where that exists. Without BASE.ele:\n"
-    "the points and segments alone. Or the mesh in one HDF5 file, where BASE ends in .h5. Of a mesh that is larger\n"
-    "than the memory, or an HDF5 file, what lies in the window is drawn, if that is few enough, or densities.\n"
+    "the points and segments alone. Or the mesh in one file that ptriangle has written, .h5, .vtu, .msh, .2dm, .14 or\n"
+    ".grd, where BASE is its name. Of a mesh that is larger than the memory (.h5 and text files), or that has more\n"
+    "than 16.7 million triangles, what lies in the window is drawn; if that is more than so many triangles, densities\n"
+    "are.\n"
     "\n"
     "  -o, --output FILE        FILE.png or FILE.svg\n"
     "  -c, --color quality|area|region|block|none|density\n"
-    "                           quality (default): the smallest angle of each triangle; region: the first\n"
-    "                           attribute in BASE.ele; block: see --blocks; density: how many triangles there\n"
-    "                           are at each pixel, for a mesh of any size\n"
+    "                           quality (default): the smallest angle of each triangle; region: its first\n"
+    "                           attribute; block: see --blocks; density: how many triangles there are at each\n"
+    "                           pixel, below 1 where they are larger than pixels, for a mesh of any size\n"
     "  -s, --size WIDTH         of the picture in pixels, 64 to 12000 (default 1200)\n"
     "  -w, --window X0,Y0,X1,Y1  the part to show (default: all)\n"
     "  -m, --mark X0,Y0,X1,Y1  a red frame around a part\n"
@@ -57,6 +59,7 @@ enum colouring { BY_QUALITY, BY_REGION, BY_AREA, BY_BLOCK, BY_NOTHING, BY_DENSIT
 struct settings {
     const char *base, *output, *blocks;
     enum colouring colour;
+    bool is_base; /* a suffix has been cut off `base` */
     bool has_window;
     struct plot_style style; /* window and mark in the caller's coordinates */
 };
@@ -202,45 +205,90 @@ static struct plot_box whole(const struct plot_mesh *mesh)
 
 /* --- meshes of any size */
 
-static enum tri_status take_part(struct settings *s, struct files *f, const struct tri_check_source *source,
-                                 struct tri_error *error)
+static enum tri_status take_densities(struct settings *s, struct files *f, const struct tri_check_source *source,
+                                      struct tri_error *error)
 {
-    enum tri_status status = TRI_OK;
-    if (s->colour == BY_BLOCK)
-        return tri_fail(error, TRI_BAD_INPUT, "", 0, "blocks are drawn of meshes in text files that fit into memory");
-    if (!s->has_window)
-        status = plot_part_box(source, &s->style.window, error);
-    s->has_window = true;
-    f->all_points = source->n_points;
-    f->all_triangles = source->n_triangles;
-    if (status != TRI_OK || s->colour != BY_DENSITY)
-        return status ? status : plot_part_take(source, &s->style.window, &f->mesh, &f->elements, error);
     f->density.box = s->style.window;
     plot_window_pixels(&s->style, &f->density.width, &f->density.height);
     return plot_part_count(source, &f->density, &f->mesh, error);
 }
 
-static enum tri_status read_part(struct settings *s, struct files *f, double memory, struct tri_error *error)
+/* What shows in the window; TRI_TOO_LARGE, and nothing: that is too much to be drawn. */
+static enum tri_status take_triangles(const struct settings *s, struct files *f, const struct tri_check_source *source,
+                                      bool all, struct tri_error *error)
 {
-    const char *folder = getenv("TMPDIR");
-    const struct judged_ask ask = {s->base, NULL, memory, folder != NULL && folder[0] != '\0' ? folder : "/tmp", NULL};
+    if (all && source->n_triangles > plot_most_triangles())
+        return TRI_TOO_LARGE;
+    enum tri_status status = plot_part_take(source, &s->style.window, &f->mesh, &f->elements, error);
+    if (status == TRI_TOO_LARGE) {
+        tri_pslg_free(&f->mesh);
+        tri_elements_free(&f->elements);
+    }
+    return status;
+}
+
+static void say_densities(struct settings *s)
+{
+    fail(0, "there are more than %d triangles to show: a picture of densities; --window shows those of a part",
+         (int)plot_most_triangles());
+    s->colour = BY_DENSITY;
+}
+
+static enum tri_status take_part(struct settings *s, struct files *f, const struct tri_check_source *source,
+                                 struct tri_error *error)
+{
+    const bool all = !s->has_window;
+    enum tri_status status = TRI_OK;
+    if (s->colour == BY_BLOCK)
+        return tri_fail(error, TRI_BAD_INPUT, "", 0, "blocks are drawn of meshes in text files that fit into memory");
+    if (all)
+        status = plot_part_box(source, &s->style.window, error);
+    s->has_window = true;
+    f->all_points = source->n_points;
+    f->all_triangles = source->n_triangles;
+    if (status == TRI_OK && s->colour != BY_DENSITY)
+        status = take_triangles(s, f, source, all, error);
+    if (status == TRI_TOO_LARGE) {
+        say_densities(s);
+        status = TRI_OK;
+    }
+    return status != TRI_OK || s->colour != BY_DENSITY ? status : take_densities(s, f, source, error);
+}
+
+static enum tri_status read_part(struct settings *s, struct files *f, const struct judged_ask *ask,
+                                 struct tri_error *error)
+{
     struct judged_files judged = {0};
-    enum tri_status status = judged_read(&judged, &ask, error);
+    enum tri_status status = judged_read(&judged, ask, error);
     if (status == TRI_OK)
         status = take_part(s, f, &judged.source, error);
     judged_files_free(&judged);
     return status;
 }
 
+static enum tri_status read_format(struct files *f, const struct judged_ask *ask, const struct tri_format *format,
+                                   struct tri_error *error)
+{
+    enum tri_status status = judged_check_size(ask->base, ask->memory, error);
+    return status ? status : format->read(ask->base, &f->mesh, &f->elements, NULL, error);
+}
+
 static enum tri_status read_mesh(struct settings *s, struct files *f, struct tri_error *error)
 {
-    const double memory = 0.8 * resources_memory();
-    if (s->colour == BY_DENSITY || tri_name_ends(s->base, ".h5") || !judged_fits(s->base, memory))
-        return read_part(s, f, memory, error);
-    enum tri_status status = read_text(f, s->base, error);
+    const char *folder = getenv("TMPDIR");
+    const struct judged_ask ask = {.base = s->base, .is_base = s->is_base, .memory = 0.8 * resources_memory(),
+                                   .scratch = folder != NULL && folder[0] != '\0' ? folder : "/tmp"};
+    const struct tri_format *format = judged_format(&ask);
+    if (s->colour == BY_DENSITY || judged_is_h5(&ask) || (format == NULL && !judged_fits(s->base, ask.memory)))
+        return read_part(s, f, &ask, error);
+    enum tri_status status = format != NULL ? read_format(f, &ask, format, error) : read_text(f, s->base, error);
     f->all_points = f->mesh.n_points;
     f->all_triangles = f->elements.n;
-    return status;
+    if (status != TRI_OK || f->elements.n <= plot_most_triangles() || s->colour == BY_BLOCK)
+        return status;
+    tri_pslg_free(&f->mesh);
+    tri_elements_free(&f->elements);
+    return read_part(s, f, &ask, error);
 }
 
 /* --- drawing and writing */
@@ -257,8 +305,8 @@ static enum tri_status shade(const struct settings *s, const struct files *f, co
         return plot_shade_area(shading, mesh, error);
     case BY_REGION:
         if (f->elements.n_attributes == 0)
-            return tri_fail(error, TRI_BAD_INPUT, "", 0, "%s.ele has no attribute for the region (made without -A?)",
-                            s->base);
+            return tri_fail(error, TRI_BAD_INPUT, "", 0,
+                            "%s has no attribute of triangles for the region (made without -A?)", s->base);
         return plot_shade_region(shading, mesh, f->elements.attributes, f->elements.n_attributes, error);
     case BY_BLOCK:
         return plot_shade_block(shading, mesh, f->block_phase, error);
@@ -466,7 +514,7 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     }
     if (s->colour == BY_BLOCK && s->blocks == NULL)
         return fail(MISUSE, "--color block needs --blocks FILE");
-    (void)(judged_cut_suffix(mesh, ".node") || judged_cut_suffix(mesh, ".ele") || judged_cut_suffix(mesh, ".poly"));
+    s->is_base = judged_cut_text_suffix(mesh);
     s->base = mesh;
     return 0;
 }

@@ -24,8 +24,10 @@ static const char usage[] = "Usage: " PTRIANGLE_NAME " [options] BASE\n";
 static const char help[] = /* in the form that cmake/help.awk makes a manual page of */
     "\n"
     "Checks the mesh in BASE.node and BASE.ele; also BASE.poly (subsegments) and BASE.neigh where they exist. Or\n"
-    "that in one HDF5 file, where BASE ends in .h5. Of triangles with six nodes each edge has one node, half the way\n"
-    "along it, with its subsegment's marker and half the way between the attributes of its ends.\n"
+    "that in one file that ptriangle has written, .h5, .vtu, .msh, .2dm, .14 or .grd, where BASE is its name. The\n"
+    "last three keep the boundary alone: subsegments, regions and (but for -D) circles are not compared. Of\n"
+    "triangles with six nodes each edge has one node, half the way along it, with its subsegment's marker and half\n"
+    "the way between the attributes of its ends.\n"
     "\n"
     "  -p, --poly FILE      compare with the input that the mesh was made from, a .poly or .node file: its\n"
     "                       vertices come first and unmoved, its segments are chains of subsegments except where\n"
@@ -66,7 +68,8 @@ static const char help[] = /* in the form that cmake/help.awk makes a manual pag
     "exist are found on reading). Numbers printed count as the files do.\n";
 
 struct settings {
-    const char *base; /* name without suffix */
+    const char *base; /* name without suffix, or of one file */
+    bool is_base;     /* a suffix has been cut off */
     const char *input;
     struct tri_check_options check;
     bool ignore_markers, ignore_regions, json, quiet;
@@ -129,6 +132,8 @@ static enum tri_status judge(const struct settings *s, struct judged_files *f, c
     f->source.given &= ~ignored;
     struct tri_check_options options = s->check;
     options.base = f->base;
+    if (f->boundary_alone && options.delaunay == TRI_CHECK_CONSTRAINED)
+        options.delaunay = TRI_CHECK_NOT_DELAUNAY; /* which edges are segments inside is not known */
     if (f->source.n_triangles >= WORTH_THREADS) {
         options.executor = executor;
         options.n_threads = threads;
@@ -296,7 +301,7 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     enum judged_words_end end = judged_words_take(&words, argc, argv, s, &mesh);
     if (end != WORDS_TAKEN)
         return end == WORDS_ANSWERED ? -1 : TROUBLE;
-    (void)(judged_cut_suffix(mesh, ".node") || judged_cut_suffix(mesh, ".ele"));
+    s->is_base = judged_cut_text_suffix(mesh);
     s->base = mesh;
     return 0;
 }
@@ -313,8 +318,8 @@ static int run(const struct settings *s, struct judged_files *f)
     struct tri_check_report report;
     int threads = par_threads(s->threads < PAR_MOST_THREADS ? (int)s->threads : PAR_MOST_THREADS, false);
     const struct tri_executor executor = par_executor(&threads);
-    struct judged_ask ask = {s->base, s->input, memory_to_use(s), s->scratch != NULL ? s->scratch : usual_scratch(),
-                             &executor};
+    const char *scratch = s->scratch != NULL ? s->scratch : usual_scratch();
+    struct judged_ask ask = {s->base, s->is_base, s->input, memory_to_use(s), scratch, &executor};
     enum tri_status status = judged_read(f, &ask, &error);
     if (f->stale_neighbors)
         fail("%s.neigh is of another mesh than %s.ele, by their numbers of triangles: it is not judged", s->base,
