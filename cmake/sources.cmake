@@ -27,7 +27,6 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/chain.c
     triangle/reconstruct.c
     triangle/cavity.c
-    triangle/hidden_wall.c
     triangle/interpolate.c
     triangle/degrees.c
     triangle/quality.c

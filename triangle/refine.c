@@ -8,7 +8,7 @@
  * ORDER. The walls of a cavity are all the subsegments that its point encroaches and sees only if none of them is
  * encroached already (cavity.h): the corner that encroaches it may hide it, and the point would come to lie anywhere
  * near it. So triangles with a corner that sees a subsegment of theirs under too wide an angle come before all others:
- * their points lie behind it, and it is split; where a fence forbids that, hidden_wall.c finds it behind the cavity.
+ * their points lie behind it, and it is split, unless a fence forbids that.
  * Then those with the shortest edges (bad_queue.h).
  *
  * Angles may be given up; sizes are not: a triangle that is too large and cannot have that point gets another
@@ -88,7 +88,6 @@
 #include "triangle/estimate.h"
 #include "triangle/feature_size.h"
 #include "triangle/grow.h"
-#include "triangle/hidden_wall.h"
 #include "triangle/inside.h"
 #include "triangle/interpolate.h"
 #include "triangle/pause.h"
@@ -727,20 +726,6 @@ static enum outcome find_cavity(struct tri_refiner *r, tri_triangle_id triangle,
     }
 }
 
-/* The same where subsegments that are encroached may have been left: hidden_wall.c. Those that must not be split are in
- * nobody's way: they are hidden in calls for the whole mesh, too. */
-static enum outcome find_hidden(struct tri_refiner *r, tri_triangle_id triangle, tri_sub_id *s)
-{
-    if (!r->options->fence && !r->options->urgent)
-        return DONE;
-    switch (tri_find_hidden_wall(&r->cavity, r->mesh, r->options, r->criterion.bounds.lens_cos2, s)) {
-    case TRI_SEARCH_FENCED: return defer_fenced(r, triangle);
-    case TRI_SEARCH_BEYOND: return wait_for_more(r, r->cavity.beyond);
-    default: break;
-    }
-    return DONE;
-}
-
 /* The usual point, or the split of a subsegment that it encroaches. */
 static enum outcome propose(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape,
                             enum tri_badness badness)
@@ -754,8 +739,6 @@ static enum outcome propose(struct tri_refiner *r, tri_triangle_id triangle, con
         return outcome;
     assert(r->cavity.n_tri > 0 && r->cavity.tri[0] == triangle);
     tri_sub_id s = find_encroached(r, shape->l[shape->shortest]);
-    if (s == TRI_NONE && (outcome = find_hidden(r, triangle, &s)) != DONE)
-        return outcome;
     if (s == TRI_NONE)
         return insert_free(r, p, triangle, shape);
     if (tri_is_flat(r->mesh, shape))
