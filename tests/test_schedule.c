@@ -648,29 +648,6 @@ static void test_what_is_left_does_not_multiply(void **state)
     tri_pslg_free(&start.pslg);
 }
 
-/* Long walls beyond fences, and thousands of triangles on this side whose points all lead to the same wall: each
- * searched all the others in vain, hundreds of times as many triangles as there are. */
-static void test_fans_at_a_fence_are_searched_once(void **state)
-{
-    (void)state;
-    if (!is_full())
-        return;
-    struct par_report report;
-    struct start start = {.options = support_quality(26, 0)};
-    struct par_options options = small_blocks(4000, 2);
-    start.options.keep_hull = true;
-    assert_true(support_read("regress/wide_fans.poly", &start.pslg));
-    for (int32_t v = 0; v < start.pslg.n_points; v++)
-        start.pslg.points[2 * (size_t)v + 1] *= 4; /* so that the spaces between the walls are filled */
-    struct tri_mesh mesh = refine(&start, &options, &report);
-    print_message("  %d triangles, %lld searched in vain\n", (int)mesh.n_triangles,
-                  (long long)report.total.searched_in_vain);
-    assert_true(mesh.n_triangles > 100000 && report.total.searched_in_vain < 20 * (int64_t)mesh.n_triangles);
-    par_report_free(&report);
-    tri_mesh_free(&mesh);
-    tri_pslg_free(&start.pslg);
-}
-
 /* Cuts do not run along a gap that holds nearly all of the work, upright or level. */
 static void test_a_long_gap_costs_no_triangles(void **state)
 {
@@ -1326,7 +1303,6 @@ int main(void)
         cmocka_unit_test(test_nothing_is_deferred_with_the_margin),
         cmocka_unit_test(test_schedules_are_told_apart),
         cmocka_unit_test(test_what_is_left_does_not_multiply),
-        cmocka_unit_test(test_fans_at_a_fence_are_searched_once),
         cmocka_unit_test(test_a_long_gap_costs_no_triangles),
         cmocka_unit_test(test_levels_of_a_ring_are_begun_once),
         cmocka_unit_test(test_default_blocks_cost_no_triangles),

@@ -21,7 +21,7 @@ struct tri_pause {
     struct tri_bad_queue queue;
     tri_sub_id *encroached;
     int32_t n_encroached, encroached_capacity;
-    struct tri_entry_set walled_off, met; /* within a fence; the second: credit.h */
+    struct tri_entry_set met; /* within a fence: credit.h */
 };
 
 /* The refiner's arrays are borrowed, until it runs again or is freed. */
@@ -34,7 +34,7 @@ void tri_refiner_leave(struct tri_refiner *refiner, struct tri_pause *pause);
  * becomes what it was. */
 void tri_refiner_go_on(struct tri_refiner *refiner, struct tri_pause *pause);
 
-enum { TRI_PAUSE_ARRAYS = 6, TRI_PAUSE_LAST_STAGE = 4, TRI_PAUSE_LAST_STEP = 2 }; /* as refine.c has them */
+enum { TRI_PAUSE_ARRAYS = 5, TRI_PAUSE_LAST_STAGE = 4, TRI_PAUSE_LAST_STEP = 2 }; /* as refine.c has them */
 
 struct tri_pause_array {
     void *at;

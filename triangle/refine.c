@@ -35,14 +35,6 @@
  * subsegments, the next triangle, too, has p in its circumdisk (cavity.h), and belongs to the cavity. So it does not
  * reach p, behind the barrier. It meets a subsegment, a wall of the cavity with p behind it, which must not be split.
  *
- * FENCES. The walls beyond a fence stay coarse while its own side is refined, so that such fans of n triangles come to
- * lie there; each asks for a point, searches all of them, is led to a wall, and finds that the cavity of its split lies
- * beyond the fence. RULE: where such searches have gone through more than WIDE triangles, these are all deferred as
- * they are (wall_off). THEOREM: then n triangles of a fan cost n together, where they cost n each; and what is deferred
- * is as it was before, so all that is said of calls with fences holds. Proof: the first of them that is asked defers
- * the others, which are not asked before they have changed; deferred triangles are found again by whoever comes later,
- * with other fences or none.
- *
  * FLAT TRIANGLES. Where segments lie an ulp apart, a subsegment beside a flat triangle has no place for a split before
  * the subsegment behind that triangle has one, on the same level. In one call the flat triangles come first, and all
  * are split in step. Within a fence the one behind may be another's, or be kept for the margin below; for sizes the
@@ -84,7 +76,6 @@
 #include "triangle/credit.h"
 #include "triangle/criterion.h"
 #include "triangle/disk.h"
-#include "triangle/entry_set.h"
 #include "triangle/estimate.h"
 #include "triangle/feature_size.h"
 #include "triangle/grow.h"
@@ -142,9 +133,6 @@ struct tri_refiner {
     enum stage stage;
     enum tri_excuse excuse; /* of the last refusal */
     tri_sub_id placeless;   /* that was since this subsegment should be split, and has no place for it; or TRI_NONE */
-    struct tri_entry_set walled_off; /* triangles that are deferred as they are, see FENCES */
-    tri_triangle_id *searched; /* [n_searched] the cavity before a split was searched, if that is wide */
-    int32_t n_searched, searched_capacity;
     bool in_hand;     /* `hand` was being treated when there was no room */
     struct tri_entry hand;
     tri_sub_id *encroached; /* stack of subsegments to test for encroachment (conforming only) */
@@ -153,7 +141,7 @@ struct tri_refiner {
     uint32_t step_of_stop; /* see tri_stop_is_due */
 };
 
-enum { WORKLIST_CHUNK = 1 << 16, WIDE = 64 };
+enum { WORKLIST_CHUNK = 1 << 16 };
 
 /* Beyond this lies no point that the predicates can carry: the triangle's area has been rounded to nothing. */
 static const double FARTHEST = TRI_LARGEST_COORDINATE / 2;
@@ -353,39 +341,6 @@ static enum outcome defer(struct tri_refiner *r, tri_triangle_id triangle, int64
     return DEFERRED;
 }
 
-static bool wall_off(struct tri_refiner *r, const tri_triangle_id *triangle, int32_t n)
-{
-    for (int32_t i = 0; n > WIDE && i < n; i++) {
-        struct tri_entry entry = {triangle[i], r->mesh->tri[triangle[i]].life};
-        if (!tri_entry_set_add(&r->walled_off, entry))
-            return false;
-    }
-    return true;
-}
-
-/* The fence does, after a search. */
-static enum outcome defer_fenced(struct tri_refiner *r, tri_triangle_id triangle)
-{
-    if (!wall_off(r, r->cavity.tri, r->cavity.n_tri) || !wall_off(r, r->searched, r->n_searched))
-        return FAILED;
-    r->report->searched_in_vain += r->cavity.n_tri + r->n_searched;
-    return defer(r, triangle, &r->report->fenced);
-}
-
-/* Keeps the triangles of a wide cavity while another is searched. */
-static bool keep_searched(struct tri_refiner *r)
-{
-    int32_t n = r->cavity.n_tri;
-    r->n_searched = 0;
-    if (!r->options->fence || n <= WIDE)
-        return true;
-    if (!tri_grow(&r->searched, &r->searched_capacity, n, sizeof *r->searched))
-        return false;
-    memcpy(r->searched, r->cavity.tri, (size_t)n * sizeof *r->searched);
-    r->n_searched = n;
-    return true;
-}
-
 /* Nothing has been changed; the same is tried again when there is more of the mesh. */
 static enum outcome wait_for_more(struct tri_refiner *r, const tri_vertex_id edge[2])
 {
@@ -580,7 +535,7 @@ static enum outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri_dis
     }
     enum tri_search found = find_split(r, s, &split, &n_left);
     if (found == TRI_SEARCH_FENCED)
-        return defer_fenced(r, triangle);
+        return defer(r, triangle, &r->report->fenced);
     if (found == TRI_SEARCH_BEYOND)
         return wait_for_more(r, r->cavity.beyond);
     if (found == TRI_SEARCH_OUTSIDE)
@@ -719,7 +674,7 @@ static enum outcome find_cavity(struct tri_refiner *r, tri_triangle_id triangle,
         return refuse(r, TRI_EXCUSE_PROTECTED);
     switch (tri_cavity_search(&r->cavity, r->mesh, p, triangle)) {
     case TRI_SEARCH_FOUND: return DONE;
-    case TRI_SEARCH_FENCED: return defer_fenced(r, triangle);
+    case TRI_SEARCH_FENCED: return defer(r, triangle, &r->report->fenced);
     case TRI_SEARCH_BEYOND: return wait_for_more(r, r->cavity.beyond);
     case TRI_SEARCH_OUTSIDE: return refuse(r, TRI_EXCUSE_PRECISION);
     default: return FAILED;
@@ -743,8 +698,7 @@ static enum outcome propose(struct tri_refiner *r, tri_triangle_id triangle, con
         return insert_free(r, p, triangle, shape);
     if (tri_is_flat(r->mesh, shape))
         return refuse(r, TRI_EXCUSE_PRECISION);
-    outcome = keep_searched(r) ? split(r, s, triangle) : FAILED;
-    r->n_searched = 0;
+    outcome = split(r, s, triangle);
     return outcome == DONE ? AGAIN : outcome;
 }
 
@@ -928,8 +882,6 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         enum tri_badness badness = tri_judge(&r->criterion, t, &shape);
         if (badness == TRI_GOOD)
             return DONE;
-        if (tri_entry_set_holds(&r->walled_off, entry))
-            return defer(r, entry.t, &r->report->fenced);
         r->sized = badness == TRI_BAD_SIZE;
         r->on_credit = false;
         if (r->options->fence && badness == TRI_BAD_ANGLE && gives_credit(r)) {
@@ -1305,9 +1257,7 @@ void tri_refiner_free(struct tri_refiner *r)
         return;
     tri_cavity_free(&r->cavity);
     tri_bad_queue_free(&r->queue);
-    tri_entry_set_free(&r->walled_off);
     tri_credit_free(&r->credit);
-    free(r->searched);
     free(r->encroached);
     free(r);
 }
@@ -1334,7 +1284,6 @@ void tri_refiner_show(const struct tri_refiner *r, struct tri_pause *pause)
     pause->encroached = r->encroached;
     pause->n_encroached = r->n_encroached;
     pause->encroached_capacity = r->encroached_capacity;
-    pause->walled_off = r->walled_off;
     pause->met = r->credit.met;
 }
 
@@ -1344,7 +1293,7 @@ void tri_refiner_leave(struct tri_refiner *r, struct tri_pause *pause)
     r->queue = (struct tri_bad_queue){0};
     r->encroached = NULL;
     r->n_encroached = r->encroached_capacity = 0;
-    r->walled_off = r->credit.met = (struct tri_entry_set){0};
+    r->credit.met = (struct tri_entry_set){0};
 }
 
 void tri_refiner_go_on(struct tri_refiner *r, struct tri_pause *pause)
@@ -1369,12 +1318,11 @@ void tri_refiner_go_on(struct tri_refiner *r, struct tri_pause *pause)
     r->encroached = pause->encroached;
     r->n_encroached = pause->n_encroached;
     r->encroached_capacity = pause->encroached_capacity;
-    r->walled_off = pause->walled_off;
     r->credit.met = pause->met;
     pause->queue = (struct tri_bad_queue){0};
     pause->encroached = NULL;
     pause->n_encroached = pause->encroached_capacity = 0;
-    pause->walled_off = pause->met = (struct tri_entry_set){0};
+    pause->met = (struct tri_entry_set){0};
 }
 
 enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,

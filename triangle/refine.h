@@ -114,7 +114,6 @@ enum tri_excuse { /* why a triangle is still bad */
 struct tri_refine_report {
     int64_t inserted_free, inserted_on_segments;
     int64_t gated, fenced;            /* triangles deferred: by the gate; since a cavity reached beyond the fence */
-    int64_t searched_in_vain;         /* triangles of cavities that turned out to reach beyond the fence */
     int64_t given_up[TRI_EXCUSES];    /* bad triangles given up during the call, by reason; some vanish later */
     bool hit_limit;                   /* max_steiner stopped the call */
     bool hit_cap;                     /* angles above TRI_PROMISED_ANGLE, and what comes of them (credit.h), or above
