@@ -35,16 +35,6 @@
  * subsegments, the next triangle, too, has p in its circumdisk (cavity.h), and belongs to the cavity. So it does not
  * reach p, behind the barrier. It meets a subsegment, a wall of the cavity with p behind it, which must not be split.
  *
- * FLAT TRIANGLES. Where segments lie an ulp apart, a subsegment beside a flat triangle has no place for a split before
- * the subsegment behind that triangle has one, on the same level. In one call the flat triangles come first, and all
- * are split in step. Within a fence the one behind may be another's, or be kept for the margin below; for sizes the
- * point would then be a centroid (inside.c), a third as far from the subsegment each time, down to what coordinates
- * resolve, and angles grade the mesh around each of these. RULE: within a fence a triangle that would get a centroid
- * since its subsegment has no place is deferred, if a flat triangle there is, or the split of the wall behind these. In
- * a call for the whole mesh it gets its centroid; and where nobody else can help, so that a sweep leaves nothing over.
- * (Grids of 12 segments with a size test, in cells of 60 triangles: 4,790 triangles at 30 degrees, 511 with the rule,
- * 545 by one call; at 22 degrees another left 42 triangles of 1,084 below the bound, now none.)
- *
  * SIZES. A triangle whose angle is given up may be too large all the same. The usual point lies as near to its shortest
  * edge as its angle asks, and the triangles on that edge are good then: where the edge has run away (feature_size.c)
  * that would go on with what was given up, and angles grade the mesh around each such point. RULE: there the point lies
@@ -132,7 +122,6 @@ struct tri_refiner {
     int32_t next_listed, n_worklist;
     enum stage stage;
     enum tri_excuse excuse; /* of the last refusal */
-    tri_sub_id placeless;   /* that was since this subsegment should be split, and has no place for it; or TRI_NONE */
     bool in_hand;     /* `hand` was being treated when there was no room */
     struct tri_entry hand;
     tri_sub_id *encroached; /* stack of subsegments to test for encroachment (conforming only) */
@@ -354,15 +343,6 @@ static enum outcome refuse(struct tri_refiner *r, enum tri_excuse excuse)
 {
     assert(excuse < TRI_EXCUSES);
     r->excuse = excuse;
-    r->placeless = TRI_NONE;
-    return REFUSED;
-}
-
-/* The subsegment that should be split has no place for it. */
-static enum outcome refuse_place(struct tri_refiner *r, tri_sub_id s)
-{
-    refuse(r, TRI_EXCUSE_PRECISION);
-    r->placeless = s;
     return REFUSED;
 }
 
@@ -539,7 +519,7 @@ static enum outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri_dis
     if (found == TRI_SEARCH_BEYOND)
         return wait_for_more(r, r->cavity.beyond);
     if (found == TRI_SEARCH_OUTSIDE)
-        return refuse_place(r, s);
+        return refuse(r, TRI_EXCUSE_PRECISION);
     if (found == TRI_SEARCH_NO_MEMORY || make_room(r))
         return FAILED;
     bool boundary = tri_is_boundary(&old);
@@ -726,59 +706,7 @@ static bool keeps_margin(const struct tri_refiner *r, const struct tri_triangle 
     return lies_within(r, t, sqrt(tri_larger(4 * shape->l[shape->shortest], tri_longest2(shape))));
 }
 
-/* DONE: the split of this subsegment would not be refused by the fence. */
-static enum outcome owns_split(struct tri_refiner *r, tri_sub_id s)
-{
-    int32_t n_left;
-    struct tri_disk_split usual = {tri_split_fraction(r->mesh, &r->mesh->sub[s]), TRI_NONE, false};
-    switch (find_split(r, s, &usual, &n_left)) {
-    case TRI_SEARCH_FENCED: return DEFERRED;
-    case TRI_SEARCH_BEYOND: return wait_for_more(r, r->cavity.beyond);
-    case TRI_SEARCH_NO_MEMORY: return FAILED;
-    default: return DONE;
-    }
-}
-
-/* Flat triangles from this one on, each across the longest edge of the last, to the wall behind them, which is split
- * first of all. DONE: all that is within the fence. */
-static enum outcome owns_flats(struct tri_refiner *r, tri_triangle_id t)
-{
-    const struct tri_mesh *m = r->mesh;
-    for (double longest2 = 0;;) {
-        const tri_vertex_id *v = m->tri[t].v;
-        const struct tri_shape shape = tri_shape_of(m->xy, v);
-        if (!tri_is_flat(m, &shape) || tri_longest2(&shape) <= longest2)
-            return DONE;
-        longest2 = tri_longest2(&shape);
-        if (!lies_within(r, &m->tri[t], 0) || (gives_credit(r) && !keeps_margin(r, &m->tri[t], &shape)))
-            return DEFERRED;
-        const int e = shape.l[0] == longest2 ? 0 : shape.l[1] == longest2 ? 1 : 2;
-        const tri_link link = m->tri[t].n[e];
-        if (link == TRI_BEYOND)
-            return wait_for_more(r, (tri_vertex_id[]){v[tri_next[e]], v[tri_prev[e]]});
-        if (link < 0)
-            return owns_split(r, ~link);
-        t = tri_of(link);
-    }
-}
-
-/* DONE: nobody else can make room for the split that has just been refused. See FLAT TRIANGLES. */
-static enum outcome leave_to_others(struct tri_refiner *r, tri_triangle_id triangle)
-{
-    enum outcome outcome = DONE;
-    if (!r->options->fence || r->placeless == TRI_NONE)
-        return DONE;
-    const struct tri_subsegment *sub = &r->mesh->sub[r->placeless];
-    for (int side = 0; side < 2 && outcome == DONE; side++) {
-        if (sub->side[side] == TRI_BEYOND)
-            return wait_for_more(r, sub->v);
-        if (sub->side[side] != TRI_NONE)
-            outcome = owns_flats(r, tri_of(sub->side[side]));
-    }
-    return outcome == DEFERRED ? defer(r, triangle, &r->report->fenced) : outcome;
-}
-
-/* For sizes, where the usual point is refused: see inside.c, and FLAT TRIANGLES. */
+/* For sizes, where the usual point is refused: see inside.c. */
 static enum outcome propose_inside(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape)
 {
     tri_sub_id s = tri_long_wall(r->mesh, r->options, triangle, shape);
@@ -790,8 +718,7 @@ static enum outcome propose_inside(struct tri_refiner *r, tri_triangle_id triang
         return refuse(r, TRI_EXCUSE_PRECISION);
     if (tri_is_walled_in(&r->criterion, triangle, shape))
         return refuse(r, TRI_EXCUSE_PROTECTED);
-    outcome = leave_to_others(r, triangle);
-    outcome = outcome == DONE ? find_cavity(r, triangle, p) : outcome;
+    outcome = find_cavity(r, triangle, p);
     return outcome == DONE ? insert_free(r, p, triangle, shape) : outcome;
 }
 
