@@ -35,14 +35,6 @@
  * subsegments, the next triangle, too, has p in its circumdisk (cavity.h), and belongs to the cavity. So it does not
  * reach p, behind the barrier. It meets a subsegment, a wall of the cavity with p behind it, which must not be split.
  *
- * SIZES. A triangle whose angle is given up may be too large all the same. The usual point lies as near to its shortest
- * edge as its angle asks, and the triangles on that edge are good then: where the edge has run away (feature_size.c)
- * that would go on with what was given up, and angles grade the mesh around each such point. RULE: there the point lies
- * as far from the edge as sizes ask. Where walls must not be split the usual one is taken: the other would mostly lie
- * behind them, and a centroid in its place comes nearer to walls. (A square and its copy, 10^-6 beside it, with -D and
- * a size test, turned forty ways, in cells of 60 triangles: 1,705 to 8,790 triangles, 1,705 to 3,003 with the rule; by
- * one call up to 3,602, and 3,141.)
- *
  * SEAMS. Bad triangles that reach beyond a fence stay; around them a bound above TRI_PROMISED_ANGLE can only be
  * reached by points that are ever denser, and whoever refines them later has to keep all of these. RULE: for such a
  * bound a triangle is refined only where it lies within the fence with a margin of its longest edge, and of twice
@@ -586,14 +578,6 @@ static tri_sub_id find_encroached(const struct tri_refiner *r, double shortest)
     return found;
 }
 
-/* Has the angle of a triangle that is too large been given up, since its shortest edge is no feature? See SIZES. */
-static bool is_for_size_alone(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape)
-{
-    const int k = shape->shortest;
-    return r->sized && r->options->protect == 0 &&
-           tri_has_run_away(r->mesh, tri_final_angle(r->options), t->v[tri_next[k]], t->v[tri_prev[k]], shape->l[k]);
-}
-
 /* How far from its shortest edge may the new point of this triangle lie? */
 static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape,
                        enum tri_badness badness)
@@ -602,11 +586,9 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
     if (r->options->urgent)
         return HUGE_VAL;
     assert(l > 0 && badness != TRI_GOOD);
-    const bool for_size = badness == TRI_BAD_SIZE || is_for_size_alone(r, t, shape);
-    const bool near = r->criterion.bounds.off_centre > 0 && (badness == TRI_BAD_SIZE || !for_size);
-    double reach = near ? r->criterion.bounds.off_centre * sqrt(l) : HUGE_VAL;
+    double reach = r->criterion.bounds.off_centre > 0 ? r->criterion.bounds.off_centre * sqrt(l) : HUGE_VAL;
     double area2_bound = tri_area2_bound(&r->criterion, t->region);
-    if (for_size && shape->area2 > area2_bound) {
+    if (badness == TRI_BAD_SIZE && shape->area2 > area2_bound) {
         double ideal2 = IDEAL * EQUILATERAL * 0.5 * area2_bound - 0.25 * l;
         double ideal = ideal2 > 0 ? sqrt(ideal2) : 0;
         reach = ideal2 > 0.25 * l && ideal < reach ? ideal : reach;
