@@ -1,6 +1,5 @@
-/* A refiner between two runs: all that the next run depends on, beside the mesh and the options (a barrier, refine.c,
- * only saves searches). Who keeps it in a file keeps the struct and then the arrays; who reads it gives it to a new
- * refiner. */
+/* A refiner between two runs: all that the next run depends on, beside the mesh and the options. Who keeps it in a file
+ * keeps the struct and then the arrays; who reads it gives it to a new refiner. */
 #ifndef TRIANGLE_PAUSE_H
 #define TRIANGLE_PAUSE_H
 

@@ -28,13 +28,6 @@
  * not 62,200 of 761,342); -YY at 30 and 33 degrees 4 and 5% more, and as many bad ones. A clearance of 0 or 1 fills
  * slits where that helps nobody (-YY at 33: 32 and 14% more, more of them bad); 4 gains less for -Y.
  *
- * BARRIERS. Where no subsegment may be split (-YY; -Y where none lies inside), most of those are given up for points
- * behind the wall. RULE: a point behind the subsegment that was in the way last is refused without a search. THEOREM:
- * with one it would be, too, or deferred. Proof: let the way from a corner of the triangle, across the opposite edge,
- * to the point p cross the barrier, and no vertex (else a way beside it does). As long as it crosses edges that are no
- * subsegments, the next triangle, too, has p in its circumdisk (cavity.h), and belongs to the cavity. So it does not
- * reach p, behind the barrier. It meets a subsegment, a wall of the cavity with p behind it, which must not be split.
- *
  * SEAMS. Bad triangles that reach beyond a fence stay; around them a bound above TRI_PROMISED_ANGLE can only be
  * reached by points that are ever denser, and whoever refines them later has to keep all of these. RULE: for such a
  * bound a triangle is refined only where it lies within the fence with a margin of its longest edge, and of twice
@@ -98,9 +91,6 @@ struct tri_refiner {
     struct tri_criterion criterion;
     int least_exponent; /* of mesh->limits.shortest2 */
     struct tri_cavity cavity;
-    bool none_splits;            /* no subsegment may be split */
-    bool has_barrier;            /* then: one has been in the way, */
-    struct tri_point barrier[2]; /* between these ends the last */
     struct tri_bad_queue queue;
     bool sized;       /* the triangle in hand asks for a point because of sizes, not of angles */
     bool on_credit;   /* its point, or split, is */
@@ -499,12 +489,8 @@ static enum outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri_dis
     const struct tri_subsegment old = m->sub[s];
     int32_t n_left;
     assert(s >= 0 && split.fraction > 0 && split.fraction < 1);
-    if (tri_is_protected(r->options, &old)) {
-        r->has_barrier = r->none_splits;
-        r->barrier[0] = m->xy[old.v[0]];
-        r->barrier[1] = m->xy[old.v[1]];
+    if (tri_is_protected(r->options, &old))
         return refuse(r, TRI_EXCUSE_PROTECTED);
-    }
     enum tri_search found = find_split(r, s, &split, &n_left);
     if (found == TRI_SEARCH_FENCED)
         return defer(r, triangle, &r->report->fenced);
@@ -596,30 +582,6 @@ static double reach_of(const struct tri_refiner *r, const struct tri_triangle *t
     return reach;
 }
 
-/* Do the open line segments ab and cd cross? */
-static bool do_cross(struct tri_point a, struct tri_point b, struct tri_point c, struct tri_point d)
-{
-    const double of_a = tri_orient2d(c, d, a), of_b = tri_orient2d(c, d, b);
-    if (!((of_a > 0 && of_b < 0) || (of_a < 0 && of_b > 0)))
-        return false;
-    const double of_c = tri_orient2d(a, b, c), of_d = tri_orient2d(a, b, d);
-    return (of_c > 0 && of_d < 0) || (of_c < 0 && of_d > 0);
-}
-
-/* Is p, in the circumdisk of the triangle, behind the barrier, seen from the corner that has p behind the opposite
- * edge? See BARRIERS. */
-static bool is_behind_barrier(const struct tri_refiner *r, tri_triangle_id triangle, struct tri_point p)
-{
-    const tri_vertex_id *v = r->mesh->tri[triangle].v;
-    for (int k = 0; r->has_barrier && k < 3; k++) {
-        const struct tri_point a = r->mesh->xy[v[k]];
-        const struct tri_point b = r->mesh->xy[v[tri_next[k]]], c = r->mesh->xy[v[tri_prev[k]]];
-        if (tri_orient2d(b, c, p) < 0 && tri_orient2d(a, b, p) > 0 && tri_orient2d(c, a, p) > 0)
-            return do_cross(a, p, r->barrier[0], r->barrier[1]);
-    }
-    return false;
-}
-
 /* The cavity of a new point for a triangle: DONE where it is found and is ours. */
 static enum outcome find_cavity(struct tri_refiner *r, tri_triangle_id triangle, struct tri_point p)
 {
@@ -632,8 +594,6 @@ static enum outcome find_cavity(struct tri_refiner *r, tri_triangle_id triangle,
     }
     if (r->options->fence && !tri_fence_holds(r->options->fence, p)) /* then its cavity reaches beyond, too */
         return defer(r, triangle, &r->report->fenced);
-    if (is_behind_barrier(r, triangle, p))
-        return refuse(r, TRI_EXCUSE_PROTECTED);
     switch (tri_cavity_search(&r->cavity, r->mesh, p, triangle)) {
     case TRI_SEARCH_FOUND: return DONE;
     case TRI_SEARCH_FENCED: return defer(r, triangle, &r->report->fenced);
@@ -650,8 +610,6 @@ static enum outcome propose(struct tri_refiner *r, tri_triangle_id triangle, con
     const struct tri_triangle t = r->mesh->tri[triangle];
     struct tri_point p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
     enum outcome outcome = find_cavity(r, triangle, p);
-    if (outcome == REFUSED && r->excuse == TRI_EXCUSE_PROTECTED && tri_is_flat(r->mesh, shape))
-        return refuse(r, TRI_EXCUSE_PRECISION); /* as with a search */
     if (outcome != DONE)
         return outcome;
     assert(r->cavity.n_tri > 0 && r->cavity.tri[0] == triangle);
@@ -877,17 +835,6 @@ static bool split_encroached(struct tri_refiner *r)
         if (outcome == REFUSED)
             give_up(r, TRI_NONE, r->excuse);
     }
-    return true;
-}
-
-/* With -Y alone that takes a look at all subsegments: in a call for the whole mesh. */
-static bool may_none_split(const struct tri_mesh *mesh, const struct tri_refine_options *options)
-{
-    if (options->fence || options->part || options->protect != 1)
-        return options->protect >= 2;
-    for (int32_t s = 0; s < mesh->n_subs; s++)
-        if (mesh->sub[s].parent != TRI_NONE && !tri_is_boundary(&mesh->sub[s]))
-            return false;
     return true;
 }
 
@@ -1138,7 +1085,6 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
     r->promised_sin2 = tri_bounds_for(TRI_PROMISED_ANGLE, options->conforming).sin2;
     r->poor_sin2 = tri_bounds_for(TRI_POOR_ANGLE, options->conforming).sin2;
     r->report = report;
-    r->none_splits = may_none_split(mesh, options);
     begin_stages(r);
     frexp(mesh->limits.shortest2, &r->least_exponent);
     r->cavity.fence = options->fence;
