@@ -45,7 +45,7 @@
  * triangles and more, against 200 points. Measured at 34 degrees with and without -D, 192 figures: with an allowance of
  * 1,000 in blocks no mesh differs; in cells of 250 triangles 15 of 382 do, with 0.7% more triangles in all and 2% fewer
  * below the bound; but circles that share arcs up to rounding, in cells of 100 triangles, take 25,071 instead of 9,865
- * (374 at 28 degrees). What seams would add is kept low by refine.c (SEAMS).
+ * (374 at 28 degrees).
  */
 #ifndef TRIANGLE_CREDIT_H
 #define TRIANGLE_CREDIT_H

@@ -28,15 +28,6 @@
  * not 62,200 of 761,342); -YY at 30 and 33 degrees 4 and 5% more, and as many bad ones. A clearance of 0 or 1 fills
  * slits where that helps nobody (-YY at 33: 32 and 14% more, more of them bad); 4 gains less for -Y.
  *
- * SEAMS. Bad triangles that reach beyond a fence stay; around them a bound above TRI_PROMISED_ANGLE can only be
- * reached by points that are ever denser, and whoever refines them later has to keep all of these. RULE: for such a
- * bound a triangle is refined only where it lies within the fence with a margin of its longest edge, and of twice
- * its shortest; others are deferred as they are. They are somebody else's inner ones in the next phase. (A comb of
- * 22 slits, some of them cut lengthwise by seams, at 30 and 34 degrees: 131,985 and 277,516 triangles without the
- * rule, 103,153 and 141,620 with it; one call makes 101,327 and 135,661. Once the shortest edge gains half as much
- * in tiny cells; twice alone lets points gather where seams cross at tiny features, to 2.8 times what one call
- * makes; four times the shortest edge leaves more at the seams, which a sweep cannot come back to.)
- *
  * Termination: for angles by the rules in small_angle.c, and credit.h says at what price; the points for sizes and for
  * circles that come on top are finitely many whatever the others do, see inside.c and disk.c. */
 #include "triangle/refine.h"
@@ -628,24 +619,6 @@ static bool gives_credit(const struct tri_refiner *r)
     return r->stage == USUAL_STAGE && r->options->min_angle > TRI_PROMISED_ANGLE;
 }
 
-/* Does the triangle lie within the fence, with this margin? */
-static bool lies_within(const struct tri_refiner *r, const struct tri_triangle *t, double margin)
-{
-    bool does = true;
-    for (int k = 0; k < 3; k++) {
-        struct tri_point p = r->mesh->xy[t->v[k]];
-        struct tri_point low = {p.x - margin, p.y - margin}, high = {p.x + margin, p.y + margin};
-        does = does && tri_fence_holds(r->options->fence, low) && tri_fence_holds(r->options->fence, high);
-    }
-    return does;
-}
-
-/* With a margin to spare? See SEAMS. */
-static bool keeps_margin(const struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape)
-{
-    return lies_within(r, t, sqrt(tri_larger(4 * shape->l[shape->shortest], tri_longest2(shape))));
-}
-
 /* For sizes, where the usual point is refused: see inside.c. */
 static enum outcome propose_inside(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape)
 {
@@ -751,12 +724,9 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
             return DONE;
         r->sized = badness == TRI_BAD_SIZE;
         r->on_credit = false;
-        if (r->options->fence && badness == TRI_BAD_ANGLE && gives_credit(r)) {
-            if (!keeps_margin(r, t, &shape))
-                return defer(r, entry.t, &r->report->fenced);
-            if (!tri_meet_corners(&r->credit, r->mesh, t->v))
-                return FAILED;
-        }
+        if (r->options->fence && badness == TRI_BAD_ANGLE && gives_credit(r) &&
+            !tri_meet_corners(&r->credit, r->mesh, t->v))
+            return FAILED;
         if (badness == TRI_BAD_ANGLE && (is_hopeless(r, entry.t, &shape) || !has_credit(r, t, &shape))) {
             if (!tri_is_too_large(&r->criterion, t, &shape))
                 return give_up(r, entry.t, TRI_EXCUSE_INPUT_ANGLE);
