@@ -141,16 +141,7 @@ static enum tri_status fill_worklist(struct par_state *state, const struct tri_r
 
 /* Pre-refinement where the input is already fine in places: the same refinement for bad triangles alone that have an
  * edge that is long against their cell, with no more than one point for 400 triangles of the mesh to come. No point
- * is inserted that the bounds do not ask for: so it makes no triangle that refinement would not. Fills the worklist.
- *
- * LEVELS. Under -D, subsegments are split that such triangles encroach, and all that the new points do, whatever their
- * length and number. For a level in a bundle, or in a ring of corners, goes on from parent to parent, across all cells
- * (disk.c). A block hands it on as far as its fence, and goes on with its angles; what lies beyond begins levels of its
- * own, between which those that arrive later lie anywhere. Where two such sets meet, subsegments are halved until they
- * are as short as the space between parents is wide, and then it is filled. (Stars of 60 spikes, cells of 250
- * triangles: twice the triangles of a sequential call, and as many where some of the long ones were left, or levels
- * were handed on as far as they were long. Now 1.0 to 1.3 times.) Once all have the same levels, their halves are the
- * same, whoever makes them. Short ones are left to the blocks: in ordinary figures that is nearly all. */
+ * is inserted that the bounds do not ask for: so it makes no triangle that refinement would not. Fills the worklist. */
 static enum tri_status prerefine_graded(struct par_state *state, const struct tri_refine_options *quality,
                                         const struct par_partition *partition, struct tri_error *error)
 {

@@ -176,38 +176,6 @@ static void test_gaps_too_fine_for_coordinates_take_no_points(void **state)
     }
 }
 
-/* Seven slits, some of which seams of small blocks cut lengthwise: their halves were filled with points beside the
- * other, unfilled ones (30 degrees: 4,618 and 6,166 triangles, 34: 5,836 and 10,428). */
-static void test_seams_gather_no_points(void **state)
-{
-    (void)state;
-    struct tri_pslg pslg;
-    assert_true(support_read("regress/slits_by_seams.poly", &pslg));
-    for (int angle = 30; angle <= 34; angle += 2) {
-        struct count whole = refine(&pslg, angle, 0), cells = refine(&pslg, angle, 250);
-        assert_false(whole.capped || cells.capped);
-        assert_true(5 * cells.triangles <= 6 * whole.triangles);
-    }
-    tri_pslg_free(&pslg);
-}
-
-/* Twelve spikes around a small hub, Delaunay: seams that meet near the hub gathered points around it (30 degrees: 439
- * and 902 triangles, 33: 519 and 1,437). */
-static void test_nor_where_they_cross(void **state)
-{
-    (void)state;
-    struct tri_pslg pslg;
-    assert_true(support_read("regress/star_by_seams.poly", &pslg));
-    for (int angle = 30; angle <= 33; angle++) {
-        struct tri_options options = support_quality(angle, 0);
-        options.quality.conforming = true;
-        struct count whole = refine_as(&pslg, options, 0), cells = refine_as(&pslg, options, 60);
-        assert_false(whole.capped || cells.capped);
-        assert_true(5 * cells.triangles <= 6 * whole.triangles);
-    }
-    tri_pslg_free(&pslg);
-}
-
 /* Nor do they take the place of those that theory promises, and stop: a star of 14 spikes that meet in a hub. */
 static void test_credit_is_no_hindrance(void **state)
 {
@@ -229,8 +197,6 @@ int main(void)
         cmocka_unit_test(test_graded_figures_are_not_capped),
         cmocka_unit_test(test_a_mesh_does_not_run_on),
         cmocka_unit_test(test_gaps_too_fine_for_coordinates_take_no_points),
-        cmocka_unit_test(test_seams_gather_no_points),
-        cmocka_unit_test(test_nor_where_they_cross),
         cmocka_unit_test(test_credit_is_no_hindrance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

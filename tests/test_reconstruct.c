@@ -889,28 +889,6 @@ static void what_was_given_up_stays_given_up(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* Circles that levels could not mend are not tried again: in a mesh that is read its split points are of the input,
- * too, and each was once taken for one that a new level may renew. (1,308 triangles for 1,202; with 33,690 such circles
- * -r took minutes.) */
-static void levels_are_not_renewed_again(void **state)
-{
-    (void)state;
-    struct tri_pslg pslg;
-    assert_true(support_read("regress/endless_q35_graded.poly", &pslg));
-    struct tri_options options = support_quality(20, 0);
-    options.quality.conforming = true;
-    struct tri_mesh mesh = support_generate(&pslg, &options, NULL);
-    struct input in = input_of(&mesh);
-    struct tri_mesh back = rebuild(&in, &(struct tri_reconstruct_options){.use_segments = true, .refine = true});
-    struct tri_refine_report report;
-    assert_int_equal(tri_refine(&back, &options.quality, &report, NULL), TRI_OK);
-    assert_int_equal(back.n_triangles, mesh.n_triangles);
-    tri_mesh_free(&back);
-    free_input(&in);
-    tri_mesh_free(&mesh);
-    tri_pslg_free(&pslg);
-}
-
 /* In resolutions of the parent's larger end: how far do ends of subsegments lie off its line, at most? */
 static double farthest_astray(const struct tri_mesh *mesh)
 {
@@ -962,7 +940,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shares_leave_no_trace),
         cmocka_unit_test(boundaries_that_are_read_have_places),
-        cmocka_unit_test(levels_are_not_renewed_again),
         cmocka_unit_test(a_mesh_above_the_usual_angle_is_not_refined_again),
         cmocka_unit_test(what_was_given_up_stays_given_up),
         cmocka_unit_test(faults_in_shares),

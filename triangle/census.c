@@ -210,7 +210,7 @@ static enum tri_excuse excuse_for_circle(const struct tri_mesh *mesh, const stru
     if (report->hit_limit)
         return TRI_EXCUSE_LIMIT;
     struct tri_disk_split split;
-    if (!tri_is_resolved_from(mesh, s, apex) || (tri_is_encroached_from(mesh, s, code, &split) && !split.renews))
+    if (!tri_is_resolved_from(mesh, s, apex) || tri_is_encroached_from(mesh, s, code, &split))
         return TRI_EXCUSE_PRECISION; /* of a split that coordinates resolve rounding left no place that can be seen */
     if (tri_common_end(mesh, s->parent, apex) != TRI_NONE)
         return TRI_EXCUSE_INPUT_ANGLE;

@@ -99,7 +99,6 @@ struct tri_refiner {
     struct tri_entry hand;
     tri_sub_id *encroached; /* stack of subsegments to test for encroachment (conforming only) */
     int32_t n_encroached, encroached_capacity;
-    int64_t uncounted; /* points that max_steiner does not bound, see split_encroached */
     uint32_t step_of_stop; /* see tri_stop_is_due */
 };
 
@@ -352,123 +351,23 @@ static enum tri_search search_place(struct tri_refiner *r, tri_sub_id s, const s
                : TRI_SEARCH_OUTSIDE;
 }
 
-/* The cavity of a place that has one was found. Where a subsegment beside it has no place level with it, another
- * place for both, if there is any. */
-static enum tri_search settle_level(struct tri_refiner *r, tri_sub_id s, struct tri_disk_split *split, int first,
-                                    int32_t *n_left)
-{
-    const struct tri_mesh *m = r->mesh;
-    const struct tri_point p = r->cavity.p;
-    for (int32_t i = 0; r->options->conforming && i < r->cavity.n_wall; i++) {
-        tri_sub_id t = ~r->cavity.edge[r->cavity.wall[i]].outer;
-        struct tri_disk_split shifted = *split;
-        int choice;
-        if (t == s || tri_has_level(m, &m->sub[s], p, &m->sub[t]))
-            continue;
-        if (!tri_shift_level(m, &m->sub[s], &m->sub[t], &shifted.fraction, &choice))
-            return TRI_SEARCH_FOUND;
-        enum tri_search found = search_place(r, s, &shifted, choice, n_left);
-        if (found == TRI_SEARCH_OUTSIDE)
-            return search_place(r, s, split, first, n_left);
-        split->fraction = shifted.fraction;
-        return found;
-    }
-    return TRI_SEARCH_FOUND;
-}
-
-/* Can all subsegments beside a point on s, whose cavity has been found, be split level with it? */
-static bool begins_levels(const struct tri_refiner *r, tri_sub_id s)
-{
-    const struct tri_mesh *m = r->mesh;
-    for (int32_t i = 0; i < r->cavity.n_wall; i++) {
-        tri_sub_id t = ~r->cavity.edge[r->cavity.wall[i]].outer;
-        if (t != s && !tri_has_level(m, &m->sub[s], r->cavity.p, &m->sub[t]))
-            return false;
-    }
-    return true;
-}
-
-/* The subsegments that will be split level with a point on s, whose cavity has been found: how many, but for t? *last:
- * one of them. */
-static int takers(const struct tri_refiner *r, tri_sub_id s, tri_sub_id t, tri_sub_id *last)
-{
-    const struct tri_mesh *m = r->mesh;
-    int n = 0;
-    for (int32_t i = 0; i < r->cavity.n_wall; i++) {
-        tri_sub_id wall = ~r->cavity.edge[r->cavity.wall[i]].outer;
-        if (wall == s || wall == t || !tri_takes_level(m, &m->sub[s], r->cavity.p, &m->sub[wall]))
-            continue;
-        *last = wall;
-        n++;
-    }
-    return n;
-}
-
-/* The cavity of any place for a split. */
-static enum tri_search search_any(struct tri_refiner *r, tri_sub_id s, const struct tri_disk_split *split,
-                                  int32_t *n_left)
-{
-    enum tri_search found = TRI_SEARCH_OUTSIDE;
-    for (int choice = 0; choice < TRI_SPLIT_PLACES && found == TRI_SEARCH_OUTSIDE; choice++)
-        found = search_place(r, s, split, choice, n_left);
-    return found;
-}
-
-/* The cavity of a place for a level that renews one. Such levels are begun between two subsegments alone: where others
- * had to take them over, and had no places that fit, there would be more to renew than before. */
-static enum tri_search find_renewal(struct tri_refiner *r, tri_sub_id s, struct tri_disk_split *split, int32_t *n_left)
-{
-    enum { MOST_FITS = 8 };
-    const struct tri_mesh *m = r->mesh;
-    struct tri_disk_split begun = {split->fraction, TRI_NONE, false};
-    tri_sub_id t = TRI_NONE, other;
-    enum tri_search found = search_any(r, s, &begun, n_left);
-    if (found != TRI_SEARCH_FOUND)
-        return found;
-    if (takers(r, s, TRI_NONE, &t) > 1)
-        return TRI_SEARCH_OUTSIDE;
-    if (t != TRI_NONE) {
-        struct tri_disk_split taken = {tri_level_of(m, &m->sub[s], r->cavity.p, &m->sub[t]), TRI_NONE, false};
-        found = search_any(r, t, &taken, n_left);
-        if (found != TRI_SEARCH_FOUND || takers(r, t, s, &other) > 0)
-            return found != TRI_SEARCH_FOUND ? found : TRI_SEARCH_OUTSIDE;
-    }
-    int trial = 0;
-    const struct tri_subsegment *beside = t == TRI_NONE ? NULL : &m->sub[t];
-    for (int i = 0; i < MOST_FITS && tri_renew_level(m, &m->sub[s], beside, split, &trial); i++) {
-        begun.fraction = split->fraction;
-        found = search_place(r, s, &begun, tri_renewal_place(trial++), n_left);
-        if (found != TRI_SEARCH_OUTSIDE)
-            return found;
-    }
-    return TRI_SEARCH_OUTSIDE;
-}
-
 /* The cavity of the point that splits subsegment s, the first of its places that has one: rounding may put a place
  * outside the disk of a triangle beside s, or behind one of its edges. Beside a vertex that it shall be level with the
- * first that is so in spite of rounding, if any is. Where it begins a level, one with room for those that follow. */
-static enum tri_search find_split(struct tri_refiner *r, tri_sub_id s, struct tri_disk_split *split, int32_t *n_left)
+ * first that is so in spite of rounding, if any is. */
+static enum tri_search find_split(struct tri_refiner *r, tri_sub_id s, const struct tri_disk_split *split,
+                                  int32_t *n_left)
 {
     const struct tri_mesh *m = r->mesh;
     int first = -1;
-    bool first_is_level = false;
     if (!tri_can_split(m, m->xy[m->sub[s].v[0]], m->xy[m->sub[s].v[1]]))
         return TRI_SEARCH_OUTSIDE;
-    if (split->renews)
-        return find_renewal(r, s, split, n_left);
     for (int choice = 0; choice < TRI_DISK_PLACES; choice++) {
         enum tri_search found = search_place(r, s, split, choice, n_left);
         if (found == TRI_SEARCH_OUTSIDE)
             continue;
-        if (found == TRI_SEARCH_FOUND && split->level == TRI_NONE)
-            return settle_level(r, s, split, choice, n_left);
-        if (found != TRI_SEARCH_FOUND)
+        if (found != TRI_SEARCH_FOUND || split->level == TRI_NONE || is_level(r, s, split->level))
             return found;
-        bool level = is_level(r, s, split->level);
-        if (level && begins_levels(r, s))
-            return found;
-        first = first < 0 || (level && !first_is_level) ? choice : first;
-        first_is_level = first_is_level || level;
+        first = first < 0 ? choice : first;
     }
     return first < 0 ? TRI_SEARCH_OUTSIDE : search_place(r, s, split, first, n_left);
 }
@@ -507,7 +406,7 @@ static enum outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri_dis
 
 static enum outcome split(struct tri_refiner *r, tri_sub_id s, tri_triangle_id triangle)
 {
-    struct tri_disk_split usual = {tri_split_fraction(r->mesh, &r->mesh->sub[s]), TRI_NONE, false};
+    struct tri_disk_split usual = {tri_split_fraction(r->mesh, &r->mesh->sub[s]), TRI_NONE};
     return split_at(r, s, usual, triangle);
 }
 
@@ -659,7 +558,7 @@ static void count_point(struct tri_refiner *r)
 
 static bool at_limit(struct tri_refiner *r)
 {
-    int64_t inserted = r->report->inserted_free + r->report->inserted_on_segments - r->uncounted;
+    int64_t inserted = r->report->inserted_free + r->report->inserted_on_segments;
     assert(r->options->max_steiner < 0 || inserted <= r->options->max_steiner);
     if (r->options->max_steiner < 0 || inserted < r->options->max_steiner)
         return false;
@@ -762,22 +661,7 @@ static bool is_among_credit(const struct tri_mesh *m, const struct tri_subsegmen
     return is;
 }
 
-/* Splits subsegment s, as `where` says, for the sake of the first apex in its circle. Where coordinates have no place
- * for that, they may have one for the sake of the apex on its other side. */
-static enum outcome split_for_either(struct tri_refiner *r, tri_sub_id s, struct tri_disk_split where)
-{
-    const struct tri_mesh *m = r->mesh;
-    const struct tri_subsegment *sub = &m->sub[s];
-    const tri_halfedge left = sub->side[0], right = sub->side[1];
-    const tri_triangle_id beside = tri_of(left == TRI_NONE ? right : left);
-    assert(s >= 0 && tri_is_live(&m->tri[beside]));
-    enum outcome outcome = split_at(r, s, where, beside);
-    if (outcome != REFUSED || left == TRI_NONE || right == TRI_NONE || !tri_is_in_diametral_disk(m, sub, left))
-        return outcome;
-    return tri_is_encroached_from(m, sub, right, &where) ? split_at(r, s, where, beside) : outcome;
-}
-
-/* A pre-refinement ends each level that it begins (see tri_refine_options.urgent), whatever its limit. */
+/* Splits subsegments until no vertex lies in the circle of one that waits. */
 static bool split_encroached(struct tri_refiner *r)
 {
     while (r->n_encroached > 0) {
@@ -789,19 +673,18 @@ static bool split_encroached(struct tri_refiner *r)
             return wait_for_more(r, sub->v) != FAILED;
         r->n_encroached--;
         struct tri_disk_split where;
-        if (!tri_is_encroached(r->mesh, sub, &where) || (!r->options->urgent && at_limit(r)))
+        if (!tri_is_encroached(r->mesh, sub, &where) || at_limit(r))
             continue;
         r->sized = false;
         r->on_credit = is_among_credit(r->mesh, sub);
-        enum outcome outcome = split_for_either(r, s, where);
+        const tri_triangle_id beside = tri_of(sub->side[0] == TRI_NONE ? sub->side[1] : sub->side[0]);
+        enum outcome outcome = split_at(r, s, where, beside);
         if (outcome == FAILED) {
             r->encroached[r->n_encroached++] = s; /* there is room: it was there a moment ago */
             return false;
         }
-        if (outcome == DONE) {
+        if (outcome == DONE)
             count_point(r);
-            r->uncounted += r->options->urgent != NULL;
-        }
         if (outcome == REFUSED)
             give_up(r, TRI_NONE, r->excuse);
     }

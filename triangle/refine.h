@@ -66,8 +66,7 @@ struct tri_refine_options {
     tri_unsuitable *unsuitable;
     void *unsuitable_user;
     tri_unsuitable *urgent; /* not NULL: of the bad triangles only those that this says yes to are refined, at their
-                               circumcentres: for pre-refinement. If conforming, max_steiner does not bound the splits
-                               of encroached subsegments: of those beside the worklist, and beside new points */
+                               circumcentres: for pre-refinement */
     void *urgent_user;
     tri_gate *gate;        /* NULL: every bad triangle */
     void *gate_user;
