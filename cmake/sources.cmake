@@ -39,8 +39,6 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/bad_queue.c
     triangle/criterion.c
     triangle/inside.c
-    triangle/credit.c
-    triangle/entry_set.c
     triangle/refine.c
     triangle/pause.c
     triangle/census.c

@@ -3,7 +3,6 @@
 #include "full.h"
 #include "support.h"
 
-#include "triangle/credit.h"
 #include "triangle/feature_size.h"
 #include "triangle/small_angle.h"
 
@@ -69,13 +68,13 @@ static void check_sizes(const struct tri_mesh *mesh)
         double least = HUGE_VAL;
         for (int32_t w = 0; w < mesh->n_vertices; w++)
             if (mesh->on[w] != TRI_VERTEX_FREE)
-                least = fmin(least, fabs(mesh->feature[w]) + 0.5 * distance(mesh->xy[v], mesh->xy[w]));
-        assert_true(fabs(mesh->feature[v]) >= 0.999 * least);
+                least = fmin(least, mesh->feature[w] + 0.5 * distance(mesh->xy[v], mesh->xy[w]));
+        assert_true(mesh->feature[v] >= 0.999 * least);
     }
     for (int32_t t = 0; t < mesh->n_triangles; t++)
         for (int k = 0; k < 3; k++) {
             int32_t a = mesh->tri[t].v[k], b = mesh->tri[t].v[tri_next[k]];
-            double size = fmin(fabs(mesh->feature[a]), fabs(mesh->feature[b]));
+            double size = fmin(mesh->feature[a], mesh->feature[b]);
             assert_true(distance(mesh->xy[a], mesh->xy[b]) > size / (4 * 32));
         }
 }
@@ -113,7 +112,7 @@ static void check_bounds(const char *name, const struct tri_pslg *pslg, int32_t 
 {
     static const double angles[] = {33, 34, 34.5, 36, 60};
     for (int conforming = 0; conforming < 2; conforming++) {
-        int32_t usual = triangles_at(pslg, TRI_PROMISED_ANGLE, conforming);
+        int32_t usual = triangles_at(pslg, 28, conforming);
         double limit = 8.0 * usual + 150;
         for (int i = 0; i < 5 && usual <= most; i++) {
             int32_t n = triangles_at(pslg, angles[i], conforming);

@@ -59,7 +59,6 @@
 #include <assert.h>
 #include <stdlib.h>
 
-#include "triangle/credit.h"
 #include "triangle/grow.h"
 #include "triangle/quality.h"
 #include "triangle/small_angle.h"
@@ -187,7 +186,7 @@ void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *exe
 double tri_feature_inside(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, struct tri_point p, bool sized)
 {
     assert(a != b);
-    double sa = fabs(mesh->feature[a]), sb = fabs(mesh->feature[b]), near = sqrt(tri_relative(&mesh->xy[a], p).l);
+    double sa = mesh->feature[a], sb = mesh->feature[b], near = sqrt(tri_relative(&mesh->xy[a], p).l);
     double inherited = (sa < sb ? sa : sb) + SLOPE * near;
     return sized && near < inherited ? near : inherited;
 }
@@ -197,7 +196,7 @@ static double size_from(const struct tri_mesh *mesh, tri_parent_id p, struct tri
                         double distance)
 {
     int32_t on = mesh->on[v];
-    double inherited = fabs(mesh->feature[v]) + SLOPE * distance;
+    double inherited = mesh->feature[v] + SLOPE * distance;
     bool is_feature = on >= 0 ? tri_is_filled(mesh, p, on, at, mesh->xy[v])
                               : on != TRI_VERTEX_FREE && !tri_touches(mesh, p, v);
     return is_feature && distance < inherited ? distance : inherited;
@@ -236,12 +235,12 @@ double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavi
 /* SHRINK: how many times shorter than the features around them edges may become for angles up to this bound. */
 static double shrink_for(double angle)
 {
-    return angle <= TRI_PROMISED_ANGLE ? 64 : angle <= 32 ? 16 : angle <= 33 ? 8 : 6;
+    return angle <= 28 ? 64 : angle <= 32 ? 16 : angle <= 33 ? 8 : 6;
 }
 
 bool tri_has_run_away(const struct tri_mesh *mesh, double angle, tri_vertex_id a, tri_vertex_id b, double l2)
 {
-    double sa = fabs(mesh->feature[a]), sb = fabs(mesh->feature[b]), size = sa < sb ? sa : sb;
+    double sa = mesh->feature[a], sb = mesh->feature[b], size = sa < sb ? sa : sb;
     double shrink = shrink_for(angle);
     return size * size > shrink * shrink * l2;
 }

@@ -6,21 +6,18 @@
 #include <stdbool.h>
 
 #include "triangle/bad_queue.h"
-#include "triangle/entry_set.h"
 #include "triangle/quality.h"
 #include "triangle/refine.h"
 
 struct tri_pause {
     struct tri_refine_report report;
     struct tri_bounds bounds; /* for the angle that is worked for now */
-    int64_t granted, paid;    /* credit.h */
     int64_t above, back;      /* see refine.c, as for what follows */
     int32_t stage, step, limit, next_listed, n_worklist, in_hand, left_above;
     struct tri_entry hand;
     struct tri_bad_queue queue;
     tri_sub_id *encroached;
     int32_t n_encroached, encroached_capacity;
-    struct tri_entry_set met; /* within a fence: credit.h */
 };
 
 /* The refiner's arrays are borrowed, until it runs again or is freed. */
@@ -33,7 +30,7 @@ void tri_refiner_leave(struct tri_refiner *refiner, struct tri_pause *pause);
  * becomes what it was. */
 void tri_refiner_go_on(struct tri_refiner *refiner, struct tri_pause *pause);
 
-enum { TRI_PAUSE_ARRAYS = 5, TRI_PAUSE_LAST_STAGE = 4, TRI_PAUSE_LAST_STEP = 2 }; /* as refine.c has them */
+enum { TRI_PAUSE_ARRAYS = 4, TRI_PAUSE_LAST_STAGE = 4, TRI_PAUSE_LAST_STEP = 2 }; /* as refine.c has them */
 
 struct tri_pause_array {
     void *at;

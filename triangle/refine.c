@@ -28,7 +28,7 @@
  * not 62,200 of 761,342); -YY at 30 and 33 degrees 4 and 5% more, and as many bad ones. A clearance of 0 or 1 fills
  * slits where that helps nobody (-YY at 33: 32 and 14% more, more of them bad); 4 gains less for -Y.
  *
- * Termination: for angles by the rules in small_angle.c, and credit.h says at what price; the points for sizes and for
+ * Termination: for angles by the rules in small_angle.c and feature_size.c; the points for sizes and for
  * circles that come on top are finitely many whatever the others do, see inside.c and disk.c. */
 #include "triangle/refine.h"
 
@@ -39,7 +39,6 @@
 #include "triangle/bad_queue.h"
 #include "triangle/cavity.h"
 #include "triangle/census.h"
-#include "triangle/credit.h"
 #include "triangle/criterion.h"
 #include "triangle/disk.h"
 #include "triangle/estimate.h"
@@ -84,9 +83,6 @@ struct tri_refiner {
     struct tri_cavity cavity;
     struct tri_bad_queue queue;
     bool sized;       /* the triangle in hand asks for a point because of sizes, not of angles */
-    bool on_credit;   /* its point, or split, is */
-    struct tri_credit credit;
-    double promised_sin2, poor_sin2; /* as bounds.sin2, for TRI_PROMISED_ANGLE and TRI_POOR_ANGLE */
     int64_t above;    /* how many points more may be inserted for angles above TRI_USUAL_ANGLE */
     int64_t back;     /* and, once that was too many, for BACK_ANGLE */
     bool left_above;  /* has a triangle been left in ABOVE_STAGE for what it would cost? */
@@ -262,13 +258,6 @@ static const tri_vertex_id *corners_around(const struct tri_refiner *r, struct t
     return r->mesh->tri[r->cavity.tri[0]].v;
 }
 
-/* A feature size is negative where the vertex is on credit. */
-static void set_feature(const struct tri_refiner *r, tri_vertex_id v, double size)
-{
-    assert(size >= 0);
-    r->mesh->feature[v] = r->on_credit ? -size : size;
-}
-
 static void tell_changes(const struct tri_refiner *r)
 {
     if (r->options->part)
@@ -284,8 +273,8 @@ static enum outcome insert_free(struct tri_refiner *r, struct tri_point p, tri_t
         return FAILED;
     tri_vertex_id v = add_vertex(r, p, TRI_VERTEX_FREE, 0);
     const tri_vertex_id *corner = r->mesh->tri[triangle].v;
-    set_feature(r, v, tri_feature_inside(r->mesh, corner[tri_next[shape->shortest]],
-                                         corner[tri_prev[shape->shortest]], p, r->sized));
+    r->mesh->feature[v] = tri_feature_inside(r->mesh, corner[tri_next[shape->shortest]],
+                                             corner[tri_prev[shape->shortest]], p, r->sized);
     if (r->mesh->n_attributes)
         tri_interpolate_triangle(r->mesh, corners_around(r, p), v);
     tri_cavity_fill(&r->cavity, r->mesh, v);
@@ -393,7 +382,7 @@ static enum outcome split_at(struct tri_refiner *r, tri_sub_id s, struct tri_dis
     bool boundary = tri_is_boundary(&old);
     assert(r->cavity.n_edges > n_left || boundary);
     tri_vertex_id v = add_vertex(r, r->cavity.p, old.parent, old.marker ? old.marker : boundary ? 1 : 0);
-    set_feature(r, v, tri_feature_on_segment(m, &r->cavity, s, r->sized));
+    m->feature[v] = tri_feature_on_segment(m, &r->cavity, s, r->sized);
     tri_interpolate_edge(m, old.v[0], old.v[1], split.fraction, v);
     tri_sub_id second = tri_cavity_fill_split(&r->cavity, m, v, s, n_left);
     tell_changes(r);
@@ -512,12 +501,6 @@ static enum outcome propose(struct tri_refiner *r, tri_triangle_id triangle, con
     return outcome == DONE ? AGAIN : outcome;
 }
 
-/* Are there points on credit? */
-static bool gives_credit(const struct tri_refiner *r)
-{
-    return r->stage == USUAL_STAGE && r->options->min_angle > TRI_PROMISED_ANGLE;
-}
-
 /* For sizes, where the usual point is refused: see inside.c. */
 static enum outcome propose_inside(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape)
 {
@@ -579,30 +562,6 @@ static bool is_hopeless(struct tri_refiner *r, tri_triangle_id triangle, const s
     return r->left_above = r->report->hit_cap = true;
 }
 
-/* What the triangle's angle may claim of the credit. */
-static enum tri_claim claim_of(const struct tri_refiner *r, const struct tri_shape *shape)
-{
-    double longer = tri_longer_product(shape->l[0], shape->l[1], shape->l[2]), area4 = shape->area2 * shape->area2;
-    return area4 >= r->promised_sin2 * longer ? TRI_CLAIM_NEARLY_GOOD
-           : area4 >= r->poor_sin2 * longer   ? TRI_CLAIM_FAIR
-                                              : TRI_CLAIM_POOR;
-}
-
-/* Is there credit for it, where it must be paid for (credit.h)? */
-static bool has_credit(struct tri_refiner *r, const struct tri_triangle *t, const struct tri_shape *shape)
-{
-    const struct tri_mesh *m = r->mesh;
-    const int k = shape->shortest;
-    const enum tri_claim claim = claim_of(r, shape);
-    r->on_credit = gives_credit(r) && (claim == TRI_CLAIM_NEARLY_GOOD || tri_is_on_credit(m, t->v[tri_next[k]]) ||
-                                       tri_is_on_credit(m, t->v[tri_prev[k]]));
-    if (!r->on_credit || tri_has_credit(&r->credit, claim))
-        return true;
-    r->on_credit = false;
-    r->report->hit_cap = true;
-    return false;
-}
-
 /* Somebody asks for the end: between two points the mesh is in order. */
 static bool must_stop(struct tri_refiner *r)
 {
@@ -622,11 +581,7 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         if (badness == TRI_GOOD)
             return DONE;
         r->sized = badness == TRI_BAD_SIZE;
-        r->on_credit = false;
-        if (r->options->fence && badness == TRI_BAD_ANGLE && gives_credit(r) &&
-            !tri_meet_corners(&r->credit, r->mesh, t->v))
-            return FAILED;
-        if (badness == TRI_BAD_ANGLE && (is_hopeless(r, entry.t, &shape) || !has_credit(r, t, &shape))) {
+        if (badness == TRI_BAD_ANGLE && is_hopeless(r, entry.t, &shape)) {
             if (!tri_is_too_large(&r->criterion, t, &shape))
                 return give_up(r, entry.t, TRI_EXCUSE_INPUT_ANGLE);
             r->sized = true;
@@ -637,28 +592,15 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         enum outcome outcome = resolved ? propose(r, entry.t, &shape, badness) : refuse(r, TRI_EXCUSE_PRECISION);
         if (outcome == REFUSED && tri_is_too_large(&r->criterion, t, &shape)) {
             r->sized = true;
-            r->on_credit = false;
             outcome = propose_inside(r, entry.t, &shape);
         }
-        if (outcome == DONE || outcome == AGAIN) {
+        if (outcome == DONE || outcome == AGAIN)
             count_point(r);
-            if (gives_credit(r))
-                tri_count_credit(&r->credit, r->on_credit);
-        }
         if (outcome != AGAIN)
             return outcome == REFUSED ? give_up(r, entry.t, r->excuse) : outcome;
         if (must_stop(r))
             return FAILED;
     }
-}
-
-/* Is an end of the subsegment, or a vertex beside it, on credit? */
-static bool is_among_credit(const struct tri_mesh *m, const struct tri_subsegment *s)
-{
-    bool is = tri_is_on_credit(m, s->v[0]) || tri_is_on_credit(m, s->v[1]);
-    for (int side = 0; side < 2; side++)
-        is = is || (s->side[side] != TRI_NONE && tri_is_on_credit(m, tri_apex(m, s->side[side])));
-    return is;
 }
 
 /* Splits subsegments until no vertex lies in the circle of one that waits. */
@@ -676,7 +618,6 @@ static bool split_encroached(struct tri_refiner *r)
         if (!tri_is_encroached(r->mesh, sub, &where) || at_limit(r))
             continue;
         r->sized = false;
-        r->on_credit = is_among_credit(r->mesh, sub);
         const tri_triangle_id beside = tri_of(sub->side[0] == TRI_NONE ? sub->side[1] : sub->side[0]);
         enum outcome outcome = split_at(r, s, where, beside);
         if (outcome == FAILED) {
@@ -760,30 +701,6 @@ static bool queue_chunk(struct tri_refiner *r)
     return true;
 }
 
-/* Does the triangle ask for a point because of its angle, as it is? */
-static bool asks_for_angle(struct tri_refiner *r, tri_triangle_id triangle)
-{
-    const struct tri_triangle *t = &r->mesh->tri[triangle];
-    const struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
-    const double longer = tri_longer_product(shape.l[0], shape.l[1], shape.l[2]);
-    return shape.area2 * shape.area2 < r->criterion.bounds.sin2 * longer && tri_is_urgent(&r->criterion, t->v) &&
-           !is_hopeless(r, triangle, &shape);
-}
-
-/* What the worklist grants (credit.h), where points may be on credit. */
-static void grant_for_worklist(struct tri_refiner *r)
-{
-    struct tri_grantors listed_corners = {0};
-    if (r->options->fence || !gives_credit(r))
-        return;
-    for (int32_t i = 0; i < r->n_worklist; i++) {
-        const tri_triangle_id t = listed(r, i);
-        if (tri_is_live(&r->mesh->tri[t]))
-            tri_list_corners(&listed_corners, r->mesh, r->mesh->tri[t].v, asks_for_angle(r, t));
-    }
-    tri_grant(&r->credit, &listed_corners);
-}
-
 /* Passes over the worklist. First, chunk by chunk, the bad angles beside the shorter half of the edges: the order by
  * shortest edge (bad_queue.h) then nearly holds for the whole mesh, but the work stays in the cache, if triangles that
  * are neighbours in the list are neighbours in the plane. Then what is left of the bad angles, in the same order, and,
@@ -795,7 +712,6 @@ static bool refine_worklist(struct tri_refiner *r)
         r->n_worklist = listed_count(r);
         r->next_listed = 0;
         r->step = FIRST_PASS;
-        grant_for_worklist(r);
     }
     while (r->step == FIRST_PASS) {
         if (!work_off(r))
@@ -934,9 +850,6 @@ enum tri_status tri_refiner_new(struct tri_refiner **refiner, struct tri_mesh *m
     r->mesh = mesh;
     r->options = options;
     r->criterion = tri_criterion_for(mesh, options);
-    r->credit.granted = INT64_C(6) * (options->fence ? TRI_BLOCK_ALLOWANCE : TRI_ALLOWANCE);
-    r->promised_sin2 = tri_bounds_for(TRI_PROMISED_ANGLE, options->conforming).sin2;
-    r->poor_sin2 = tri_bounds_for(TRI_POOR_ANGLE, options->conforming).sin2;
     r->report = report;
     begin_stages(r);
     frexp(mesh->limits.shortest2, &r->least_exponent);
@@ -965,7 +878,6 @@ void tri_refiner_free(struct tri_refiner *r)
         return;
     tri_cavity_free(&r->cavity);
     tri_bad_queue_free(&r->queue);
-    tri_credit_free(&r->credit);
     free(r->encroached);
     free(r);
 }
@@ -979,8 +891,6 @@ void tri_refiner_show(const struct tri_refiner *r, struct tri_pause *pause)
     pause->above = r->above;
     pause->back = r->back;
     pause->left_above = r->left_above;
-    pause->granted = r->credit.granted;
-    pause->paid = r->credit.paid;
     pause->stage = (int32_t)r->stage;
     pause->step = (int32_t)r->step;
     pause->limit = r->limit;
@@ -992,7 +902,6 @@ void tri_refiner_show(const struct tri_refiner *r, struct tri_pause *pause)
     pause->encroached = r->encroached;
     pause->n_encroached = r->n_encroached;
     pause->encroached_capacity = r->encroached_capacity;
-    pause->met = r->credit.met;
 }
 
 void tri_refiner_leave(struct tri_refiner *r, struct tri_pause *pause)
@@ -1001,7 +910,6 @@ void tri_refiner_leave(struct tri_refiner *r, struct tri_pause *pause)
     r->queue = (struct tri_bad_queue){0};
     r->encroached = NULL;
     r->n_encroached = r->encroached_capacity = 0;
-    r->credit.met = (struct tri_entry_set){0};
 }
 
 void tri_refiner_go_on(struct tri_refiner *r, struct tri_pause *pause)
@@ -1012,8 +920,6 @@ void tri_refiner_go_on(struct tri_refiner *r, struct tri_pause *pause)
     r->above = pause->above;
     r->back = pause->back;
     r->left_above = pause->left_above != 0;
-    r->credit.granted = pause->granted;
-    r->credit.paid = pause->paid;
     r->stage = (enum stage)pause->stage;
     r->step = (enum step)pause->step;
     r->limit = pause->limit;
@@ -1026,11 +932,9 @@ void tri_refiner_go_on(struct tri_refiner *r, struct tri_pause *pause)
     r->encroached = pause->encroached;
     r->n_encroached = pause->n_encroached;
     r->encroached_capacity = pause->encroached_capacity;
-    r->credit.met = pause->met;
     pause->queue = (struct tri_bad_queue){0};
     pause->encroached = NULL;
     pause->n_encroached = pause->encroached_capacity = 0;
-    pause->met = (struct tri_entry_set){0};
 }
 
 enum tri_status tri_refine(struct tri_mesh *mesh, const struct tri_refine_options *options,

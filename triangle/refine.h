@@ -115,8 +115,7 @@ struct tri_refine_report {
     int64_t gated, fenced;            /* triangles deferred: by the gate; since a cavity reached beyond the fence */
     int64_t given_up[TRI_EXCUSES];    /* bad triangles given up during the call, by reason; some vanish later */
     bool hit_limit;                   /* max_steiner stopped the call */
-    bool hit_cap;                     /* angles above TRI_PROMISED_ANGLE, and what comes of them (credit.h), or above
-                                         TRI_USUAL_ANGLE, would have cost too many points */
+    bool hit_cap;                     /* angles above TRI_USUAL_ANGLE would have cost too many points */
 };
 
 struct tri_refine_options tri_refine_defaults(void);

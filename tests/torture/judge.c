@@ -3,9 +3,11 @@
 
 #include "sched/schedule.h"
 #include "sched/threads.h"
-#include "triangle/credit.h"
 #include "triangle/quality.h"
 #include "triangle/reconstruct.h"
+
+/* In degrees: up to here theory promises an end (28.6, where no segments meet at small angles). */
+static const double PROMISED = 28;
 
 void judge_fault(struct verdict *verdict, const char *fault, const char *format, ...)
 {
@@ -289,7 +291,7 @@ static void judge_schedule_size(const struct outcome *first, const struct tri_ps
     enter(verdict, "meshing in the schedule's own cells");
     int32_t own = triangles_of(&by_itself, first, pslg, verdict);
     bool large = own > OWN_CELLS * one_call + FEW || first->mesh.n_triangles > TINY_CELLS * one_call + FEW;
-    if (large && first->options.quality.min_angle > TRI_PROMISED_ANGLE && !first->switches.user_test) {
+    if (large && first->options.quality.min_angle > PROMISED && !first->switches.user_test) {
         int32_t most = most_of_images(&sequential, first, pslg, verdict);
         one_call = most > one_call ? most : one_call;
     }
@@ -300,28 +302,22 @@ static void judge_schedule_size(const struct outcome *first, const struct tri_ps
                     (int)first->mesh.n_triangles, (int)one_call);
 }
 
-/* Above the usual angle at most so many times the triangles at that, which is proved (refine.c) but where sizes or -D
- * ask for more because of it: there 3.9 times is the most that was seen. Up to it, at most so many times those at the
- * angle that theory promises, and some: points on credit are hardly more than TRI_ALLOWANCE, and TRI_CREDIT for each
- * of the others, at most four times that in each call (credit.h); the others are hardly more than the vertices at that
- * angle, and a call's part of the schedule. */
+/* No mesh runs away: at most so many times the triangles at the angle that theory promises. */
 static void judge_amount(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
     const struct tri_refine_options *asked = &first->options.quality;
-    const double PROMISED = TRI_PROMISED_ANGLE, BEYOND = tri_has_sizes(asked) || asked->conforming ? 5 : 2.5;
-    const double USUAL = 2 * (TRI_CREDIT + 1);
-    enum { FEW = 1000 };
+    const double TIMES = 8;
+    enum { FEW = 3000 };
     struct outcome less = *first;
-    double angle = first->options.quality.min_angle;
-    bool beyond = angle > TRI_USUAL_ANGLE;
-    if (first->mesh.n_triangles < FEW || angle <= PROMISED || (!beyond && first->switches.protect > 0))
+    const double angle = asked->min_angle;
+    if (first->mesh.n_triangles < FEW || angle <= PROMISED || first->switches.protect > 0)
         return; /* where segments must stay as they are theory promises nothing */
     enter(verdict, "meshing at a smaller angle");
-    less.options.quality.min_angle = beyond ? TRI_USUAL_ANGLE : PROMISED;
+    less.options.quality.min_angle = PROMISED;
     int32_t n = triangles_of(first->of, &less, pslg, verdict);
-    if (first->mesh.n_triangles > (beyond ? BEYOND * n + 1204 : USUAL * n + 3 * TRI_ALLOWANCE))
+    if (first->mesh.n_triangles > TIMES * n + FEW)
         judge_fault(verdict, "too many", "%d triangles at %g degrees, %d at %g", (int)first->mesh.n_triangles, angle,
-                    (int)n, less.options.quality.min_angle);
+                    (int)n, PROMISED);
 }
 
 /* --- whether it ends */
@@ -538,7 +534,7 @@ void judge_case(const struct torture_case *c, struct verdict *verdict)
         o.options.quality.min_angle <= TRI_USUAL_ANGLE)
         judge_schedule_size(&o, pslg, verdict);
     if (!verdict->fault[0] && o.mesh.n_triangles > 0 && o.options.refine && c->again &&
-        o.options.quality.max_steiner < 0 && o.options.quality.min_angle <= TRI_PROMISED_ANGLE &&
+        o.options.quality.max_steiner < 0 && o.options.quality.min_angle <= PROMISED &&
         o.switches.protect == 0)
         judge_amount_again(&o, verdict);
     if (!verdict->fault[0] && o.mesh.n_triangles > 0 && o.options.refine && c->again)
