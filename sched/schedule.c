@@ -692,7 +692,6 @@ static enum tri_status refine_by_schedule(struct par_state *state, const struct 
                                           struct tri_error *error)
 {
     struct tri_refine_options usual = *quality;
-    usual.final_angle = tri_final_angle(quality);
     usual.min_angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
     if (!state->sizes_first && state->stage == PAR_SIZES)
         state->stage = PAR_BOUNDS; /* the first */

@@ -66,7 +66,7 @@ static bool needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
         return false;
     struct tri_shape shape = tri_shape_of(c->mesh->xy, t->v);
     enum tri_badness badness = tri_judge(c, t, &shape);
-    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, tri_final_angle(c->options), triangle, &shape) &&
+    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, triangle, &shape) &&
         !tri_is_too_large(c, t, &shape))
         badness = TRI_GOOD; /* as good as it will be */
     if (badness != TRI_GOOD)
@@ -153,7 +153,7 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, tri_triangle_id
     const struct tri_triangle *t = &c->mesh->tri[triangle];
     if (tri_is_too_large(c, t, shape))
         badness = TRI_BAD_SIZE;
-    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, tri_final_angle(c->options), triangle, shape))
+    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, triangle, shape))
         return shape->l[shape->shortest] < c->mesh->limits.shortest2 ? TRI_EXCUSE_PRECISION
                : tri_bridges_spike(c->mesh, triangle, shape)   ? TRI_EXCUSE_INPUT_ANGLE
                : tri_is_narrow_gap(c->mesh, triangle, shape)   ? TRI_EXCUSE_NARROW_GAP

@@ -114,7 +114,7 @@ static double angle_work(const struct tri_mesh *mesh, const struct tri_refine_op
     double longest2 = tri_longest2(&shape);
     double octaves = 0.5 * tri_rough_log2(longest2 / shape.l[shape.shortest]);
     double gap = tri_gap_cost(mesh, t, &shape), angle = fmin(options->min_angle, TRI_USUAL_ANGLE);
-    if (tri_is_hopeless(mesh, tri_final_angle(options), t, &shape))
+    if (tri_is_hopeless(mesh, t, &shape))
         return 1;
     gap = fmin(gap, sqrt(longest2 / shape.l[shape.shortest]));
     double work = angle > 0 ? 17 / (40 - angle) * (octaves + 2 * gap) : 0;

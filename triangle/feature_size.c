@@ -40,20 +40,9 @@
  * SLOPE is about the grading of a mesh of 30 degrees. Without narrow corners as features one random figure in thirty
  * had triangles given up below 34 degrees, in and beside corners of a few degrees.
  *
- * SHRINK falls as the bound rises: 64 for bounds that theory promises, 16 up to 32 degrees, 8 up to 33, 6 beyond. Its
- * square is in the theorem's C, and beyond theory it is what one bad place may cost: a figure of 354 triangles at 25
- * degrees takes 458 at 34 with a SHRINK of 2, and 9,030 with 3, since one short edge lets the mesh grow fine
- * everywhere. So credit.h counts what is inserted beyond theory. Without that, over 2,326 random figures of all
- * families: the most triangles, in times those of 25 degrees, and of a million triangles in meshes of less than three
- * times those how many were given up as having run away:
- *     bound      SHRINK 16      8          6          4
- *     32              13   44   13   72    13  128    24   246
- *     33             170   32   30   68    31  147    26   489
- *     34             232   52   71  180    47  330    42  1541
- * Up to 32 a smaller one gains nothing; 4 costs angles and gains little. Sizes that grow faster among short edges, or
- * with each point asked for there, or less depth for triangles that are nearly good, did no better: once a mesh grows
- * fine it does so at edges of half the size, too.
- */
+ * SHRINK is a measured compromise: a larger one reaches a bound above theory more often and lets single bad places cost
+ * more; a figure of 354 triangles at 25 degrees takes 458 at 34 with a SHRINK of 2, and 9,030 with 3, since one short
+ * edge lets the mesh grow fine everywhere. */
 #include "triangle/feature_size.h"
 
 #include <assert.h>
@@ -232,15 +221,11 @@ double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavi
     return sized && half < size ? half : size;
 }
 
-/* SHRINK: how many times shorter than the features around them edges may become for angles up to this bound. */
-static double shrink_for(double angle)
-{
-    return angle <= 28 ? 64 : angle <= 32 ? 16 : angle <= 33 ? 8 : 6;
-}
+/* How many times shorter than the features around them edges may become for the sake of angles. */
+static const double SHRINK = 6;
 
-bool tri_has_run_away(const struct tri_mesh *mesh, double angle, tri_vertex_id a, tri_vertex_id b, double l2)
+bool tri_has_run_away(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, double l2)
 {
     double sa = mesh->feature[a], sb = mesh->feature[b], size = sa < sb ? sa : sb;
-    double shrink = shrink_for(angle);
-    return size * size > shrink * shrink * l2;
+    return size * size > SHRINK * SHRINK * l2;
 }

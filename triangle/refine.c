@@ -553,11 +553,10 @@ static bool at_limit(struct tri_refiner *r)
 static bool is_hopeless(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape)
 {
     const tri_vertex_id *v = r->mesh->tri[triangle].v;
-    const double angle = tri_final_angle(r->options);
     int k = shape->shortest;
-    if (tri_is_hopeless(r->mesh, angle, triangle, shape))
+    if (tri_is_hopeless(r->mesh, triangle, shape))
         return true;
-    if (r->stage != ABOVE_STAGE || !tri_has_run_away(r->mesh, angle, v[tri_next[k]], v[tri_prev[k]], shape->l[k] / 4))
+    if (r->stage != ABOVE_STAGE || !tri_has_run_away(r->mesh, v[tri_next[k]], v[tri_prev[k]], shape->l[k] / 4))
         return false;
     return r->left_above = r->report->hit_cap = true;
 }
@@ -757,7 +756,6 @@ static bool refine_worklist(struct tri_refiner *r)
 /* Is no more than FEW_BAD of the listed triangles bad by its angle, and not to be given up? */
 static bool is_nearly_reached(const struct tri_refiner *r)
 {
-    const double angle = tri_final_angle(r->options);
     int bad = 0;
     for (int32_t i = 0; bad <= FEW_BAD && i < listed_count(r); i++) {
         const struct tri_triangle *t = &r->mesh->tri[listed(r, i)];
@@ -765,7 +763,7 @@ static bool is_nearly_reached(const struct tri_refiner *r)
             continue;
         struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
         bad += tri_judge(&r->criterion, t, &shape) == TRI_BAD_ANGLE &&
-               !tri_is_hopeless(r->mesh, angle, listed(r, i), &shape);
+               !tri_is_hopeless(r->mesh, listed(r, i), &shape);
     }
     return bad <= FEW_BAD;
 }

@@ -52,8 +52,6 @@ struct tri_part {
 
 struct tri_refine_options {
     double min_angle;      /* degrees; 0: no bound on angles; above 34 best effort; within a fence no more than 34 */
-    double final_angle;    /* degrees; of a call that prepares others: the bound that they have in the end, by which it
-                              is decided how short edges may become (feature_size.h); 0: min_angle */
     bool above;            /* the mesh is as another call has left it that had TRI_USUAL_ANGLE for its bound: only what
                               is asked for above that is done; the whole mesh, no fence, no worklist */
     double max_area;       /* <= 0: none */
@@ -88,11 +86,6 @@ struct tri_refine_options {
 static inline bool tri_has_sizes(const struct tri_refine_options *options)
 {
     return options->max_area > 0 || options->region_areas || options->unsuitable;
-}
-
-static inline double tri_final_angle(const struct tri_refine_options *options)
-{
-    return options->final_angle > 0 ? options->final_angle : options->min_angle;
 }
 
 static inline double tri_area_scale(const struct tri_refine_options *options)

@@ -324,13 +324,12 @@ bool tri_crosses_angle(const struct tri_mesh *mesh, tri_triangle_id triangle, co
     return apex_between(mesh, v[tri_next[shape->shortest]], v[tri_prev[shape->shortest]]) != TRI_NONE;
 }
 
-bool tri_is_hopeless(const struct tri_mesh *mesh, double angle, tri_triangle_id triangle,
-                     const struct tri_shape *shape)
+bool tri_is_hopeless(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
 {
     const struct tri_triangle *t = &mesh->tri[triangle];
     int k = shape->shortest;
     tri_vertex_id u = t->v[tri_next[k]], v = t->v[tri_prev[k]];
-    return shape->l[k] < mesh->limits.shortest2 || tri_has_run_away(mesh, angle, u, v, shape->l[k]) ||
+    return shape->l[k] < mesh->limits.shortest2 || tri_has_run_away(mesh, u, v, shape->l[k]) ||
            on_one_shell(mesh, u, v, shape->l[k]) || tri_is_narrow_gap(mesh, triangle, shape);
 }
 
