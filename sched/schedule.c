@@ -671,23 +671,7 @@ static bool must_be_sequential(const struct tri_refine_options *quality, const s
            quality->deferred || (quality->unsuitable && !options->size_test_in_parallel);
 }
 
-/* A last call for angles that no schedule serves. */
-static enum tri_status refine_above_usual(struct par_state *state, const struct tri_refine_options *quality,
-                                     struct tri_error *error)
-{
-    double last = tri_seconds();
-    if (state->stage > PAR_ABOVE || quality->min_angle <= TRI_USUAL_ANGLE)
-        return TRI_OK;
-    state->stage = PAR_ABOVE;
-    enum tri_status status = state->paused ? TRI_OK : come_to_border(state, error);
-    struct tri_refine_options above = *quality;
-    above.above = true;
-    status = status ? status : refine_rest(state, &above, true, true, error);
-    state->report->seconds_last += tri_seconds() - last;
-    return status;
-}
-
-/* Refines by schedules: two where angles are dear, and a last call for angles above those of a schedule. */
+/* Refines by schedules: two where angles are dear. */
 static enum tri_status refine_by_schedule(struct par_state *state, const struct tri_refine_options *quality,
                                           struct tri_error *error)
 {
@@ -695,14 +679,14 @@ static enum tri_status refine_by_schedule(struct par_state *state, const struct 
     usual.min_angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
     if (!state->sizes_first && state->stage == PAR_SIZES)
         state->stage = PAR_BOUNDS; /* the first */
-    const bool may_number = !state->options->by_block && quality->min_angle <= TRI_USUAL_ANGLE;
+    const bool may_number = !state->options->by_block;
     state->then = may_number ? &usual : NULL;
     enum tri_status status = state->sizes_first ? refine_sizes_first(state, &usual, error) : TRI_OK;
     state->then = NULL;
     state->may_number = may_number;
     if (!status && state->end != PAR_DELIVERED)
         status = refine_stage(state, &usual, PAR_BOUNDS, error);
-    return status ? status : refine_above_usual(state, quality, error);
+    return status;
 }
 
 /* Hands out a mesh that is finished, tile by tile if it is numbered. */

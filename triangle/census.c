@@ -163,7 +163,7 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, tri_triangle_id
         return TRI_EXCUSE_LIMIT;
     if (c->options->protect > 0 && is_beside_protected(c, t))
         return TRI_EXCUSE_PROTECTED;
-    if (report->hit_cap && badness == TRI_BAD_ANGLE)
+    if (c->options->min_angle > TRI_USUAL_ANGLE && badness == TRI_BAD_ANGLE)
         return TRI_EXCUSE_LIMIT;
     return TRI_EXCUSES;
 }
@@ -194,8 +194,6 @@ void tri_settle_counts(const struct tri_refine_report *report, const int64_t fou
         count[k] = found[k];
     if (report->gated + report->fenced > 0)
         count[TRI_EXCUSE_DEFERRED] += found[TRI_EXCUSES];
-    else if (report->hit_cap) /* which was not known when tiles that went early were counted */
-        count[TRI_EXCUSE_LIMIT] += found[TRI_EXCUSES];
     else /* behind a protected one that is far away, if any is */
         count[protected_more ? TRI_EXCUSE_PROTECTED : TRI_EXCUSE_PRECISION] += found[TRI_EXCUSES];
 }

@@ -12,8 +12,7 @@
 struct tri_pause {
     struct tri_refine_report report;
     struct tri_bounds bounds; /* for the angle that is worked for now */
-    int64_t above, back;      /* see refine.c, as for what follows */
-    int32_t stage, step, limit, next_listed, n_worklist, in_hand, left_above;
+    int32_t stage, step, limit, next_listed, n_worklist, in_hand; /* see refine.c */
     struct tri_entry hand;
     struct tri_bad_queue queue;
     tri_sub_id *encroached;
@@ -30,7 +29,7 @@ void tri_refiner_leave(struct tri_refiner *refiner, struct tri_pause *pause);
  * becomes what it was. */
 void tri_refiner_go_on(struct tri_refiner *refiner, struct tri_pause *pause);
 
-enum { TRI_PAUSE_ARRAYS = 4, TRI_PAUSE_LAST_STAGE = 4, TRI_PAUSE_LAST_STEP = 2 }; /* as refine.c has them */
+enum { TRI_PAUSE_ARRAYS = 4, TRI_PAUSE_LAST_STAGE = 2, TRI_PAUSE_LAST_STEP = 2 }; /* as refine.c has them */
 
 struct tri_pause_array {
     void *at;

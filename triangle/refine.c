@@ -60,13 +60,7 @@ static const double EQUILATERAL = 2.3094010767585030580, IDEAL = 0.85;
 /* See PROTECTED WALLS. */
 static const double CLEARANCE = 2;
 
-/* In degrees: a bound that is soon reached around points that were inserted for a larger one. */
-static const double BACK_ANGLE = 30;
-
-/* So many bad triangles are the most for which a bound above TRI_USUAL_ANGLE is tried: see begin_stages. */
-enum { FEW_BAD = 16 };
-
-enum stage { EASY_STAGE, USUAL_STAGE, ABOVE_STAGE, BACK_STAGE, LAST_STAGE };
+enum stage { EASY_STAGE, USUAL_STAGE, LAST_STAGE };
 
 enum step { NOT_BEGUN, FIRST_PASS, SECOND_PASS };
 
@@ -83,9 +77,6 @@ struct tri_refiner {
     struct tri_cavity cavity;
     struct tri_bad_queue queue;
     bool sized;       /* the triangle in hand asks for a point because of sizes, not of angles */
-    int64_t above;    /* how many points more may be inserted for angles above TRI_USUAL_ANGLE */
-    int64_t back;     /* and, once that was too many, for BACK_ANGLE */
-    bool left_above;  /* has a triangle been left in ABOVE_STAGE for what it would cost? */
     enum step step;
     int limit;        /* buckets from here on wait for the second pass */
     int32_t next_listed, n_worklist;
@@ -517,28 +508,6 @@ static enum outcome propose_inside(struct tri_refiner *r, tri_triangle_id triang
     return outcome == DONE ? insert_free(r, p, triangle, shape) : outcome;
 }
 
-/* Lowers the angle bound that the loop works for; what is already bad by the old one stays. */
-static void lower_bound(struct tri_refiner *r, double degrees)
-{
-    assert(degrees >= 0 && degrees <= r->options->min_angle);
-    double lens_cos2 = r->criterion.bounds.lens_cos2;
-    r->criterion.bounds = tri_bounds_for(degrees, r->options->conforming);
-    r->criterion.bounds.lens_cos2 = degrees > 0 ? r->criterion.bounds.lens_cos2 : lens_cos2;
-}
-
-/* A point for angles above the usual one: once what the mesh can afford has been spent, less is asked for. */
-static void count_point(struct tri_refiner *r)
-{
-    if (r->stage < ABOVE_STAGE || r->sized)
-        return;
-    bool is_above = r->above >= 0;
-    int64_t left = is_above ? --r->above : --r->back;
-    if (left != -1)
-        return;
-    lower_bound(r, is_above ? BACK_ANGLE : 0);
-    r->left_above = r->report->hit_cap = true;
-}
-
 static bool at_limit(struct tri_refiner *r)
 {
     int64_t inserted = r->report->inserted_free + r->report->inserted_on_segments;
@@ -546,19 +515,6 @@ static bool at_limit(struct tri_refiner *r)
     if (r->options->max_steiner < 0 || inserted < r->options->max_steiner)
         return false;
     return r->report->hit_limit = true;
-}
-
-/* Above the usual angle edges must be twice as long, so that afterwards there is room for better angles around
- * them. */
-static bool is_hopeless(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape)
-{
-    const tri_vertex_id *v = r->mesh->tri[triangle].v;
-    int k = shape->shortest;
-    if (tri_is_hopeless(r->mesh, triangle, shape))
-        return true;
-    if (r->stage != ABOVE_STAGE || !tri_has_run_away(r->mesh, v[tri_next[k]], v[tri_prev[k]], shape->l[k] / 4))
-        return false;
-    return r->left_above = r->report->hit_cap = true;
 }
 
 /* Somebody asks for the end: between two points the mesh is in order. */
@@ -580,7 +536,7 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
         if (badness == TRI_GOOD)
             return DONE;
         r->sized = badness == TRI_BAD_SIZE;
-        if (badness == TRI_BAD_ANGLE && is_hopeless(r, entry.t, &shape)) {
+        if (badness == TRI_BAD_ANGLE && tri_is_hopeless(r->mesh, entry.t, &shape)) {
             if (!tri_is_too_large(&r->criterion, t, &shape))
                 return give_up(r, entry.t, TRI_EXCUSE_INPUT_ANGLE);
             r->sized = true;
@@ -593,8 +549,6 @@ static enum outcome treat(struct tri_refiner *r, struct tri_entry entry)
             r->sized = true;
             outcome = propose_inside(r, entry.t, &shape);
         }
-        if (outcome == DONE || outcome == AGAIN)
-            count_point(r);
         if (outcome != AGAIN)
             return outcome == REFUSED ? give_up(r, entry.t, r->excuse) : outcome;
         if (must_stop(r))
@@ -623,8 +577,6 @@ static bool split_encroached(struct tri_refiner *r)
             r->encroached[r->n_encroached++] = s; /* there is room: it was there a moment ago */
             return false;
         }
-        if (outcome == DONE)
-            count_point(r);
         if (outcome == REFUSED)
             give_up(r, TRI_NONE, r->excuse);
     }
@@ -730,91 +682,27 @@ static bool refine_worklist(struct tri_refiner *r)
     return true;
 }
 
+/* A bound above TRI_USUAL_ANGLE is worked for as that one. */
+static double worked_angle(const struct tri_refine_options *options)
+{
+    return fmin(options->min_angle, TRI_USUAL_ANGLE);
+}
+
 /* Where areas decide on the mesh and the angle bound is above TRI_EASY_ANGLE, sizes come first, with an easy bound
- * (tri_sizes_come_first: up to a sixth fewer triangles). Above TRI_USUAL_ANGLE refinement feeds on itself, until edges
- * are as short as feature_size.c allows. So the whole mesh is refined for the usual angle; then for more, if it is
- * nearly reached (FEW_BAD), and as long as that adds less than half as many points again; where it did not end so, what
- * is left is mended for BACK_ANGLE (for the usual angle it would take several times as many points), and given up where
- * that is too dear, too. Within a fence there is only the usual stage. With a worklist there is no easy one: what it
- * makes bad for the next is not among them.
- *
- * THEOREM (above the usual angle). Whatever the bound, for angles above TRI_USUAL_ANGLE no more than 602 + 3/4 n
- * points are inserted, n being the triangles of the mesh at that angle. Proof: each is counted (count_point); after
- * 201 + n / 4 of them no triangle is bad by more than BACK_ANGLE, after 401 + n / 2 more none is bad by its angle.
- * So without sizes and -D the mesh has at most 2.5 n + 1204 triangles. Each of these points may make a triangle too
- * large for its bound, or encroach a subsegment under -D; what comes of that is finite by inside.c and disk.c.
- *
- * FEW_BAD. Each bad triangle is mended by a few points, or begets others until edges are too short, as luck has it.
- * With few of them all may be mended; with many some are not, and leave more triangles below the bound, and below the
- * usual one, than there were. Measured on 14 figures without sizes at 34.5 and 35 degrees: the bound was reached only
- * where no more than 13 were bad; of 17 cases with more than 16, 16 ended with more bad ones, in meshes 1.2 to 1.8
- * times as large. (About a hundredth of a mesh is bad at 34.5 degrees, a fiftieth at 35, a sixth at 36.) So where the
- * bound is out of reach the mesh stays that of the usual angle; what -r with the same bound makes of it is what it
- * makes for that angle: mostly nothing. Where there are sizes most triangles are good by far, and trying mends half of
- * the bad ones at 34.5 and 35 degrees: there it is tried whatever their number. */
-
-/* Is no more than FEW_BAD of the listed triangles bad by its angle, and not to be given up? */
-static bool is_nearly_reached(const struct tri_refiner *r)
-{
-    int bad = 0;
-    for (int32_t i = 0; bad <= FEW_BAD && i < listed_count(r); i++) {
-        const struct tri_triangle *t = &r->mesh->tri[listed(r, i)];
-        if (!tri_is_live(t))
-            continue;
-        struct tri_shape shape = tri_shape_of(r->mesh->xy, t->v);
-        bad += tri_judge(&r->criterion, t, &shape) == TRI_BAD_ANGLE &&
-               !tri_is_hopeless(r->mesh, listed(r, i), &shape);
-    }
-    return bad <= FEW_BAD;
-}
-
-static void go_above(struct tri_refiner *r)
-{
-    assert(!r->options->fence && r->stage != EASY_STAGE);
-    r->above = 200 + r->mesh->n_triangles / 4;
-    r->back = 2 * r->above;
-    lower_bound(r, r->options->min_angle);
-    bool tried = tri_has_sizes(r->options) || is_nearly_reached(r);
-    r->stage = tried ? ABOVE_STAGE : LAST_STAGE;
-    r->report->hit_cap |= !tried;
-}
-
+ * (tri_sizes_come_first). Not within a fence, nor with a worklist: what the first stage makes bad for the second is not
+ * among its triangles. */
 static void begin_stages(struct tri_refiner *r)
 {
-    double usual = fmin(r->options->min_angle, TRI_USUAL_ANGLE);
-    bool easy = !r->options->fence && !r->options->worklist && !r->options->above &&
-                tri_sizes_come_first(r->mesh, r->options, NULL);
-    assert(!r->options->above || (!r->options->worklist && r->options->min_angle > TRI_USUAL_ANGLE));
+    bool easy = !r->options->fence && !r->options->worklist && tri_sizes_come_first(r->mesh, r->options, NULL);
     r->stage = easy ? EASY_STAGE : USUAL_STAGE;
-    r->criterion.bounds = tri_bounds_for(easy ? TRI_SIZES_ANGLE : usual, r->options->conforming);
-    if (r->options->above)
-        go_above(r);
+    r->criterion.bounds = tri_bounds_for(easy ? TRI_SIZES_ANGLE : worked_angle(r->options), r->options->conforming);
 }
 
 static void next_stage(struct tri_refiner *r)
 {
     r->step = NOT_BEGUN;
-    switch (r->stage) {
-    case EASY_STAGE:
-        lower_bound(r, fmin(r->options->min_angle, TRI_USUAL_ANGLE));
-        r->stage = USUAL_STAGE;
-        return;
-    case USUAL_STAGE:
-        r->stage = LAST_STAGE;
-        if (r->options->min_angle > TRI_USUAL_ANGLE && !r->options->fence)
-            go_above(r);
-        return;
-    case ABOVE_STAGE:
-        r->stage = LAST_STAGE;
-        if (r->left_above && r->back >= 0) {
-            r->above = -1;
-            lower_bound(r, BACK_ANGLE);
-            r->stage = BACK_STAGE;
-        }
-        return;
-    default:
-        r->stage = LAST_STAGE;
-    }
+    r->stage++;
+    r->criterion.bounds = tri_bounds_for(worked_angle(r->options), r->options->conforming);
 }
 
 /* Resumable, as refine_worklist. */
@@ -886,9 +774,6 @@ void tri_refiner_show(const struct tri_refiner *r, struct tri_pause *pause)
     memset(pause, 0, sizeof *pause);
     memcpy(&pause->report, r->report, sizeof pause->report);
     pause->bounds = r->criterion.bounds;
-    pause->above = r->above;
-    pause->back = r->back;
-    pause->left_above = r->left_above;
     pause->stage = (int32_t)r->stage;
     pause->step = (int32_t)r->step;
     pause->limit = r->limit;
@@ -915,9 +800,6 @@ void tri_refiner_go_on(struct tri_refiner *r, struct tri_pause *pause)
     assert(r->step == NOT_BEGUN && r->n_encroached == 0 && !r->encroached);
     *r->report = pause->report;
     r->criterion.bounds = pause->bounds;
-    r->above = pause->above;
-    r->back = pause->back;
-    r->left_above = pause->left_above != 0;
     r->stage = (enum stage)pause->stage;
     r->step = (enum step)pause->step;
     r->limit = pause->limit;

@@ -19,7 +19,8 @@
 extern "C" {
 #endif
 
-/* Up to about this bound in degrees refinement ends in practice (proved: 28.6 with input angles of 60 and more). */
+/* Up to about this bound in degrees refinement ends in practice (proved: 28.6 with input angles of 60 and more). A
+ * larger one is worked for as this one; triangles are still counted by what is asked for. */
 #define TRI_USUAL_ANGLE 34.0
 
 /* Above the first, in degrees, sizes are brought about before angles, with the second as bound: see refine.c,
@@ -51,9 +52,7 @@ struct tri_part {
 };
 
 struct tri_refine_options {
-    double min_angle;      /* degrees; 0: no bound on angles; above 34 best effort; within a fence no more than 34 */
-    bool above;            /* the mesh is as another call has left it that had TRI_USUAL_ANGLE for its bound: only what
-                              is asked for above that is done; the whole mesh, no fence, no worklist */
+    double min_angle;      /* degrees; 0: no bound on angles; above 34 as 34 */
     double max_area;       /* <= 0: none */
     bool region_areas;     /* mesh->regions[t.region].max_area applies too */
     double area_scale;     /* > 0: all area bounds are multiplied by this, for pre-refinement, and the size test is
@@ -108,7 +107,6 @@ struct tri_refine_report {
     int64_t gated, fenced;            /* triangles deferred: by the gate; since a cavity reached beyond the fence */
     int64_t given_up[TRI_EXCUSES];    /* bad triangles given up during the call, by reason; some vanish later */
     bool hit_limit;                   /* max_steiner stopped the call */
-    bool hit_cap;                     /* angles above TRI_USUAL_ANGLE would have cost too many points */
 };
 
 struct tri_refine_options tri_refine_defaults(void);

@@ -110,12 +110,12 @@ static int64_t outside_gaps(const struct outcome *o, const struct tri_refine_opt
 
 /* Where vertices ran away triangles are given up, at any bound: beside small angles, where the checker finds the reason
  * itself, and in dear spaces. Elsewhere none are up to the angle that theory promises (Ruppert 1995: 20.7 degrees),
- * next to none up to 25, and few above, as long as their points did not cost too much (credit.h). */
+ * next to none up to 25, and few above. */
 static int64_t may_run_away(const struct outcome *o, const struct tri_refine_options *angles, int64_t count,
                             struct verdict *verdict)
 {
-    const double PROMISED = 20.7, LIKELY = 25, CAPPED = 0.33, angle = angles->min_angle;
-    double share = angle <= LIKELY ? 0 : o->report.quality.hit_cap ? CAPPED : 0.02;
+    const double PROMISED = 20.7, LIKELY = 25, angle = angles->min_angle;
+    double share = angle <= LIKELY ? 0 : 0.02;
     double few = 20 + share * o->mesh.n_triangles;
     if (angle <= PROMISED)
         return count > 0 ? count - outside_gaps(o, angles) : 0;
