@@ -39,6 +39,8 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/bad_queue.c
     triangle/criterion.c
     triangle/inside.c
+    triangle/feed.c
+    triangle/treat.c
     triangle/refine.c
     triangle/pause.c
     triangle/census.c

@@ -1,52 +1,15 @@
-/* Diametral circles.
+/* Diametral circles: where a subsegment with a vertex in its circle is split.
  *
- * A vertex encroaches a subsegment that it sees at more than 90 degrees. (If any vertex that sees it does, so does the
- * apex of a triangle beside it.) An encroached subsegment is split; no new point in the plane ever enters a circle
- * (refine.c), and the circles of the parts lie in that of the whole. So the mesh is conforming once no subsegment is
- * encroached.
- *
- * RULE. The point of e level with a vertex v is that at the distance of v from o, where e and v lie on two parents with
- * the common end o; else the foot of the perpendicular from v. Let v be at distance h from a subsegment of length l,
- * and the point level with v at distance d from the nearer end a. The subsegment is split
+ * RULE. The point of a subsegment e level with a vertex v is that at the distance of v from o, where e and v lie on two
+ * parents with the common end o; else the foot of the perpendicular from v. Let e have length l, v distance h from it,
+ * and the level point distance d from the nearer end a. Then e is split
  *   - level with v, if h <= d and h < l / NARROW;
  *   - d + h^2 / d from a, if h > d and that is less than
  *   - the usual place (tri_split_fraction) from a: where it is split in all other cases.
  *
- * THEOREM (levels part two parents for good). Let u, on e, be level with v, on f, and f be all on one side of the line
- * of e. Then v encroaches neither part of e, and u no part of f. Proof. With a common end, circles with a diameter on a
- * ray from o lie in the ring between the ends of the diameter, and meet its border on the ray alone; u and v lie on one
- * such border. Else v sees u and any point of e, and u sees v and any point of f, at no more than 90 degrees, since uv
- * is perpendicular to e. So two parents side by side, however near, take about as many points as they have vertices,
- * not length / width of them, and a vertex in a bundle of parents is handed on across it once. All rays from one vertex
- * share their levels: nothing spirals around it (concentric shells: Ruppert 1995).
- *
- * New levels, which the other parents of a bundle must take over and which may ask for more new ones, are for vertices
- * that are as near to a as to e: two levels nearer to each other than their parents. One split is enough for such a
- * vertex, too: it sees a and a point m from a at no more than 90 degrees if d (m - d) <= h^2, and that point and the
- * far end if m >= d. (Halving until the level is in the middle would make as many new levels as it takes halves, on
- * each parent others: in a bundle of a dozen that never ended.)
- *
- * THEOREM (end). No split makes a part shorter than half the shortest edge: the first takes d >= h, and h is that at
- * least, or else v lies on e; the second makes parts of 2 h and more, the third of a quarter of a subsegment of two
- * shortest edges and more. So there are finitely many splits, whatever the rest of refinement does.
- *
- * Rounding puts the point level with v an ulp beside its place; of the places about it the first is taken from which
- * neither lies in a circle of the other (refine.c). Where there is none, and h, the distance of v from e, is so small
- * that this leaves v in a circle (h^2 < ulp * length), only shorter parts help: length * ulp / h^2 of them. That is
- * done where MOST_PARTS are enough. Halving makes parts at most twice as short as that asks for: no edge of theirs is
- * 16 times shorter than it would be without rounding, which is no feature. With more of them the triangles on their
- * other sides would have edges too short to be refined (feature_size.c), and would be given up.
- *
- * COLUMNS. A place need not be level with v exactly, but within h^2 / length, which may be far less than an ulp. The
- * places beside the rounded one are few, and about as far from that as it. In each column of coordinates there is one
- * that is nearest to the line on which all is level with v; it is off by half a unit in the last place of the other
- * coordinate, or less where e is steep against it. The coordinate whose unit counts less along e is worked out, the
- * other one stepped: so no place near e that fits is passed over but for the width looked at. Where one coordinate is
- * much smaller than the other, its units are finer, and so is what can be level.
- *
- * What stays: where v is nearer to e than the shortest edge, so that it lies on e as far as coordinates tell, or level
- * with an end of e up to rounding, and h too small to mend that. And where rounding leaves no room for the split point
- * (cavity.h), or for a point level with v. */
+ * THEOREM (docs/theory.md, levels; concentric shells: Ruppert 1995). Vertices that are level part two parents for good:
+ * two parents side by side take about as many points as they have vertices, and no part is shorter than half the
+ * shortest edge. What stays is where coordinates have no place for a level: h^2 < MOST_PARTS ulps of the length. */
 #include "triangle/disk.h"
 
 #include <assert.h>
@@ -170,8 +133,8 @@ static double coordinate_beside(double a, double d, bool other)
     return tri_round_coordinate(other ? nextafter(x, x - a > d ? -HUGE_VAL : HUGE_VAL) : x);
 }
 
-/* See COLUMNS. q: the rounded place; end: the common end of the parents, or TRI_NONE. Is it level, and may it be
- * there? */
+/* In each column of coordinates one place is nearest to the line on which all is level with `at` (docs/theory.md). q:
+ * the rounded place; end: the common end of the parents, or TRI_NONE. Is it level, and may it be there? */
 static bool place_in_column(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point q,
                             struct tri_point at, tri_vertex_id end, int i, struct tri_point *p)
 {

@@ -1,24 +1,15 @@
 /* Rules that make refinement end on any PSLG, beside those of the loop.
  *
  * THEORY. Refinement with bounds up to 28.6 degrees ends where segments meet at 60 degrees or more (Chew 1993; Shewchuk
- * 2002; Rand 2011), since every new point is about as far from all others as the features around it. Three things
- * break that:
- *   1. Two segments at a small angle would split each other for ever. They are split on common circles around the
- *      vertex where they meet (concentric shells: Ruppert 1995), and a triangle whose shortest edge joins two of them
- *      on one circle stays (Miller, Pav & Walkington 2003): its length is dictated by the input angle, so nothing
- *      smaller is made because of it.
- *      Between two segments that meet at less than 1 / SHARP no triangle can be good that is not SHARP times smaller
- *      than its distance from the vertex where they meet, and those about that vertex never are. Such a spike is not
- *      filled: a triangle whose shortest edge joins its sides stays, wherever their ends have put them.
- *   2. Two segments side by side, nearer to each other than rounding, or than anyone could want to fill: spikes of no
- *      width, slits, borders that were digitised twice. The theory holds, but asks for length / width triangles. Such a
- *      gap is filled only if the mesh can afford it (tri_choose_gaps); a triangle whose shortest edge bridges
- *      one that is too dear stays.
- *   3. Rounding: points nearer than about 100 units in the last place, flat triangles, split points beside their
- *      segment. An edge or height below mesh.limits.shortest2 stays; a point that does not see its whole cavity is not
- *      inserted (cavity.h).
- * And above 28.6 degrees points may beget points in ever smaller triangles: feature_size.c says where that ends.
- * What stays is counted by reason (tri_count_bad). */
+ * 2002; Rand 2011). A triangle whose shortest edge is of one of these kinds stays:
+ *   - it joins two segments that meet at an acute vertex, on one of the circles on which they are split (concentric
+ *     shells: Ruppert 1995; Miller, Pav & Walkington 2003): its length is dictated by the angle of the input;
+ *   - it joins the sides of a spike, two segments that meet at less than 1 / SHARP;
+ *   - it bridges a space between two segments that would take more points to fill than the mesh can afford, at length /
+ *     width each (tri_choose_gaps);
+ *   - it, or the triangle's height, is shorter than limits.shortest2 says: rounding;
+ *   - it has run away (feature_size.c): above 28.6 degrees points may beget points in ever smaller triangles. What
+ *     stays is counted by reason (tri_count_bad). */
 #include "triangle/small_angle.h"
 
 #include <assert.h>
