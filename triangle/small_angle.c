@@ -230,8 +230,8 @@ static bool is_beside(const struct tri_mesh *mesh, const struct tri_parent *p, t
     return along >= 0 && along <= x * x + y * y;
 }
 
-/* Does triangle u, v, w lie on one side of the parent through u? Amid the parent it does, since triangles cross none. At
- * an end it may lie behind that end, or go round it with v and w on different sides, so that no more than its corner
+/* Does triangle u, v, w lie on one side of the parent through u? Amid the parent it does, since triangles cross none.
+ * At an end it may lie behind that end, or go round it with v and w on different sides, so that no more than its corner
  * touches the space on either. What is nearer to the parent's line than an edge may be short counts as on it: split
  * points lie beside it by rounding. */
 static bool lies_aside(const struct tri_mesh *mesh, const struct tri_parent *p, tri_vertex_id u, tri_vertex_id v,
