@@ -30,6 +30,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/interpolate.c
     triangle/degrees.c
     triangle/quality.c
+    triangle/petal.c
     triangle/size_text.c
     triangle/small_angle.c
     triangle/groundwork.c

@@ -103,10 +103,10 @@ static int32_t triangles_at(const struct tri_pslg *pslg, double angle, bool conf
 }
 
 /* Up to 34 degrees at most so many times the triangles at 28 degrees, a bound that is reached by theory; beyond at most
- * so many times those at 34, and a constant, which is in the budget. */
+ * so many times those at 34, and a constant. */
 static void check_bounds(const char *name, const struct tri_pslg *pslg, int32_t most)
 {
-    static const double angles[] = {33, 34, 34.5, 36, 60};
+    static const double angles[] = {33, 34, 35, 36, 60};
     for (int conforming = 0; conforming < 2; conforming++) {
         int32_t usual = triangles_at(pslg, 28, conforming);
         double limit = 8.0 * usual + 150;
@@ -115,7 +115,9 @@ static void check_bounds(const char *name, const struct tri_pslg *pslg, int32_t 
             if (n > limit)
                 fail_msg("%s: %d triangles at %g degrees, %d at 28", name, (int)n, angles[i], (int)usual);
             if (angles[i] == 34)
-                limit = 2.5 * n + 3000;
+                limit = 3.0 * n + 150;
+            if (angles[i] == 36)
+                limit = 8.0 * n + 150;
         }
     }
 }

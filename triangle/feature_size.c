@@ -2,7 +2,7 @@
  *
  * Every vertex v has a size s(v), an estimate of Ruppert's local feature size (1995): of a vertex of the input, how far
  * it is to the vertices and segments that its triangles reach; of a point inserted for a triangle with shortest edge
- * ab, min(s(a), s(b)) + SLOPE * |ap|, inherited as insertion radii are (Shewchuk 2002); of a split point the same from
+ * ab, the lesser of s(a) + SLOPE * |ap| and s(b) + SLOPE * |bp|, inherited as insertion radii are (Shewchuk 2002); of a split point the same from
  * all around it, but no more than its distance from other features; of a point inserted because of sizes no more than
  * its distance from its neighbours. What coordinates do not resolve is no feature (limits.shortest2, tri_touches).
  *
@@ -142,8 +142,9 @@ void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *exe
 double tri_feature_inside(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, struct tri_point p, bool sized)
 {
     assert(a != b);
-    double sa = mesh->feature[a], sb = mesh->feature[b], near = sqrt(tri_relative(&mesh->xy[a], p).l);
-    double inherited = (sa < sb ? sa : sb) + SLOPE * near;
+    double from_a = sqrt(tri_relative(&mesh->xy[a], p).l), from_b = sqrt(tri_relative(&mesh->xy[b], p).l);
+    double near = from_a < from_b ? from_a : from_b;
+    double inherited = fmin(mesh->feature[a] + SLOPE * from_a, mesh->feature[b] + SLOPE * from_b);
     return sized && near < inherited ? near : inherited;
 }
 

@@ -21,7 +21,7 @@ extern "C" {
 
 /* Up to about this bound in degrees refinement ends in practice (proved: 28.6 with input angles of 60 and more). A
  * larger one is worked for as this one; triangles are still counted by what is asked for. */
-#define TRI_USUAL_ANGLE 34.0
+#define TRI_USUAL_ANGLE 38.0
 
 /* Above the first, in degrees, sizes are brought about before angles, with the second as bound: see refine.c,
  * stages. */

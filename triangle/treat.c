@@ -18,6 +18,7 @@
 #include "triangle/feature_size.h"
 #include "triangle/inside.h"
 #include "triangle/interpolate.h"
+#include "triangle/petal.h"
 #include "triangle/predicates.h"
 #include "triangle/quality.h"
 #include "triangle/small_angle.h"
@@ -295,13 +296,31 @@ static enum tri_outcome find_cavity(struct tri_refiner *r, tri_triangle_id trian
     }
 }
 
-/* The usual point, or the split of a subsegment that it encroaches. */
+/* The cavity of the best point for a bad angle, *p; REFUSED: the usual one is to be had. */
+static enum tri_outcome find_best(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape,
+                                  struct tri_point *p)
+{
+    tri_vertex_id beyond[2];
+    switch (tri_petal_point(r->mesh, r->options->fence, triangle, shape, r->criterion.bounds.off_centre, p, beyond)) {
+    case TRI_PETAL_BETTER: return find_cavity(r, triangle, *p);
+    case TRI_PETAL_BEYOND: return wait_for_more(r, beyond);
+    default: return REFUSED;
+    }
+}
+
+/* The best or the usual point, or the split of a subsegment that it encroaches. */
 static enum tri_outcome propose(struct tri_refiner *r, tri_triangle_id triangle, const struct tri_shape *shape,
-                            enum tri_badness badness)
+                                enum tri_badness badness)
 {
     const struct tri_triangle t = r->mesh->tri[triangle];
-    struct tri_point p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
-    enum tri_outcome outcome = find_cavity(r, triangle, p);
+    struct tri_point p;
+    enum tri_outcome outcome = REFUSED;
+    if (badness == TRI_BAD_ANGLE && !r->sized && !r->options->urgent)
+        outcome = find_best(r, triangle, shape, &p);
+    if (outcome == REFUSED) {
+        p = tri_place(r->mesh->xy, t.v, shape, reach_of(r, &t, shape, badness));
+        outcome = find_cavity(r, triangle, p);
+    }
     if (outcome != DONE)
         return outcome;
     assert(r->cavity.n_tri > 0 && r->cavity.tri[0] == triangle);
