@@ -28,10 +28,10 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/chain.c
     triangle/reconstruct.c
     triangle/cavity.c
-    triangle/hidden_wall.c
     triangle/interpolate.c
     triangle/degrees.c
     triangle/quality.c
+    triangle/petal.c
     triangle/size_text.c
     triangle/small_angle.c
     triangle/groundwork.c
@@ -41,8 +41,8 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/bad_queue.c
     triangle/criterion.c
     triangle/inside.c
-    triangle/credit.c
-    triangle/entry_set.c
+    triangle/feed.c
+    triangle/treat.c
     triangle/refine.c
     triangle/pause.c
     triangle/census.c

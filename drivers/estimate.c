@@ -190,13 +190,12 @@ static double column_of(const struct run *run, double triangles)
     return sqrt(triangles * (cell_triangles ? cell_triangles(triangles) : triangles));
 }
 
-/* As schedules go: above TRI_EASY_ANGLE there are two, which ranks can share; above TRI_USUAL_ANGLE there is a call
- * after them, and a limit on new points makes it one call. */
+/* As schedules go: above TRI_EASY_ANGLE there are two, which ranks can share; a limit on new points makes it one
+ * call. */
 static bool is_swept(const struct run *run)
 {
     const struct tri_refine_options *quality = &run->options.quality;
-    return quality->min_angle <= (run->hooks->n_ranks > 0 ? TRI_USUAL_ANGLE : TRI_EASY_ANGLE) &&
-           quality->max_steiner < 0;
+    return (run->hooks->n_ranks > 0 || quality->min_angle <= TRI_EASY_ANGLE) && quality->max_steiner < 0;
 }
 
 bool estimate_can_park(const struct run *run, double held)

@@ -224,7 +224,7 @@ static enum tri_status check_whole(const struct run *run, const struct estimate 
 static enum tri_status check_stream(const struct run *run, const struct estimate *e, double left,
                                     const struct console *console, struct tri_error *error)
 {
-    const char *why = run->hooks->n_ranks > 0 ? "angles above 34 degrees and -S" : "bounds above 31 degrees and -S";
+    const char *why = run->hooks->n_ranks > 0 ? "-S" : "bounds above 31 degrees and -S";
     enum tri_status status = e->sweeps ? TRI_OK : check_number(e, why, console, error);
     if (status)
         return status;
@@ -313,7 +313,7 @@ static void say_way(const struct console *console, const struct run *run, const 
         console_say(console, "Sharing: about %s triangles among %d tasks, up to %s of memory each.\n",
                     tri_count_text(n->triangles).text, run->hooks->n_ranks, tri_size_text(n->held).text);
     else if (run->hooks->n_ranks > 1)
-        console_say(console, "Each of %d tasks makes all of the mesh: angles above 34 degrees and -S are not shared.\n",
+        console_say(console, "Each of %d tasks makes all of the mesh: -S is not shared.\n",
                     run->hooks->n_ranks);
     else if (e->sweeps)
         console_say(console, "Sweeping: about %s triangles %s, a few columns of them %s.\n",

@@ -547,11 +547,9 @@ void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *a
     sum->inserted_on_segments += add->inserted_on_segments;
     sum->gated += add->gated;
     sum->fenced += add->fenced;
-    sum->searched_in_vain += add->searched_in_vain;
     for (int k = 0; k < TRI_EXCUSES; k++)
         sum->given_up[k] += add->given_up[k];
     sum->hit_limit |= add->hit_limit;
-    sum->hit_cap |= add->hit_cap;
 }
 
 void par_forget_deferred(struct par_report *report) { report->total.gated = report->total.fenced = 0; }

@@ -46,8 +46,7 @@ struct par_share {
 /* The parts of a refinement, in their order (schedule.c). */
 enum par_stage {
     PAR_SIZES,   /* sizes, where angles are dear */
-    PAR_BOUNDS,  /* all bounds, up to the usual angle */
-    PAR_ABOVE,   /* a larger angle */
+    PAR_BOUNDS,  /* all bounds */
     PAR_FINISHED /* nothing is left but to hand it out */
 };
 

@@ -141,16 +141,7 @@ static enum tri_status fill_worklist(struct par_state *state, const struct tri_r
 
 /* Pre-refinement where the input is already fine in places: the same refinement for bad triangles alone that have an
  * edge that is long against their cell, with no more than one point for 400 triangles of the mesh to come. No point
- * is inserted that the bounds do not ask for: so it makes no triangle that refinement would not. Fills the worklist.
- *
- * LEVELS. Under -D, subsegments are split that such triangles encroach, and all that the new points do, whatever their
- * length and number. For a level in a bundle, or in a ring of corners, goes on from parent to parent, across all cells
- * (disk.c). A block hands it on as far as its fence, and goes on with its angles; what lies beyond begins levels of its
- * own, between which those that arrive later lie anywhere. Where two such sets meet, subsegments are halved until they
- * are as short as the space between parents is wide, and then it is filled. (Stars of 60 spikes, cells of 250
- * triangles: twice the triangles of a sequential call, and as many where some of the long ones were left, or levels
- * were handed on as far as they were long. Now 1.0 to 1.3 times.) Once all have the same levels, their halves are the
- * same, whoever makes them. Short ones are left to the blocks: in ordinary figures that is nearly all. */
+ * is inserted that the bounds do not ask for: so it makes no triangle that refinement would not. Fills the worklist. */
 static enum tri_status prerefine_graded(struct par_state *state, const struct tri_refine_options *quality,
                                         const struct par_partition *partition, struct tri_error *error)
 {
@@ -680,39 +671,22 @@ static bool must_be_sequential(const struct tri_refine_options *quality, const s
            quality->deferred || (quality->unsuitable && !options->size_test_in_parallel);
 }
 
-/* A last call for angles that no schedule serves. */
-static enum tri_status refine_above_usual(struct par_state *state, const struct tri_refine_options *quality,
-                                     struct tri_error *error)
-{
-    double last = tri_seconds();
-    if (state->stage > PAR_ABOVE || quality->min_angle <= TRI_USUAL_ANGLE)
-        return TRI_OK;
-    state->stage = PAR_ABOVE;
-    enum tri_status status = state->paused ? TRI_OK : come_to_border(state, error);
-    struct tri_refine_options above = *quality;
-    above.above = true;
-    status = status ? status : refine_rest(state, &above, true, true, error);
-    state->report->seconds_last += tri_seconds() - last;
-    return status;
-}
-
-/* Refines by schedules: two where angles are dear, and a last call for angles above those of a schedule. */
+/* Refines by schedules: two where angles are dear. */
 static enum tri_status refine_by_schedule(struct par_state *state, const struct tri_refine_options *quality,
                                           struct tri_error *error)
 {
     struct tri_refine_options usual = *quality;
-    usual.final_angle = tri_final_angle(quality);
     usual.min_angle = fmin(quality->min_angle, TRI_USUAL_ANGLE);
     if (!state->sizes_first && state->stage == PAR_SIZES)
         state->stage = PAR_BOUNDS; /* the first */
-    const bool may_number = !state->options->by_block && quality->min_angle <= TRI_USUAL_ANGLE;
+    const bool may_number = !state->options->by_block;
     state->then = may_number ? &usual : NULL;
     enum tri_status status = state->sizes_first ? refine_sizes_first(state, &usual, error) : TRI_OK;
     state->then = NULL;
     state->may_number = may_number;
     if (!status && state->end != PAR_DELIVERED)
         status = refine_stage(state, &usual, PAR_BOUNDS, error);
-    return status ? status : refine_above_usual(state, quality, error);
+    return status;
 }
 
 /* Hands out a mesh that is finished, tile by tile if it is numbered. */

@@ -123,10 +123,9 @@ struct par_options par_defaults(void);
 /* Refines as tri_refine does, with several threads. Where the options do not allow a schedule (max_steiner; worklist,
  * gate, fence, deferred or more_room of the caller's; a size test that must not run in parallel) or the mesh is small
  * it is one sequential call. A size test is also asked about triangles that will never be, smaller and larger ones, to
- * find out how much work there is where. In a child that was forked after a call there is one thread. What an angle
- * bound above TRI_USUAL_ANGLE asks for beyond that is one sequential call, too. Vertices that are there keep their ids;
- * unless by_block, those of triangles and subsegments may change. Safe to call from several threads on different
- * meshes, and inside a parallel region. Errors as tri_refine. */
+ * find out how much work there is where. In a child that was forked after a call there is one thread. Vertices that are
+ * there keep their ids; unless by_block, those of triangles and subsegments may change. Safe to call from several
+ * threads on different meshes, and inside a parallel region. Errors as tri_refine. */
 enum tri_status par_refine(struct tri_mesh *mesh, const struct tri_refine_options *quality,
                            const struct par_options *options, struct par_report *report, struct tri_error *error);
 

@@ -71,6 +71,7 @@ tested_by() {
     triangle/text/boundary.c | triangle/text/gmsh.c | triangle/text/grouping.c) echo formats ;;
     triangle/text/bytes.c | triangle/text/read_*.c | triangle/text/tags.c) echo read_formats ;;
     triangle/text/hydro.c | triangle/text/parts.c | triangle/text/vtu.c) echo formats ;;
+    triangle/feed.c | triangle/treat.c) echo refine ;;
     sched/triangulate.c) echo par_triangulate ;;
     sched/halt.c | sched/sweep/carry_halt.c | sched/sweep/checkpoint.c | sched/sweep/spool.c) echo checkpoint ;;
     sched/sweep/state.c) echo checkpoint ;;

@@ -66,7 +66,6 @@ static void test_angle_bounds_are_met(void **state)
             print_message("  %s %g\n", valid[i], angles[k]);
             struct tri_mesh mesh = refine_and_judge(&pslg, &options, 0, &report);
             assert_int_equal(count_bad(&mesh, &options, &report), 0);
-            assert_false(report.quality.hit_cap);
             tri_mesh_free(&mesh);
         }
         tri_pslg_free(&pslg);
@@ -647,43 +646,6 @@ static void test_work_is_found(void **state)
     tri_pslg_free(&pslg);
 }
 
-static int is_longer_than(void *user, const double a[2], const double b[2], const double c[2], double area)
-{
-    const double *most = user;
-    (void)area;
-    return hypot(a[0] - b[0], a[1] - b[1]) > *most || hypot(b[0] - c[0], b[1] - c[1]) > *most ||
-           hypot(c[0] - a[0], c[1] - a[1]) > *most;
-}
-
-/* Of encroached subsegments a pre-refinement splits those that are long, whatever the limit on its points, and leaves
- * a room alone that has short ones only. */
-static void test_urgent_subsegments_are_split(void **state)
-{
-    (void)state;
-    double most = 6, points[] = {0, 0, 16, 0, 16, 9, 0, 9, 8, 1, 20, 0, 24, 0, 24, 2, 20, 2, 22, 0.5};
-    int32_t segments[] = {0, 1, 1, 2, 2, 3, 3, 0, 5, 6, 6, 7, 7, 8, 8, 5}, found[64];
-    struct tri_pslg pslg = {.n_points = 10, .points = points, .n_segments = 8, .segments = segments};
-    struct tri_options plain = support_quality(0, 0);
-    struct tri_mesh mesh = support_generate(&pslg, &plain, NULL);
-    struct tri_refine_options options = support_quality(1, 0).quality, all;
-    struct tri_refine_report report;
-    options.conforming = true;
-    all = options;
-    options.urgent = is_longer_than;
-    options.urgent_user = &most;
-    options.max_steiner = 0;
-    int32_t n_all = tri_find_work(&mesh, &all, 0, mesh.n_triangles, found);
-    options.n_worklist = tri_find_work(&mesh, &options, 0, mesh.n_triangles, found);
-    options.worklist = found;
-    assert_in_range(options.n_worklist, 1, n_all - 1);
-    assert_int_equal(tri_refine(&mesh, &options, &report, NULL), TRI_OK);
-    assert_int_equal(report.inserted_free, 0);
-    assert_true(report.inserted_on_segments > 0);
-    assert_int_equal(tri_find_work(&mesh, &options, 0, mesh.n_triangles, found), 0);
-    assert_int_equal(tri_find_work(&mesh, &all, 0, mesh.n_triangles, found), n_all - options.n_worklist);
-    tri_mesh_free(&mesh);
-}
-
 /* Only the neighbourhood of the worklist is touched; all bad triangles in it leave nothing bad. */
 static void test_seeds(void **state)
 {
@@ -850,7 +812,6 @@ int main(void)
         cmocka_unit_test(test_pauses_change_nothing),
         cmocka_unit_test(test_what_is_left_is_told),
         cmocka_unit_test(test_work_is_found),
-        cmocka_unit_test(test_urgent_subsegments_are_split),
         cmocka_unit_test(test_seeds),
         cmocka_unit_test(test_largest_circumradius_never_grows),
         cmocka_unit_test(test_refinement_ends_on_everything),

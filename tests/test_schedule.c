@@ -648,29 +648,6 @@ static void test_what_is_left_does_not_multiply(void **state)
     tri_pslg_free(&start.pslg);
 }
 
-/* Long walls beyond fences, and thousands of triangles on this side whose points all lead to the same wall: each
- * searched all the others in vain, hundreds of times as many triangles as there are. */
-static void test_fans_at_a_fence_are_searched_once(void **state)
-{
-    (void)state;
-    if (!is_full())
-        return;
-    struct par_report report;
-    struct start start = {.options = support_quality(26, 0)};
-    struct par_options options = small_blocks(4000, 2);
-    start.options.keep_hull = true;
-    assert_true(support_read("regress/wide_fans.poly", &start.pslg));
-    for (int32_t v = 0; v < start.pslg.n_points; v++)
-        start.pslg.points[2 * (size_t)v + 1] *= 4; /* so that the spaces between the walls are filled */
-    struct tri_mesh mesh = refine(&start, &options, &report);
-    print_message("  %d triangles, %lld searched in vain\n", (int)mesh.n_triangles,
-                  (long long)report.total.searched_in_vain);
-    assert_true(mesh.n_triangles > 100000 && report.total.searched_in_vain < 20 * (int64_t)mesh.n_triangles);
-    par_report_free(&report);
-    tri_mesh_free(&mesh);
-    tri_pslg_free(&start.pslg);
-}
-
 /* Cuts do not run along a gap that holds nearly all of the work, upright or level. */
 static void test_a_long_gap_costs_no_triangles(void **state)
 {
@@ -696,37 +673,6 @@ static void test_a_long_gap_costs_no_triangles(void **state)
         tri_mesh_free(&mesh);
         tri_pslg_free(&start.pslg);
     }
-}
-
-/* Under -D a level goes on through all corners of a ring, across all cells: blocks that began levels of their own made
- * twice the triangles. */
-static void test_levels_of_a_ring_are_begun_once(void **state)
-{
-    (void)state;
-    struct par_report report;
-    struct start start = {.options = support_quality(22, 0)};
-    struct par_options one_call = small_blocks(1e9, 1);
-    start.options.quality.conforming = true;
-    assert_true(support_read("regress/ring_levels.poly", &start.pslg));
-    struct tri_mesh sequential = refine(&start, &one_call, &report);
-    assert_int_equal(report.levels, 0);
-    par_report_free(&report);
-    for (int block = 60; block <= 250; block += 190) {
-        struct par_options blocks = small_blocks(block, 1);
-        struct tri_mesh mesh = refine(&start, &blocks, &report);
-        print_message("  %d triangles, in cells of %d %d\n", (int)sequential.n_triangles, block, (int)mesh.n_triangles);
-        assert_true(report.levels > 0 && mesh.n_triangles < 1.5 * sequential.n_triangles);
-        judge(&start, &mesh, INT64_MAX);
-        par_report_free(&report);
-        blocks.threads = 3;
-        struct tri_mesh again = refine(&start, &blocks, &report);
-        support_assert_same_bytes(&mesh, &again);
-        par_report_free(&report);
-        tri_mesh_free(&mesh);
-        tri_mesh_free(&again);
-    }
-    tri_mesh_free(&sequential);
-    tri_pslg_free(&start.pslg);
 }
 
 static void test_nothing_is_deferred_with_the_margin(void **state)
@@ -819,121 +765,6 @@ static void test_a_size_test_runs_in_parallel_only_where_allowed(void **state)
     assert_true(asked > 1000);
     tri_mesh_free(&first);
     tri_mesh_free(&plain);
-    tri_pslg_free(&start.pslg);
-}
-
-/* Refuses edges that are longer than a fifth of the way from a corner of the figure to the triangle's first one. */
-struct growing {
-    double corner[2], least2;
-};
-
-static int is_too_long(void *user, const double a[2], const double b[2], const double c[2], double area)
-{
-    const struct growing *growing = user;
-    const double *p[3] = {a, b, c};
-    double x = a[0] - growing->corner[0], y = a[1] - growing->corner[1];
-    (void)area;
-    for (int k = 0; k < 3; k++) {
-        double dx = p[k][0] - p[(k + 1) % 3][0], dy = p[k][1] - p[(k + 1) % 3][1];
-        if (dx * dx + dy * dy > fmax((x * x + y * y) / 25, growing->least2))
-            return 1;
-    }
-    return 0;
-}
-
-enum { FLAT_POINTS = 6 };
-
-static const struct flat_figure {
-    double angle, place[FLAT_POINTS][2];
-    int32_t n_segments, ends[2][2];
-} flat_figures[] = {
-    {30,
-     {{-7.82, -17.0},
-      {-5.6, -22.7},
-      {-8.503206246297, -22.367139096560994},
-      {-14.2662511070346, -21.682098750171185},
-      {-20.029295967772324, -20.99705840378138},
-      {-22.910818398141174, -20.65453823058648}},
-     1, {{5, 3}}},
-    {22,
-     {{-19.228873804895517, 145.3496775137137},
-      {23.5938762403346, 362.1938828293229},
-      {-19.228873804895517, 145.3496775137137},
-      {23.59387624033456, 362.193882829323},
-      {-20.0, 490.0},
-      {100.0, 400.0}},
-     2, {{1, 0}, {3, 2}}},
-};
-
-/* The size test, for the figure that is to be filled to its hull. */
-static void ask_for_growing(struct start *start, struct growing *growing)
-{
-    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
-    for (int k = 0; k < 2 * start->pslg.n_points; k++) {
-        low[k % 2] = fmin(low[k % 2], start->pslg.points[k]);
-        high[k % 2] = fmax(high[k % 2], start->pslg.points[k]);
-    }
-    const double size = fmax(high[0] - low[0], high[1] - low[1]);
-    *growing = (struct growing){{low[0], low[1]}, size * size / 1e4};
-    start->options.keep_hull = true;
-    start->options.quality.unsuitable = is_too_long;
-    start->options.quality.unsuitable_user = growing;
-}
-
-/* The figure, with the size test. */
-static struct start flat_start(const struct flat_figure *figure, struct growing *growing)
-{
-    struct start start = {.pslg = support_pslg(FLAT_POINTS, 2, 0, 0), .options = support_quality(figure->angle, 0)};
-    for (int k = 0; k < FLAT_POINTS; k++)
-        support_add_point(&start.pslg, figure->place[k][0], figure->place[k][1]);
-    for (int k = 0; k < figure->n_segments; k++)
-        support_add_segment(&start.pslg, figure->ends[k][0], figure->ends[k][1]);
-    ask_for_growing(&start, growing);
-    return start;
-}
-
-/* Segments an ulp apart: where a flat triangle reached over a fence, a subsegment beside it had no place for a split,
- * and centroids came down to it (1,108 and 1,069 triangles, by one call 140 and 248; now 228 and 300). */
-static void test_flat_triangles_at_fences_take_no_points(void **state)
-{
-    (void)state;
-    for (int i = 0; i < 2; i++) {
-        struct growing growing;
-        struct start start = flat_start(&flat_figures[i], &growing);
-        struct par_options options = small_blocks(60, 2);
-        struct par_report report;
-        options.size_test_in_parallel = true;
-        struct tri_mesh plain = support_generate(&start.pslg, &start.options, NULL);
-        struct tri_mesh mesh = refine(&start, &options, &report);
-        struct tri_check_options check = {.max_bad = INT64_MAX, .ignore_lost = true, .border = TRI_CHECK_BORDER_ANY};
-        print_message("  %d triangles, in cells of 60 %d\n", (int)plain.n_triangles, (int)mesh.n_triangles);
-        support_judge(&mesh, &start.pslg, &check, false, NULL);
-        assert_true(report.n_blocks > 0 && mesh.n_triangles < 2 * plain.n_triangles);
-        par_report_free(&report);
-        tri_mesh_free(&plain);
-        tri_mesh_free(&mesh);
-        tri_pslg_free(&start.pslg);
-    }
-}
-
-/* A square and its copy 10^-6 beside it: what was too large beside an edge that had run away got points as near to it
- * as angles ask (8,788 triangles, by one call 2,321; now 2,391). */
-static void test_no_sizes_beside_what_ran_away(void **state)
-{
-    (void)state;
-    struct growing growing;
-    struct start start = {.options = support_quality(25, 0)};
-    struct par_options options = small_blocks(60, 2);
-    struct par_report report;
-    options.size_test_in_parallel = true;
-    assert_true(support_read("regress/shifted_square.poly", &start.pslg));
-    ask_for_growing(&start, &growing);
-    start.options.quality.conforming = true;
-    struct tri_mesh mesh = refine(&start, &options, &report);
-    print_message("  in cells of 60 %d triangles\n", (int)mesh.n_triangles);
-    assert_true(report.n_blocks > 0 && mesh.n_triangles < 3000);
-    par_report_free(&report);
-    tri_mesh_free(&mesh);
     tri_pslg_free(&start.pslg);
 }
 
@@ -1326,13 +1157,9 @@ int main(void)
         cmocka_unit_test(test_nothing_is_deferred_with_the_margin),
         cmocka_unit_test(test_schedules_are_told_apart),
         cmocka_unit_test(test_what_is_left_does_not_multiply),
-        cmocka_unit_test(test_fans_at_a_fence_are_searched_once),
         cmocka_unit_test(test_a_long_gap_costs_no_triangles),
-        cmocka_unit_test(test_levels_of_a_ring_are_begun_once),
         cmocka_unit_test(test_default_blocks_cost_no_triangles),
         cmocka_unit_test(test_a_size_test_runs_in_parallel_only_where_allowed),
-        cmocka_unit_test(test_flat_triangles_at_fences_take_no_points),
-        cmocka_unit_test(test_no_sizes_beside_what_ran_away),
         cmocka_unit_test(test_limits_and_gates_go_the_sequential_way),
         cmocka_unit_test(test_protected_segments_stay_whole),
         cmocka_unit_test(test_any_unit_makes_the_same_mesh),

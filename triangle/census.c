@@ -66,7 +66,7 @@ static bool needs_work(const struct tri_criterion *c, tri_triangle_id triangle)
         return false;
     struct tri_shape shape = tri_shape_of(c->mesh->xy, t->v);
     enum tri_badness badness = tri_judge(c, t, &shape);
-    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, tri_final_angle(c->options), triangle, &shape) &&
+    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, triangle, &shape) &&
         !tri_is_too_large(c, t, &shape))
         badness = TRI_GOOD; /* as good as it will be */
     if (badness != TRI_GOOD)
@@ -153,7 +153,7 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, tri_triangle_id
     const struct tri_triangle *t = &c->mesh->tri[triangle];
     if (tri_is_too_large(c, t, shape))
         badness = TRI_BAD_SIZE;
-    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, tri_final_angle(c->options), triangle, shape))
+    if (badness == TRI_BAD_ANGLE && tri_is_hopeless(c->mesh, triangle, shape))
         return shape->l[shape->shortest] < c->mesh->limits.shortest2 ? TRI_EXCUSE_PRECISION
                : tri_bridges_spike(c->mesh, triangle, shape)   ? TRI_EXCUSE_INPUT_ANGLE
                : tri_is_narrow_gap(c->mesh, triangle, shape)   ? TRI_EXCUSE_NARROW_GAP
@@ -163,7 +163,7 @@ static enum tri_excuse excuse_for(const struct tri_criterion *c, tri_triangle_id
         return TRI_EXCUSE_LIMIT;
     if (c->options->protect > 0 && is_beside_protected(c, t))
         return TRI_EXCUSE_PROTECTED;
-    if (report->hit_cap && badness == TRI_BAD_ANGLE)
+    if (c->options->min_angle > TRI_USUAL_ANGLE && badness == TRI_BAD_ANGLE)
         return TRI_EXCUSE_LIMIT;
     return TRI_EXCUSES;
 }
@@ -194,8 +194,6 @@ void tri_settle_counts(const struct tri_refine_report *report, const int64_t fou
         count[k] = found[k];
     if (report->gated + report->fenced > 0)
         count[TRI_EXCUSE_DEFERRED] += found[TRI_EXCUSES];
-    else if (report->hit_cap) /* which was not known when tiles that went early were counted */
-        count[TRI_EXCUSE_LIMIT] += found[TRI_EXCUSES];
     else /* behind a protected one that is far away, if any is */
         count[protected_more ? TRI_EXCUSE_PROTECTED : TRI_EXCUSE_PRECISION] += found[TRI_EXCUSES];
 }
@@ -210,7 +208,7 @@ static enum tri_excuse excuse_for_circle(const struct tri_mesh *mesh, const stru
     if (report->hit_limit)
         return TRI_EXCUSE_LIMIT;
     struct tri_disk_split split;
-    if (!tri_is_resolved_from(mesh, s, apex) || (tri_is_encroached_from(mesh, s, code, &split) && !split.renews))
+    if (!tri_is_resolved_from(mesh, s, apex) || tri_is_encroached_from(mesh, s, code, &split))
         return TRI_EXCUSE_PRECISION; /* of a split that coordinates resolve rounding left no place that can be seen */
     if (tri_common_end(mesh, s->parent, apex) != TRI_NONE)
         return TRI_EXCUSE_INPUT_ANGLE;

@@ -197,7 +197,7 @@ static double triangles_of(const struct forecast *e, tri_triangle_id t)
     const struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[t].v);
     const double asked = 2 / (TRI_MEAN_OVER_BOUND * tri_area2_bound(&e->areas, mesh->tri[t].region));
     const double itself = fmax(0.5 * shape.area2 * asked, 1);
-    if (!(e->fineness > 0) || tri_is_hopeless(mesh, tri_final_angle(e->options), t, &shape))
+    if (!(e->fineness > 0) || tri_is_hopeless(mesh, t, &shape))
         return itself;
     const double most = asked > 0 ? sqrt(e->fineness / asked) : HUGE_VAL;
     double crowd = crowd_in(mesh, t, most), product = tri_longer_product(shape.l[0], shape.l[1], shape.l[2]);

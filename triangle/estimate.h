@@ -21,7 +21,7 @@ double tri_estimate(const struct tri_mesh *mesh, const struct tri_refine_options
 /* Are the bounds to be reached in two steps: sizes with an easy angle bound, and then the angles? Angles above
  * TRI_EASY_ANGLE are dear to mend where triangles of different sizes meet, and in a mesh that areas have made even they
  * seldom do; but where features decide on sizes they do anyway, and are then mended twice. So this is where areas ask
- * for more than a quarter as many triangles as angles, in the mesh as it is; and, unasked, where there is a size test.
+ * for more than twice as many triangles as angles, in the mesh as it is; and, unasked, where there is a size test.
  * O(triangles). */
 bool tri_sizes_come_first(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                           const struct tri_executor *executor);

@@ -1,65 +1,20 @@
 /* The size of features, and why points for angles cannot run away.
  *
- * Above about 28 degrees a new point may lie nearer to its neighbours than the edge that asked for it is long, and
- * points may beget points in ever smaller triangles. So every vertex v knows the size s(v) of the features around it,
- * an estimate of Ruppert's local feature size (1995: how far it is to two features that do not touch):
- *   - for a vertex of the input: how far it is to the vertices and segments that its triangles reach;
- *   - for a point inserted for a triangle with shortest edge ab: min(s(a), s(b)) + SLOPE * |ap|, inherited as insertion
- *     radii are in the proofs of Shewchuk (2002);
- *   - for a split point: the same from all vertices around it, but no more than its distance from other features: from
- *     those that do not touch its segment, unless the space between is a gap too dear to fill (small_angle.h), and
- *     from segments that meet it at less than 60 degrees, unless that is a spike, which is not filled: in such a corner
- *     triangles are as small as it is narrow, though Ruppert's size would be the distance from the vertex where they
- *     meet;
- *   - for a point inserted because of sizes: no more than its distance from its neighbours. A size that is asked for is
- *     a feature.
- * What coordinates do not resolve is no feature: distances below the square root of limits.shortest2 do not count, and
- * where an end of a segment is as near to another segment the two touch (tri_touches), as if they met there, unless it
- * is at less than 60 degrees. (Ruppert's size would fall to that distance, but triangles that bridge it are flat, and
- * stay whatever is around them: 18 points on a turned grid had 2,600 triangles at 34 degrees, 203 of them bad, and have
- * 177, 19 of them bad.) Such sizes are larger than Ruppert's, so the theorem holds with fewer sources.
- * A mesh that is read does not tell which of its vertices refinement made: all are taken for vertices of the input, as
- * those of a mesh without refinement are, so that what had run away is asked for once more. (With sizes of split points
- * for the vertices amid a chain (chain.h) such triangles stay, but so do those along a side that somebody has divided
- * finely: of a mesh made for 41 degrees 22,632 of 686,149 triangles were given up at 30.)
+ * Every vertex v has a size s(v), an estimate of Ruppert's local feature size (1995): of a vertex of the input, how far
+ * it is to the vertices and segments that its triangles reach; of a point inserted for a triangle with shortest edge
+ * ab, the lesser of s(a) + SLOPE * |ap| and s(b) + SLOPE * |bp|, inherited as insertion radii are (Shewchuk 2002); of a split point the same from
+ * all around it, but no more than its distance from other features; of a point inserted because of sizes no more than
+ * its distance from its neighbours. What coordinates do not resolve is no feature (limits.shortest2, tri_touches).
+ *
  * RULE. A triangle whose shortest edge ab is shorter than min(s(a), s(b)) / SHRINK is not refined for its angle.
  *
- * THEOREM (nothing runs away). Call sources the vertices whose s is not inherited, and let F(x) be the minimum over all
- * sources w of s(w) + SLOPE * |wx|. F does not grow faster than SLOPE, so s(v) >= F(v) for every vertex, by induction.
- * Under the rule an edge that asks for a point is at least F / SHRINK long. The point lies at least l / (2 sin bound)
- * from all vertices, l being the length of that edge; a subsegment that is split instead is longer than a fixed share
- * of l, since the point sees it under an angle of more than 180 degrees - 2 * bound, or lies behind it. So points for
- * angles keep a distance from each other of a fixed share of F, and there are at most C * integral of dx / F(x)^2 of
- * them: to a constant as many as Ruppert's algorithm inserts for a bound for which it is known to end. C does not
- * depend on the bound, and nothing depends on the order of insertion: it holds for any schedule. What sources at split
- * points add is finite, too: a space between two segments is as wide as s there, so the integral over it is about its
- * length over its width, that is its cost (tri_filling_cost): no more than limits.dearest_gap for segments that do
- * not touch, which is chosen such that all such spaces together cost no more than the mesh can afford; and no more
- * than SHARP (small_angle.c) for each octave of distance from the vertex where two segments meet.
- *
- * SLOPE is about the grading of a mesh of 30 degrees. Without narrow corners as features one random figure in thirty
- * had triangles given up below 34 degrees, in and beside corners of a few degrees.
- *
- * SHRINK falls as the bound rises: 64 for bounds that theory promises, 16 up to 32 degrees, 8 up to 33, 6 beyond. Its
- * square is in the theorem's C, and beyond theory it is what one bad place may cost: a figure of 354 triangles at 25
- * degrees takes 458 at 34 with a SHRINK of 2, and 9,030 with 3, since one short edge lets the mesh grow fine
- * everywhere. So credit.h counts what is inserted beyond theory. Without that, over 2,326 random figures of all
- * families: the most triangles, in times those of 25 degrees, and of a million triangles in meshes of less than three
- * times those how many were given up as having run away:
- *     bound      SHRINK 16      8          6          4
- *     32              13   44   13   72    13  128    24   246
- *     33             170   32   30   68    31  147    26   489
- *     34             232   52   71  180    47  330    42  1541
- * Up to 32 a smaller one gains nothing; 4 costs angles and gains little. Sizes that grow faster among short edges, or
- * with each point asked for there, or less depth for triangles that are nearly good, did no better: once a mesh grows
- * fine it does so at edges of half the size, too.
- */
+ * THEOREM (docs/theory.md, sizes). Points for angles are no more than C * integral of dx / s(x)^2, C independent of the
+ * bound and of the order of insertion: to a constant as many as Ruppert's algorithm inserts. */
 #include "triangle/feature_size.h"
 
 #include <assert.h>
 #include <stdlib.h>
 
-#include "triangle/credit.h"
 #include "triangle/grow.h"
 #include "triangle/quality.h"
 #include "triangle/small_angle.h"
@@ -187,8 +142,9 @@ void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *exe
 double tri_feature_inside(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, struct tri_point p, bool sized)
 {
     assert(a != b);
-    double sa = fabs(mesh->feature[a]), sb = fabs(mesh->feature[b]), near = sqrt(tri_relative(&mesh->xy[a], p).l);
-    double inherited = (sa < sb ? sa : sb) + SLOPE * near;
+    double from_a = sqrt(tri_relative(&mesh->xy[a], p).l), from_b = sqrt(tri_relative(&mesh->xy[b], p).l);
+    double near = from_a < from_b ? from_a : from_b;
+    double inherited = fmin(mesh->feature[a] + SLOPE * from_a, mesh->feature[b] + SLOPE * from_b);
     return sized && near < inherited ? near : inherited;
 }
 
@@ -197,7 +153,7 @@ static double size_from(const struct tri_mesh *mesh, tri_parent_id p, struct tri
                         double distance)
 {
     int32_t on = mesh->on[v];
-    double inherited = fabs(mesh->feature[v]) + SLOPE * distance;
+    double inherited = mesh->feature[v] + SLOPE * distance;
     bool is_feature = on >= 0 ? tri_is_filled(mesh, p, on, at, mesh->xy[v])
                               : on != TRI_VERTEX_FREE && !tri_touches(mesh, p, v);
     return is_feature && distance < inherited ? distance : inherited;
@@ -233,15 +189,11 @@ double tri_feature_on_segment(const struct tri_mesh *mesh, const struct tri_cavi
     return sized && half < size ? half : size;
 }
 
-/* SHRINK: how many times shorter than the features around them edges may become for angles up to this bound. */
-static double shrink_for(double angle)
-{
-    return angle <= TRI_PROMISED_ANGLE ? 64 : angle <= 32 ? 16 : angle <= 33 ? 8 : 6;
-}
+/* How many times shorter than the features around them edges may become for the sake of angles. */
+static const double SHRINK = 6;
 
-bool tri_has_run_away(const struct tri_mesh *mesh, double angle, tri_vertex_id a, tri_vertex_id b, double l2)
+bool tri_has_run_away(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, double l2)
 {
-    double sa = fabs(mesh->feature[a]), sb = fabs(mesh->feature[b]), size = sa < sb ? sa : sb;
-    double shrink = shrink_for(angle);
-    return size * size > shrink * shrink * l2;
+    double sa = mesh->feature[a], sb = mesh->feature[b], size = sa < sb ? sa : sb;
+    return size * size > SHRINK * SHRINK * l2;
 }

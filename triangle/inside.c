@@ -1,29 +1,15 @@
 /* Sizes, whatever stands in the way.
  *
- * The usual point of a triangle that is too large may be out of reach: beyond a wall that cannot be split, since it is
- * protected or too short or lies an ulp from the next; farther away than coordinates go; on a vertex. And beside an
- * edge below the shortest it is no use: it would lie as near, and rounding would place it. Then the triangle's own
- * longest subsegment is split, if it is among the longer edges; and where that cannot be, its centroid is inserted,
- * however near to subsegments. Nothing can refuse that one: it lies in its triangle, and hence in the circumdisk, and
- * sees its whole cavity (cavity.h).
+ * The usual point of a triangle that is too large may be out of reach: beyond a wall that cannot be split, farther away
+ * than coordinates go, on a vertex. Then the triangle's own longest subsegment is split, if it is among the longer
+ * edges; and where that cannot be, its centroid is inserted, which nothing can refuse: it lies in its triangle, hence
+ * in the circumdisk, and sees its whole cavity (cavity.h).
  *
- * THEOREM (end). Let every triangle that is too large have an area of at least A, and let D be the diameter of the
- * mesh. The disk about the centroid, of radius a third of the least height, is in the triangle and so holds no vertex:
- * a centroid is no nearer than 2 A / 3 D to any vertex that there is. Points so far from each other are finitely many
- * in a bounded figure. A subsegment that is split is at least half as long as the longest edge of the triangle, hence
- * longer than the root of A / 2, and is split near its middle: that is done finitely many times, too. Both counts do
- * not depend on what the rest of refinement inserts in between, for that only takes room away. Where a size test
- * refuses triangles of any size, the shortest edge (limits.shortest2) bounds both: the disk's radius and the
- * subsegment's length are no less.
+ * THEOREM (docs/theory.md, areas). Both are done finitely many times, whatever the rest of refinement does. So the
+ * bound on areas is kept by every triangle whose least height is more than three shortest edges, some 400 ulps.
  *
- * A size test may refuse a triangle for the length of an edge, which is that of a wall, or leads along one: no centroid
- * ever shortens these, and at a wall that must not be split thousands would be inserted, each a third as far from it as
- * the last. RULE: where there are such walls, a triangle 4,096 times as long as high that only the test refuses gets no
- * centroid, if the test refuses the lowest triangle on its longest edge, too. (The letter R with edges of 0.5, its
- * sides protected, at 20 degrees: 5,103 triangles for 16,755; those with longer edges cover 0.07% of it.)
- *
- * So the bound on areas is kept by every triangle whose least height is more than three shortest edges, some 400 ulps
- * of the largest coordinate. */
+ * RULE. At walls that must not be split, a triangle 4,096 times as long as high that only a size test refuses gets no
+ * centroid, if the test refuses the lowest triangle on its longest edge, too: no centroid would shorten that. */
 #include "triangle/inside.h"
 
 #include <assert.h>

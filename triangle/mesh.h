@@ -116,8 +116,7 @@ struct tri_mesh {
     int32_t *on;              /* [n_vertices] kind or parent, see tri_vertex_kind */
     int32_t *vertex_markers;  /* [n_vertices] */
     double *feature;          /* [n_vertices] size of the features around, once refinement has begun (feature_size.h):
-                                 what each new vertex inherits, and takes along wherever it goes; negative: it is on
-                                 credit (credit.h) */
+                                 what each new vertex inherits, and takes along wherever it goes */
     double *attributes;       /* [n_vertices][n_attributes] */
     int32_t n_attributes;
     int32_t n_vertices, vertex_capacity;

@@ -6,8 +6,6 @@
 
 #include "triangle/grow.h"
 
-static size_t set_bytes(const struct tri_entry_set *set) { return set->bits > 0 ? sizeof *set->slot << set->bits : 0; }
-
 void tri_pause_arrays(const struct tri_pause *p, struct tri_pause_array array[TRI_PAUSE_ARRAYS])
 {
     const struct tri_bad_queue *q = &p->queue;
@@ -15,8 +13,6 @@ void tri_pause_arrays(const struct tri_pause *p, struct tri_pause_array array[TR
     array[1] = (struct tri_pause_array){q->window, TRI_WINDOW * sizeof *q->window};
     array[2] = (struct tri_pause_array){q->cold, (size_t)q->n_cold * sizeof *q->cold};
     array[3] = (struct tri_pause_array){p->encroached, (size_t)p->n_encroached * sizeof *p->encroached};
-    array[4] = (struct tri_pause_array){p->walled_off.slot, set_bytes(&p->walled_off)};
-    array[5] = (struct tri_pause_array){p->met.slot, set_bytes(&p->met)};
 }
 
 static void forget_arrays(struct tri_pause *p)
@@ -26,7 +22,6 @@ static void forget_arrays(struct tri_pause *p)
     p->encroached = NULL;
     p->queue.block_capacity = p->encroached_capacity = 0;
     p->queue.cold_capacity = 0;
-    p->walled_off.slot = p->met.slot = NULL;
 }
 
 void tri_pause_head(const struct tri_pause *pause, struct tri_pause *head)
@@ -52,26 +47,15 @@ static bool is_queue(const struct tri_bad_queue *q)
     return is;
 }
 
-static bool is_set(const struct tri_entry_set *set)
-{
-    return set->bits >= 0 && set->bits < 31 && set->n >= 0 && set->n <= (1 << set->bits) / 2;
-}
-
 bool tri_pause_is_head(const struct tri_pause *h, int64_t n_triangles, int64_t n_subs, int64_t n_worklist)
 {
     const bool is_place = h->stage >= 0 && h->stage <= TRI_PAUSE_LAST_STAGE && h->step >= 0 &&
                           h->step <= TRI_PAUSE_LAST_STEP && h->limit >= 0 && h->limit <= TRI_BUCKETS;
-    return is_place && is_queue(&h->queue) && is_set(&h->walled_off) && is_set(&h->met) &&
+    return is_place && is_queue(&h->queue) &&
            h->n_worklist <= n_worklist && h->next_listed >= 0 && h->next_listed <= h->n_worklist &&
            h->n_encroached >= 0 &&
            (!h->in_hand || (h->hand.t >= 0 && h->hand.t < n_triangles)) && (h->n_encroached == 0 || n_subs > 0) &&
-           h->granted >= 0 && h->paid >= 0 && h->report.inserted_free >= 0 && h->report.inserted_on_segments >= 0;
-}
-
-static bool reserve_set(struct tri_entry_set *set)
-{
-    set->slot = set->bits > 0 ? malloc(set_bytes(set)) : NULL;
-    return set->slot || set->bits == 0;
+           h->report.inserted_free >= 0 && h->report.inserted_on_segments >= 0;
 }
 
 bool tri_pause_reserve(struct tri_pause *h)
@@ -81,8 +65,7 @@ bool tri_pause_reserve(struct tri_pause *h)
     q->window = malloc(TRI_WINDOW * sizeof *q->window);
     if (q->window && tri_grow(&q->block, &q->block_capacity, q->n_blocks, sizeof *q->block) &&
         tri_grow_far(&q->cold, &q->cold_capacity, q->n_cold, sizeof *q->cold) &&
-        tri_grow(&h->encroached, &h->encroached_capacity, h->n_encroached, sizeof *h->encroached) &&
-        reserve_set(&h->walled_off) && reserve_set(&h->met))
+        tri_grow(&h->encroached, &h->encroached_capacity, h->n_encroached, sizeof *h->encroached))
         return true;
     tri_pause_free(h);
     return false;
@@ -91,8 +74,6 @@ bool tri_pause_reserve(struct tri_pause *h)
 void tri_pause_free(struct tri_pause *p)
 {
     tri_bad_queue_free(&p->queue);
-    tri_entry_set_free(&p->walled_off);
-    tri_entry_set_free(&p->met);
     free(p->encroached);
     p->encroached = NULL;
     p->n_encroached = p->encroached_capacity = 0;

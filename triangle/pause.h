@@ -1,27 +1,22 @@
-/* A refiner between two runs: all that the next run depends on, beside the mesh and the options (a barrier, refine.c,
- * only saves searches). Who keeps it in a file keeps the struct and then the arrays; who reads it gives it to a new
- * refiner. */
+/* A refiner between two runs: all that the next run depends on, beside the mesh and the options. Who keeps it in a file
+ * keeps the struct and then the arrays; who reads it gives it to a new refiner. */
 #ifndef TRIANGLE_PAUSE_H
 #define TRIANGLE_PAUSE_H
 
 #include <stdbool.h>
 
 #include "triangle/bad_queue.h"
-#include "triangle/entry_set.h"
 #include "triangle/quality.h"
 #include "triangle/refine.h"
 
 struct tri_pause {
     struct tri_refine_report report;
     struct tri_bounds bounds; /* for the angle that is worked for now */
-    int64_t granted, paid;    /* credit.h */
-    int64_t above, back;      /* see refine.c, as for what follows */
-    int32_t stage, step, limit, next_listed, n_worklist, in_hand, left_above;
+    int32_t stage, step, limit, next_listed, n_worklist, in_hand; /* see refine.c */
     struct tri_entry hand;
     struct tri_bad_queue queue;
     tri_sub_id *encroached;
     int32_t n_encroached, encroached_capacity;
-    struct tri_entry_set walled_off, met; /* within a fence; the second: credit.h */
 };
 
 /* The refiner's arrays are borrowed, until it runs again or is freed. */
@@ -34,7 +29,7 @@ void tri_refiner_leave(struct tri_refiner *refiner, struct tri_pause *pause);
  * becomes what it was. */
 void tri_refiner_go_on(struct tri_refiner *refiner, struct tri_pause *pause);
 
-enum { TRI_PAUSE_ARRAYS = 6, TRI_PAUSE_LAST_STAGE = 4, TRI_PAUSE_LAST_STEP = 2 }; /* as refine.c has them */
+enum { TRI_PAUSE_ARRAYS = 4, TRI_PAUSE_LAST_STAGE = 2, TRI_PAUSE_LAST_STEP = 2 }; /* as refine.c has them */
 
 struct tri_pause_array {
     void *at;

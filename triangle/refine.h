@@ -19,8 +19,9 @@
 extern "C" {
 #endif
 
-/* Up to about this bound in degrees refinement ends in practice (proved: 28.6 with input angles of 60 and more). */
-#define TRI_USUAL_ANGLE 34.0
+/* Up to about this bound in degrees refinement ends in practice (proved: 28.6 with input angles of 60 and more). A
+ * larger one is worked for as this one; triangles are still counted by what is asked for. */
+#define TRI_USUAL_ANGLE 38.0
 
 /* Above the first, in degrees, sizes are brought about before angles, with the second as bound: see refine.c,
  * stages. */
@@ -51,11 +52,7 @@ struct tri_part {
 };
 
 struct tri_refine_options {
-    double min_angle;      /* degrees; 0: no bound on angles; above 34 best effort; within a fence no more than 34 */
-    double final_angle;    /* degrees; of a call that prepares others: the bound that they have in the end, by which it
-                              is decided how short edges may become (feature_size.h); 0: min_angle */
-    bool above;            /* the mesh is as another call has left it that had TRI_USUAL_ANGLE for its bound: only what
-                              is asked for above that is done; the whole mesh, no fence, no worklist */
+    double min_angle;      /* degrees; 0: no bound on angles; above 34 as 34 */
     double max_area;       /* <= 0: none */
     bool region_areas;     /* mesh->regions[t.region].max_area applies too */
     double area_scale;     /* > 0: all area bounds are multiplied by this, for pre-refinement, and the size test is
@@ -66,8 +63,7 @@ struct tri_refine_options {
     tri_unsuitable *unsuitable;
     void *unsuitable_user;
     tri_unsuitable *urgent; /* not NULL: of the bad triangles only those that this says yes to are refined, at their
-                               circumcentres: for pre-refinement. If conforming, max_steiner does not bound the splits
-                               of encroached subsegments: of those beside the worklist, and beside new points */
+                               circumcentres: for pre-refinement */
     void *urgent_user;
     tri_gate *gate;        /* NULL: every bad triangle */
     void *gate_user;
@@ -91,11 +87,6 @@ static inline bool tri_has_sizes(const struct tri_refine_options *options)
     return options->max_area > 0 || options->region_areas || options->unsuitable;
 }
 
-static inline double tri_final_angle(const struct tri_refine_options *options)
-{
-    return options->final_angle > 0 ? options->final_angle : options->min_angle;
-}
-
 static inline double tri_area_scale(const struct tri_refine_options *options)
 {
     return options->area_scale > 0 ? options->area_scale : 1;
@@ -114,11 +105,8 @@ enum tri_excuse { /* why a triangle is still bad */
 struct tri_refine_report {
     int64_t inserted_free, inserted_on_segments;
     int64_t gated, fenced;            /* triangles deferred: by the gate; since a cavity reached beyond the fence */
-    int64_t searched_in_vain;         /* triangles of cavities that turned out to reach beyond the fence */
     int64_t given_up[TRI_EXCUSES];    /* bad triangles given up during the call, by reason; some vanish later */
     bool hit_limit;                   /* max_steiner stopped the call */
-    bool hit_cap;                     /* angles above TRI_PROMISED_ANGLE, and what comes of them (credit.h), or above
-                                         TRI_USUAL_ANGLE, would have cost too many points */
 };
 
 struct tri_refine_options tri_refine_defaults(void);

@@ -1,24 +1,15 @@
 /* Rules that make refinement end on any PSLG, beside those of the loop.
  *
  * THEORY. Refinement with bounds up to 28.6 degrees ends where segments meet at 60 degrees or more (Chew 1993; Shewchuk
- * 2002; Rand 2011), since every new point is about as far from all others as the features around it. Three things
- * break that:
- *   1. Two segments at a small angle would split each other for ever. They are split on common circles around the
- *      vertex where they meet (concentric shells: Ruppert 1995), and a triangle whose shortest edge joins two of them
- *      on one circle stays (Miller, Pav & Walkington 2003): its length is dictated by the input angle, so nothing
- *      smaller is made because of it.
- *      Between two segments that meet at less than 1 / SHARP no triangle can be good that is not SHARP times smaller
- *      than its distance from the vertex where they meet, and those about that vertex never are. Such a spike is not
- *      filled: a triangle whose shortest edge joins its sides stays, wherever their ends have put them.
- *   2. Two segments side by side, nearer to each other than rounding, or than anyone could want to fill: spikes of no
- *      width, slits, borders that were digitised twice. The theory holds, but asks for length / width triangles. Such a
- *      gap is filled only if the mesh can afford it (tri_choose_gaps); a triangle whose shortest edge bridges
- *      one that is too dear stays.
- *   3. Rounding: points nearer than about 100 units in the last place, flat triangles, split points beside their
- *      segment. An edge or height below mesh.limits.shortest2 stays; a point that does not see its whole cavity is not
- *      inserted (cavity.h).
- * And above 28.6 degrees points may beget points in ever smaller triangles: feature_size.c says where that ends.
- * What stays is counted by reason (tri_count_bad). */
+ * 2002; Rand 2011). A triangle whose shortest edge is of one of these kinds stays:
+ *   - it joins two segments that meet at an acute vertex, on one of the circles on which they are split (concentric
+ *     shells: Ruppert 1995; Miller, Pav & Walkington 2003): its length is dictated by the angle of the input;
+ *   - it joins the sides of a spike, two segments that meet at less than 1 / SHARP;
+ *   - it bridges a space between two segments that would take more points to fill than the mesh can afford, at length /
+ *     width each (tri_choose_gaps);
+ *   - it, or the triangle's height, is shorter than limits.shortest2 says: rounding;
+ *   - it has run away (feature_size.c): above 28.6 degrees points may beget points in ever smaller triangles. What
+ *     stays is counted by reason (tri_count_bad). */
 #include "triangle/small_angle.h"
 
 #include <assert.h>
@@ -231,15 +222,6 @@ bool tri_is_filled(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_
 
 static bool is_end(const struct tri_parent *p, tri_vertex_id v) { return p->v[0] == v || p->v[1] == v; }
 
-/* Does w lie ahead of v on the parent, rather than behind the end that v is? */
-static bool is_ahead(const struct tri_mesh *mesh, const struct tri_parent *p, tri_vertex_id v, tri_vertex_id w)
-{
-    if (!is_end(p, v))
-        return true;
-    struct tri_point o = mesh->xy[v], far = mesh->xy[p->v[p->v[0] == v]], q = mesh->xy[w];
-    return (far.x - o.x) * (q.x - o.x) + (far.y - o.y) * (q.y - o.y) > 0;
-}
-
 /* Does q lie beside the parent, rather than before its start or beyond its end? */
 static bool is_beside(const struct tri_mesh *mesh, const struct tri_parent *p, tri_vertex_id q)
 {
@@ -248,19 +230,20 @@ static bool is_beside(const struct tri_mesh *mesh, const struct tri_parent *p, t
     return along >= 0 && along <= x * x + y * y;
 }
 
-/* Does triangle u, v, w go round the end u of the parent, so that no more than its corner touches the space on either
- * side? A triangle does not cross a parent. So one with v on one side of it and w on the other has its backward
- * direction between them at u, if that is an end, and cannot be if it is not. What lies nearer to the parent's line
- * than an edge may be short counts as on it: split points lie beside it by rounding. */
-static bool goes_round(const struct tri_mesh *mesh, const struct tri_parent *p, tri_vertex_id u, tri_vertex_id v,
+/* Does triangle u, v, w lie on one side of the parent through u? Amid the parent it does, since triangles cross none.
+ * At an end it may lie behind that end, or go round it with v and w on different sides, so that no more than its corner
+ * touches the space on either. What is nearer to the parent's line than an edge may be short counts as on it: split
+ * points lie beside it by rounding. */
+static bool lies_aside(const struct tri_mesh *mesh, const struct tri_parent *p, tri_vertex_id u, tri_vertex_id v,
                        tri_vertex_id w)
 {
     if (!is_end(p, u))
-        return false;
+        return true;
     struct tri_point o = mesh->xy[u], far = mesh->xy[p->v[p->v[0] == u]], a = mesh->xy[v], b = mesh->xy[w];
     double x = far.x - o.x, y = far.y - o.y, near2 = mesh->limits.shortest2 * (x * x + y * y);
     double left = x * (a.y - o.y) - y * (a.x - o.x), right = x * (b.y - o.y) - y * (b.x - o.x);
-    return (left > 0) != (right > 0) && left * left > near2 && right * right > near2;
+    bool goes_round = (left > 0) != (right > 0) && left * left > near2 && right * right > near2;
+    return x * (b.x - o.x) + y * (b.y - o.y) > 0 && !goes_round;
 }
 
 /* What an edge bridges: the cost of filling the dearest space, 0 where there is none; is there a spike among them? */
@@ -282,12 +265,11 @@ static struct gap gap_between(const struct tri_mesh *mesh, tri_vertex_id u, tri_
     for (int32_t i = 0; i < nu; i++)
         for (int32_t k = 0; k < nv; k++) {
             const struct tri_parent *p = &mesh->parents[pu[i]], *q = &mesh->parents[pv[k]];
-            if (pu[i] == pv[k] || is_end(p, v) || is_end(q, u) || !is_ahead(mesh, p, u, w) || !is_ahead(mesh, q, v, w))
+            if (pu[i] == pv[k] || is_end(p, v) || is_end(q, u) || !lies_aside(mesh, p, u, v, w) ||
+                !lies_aside(mesh, q, v, u, w))
                 continue;
             if (!is_beside(mesh, p, v) && !is_beside(mesh, q, u))
                 continue; /* one behind the other, as in a smooth curve */
-            if (goes_round(mesh, p, u, v, w) || goes_round(mesh, q, v, u, w))
-                continue;
             double cost = tri_filling_cost(mesh, pu[i], pv[k], mesh->xy[u], mesh->xy[v]);
             gap.cost = cost > gap.cost ? cost : gap.cost;
             gap.spike |= tri_corner_between(mesh, pu[i], pv[k]) == TRI_SPIKE;
@@ -324,13 +306,12 @@ bool tri_crosses_angle(const struct tri_mesh *mesh, tri_triangle_id triangle, co
     return apex_between(mesh, v[tri_next[shape->shortest]], v[tri_prev[shape->shortest]]) != TRI_NONE;
 }
 
-bool tri_is_hopeless(const struct tri_mesh *mesh, double angle, tri_triangle_id triangle,
-                     const struct tri_shape *shape)
+bool tri_is_hopeless(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape)
 {
     const struct tri_triangle *t = &mesh->tri[triangle];
     int k = shape->shortest;
     tri_vertex_id u = t->v[tri_next[k]], v = t->v[tri_prev[k]];
-    return shape->l[k] < mesh->limits.shortest2 || tri_has_run_away(mesh, angle, u, v, shape->l[k]) ||
+    return shape->l[k] < mesh->limits.shortest2 || tri_has_run_away(mesh, u, v, shape->l[k]) ||
            on_one_shell(mesh, u, v, shape->l[k]) || tri_is_narrow_gap(mesh, triangle, shape);
 }
 
@@ -373,7 +354,7 @@ static int octave_of(double cost)
 
 /* Costs and numbers of the triangles that are not cheap, by octave of their cost, in a share of the mesh. */
 struct demand {
-    double cost[OCTAVES], count[OCTAVES], all, dearest;
+    double cost[OCTAVES], count[OCTAVES];
 };
 
 struct demands {
@@ -386,15 +367,13 @@ static void demand_share(void *context, size_t index)
     struct demands *d = context;
     struct demand *sum = &d->share[index];
     struct tri_range range = tri_share(index, d->mesh->n_triangles);
-    *sum = (struct demand){{0}, {0}, 0, 0};
+    *sum = (struct demand){{0}, {0}};
     for (tri_triangle_id t = range.first; t < range.last; t++) {
         double cost = demand_of(d->mesh, t);
         int octave = octave_of(cost);
         if (octave > CHEAP) {
             sum->cost[octave] += cost;
             sum->count[octave]++;
-            sum->all += cost;
-            sum->dearest = fmax(sum->dearest, cost);
         }
     }
 }
@@ -403,14 +382,11 @@ static struct demand whole_demand(const struct tri_mesh *mesh, const struct tri_
 {
     struct demands d = {.mesh = mesh};
     tri_execute(executor, tri_shares(mesh->n_triangles), demand_share, &d);
-    for (size_t i = 1; i < tri_shares(mesh->n_triangles); i++) {
+    for (size_t i = 1; i < tri_shares(mesh->n_triangles); i++)
         for (int octave = 0; octave < OCTAVES; octave++) {
             d.share[0].cost[octave] += d.share[i].cost[octave];
             d.share[0].count[octave] += d.share[i].count[octave];
         }
-        d.share[0].all += d.share[i].all;
-        d.share[0].dearest = fmax(d.share[0].dearest, d.share[i].dearest);
-    }
     return d.share[0];
 }
 
@@ -425,16 +401,20 @@ void tri_choose_gaps(struct tri_mesh *mesh, const struct tri_executor *executor)
 {
     const double ALL = 250000, ALLOWANCE = 20000, PER_VERTEX = 4;
     const struct demand demand = whole_demand(mesh, executor);
-    double dearer = 0, cheaper = 0;
-    for (int octave = CHEAP + 1; octave < OCTAVES; octave++)
+    const double affordable = ALLOWANCE + PER_VERTEX * fmin(mesh->n_input, 2.0 * mesh->n_parents);
+    double all = 0, dearer = 0, cheaper = 0;
+    int limit = octave_of(affordable);
+    for (int octave = CHEAP + 1; octave < OCTAVES; octave++) {
+        all += demand.cost[octave];
         dearer += demand.count[octave];
-    double affordable = ALLOWANCE + PER_VERTEX * fmin(mesh->n_input, 2.0 * mesh->n_parents);
-    int limit = demand.all <= ALL ? octave_of(fmax(demand.dearest, affordable)) : CHEAP;
-    mesh->limits.gap_points = demand.all <= ALL ? demand.all : affordable;
-    for (int octave = CHEAP + 1; octave < OCTAVES && demand.all > ALL; octave++) {
+        limit = demand.count[octave] > 0 && octave > limit ? octave : limit;
+    }
+    mesh->limits.gap_points = all <= ALL ? all : affordable;
+    limit = all <= ALL ? limit : CHEAP;
+    for (int octave = CHEAP + 1; octave < OCTAVES && all > ALL; octave++) {
         cheaper += demand.cost[octave];
         dearer -= demand.count[octave];
-        if (cheaper + ldexp(dearer, octave) > mesh->limits.gap_points)
+        if (cheaper + ldexp(dearer, octave) > affordable)
             break;
         limit = octave;
     }

@@ -34,10 +34,8 @@ bool tri_is_on_parent(const struct tri_mesh *mesh, tri_vertex_id v);
 /* The common end of a parent and a parent that vertex v lies on; TRI_NONE where there is none. O(parents at v). */
 tri_vertex_id tri_common_end(const struct tri_mesh *mesh, tri_parent_id parent, tri_vertex_id v);
 
-/* A bad angle that no point can mend, or that would only move it, where angles shall reach this bound (degrees) in the
- * end: see the rules in the .c file. */
-bool tri_is_hopeless(const struct tri_mesh *mesh, double angle, tri_triangle_id triangle,
-                     const struct tri_shape *shape);
+/* A bad angle that no point can mend, or that would only move it: see the rules in the .c file. */
+bool tri_is_hopeless(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape);
 
 /* How many points, to the order, would it take to fill the space between two parents, the first through u, the second
  * through v, that are nearest to each other there, as far apart as v is from the line of the first? The integral of

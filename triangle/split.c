@@ -1,31 +1,15 @@
 /* Places of split points.
  *
- * A split point is rounded, so that it lies beside its subsegment. Two things follow from that, if nothing is done:
- * errors add up from split to split; and a boundary subsegment that moves outwards may meet another part of the
- * boundary, which is no longer known once what is outside has been carved.
+ * A split point is rounded, so that it lies beside its subsegment. So errors would add up from split to split, and a
+ * boundary subsegment that moves outwards might meet another part of the boundary, which is gone once what is outside
+ * has been carved. Hence: the place is that on the parent's line, rounded once, or a neighbour of it or of the place on
+ * the subsegment, not more than ASTRAY away from the line (TRI_CHAIN_ASTRAY in a mesh that was read: chain.h), a unit
+ * away in each coordinate's own measure, then in that of the larger one. The first from which all of the cavity can be
+ * seen is taken.
  *
- * 1. The place is that on the parent's line, rounded once, or, for the sake of 2, a neighbour of it or of the place on
- * the subsegment, not more than ASTRAY away from the line; in a mesh that was read, where a chain may be found that is
- * TRI_CHAIN_ASTRAY away (chain.h), not more than that. So a chain keeps to its line however often it is split; where it
- * cannot it is not split. Which of these places is taken the cavity decides: the first from which all of it
- * can be seen; for a point that shall be level with a vertex (disk.c), the first of these that is, if any.
- * GRAIN. What rounding does to a coordinate goes by that coordinate at the subsegment's ends, not by the larger one.
- * Where one is 100 and the other 10^7, a line along the latter is met to units of the former. So a neighbour is a unit
- * away in each coordinate's own measure: enough to come to either side of what has been rounded, and no more. A chain
- * that must keep inside moves off its line by no more than that from split to split; by units of the larger coordinate
- * it would come to the limit within a few. Neighbours that are such units away are tried last: they see more, and offer
- * other levels.
- * 2. THEOREM (boundary). Each parent on the boundary has an empty triangle of its own outside: its ends and its guard,
- * the centroid of the triangle of the constrained Delaunay triangulation that was carved there. If every split point
- * of a boundary subsegment lies on the inner side of it (or on it), in the parent's own triangle, or between it and the
- * parent's line, the boundary never meets itself, and never passes a vertex that is not its own. Proof: by induction,
- * what the mesh covers outside its first domain lies in the triangles of the parents that cover it: a point inside only
- * takes from the domain; a point p in the triangle adds the triangle of p and the subsegment's ends, whose part outside
- * is in the parent's triangle, which is convex. These triangles do not overlap, and hold no vertex and no part of the
- * domain. What lies between a subsegment and its parent's line on the inner side the chain has been given and has given
- * up, with no vertex in it: it is nobody else's. (But a parent of a mesh that was read need not have begun as its
- * line: its guard is its first end.) So a chain that rounding has put inside comes back to its line: else it would move
- * inwards by a unit with each split, until no place is left. */
+ * THEOREM (boundary; docs/theory.md, split points). Each parent on the boundary has an empty triangle of its own
+ * outside: its ends and its guard. If every split point of a boundary subsegment lies on its inner side, in that
+ * triangle, or between it and the parent's line, the boundary never meets itself, and passes no vertex not its own. */
 #include "triangle/split.h"
 
 #include <assert.h>
@@ -76,7 +60,7 @@ static bool is_allowed(const struct tri_mesh *mesh, const struct tri_subsegment 
 /* Is it one of the places on the parent's line? Else on the subsegment, which lies inside by now. */
 static bool is_on_line(int choice) { return choice / TRI_PLACES % 2 == 0; }
 
-/* How far a neighbour lies from the rounded place in each coordinate: see GRAIN. */
+/* How far a neighbour lies from the rounded place in each coordinate. */
 static struct tri_point step(const struct tri_mesh *mesh, const struct tri_subsegment *s, struct tri_point rounded,
                              int choice)
 {

@@ -35,8 +35,8 @@ struct par_exchanges { /* sent by this rank */
  *
  * All ranks return the same status, and where it is not TRI_OK the same *error: that of the lowest rank that failed.
  * Tiles that have been taken are worth nothing then. settings->stop, where one rank's says true, stops all. In
- * settings that par_mesh_new refines as one sequential call, with min_angle above 34 degrees, and for a small mesh,
- * each rank makes the whole mesh, and rank 0 hands it out.
+ * settings that par_mesh_new refines as one sequential call, and for a small mesh, each rank makes the whole mesh, and
+ * rank 0 hands it out.
  *
  * Where MPI itself fails, and the error handler of comm returns, this rank returns TRI_INTERNAL. The others may wait
  * for it for ever, and requests that MPI does not let go of may be pending on memory that has gone: MPI_Abort is all

@@ -420,10 +420,9 @@ void par_count_done(const struct par_ranks *r, int64_t done[PAR_DONE])
     const struct tri_refine_report *total = &r->state->report->total, *before = &r->before;
     done[0] = total->inserted_free - before->inserted_free;
     done[1] = total->inserted_on_segments - before->inserted_on_segments;
-    done[2] = total->hit_cap && !before->hit_cap;
-    done[3] = total->fenced - before->fenced;
+    done[2] = total->fenced - before->fenced;
     for (int k = 0; k < TRI_EXCUSES; k++)
-        done[4 + k] = total->given_up[k] - before->given_up[k];
+        done[3 + k] = total->given_up[k] - before->given_up[k];
 }
 
 void par_add_done(struct par_ranks *r, const int64_t done[PAR_DONE])
@@ -431,10 +430,9 @@ void par_add_done(struct par_ranks *r, const int64_t done[PAR_DONE])
     struct tri_refine_report *total = &r->state->report->total;
     total->inserted_free += done[0];
     total->inserted_on_segments += done[1];
-    total->hit_cap = total->hit_cap || done[2] > 0;
-    total->fenced += done[3];
+    total->fenced += done[2];
     for (int k = 0; k < TRI_EXCUSES; k++)
-        total->given_up[k] += done[4 + k];
+        total->given_up[k] += done[3 + k];
 }
 
 /* What all ranks have done since, everywhere. */

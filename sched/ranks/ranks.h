@@ -61,7 +61,7 @@ struct par_stand {
     int32_t step;         /* of the phase */
 };
 
-enum { PAR_DONE = 4 + TRI_EXCUSES }; /* numbers that tell what has been done */
+enum { PAR_DONE = 3 + TRI_EXCUSES }; /* numbers that tell what has been done */
 
 struct par_ranks {
     struct par_state *state;

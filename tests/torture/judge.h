@@ -1,21 +1,13 @@
 /* Runs a case and judges what comes out of it.
  *
- * What the judges let pass, and why:
- *   - angles below the bound that the checker explains by a small angle of the input; beside gaps too dear to fill, and
- *     where vertices ran away, as many as the mesher counts. The latter, outside narrow spaces: none up to 20.7 degrees
- *     (Ruppert 1995 promises them), 20 up to 25, which theory promises for another order of insertion (Chew 1993,
- *     Shewchuk 2002), and above, where nothing is proved, 2% of the triangles more; a third of them where their
- *     points would have cost too much (credit.h);
- *   - angles and circles at the resolution of coordinates, told one by one: a flat triangle, a subsegment beside one
- *     (judge_bounds.c); and ten angles around each flat triangle, from behind which their points would be seen;
- *   - areas: none, but of triangles thinner than that resolution, and with -Y;
- *   - the number of triangles: 2.5 times that at 34 degrees for any bound above, which is proved (refine.c), 5 times
- *     with sizes or -D, which is measured; up to 34, 20 times that at 28 and 3,000
- *     (credit.h, and as much again for what theory promises then); by the schedule, see judge_schedule_size;
- *   - the number of triangles of a mesh that is refined once more with the same bounds, up to 28 degrees and without
- *     -Y: 1.2 times as many, with -D twice, and 1,000; where vertices ran away, or spaces are filled that were left,
- *     once more than that, see judge_amount_again;
- *   - meshes of more than 300,000 points that their figures do ask for: these are made with that limit.
+ * What the judges hold to is what README promises:
+ *   - a right mesh, by the checker, and the same on 1 and 3 threads;
+ *   - no area above its bound, but of triangles thinner than coordinates resolve, and with -Y;
+ *   - angles below the bound are counted, and few but beside small angles of the input, in narrow spaces, at the
+ *     resolution of coordinates; -D: vertices in circles are counted, and lie on subsegments up to rounding;
+ *   - no run-away: 36 times the triangles at 28 degrees, 8 times those of one call in a schedule, 8 times as many when
+ *     a mesh is refined again, and some.
+ * Meshes of more than 300,000 points that their figures do ask for are made with that limit.
  * A case that inserts more than its figure can ask for is endless, however long that takes; the limit on time is for
  * those that go on without a point. */
 #ifndef TESTS_TORTURE_JUDGE_H

@@ -196,8 +196,8 @@ void tri_switches_warn(const struct tri_switches *s, void (*warn)(void *user, co
         warn(user, "weighted triangulations (-w, -W) are not made with -p, -q, -a, -u or -r: the switch is ignored",
              false);
     if (s->angle && s->min_angle > TRI_USUAL_ANGLE && s->min_angle < 180) {
-        snprintf(text, sizeof text, "an angle bound of %g degrees is above %g: it may not be reached everywhere",
-                 s->min_angle, TRI_USUAL_ANGLE);
+        snprintf(text, sizeof text, "an angle bound of %g degrees is above %g: triangles are made for %g",
+                 s->min_angle, TRI_USUAL_ANGLE, TRI_USUAL_ANGLE);
         warn(user, text, false);
     }
 }
