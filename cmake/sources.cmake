@@ -158,6 +158,7 @@ set(PTRIANGLE_SCHED_SOURCES
     sched/sweep/numbering.c
     sched/sweep/park.c
     sched/sweep/spool.c
+    sched/sweep/folder.c
     sched/sweep/checkpoint.c
     sched/sweep/carry_halt.c
     sched/sweep/state.c

@@ -17,6 +17,7 @@ void console_open(void)
     for (int file = 0; file <= STDERR_FILENO; file++)
         if (fcntl(file, F_GETFD) < 0 && errno == EBADF)
             (void)!open("/dev/null", O_RDWR); /* takes the lowest number that is free */
+    setvbuf(stdout, NULL, _IOLBF, 0); /* whoever reads it from a pipe or a log sees each line at once */
 }
 
 void console_say(const struct console *console, const char *format, ...)

@@ -61,9 +61,10 @@ static const char exit_codes[] =
 /* Where there are long options. */
 static const char further_exit_codes[] =
     "Exit code: 0; 1 after an error; 124 when --time-limit is over; 128 + n after signal n (one that would end\n"
-    "a program: it ends within a second, with --checkpoint once that is written, and says how far it got).\n"
-    "Files appear together, when all are complete and nothing can fail any more: with any other code than 0 no\n"
-    "file has been touched, but partial meshes and checkpoints where they are asked for, and devices and pipes.\n";
+    "a program: it ends within a second, with --checkpoint within five, and says how far it got, and what is\n"
+    "kept). Files appear together, when all are complete and nothing can fail any more: with any other code\n"
+    "than 0 no file has been touched, but partial meshes and checkpoints where they are asked for, and devices\n"
+    "and pipes.\n";
 
 static void print_usage(const char *program)
 {

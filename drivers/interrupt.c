@@ -6,7 +6,7 @@
  * Every transition is one compare-and-exchange of the word:
  *
  *     nobody has asked    -- first request -->          asked; the grace begins
- *     asked               -- grace is over -->          LATE
+ *     asked               -- grace is over -->          LATE; patience begins, if there is any
  *     LATE, HELD          -- a request or the clock --> DUE; the handler returns
  *     LATE, not HELD      -- a request or the clock --> ENDING, by the handler
  *     HELD                -- the set is changed -->     not HELD, or, if DUE, ENDING, by the program
@@ -24,6 +24,7 @@
 
 #include <errno.h>
 #include <limits.h>
+#include <math.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -36,7 +37,7 @@
 _Static_assert(ATOMIC_INT_LOCK_FREE == 2 && ATOMIC_LONG_LOCK_FREE == 2 && ATOMIC_POINTER_LOCK_FREE == 2,
                "handlers need lock-free atomics");
 
-static const struct timespec GRACE = {0, 800000000};
+static const double GRACE = 0.8;
 
 enum {
     HELD = 1,
@@ -53,9 +54,12 @@ enum { NOBODY = 0, TIME_UP = 255 }; /* who, else the number of a signal */
 static atomic_uint state;
 static _Atomic(const char *) stage, reached_what;
 static atomic_long reached;
+static atomic_long kept; /* triangles in a checkpoint */
+static _Atomic(const char *) go_on; /* the command for that; NULL: there is no checkpoint */
 static _Atomic(const char *) temporaries[TRI_MAX_OUTPUTS];
 static const char *name; /* these are set before the first handler can run */
-static bool patience, has_timer;
+static double patience; /* beyond the grace */
+static bool has_timer;
 static timer_t timer;
 
 static const struct kind {
@@ -122,6 +126,26 @@ static void say_number(long n)
     say(first);
 }
 
+const char *interrupt_written(void)
+{
+    if (!atomic_load(&go_on))
+        return "nothing was written";
+    return atomic_load(&kept) > 0 ? "no file was written" : "nothing was written, and nothing is kept";
+}
+
+void interrupt_tell_kept(void)
+{
+    const long n = atomic_load(&kept);
+    if (n == 0)
+        return;
+    say(name);
+    say(": ");
+    say_number(n);
+    say(" triangles are kept; to go on: ");
+    say(atomic_load(&go_on));
+    say("\n");
+}
+
 static void tell(void)
 {
     say(name);
@@ -135,7 +159,10 @@ static void tell(void)
         say_number(n);
         say(atomic_load(&reached_what));
     }
-    say("; nothing was written\n");
+    say("; ");
+    say(interrupt_written());
+    say("\n");
+    interrupt_tell_kept();
 }
 
 /* After the change to ENDING. */
@@ -158,9 +185,10 @@ static void end_when_free(void)
         end_now();
 }
 
-static void arm(struct timespec delay)
+static void arm(double seconds)
 {
-    struct itimerspec once = {{0, 0}, delay};
+    struct itimerspec once = {.it_value.tv_sec = (time_t)seconds};
+    once.it_value.tv_nsec = (long)(1e9 * (seconds - (double)once.it_value.tv_sec));
     if (has_timer)
         timer_settime(timer, 0, &once, NULL);
     else
@@ -177,16 +205,15 @@ static void ask(unsigned who)
         end_when_free();
 }
 
-/* Our own timer: the limit, or the end of the grace. */
+/* Our own timer: the limit, or the end of the grace, or of patience. */
 static void time_is_up(void)
 {
-    if (who_asked() == NOBODY) {
+    if (who_asked() == NOBODY)
         ask(TIME_UP);
-        return;
-    }
-    set_unless(LATE, 0);
-    if (!patience)
+    else if (patience == 0 || (set_unless(LATE, 0) & LATE))
         end_when_free();
+    else if (patience < HUGE_VAL)
+        arm(patience);
 }
 
 static void handle(int number, siginfo_t *info, void *context)
@@ -259,18 +286,11 @@ static void catch_crash(int number)
         sigaction(number, &action, NULL);
 }
 
-static struct timespec after(double seconds)
-{
-    struct timespec time = {(time_t)seconds, 0};
-    time.tv_nsec = (long)(1e9 * (seconds - (double)time.tv_sec));
-    return time;
-}
-
-bool interrupt_start(const char *program, double seconds, bool patient)
+bool interrupt_start(const char *program, double seconds, double patient)
 {
     sigset_t alarm;
     name = program;
-    patience = patient;
+    patience = fmax(patient - GRACE, 0);
     has_timer = timer_create(CLOCK_MONOTONIC, NULL, &timer) == 0; /* sends SIGALRM */
     signal(SIGXFSZ, SIG_IGN);
     signal(SIGPIPE, SIG_IGN);
@@ -284,7 +304,7 @@ bool interrupt_start(const char *program, double seconds, bool patient)
     if (atexit(at_exit) != 0 || (seconds > 0 && !has_timer))
         return false;
     if (seconds > 0)
-        arm(after(seconds));
+        arm(seconds);
     return true;
 }
 
@@ -330,6 +350,18 @@ const struct tri_stop *interrupt_stop(void)
     return &stop;
 }
 
+static bool is_end_due(void *user)
+{
+    (void)user;
+    return is_due(atomic_load(&state));
+}
+
+const struct tri_stop *interrupt_end(void)
+{
+    static const struct tri_stop end = {is_end_due, NULL};
+    return &end;
+}
+
 void interrupt_stage(const char *what)
 {
     atomic_store(&reached, 0);
@@ -354,6 +386,12 @@ const char *interrupt_stage_now(void)
 {
     const char *what = atomic_load(&stage);
     return what ? what : "starting";
+}
+
+void interrupt_kept(int64_t triangles, const char *command)
+{
+    atomic_store(&kept, triangles < LONG_MAX ? (long)triangles : LONG_MAX);
+    atomic_store(&go_on, command);
 }
 
 void interrupt_tell(void) { hold(); }

@@ -1,8 +1,8 @@
 /* Ending early, by a signal or a time limit, without leaving half of anything.
  *
  * The first signal asks: whoever works looks at interrupt_stop() and comes to an end that it can tell about. If that
- * takes longer than INTERRUPT_GRACE seconds (a stage that must not stop half way), or if another signal comes later
- * than that, the handler removes the temporary files and ends the program itself. */
+ * takes too long (a stage that must not stop half way, a slow disk), or if another signal comes 0.8 seconds later or
+ * more, the handler removes the temporary files and ends the program itself. What a checkpoint keeps by then stays. */
 #ifndef DRIVERS_INTERRUPT_H
 #define DRIVERS_INTERRUPT_H
 
@@ -16,12 +16,15 @@ enum { INTERRUPT_TIME_UP = 124 }; /* exit code after a time limit, as that of ti
 /* From now on every signal that would end the program (but those that its caller has it ignore, and SIGKILL) is taken
  * as said above; one that tells of a crash removes the temporary files first; a file that grows too large and a reader
  * of standard output that went away are errors of write() rather than signals. To be called once.
- * program: for messages. seconds: the time limit; 0: none. patient: after the first signal there is no limit to the
- * time that ending takes. False: the system has no timer left. */
-bool interrupt_start(const char *program, double seconds, bool patient);
+ * program: for messages. seconds: the time limit; 0: none. patience: seconds, from the first request, after which the
+ * handler ends the program, 0.8 at least; HUGE_VAL: it does not. False: the system has no timer left. */
+bool interrupt_start(const char *program, double seconds, double patience);
 
 /* Has somebody asked for the end? */
 const struct tri_stop *interrupt_stop(void);
+
+/* Is the program to end as soon as files are no longer being opened or named? */
+const struct tri_stop *interrupt_end(void);
 
 /* What is done now, for the message of the handler: "reading". The text lives as long as the program. */
 void interrupt_stage(const char *what);
@@ -31,6 +34,16 @@ const char *interrupt_stage_now(void);
  * The text lives as long as the program. The next stage begins at 0, which is what is not known. */
 void interrupt_reached(int64_t n, const char *what);
 int64_t interrupt_reached_now(const char **what);
+
+/* A checkpoint keeps so many triangles; 0: there is none yet. go_on: the command that goes on, which lives as long as
+ * the program. Until this is called nothing is said of checkpoints. */
+void interrupt_kept(int64_t triangles, const char *go_on);
+
+/* What a stop without a mesh says of files: "nothing was written". */
+const char *interrupt_written(void);
+
+/* A line on standard error that tells what is kept, if anything is, and how to go on. */
+void interrupt_tell_kept(void);
 
 /* From now on interrupt_stop() says no, though somebody has asked: what is left is to be done. */
 void interrupt_go_on(void);

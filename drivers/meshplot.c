@@ -531,7 +531,7 @@ int program_main(int argc, char **argv)
     if (code != 0)
         return code < 0 ? EXIT_SUCCESS : code;
     interrupt_stage("reading");
-    if (!interrupt_start(PTRIANGLE_NAME, 0, false))
+    if (!interrupt_start(PTRIANGLE_NAME, 0, 0))
         return fail(TROUBLE, "the system does not take a handler for the end");
     enum tri_status status = plot(&settings, &files, &error);
     if (status == TRI_STOPPED)

@@ -89,13 +89,13 @@ static void tell_reached(const struct program *p, int64_t triangles)
     interrupt_reached(triangles, in_parts ? " triangles in the part of the first task" : " triangles");
 }
 
-static void follow(void *user, int round, int phase, double done, int64_t triangles)
+static void follow(void *user, const struct par_place *place)
 {
     struct program *p = user;
-    interrupt_stage(phase == PAR_NUMBERING ? "numbering" : "refining");
-    if (phase != PAR_NUMBERING)
-        tell_reached(p, triangles);
-    progress_step(&p->progress, round, phase, done, triangles);
+    interrupt_stage(place->phase == PAR_NUMBERING ? "numbering" : "refining");
+    if (place->phase != PAR_NUMBERING)
+        tell_reached(p, place->triangles);
+    progress_step(&p->progress, place);
 }
 
 static struct par_options options_of(struct program *p, const struct run *run)
@@ -133,11 +133,16 @@ static enum tri_status refine_with(struct program *p, struct run *run, const str
     p->n_before = mesh->n_vertices;
     progress_begin(&p->progress, mesh->n_triangles, run->plan.triangles, p->threads);
     enum tri_status status = par_refine(mesh, quality, options, &p->schedule, error);
-    progress_end(&p->progress, options->sweep ? handed_out(p, 1) : mesh->n_triangles,
-                 options->sweep ? 0 : p->schedule.seconds_number);
+    if (status)
+        progress_drop(&p->progress);
+    else
+        progress_end(&p->progress, options->sweep ? handed_out(p, 1) : mesh->n_triangles,
+                     options->sweep ? 0 : p->schedule.seconds_number);
     p->refined = true;
-    if (status == TRI_STOPPED)
-        tell_reached(p, mesh->n_triangles + (options->carrier ? 0 : p->streams.triangles)); /* ranks refine first */
+    if (status == TRI_STOPPED && p->restart.wanted && p->restart.checkpoint.saved > 0)
+        tell_reached(p, p->restart.checkpoint.manifest.triangles);
+    else if (status == TRI_STOPPED && !options->sweep)
+        tell_reached(p, mesh->n_triangles);
     return status;
 }
 
@@ -592,7 +597,7 @@ static int carry_out(struct program *p, const struct arguments *arguments, struc
         return EXIT_SUCCESS;
     }
     if (!settle_memory(&p->options, error) && arguments->file)
-        restart_open(&p->restart, &p->options, p->launch.carrier, error);
+        restart_open(&p->restart, &p->options, PROGRAM, arguments, p->launch.carrier, error);
     if (error->status) {
         console_error(&(struct console){.program = PROGRAM}, error);
         return EXIT_FAILURE;
@@ -603,7 +608,7 @@ static int carry_out(struct program *p, const struct arguments *arguments, struc
     p->launch.carrier = alone ? &one : p->launch.carrier;
     int code = launch_agree(&p->launch, run_program(p, arguments, error), error);
     p->launch.carrier = alone ? NULL : p->launch.carrier;
-    restart_close(&p->restart, PROGRAM, arguments, code);
+    restart_close(&p->restart, code);
     return code;
 }
 

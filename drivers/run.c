@@ -271,12 +271,12 @@ static enum tri_status leave(void *user, struct tri_mesh *mesh, const struct tri
     return TRI_OK;
 }
 
-/* Files of a mesh that is there are written, whoever asks for the end. */
+/* Files of a mesh that is there are written though somebody asks for the end, as long as there is time. */
 static void begin_outputs(const struct runner *r)
 {
     interrupt_begin(&outputs);
     if (r->run.hooks->limits.write_partial || r->run.hooks->limits.checkpoint)
-        outputs.stop = NULL;
+        outputs.stop = interrupt_end();
 }
 
 /* What will be told of the input, though its vertices will be gone then. */
@@ -412,7 +412,7 @@ static void tell_how_far(const struct runner *r, char *far, size_t size)
         snprintf(far + length, size - (size_t)length, ", %" PRId64 " of them below the bounds", bad);
 }
 
-/* One line: by what, when, where, how far. */
+/* By what, when, where, how far; and what is kept. */
 static void tell_of_stop(struct runner *r, bool partial)
 {
     struct tri_error line = {.status = TRI_STOPPED};
@@ -420,10 +420,11 @@ static void tell_of_stop(struct runner *r, bool partial)
     tell_how_far(r, far, sizeof far);
     tri_fail(&line, TRI_STOPPED, NULL, 0, "stopped by %s after %.1f s while %s%s; %s", interrupt_cause(),
              tri_seconds() - r->begin, interrupt_stage_now(), far,
-             partial ? "the mesh so far is written" : "nothing was written");
+             partial ? "the mesh so far is written" : interrupt_written());
     if (!partial)
         interrupt_tell();
     console_error(&r->console, &line);
+    interrupt_tell_kept();
     if (!partial)
         interrupt_told();
 }
@@ -606,14 +607,21 @@ static enum tri_status run_stages(struct runner *r)
     return status ? status : write_output(r, &files);
 }
 
+/* Seconds that ending may take. A batch system kills 30 seconds after it has asked. */
+static double patience_of(const struct run_hooks *hooks)
+{
+    static const double KEEPING = 3, KEEPING_ON_RANKS = 25;
+    if (hooks->limits.write_partial || hooks->written_elsewhere) /* the first task says why all end */
+        return HUGE_VAL;
+    return !hooks->limits.checkpoint ? 0 : hooks->n_ranks > 1 ? KEEPING_ON_RANKS : KEEPING;
+}
+
 static enum tri_status run_file(struct runner *r)
 {
     const struct run_limits *limits = &r->run.hooks->limits;
     r->begin = r->mark = tri_seconds();
     resources_save_address_space();
-    const bool patient = limits->write_partial || limits->checkpoint ||
-                         r->run.hooks->written_elsewhere; /* the first task, which has been told, says why all end */
-    if (!interrupt_start(r->run.hooks->program, limits->seconds, patient))
+    if (!interrupt_start(r->run.hooks->program, limits->seconds, patience_of(r->run.hooks)))
         return tri_fail(r->error, TRI_NO_MEMORY, NULL, 0, "the system has no timer left");
     enum tri_status status = run_stages(r);
     if (status)

@@ -26,6 +26,7 @@ struct task {
     struct tri_owners owners;
     struct tri_refine_options options;
     struct tri_refine_report report;
+    int64_t made_before;     /* of it, in a phase that goes on */
     struct tri_refiner *refiner;
     struct tri_pause *pause; /* where a new refiner goes on; NULL: at the beginning */
     struct par_ids left;  /* what gate and fence left */
@@ -53,6 +54,8 @@ struct phase {
     int32_t *order;     /* [n_tasks] in which tasks are started */
     int64_t expected;   /* triangles of all tasks, to the order */
     _Atomic(int64_t) done; /* of these, in tasks that have ended */
+    int64_t before;     /* triangles there were, */
+    _Atomic(int64_t) made; /* and those that such tasks have made */
     const void *caller; /* address of the own one's `here` */
     int32_t *mark;      /* [n_marks] debug builds: which block changed each triangle, see triangle/owners.h */
     size_t n_marks;
@@ -444,24 +447,45 @@ static void run_task(struct phase *p, struct task *task)
     task->seconds += tri_seconds() - began;
 }
 
+int64_t par_triangles(const struct par_state *state)
+{
+    int64_t n = state->gone + state->mesh->n_triangles - par_ranges_unused(&state->spare.ranges[PAR_TRIANGLES]);
+    for (int32_t i = 0; i < state->halt.n_blocks; i++)
+        n -= par_ranges_unused(&state->halt.block[i].room.ranges[PAR_TRIANGLES]);
+    return n;
+}
+
 /* Each thread has one at an address of its own. */
 static _Thread_local char here;
 
-static void tell(const struct par_state *state, int phase, double done)
+static void tell(const struct par_state *state, int phase, double done, int64_t triangles)
 {
     const struct par_options *options = state->options;
+    const struct par_place place = {.level = state->level, .sizes = state->stage == PAR_SIZES && state->sizes_first,
+                                    .column = state->column, .n_columns = state->n_columns, .round = state->round,
+                                    .phase = phase, .done = done, .triangles = triangles};
     if (options->progress)
-        options->progress(options->progress_user, state->round, phase, done, state->gone + state->mesh->n_triangles);
+        options->progress(options->progress_user, &place);
 }
 
-void par_tell(const struct par_state *state, int phase) { tell(state, phase, 0); }
+void par_tell(const struct par_state *state, int phase) { tell(state, phase, 0, par_triangles(state)); }
 
-/* The calling thread tells of what all have done, as often as it has ended a task itself. */
+static int64_t inserted_by(const struct task *task)
+{
+    return task->report.inserted_free + task->report.inserted_on_segments;
+}
+
+static int64_t least_made_by(const struct task *task) { return inserted_by(task) + task->report.inserted_free; }
+
+/* The calling thread tells of what all have done, as often as it has ended a task itself. A point makes two triangles,
+ * or, on the boundary, one: that is not less than what has been told before. */
 static void note_end(struct phase *p, const struct task *task)
 {
-    int64_t done = atomic_fetch_add_explicit(&p->done, task->expected, memory_order_relaxed) + task->expected;
+    const int64_t made = least_made_by(task) - task->made_before;
+    const int64_t all = atomic_fetch_add_explicit(&p->made, made, memory_order_relaxed) + made;
+    const int64_t done = atomic_fetch_add_explicit(&p->done, task->expected, memory_order_relaxed) + task->expected;
     if (p->caller == &here)
-        tell(p->state, p->phase + 1, (double)done / (double)p->expected);
+        tell(p->state, p->phase + 1, (double)done / (double)p->expected, p->before + all);
 }
 
 static void run_next(void *context, size_t index)
@@ -536,8 +560,8 @@ static bool report_block(const struct phase *p, const struct task *task)
     if (!tri_grow(&report->blocks, &report->block_capacity, report->n_blocks + 1, sizeof *report->blocks))
         return false;
     report->blocks[report->n_blocks++] = (struct par_block_report){
-        p->state->n_schedules - 1, p->state->round, p->phase, task->block, task->n_worklist,
-        task->report.inserted_free + task->report.inserted_on_segments, task->report.fenced, task->seconds};
+        p->state->n_schedules - 1, p->state->round, p->phase, task->block, task->n_worklist, inserted_by(task),
+        task->report.fenced, task->seconds};
     return true;
 }
 
@@ -786,6 +810,7 @@ static enum tri_status take_up(struct phase *p, struct tri_error *error)
                                                .report = h->report, .view.room = h->room, .left = h->left,
                                                .pause = h->pause};
         set_up(p, &p->tasks[i]);
+        p->tasks[i].made_before = least_made_by(&p->tasks[i]);
         p->done += h->progress == PAR_ENDED ? h->expected : 0;
     }
     free(halt->block);
@@ -814,7 +839,7 @@ static bool halt_tasks(struct phase *p)
 {
     struct par_halt *halt = &p->state->halt;
     struct par_halted *block = calloc((size_t)p->n_tasks, sizeof *block);
-    bool memory = block;
+    bool memory = block && gather_given_up(p);
     for (int32_t i = 0; i < p->n_tasks; i++)
         memory = memory && !p->tasks[i].lost && !has_failed(&p->tasks[i]) && leave_refiner(&p->tasks[i]);
     if (!memory) {
@@ -828,6 +853,7 @@ static bool halt_tasks(struct phase *p)
                                                       task->progress, task->seconds, task->report, task->view.room,
                                                       task->left, task->pause};
         halt->n_worklist += task->n_worklist;
+        free(task->given_up.item);
     }
     p->worklist = NULL;
     p->n_tasks = 0;
@@ -858,7 +884,8 @@ enum tri_status par_phase(struct par_state *state, const struct par_partition *p
                           struct tri_error *error)
 {
     size_t n = (size_t)state->worklist.n + 1;
-    struct phase p = {.state = state, .partition = partition, .phase = phase, .only = only};
+    struct phase p = {.state = state, .partition = partition, .phase = phase, .only = only,
+                      .before = par_triangles(state)};
     assert(phase >= 0 && phase < PAR_PHASES && (only == TRI_NONE || only % 2 == 1 - phase / 2));
     p.block_of = malloc(n * sizeof *p.block_of);
     p.work = malloc(n * sizeof *p.work);

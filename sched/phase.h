@@ -16,6 +16,9 @@ struct par_park;
 struct par_state;
 struct tri_pause;
 
+/* Triangles there are, with those that have been handed out and those of blocks that have been halted. */
+int64_t par_triangles(const struct par_state *state);
+
 /* Tells of the phase that begins. */
 void par_tell(const struct par_state *state, int phase);
 
@@ -73,8 +76,11 @@ struct par_state {
     struct par_report *report;
     int32_t n_schedules;     /* begun so far; the last is the one that works */
     enum par_stage stage;
-    bool amid;               /* in this stage's schedule: `cells` are its blocks before the first round */
+    int level;               /* of the schedule or the call at work */
+    bool amid;               /* in this stage's schedule: `cells` are its blocks before the first round; in a sweep: in
+                                a column, whose worklist has been given */
     int round, phase;        /* of that, the second from 0 */
+    int32_t column, n_columns; /* of a sweep, the first from 1; 0: it is none */
     struct tri_pause *paused; /* where a sequential call goes on that a checkpoint's state is amid; else NULL */
     bool may_halt;           /* a phase that is stopped is to be kept in `halt`, rather than ended as it is; where that
                                 cannot be it fails */

@@ -284,7 +284,7 @@ static enum tri_status run_phase(struct par_state *state, const struct par_parti
                                  struct tri_error *error)
 {
     struct par_checkpoint *checkpoint = state->amid ? checkpoint_of(state) : NULL;
-    return checkpoint ? par_state_phase(checkpoint, state, partition, error)
+    return checkpoint ? par_state_phase(checkpoint, state, partition, NULL, TRI_NONE, error)
                       : par_phase(state, partition, state->phase, TRI_NONE, error);
 }
 
@@ -545,6 +545,7 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
     if (status)
         return status;
     state->report->levels = level + 1 > state->report->levels ? level + 1 : state->report->levels;
+    state->level = level;
     par_tell(state, 0);
     if (areas_decide(state, quality, estimate, cell)) {
         status = prerefine_uniform(state, quality, cell, level, error);
@@ -554,6 +555,7 @@ static enum tri_status schedule_level(struct par_state *state, const struct tri_
     } else {
         status = prerefine_graded(state, quality, &partition, error);
     }
+    state->level = level; /* again */
     if (!status)
         status = run_schedule(state, quality, &partition, level == 0, error);
     par_partition_free(&partition);

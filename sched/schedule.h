@@ -22,7 +22,17 @@ struct par_carrier;
 struct par_checkpoint;
 struct par_park;
 
-enum { PAR_NUMBERING = PAR_PHASES + 1 }; /* told as a phase, see progress */
+enum { PAR_NUMBERING = PAR_PHASES + 1 }; /* told as a phase */
+
+/* How far a refinement is, told when a phase begins, and after blocks of it. */
+struct par_place {
+    int level;                 /* 0: the mesh that is asked for; else what prepares it, and so on */
+    bool sizes;                /* the schedule for sizes, which one for angles follows */
+    int32_t column, n_columns; /* of a sweep, the first from 1; 0: it is none */
+    int round, phase;          /* the second 0: pre-refinement, then 1 to 4, at last PAR_NUMBERING */
+    double done;               /* the share of the phase's work that is done, whatever thread did it */
+    int64_t triangles;         /* so far, to the order */
+};
 
 struct par_options {
     int threads;             /* 0: what OpenMP would use (OMP_NUM_THREADS, else all cores) */
@@ -62,10 +72,7 @@ struct par_options {
                                 whole, and rank 0 gets all tiles. Whoever makes the call ends with par_agree */
     unsigned shuffle;        /* for tests: not 0: blocks are started in an order drawn from this number */
     int32_t tight_room;      /* for tests: not 0: blocks get room for so many triangles at a time, and pause often */
-    /* Told by the calling thread: the phase (0: pre-refinement, then 1 to 4, at last PAR_NUMBERING) when it begins
-     * (done: 0), and after blocks of it (done: the share of its work that is, up to 1, whatever thread did it);
-     * triangles when the phase began (with the room that blocks have been dealt). */
-    void (*progress)(void *user, int round, int phase, double done, int64_t triangles);
+    void (*progress)(void *user, const struct par_place *place); /* told by the calling thread */
     void *progress_user;
 };
 

@@ -74,7 +74,7 @@ tested_by() {
     triangle/feed.c | triangle/treat.c) echo refine ;;
     sched/triangulate.c) echo par_triangulate ;;
     sched/halt.c | sched/sweep/carry_halt.c | sched/sweep/checkpoint.c | sched/sweep/spool.c) echo checkpoint ;;
-    sched/sweep/state.c) echo checkpoint ;;
+    sched/sweep/state.c | sched/sweep/folder.c) echo checkpoint ;;
     sched/sweep/deal.c | sched/sweep/sort_triangles.c | sched/sweep/move_triangles.c) echo numbering ;;
     sched/sweep/finds.c | sched/sweep/numbering.c | sched/sweep/pipeline.c | sched/sweep/queue.c) basename "$1" .c ;;
     sched/threads.c | sched/sweep/*) echo schedule ;;

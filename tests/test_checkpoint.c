@@ -4,6 +4,7 @@
 #include "full.h"
 #include "support.h"
 
+#include <errno.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <sys/stat.h>
@@ -304,6 +305,71 @@ static void test_files_of_others_stay(void **state)
     assert_int_equal(rmdir(DIRECTORY), 0);
 }
 
+/* Links in the folder, of whoever may write to it, lead to nothing that is written, removed or read. */
+static void test_links_lead_nowhere(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"manifest-new", "state-0", "state-1", "piece-0-0"};
+    struct par_checkpoint c;
+    struct whole_files {
+        const char *name, *other;
+    } files[] = {{"state/manifest", "state/kept"}, {"state/tiles", "state/kept"}};
+    remove_all();
+    FILE *file = fopen("victim", "w");
+    assert_non_null(file);
+    fputs("precious", file);
+    fclose(file);
+    open_it(&c, false);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char path[512];
+        snprintf(path, sizeof path, "%s/%s", DIRECTORY, names[i]);
+        assert_int_equal(i % 2 ? symlink("../victim", path) : link("victim", path), 0);
+    }
+    c.seconds = 0; /* both states are written */
+    struct run r = run_of(&c);
+    r.taker.fail_at = 14;
+    assert_int_equal(refine(&r, POINTS), TRI_CANNOT_WRITE);
+    assert_true(c.saved > 1);
+    char path[PAR_CHECKPOINT_PATH];
+    int piece = par_checkpoint_piece(path, DIRECTORY, 0, 0, true);
+    assert_true(piece >= 0 && write(piece, "x", 1) == 1);
+    close(piece);
+    par_checkpoint_close(&c, false);
+    assert_int_equal(length_of_file("../victim"), 8);
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        assert_int_equal(rename(files[i].name, files[i].other), 0);
+        assert_int_equal(symlink("kept", files[i].name), 0);
+        assert_int_not_equal(par_checkpoint_open(&c, DIRECTORY, true, 7, NULL), TRI_OK);
+        assert_int_equal(unlink(files[i].name), 0);
+        assert_int_equal(rename(files[i].other, files[i].name), 0);
+    }
+    assert_int_equal(link("state/tiles", "state/kept"), 0); /* it would be cut short */
+    assert_int_not_equal(par_checkpoint_open(&c, DIRECTORY, true, 7, NULL), TRI_OK);
+    assert_int_equal(unlink("state/kept"), 0);
+    assert_int_equal(unlink("state/manifest-new") == 0 || errno == ENOENT, true);
+    assert_int_equal(mkfifo("state/manifest-new", 0777), 0); /* nobody waits for its other end */
+    open_it(&c, true);
+    par_checkpoint_close(&c, true);
+    assert_int_equal(unlink("victim"), 0);
+}
+
+/* Only the system's administrator can give folders away. */
+static void test_folders_of_others_are_refused(void **state)
+{
+    (void)state;
+    struct par_checkpoint c;
+    struct tri_error error;
+    if (geteuid() != 0)
+        return;
+    leave_state();
+    assert_int_equal(chown(DIRECTORY, 1234, 1234), 0);
+    for (int resume = 0; resume < 2; resume++) {
+        assert_int_equal(par_checkpoint_open(&c, DIRECTORY, resume == 1, 7, &error), TRI_BAD_INPUT);
+        assert_non_null(strstr(error.text, "belongs to another user"));
+    }
+    remove_all();
+}
+
 /* Flips a byte of a file, or flips it back. */
 static void flip(const char *name, long at)
 {
@@ -379,6 +445,8 @@ static const struct way ways[] = {
     {{"section.poly", 35, 6000, 300, true, true, 0}, false, false, 0, -1, PAR_IN_MEMORY, 0}, /* beyond the schedule */
     {{"letter.poly", 33, 18000, 1000, false, false, 0}, false, true, 0, -1, PAR_IN_MEMORY, 400}, /* amid large blocks */
     {{"letter.poly", 20, 6000, 300, false, false, 0}, true, false, 0, 1500, PAR_IN_MEMORY, 0}, /* no schedule */
+    {{"letter.poly", 30, 20000, 500, false, false, 0}, true, false, 1000, -1, PAR_SWEPT, 0},
+    {{"section.poly", 25, 9000, 1000, false, true, 0}, true, false, 1000, -1, PAR_SWEPT, 400}, /* amid large blocks */
 };
 
 enum { N_WAYS = sizeof ways / sizeof *ways };
@@ -398,11 +466,10 @@ struct whole_run {
     struct tri_error error;
 };
 
-static void count_phases(void *user, int round, int phase, double done, int64_t triangles)
+static void count_phases(void *user, const struct par_place *place)
 {
     struct whole_run *r = user;
-    (void)round, (void)phase, (void)triangles;
-    r->told += done == 0;
+    r->told += place->done == 0;
 }
 
 static bool is_told_enough(void *user)
@@ -466,7 +533,8 @@ static void go_on_until_done(const struct way *way, const struct whole_run *want
         open_it(&c, rounds > 0);
         struct whole_run r = whole_run_of(way, &c);
         with_state += par_checkpoint_has_state(&c);
-        r.most_told = par_checkpoint_has_state(&c) ? rounds % 3 : rounds + 1;
+        const bool makes_coarse = c.manifest.kind == PAR_SWEPT_STATE; /* anew, which is told */
+        r.most_told = par_checkpoint_has_state(&c) ? rounds % 3 + makes_coarse : rounds + 1;
         r.threads = rounds % 3 + 1;
         if (c.manifest.kind == PAR_WHOLE_STATE && way->has_sink)
             r.memory = rounds % 2 * 1000;
@@ -578,12 +646,14 @@ static void test_a_finished_mesh_is_kept(void **state)
         r.taker.fail_at = wanted.taker.n - 1;
         assert_int_equal(refine_whole(&r), TRI_CANNOT_WRITE);
         assert_string_equal(r.error.text, "no more");
-        assert_true(par_checkpoint_has_state(&c) && c.manifest.kind == PAR_WHOLE_STATE);
+        const bool swept = wanted.was == PAR_SWEPT;
+        assert_true(par_checkpoint_has_state(&c) &&
+                    c.manifest.kind == (swept ? PAR_SWEPT_STATE : PAR_WHOLE_STATE));
         par_checkpoint_close(&c, false);
         open_it(&c, true);
         r = whole_run_of(&ways[i], &c);
         assert_int_equal(refine_whole(&r), TRI_OK);
-        assert_true(r.hash == wanted.hash && r.told == 0);
+        assert_true(r.hash == wanted.hash && (swept || r.told == 0));
         par_checkpoint_close(&c, true);
     }
 }
@@ -618,6 +688,8 @@ int main(void)
         cmocka_unit_test(test_other_runs_are_refused),
         cmocka_unit_test(test_files_of_others_are_refused),
         cmocka_unit_test(test_files_of_others_stay),
+        cmocka_unit_test(test_links_lead_nowhere),
+        cmocka_unit_test(test_folders_of_others_are_refused),
         cmocka_unit_test(test_damage_is_found),
         cmocka_unit_test(test_whole_meshes_go_on),
         cmocka_unit_test(test_calls_go_on),

@@ -913,26 +913,27 @@ static void test_calls_can_follow_each_other(void **state)
 
 struct told {
     pthread_t thread;
-    int round, phase;
-    double done;
-    int64_t triangles;
+    struct par_place last;
     int n, within; /* phases that began, and what was told within them */
 };
 
-static void tell(void *user, int round, int phase, double done, int64_t triangles)
+/* No place comes before one that has been told. */
+static void tell(void *user, const struct par_place *place)
 {
     struct told *told = user;
+    const struct par_place *last = &told->last;
     assert_true(pthread_equal(told->thread, pthread_self()));
-    assert_true(phase >= 0 && phase <= PAR_NUMBERING && round >= 0);
-    if (done > 0)
-        assert_true(round == told->round && phase == told->phase && done > told->done && done <= 1);
+    assert_true(place->phase >= 0 && place->phase <= PAR_NUMBERING && place->round >= 0);
+    assert_true(place->triangles >= last->triangles);
+    if (place->done > 0)
+        assert_true(place->round == last->round && place->phase == last->phase && place->done > last->done &&
+                    place->done <= 1);
+    else if (place->phase > 0 && place->level == last->level && place->column == last->column)
+        assert_true(place->round > last->round || place->phase > last->phase);
     else
-        assert_true(phase == 0 || round > told->round || phase > told->phase || told->phase == 0);
-    told->round = round;
-    told->phase = phase;
-    told->done = done;
-    told->triangles = triangles;
-    *(done > 0 ? &told->within : &told->n) += 1;
+        assert_true(place->phase == 0 || place->level < last->level || place->column > last->column);
+    told->last = *place;
+    *(place->done > 0 ? &told->within : &told->n) += 1;
 }
 
 static void test_progress_is_told_by_the_caller(void **state)
@@ -946,7 +947,7 @@ static void test_progress_is_told_by_the_caller(void **state)
         options.progress = tell;
         options.progress_user = &told;
         struct tri_mesh mesh = refine(&start, &options, &report);
-        assert_true(told.n >= 5 && told.triangles > 1000);
+        assert_true(told.n >= 5 && told.last.triangles > 1000);
         assert_true(told.within > 9 || threads > 1); /* of several the caller may have little to do */
         par_report_free(&report);
         tri_mesh_free(&mesh);

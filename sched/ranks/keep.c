@@ -90,8 +90,11 @@ static enum tri_status read_pieces(struct par_ranks *r, const struct par_manifes
     for (int p = 0; !status && p < from->n_ranks; p++) {
         const struct par_piece_file file = {p > 0 ? (int32_t)writer[p - 1].end : 0, (int32_t)writer[p].end, m->run,
                                             writer[p].hash};
-        par_checkpoint_piece(path, r->state->options->checkpoint->directory, m->which, p);
-        status = par_pieces_read(r, path, &file, error);
+        if (!par_pieces_are_wanted(r, &file))
+            continue;
+        const char *directory = r->state->options->checkpoint->directory;
+        const int piece = par_checkpoint_piece(path, directory, m->which, p, false);
+        status = par_pieces_read(r, piece, path, &file, error);
     }
     return status || find_straddlers(r) ? status : par_ranks_no_memory(error);
 }
@@ -225,8 +228,8 @@ static enum tri_status write_pieces(struct par_ranks *r, int64_t told[2], struct
     enum tri_status status = par_spread(r->carrier, PAR_MOVE_INPUT, &which, sizeof which, TRI_OK, error);
     if (status)
         return status;
-    par_checkpoint_piece(path, c->directory, which, r->carrier->rank);
-    status = par_pieces_write(r, path, r->run, &hash, error);
+    const int piece = par_checkpoint_piece(path, c->directory, which, r->carrier->rank, true);
+    status = par_pieces_write(r, piece, path, r->run, &hash, error);
     if (!status && !par_checkpoint_sync(c->directory))
         status = tri_fail(error, TRI_CANNOT_WRITE, c->directory, 0, "cannot write");
     told[0] = (int64_t)hash;

@@ -3,7 +3,6 @@
 
 #include <assert.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -175,7 +174,7 @@ static enum tri_status write_all(const struct sorting *s, int file, const char *
     return status;
 }
 
-static enum tri_status write_file(const struct sorting *s, const char *path, uint64_t run, uint64_t *hash,
+static enum tri_status write_file(const struct sorting *s, int file, const char *path, uint64_t run, uint64_t *hash,
                                   struct tri_error *error)
 {
     const struct par_territory *territory = &s->ranks->territory;
@@ -184,22 +183,23 @@ static enum tri_status write_file(const struct sorting *s, const char *path, uin
     int64_t *offset = calloc(n, sizeof *offset);
     if (!offset)
         return par_ranks_no_memory(error);
-    int file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    enum tri_status status = file < 0 ? cannot_write(path, error) : write_all(s, file, path, head, offset, error);
-    if (file >= 0 && close(file) != 0 && !status)
-        status = cannot_write(path, error);
+    enum tri_status status = write_all(s, file, path, head, offset, error);
     *hash = par_hash(par_hash(0, &head, sizeof head), offset, n * sizeof *offset);
     free(offset);
     return status;
 }
 
-enum tri_status par_pieces_write(const struct par_ranks *r, const char *path, uint64_t run, uint64_t *hash,
+enum tri_status par_pieces_write(const struct par_ranks *r, int file, const char *path, uint64_t run, uint64_t *hash,
                                  struct tri_error *error)
 {
     struct sorting s;
+    if (file < 0)
+        return cannot_write(path, error);
     par_room_mark(&r->state->spare, r->state->mesh, &r->state->executor);
     enum tri_status status = sort_all(&s, r) ? TRI_OK : par_ranks_no_memory(error);
-    status = status ? status : write_file(&s, path, run, hash, error);
+    status = status ? status : write_file(&s, file, path, run, hash, error);
+    if (close(file) != 0 && !status)
+        status = cannot_write(path, error);
     free_sorting(&s);
     return status;
 }
@@ -253,20 +253,29 @@ static enum tri_status read_piece(struct par_ranks *r, int file, const char *pat
     return status == TRI_INTERNAL ? damaged(path, error) : status;
 }
 
-enum tri_status par_pieces_read(struct par_ranks *r, const char *path, const struct par_piece_file *of,
-                                struct tri_error *error)
+/* The tiles of a file that this rank owns now. */
+static struct tri_range own_tiles(const struct par_ranks *r, const struct par_piece_file *of)
 {
     const struct par_territory *t = &r->territory;
-    int32_t own = t->start[t->rank], own_end = t->start[t->rank + 1];
-    int32_t first = own > of->first ? own : of->first, end = own_end < of->end ? own_end : of->end;
-    if (first >= end)
-        return TRI_OK;
-    int file = open(path, O_RDONLY | O_CLOEXEC);
+    const int32_t own = t->start[t->rank], own_end = t->start[t->rank + 1];
+    return (struct tri_range){own > of->first ? own : of->first, own_end < of->end ? own_end : of->end};
+}
+
+bool par_pieces_are_wanted(const struct par_ranks *r, const struct par_piece_file *of)
+{
+    const struct tri_range tiles = own_tiles(r, of);
+    return tiles.first < tiles.last;
+}
+
+enum tri_status par_pieces_read(struct par_ranks *r, int file, const char *path, const struct par_piece_file *of,
+                                struct tri_error *error)
+{
+    const struct tri_range tiles = own_tiles(r, of);
     if (file < 0)
         return tri_fail(error, TRI_BAD_INPUT, path, 0, "cannot be read: %s", strerror(errno));
     int64_t *offset = read_offsets(file, of->first, of->end - of->first, of->run, of->hash);
     enum tri_status status = offset ? TRI_OK : damaged(path, error);
-    for (int32_t tile = first; !status && tile < end; tile++)
+    for (int32_t tile = tiles.first; !status && tile < tiles.last; tile++)
         status = read_piece(r, file, path, &offset[tile - of->first], error);
     free(offset);
     close(file);

@@ -20,13 +20,18 @@ struct par_piece_file {
     uint64_t hash;      /* as it was told when the file was written */
 };
 
-/* Writes, and syncs, what this rank owns. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
-enum tri_status par_pieces_write(const struct par_ranks *ranks, const char *path, uint64_t run, uint64_t *hash,
-                                 struct tri_error *error);
+/* Writes, and syncs, what this rank owns to an open file, and closes it; -1: it could not be opened, which is told.
+ * path: for messages. TRI_CANNOT_WRITE, TRI_NO_MEMORY. */
+enum tri_status par_pieces_write(const struct par_ranks *ranks, int file, const char *path, uint64_t run,
+                                 uint64_t *hash, struct tri_error *error);
 
-/* Pastes the pieces of those tiles in a file that this rank owns now. TRI_BAD_INPUT: they are not what was written,
+/* Pastes the pieces of those tiles in an open file that this rank owns now, and closes it; -1: it could not be opened,
+ * which is told. TRI_BAD_INPUT: they are not what was written,
  * TRI_NO_MEMORY. */
-enum tri_status par_pieces_read(struct par_ranks *ranks, const char *path, const struct par_piece_file *file,
+enum tri_status par_pieces_read(struct par_ranks *ranks, int file, const char *path, const struct par_piece_file *of,
                                 struct tri_error *error);
+
+/* Does this rank own any of them? */
+bool par_pieces_are_wanted(const struct par_ranks *ranks, const struct par_piece_file *of);
 
 #endif

@@ -6,8 +6,8 @@
  *     manifest     which of them, how long each is, their hashes, and of what run they are
  *
  * INVARIANT: whenever the process dies, the manifest, if there is one, describes a state and a beginning of the tiles
- * that are whole on the disk. For a state is written into the file that the manifest does not name, tiles and state are
- * synced, and then a new manifest takes the name of the old one.
+ * that are whole on the disk. For a state is written into a new file by the name that the manifest does not name, tiles
+ * and state are synced, and then a new manifest takes the name of the old one.
  *
  * WHOSE FILES: the directory may hold other files. A manifest is made before any of the files above, and removed after
  * them: with one, files of these names are a run's; where there are some without one they are somebody else's, and the
@@ -21,7 +21,7 @@
 enum { PAR_CHECKPOINT_PATH = 4096 };
 
 enum par_state_kind {
-    PAR_SWEPT_STATE, /* between two columns of a sweep; what is finished is in the tiles */
+    PAR_SWEPT_STATE, /* a sweep, amid a column or between two; what is finished is in the tiles */
     PAR_WHOLE_STATE, /* the mesh as a whole; it is swept no more */
     PAR_RANKS_STATE  /* how far ranks are (sched/ranks/keep.c); what each has is in pieces beside it */
 };
@@ -43,6 +43,7 @@ struct par_checkpoint {
     double seconds;              /* between two states at least; 0: one after each step. To be set after opening */
     const char *directory;       /* borrowed */
     struct par_manifest manifest; /* as it is on the disk */
+    int folder;                  /* the directory, open; -1: it is not */
     int lock;                    /* the directory's, held by this process */
     int saved;                   /* states written by this process */
     double last;                 /* when the last was, or when the run began */
@@ -51,18 +52,20 @@ struct par_checkpoint {
     char tiles_path[PAR_CHECKPOINT_PATH];
     struct tri_sink sink;        /* of a sweep: the spool */
     const struct tri_stop *stop; /* asked between steps alone */
+    void (*told)(void *user, int64_t triangles); /* called with what is kept from then on; 0: nothing. NULL: nobody */
+    void *told_user;
 };
 
 /* One that is not open. */
 static inline struct par_checkpoint par_checkpoint_closed(const char *directory)
 {
-    return (struct par_checkpoint){.directory = directory, .lock = -1, .spool = {.file = -1}};
+    return (struct par_checkpoint){.directory = directory, .folder = -1, .lock = -1, .spool = {.file = -1}};
 }
 
 /* Makes the directory unless it is there, and takes it: for a new run, or, resume, for one that goes on with what is in
  * it. `of`: a hash of whatever else must be the same then. TRI_BAD_INPUT: there is a run in it already, or files
  * that are named as a run's are, or, resume, there is none, it is another program's, or damaged; another process works
- * on it. Then nothing in it has changed. TRI_CANNOT_WRITE. */
+ * on it; it belongs to another user. Then nothing in it has changed. TRI_CANNOT_WRITE. */
 enum tri_status par_checkpoint_open(struct par_checkpoint *checkpoint, const char *directory, bool resume, uint64_t of,
                                     struct tri_error *error);
 
@@ -110,7 +113,10 @@ struct par_state_file {
     enum par_carrying way;
     int64_t place;
     uint64_t hash;
-    bool failed; /* it could not be written or read; whoever walks need not ask */
+    bool failed;   /* it could not be written or read; whoever walks need not ask */
+    const struct tri_stop *stop; /* asked while it is checked; NULL: nobody */
+    bool stopped;
+    char *waiting; /* PAR_WRITE: what is on its way */
 };
 
 /* The next bytes of it; not touched where it is only checked. */
@@ -127,14 +133,15 @@ typedef enum tri_status par_state_walk(struct par_state_file *file, void *user, 
 enum tri_status par_checkpoint_write(struct par_checkpoint *checkpoint, enum par_state_kind kind, int64_t triangles,
                                      par_state_walk *walk, void *user, struct tri_error *error);
 
-/* Checks all of the state, then reads it. TRI_BAD_INPUT: it is damaged, and the walk has only been asked to check; or
- * what the walk says. */
+/* Checks all of the state, then reads it. TRI_BAD_INPUT: it is damaged, TRI_STOPPED: somebody asks for the end, and the
+ * walk has only been asked to check; or what the walk says. */
 enum tri_status par_checkpoint_read(const struct par_checkpoint *checkpoint, par_state_walk *walk, void *user,
                                     struct tri_error *error);
 
-/* Of a state of ranks: which of the two is to be written next, and a rank's piece of one. */
+/* Of a state of ranks: which of the two is to be written next, and a rank's piece of one: its path, for messages, and
+ * the file, to read, or a new one to write; -1: errno says why. */
 int64_t par_checkpoint_next(const struct par_checkpoint *checkpoint);
-void par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *directory, int64_t which, int rank);
+int par_checkpoint_piece(char path[PAR_CHECKPOINT_PATH], const char *directory, int64_t which, int rank, bool fresh);
 
 /* What has got names in a directory, or lost them, is so after the machine has died, too. */
 bool par_checkpoint_sync(const char *directory);

@@ -17,6 +17,7 @@ struct par_spool {
     const char *path;       /* for messages; borrowed */
     const struct tri_sink *to;
     int64_t length;         /* bytes of whole tiles in the file */
+    int64_t sent;           /* of these are on their way to the disk */
     bool again;             /* `begin` hands out what is in the file, and the first tile that comes is one of those */
     enum tri_status failed; /* `to` has failed, and is told no more; tiles are kept all the same */
     struct tri_error failure;
@@ -27,7 +28,8 @@ struct par_spool {
  * the file does not hold whole tiles, and what `to` says. */
 struct tri_sink par_spool_sink(struct par_spool *spool);
 
-/* A hash over bytes that goes on from another one: 0 to begin with. For finding damage, not for enemies. */
+/* A hash over bytes that goes on from another one: 0 to begin with. It depends on how they are dealt to calls. For
+ * finding damage, not for enemies. */
 uint64_t par_hash(uint64_t hash, const void *bytes, size_t n);
 
 /* Writes or reads all of so many bytes at a place of a file; false: errno says why, 0: the file ends before. */

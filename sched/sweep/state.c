@@ -109,8 +109,8 @@ static struct head head_of(const struct par_state *state, const struct par_tiles
         assert(state->spare.ranges[k].dealt == 0 || state->halt.n_blocks > 0); /* no block is at work */
         h.n_spare[k] = state->spare.ranges[k].n;
     }
+    h.n_halted = state->halt.n_blocks;
     if (!tiles) {
-        h.n_halted = state->halt.n_blocks;
         h.cells = cells_of(&state->cells);
         h.first = cells_of(&state->report->partition);
         return h;
@@ -144,25 +144,26 @@ static void carry_mesh(struct par_state_file *f, const struct head *h, struct tr
     par_carry(f, m->sub, (size_t)h->n_subs * sizeof *m->sub);
 }
 
-static struct par_carried_counts counts_of(const struct head *h)
+static struct par_carried_counts counts_of(const struct head *h, const struct par_tiles *tiles)
 {
-    return (struct par_carried_counts){h->n_triangles, h->n_subs, h->cells.n_columns * h->cells.n_rows};
+    return (struct par_carried_counts){h->n_triangles, h->n_subs,
+                                       tiles ? par_blocks(tiles->partition) : h->cells.n_columns * h->cells.n_rows};
 }
 
 /* Where the call at hand is. */
 static enum tri_status carry_call(struct par_state_file *f, const struct head *h, struct par_state *state,
                                   struct tri_error *error)
 {
-    const struct par_carried_counts counts = counts_of(h);
+    const struct par_carried_counts counts = counts_of(h, NULL);
     const int64_t listed = h->amid ? h->n_worklist : h->n_triangles; /* what the call goes through */
     return h->paused ? par_carry_pause(f, &state->paused, &counts, listed, error) : TRI_OK;
 }
 
 /* Where the phase at hand is. */
 static enum tri_status carry_halt(struct par_state_file *f, const struct head *h, struct par_state *state,
-                                  struct tri_error *error)
+                                  const struct par_tiles *tiles, struct tri_error *error)
 {
-    const struct par_carried_counts counts = counts_of(h);
+    const struct par_carried_counts counts = counts_of(h, tiles);
     return h->n_halted > 0 ? par_carry_halt(f, &state->halt, &state->spare, &counts, h->n_halted, error) : TRI_OK;
 }
 
@@ -201,26 +202,18 @@ static enum tri_status put(struct par_state_file *f, void *user, struct tri_erro
     par_carry_head(f, &h, sizeof h);
     enum tri_status status = carry_call(f, &h, cargo->state, error);
     carry_arrays(f, &h, cargo->state, cargo->tiles);
-    return status ? status : carry_halt(f, &h, cargo->state, error);
-}
-
-/* Without those that nobody has used yet. */
-static int64_t triangles_of(const struct par_state *state)
-{
-    int64_t n = state->mesh->n_triangles - par_ranges_unused(&state->spare.ranges[PAR_TRIANGLES]);
-    for (int32_t i = 0; i < state->halt.n_blocks; i++)
-        n -= par_ranges_unused(&state->halt.block[i].room.ranges[PAR_TRIANGLES]);
-    return n;
+    return status ? status : carry_halt(f, &h, cargo->state, cargo->tiles, error);
 }
 
 static enum tri_status save(struct par_checkpoint *c, const struct par_state *state, const struct par_tiles *tiles,
                             int32_t odd, struct tri_error *error)
 {
-    struct cargo cargo = {(struct par_state *)state, (struct par_tiles *)tiles, &odd}; /* which it only reads */
+    struct cargo cargo = {(struct par_state *)state, (struct par_tiles *)tiles, &odd}; /* which it only reads, but: */
     const double began = tri_seconds();
-    enum tri_status status =
-        par_checkpoint_write(c, tiles ? PAR_SWEPT_STATE : PAR_WHOLE_STATE,
-                             tiles ? tiles->n_triangles : triangles_of(state), put, &cargo, error);
+    if (tiles && !par_tiles_reserve(cargo.tiles)) /* vertices are new, amid a column */
+        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the numbers of vertices");
+    enum tri_status status = par_checkpoint_write(c, tiles ? PAR_SWEPT_STATE : PAR_WHOLE_STATE, par_triangles(state),
+                                                  put, &cargo, error);
     c->last = tri_seconds();
     c->cost = c->last - began;
     return status;
@@ -238,10 +231,11 @@ static bool are_cells(const struct cells *c)
 
 static bool is_place(const struct head *h, const struct par_tiles *tiles)
 {
+    const bool amid = h->phase >= 0 && h->phase < PAR_PHASES && (h->n_halted == 0 || h->amid);
     if (tiles)
-        return h->odd > 1 && h->odd % 2 == 1 && h->odd <= tiles->partition->n_columns + 2;
-    return h->odd == 0 && h->stage >= 0 && h->stage <= PAR_FINISHED && h->round >= 0 && h->phase >= 0 &&
-           h->phase < PAR_PHASES && (!h->amid || h->cells.n_columns > 0) && (h->n_halted == 0 || h->amid);
+        return amid && h->odd % 2 == 1 && h->odd >= (h->amid ? 1 : 3) && h->odd <= tiles->partition->n_columns + 2;
+    return amid && h->odd == 0 && h->stage >= 0 && h->stage <= PAR_FINISHED && h->round >= 0 &&
+           (!h->amid || h->cells.n_columns > 0);
 }
 
 /* Could this be the head of a state of this run? */
@@ -378,7 +372,7 @@ static enum tri_status get(struct par_state_file *f, void *user, struct tri_erro
         *cargo->odd = (int32_t)h.odd;
         assert(is_state_sound(state));
     }
-    return f->failed ? TRI_OK : carry_halt(f, &h, state, error);
+    return f->failed ? TRI_OK : carry_halt(f, &h, state, cargo->tiles, error);
 }
 
 static enum tri_status load(struct par_checkpoint *c, struct par_state *state, struct par_tiles *tiles, int32_t *odd,
@@ -437,18 +431,19 @@ static bool is_pause_due(void *user)
 }
 
 enum tri_status par_state_phase(struct par_checkpoint *c, struct par_state *state,
-                                const struct par_partition *partition, struct tri_error *error)
+                                const struct par_partition *partition, const struct par_tiles *tiles, int32_t only,
+                                struct tri_error *error)
 {
     const struct tri_stop pauses = {is_pause_due, c};
     enum tri_status status;
     state->may_halt = true;
     do {
         state->mesh->stop = &pauses;
-        status = par_phase(state, partition, state->phase, TRI_NONE, error);
+        status = par_phase(state, partition, state->phase, only, error);
         state->mesh->stop = NULL;
         if (status != TRI_STOPPED)
             break;
-        status = save(c, state, NULL, 0, error);
+        status = save(c, state, tiles, tiles ? only | 1 : 0, error); /* with the odd column beside an even one */
         if (!status && tri_stop_is_asked(c->stop))
             status = tri_fail_stopped(error);
     } while (!status);
@@ -497,7 +492,7 @@ enum tri_status par_state_begin_sweep(struct par_checkpoint *c, struct par_state
     c->spool.again = again;
     c->sink = par_spool_sink(&c->spool);
     tiles->sink = &c->sink;
-    state->mesh->stop = again ? NULL : c->stop; /* as long as there is nothing to lose */
+    state->mesh->stop = NULL;
     enum tri_status status = par_tiles_begin(tiles, tiles->partition->estimate, error);
     return status || !again ? status : load(c, state, tiles, odd, error);
 }

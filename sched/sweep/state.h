@@ -1,8 +1,8 @@
 /* What a checkpoint keeps of a run, and when.
  *
- * Between two columns of a sweep: what is in memory then, and which column is next. Of a schedule whose mesh stays as
- * a whole, in memory or parked, and of the calls beyond the schedule: all of the mesh, and which phase of which round,
- * or which call, is next; between two points of a phase (sched/halt.h) or of a call (triangle/pause.h) also where they
+ * Of a sweep: what is in memory, and which phase of which column is next. Of a schedule whose mesh stays as a whole, in
+ * memory or parked, and of the calls beyond the schedule: all of the mesh, and which phase of which round, or which
+ * call, is next; between two points of a phase (sched/halt.h) or of a call (triangle/pause.h) also where they
  * are. A run that gives up its sweep goes over to the second.
  *
  * THEOREM. A run that goes on ends with the bytes of one that was never stopped. For what is still to come depends on
@@ -45,20 +45,21 @@ enum tri_status par_state_border(struct par_checkpoint *checkpoint, struct par_s
  * stopped is lost: the run goes on from the last state. */
 void par_state_let_stop(struct par_checkpoint *checkpoint, struct par_state *state);
 
-/* Runs a phase of the whole mesh to its end, or a refiner of it, from where a state was amid such a one, and keeps
- * states of it on the way: where it is time to, unless more than a tenth of the time would go into that, and where
- * somebody asks for the end (TRI_STOPPED then; a phase remains halted). Also TRI_CANNOT_WRITE, or what the phase or the
- * refiner says. */
+/* Runs a phase to its end, of a column of a sweep or (tiles NULL, only TRI_NONE) of the whole mesh, or a refiner of
+ * that, from where a state was amid such a one, and keeps states of it on the way: where it is time to, unless more
+ * than a tenth of the time would go into that, and where somebody asks for the end (TRI_STOPPED then; a phase remains
+ * halted). Also TRI_CANNOT_WRITE, TRI_NO_MEMORY, or what the phase or the refiner says. */
 enum tri_status par_state_phase(struct par_checkpoint *checkpoint, struct par_state *state,
-                                const struct par_partition *partition, struct tri_error *error);
+                                const struct par_partition *partition, const struct par_tiles *tiles, int32_t only,
+                                struct tri_error *error);
 enum tri_status par_state_call(struct par_checkpoint *checkpoint, struct par_state *state,
                                struct tri_refiner *refiner, struct tri_error *error);
 
 /* --- a sweep */
 
-/* When a sweep begins: the tiles' sink becomes the checkpoint's, which may hand out tiles again, and, once a
- * column is finished, the mesh is no longer stopped in the midst of one. Then par_tiles_begin; and where there is a
- * state, *odd becomes the column that is next, and the mesh, the lists and the tiles' counts what they were.
+/* When a sweep begins: the tiles' sink becomes the checkpoint's, which may hand out tiles again; then par_tiles_begin;
+ * and where there is a state, *odd becomes the column that is next, or that the state is amid, and the mesh, the lists
+ * and the tiles' counts what they were. From here on the mesh is stopped where a state is kept alone.
  * TRI_BAD_INPUT: the state is damaged. TRI_NO_MEMORY, TRI_CANNOT_WRITE, or what the sink says. */
 enum tri_status par_state_begin_sweep(struct par_checkpoint *checkpoint, struct par_state *state,
                                       struct par_tiles *tiles, int32_t *odd, struct tri_error *error);

@@ -9,6 +9,11 @@
 #include "sched/sweep/state.h"
 #include "triangle/clock.h"
 
+static enum tri_status no_memory(struct tri_error *error)
+{
+    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the worklists of a sweep");
+}
+
 struct par_tiles par_tiles_of(const struct par_state *state, const struct par_partition *partition)
 {
     return (struct par_tiles){.mesh = state->mesh, .partition = partition, .executor = &state->executor,
@@ -45,19 +50,44 @@ static enum tri_status finish_column(struct par_state *state, struct par_tiles *
     return status;
 }
 
-/* The blocks of an odd column, and those of the even one behind it. */
-static enum tri_status refine_columns(struct par_state *state, const struct par_partition *partition, int32_t odd,
+static enum tri_status refine_column(struct par_state *state, const struct par_tiles *tiles, int32_t column,
+                                     struct tri_error *error)
+{
+    struct par_checkpoint *checkpoint = state->options->checkpoint;
+    return checkpoint ? par_state_phase(checkpoint, state, tiles->partition, tiles, column, error)
+                      : par_phase(state, tiles->partition, state->phase, column, error);
+}
+
+/* The blocks of an odd column, and those of the even one behind it, from state->phase on. */
+static enum tri_status refine_columns(struct par_state *state, const struct par_tiles *tiles, int32_t odd,
                                       struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
     assert(odd % 2 == 1);
-    for (int phase = 0; !status && phase < PAR_PHASES; phase++) {
-        int32_t column = phase < 2 ? odd : odd - 1;
-        par_tell(state, phase + 1);
-        if (column < partition->n_columns)
-            status = par_phase(state, partition, phase, column, error);
+    state->column = odd / 2 + 1;
+    for (; !status && state->phase < PAR_PHASES; state->phase += !status) {
+        int32_t column = state->phase < 2 ? odd : odd - 1;
+        par_tell(state, state->phase + 1);
+        if (column < tiles->partition->n_columns)
+            status = refine_column(state, tiles, column, error);
     }
     return status;
+}
+
+/* A column from its beginning, or from where the state is amid it. */
+static enum tri_status go_through(struct par_state *state, const struct par_tiles *tiles,
+                                  const struct par_ahead *ahead, int32_t odd, struct tri_error *error)
+{
+    if (!state->amid && !par_ahead_give(ahead, state, odd))
+        return no_memory(error);
+    state->phase = state->amid ? state->phase : 0;
+    state->amid = true;
+    enum tri_status status = refine_columns(state, tiles, odd, error);
+    if (status)
+        return status;
+    state->amid = false;
+    state->phase = 0;
+    return TRI_OK;
 }
 
 static enum tri_status end_tiles(struct par_state *state, struct par_tiles *tiles, int32_t odd,
@@ -69,11 +99,6 @@ static enum tri_status end_tiles(struct par_state *state, struct par_tiles *tile
     return par_state_last_column(state->options->checkpoint, state, tiles, odd, error);
 }
 
-static enum tri_status no_memory(struct tri_error *error)
-{
-    return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for the worklists of a sweep");
-}
-
 /* From column `odd` on, until something is left behind. */
 static enum tri_status sweep_columns(struct par_state *state, struct par_tiles *tiles, const struct par_ahead *ahead,
                                      int32_t odd, bool *left, struct tri_error *error)
@@ -81,8 +106,7 @@ static enum tri_status sweep_columns(struct par_state *state, struct par_tiles *
     struct par_checkpoint *checkpoint = state->options->checkpoint;
     enum tri_status status = TRI_OK;
     for (; !status && !*left && odd <= tiles->partition->n_columns; odd += 2) {
-        status = par_ahead_give(ahead, state, odd) ? TRI_OK : no_memory(error);
-        status = status ? status : refine_columns(state, tiles->partition, odd, error);
+        status = go_through(state, tiles, ahead, odd, error);
         if (status || odd == 1)
             continue;
         status = finish_column(state, tiles, odd - 2, left, error);
@@ -97,17 +121,20 @@ static enum tri_status begin_sweep(struct par_state *state, struct par_tiles *ti
                                    int32_t *odd, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
-    *odd = 1;
+    *odd = 0; /* unless there is a state */
+    state->n_columns = (tiles->partition->n_columns + 1) / 2;
     if (!par_ahead_make(ahead, state, tiles->partition))
         status = no_memory(error);
     else if (state->options->checkpoint)
         status = par_state_begin_sweep(state->options->checkpoint, state, tiles, odd, error);
     else
         status = par_tiles_begin(tiles, tiles->partition->estimate, error);
-    if (*odd == 1)
+    const bool fresh = *odd == 0;
+    *odd = fresh ? 1 : *odd;
+    if (fresh)
         state->worklist.n = 0;
-    state->counts_remaining = state->options->count_remaining && (*odd == 1 || state->counts_remaining);
-    if (!status && state->counts_remaining && *odd == 1 && !par_remain_begin(state))
+    state->counts_remaining = state->options->count_remaining && (fresh || state->counts_remaining);
+    if (!status && state->counts_remaining && fresh && !par_remain_begin(state))
         status = no_memory(error);
     return status;
 }
@@ -123,7 +150,8 @@ enum tri_status par_sweep(struct par_state *state, const struct par_partition *p
     status = status ? status : sweep_columns(state, &tiles, &ahead, odd, &left, error);
     if (!status && state->counts_remaining)
         par_remain_settle(state);
-    state->counts_remaining = false;
+    state->counts_remaining = state->amid = false;
+    state->column = state->n_columns = 0;
     par_ahead_free(&ahead);
     if (!status && left && state->options->checkpoint)
         status = par_state_give_up_sweep(state->options->checkpoint, state, error);

@@ -367,7 +367,7 @@ kill -TERM "$(cat .pid1)"
 wait $launcher
 check "the first one's" test "$(cat .code0)" -eq 143
 check "the other's" test "$(cat .code1)" -eq 143
-check "it is told once" test "$(grep -c 'stopped by SIGTERM after .* nothing was written' .err)" -eq 1
+check "it is told once" test "$(grep -c 'stopped by SIGTERM after .* no file was written' .err)" -eq 1
 check "the state is kept" grep -q 'to go on: ptriangle -Qpq30a0.00001e letter --output two --every 0 --resume state' .err
 rm -rf state
 
@@ -384,7 +384,7 @@ while [ ! -e state/piece-0-0 ] && kill -0 $launcher; do
 done
 kill -TERM "$(cat .pid1)"
 wait $launcher
-complains 'stopped by .* while [a-z]+: about [0-9]+ triangles in the part of the first task; nothing was written'
+complains 'stopped by .* while [a-z]+: about [0-9]+ triangles in the part of the first task; no file was written'
 rm -rf state two.*
 
 # --- stopped by the limit of time, the first task writes what it has

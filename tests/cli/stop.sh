@@ -98,6 +98,52 @@ if [ -x "$bin/ptriangle" ]; then
         complains 'time-limit: '
     done
 
+    # --- what a checkpoint keeps, amid the first column of a sweep
+    fresh letter.poly
+    ls >.before
+    what="ptriangle --checkpoint, stopped amid a column"
+    export PTRIANGLE_TEST_SWEEP=1
+    start ptriangle -pq30a0.000005 letter --threads 2 --output out --checkpoint state --progress
+    unset PTRIANGLE_TEST_SWEEP
+    await grep -q 'refining: column 1 of ' .err
+    kill -s TERM $job
+    wait $job 2>/dev/null
+    check "exit code" test $? -eq 143
+    complains '^ptriangle: stopped by SIGTERM after .* while refining: about [1-9][0-9]* triangles; no file was written$'
+    check "the last line tells what is kept" sh -c 'tail -n 1 .err | grep -Eq \
+        "^ptriangle: [1-9][0-9]* triangles are kept; to go on: ptriangle -pq30a0.000005 .*--progress --resume state\$"'
+    check "it is not said to be refined" sh -c '! grep -Eq "refined to|-[0-9]+/s" .err'
+    check "the state is there" test -s state/state-0
+    check "no file" test -z "$(ls out* .tri-* 2>/dev/null)"
+    rm -rf state
+
+    # --- what stands in the way of an end is not waited for: a pipe that nobody reads
+    for area in "" q30a0.01; do
+        fresh letter.poly
+        mkfifo letter.1.ele
+        ls >.before
+        what="ptriangle -p$area --checkpoint, while a pipe is opened"
+        PTRIANGLE_TEST_BLOCK=60 start ptriangle "-p$area" letter --checkpoint state --every 0
+        await grep -q 'Writing letter.1.ele' .out # as soon as it is said
+        kill -s TERM $job
+        wait $job 2>/dev/null
+        check "exit code" test $? -eq 143
+        if [ -n "$area" ]; then
+            complains 'stopped by SIGTERM while writing(: [0-9]+ triangles)?; no file was written$'
+            complains '^ptriangle: [1-9][0-9]* triangles are kept; to go on: '
+            rm letter.1.ele
+            PTRIANGLE_TEST_BLOCK=60 mesher 0 ptriangle "-Qp$area" letter --resume state
+            PTRIANGLE_TEST_BLOCK=60 mesher 0 ptriangle "-Qp$area" letter --output again
+            check "the same mesh" sh -c 'grep -v "^#" letter.1.ele >.one; grep -v "^#" again.ele | cmp -s - .one'
+            rm -f .one again.*
+            wrote letter.1.node letter.1.poly
+        else
+            complains 'stopped by SIGTERM while writing(: [0-9]+ triangles)?; nothing was written, and nothing is kept$'
+            rm -rf state
+            wrote
+        fi
+    done
+
     # --- no file twice, and none that was read
     fresh letter.poly
     cksum letter.poly >.expected

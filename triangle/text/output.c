@@ -232,7 +232,13 @@ static enum tri_status open_in_place(struct tri_output *output, struct tri_error
     while (output->file < 0 && errno == EINTR && !tri_stop_is_asked(output->stop)); /* a pipe that nobody reads */
     if (output->file < 0)
         return errno == EINTR ? tri_fail_stopped(error) : cannot_create(output, error);
-    return TRI_OK;
+    struct stat now;
+    const int known = fstat(output->file, &now);
+    if (known == 0 && !S_ISREG(now.st_mode))
+        return TRI_OK;
+    close(output->file);
+    output->file = -1;
+    return tri_fail(error, TRI_CANNOT_WRITE, output->path, 0, "has become another file since it was looked at");
 }
 
 /* Refuses what cannot become a file. */
