@@ -11,20 +11,25 @@ tree=$PWD
 work=$(mktemp -d)
 root=$work/root
 trap 'rm -rf --one-file-system "$work"' EXIT
+trap 'exit 1' INT TERM
 commands=$(sed -n '/^## Set up/,/^## [^S]/s/^    \(tools\/[a-z-]*\.sh\).*/\1/p' README.md | head -n 2)
 
-# URI, release and section of every package list of this machine that is of the distribution's own release.
+# URI, release and section of each package list of this machine that is the distribution's own.
 sources() {
-    # shellcheck disable=SC1091,SC2154 # os-release sets it
-    (. /etc/os-release && apt-get indextargets --format '$(REPO_URI) $(CODENAME) $(COMPONENT)' 'Identifier: Packages' |
-        awk -v release="$VERSION_CODENAME" '$2 == release && !seen[$0]++')
+    # shellcheck disable=SC1091,SC2154,SC2016 # os-release sets them; apt fills in
+    (. /etc/os-release && apt-get indextargets --format '$(REPO_URI) $(CODENAME) $(COMPONENT) $(ORIGIN)' \
+        'Identifier: Packages' | awk -v release="$VERSION_CODENAME" -v origin="$ID" \
+        '$2 == release && tolower($4) == origin && !seen[$0]++ { print $1, $2, $3 }')
 }
 
 make_root() {
-    [ "$(id -u)" -eq 0 ] && command -v apt-get && unshare --mount true || return 1
-    command -v debootstrap || { apt-get -q update && apt-get -q install -y --no-install-recommends debootstrap; } || return 1
+    [ "$(id -u)" -eq 0 ] || { echo "not root"; return 1; }
+    command -v apt-get && unshare --mount true || return 1
+    apt-get -q update || true
+    command -v debootstrap || apt-get -q install -y --no-install-recommends debootstrap || return 1
+    # shellcheck disable=SC2046 # three words
     set -- $(sources | head -n 1)
-    [ $# -eq 3 ] || return 1
+    [ $# -eq 3 ] || { echo "apt names no mirror"; return 1; }
     sections=$(sources | awk -v uri="$1" '$1 == uri { print $3 }' | paste -s -d ,)
     eval "$(apt-config shell http_proxy Acquire::http::Proxy https_proxy Acquire::https::Proxy)"
     export ${http_proxy:+http_proxy} ${https_proxy:+https_proxy}
