@@ -22,7 +22,7 @@ class Ptriangle(CMakePackage):
     depends_on("cxx", type="build")
     depends_on("cmake@3.22:", type="build")
     depends_on("jansson")
-    depends_on("hdf5@1.10.3:~mpi", when="+hdf5")
+    depends_on("hdf5@1.10.5:~mpi", when="+hdf5")
     depends_on("zlib-api", when="+hdf5")
     depends_on("cairo+svg+png", when="+pictures")
     conflicts("%gcc@:10", msg="std::from_chars for double came with GCC 11")

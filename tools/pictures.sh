@@ -1,6 +1,6 @@
 #!/bin/sh
 # Makes the pictures of the README, docs/pictures/*.png, anew from data/. Smaller files where pngquant and optipng are
-# installed. Usage: tools/make-pictures.sh
+# installed. Usage: tools/pictures.sh
 set -eu
 cd "$(dirname "$0")/.."
 programs=$(cd "${PTRIANGLE_BUILD:-build}/release/bin" && pwd) # tools/build.sh release
@@ -31,9 +31,4 @@ frame=20000,290000,125000,380000 # metres
 plot norway norway_sea --legend off --size 680 --mark $frame
 plot norway_zoom norway_sea --size 1000 --window $frame
 plot section section --color region --size 1100
-if [ -x "$programs/ptriangle" ]; then
-    cp data/coast/norway_sea.poly "$scratch/schedule.poly"
-    "$programs/ptriangle" -pq30a6000000Q --blocks "$scratch/blocks.txt" "$scratch/schedule.poly"
-    plot schedule schedule --color block --blocks "$scratch/blocks.txt" --edges off --size 640
-fi
 ls -l "$pictures"
