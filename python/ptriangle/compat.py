@@ -5,14 +5,16 @@ purpose: what ends the interpreter there is an exception here; input without mea
 exist) is refused or skipped; the switch u needs the argument `unsuitable`.
 """
 import os
-from ctypes import POINTER, byref, c_double, c_int, cast, string_at
+from ctypes import byref, string_at
 
 import numpy as np
 
 from . import _library as lib
+from ._calls import Calls
 from ._compat_files import load, loads
 from ._compat_plot import compare, comparev, plot
-from ._library import Ints, Reals, TriangulateIO, TriangulateOptions, library
+from ._errors import InputError, exception_of
+from ._library import TriangulateIO, TriangulateOptions, library
 
 __version__ = "20250106"  # of the package whose functions these are
 __all__ = ["compare", "comparev", "convex_hull", "delaunay", "get_data", "load", "loads", "plot", "show_data",
@@ -50,10 +52,10 @@ def _fill(io, key, given):
     if rows.ndim == 1:
         rows = rows.reshape(-1, 1)
     if rows.ndim != 2 or (isinstance(width, int) and rows.shape[1] != width):
-        raise lib.InputError("%s: shape %s is not (n, %s)" % (key, np.shape(given), width), 3)
+        raise InputError("%s: shape %s is not (n, %s)" % (key, np.shape(given), width))
     there = getattr(io, count_name)
     if there not in (0, len(rows)):
-        raise lib.InputError("%s: %d rows instead of %d" % (key, len(rows), there), 3)
+        raise InputError("%s: %d rows instead of %d" % (key, len(rows), there))
     rows = np.ascontiguousarray(rows)
     setattr(io, count_name, len(rows))
     if isinstance(width, str):
@@ -82,7 +84,7 @@ def _release(io, borrowed):
             library.trifree(address)
 
 
-def _options_of(unsuitable, faults, words):
+def _options_of(unsuitable, calls, words):
     options = TriangulateOptions()
 
     def tell(_user, is_error, text):
@@ -90,37 +92,33 @@ def _options_of(unsuitable, faults, words):
             words.append(text.decode("utf-8", "replace"))
 
     def ask(_user, a, b, c, area):
-        try:
-            return int(not faults and bool(unsuitable((a[0], a[1]), (b[0], b[1]), (c[0], c[1]), area)))
-        except BaseException as fault:
-            faults.append(fault)
-            return 0
+        return int(bool(unsuitable((a[0], a[1]), (b[0], b[1]), (c[0], c[1]), area)))
 
     options.message = lib.Message(tell)
     if unsuitable is not None:
-        options.unsuitable = lib.SizeTest(ask)
-    options.stop = lib.StopTest(lambda _user: int(bool(faults)))
+        options.unsuitable = lib.SizeTest(calls.guarded(ask, 0))
+    options.stop = lib.StopTest(lambda _user: int(calls.fault is not None))
     return options
 
 
 def _call(tri, opts, unsuitable=None, with_voronoi=False):
-    data, out, vorout, kept, faults, words = TriangulateIO(), TriangulateIO(), TriangulateIO(), [], [], []
+    data, out, vorout, kept, words = TriangulateIO(), TriangulateIO(), TriangulateIO(), [], []
     if np.asarray(tri.get("vertices", ())).size < 6:
-        raise lib.InputError("Input must have at least three vertices.", 3)
+        raise InputError("Input must have at least three vertices.")
     for key, given in tri.items():
         if key not in _FIELDS:
             raise KeyError(key)
         if key not in ("edges", "edge_markers", "neighbors"):
             kept.append(_fill(data, key, given))
     opts = opts.encode() if isinstance(opts, str) else bytes(opts)
-    options = _options_of(unsuitable, faults, words)
-    status = library.triangulate_with(b"zQ" + opts, byref(data), byref(out), byref(vorout), byref(options))
+    calls = Calls("triangulate()")
+    options = _options_of(unsuitable, calls, words)
     borrowed = {data.holelist, data.regionlist}  # which `out` names as well
     try:
-        if faults:
-            raise faults[0]
+        status = calls.run(library.triangulate_with, b"zQ" + opts, byref(data), byref(out), byref(vorout),
+                           byref(options))
         if status:
-            raise lib.exception_of(status, words[-1] if words else "error %d" % status)
+            raise exception_of(status, words[-1] if words else "error %d" % status)
         mesh = _taken(out, _FIELDS)
         return (mesh, _taken(vorout, _VORONOI)) if with_voronoi else mesh
     finally:
