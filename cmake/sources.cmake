@@ -107,6 +107,11 @@ set(PTRIANGLE_TEXT_SOURCES
     triangle/text/vtu.c
     triangle/text/gmsh.c
     triangle/text/hydro.c
+    triangle/text/bytes.c
+    triangle/text/tags.c
+    triangle/text/read_vtu.c
+    triangle/text/read_gmsh.c
+    triangle/text/read_hydro.c
     triangle/text/formats.c
     triangle/api/files.c)
 
@@ -209,6 +214,7 @@ set(PTRIANGLE_PARALLEL_PROGRAMS ptriangle)
 set(PTRIANGLE_PLOT_SOURCES
     drivers/interrupt.c
     drivers/plot_part.c
+    drivers/plot_density.c
     drivers/plot_colour.c
     drivers/plot_shade.c
     drivers/plot_field.c

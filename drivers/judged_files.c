@@ -17,7 +17,6 @@
 #define UNLISTED_SHARE 8.0  /* without a .poly file, should the mesh be full of holes */
 #define BOUNDARY_SHARE 10.0 /* of a .poly file, all of whose subsegments may bound the mesh */
 
-/* Cuts one of the suffixes off. */
 bool judged_cut_suffix(char *path, const char *suffix)
 {
     size_t n = strlen(path), m = strlen(suffix);
@@ -25,6 +24,11 @@ bool judged_cut_suffix(char *path, const char *suffix)
         return false;
     path[n - m] = '\0';
     return true;
+}
+
+bool judged_cut_text_suffix(char *path)
+{
+    return judged_cut_suffix(path, ".node") || judged_cut_suffix(path, ".ele") || judged_cut_suffix(path, ".poly");
 }
 
 struct neighbor_rows {
@@ -253,9 +257,50 @@ static enum tri_status open_h5(struct judged_files *f, const struct judged_ask *
     return TRI_OK;
 }
 
+bool judged_is_h5(const struct judged_ask *ask) { return !ask->is_base && tri_name_ends(ask->base, ".h5"); }
+
+const struct tri_format *judged_format(const struct judged_ask *ask)
+{
+    const struct tri_format *format = ask->is_base ? NULL : tri_format_of(ask->base);
+    if (format == NULL || access(ask->base, F_OK) == 0)
+        return format;
+    char *node = tri_joined(ask->base, ".node");
+    const bool is_base = node != NULL && access(node, F_OK) == 0;
+    free(node);
+    return is_base ? NULL : format;
+}
+
+enum tri_status judged_check_size(const char *path, double memory, struct tri_error *error)
+{
+    const double size = size_of(path);
+    if (size < JUDGED_WORTH_A_LOOK || TEXT_SHARE * size <= memory)
+        return TRI_OK;
+    return tri_fail(error, TRI_NO_MEMORY, path, 0, "has %.3g MB, which are read into memory and take %.3g MB there; "
+                    "%.3g MB may be used: a mesh of any size is read of .h5 and of .node, .ele and .poly",
+                    1e-6 * size, 1e-6 * TEXT_SHARE * size, 1e-6 * memory);
+}
+
+/* Where a format keeps the boundary alone, which segments there are is not known. */
+static enum tri_status read_format(struct judged_files *f, const struct judged_ask *ask,
+                                   const struct tri_format *format, struct tri_error *error)
+{
+    enum tri_status status = judged_check_size(ask->base, ask->memory - TEXT_SHARE * size_of(ask->input), error);
+    status = status ? status : format->read(ask->base, &f->mesh, &f->elements, ask->executor, error);
+    if (status != TRI_OK)
+        return status;
+    f->listed = format->inner_segments;
+    f->boundary_alone = !f->listed;
+    f->n_nodes = f->mesh.n_points;
+    f->source = take_arrays(f);
+    return TRI_OK;
+}
+
 enum tri_status judged_read(struct judged_files *f, const struct judged_ask *ask, struct tri_error *error)
 {
-    enum tri_status status = tri_name_ends(ask->base, ".h5") ? open_h5(f, ask, error) : read_mesh(f, ask, error);
+    const struct tri_format *format = judged_format(ask);
+    enum tri_status status = judged_is_h5(ask) ? open_h5(f, ask, error)
+                             : format != NULL  ? read_format(f, ask, format, error)
+                                               : read_mesh(f, ask, error);
     if (status == TRI_OK && ask->input != NULL)
         status = read_input(f, ask, error);
     if (status == TRI_OK)

@@ -17,7 +17,9 @@ const char long_options_help[] =
     "  --holes auto       with -p: segments tell what is inside, and no hole points are needed: what lies\n"
     "                     behind an even number of them is removed. Rings may lie in rings\n"
     "  --holes points     hole points tell (the default)\n"
-    "  --output BASE      results are called BASE.node, BASE.ele, BASE.poly and so on\n"
+    "  --output BASE      results are called BASE.node, BASE.ele, BASE.poly and so on; one of these endings is no\n"
+    "                     part of BASE, and any other of a dot and letters (.shp) is refused: run.1 and mesh.v2 are\n"
+    "                     names, and mesh.fine.node says that mesh.fine is one\n"
     "  --output FILE.h5 | FILE.vtu | FILE.msh | FILE.2dm | FILE.14 | FILE.grd\n"
     "                     the mesh as HDF5, with FILE.xdmf beside it, or for VTK and ParaView, Gmsh, SMS or ADCIRC,\n"
     "                     in place of BASE.node and so on, or beside them if --output BASE is given, too; up to 4\n"
@@ -241,6 +243,10 @@ static enum tri_status take_output(struct long_options *options, const struct ki
         return add_file(options->streams, &options->n_streams, value, error);
     if (tri_format_of(value))
         return add_file(options->exports, &options->n_exports, value, error);
+    const char *missing = value[tri_format_base(value)] ? NULL : tri_format_missing(value);
+    if (missing)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--output: there is no format %.20s: there are " STREAM_SUFFIX ", "
+                        TRI_FORMAT_SUFFIXES ", and .node, .ele, .poly; for a name with a dot add .node", missing);
     if (*value && !is_base(value))
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0,
                         "--output: \"%.40s\" does not end in a name that .node and so on could go behind", value);

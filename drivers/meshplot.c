@@ -57,6 +57,7 @@ enum colouring { BY_QUALITY, BY_REGION, BY_AREA, BY_BLOCK, BY_NOTHING, BY_DENSIT
 struct settings {
     const char *base, *output, *blocks;
     enum colouring colour;
+    bool is_base; /* a suffix has been cut off `base` */
     bool has_window;
     struct plot_style style; /* window and mark in the caller's coordinates */
 };
@@ -202,45 +203,90 @@ static struct plot_box whole(const struct plot_mesh *mesh)
 
 /* --- meshes of any size */
 
-static enum tri_status take_part(struct settings *s, struct files *f, const struct tri_check_source *source,
-                                 struct tri_error *error)
+static enum tri_status take_densities(struct settings *s, struct files *f, const struct tri_check_source *source,
+                                      struct tri_error *error)
 {
-    enum tri_status status = TRI_OK;
-    if (s->colour == BY_BLOCK)
-        return tri_fail(error, TRI_BAD_INPUT, "", 0, "blocks are drawn of meshes in text files that fit into memory");
-    if (!s->has_window)
-        status = plot_part_box(source, &s->style.window, error);
-    s->has_window = true;
-    f->all_points = source->n_points;
-    f->all_triangles = source->n_triangles;
-    if (status != TRI_OK || s->colour != BY_DENSITY)
-        return status ? status : plot_part_take(source, &s->style.window, &f->mesh, &f->elements, error);
     f->density.box = s->style.window;
     plot_window_pixels(&s->style, &f->density.width, &f->density.height);
     return plot_part_count(source, &f->density, &f->mesh, error);
 }
 
-static enum tri_status read_part(struct settings *s, struct files *f, double memory, struct tri_error *error)
+/* What shows in the window; TRI_TOO_LARGE, and nothing: that is too much to be drawn. */
+static enum tri_status take_triangles(const struct settings *s, struct files *f, const struct tri_check_source *source,
+                                      bool all, struct tri_error *error)
 {
-    const char *folder = getenv("TMPDIR");
-    const struct judged_ask ask = {s->base, NULL, memory, folder != NULL && folder[0] != '\0' ? folder : "/tmp", NULL};
+    if (all && source->n_triangles > PLOT_MOST_TRIANGLES)
+        return TRI_TOO_LARGE;
+    enum tri_status status = plot_part_take(source, &s->style.window, &f->mesh, &f->elements, error);
+    if (status == TRI_TOO_LARGE) {
+        tri_pslg_free(&f->mesh);
+        tri_elements_free(&f->elements);
+    }
+    return status;
+}
+
+static void say_densities(struct settings *s)
+{
+    fail(0, "there are more than %d triangles to show: a picture of densities; --window shows those of a part",
+         (int)PLOT_MOST_TRIANGLES);
+    s->colour = BY_DENSITY;
+}
+
+static enum tri_status take_part(struct settings *s, struct files *f, const struct tri_check_source *source,
+                                 struct tri_error *error)
+{
+    const bool all = !s->has_window;
+    enum tri_status status = TRI_OK;
+    if (s->colour == BY_BLOCK)
+        return tri_fail(error, TRI_BAD_INPUT, "", 0, "blocks are drawn of meshes in text files that fit into memory");
+    if (all)
+        status = plot_part_box(source, &s->style.window, error);
+    s->has_window = true;
+    f->all_points = source->n_points;
+    f->all_triangles = source->n_triangles;
+    if (status == TRI_OK && s->colour != BY_DENSITY)
+        status = take_triangles(s, f, source, all, error);
+    if (status == TRI_TOO_LARGE) {
+        say_densities(s);
+        status = TRI_OK;
+    }
+    return status != TRI_OK || s->colour != BY_DENSITY ? status : take_densities(s, f, source, error);
+}
+
+static enum tri_status read_part(struct settings *s, struct files *f, const struct judged_ask *ask,
+                                 struct tri_error *error)
+{
     struct judged_files judged = {0};
-    enum tri_status status = judged_read(&judged, &ask, error);
+    enum tri_status status = judged_read(&judged, ask, error);
     if (status == TRI_OK)
         status = take_part(s, f, &judged.source, error);
     judged_files_free(&judged);
     return status;
 }
 
+static enum tri_status read_format(struct files *f, const struct judged_ask *ask, const struct tri_format *format,
+                                   struct tri_error *error)
+{
+    enum tri_status status = judged_check_size(ask->base, ask->memory, error);
+    return status ? status : format->read(ask->base, &f->mesh, &f->elements, NULL, error);
+}
+
 static enum tri_status read_mesh(struct settings *s, struct files *f, struct tri_error *error)
 {
-    const double memory = 0.8 * resources_memory();
-    if (s->colour == BY_DENSITY || tri_name_ends(s->base, ".h5") || !judged_fits(s->base, memory))
-        return read_part(s, f, memory, error);
-    enum tri_status status = read_text(f, s->base, error);
+    const char *folder = getenv("TMPDIR");
+    const struct judged_ask ask = {.base = s->base, .is_base = s->is_base, .memory = 0.8 * resources_memory(),
+                                   .scratch = folder != NULL && folder[0] != '\0' ? folder : "/tmp"};
+    const struct tri_format *format = judged_format(&ask);
+    if (s->colour == BY_DENSITY || judged_is_h5(&ask) || (format == NULL && !judged_fits(s->base, ask.memory)))
+        return read_part(s, f, &ask, error);
+    enum tri_status status = format != NULL ? read_format(f, &ask, format, error) : read_text(f, s->base, error);
     f->all_points = f->mesh.n_points;
     f->all_triangles = f->elements.n;
-    return status;
+    if (status != TRI_OK || f->elements.n <= PLOT_MOST_TRIANGLES || s->colour == BY_BLOCK)
+        return status;
+    tri_pslg_free(&f->mesh);
+    tri_elements_free(&f->elements);
+    return read_part(s, f, &ask, error);
 }
 
 /* --- drawing and writing */
@@ -257,7 +303,7 @@ static enum tri_status shade(const struct settings *s, const struct files *f, co
         return plot_shade_area(shading, mesh, error);
     case BY_REGION:
         if (f->elements.n_attributes == 0)
-            return tri_fail(error, TRI_BAD_INPUT, "", 0, "%s.ele has no attribute for the region (made without -A?)",
+            return tri_fail(error, TRI_BAD_INPUT, "", 0, "%s has no attribute of triangles for the region (made without -A?)",
                             s->base);
         return plot_shade_region(shading, mesh, f->elements.attributes, f->elements.n_attributes, error);
     case BY_BLOCK:
@@ -466,7 +512,7 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     }
     if (s->colour == BY_BLOCK && s->blocks == NULL)
         return fail(MISUSE, "--color block needs --blocks FILE");
-    (void)(judged_cut_suffix(mesh, ".node") || judged_cut_suffix(mesh, ".ele") || judged_cut_suffix(mesh, ".poly"));
+    s->is_base = judged_cut_text_suffix(mesh);
     s->base = mesh;
     return 0;
 }

@@ -51,9 +51,11 @@ struct plot_box {
 struct plot_density {
     int width, height;   /* pixels */
     struct plot_box box; /* what they cover, in the caller's coordinates */
-    int64_t *count;      /* [height][width] from the top */
-    int64_t n_triangles; /* sum of them */
+    double *count;       /* [height][width] from the top; below 1 where triangles are larger than pixels */
 };
+
+/* Adds one triangle, in the caller's coordinates. O(pixels that it covers). */
+void plot_density_add(struct plot_density *density, const double *const at[3]);
 
 /* --- shading */
 

@@ -12,8 +12,7 @@ enum {
     BLOCK_BITS = 12, /* points of a block */
     BLOCK = 1 << BLOCK_BITS,
     MOST_BLOCKS = 1 << 12,
-    SLICE = 1 << 16,          /* triangles or segments */
-    MOST_TRIANGLES = 1 << 24  /* in a picture */
+    SLICE = 1 << 16 /* triangles or segments */
 };
 
 struct cache {
@@ -139,29 +138,20 @@ static enum tri_status take_triangle(struct part *p, const int64_t *v, const dou
 {
     if (!shows(p, v, 3))
         return TRI_OK;
-    if (p->corners.n / 3 >= MOST_TRIANGLES)
-        return tri_fail(error, TRI_TOO_LARGE, "", 0,
-                        "there are more than %d triangles to draw: show a smaller --window, or --color density",
-                        (int)MOST_TRIANGLES);
+    if (p->corners.n / 3 >= PLOT_MOST_TRIANGLES)
+        return tri_fail(error, TRI_TOO_LARGE, "", 0, "there are more than %d triangles to draw",
+                        (int)PLOT_MOST_TRIANGLES);
     enum tri_status status = add(&p->corners, v, 3, error);
     return !status && attribute != NULL ? add_attribute(p, *attribute, error) : status;
 }
 
 static void count_triangle(struct part *p, const int64_t *v)
 {
-    struct plot_density *d = p->density;
-    double x = 0, y = 0;
-    for (int k = 0; k < 3; k++) {
-        const double *at = place_of(&p->cache, v[k]);
-        x += at[0] / 3;
-        y += at[1] / 3;
-    }
-    double column = (x - d->box.x0) / (d->box.x1 - d->box.x0) * d->width;
-    double row = (d->box.y1 - y) / (d->box.y1 - d->box.y0) * d->height;
-    if (!(column >= 0 && column < d->width && row >= 0 && row < d->height))
-        return;
-    d->count[(size_t)row * (size_t)d->width + (size_t)column]++;
-    d->n_triangles++;
+    double corner[3][2];
+    const double *at[3];
+    for (int k = 0; k < 3; k++) /* which a later one may push out of the cache */
+        at[k] = memcpy(corner[k], place_of(&p->cache, v[k]), sizeof corner[k]);
+    plot_density_add(p->density, at);
 }
 
 static enum tri_status each_triangle(struct part *p, int64_t *corners, double *attributes, struct tri_error *error)

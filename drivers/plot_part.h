@@ -8,6 +8,8 @@
 #include "triangle/pslg.h"
 #include "triangle/reconstruct.h"
 
+enum { PLOT_MOST_TRIANGLES = 1 << 24 }; /* in a picture that shows each */
+
 /* The box around all points, a little wider, and never flat. */
 enum tri_status plot_part_box(const struct tri_check_source *source, struct plot_box *box, struct tri_error *error);
 
@@ -16,7 +18,7 @@ enum tri_status plot_part_box(const struct tri_check_source *source, struct plot
 enum tri_status plot_part_take(const struct tri_check_source *source, const struct plot_box *window,
                                struct tri_pslg *mesh, struct tri_elements *elements, struct tri_error *error);
 
-/* Counts the triangles in density->box by the pixel that their centroid lies in, and takes segments as above. */
+/* Counts the triangles at each pixel of density->box, and takes segments as above. */
 enum tri_status plot_part_count(const struct tri_check_source *source, struct plot_density *density,
                                 struct tri_pslg *mesh, struct tri_error *error);
 

@@ -188,26 +188,37 @@ enum tri_status plot_shade_area(struct plot_shading *s, const struct plot_mesh *
 
 /* --- density */
 
+/* Logarithms of the least and the most there is at a pixel, at least a decade apart. */
+static void density_range(const struct plot_density *d, double *low, double *high)
+{
+    double least = 1, most = 0;
+    for (int32_t i = 0; i < d->width * d->height; i++) {
+        least = d->count[i] > 0 && d->count[i] < least ? d->count[i] : least;
+        most = d->count[i] > most ? d->count[i] : most;
+    }
+    *low = log10(least);
+    *high = fmax(log10(most > 0 ? most : 1), *low + 1);
+}
+
 enum tri_status plot_shade_density(struct plot_shading *s, const struct plot_density *d, struct tri_error *error)
 {
     const struct plot_mesh pixels = {.n_triangles = d->width * d->height};
-    int64_t most = 1;
+    double low, high, most = 0;
     if (begin(s, &pixels, SCALE_SHADES, error) != TRI_OK)
         return TRI_NO_MEMORY;
-    for (int32_t i = 0; i < pixels.n_triangles; i++)
-        most = d->count[i] > most ? d->count[i] : most;
-    const double high = fmax(log10((double)most), 1);
+    density_range(d, &low, &high);
     for (int32_t i = 0; i < pixels.n_triangles; i++) {
         if (d->count[i] > 0)
-            set(s, i, level(log10((double)d->count[i]) / high));
+            set(s, i, level((log10(d->count[i]) - low) / (high - low)));
         else
             s->shade[i] = SCALE_SHADES;
+        most = fmax(most, d->count[i]);
     }
     fill_scale(s);
     s->density = d;
     s->title = "triangles at each pixel";
-    add_log_ticks(s, 0, high);
-    (void)snprintf(s->fact, sizeof s->fact, "at most %lld at a pixel", (long long)most);
+    add_log_ticks(s, low, high);
+    (void)snprintf(s->fact, sizeof s->fact, "at most %.3g at a pixel", most);
     return TRI_OK;
 }
 

@@ -403,12 +403,12 @@ static enum tri_status write_further(void *user, struct run *run, struct tri_out
 
 /* --- arguments */
 
-/* --output names the files whatever -I says. */
+/* --output names the files whatever -I says; the suffix of one of them goes. */
 static enum tri_status name_output(struct arguments *arguments, const char *base, struct tri_error *error)
 {
     if (!base || !arguments->file)
         return TRI_OK;
-    char *output = tri_joined(base, "");
+    char *output = tri_name(base, tri_format_base(base), "");
     if (!output)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for file names");
     free(arguments->output);

@@ -119,7 +119,7 @@ static void add_hint(const struct runner *r)
     size_t n = strlen(error->text);
     if (is_another || is_no_text)
         snprintf(error->text + n, sizeof error->text - n, " (what is read are Triangle's .node, .poly, .ele and .area"
-                 " files)");
+                 " files; docs/formats.md, \"From maps\", makes a .poly of GeoJSON, shapefiles and others)");
 }
 
 /* Once the .poly has been read it is known whether the .node is, too. */

@@ -65,7 +65,8 @@ static const char help[] = /* in the form that cmake/help.awk makes a manual pag
     "exist are found on reading). Numbers printed count as the files do.\n";
 
 struct settings {
-    const char *base; /* name without suffix */
+    const char *base; /* name without suffix, or of one file */
+    bool is_base;     /* a suffix has been cut off */
     const char *input;
     struct tri_check_options check;
     bool ignore_markers, ignore_regions, json, quiet;
@@ -128,6 +129,8 @@ static enum tri_status judge(const struct settings *s, struct judged_files *f, c
     f->source.given &= ~ignored;
     struct tri_check_options options = s->check;
     options.base = f->base;
+    if (f->boundary_alone && options.delaunay == TRI_CHECK_CONSTRAINED)
+        options.delaunay = TRI_CHECK_NOT_DELAUNAY; /* which edges are segments inside is not known */
     if (f->source.n_triangles >= WORTH_THREADS) {
         options.executor = executor;
         options.n_threads = threads;
@@ -295,7 +298,7 @@ static int parse_arguments(int argc, char **argv, struct settings *s)
     enum judged_words_end end = judged_words_take(&words, argc, argv, s, &mesh);
     if (end != WORDS_TAKEN)
         return end == WORDS_ANSWERED ? -1 : TROUBLE;
-    (void)(judged_cut_suffix(mesh, ".node") || judged_cut_suffix(mesh, ".ele"));
+    s->is_base = judged_cut_text_suffix(mesh);
     s->base = mesh;
     return 0;
 }
@@ -312,7 +315,7 @@ static int run(const struct settings *s, struct judged_files *f)
     struct tri_check_report report;
     int threads = par_threads(s->threads < PAR_MOST_THREADS ? (int)s->threads : PAR_MOST_THREADS, false);
     const struct tri_executor executor = par_executor(&threads);
-    struct judged_ask ask = {s->base, s->input, memory_to_use(s), s->scratch != NULL ? s->scratch : usual_scratch(),
+    struct judged_ask ask = {s->base, s->is_base, s->input, memory_to_use(s), s->scratch != NULL ? s->scratch : usual_scratch(),
                              &executor};
     enum tri_status status = judged_read(f, &ask, &error);
     if (f->stale_neighbors)

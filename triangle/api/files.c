@@ -1,4 +1,4 @@
-/* Figures from Triangle's files, and to them. */
+/* Figures from files, and to them. */
 #include "ptriangle/files.h"
 
 #include <stdlib.h>
@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "triangle/api/figure.h"
+#include "triangle/text/formats.h"
 #include "triangle/text/names.h"
 #include "triangle/text/read.h"
 #include "triangle/text/write.h"
@@ -60,26 +61,30 @@ static void hand_over(struct tri_figure *figure, struct tri_pslg *pslg, struct t
     (void)tri_api_struct_give(figure, &own, sizeof own, "tri_figure", NULL);
 }
 
-static bool is_known(const char *ending)
+static enum tri_status read_own(const char *path, struct tri_pslg *pslg, struct tri_elements *elements,
+                                struct tri_error *error)
 {
-    return ending && (strcmp(ending, ".node") == 0 || strcmp(ending, ".poly") == 0 || strcmp(ending, ".ele") == 0);
+    const size_t length = tri_format_base(path);
+    struct tri_names names;
+    if (path[length] == 0)
+        return tri_fail(error, TRI_CANNOT_READ, path, 0,
+                        "not a file that is known: .poly, .node, .ele, " TRI_FORMAT_SUFFIXES);
+    enum tri_status status = tri_names_make(&names, path, length, error);
+    status = status ? status : read_by_ending(path + length, &names, pslg, elements, error);
+    tri_names_free(&names);
+    return status;
 }
 
 enum tri_status tri_file_read(const char *path, struct tri_figure *figure, struct tri_error *error)
 {
-    const char *ending = strrchr(path, '.');
+    const struct tri_format *format = tri_format_of(path);
     const struct tri_figure none = tri_no_figure();
     struct tri_pslg pslg = {0};
     struct tri_elements elements = {0};
-    struct tri_names names;
     enum tri_status status = tri_api_struct_give(figure, &none, sizeof none, "tri_figure", error);
     if (status)
         return status;
-    if (!is_known(ending))
-        return tri_fail(error, TRI_CANNOT_READ, path, 0, "not a file that is known: .poly, .node or .ele");
-    status = tri_names_make(&names, path, (size_t)(ending - path), error);
-    status = status ? status : read_by_ending(ending, &names, &pslg, &elements, error);
-    tri_names_free(&names);
+    status = format ? format->read(path, &pslg, &elements, NULL, error) : read_own(path, &pslg, &elements, error);
     if (status) {
         tri_pslg_free(&pslg);
         tri_elements_free(&elements);
@@ -105,12 +110,20 @@ void tri_file_free(struct tri_figure *figure)
 
 /* --- writing */
 
-static enum tri_status open_file(struct tri_output_set *set, const char *base, const char *ending,
-                                 struct tri_output **output, struct tri_error *error)
+/* What is to be written, and under which name. */
+struct writing {
+    const struct tri_api_figure *figure;
+    const char *name;
+    int first;
+    struct tri_output_set *set;
+    struct tri_error *error;
+};
+
+static enum tri_status open_file(const struct writing *w, const char *ending, struct tri_output **output)
 {
-    char *path = tri_joined(base, ending);
-    enum tri_status status = path ? tri_output_open(set, path, output, error)
-                                  : tri_fail(error, TRI_NO_MEMORY, base, 0, "out of memory for file names");
+    char *path = tri_name(w->name, tri_format_base(w->name), ending);
+    enum tri_status status = path ? tri_output_open(w->set, path, output, w->error)
+                                  : tri_fail(w->error, TRI_NO_MEMORY, w->name, 0, "out of memory for file names");
     free(path);
     return status;
 }
@@ -160,39 +173,79 @@ static struct tri_grid grid_of(const struct tri_api_figure *figure, int first)
                              .segment = segment};
 }
 
-static enum tri_status write_all(struct tri_output_set *set, const char *base, const struct tri_api_figure *figure,
-                                 int first, struct tri_error *error)
+static enum tri_status write_own(const struct writing *w)
 {
-    struct tri_grid grid = grid_of(figure, first);
+    struct tri_grid grid = grid_of(w->figure, w->first);
     struct tri_output *output;
-    enum tri_status status = open_file(set, base, ".node", &output, error);
-    grid.has_markers = figure->pslg.markers != NULL;
-    status = status ? status : tri_write_node(output, &grid, NULL, error);
+    enum tri_status status = open_file(w, ".node", &output);
+    grid.has_markers = w->figure->pslg.markers != NULL;
+    status = status ? status : tri_write_node(output, &grid, NULL, w->error);
     if (grid.n_triangles > 0) {
-        status = status ? status : open_file(set, base, ".ele", &output, error);
-        status = status ? status : tri_write_ele(output, &grid, NULL, error);
+        status = status ? status : open_file(w, ".ele", &output);
+        status = status ? status : tri_write_ele(output, &grid, NULL, w->error);
     }
     if (grid.n_segments > 0) {
-        grid.has_markers = figure->pslg.segment_markers != NULL;
-        status = status ? status : open_file(set, base, ".poly", &output, error);
-        status = status ? status : tri_write_poly(output, &grid, NULL, error);
+        grid.has_markers = w->figure->pslg.segment_markers != NULL;
+        status = status ? status : open_file(w, ".poly", &output);
+        status = status ? status : tri_write_poly(output, &grid, NULL, w->error);
     }
     return status;
 }
 
-enum tri_status tri_file_write(const char *base, const struct tri_figure *figure, int first, struct tri_error *error)
+static enum tri_status check_numbers(const struct writing *w, const char *what, const int32_t *at, int64_t n, int width)
+{
+    const int32_t n_points = w->figure->pslg.n_points;
+    for (int64_t i = 0; i < n * width; i++)
+        if (at[i] < 0 || at[i] >= n_points)
+            return tri_fail(w->error, TRI_BAD_INPUT, w->name, 0, "%s %lld names point %ld of %ld: numbers count from 0",
+                            what, (long long)(i / width), (long)at[i], (long)n_points);
+    return TRI_OK;
+}
+
+static enum tri_status write_export(const struct writing *w, const struct tri_format *format)
+{
+    const struct tri_api_figure *f = w->figure;
+    struct tri_grid grid = grid_of(f, 0);
+    struct tri_output *output;
+    enum tri_status status = check_numbers(w, "triangle", f->elements.corners, f->elements.n, 3);
+    status = status ? status : check_numbers(w, "segment", f->pslg.segments, f->pslg.n_segments, 2);
+    status = status ? status : tri_output_open(w->set, w->name, &output, w->error);
+    grid.has_markers = f->pslg.markers || f->pslg.segment_markers;
+    return status ? status : format->write(output, &grid, NULL, w->error);
+}
+
+/* A name is looked at before anything else is. */
+static enum tri_status check_name(const char *name, struct tri_error *error)
+{
+    const char *missing = name[tri_format_base(name)] ? NULL : tri_format_missing(name);
+    if (!missing)
+        return TRI_OK;
+    return tri_fail(error, TRI_BAD_INPUT, name, 0, "there is no format %.20s: there are .node, .ele and .poly, and "
+                    TRI_FORMAT_SUFFIXES "; for a name with a dot add .node", missing);
+}
+
+static enum tri_status write_all(const struct writing *w)
+{
+    const struct tri_format *format = tri_format_of(w->name);
+    tri_outputs_begin(w->set);
+    enum tri_status status = format ? write_export(w, format) : write_own(w);
+    status = status ? status : tri_outputs_commit(w->set, w->error);
+    tri_outputs_abort(w->set);
+    return status;
+}
+
+enum tri_status tri_file_write(const char *name, const struct tri_figure *figure, int first, struct tri_error *error)
 {
     struct tri_api_figure taken;
     struct tri_output_set set;
     if (first != 0 && first != 1)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "files count from 0 or from 1, not from %d", first);
-    enum tri_status status = tri_api_figure_take(&taken, figure, error);
-    if (!status) {
-        tri_outputs_begin(&set);
-        status = write_all(&set, base, &taken, first, error);
-        status = status ? status : tri_outputs_commit(&set, error);
-        tri_outputs_abort(&set);
-    }
+    enum tri_status status = check_name(name, error);
+    if (status)
+        return status;
+    status = tri_api_figure_take(&taken, figure, error);
+    const struct writing writing = {&taken, name, first, &set, error};
+    status = status ? status : write_all(&writing);
     tri_api_figure_free(&taken);
     return status;
 }

@@ -1,4 +1,4 @@
-/* Which writer a name asks for. */
+/* Which writer and reader a name asks for. */
 #include "triangle/text/formats.h"
 
 #include <stddef.h>
@@ -6,9 +6,11 @@
 #include "triangle/text/names.h"
 
 static const struct tri_format formats[] = {
-    {".vtu", "VTK", true, tri_write_vtu, NULL},    {".msh", "Gmsh", true, tri_write_msh, tri_write_msh_parts},
-    {".2dm", "SMS", true, tri_write_2dm, NULL},    {".14", "ADCIRC", false, tri_write_14, NULL},
-    {".grd", "ADCIRC", false, tri_write_14, NULL},
+    {".vtu", "VTK", true, true, tri_write_vtu, NULL, tri_read_vtu},
+    {".msh", "Gmsh", true, true, tri_write_msh, tri_write_msh_parts, tri_read_msh},
+    {".2dm", "SMS", true, false, tri_write_2dm, NULL, tri_read_2dm},
+    {".14", "ADCIRC", false, false, tri_write_14, NULL, tri_read_14},
+    {".grd", "ADCIRC", false, false, tri_write_14, NULL, tri_read_14},
 };
 
 const struct tri_format *tri_format_of(const char *name)
@@ -17,4 +19,39 @@ const struct tri_format *tri_format_of(const char *name)
         if (tri_name_ends(name, formats[i].suffix))
             return &formats[i];
     return NULL;
+}
+
+/* --- names that are no formats */
+
+/* Where the suffix begins, with its dot; NULL: there is none. */
+static const char *suffix_of(const char *name)
+{
+    const char *slash = strrchr(name, '/'), *last = slash ? slash + 1 : name, *dot = strrchr(last, '.');
+    return dot && dot > last ? dot : NULL;
+}
+
+static bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+const char *tri_format_missing(const char *name)
+{
+    static const char *const with_digits[] = {".h5", ".hdf5", ".gr3", ".su2", ".3dm"};
+    const char *suffix = suffix_of(name), *at = suffix ? suffix + 1 : NULL;
+    if (!suffix || tri_format_of(name))
+        return NULL;
+    for (size_t i = 0; i < sizeof with_digits / sizeof *with_digits; i++)
+        if (tri_name_ends(suffix, with_digits[i]))
+            return suffix;
+    while (is_letter(*at))
+        at++;
+    return *at == 0 && at > suffix + 1 ? suffix : NULL;
+}
+
+size_t tri_format_base(const char *name)
+{
+    static const char *const own[] = {".node", ".ele", ".poly"};
+    const char *suffix = suffix_of(name);
+    for (size_t i = 0; suffix && i < sizeof own / sizeof *own; i++)
+        if (strcmp(suffix, own[i]) == 0)
+            return (size_t)(suffix - name);
+    return strlen(name);
 }

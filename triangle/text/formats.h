@@ -1,4 +1,4 @@
-/* A mesh in files of other programs.
+/* A mesh in files of other programs, written and read.
  *
  * All carry the nodes, the triangles and the boundary with its markers; what else each can hold, and how it is read
  * again: docs/formats.md. Numbers are exact: bytes, or %.17g. Sizes are 64 bits wide. Each writer is a tri_write_call
@@ -6,6 +6,7 @@
 #ifndef TRIANGLE_TEXT_FORMATS_H
 #define TRIANGLE_TEXT_FORMATS_H
 
+#include "triangle/pslg.h"
 #include "triangle/text/write.h"
 
 #ifdef __cplusplus
@@ -25,16 +26,38 @@ typedef enum tri_status tri_write_parts_call(struct tri_output *const *outputs, 
                                              const struct tri_executor *executor, struct tri_error *error);
 tri_write_parts_call tri_write_msh_parts;
 
+/* Reads what the writer of that name makes, and what of others is like it (docs/formats.md): points, triangles,
+ * segments, and what there is of markers and attributes; corners and ends are numbers of points, coordinates finite.
+ * Both structs are empty where it fails: TRI_CANNOT_READ, TRI_BAD_INPUT, TRI_TOO_LARGE, TRI_NO_MEMORY. Memory: about
+ * twice the file. Linear, but for nodes that are not numbered in order: n log n. */
+typedef enum tri_status tri_read_call(const char *path, struct tri_pslg *mesh, struct tri_elements *elements,
+                                      const struct tri_executor *executor, struct tri_error *error);
+tri_read_call tri_read_vtu; /* one piece, arrays appended raw or as text */
+tri_read_call tri_read_msh; /* 4.1, binary; a part of a mesh, too */
+tri_read_call tri_read_2dm;
+tri_read_call tri_read_14;
+
 struct tri_format {
     const char *suffix; /* of the files' names, in small letters */
     const char *name;   /* whose format */
-    bool second_order;  /* it can hold second-order triangles */
+    bool second_order;   /* it can hold second-order triangles, */
+    bool inner_segments; /* and segments that are not on the boundary */
     tri_write_call *write;
     tri_write_parts_call *write_parts; /* NULL: it has no parts */
+    tri_read_call *read;
 };
 
 /* The format that the name of a file asks for by its end (tri_name_ends); NULL: none of these. */
 const struct tri_format *tri_format_of(const char *name);
+#define TRI_FORMAT_SUFFIXES ".vtu, .msh, .2dm, .14, .grd"
+
+/* The suffix of a name, with its dot, where it asks for a format that is none of these; NULL: the name asks for none. A
+ * suffix is what follows the last dot, if that is letters alone (or h5, hdf5, gr3, su2, 3dm): "x.shp" has one, "run.1",
+ * "mesh.v2" and ".hidden" have not. Triangle's own suffixes are such, too: see tri_format_base. */
+const char *tri_format_missing(const char *name);
+
+/* How much of a name is the base of Triangle's files: all of it, less .node, .ele or .poly at its end. */
+size_t tri_format_base(const char *name);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,426 @@
+/* Reading Gmsh's format 4.1, binary (.msh), as triangle/text/gmsh.c writes it, parts included: nodes, triangles and
+ * lines, and of the data those that it names, "marker" and "attribute 0" and so on. Other sections are passed. Nodes
+ * and elements keep the order of the file. */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "triangle/text/bytes.h"
+#include "triangle/text/decimal.h"
+#include "triangle/text/formats.h"
+#include "triangle/text/tags.h"
+
+enum { GMSH_LINE = 1, GMSH_TRIANGLE = 2, GMSH_QUADRATIC_TRIANGLE = 9, GMSH_POINT = 15 };
+enum { DATUM_BYTES = 12, MOST_NAME = 32, MOST_ATTRIBUTES = 1000 };
+
+struct reading {
+    const char *path;
+    struct tri_error *error;
+    struct tri_bytes file;
+    struct tri_pslg *mesh;
+    struct tri_elements *elements;
+    bool has_format, has_nodes, has_elements;
+    struct tri_tags nodes, triangles, segments;
+    int64_t n_elements;      /* of any kind */
+    int64_t n_triangles, n_segments; /* read so far */
+};
+
+/* A section of data: a tag and a number for each node, or each element. */
+struct data {
+    char name[MOST_NAME];
+    bool of_nodes;
+    int64_t n;
+    const char *at; /* [n] of DATUM_BYTES */
+};
+
+static enum tri_status fail(const struct reading *r, const char *text)
+{
+    return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "%s", text);
+}
+
+static enum tri_status no_memory(const struct reading *r)
+{
+    return tri_fail(r->error, TRI_NO_MEMORY, r->path, 0, "out of memory");
+}
+
+static enum tri_status ends_early(const struct reading *r, const char *section)
+{
+    return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "the section $%s is not complete", section);
+}
+
+static bool is_line(const char *line, size_t length, const char *text)
+{
+    return strlen(text) == length && memcmp(line, text, length) == 0;
+}
+
+/* --- heads */
+
+static enum tri_status read_format(struct reading *r)
+{
+    const char *line;
+    size_t n;
+    if (!tri_bytes_line(&r->file, &line, &n) || !is_line(line, n, "4.1 1 8"))
+        return fail(r, "not of version 4.1, binary: Gmsh writes that with -format msh41 -bin");
+    if (!tri_bytes_has(&r->file, 1, 4) || tri_take_i32(&r->file) != 1)
+        return fail(r, "big-endian: only little-endian files are read");
+    r->has_format = true;
+    return TRI_OK;
+}
+
+/* Blocks and items of a section; false: not there, or more than the file could hold of such a size. */
+static bool take_totals(struct reading *r, uint64_t *blocks, uint64_t *n, uint64_t item)
+{
+    if (!tri_bytes_has(&r->file, 4, 8))
+        return false;
+    *blocks = tri_take_u64(&r->file);
+    *n = tri_take_u64(&r->file);
+    r->file.at += 16; /* least and greatest tag */
+    return tri_bytes_has(&r->file, *n, item) && *n <= INT32_MAX;
+}
+
+struct block {
+    int32_t kind;
+    uint64_t n;
+};
+
+static bool take_block(struct reading *r, struct block *block)
+{
+    if (!tri_bytes_has(&r->file, 1, 20))
+        return false;
+    r->file.at += 8; /* dimension and tag of the entity */
+    block->kind = tri_take_i32(&r->file);
+    block->n = tri_take_u64(&r->file);
+    return true;
+}
+
+/* --- nodes */
+
+static enum tri_status order_tags(const struct reading *r, struct tri_tags *tags, const char *what)
+{
+    int64_t twice = 0;
+    switch (tri_tags_order(tags, &twice)) {
+    case TRI_TAGS_GOOD: return TRI_OK;
+    case TRI_TAGS_NO_MEMORY: return no_memory(r);
+    case TRI_TAGS_TWICE: break;
+    }
+    return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "%s %" PRId64 " is there twice", what, twice);
+}
+
+static enum tri_status take_node(struct reading *r, int64_t i, const char *tag, const char *place)
+{
+    const double x = tri_get_f64(place), y = tri_get_f64(place + 8), z = tri_get_f64(place + 16);
+    r->nodes.tag[i] = tri_get_i64(tag);
+    r->mesh->points[2 * i] = x;
+    r->mesh->points[2 * i + 1] = y;
+    if (isfinite(x) && isfinite(y) && z == 0)
+        return TRI_OK;
+    return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "node %" PRId64 " is not finite, or not at z = 0",
+                    r->nodes.tag[i]);
+}
+
+static enum tri_status read_nodes(struct reading *r)
+{
+    uint64_t blocks, n, done = 0;
+    enum tri_status status = TRI_OK;
+    if (r->has_nodes || !take_totals(r, &blocks, &n, 32))
+        return ends_early(r, "Nodes");
+    r->has_nodes = true;
+    r->mesh->points = malloc((n + 1) * 2 * sizeof *r->mesh->points);
+    if (!tri_tags_begin(&r->nodes, (int64_t)n) || !r->mesh->points)
+        return no_memory(r);
+    for (uint64_t b = 0; b < blocks && !status; b++) {
+        struct block block;
+        if (!take_block(r, &block) || block.n > n - done || !tri_bytes_has(&r->file, block.n, 32))
+            return ends_early(r, "Nodes");
+        if (block.kind != 0)
+            return fail(r, "nodes with parameters are not read");
+        const char *tags = r->file.at, *places = tags + 8 * block.n;
+        for (uint64_t i = 0; i < block.n && !status; i++)
+            status = take_node(r, (int64_t)done++, tags + 8 * i, places + 24 * i);
+        r->file.at += 32 * block.n;
+    }
+    r->mesh->n_points = (int32_t)n;
+    if (!status && done < n)
+        return ends_early(r, "Nodes");
+    return status ? status : order_tags(r, &r->nodes, "node");
+}
+
+/* --- elements */
+
+static int nodes_of(int32_t kind)
+{
+    switch (kind) {
+    case GMSH_POINT: return 1;
+    case GMSH_LINE: return 2;
+    case GMSH_TRIANGLE: return 3;
+    case GMSH_QUADRATIC_TRIANGLE: return 6;
+    default: return 0;
+    }
+}
+
+/* The place of the node that is named there; -1, and an error: there is none. */
+static int32_t place_of(const struct reading *r, const char *at)
+{
+    const int64_t place = tri_tags_place(&r->nodes, tri_get_i64(at));
+    if (place < 0)
+        (void)tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "an element names node %" PRId64 ", which is not there",
+                       tri_get_i64(at));
+    return (int32_t)place;
+}
+
+/* Gmsh has the nodes amid edges in the order of the edges from corner to corner, Triangle opposite to the corners. */
+static bool take_triangle(struct reading *r, const char *at, int n_nodes)
+{
+    static const int opposite[] = {2, 0, 1};
+    const int64_t i = r->n_triangles++;
+    r->triangles.tag[i] = tri_get_i64(at);
+    for (int k = 0; k < n_nodes; k++) {
+        int32_t *to = k < 3 ? &r->elements->corners[3 * i + k] : &r->elements->extra[3 * i + opposite[k - 3]];
+        if ((*to = place_of(r, at + 8 * (k + 1))) < 0)
+            return false;
+    }
+    return true;
+}
+
+static bool take_segment(struct reading *r, const char *at)
+{
+    const int64_t i = r->n_segments++;
+    r->segments.tag[i] = tri_get_i64(at);
+    for (int k = 0; k < 2; k++)
+        if ((r->mesh->segments[2 * i + k] = place_of(r, at + 8 * (k + 1))) < 0)
+            return false;
+    return true;
+}
+
+static enum tri_status take_elements(struct reading *r, const struct block *block)
+{
+    const int n = nodes_of(block->kind);
+    const size_t bytes = 8 * (size_t)(n + 1);
+    if (n >= 3 && r->n_triangles > 0 && r->elements->n_nodes != n)
+        return fail(r, "triangles of three nodes and of six in one mesh");
+    if (n >= 3)
+        r->elements->n_nodes = n;
+    for (uint64_t i = 0; i < block->n; i++, r->file.at += bytes)
+        if ((n >= 3 && !take_triangle(r, r->file.at, n)) || (n == 2 && !take_segment(r, r->file.at)))
+            return TRI_BAD_INPUT;
+    return TRI_OK;
+}
+
+static bool begin_elements(struct reading *r, uint64_t n)
+{
+    struct tri_elements *e = r->elements;
+    e->n_nodes = 3;
+    e->corners = malloc((n + 1) * 3 * sizeof *e->corners);
+    e->extra = malloc((n + 1) * 3 * sizeof *e->extra);
+    r->mesh->segments = malloc((n + 1) * 2 * sizeof *r->mesh->segments);
+    return tri_tags_begin(&r->triangles, (int64_t)n) && tri_tags_begin(&r->segments, (int64_t)n) && e->corners &&
+           e->extra && r->mesh->segments;
+}
+
+static enum tri_status end_elements(struct reading *r)
+{
+    r->elements->n = (int32_t)r->n_triangles;
+    r->mesh->n_segments = (int32_t)r->n_segments;
+    r->triangles.n = r->n_triangles;
+    r->segments.n = r->n_segments;
+    if (r->elements->n_nodes == 3) {
+        free(r->elements->extra);
+        r->elements->extra = NULL;
+    }
+    enum tri_status status = order_tags(r, &r->triangles, "element");
+    return status ? status : order_tags(r, &r->segments, "element");
+}
+
+static enum tri_status read_elements(struct reading *r)
+{
+    uint64_t blocks, n, done = 0;
+    enum tri_status status = TRI_OK;
+    if (!r->has_nodes || r->has_elements || !take_totals(r, &blocks, &n, 16))
+        return ends_early(r, r->has_nodes ? "Elements" : "Nodes");
+    r->has_elements = true;
+    if (!begin_elements(r, n))
+        return no_memory(r);
+    for (uint64_t b = 0; b < blocks && !status; b++) {
+        struct block block;
+        if (!take_block(r, &block) || block.n > n - done)
+            return ends_early(r, "Elements");
+        if (nodes_of(block.kind) == 0)
+            return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "an element of type %" PRId32 ": triangles and lines "
+                            "are read", block.kind);
+        if (!tri_bytes_has(&r->file, block.n, 8 * (uint64_t)(nodes_of(block.kind) + 1)))
+            return ends_early(r, "Elements");
+        status = take_elements(r, &block);
+        done += block.n;
+    }
+    r->n_elements = (int64_t)n;
+    if (!status && done < n)
+        return ends_early(r, "Elements");
+    return status ? status : end_elements(r);
+}
+
+/* --- data */
+
+static bool take_count(struct reading *r, int64_t *n)
+{
+    const char *line;
+    size_t length;
+    return tri_bytes_line(&r->file, &line, &length) && tri_scan_integer(line, line + length, n) == line + length &&
+           *n >= 0;
+}
+
+static bool skip_lines(struct reading *r, int64_t n)
+{
+    const char *line;
+    size_t length;
+    while (n > 0 && tri_bytes_line(&r->file, &line, &length))
+        n--;
+    return n == 0;
+}
+
+/* Names, then numbers: no time, one component, and how many there are. False: in another form. */
+static bool take_data_head(struct reading *r, struct data *data)
+{
+    const char *line;
+    size_t length;
+    int64_t names, reals, numbers, components;
+    if (!take_count(r, &names) || names < 1 || !tri_bytes_line(&r->file, &line, &length))
+        return false;
+    snprintf(data->name, sizeof data->name, "%.*s", length < MOST_NAME ? (int)length : 0, line);
+    return skip_lines(r, names - 1) && take_count(r, &reals) && skip_lines(r, reals) && take_count(r, &numbers) &&
+           numbers >= 3 && skip_lines(r, 1) && take_count(r, &components) && components == 1 &&
+           take_count(r, &data->n) && skip_lines(r, numbers - 3);
+}
+
+/* A column of reals among `width` more, which are 0 so far. The places of tags: of nodes, or of triangles. */
+static enum tri_status add_column(const struct reading *r, const struct data *data, const struct tri_tags *tags,
+                                  double **columns, int32_t *width)
+{
+    const size_t n = (size_t)tags->n, old = (size_t)*width, new = old + 1;
+    double *all = calloc(n * new + 1, sizeof *all);
+    if (!all)
+        return no_memory(r);
+    for (size_t i = 0; i < n; i++)
+        for (size_t k = 0; k < old; k++)
+            all[new * i + k] = (*columns)[old * i + k];
+    free(*columns);
+    *columns = all;
+    *width = (int32_t)new;
+    for (int64_t i = 0; i < data->n; i++) {
+        const int64_t place = tri_tags_place(tags, tri_get_i32(data->at + DATUM_BYTES * i));
+        const double value = tri_get_f64(data->at + DATUM_BYTES * i + 4);
+        if (!isfinite(value))
+            return fail(r, "an attribute is not finite");
+        if (place >= 0)
+            all[new * (size_t)place + old] = value;
+    }
+    return TRI_OK;
+}
+
+/* Markers of nodes, or of segments. */
+static enum tri_status take_markers(const struct reading *r, const struct data *data, const struct tri_tags *tags,
+                                    int32_t **markers)
+{
+    free(*markers);
+    *markers = calloc((size_t)tags->n + 1, sizeof **markers);
+    if (!*markers)
+        return no_memory(r);
+    for (int64_t i = 0; i < data->n; i++) {
+        const int64_t place = tri_tags_place(tags, tri_get_i32(data->at + DATUM_BYTES * i));
+        const double value = tri_get_f64(data->at + DATUM_BYTES * i + 4);
+        if (!(value >= INT32_MIN && value <= INT32_MAX))
+            return fail(r, "a marker does not fit into 32 bits");
+        if (place >= 0)
+            (*markers)[place] = (int32_t)value;
+    }
+    return TRI_OK;
+}
+
+static enum tri_status take_data(struct reading *r, const struct data *data)
+{
+    char next[MOST_NAME];
+    int32_t *width = data->of_nodes ? &r->mesh->n_attributes : &r->elements->n_attributes;
+    snprintf(next, sizeof next, "\"attribute %" PRId32 "\"", *width);
+    if (strcmp(data->name, "\"marker\"") == 0)
+        return take_markers(r, data, data->of_nodes ? &r->nodes : &r->segments,
+                            data->of_nodes ? &r->mesh->markers : &r->mesh->segment_markers);
+    if (strcmp(data->name, next) == 0 && *width < MOST_ATTRIBUTES)
+        return add_column(r, data, data->of_nodes ? &r->nodes : &r->triangles,
+                          data->of_nodes ? &r->mesh->attributes : &r->elements->attributes, width);
+    return TRI_OK;
+}
+
+static enum tri_status read_data(struct reading *r, bool of_nodes)
+{
+    struct data data = {.of_nodes = of_nodes};
+    if (!r->has_elements)
+        return fail(r, "data before the elements are not read");
+    if (!take_data_head(r, &data))
+        return TRI_OK; /* of another kind */
+    const int64_t items = of_nodes ? r->nodes.n : r->n_elements;
+    if (data.n != items || !tri_bytes_has(&r->file, (uint64_t)data.n, DATUM_BYTES))
+        return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "%.*s: not one number for each of the %" PRId64 " %s",
+                        MOST_NAME, data.name, items, of_nodes ? "nodes" : "elements");
+    data.at = r->file.at;
+    r->file.at += (uint64_t)data.n * DATUM_BYTES;
+    return take_data(r, &data);
+}
+
+/* --- the file */
+
+static enum tri_status read_section(struct reading *r, const char *name, size_t n)
+{
+    if (is_line(name, n, "MeshFormat"))
+        return read_format(r);
+    if (!r->has_format)
+        return fail(r, "not a .msh file");
+    if (is_line(name, n, "Nodes"))
+        return read_nodes(r);
+    if (is_line(name, n, "Elements"))
+        return read_elements(r);
+    if (is_line(name, n, "NodeData") || is_line(name, n, "ElementData"))
+        return read_data(r, *name == 'N');
+    return TRI_OK;
+}
+
+static enum tri_status read_sections(struct reading *r)
+{
+    const char *line;
+    size_t n;
+    while (tri_bytes_line(&r->file, &line, &n)) {
+        char end[64];
+        if (n == 0)
+            continue;
+        if (*line != '$' || n > 40)
+            return fail(r, r->has_format ? "what stands between two sections is none" : "not a .msh file");
+        enum tri_status status = read_section(r, line + 1, n - 1);
+        if (status)
+            return status;
+        snprintf(end, sizeof end, "\n$End%.*s", (int)n - 1, line + 1);
+        r->file.at--; /* of what has no content the end of the line stands before it */
+        if (!tri_bytes_pass(&r->file, end))
+            return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "the section %.*s has no end", (int)n, line);
+        (void)tri_bytes_line(&r->file, &line, &n);
+    }
+    return r->has_elements ? TRI_OK : fail(r, "not a .msh file, or one without elements");
+}
+
+enum tri_status tri_read_msh(const char *path, struct tri_pslg *mesh, struct tri_elements *elements,
+                             const struct tri_executor *executor, struct tri_error *error)
+{
+    struct reading r = {.path = path, .error = error, .mesh = mesh, .elements = elements};
+    (void)executor;
+    *mesh = (struct tri_pslg){0};
+    *elements = (struct tri_elements){0};
+    enum tri_status status = tri_bytes_load(&r.file, path, error);
+    status = status ? status : read_sections(&r);
+    tri_bytes_free(&r.file);
+    tri_tags_free(&r.nodes);
+    tri_tags_free(&r.triangles);
+    tri_tags_free(&r.segments);
+    if (status) {
+        tri_pslg_free(mesh);
+        tri_elements_free(elements);
+    }
+    return status;
+}

@@ -1,0 +1,396 @@
+/* Reading SMS (.2dm) and ADCIRC (fort.14), as triangle/text/hydro.c writes them. Both number nodes in any way.
+ *
+ * What stands for nothing is taken for nothing: elevations that are all 0, and materials that are all 1, are no
+ * attributes. Of fort.14 the marker of a segment is 2 on open boundaries, else 1; whoever wrote the mesh may have had
+ * others. Segments are those of the boundary: neither format has any inside. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "triangle/grow.h"
+#include "triangle/text/formats.h"
+#include "triangle/text/tags.h"
+#include "triangle/text/text.h"
+
+struct reading {
+    struct tri_text text;
+    const struct tri_executor *executor;
+    struct tri_pslg *mesh;
+    struct tri_elements *elements;
+    struct tri_error *error;
+    struct tri_tags nodes;
+    double *z;                   /* [n_points] */
+    int64_t most_ends, most_markers; /* room in the arrays of segments */
+};
+
+static enum tri_status fail(const struct reading *r, size_t line, const char *text)
+{
+    return tri_fail(r->error, TRI_BAD_INPUT, r->text.name, (long)line, "%s", text);
+}
+
+static enum tri_status no_memory(const struct reading *r)
+{
+    return tri_fail(r->error, TRI_NO_MEMORY, r->text.name, 0, "out of memory");
+}
+
+/* --- what both have */
+
+static bool begin_nodes(struct reading *r, int64_t n)
+{
+    r->mesh->n_points = (int32_t)n;
+    r->mesh->points = malloc(((size_t)n + 1) * 2 * sizeof *r->mesh->points);
+    r->z = malloc(((size_t)n + 1) * sizeof *r->z);
+    return tri_tags_begin(&r->nodes, n) && r->mesh->points && r->z;
+}
+
+static bool begin_elements(struct reading *r, int64_t n, int n_nodes)
+{
+    struct tri_elements *e = r->elements;
+    e->n = (int32_t)n;
+    e->n_nodes = n_nodes;
+    e->corners = malloc(((size_t)n + 1) * 3 * sizeof *e->corners);
+    e->extra = n_nodes > 3 ? malloc(((size_t)n + 1) * 3 * sizeof *e->extra) : NULL;
+    return e->corners && (n_nodes == 3 || e->extra);
+}
+
+static enum tri_status order_nodes(struct reading *r)
+{
+    int64_t twice = 0;
+    switch (tri_tags_order(&r->nodes, &twice)) {
+    case TRI_TAGS_GOOD: return TRI_OK;
+    case TRI_TAGS_NO_MEMORY: return no_memory(r);
+    case TRI_TAGS_TWICE: break;
+    }
+    return tri_fail(r->error, TRI_BAD_INPUT, r->text.name, 0, "node %lld is there twice", (long long)twice);
+}
+
+/* Number, place and elevation. */
+static const char *take_node(void *user, size_t i, struct tri_fields *fields)
+{
+    struct reading *r = user;
+    if (tri_fields_integer(fields, &r->nodes.tag[i]) != TRI_FIELD_GOOD)
+        return "has no number";
+    for (size_t c = 0; c < 2; c++)
+        if (tri_fields_real(fields, &r->mesh->points[2 * i + c]) != TRI_FIELD_GOOD)
+            return "has a coordinate that is missing or not finite";
+    return tri_fields_real(fields, &r->z[i]) == TRI_FIELD_BAD ? "has an elevation that is not finite" : NULL;
+}
+
+/* The next field names a node; -1: it does not. */
+static int32_t take_place(const struct reading *r, struct tri_fields *fields)
+{
+    int64_t tag;
+    return tri_fields_integer(fields, &tag) == TRI_FIELD_GOOD ? (int32_t)tri_tags_place(&r->nodes, tag) : -1;
+}
+
+static bool add_segment(struct reading *r, int32_t from, int32_t to, int32_t marker)
+{
+    struct tri_pslg *m = r->mesh;
+    const int64_t n = m->n_segments;
+    if (n == INT32_MAX || !tri_grow_far(&m->segments, &r->most_ends, 2 * (n + 1), sizeof *m->segments) ||
+        !tri_grow_far(&m->segment_markers, &r->most_markers, n + 1, sizeof *m->segment_markers))
+        return false;
+    m->segments[2 * n] = from;
+    m->segments[2 * n + 1] = to;
+    m->segment_markers[n] = marker;
+    m->n_segments++;
+    return true;
+}
+
+/* Elevations become the attribute of the points. */
+static void hand_over(struct reading *r)
+{
+    bool any = false;
+    for (int32_t i = 0; i < r->mesh->n_points; i++)
+        any = any || r->z[i] != 0;
+    r->mesh->n_attributes = any;
+    r->mesh->attributes = any ? r->z : NULL;
+    if (any)
+        r->z = NULL;
+}
+
+static enum tri_status read_with(enum tri_status (*read)(struct reading *r), const char *path, struct tri_pslg *mesh,
+                                 struct tri_elements *elements, const struct tri_executor *executor,
+                                 struct tri_error *error)
+{
+    struct reading r = {.executor = executor, .mesh = mesh, .elements = elements, .error = error};
+    *mesh = (struct tri_pslg){0};
+    *elements = (struct tri_elements){0};
+    enum tri_status status = tri_text_load(&r.text, path, 0, executor, NULL, error);
+    status = status ? status : read(&r);
+    if (!status)
+        hand_over(&r);
+    tri_text_free(&r.text);
+    tri_tags_free(&r.nodes);
+    free(r.z);
+    if (status) {
+        tri_pslg_free(mesh);
+        tri_elements_free(elements);
+    }
+    return status;
+}
+
+/* --- fort.14: a title, numbers of elements and nodes, nodes, elements, open boundaries, land */
+
+static const char *take_element(void *user, size_t i, struct tri_fields *fields)
+{
+    struct reading *r = user;
+    int64_t n;
+    tri_fields_skip(fields);
+    if (tri_fields_integer(fields, &n) != TRI_FIELD_GOOD || n != 3)
+        return "is no triangle";
+    for (size_t k = 0; k < 3; k++)
+        if ((r->elements->corners[3 * i + k] = take_place(r, fields)) < 0)
+            return "has a corner that is no node";
+    return NULL;
+}
+
+/* The next record's first numbers; false: they are not there, or negative. */
+static bool take_numbers(struct tri_cursor *cursor, int64_t *a, int64_t *b)
+{
+    struct tri_fields fields;
+    bool good = tri_cursor_next(cursor, &fields) && tri_fields_integer(&fields, a) == TRI_FIELD_GOOD && *a >= 0;
+    return good && (!b || (tri_fields_integer(&fields, b) == TRI_FIELD_GOOD && *b >= 0));
+}
+
+static bool goes_round(int64_t type) { return type == 1 || type == 11 || type == 21; }
+
+/* n nodes, a line each. */
+static enum tri_status read_string(struct reading *r, struct tri_cursor *cursor, int64_t n, bool closed, int32_t marker)
+{
+    int32_t first = -1, last = -1;
+    for (int64_t i = 0; i < n; i++) {
+        struct tri_fields fields;
+        const int32_t node = tri_cursor_next(cursor, &fields) ? take_place(r, &fields) : -1;
+        if (node < 0)
+            return fail(r, cursor->line, "a node of a boundary is missing, or no node");
+        if (i > 0 && !add_segment(r, last, node, marker))
+            return no_memory(r);
+        first = i == 0 ? node : first;
+        last = node;
+    }
+    if (closed && first != last && !add_segment(r, last, first, marker))
+        return no_memory(r);
+    return TRI_OK;
+}
+
+/* How many boundaries there are, how many nodes, and each. */
+static enum tri_status read_boundaries(struct reading *r, struct tri_cursor *cursor, bool open)
+{
+    int64_t n, n_nodes;
+    enum tri_status status = TRI_OK;
+    if (!take_numbers(cursor, &n, NULL) || !take_numbers(cursor, &n_nodes, NULL))
+        return fail(r, cursor->line, "the numbers of boundaries and of their nodes are missing");
+    for (int64_t i = 0; i < n && !status; i++) {
+        int64_t type = 0;
+        if (!take_numbers(cursor, &n_nodes, open ? NULL : &type))
+            return fail(r, cursor->line, "a boundary's number of nodes, or its type, is missing");
+        status = read_string(r, cursor, n_nodes, !open && goes_round(type), open ? TRI_OPEN_BOUNDARY : 1);
+    }
+    return status;
+}
+
+static enum tri_status read_14(struct reading *r)
+{
+    struct tri_cursor cursor = tri_cursor_begin(&r->text);
+    struct tri_fields fields;
+    int64_t n_elements, n_nodes;
+    if (tri_fields_open(&fields, r->text.data, r->text.data + r->text.size)) /* the title has a number in it */
+        (void)tri_cursor_next(&cursor, &fields);
+    if (!take_numbers(&cursor, &n_elements, &n_nodes))
+        return fail(r, cursor.line, "the numbers of elements and nodes are missing");
+    const size_t left = tri_cursor_remaining(&cursor);
+    if ((uint64_t)n_nodes > left || (uint64_t)n_elements > left - (size_t)n_nodes || n_nodes > INT32_MAX ||
+        n_elements > INT32_MAX)
+        return tri_fail(r->error, TRI_BAD_INPUT, r->text.name, (long)cursor.line, "%lld nodes and %lld elements are "
+                        "announced, but only %zu records follow", (long long)n_nodes, (long long)n_elements, left);
+    if (!begin_nodes(r, n_nodes) || !begin_elements(r, n_elements, 3))
+        return no_memory(r);
+    const struct tri_table nodes = {"node", (size_t)n_nodes, 1, take_node, r};
+    const struct tri_table elements = {"element", (size_t)n_elements, 1, take_element, r};
+    enum tri_status status = tri_cursor_table(&cursor, &nodes, r->executor, r->error);
+    status = status ? status : order_nodes(r);
+    status = status ? status : tri_cursor_table(&cursor, &elements, r->executor, r->error);
+    status = status ? status : read_boundaries(r, &cursor, true);
+    return status ? status : read_boundaries(r, &cursor, false);
+}
+
+enum tri_status tri_read_14(const char *path, struct tri_pslg *mesh, struct tri_elements *elements,
+                            const struct tri_executor *executor, struct tri_error *error)
+{
+    return read_with(read_14, path, mesh, elements, executor, error);
+}
+
+/* --- .2dm: cards in any order, each of which begins with a word */
+
+enum card { CARD_NODE, CARD_TRIANGLE, CARD_SIX_NODES, CARD_STRING, CARD_UNKNOWN, CARDS, CARD_NONE };
+
+struct cards {
+    const char *at, *end;
+    size_t line;
+    enum card card; /* of the line that was taken, */
+    struct tri_fields fields; /* and what follows its word */
+};
+
+static bool is_word(const char *at, const char *word, size_t n)
+{
+    return strlen(word) == n && memcmp(at, word, n) == 0;
+}
+
+/* Other elements, such as quadrilaterals, are no triangles; other cards are of no concern. */
+static enum card card_of(const char *word, size_t n)
+{
+    if (is_word(word, "ND", n))
+        return CARD_NODE;
+    if (is_word(word, "E3T", n))
+        return CARD_TRIANGLE;
+    if (is_word(word, "E6T", n))
+        return CARD_SIX_NODES;
+    if (is_word(word, "NS", n))
+        return CARD_STRING;
+    return n == 3 && word[0] == 'E' && word[1] >= '2' && word[1] <= '9' ? CARD_UNKNOWN : CARD_NONE;
+}
+
+static bool next_card(struct cards *c)
+{
+    if (c->at == c->end)
+        return false;
+    const char *word = c->at, *newline = memchr(c->at, '\n', (size_t)(c->end - c->at));
+    while (*word == ' ' || *word == '\t')
+        word++;
+    const char *behind = word;
+    while (*behind != '\n' && *behind != '\r' && *behind != ' ' && *behind != '\t')
+        behind++;
+    c->card = card_of(word, (size_t)(behind - word));
+    c->fields = (struct tri_fields){behind, c->end, false};
+    tri_fields_seek(&c->fields);
+    c->at = newline + 1;
+    c->line++;
+    return true;
+}
+
+static struct cards all_cards(const struct reading *r)
+{
+    return (struct cards){.at = r->text.data, .end = r->text.data + r->text.size};
+}
+
+static enum tri_status count_cards(const struct reading *r, int64_t count[CARDS])
+{
+    for (struct cards c = all_cards(r); next_card(&c);) {
+        if (c.card == CARD_UNKNOWN)
+            return fail(r, c.line, "an element that is no triangle");
+        if (c.card != CARD_NONE)
+            count[c.card]++;
+    }
+    if (count[CARD_TRIANGLE] > 0 && count[CARD_SIX_NODES] > 0)
+        return fail(r, 0, "triangles of three nodes and of six in one mesh");
+    if (count[CARD_NODE] > INT32_MAX || count[CARD_TRIANGLE] + count[CARD_SIX_NODES] > INT32_MAX)
+        return tri_fail(r->error, TRI_TOO_LARGE, r->text.name, 0, "more nodes or triangles than are read");
+    return TRI_OK;
+}
+
+static enum tri_status read_nodes(struct reading *r)
+{
+    size_t i = 0;
+    for (struct cards c = all_cards(r); next_card(&c);) {
+        const char *wrong = c.card == CARD_NODE ? take_node(r, i++, &c.fields) : NULL;
+        if (wrong)
+            return tri_fail(r->error, TRI_BAD_INPUT, r->text.name, (long)c.line, "node %zu %s", i, wrong);
+    }
+    return order_nodes(r);
+}
+
+/* Nodes go round the triangle, beginning with a corner; ours are the corners, then those opposite to each. */
+static bool take_corners(struct reading *r, int64_t i, struct tri_fields *fields)
+{
+    static const int place_of_three[] = {0, 1, 2}, place_of_six[] = {0, 5, 1, 3, 2, 4};
+    struct tri_elements *e = r->elements;
+    tri_fields_skip(fields);
+    for (int k = 0; k < e->n_nodes; k++) {
+        const int place = e->n_nodes == 3 ? place_of_three[k] : place_of_six[k];
+        const int32_t node = take_place(r, fields);
+        if (node < 0)
+            return false;
+        if (place < 3)
+            e->corners[3 * i + place] = node;
+        else
+            e->extra[3 * i + place - 3] = node;
+    }
+    return true;
+}
+
+static enum tri_status read_triangles(struct reading *r)
+{
+    struct tri_elements *e = r->elements;
+    double *material = malloc(((size_t)e->n + 1) * sizeof *material);
+    int64_t i = 0;
+    bool any = false;
+    if (!material)
+        return no_memory(r);
+    e->attributes = material;
+    for (struct cards c = all_cards(r); next_card(&c);) {
+        if (c.card != CARD_TRIANGLE && c.card != CARD_SIX_NODES)
+            continue;
+        if (!take_corners(r, i, &c.fields))
+            return fail(r, c.line, "a triangle has a node that is missing, or no node");
+        if (tri_fields_real(&c.fields, &material[i]) != TRI_FIELD_GOOD)
+            material[i] = 1;
+        any = any || material[i] != 1;
+        i++;
+    }
+    e->n_attributes = any;
+    if (!any) {
+        free(material);
+        e->attributes = NULL;
+    }
+    return TRI_OK;
+}
+
+/* A string ends with a negative number; behind it stands its marker. Lines of ten nodes may go before. */
+static enum tri_status read_strings(struct reading *r)
+{
+    int32_t last = -1;
+    int64_t first = 0; /* segment of the string */
+    for (struct cards c = all_cards(r); next_card(&c);) {
+        int64_t tag, marker = 0;
+        bool ends = false;
+        while (c.card == CARD_STRING && !ends && tri_fields_integer(&c.fields, &tag) == TRI_FIELD_GOOD) {
+            ends = tag < 0 && tag > INT64_MIN;
+            const int32_t node = (int32_t)tri_tags_place(&r->nodes, ends ? -tag : tag);
+            if (node < 0)
+                return fail(r, c.line, "a node string has a node that is not there");
+            if (last >= 0 && !add_segment(r, last, node, 0))
+                return no_memory(r);
+            last = node;
+        }
+        if (!ends)
+            continue;
+        if (tri_fields_integer(&c.fields, &marker) != TRI_FIELD_GOOD || marker < INT32_MIN || marker > INT32_MAX)
+            marker = 0;
+        for (; first < r->mesh->n_segments; first++)
+            r->mesh->segment_markers[first] = (int32_t)marker;
+        last = -1;
+    }
+    return last < 0 ? TRI_OK : fail(r, 0, "a node string has no end");
+}
+
+static enum tri_status read_2dm(struct reading *r)
+{
+    int64_t count[CARDS] = {0};
+    enum tri_status status = count_cards(r, count);
+    if (status)
+        return status;
+    if (!begin_nodes(r, count[CARD_NODE]) ||
+        !begin_elements(r, count[CARD_TRIANGLE] + count[CARD_SIX_NODES], count[CARD_SIX_NODES] > 0 ? 6 : 3))
+        return no_memory(r);
+    if (count[CARD_NODE] == 0)
+        return fail(r, 0, "no mesh: there are no nodes (ND)");
+    status = read_nodes(r);
+    status = status ? status : read_triangles(r);
+    return status ? status : read_strings(r);
+}
+
+enum tri_status tri_read_2dm(const char *path, struct tri_pslg *mesh, struct tri_elements *elements,
+                             const struct tri_executor *executor, struct tri_error *error)
+{
+    return read_with(read_2dm, path, mesh, elements, executor, error);
+}

@@ -1,0 +1,527 @@
+/* Reading VTK XML, unstructured grid (.vtu): as triangle/text/vtu.c writes it, and the same with arrays as text. One
+ * piece, cells that are triangles and lines, z = 0.
+ *
+ * The head is XML of a form that needs no more than its tags: they are gone through once, and the arrays of interest
+ * noted. An array becomes doubles, whatever it is in the file: numbers of points up to 2^31 are exact. */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "triangle/text/bytes.h"
+#include "triangle/text/decimal.h"
+#include "triangle/text/formats.h"
+
+enum { VTK_LINE = 3, VTK_TRIANGLE = 5, VTK_QUADRATIC_TRIANGLE = 22, MOST_COMPONENTS = 1000 };
+
+enum which {
+    POINT_MARKER, POINT_ATTRIBUTES, CELL_MARKER, CELL_ATTRIBUTES, PLACES, CONNECTIVITY, OFFSETS, TYPES, ARRAYS
+};
+
+static const struct kind {
+    const char *section, *name; /* NULL: any */
+    int components;             /* 0: any */
+} kinds[ARRAYS] = {
+    {"PointData", "marker", 1}, {"PointData", "attributes", 0}, {"CellData", "marker", 1}, {"CellData", "attributes", 0},
+    {"Points", NULL, 3},        {"Cells", "connectivity", 1},   {"Cells", "offsets", 1},   {"Cells", "types", 1},
+};
+
+static const struct type {
+    const char *name;
+    int bytes;
+    bool is_real, is_signed;
+} types[] = {
+    {"Float64", 8, true, true},  {"Float32", 4, true, true},  {"Int64", 8, false, true}, {"UInt64", 8, false, false},
+    {"Int32", 4, false, true},   {"UInt32", 4, false, false}, {"Int16", 2, false, true}, {"UInt16", 2, false, false},
+    {"Int8", 1, false, true},    {"UInt8", 1, false, false},
+};
+
+/* A piece of the file: a tag without its brackets, a value, the text of an array. */
+struct span {
+    const char *at, *end;
+};
+
+struct array {
+    bool there, appended;
+    const struct type *type;
+    int64_t components;
+    uint64_t offset;  /* of appended data */
+    struct span text; /* of others */
+};
+
+struct reading {
+    const char *path;
+    struct tri_error *error;
+    struct tri_bytes file;
+    bool wide_sizes; /* of appended data: 8 bytes */
+    const char *data; /* where these begin; NULL: there are none */
+    char section[16];
+    int n_pieces;
+    int64_t n_points, n_cells;
+    struct array array[ARRAYS];
+    struct tri_pslg *mesh;
+    struct tri_elements *elements;
+};
+
+static enum tri_status fail(const struct reading *r, const char *text)
+{
+    return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "%s", text);
+}
+
+static enum tri_status no_memory(const struct reading *r)
+{
+    return tri_fail(r->error, TRI_NO_MEMORY, r->path, 0, "out of memory");
+}
+
+/* --- tags */
+
+/* The next one; comments and the like are passed. */
+static bool next_tag(struct tri_bytes *file, struct span *tag)
+{
+    while (tri_bytes_pass(file, "<")) {
+        const bool comment = tri_bytes_left(file) >= 3 && memcmp(file->at, "!--", 3) == 0;
+        tag->at = file->at;
+        if (!tri_bytes_pass(file, comment ? "-->" : ">"))
+            return false;
+        tag->end = file->at - 1;
+        if (!comment && *tag->at != '?' && *tag->at != '!')
+            return true;
+    }
+    return false;
+}
+
+static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+static bool is_tag(struct span tag, const char *name)
+{
+    const size_t n = strlen(name), m = (size_t)(tag.end - tag.at);
+    return m >= n && memcmp(tag.at, name, n) == 0 && (m == n || is_blank(tag.at[n]) || tag.at[n] == '/');
+}
+
+/* The value of name="value", or empty. */
+static struct span value_of(struct span tag, const char *name)
+{
+    const size_t n = strlen(name);
+    for (const char *at = tag.at; at < tag.end && (size_t)(tag.end - at) > n + 2; at++) {
+        if (!is_blank(*at) || memcmp(at + 1, name, n) != 0 || at[n + 1] != '=' || (at[n + 2] != '"' && at[n + 2] != '\''))
+            continue;
+        const char *begin = at + n + 3, *end = memchr(begin, at[n + 2], (size_t)(tag.end - begin));
+        return end ? (struct span){begin, end} : (struct span){NULL, NULL};
+    }
+    return (struct span){NULL, NULL};
+}
+
+static bool is_value(struct span value, const char *text)
+{
+    return value.at && strlen(text) == (size_t)(value.end - value.at) &&
+           memcmp(value.at, text, strlen(text)) == 0;
+}
+
+/* A count; -1: it is none. */
+static int64_t count_of(struct span tag, const char *name, int64_t missing)
+{
+    const struct span value = value_of(tag, name);
+    int64_t n;
+    if (!value.at)
+        return missing;
+    return tri_scan_integer(value.at, value.end, &n) == value.end && n >= 0 ? n : -1;
+}
+
+/* --- the head */
+
+static enum tri_status take_file_tag(struct reading *r, struct span tag)
+{
+    if (!is_value(value_of(tag, "type"), "UnstructuredGrid"))
+        return fail(r, "not an unstructured grid");
+    if (is_value(value_of(tag, "byte_order"), "BigEndian"))
+        return fail(r, "big-endian: only little-endian data are read");
+    if (value_of(tag, "compressor").at)
+        return fail(r, "its data are compressed: only raw appended data and text are read");
+    r->wide_sizes = is_value(value_of(tag, "header_type"), "UInt64");
+    return TRI_OK;
+}
+
+static enum tri_status take_piece_tag(struct reading *r, struct span tag)
+{
+    r->n_points = count_of(tag, "NumberOfPoints", -1);
+    r->n_cells = count_of(tag, "NumberOfCells", -1);
+    if (r->n_pieces++ > 0)
+        return fail(r, "more than one piece: files of one are read");
+    if (r->n_points < 0 || r->n_cells < 0)
+        return fail(r, "the numbers of points and cells are missing");
+    if (r->n_points > INT32_MAX || r->n_cells > INT32_MAX)
+        return tri_fail(r->error, TRI_TOO_LARGE, r->path, 0, "more points or cells than are read");
+    return TRI_OK;
+}
+
+static const struct type *type_of(struct span tag)
+{
+    const struct span value = value_of(tag, "type");
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
+        if (is_value(value, types[i].name))
+            return &types[i];
+    return NULL;
+}
+
+/* Which array it is; ARRAYS: none of interest. */
+static int which_array(const struct reading *r, struct span tag)
+{
+    int k = 0;
+    while (k < ARRAYS && (strcmp(r->section, kinds[k].section) != 0 ||
+                          (kinds[k].name && !is_value(value_of(tag, "Name"), kinds[k].name))))
+        k++;
+    return k;
+}
+
+static enum tri_status take_array_tag(struct reading *r, struct span tag)
+{
+    const int k = which_array(r, tag);
+    struct array array = {.there = true, .type = type_of(tag), .components = count_of(tag, "NumberOfComponents", 1)};
+    const struct span format = value_of(tag, "format");
+    array.appended = is_value(format, "appended");
+    if (tag.end[-1] != '/') { /* its text follows */
+        array.text.at = r->file.at;
+        if (!tri_bytes_pass(&r->file, "<"))
+            return fail(r, "the file ends in an array");
+        array.text.end = --r->file.at;
+    }
+    if (k == ARRAYS)
+        return TRI_OK;
+    if (!array.appended && !is_value(format, "ascii"))
+        return fail(r, "an array is neither appended nor text (base64): meshio or ParaView write it so");
+    const int64_t offset = count_of(tag, "offset", 0);
+    if (!array.type || offset < 0 || array.components < 1 || array.components > MOST_COMPONENTS ||
+        (kinds[k].components > 0 && array.components != kinds[k].components) || (!array.appended && !array.text.at))
+        return fail(r, "an array has not the type and size that it should");
+    array.offset = (uint64_t)offset;
+    r->array[k] = array;
+    return TRI_OK;
+}
+
+static enum tri_status take_data_tag(struct reading *r, struct span tag)
+{
+    if (!is_value(value_of(tag, "encoding"), "raw"))
+        return fail(r, "its data are encoded (base64): only raw appended data and text are read");
+    if (!tri_bytes_pass(&r->file, "_"))
+        return fail(r, "there are no data");
+    r->data = r->file.at;
+    return TRI_OK;
+}
+
+/* Sections are few, and their names short. */
+static void note_section(struct reading *r, struct span tag)
+{
+    static const char *const sections[] = {"PointData", "CellData", "Points", "Cells"};
+    const bool closing = tag.at < tag.end && *tag.at == '/';
+    const struct span name = {tag.at + closing, tag.end};
+    for (int i = 0; i < 4; i++)
+        if (is_tag(name, sections[i]))
+            snprintf(r->section, sizeof r->section, "%s", closing ? "" : sections[i]);
+}
+
+static enum tri_status read_head(struct reading *r)
+{
+    struct span tag;
+    bool is_vtk = false;
+    enum tri_status status = TRI_OK;
+    while (!status && !r->data && next_tag(&r->file, &tag)) {
+        note_section(r, tag);
+        if (is_tag(tag, "VTKFile")) {
+            status = take_file_tag(r, tag);
+            is_vtk = true;
+        } else if (is_tag(tag, "Piece")) {
+            status = take_piece_tag(r, tag);
+        } else if (is_tag(tag, "DataArray")) {
+            status = take_array_tag(r, tag);
+        } else if (is_tag(tag, "AppendedData")) {
+            status = take_data_tag(r, tag);
+        }
+    }
+    if (!status && (!is_vtk || r->n_pieces == 0))
+        return fail(r, "not a VTK file of an unstructured grid (.vtu)");
+    for (int k = PLACES; k < ARRAYS && !status; k++)
+        if (!r->array[k].there)
+            status = tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "the array %s is missing",
+                              kinds[k].name ? kinds[k].name : "of points");
+    return status;
+}
+
+/* --- arrays */
+
+static double number_at(const struct type *type, const char *at)
+{
+    uint64_t bits = 0;
+    for (int k = 0; k < type->bytes; k++)
+        bits |= (uint64_t)(unsigned char)at[k] << (8 * k);
+    if (type->is_real && type->bytes == 8)
+        return tri_get_f64(at);
+    if (type->is_real) {
+        float value;
+        const uint32_t half = (uint32_t)bits;
+        memcpy(&value, &half, sizeof value);
+        return value;
+    }
+    const int unused = 64 - 8 * type->bytes;
+    if (!type->is_signed || !(bits >> (8 * type->bytes - 1) & 1))
+        return (double)bits;
+    return -(double)(((~bits << unused) >> unused) + 1);
+}
+
+/* n numbers of appended data. False: they are not there. */
+static bool take_appended(const struct reading *r, const struct array *a, uint64_t n, double *out)
+{
+    const uint64_t head = r->wide_sizes ? 8 : 4;
+    struct tri_bytes data = {NULL, r->data, r->file.end};
+    if (!r->data || a->offset > tri_bytes_left(&data) || tri_bytes_left(&data) - a->offset < head)
+        return false;
+    data.at += a->offset;
+    const uint64_t size = r->wide_sizes ? tri_get_u64(data.at) : tri_get_u32(data.at);
+    data.at += head;
+    if (!tri_bytes_has(&data, n, (uint64_t)a->type->bytes) || size != n * (uint64_t)a->type->bytes)
+        return false;
+    for (uint64_t i = 0; i < n; i++)
+        out[i] = number_at(a->type, data.at + i * (uint64_t)a->type->bytes);
+    return true;
+}
+
+/* The same of text. */
+static bool take_text(const struct array *a, uint64_t n, double *out)
+{
+    const char *at = a->text.at;
+    for (uint64_t i = 0; i < n; i++) {
+        while (at < a->text.end && is_blank(*at))
+            at++;
+        const char *behind = tri_scan_real(at, a->text.end, &out[i]);
+        if (behind == at)
+            return false;
+        at = behind;
+    }
+    while (at < a->text.end && is_blank(*at))
+        at++;
+    return at == a->text.end;
+}
+
+static bool are_finite(const double *at, uint64_t n)
+{
+    uint64_t i = 0;
+    while (i < n && isfinite(at[i]))
+        i++;
+    return i == n;
+}
+
+/* The numbers of n rows, malloc'ed. A file of so many bytes cannot hold more numbers than these. */
+static enum tri_status take_array(const struct reading *r, enum which k, int64_t rows, double **out)
+{
+    const struct array *a = &r->array[k];
+    const uint64_t n = (uint64_t)rows * (uint64_t)a->components;
+    *out = NULL;
+    if (n > (uint64_t)(r->file.end - r->file.data))
+        return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "the file is too small for its array %s",
+                        kinds[k].name ? kinds[k].name : "of points");
+    *out = malloc((n + 1) * sizeof **out);
+    if (!*out)
+        return no_memory(r);
+    if ((a->appended ? take_appended(r, a, n, *out) : take_text(a, n, *out)) && are_finite(*out, n))
+        return TRI_OK;
+    free(*out);
+    *out = NULL;
+    return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "the array %s has not %" PRIu64 " finite numbers",
+                    kinds[k].name ? kinds[k].name : "of points", n);
+}
+
+/* --- points */
+
+static enum tri_status take_points(struct reading *r)
+{
+    double *places;
+    enum tri_status status = take_array(r, PLACES, r->n_points, &places);
+    if (status)
+        return status;
+    for (int64_t i = 0; i < r->n_points && !status; i++) {
+        if (places[3 * i + 2] != 0)
+            status = tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "point %" PRId64 " is not at z = 0", i);
+        places[2 * i] = places[3 * i];
+        places[2 * i + 1] = places[3 * i + 1];
+    }
+    r->mesh->points = places;
+    r->mesh->n_points = (int32_t)r->n_points;
+    return status;
+}
+
+/* Whole numbers of 32 bits. */
+static enum tri_status take_markers(const struct reading *r, enum which k, int64_t rows, int32_t **out)
+{
+    double *values;
+    enum tri_status status = take_array(r, k, rows, &values);
+    *out = status ? NULL : malloc(((size_t)rows + 1) * sizeof **out);
+    if (!status && !*out)
+        status = no_memory(r);
+    for (int64_t i = 0; i < rows && !status; i++) {
+        if (!(values[i] >= INT32_MIN && values[i] <= INT32_MAX))
+            status = fail(r, "a marker does not fit into 32 bits");
+        else
+            (*out)[i] = (int32_t)values[i];
+    }
+    free(values);
+    return status;
+}
+
+static enum tri_status take_point_data(struct reading *r)
+{
+    enum tri_status status = TRI_OK;
+    if (r->array[POINT_MARKER].there)
+        status = take_markers(r, POINT_MARKER, r->n_points, &r->mesh->markers);
+    if (status || !r->array[POINT_ATTRIBUTES].there)
+        return status;
+    r->mesh->n_attributes = (int32_t)r->array[POINT_ATTRIBUTES].components;
+    return take_array(r, POINT_ATTRIBUTES, r->n_points, &r->mesh->attributes);
+}
+
+/* --- cells: each array as doubles */
+
+struct cells {
+    double *type, *end, *node;
+    int64_t n_nodes;     /* in all */
+    int n_of_a_triangle; /* 3 or 6 */
+};
+
+static int nodes_of(double type)
+{
+    return type == VTK_LINE ? 2 : type == VTK_TRIANGLE ? 3 : type == VTK_QUADRATIC_TRIANGLE ? 6 : 0;
+}
+
+static enum tri_status check_cells(const struct reading *r, struct cells *c, int64_t *triangles)
+{
+    double end = 0;
+    for (int64_t i = 0; i < r->n_cells; i++) {
+        const int n = nodes_of(c->type[i]);
+        end += n;
+        if (n == 0)
+            return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "cell %" PRId64 " is of type %g: neither triangle nor "
+                            "line", i, c->type[i]);
+        if (c->end[i] != end)
+            return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "cell %" PRId64 " has not %d points", i, n);
+        if (n > 2 && c->n_of_a_triangle != n && *triangles > 0)
+            return fail(r, "triangles of three nodes and of six in one mesh");
+        c->n_of_a_triangle = n > 2 ? n : c->n_of_a_triangle;
+        *triangles += n > 2;
+    }
+    c->n_nodes = (int64_t)end;
+    return TRI_OK;
+}
+
+static enum tri_status check_nodes(const struct reading *r, const struct cells *c)
+{
+    for (int64_t i = 0; i < c->n_nodes; i++)
+        if (!(c->node[i] >= 0 && c->node[i] < (double)r->n_points))
+            return tri_fail(r->error, TRI_BAD_INPUT, r->path, 0, "a cell names point %g of %" PRId64, c->node[i],
+                            r->n_points);
+    return TRI_OK;
+}
+
+static bool begin_arrays(struct reading *r, int64_t triangles, int n_nodes)
+{
+    struct tri_elements *e = r->elements;
+    const int64_t segments = r->n_cells - triangles;
+    e->n = (int32_t)triangles;
+    e->n_nodes = n_nodes;
+    r->mesh->n_segments = (int32_t)segments;
+    e->corners = malloc(((size_t)triangles + 1) * 3 * sizeof *e->corners);
+    e->extra = n_nodes > 3 ? malloc(((size_t)triangles + 1) * 3 * sizeof *e->extra) : NULL;
+    r->mesh->segments = malloc(((size_t)segments + 1) * 2 * sizeof *r->mesh->segments);
+    return e->corners && r->mesh->segments && (e->extra || n_nodes == 3);
+}
+
+/* VTK has the nodes amid edges in the order of the edges from corner to corner, Triangle opposite to the corners. */
+static void put_cells(struct reading *r, const struct cells *c)
+{
+    static const int opposite[] = {2, 0, 1};
+    struct tri_elements *e = r->elements;
+    const double *node = c->node;
+    size_t t = 0, s = 0;
+    for (int64_t i = 0; i < r->n_cells; i++) {
+        const int n = nodes_of(c->type[i]);
+        for (int k = 0; k < 3 && n > 2; k++) {
+            e->corners[3 * t + (size_t)k] = (int32_t)node[k];
+            if (n == 6)
+                e->extra[3 * t + (size_t)opposite[k]] = (int32_t)node[3 + k];
+        }
+        for (size_t k = 0; k < 2 && n == 2; k++)
+            r->mesh->segments[2 * s + k] = (int32_t)node[k];
+        t += n > 2;
+        s += n == 2;
+        node += n;
+    }
+}
+
+/* Of the rows of all cells those of triangles come first, in place. */
+static enum tri_status take_cell_attributes(struct reading *r, const struct cells *c)
+{
+    const size_t width = (size_t)r->array[CELL_ATTRIBUTES].components;
+    enum tri_status status = take_array(r, CELL_ATTRIBUTES, r->n_cells, &r->elements->attributes);
+    size_t t = 0;
+    for (int64_t i = 0; i < r->n_cells && !status; i++)
+        if (nodes_of(c->type[i]) > 2)
+            memmove(r->elements->attributes + width * t++, r->elements->attributes + width * (size_t)i,
+                    width * sizeof(double));
+    r->elements->n_attributes = (int32_t)width;
+    return status;
+}
+
+static enum tri_status take_segment_markers(struct reading *r, const struct cells *c)
+{
+    enum tri_status status = take_markers(r, CELL_MARKER, r->n_cells, &r->mesh->segment_markers);
+    size_t s = 0;
+    for (int64_t i = 0; i < r->n_cells && !status; i++)
+        if (nodes_of(c->type[i]) == 2)
+            r->mesh->segment_markers[s++] = r->mesh->segment_markers[i];
+    return status;
+}
+
+static enum tri_status take_cell_data(struct reading *r, const struct cells *c)
+{
+    enum tri_status status = r->array[CELL_ATTRIBUTES].there ? take_cell_attributes(r, c) : TRI_OK;
+    if (!status && r->array[CELL_MARKER].there)
+        status = take_segment_markers(r, c);
+    return status;
+}
+
+static enum tri_status take_cells(struct reading *r)
+{
+    struct cells c = {.n_of_a_triangle = 3};
+    int64_t triangles = 0;
+    enum tri_status status = take_array(r, TYPES, r->n_cells, &c.type);
+    status = status ? status : take_array(r, OFFSETS, r->n_cells, &c.end);
+    status = status ? status : check_cells(r, &c, &triangles);
+    status = status ? status : take_array(r, CONNECTIVITY, c.n_nodes, &c.node);
+    status = status ? status : check_nodes(r, &c);
+    if (!status && !begin_arrays(r, triangles, c.n_of_a_triangle))
+        status = no_memory(r);
+    if (!status)
+        put_cells(r, &c);
+    status = status ? status : take_cell_data(r, &c);
+    free(c.type);
+    free(c.end);
+    free(c.node);
+    return status;
+}
+
+enum tri_status tri_read_vtu(const char *path, struct tri_pslg *mesh, struct tri_elements *elements,
+                             const struct tri_executor *executor, struct tri_error *error)
+{
+    struct reading r = {.path = path, .error = error, .mesh = mesh, .elements = elements};
+    (void)executor;
+    *mesh = (struct tri_pslg){0};
+    *elements = (struct tri_elements){0};
+    enum tri_status status = tri_bytes_load(&r.file, path, error);
+    status = status ? status : read_head(&r);
+    status = status ? status : take_points(&r);
+    status = status ? status : take_point_data(&r);
+    status = status ? status : take_cells(&r);
+    tri_bytes_free(&r.file);
+    if (status) {
+        tri_pslg_free(mesh);
+        tri_elements_free(elements);
+    }
+    return status;
+}
