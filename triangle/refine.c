@@ -927,9 +927,11 @@ static bool has_credit(struct tri_refiner *r, const struct tri_triangle *t, cons
     return false;
 }
 
-/* Somebody asks for the end: between two points the mesh is in order. */
+/* Somebody asks for the end, or how far the work is: between two points the mesh is in order. */
 static bool must_stop(struct tri_refiner *r)
 {
+    if (r->options->told && r->step_of_stop % TRI_STOP_STEPS == 0)
+        r->options->told(r->options->told_user, r->mesh->n_triangles);
     return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(&r->error);
 }
 

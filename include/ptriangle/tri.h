@@ -154,6 +154,11 @@ struct tri_settings {
      * the least number of segments' pieces on a way from outside counts, of those pieces along which an odd number of
      * segments run. So dangling segments, and single ones across a ring, change nothing. */
     bool even_odd;
+
+    /* Told every so often while triangles are refined, by the calling thread: which share of the work is done, from 0 on
+     * and never less than before, at last 1; and how many triangles there are. The share is of an estimate. */
+    void (*progress)(void *user, double done, int64_t triangles);
+    void *progress_user;
 };
 
 static inline struct tri_settings tri_no_settings(void)

@@ -36,7 +36,7 @@ WAYS = {
     "one thread": "ptriangle.mesh(points, segments, min_angle=30, max_area=1e-7, threads=1)",
     "two threads": "ptriangle.mesh(points, segments, min_angle=30, max_area=1e-7, threads=2)",
     "size": "ptriangle.mesh(points, segments, min_angle=30, size=lambda x, y: 1e-4)",
-#    "progress": "ptriangle.mesh(points, segments, max_area=1e-7, progress=lambda done, n: None)",
+    "progress": "ptriangle.mesh(points, segments, max_area=1e-7, progress=lambda done, n: None)",
     "endless callback": "ptriangle.mesh(points, segments, size=lambda x, y: time.sleep(100))",
     "in a callback": "ptriangle.mesh(points, segments, max_area=0.1,"
                      " size=lambda x, y: ptriangle.mesh(points, segments, max_area=1e-7))",
@@ -70,9 +70,9 @@ def test_many_interrupts_in_one_process(threads):
     found = []
     for k in range(N):
         timer = threading.Timer(0.02 + 0.0017 * (k % 30), os.kill, (os.getpid(), signal.SIGINT))
-        timer.start()
         begin = time.monotonic()
         try:
+            timer.start()  # which may take as long, on a busy machine
             ptriangle.mesh(*SQUARE, min_angle=30, max_area=1e-7, threads=threads)
             found.append("lost")
         except BaseException as fault:
