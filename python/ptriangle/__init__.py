@@ -26,7 +26,8 @@ functions that are given are called under the lock, by one thread. size may be a
 (double (void *, const double[2])) of compiled code, say of numba.cfunc: then several threads call it at once.
 
 Errors are exceptions with the library's words: InputError (a ValueError), TooLargeError (a MemoryError), FileError (an
-OSError), StoppedError; all are Error.
+OSError), StoppedError; all are Error. A mesh without triangles is an EmptyMeshWarning that says why; segments that are
+skipped, and sizes that are no lengths, are InputWarning, of which it is one.
 
 ptriangle.compat stands in for the package `triangle`.
 """
@@ -34,7 +35,8 @@ from . import _library
 from ._library import Error, FileError, InputError, StoppedError, TooLargeError
 from ._library import Length as SizeFunction
 from ._mesh import Mesh, Verdict, mesh, read
+from ._notes import EmptyMeshWarning, InputWarning
 
 __version__ = _library.library.tri_version().decode()
-__all__ = ["Error", "FileError", "InputError", "Mesh", "SizeFunction", "StoppedError", "TooLargeError", "Verdict",
-           "mesh", "read"]
+__all__ = ["EmptyMeshWarning", "Error", "FileError", "InputError", "InputWarning", "Mesh", "SizeFunction",
+           "StoppedError", "TooLargeError", "Verdict", "mesh", "read"]

@@ -7,6 +7,7 @@ from ctypes import byref, c_double, c_int64, c_void_p
 import numpy as np
 
 from . import _library as lib
+from . import _notes
 from ._library import Demands, ErrorDetail, Figure, InputError, Ints, Reals, Settings, VerdictDetail, library
 
 _PARALLEL = hasattr(library, "par_mesh_new")
@@ -213,6 +214,7 @@ def _make(figure, wanted, even_odd=False):
     handle = _Handle()
     function = library.par_mesh_new if _PARALLEL else library.tri_mesh_new
     _run(function, calls, byref(handle.mesh), byref(figure), byref(settings))
+    _notes.tell(library.tri_mesh_notes(handle.mesh), stacklevel=3)
     return Mesh(handle)
 
 

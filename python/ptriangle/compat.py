@@ -10,6 +10,7 @@ from ctypes import POINTER, byref, c_double, c_int, cast, string_at
 import numpy as np
 
 from . import _library as lib
+from . import _notes
 from ._compat_files import load, loads
 from ._compat_plot import compare, comparev, plot
 from ._library import Ints, Reals, TriangulateIO, TriangulateOptions, library
@@ -82,12 +83,14 @@ def _release(io, borrowed):
             library.trifree(address)
 
 
-def _options_of(unsuitable, faults, words):
+def _options_of(unsuitable, faults, words, notes):
     options = TriangulateOptions()
 
     def tell(_user, is_error, text):
         if is_error:
             words.append(text.decode("utf-8", "replace"))
+        else:  # why the mesh is empty
+            notes.append(text)
 
     def ask(_user, a, b, c, area):
         try:
@@ -104,7 +107,8 @@ def _options_of(unsuitable, faults, words):
 
 
 def _call(tri, opts, unsuitable=None, with_voronoi=False):
-    data, out, vorout, kept, faults, words = TriangulateIO(), TriangulateIO(), TriangulateIO(), [], [], []
+    data, out, vorout, kept, faults = TriangulateIO(), TriangulateIO(), TriangulateIO(), [], []
+    words, notes = [], []
     if np.asarray(tri.get("vertices", ())).size < 6:
         raise lib.InputError("Input must have at least three vertices.", 3)
     for key, given in tri.items():
@@ -113,7 +117,7 @@ def _call(tri, opts, unsuitable=None, with_voronoi=False):
         if key not in ("edges", "edge_markers", "neighbors"):
             kept.append(_fill(data, key, given))
     opts = opts.encode() if isinstance(opts, str) else bytes(opts)
-    options = _options_of(unsuitable, faults, words)
+    options = _options_of(unsuitable, faults, words, notes)
     status = library.triangulate_with(b"zQ" + opts, byref(data), byref(out), byref(vorout), byref(options))
     borrowed = {data.holelist, data.regionlist}  # which `out` names as well
     try:
@@ -121,6 +125,7 @@ def _call(tri, opts, unsuitable=None, with_voronoi=False):
             raise faults[0]
         if status:
             raise lib.exception_of(status, words[-1] if words else "error %d" % status)
+        _notes.tell(b"\n".join(notes), stacklevel=3)
         mesh = _taken(out, _FIELDS)
         return (mesh, _taken(vorout, _VORONOI)) if with_voronoi else mesh
     finally:
