@@ -24,6 +24,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/sweep_line.c
     triangle/locate.c
     triangle/carve.c
+    triangle/why_empty.c
     triangle/chain.c
     triangle/reconstruct.c
     triangle/cavity.c
@@ -58,6 +59,7 @@ set(PTRIANGLE_MESHER_SOURCES
     triangle/dropin/input.c
     triangle/dropin/output.c
     triangle/dropin/run.c
+    triangle/dropin/aloud.c
     triangle/dropin/triangulate.c)
 
 # Folder triangle/check/, the judge of meshes, and its public door. Of the mesher it knows the predicates alone.

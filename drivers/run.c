@@ -367,6 +367,8 @@ static void tell_of_quality(struct runner *r)
     if (!run->options.refine)
         return;
     say_milliseconds(r, run->plan.swept ? "Quality and output" : "Quality", run->seconds[RUN_QUALITY]);
+    if (run->report.notes.empty[0])
+        return; /* no triangle keeps anything */
     if (report->hit_limit && run->options.quality.conforming)
         console_warn(&r->console, "the limit of -S was reached before the mesh was conforming.\n");
     if (!r->console.quiet && !run->plan.swept) { /* a pass over all triangles */
@@ -444,6 +446,7 @@ static void tell_of_input(const struct runner *r)
     summary_duplicates(&r->console, r->run.plan.swept ? r->twin : r->run.mesh.twin, &r->run.pslg);
     summary_segments(&r->console, &r->run.report.constrain);
     summary_holes(&r->console, &r->run.report);
+    summary_notes(&r->console, &r->run.report.notes);
 }
 
 /* --- output */
@@ -572,6 +575,7 @@ static enum tri_status print_estimate(struct runner *r)
     enum tri_status status = generate(r, false);
     if (status)
         return status;
+    summary_notes(&r->console, &r->run.report.notes);
     struct estimate estimate = estimate_make(&r->run, true);
     if (r->run.options.refine)
         status = plan_make(&r->run.plan, &r->run, &estimate, &r->console, r->error);

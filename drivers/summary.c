@@ -19,8 +19,16 @@ void summary_segments(const struct console *console, const struct tri_constrain_
 
 void summary_holes(const struct console *console, const struct tri_report *report)
 {
-    if (report->holes_between > 0)
-        console_warn(console, "hole points on segments, which empty nothing: %" PRId32 ".\n", report->holes_between);
+    if (report->carve.between > 0)
+        console_warn(console, "hole points on segments, which empty nothing: %" PRId32 ".\n", report->carve.between);
+}
+
+void summary_notes(const struct console *console, const struct tri_notes *notes)
+{
+    if (notes->skipped[0] && !console->quiet)
+        console_remark(console, "warning: %s\n", notes->skipped);
+    if (notes->empty[0])
+        console_remark(console, "warning: %s\n", notes->empty);
 }
 
 void summary_duplicates(const struct console *console, const int32_t *twin, const struct tri_pslg *pslg)

@@ -14,6 +14,9 @@ void summary_segments(const struct console *console, const struct tri_constrain_
 /* A warning of hole points that empty nothing. */
 void summary_holes(const struct console *console, const struct tri_report *report);
 
+/* On standard error: why the mesh is empty, also if quiet; that segments are skipped. */
+void summary_notes(const struct console *console, const struct tri_notes *notes);
+
 /* A warning for each point that has a twin of lower index: twin[n_points] is the first one at its place; NULL: there
  * are none. */
 void summary_duplicates(const struct console *console, const int32_t *twin, const struct tri_pslg *pslg);

@@ -21,16 +21,22 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     return status;
 }
 
-int triangulate_with(const char *switches, const struct triangulateio *in, struct triangulateio *out,
-                     struct triangulateio *vorout, const struct triangulate_options *options)
+static int run(const char *switches, const struct triangulateio *in, struct triangulateio *out,
+               struct triangulateio *vorout, const struct triangulate_options *options, bool aloud)
 {
     int threads = par_threads(options ? options->threads : 0, false);
     const struct tri_executor executor = par_executor(&threads);
-    return tri_io_triangulate(switches, in, out, vorout, options, refine, &executor);
+    return tri_io_triangulate(switches, in, out, vorout, options, aloud, refine, &executor);
+}
+
+int triangulate_with(const char *switches, const struct triangulateio *in, struct triangulateio *out,
+                     struct triangulateio *vorout, const struct triangulate_options *options)
+{
+    return run(switches, in, out, vorout, options, false);
 }
 
 int triangulate(const char *switches, struct triangulateio *in, struct triangulateio *out,
                 struct triangulateio *vorout)
 {
-    return triangulate_with(switches, in, out, vorout, NULL);
+    return run(switches, in, out, vorout, NULL, true);
 }

@@ -141,10 +141,12 @@ strange=$(grep -E '^sched/.*#[[:space:]]*include[[:space:]]*"triangle/' "$code" 
     grep -vE '"triangle/('"$hooks|$tools"')\.h"' | head -n 3)
 [ -z "$strange" ] || breach "sched/ includes what is no hook: $strange"
 
-# 3. Libraries neither print nor end the process nor touch the locale.
+# 3. Libraries neither print nor end the process nor touch the locale, but for the one line of triangulate().
+others=$(ls triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] sched/*/*.[ch] |
+    grep -vx triangle/dropin/aloud.c | tr '\n' ' ')
+# shellcheck disable=SC2086 # one word a file
 refuse '(^|[^_a-zA-Z0-9])(printf|puts|putchar|perror|exit|_exit|abort|setlocale|std(out|err))([^_a-zA-Z0-9]|$)' \
-    'prints, exits or touches the locale' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp \
-    sched/*.[ch] sched/*/*.[ch]
+    'prints, exits or touches the locale' $others
 
 # 4. No line of code is longer than 120 characters. (Lines of scripts and of CMake may hold a longer word or pattern.)
 long=$(LC_ALL=C.UTF-8 grep -nE '^.{121,}$' triangle/*.[ch] triangle/*/*.[ch] triangle/*/*.cpp sched/*.[ch] \

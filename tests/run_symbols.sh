@@ -26,7 +26,8 @@ own "$5" '^tri_check[a-z0-9_]*$'
 
 refused='[vf]?printf|__v?f?printf_chk|puts|putchar|fputs|fwrite|perror|std(out|err)|_?exit|abort|longjmp|setlocale'
 for library in "$2" "$3" "$5"; do
-    bad=$(names -u "$library" | grep -xE "$refused")
+    bad=$(list -A -u "$library" | grep -v '\[aloud\.' | sed 's/^.*\]: //' | awk '{ print $1 }' | sort -u |
+        grep -xE "$refused") # but for the one line of triangulate()
     [ -z "$bad" ] || { echo "symbols: $library uses" $bad; failed=1; }
 done
 

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include <cmocka.h>
@@ -302,6 +303,9 @@ static void test_edge_lengths_without_meaning(void **state)
 {
     (void)state;
     double odd[] = {0, -0.01, NAN, INFINITY, -INFINITY};
+    static const char *const odd_notes[] = {"edge_length returned 0 at (", "edge_length returned -0.01 at (",
+                                            "edge_length returned nan at (", "", "edge_length returned -inf at ("};
+    const struct tri_settings none = tri_no_settings();
     struct tri_figure figure = plate();
     struct tri_settings settings = tri_no_settings();
     settings.min_angle = 30;
@@ -312,9 +316,103 @@ static void test_edge_lengths_without_meaning(void **state)
         settings.edge_length_user = &odd[i];
         struct tri_mesh *mesh = mesh_of(&figure, &settings);
         assert_true(same_meshes(plain, mesh));
+        assert_int_equal(strncmp(tri_mesh_notes(mesh), odd_notes[i], strlen(odd_notes[i]) + !*odd_notes[i]), 0);
+        assert_null(strchr(tri_mesh_notes(mesh), '\n'));
+        assert_int_equal(tri_mesh_refine(mesh, &none, NULL), TRI_OK);
+        assert_string_equal(tri_mesh_notes(mesh), "");
         tri_mesh_delete(mesh);
     }
     tri_mesh_delete(plain);
+}
+
+/* Beyond x = 2 there is no length: the place is told. */
+static double length_to_two(void *user, const double at[2])
+{
+    (void)user;
+    return at[0] < 2 ? 0.5 : -0.25;
+}
+
+static void keep_note(void *user, const char *notes) { snprintf(user, 600, "%s", notes); }
+
+static void test_place_of_an_odd_length(void **state)
+{
+    (void)state;
+    char note[600] = "";
+    struct tri_figure figure = plate();
+    struct tri_settings settings = tri_no_settings();
+    struct tri_mesh *mesh;
+    settings.edge_length = length_to_two;
+    settings.note = keep_note;
+    settings.note_user = note;
+    for (int way = 0; way < 3; way++) { /* sequential, parallel, asked by one thread or by several */
+        double x = 0, y = 0, length = 0;
+        settings.callbacks_in_parallel = way == 2;
+        enum tri_status status = way == 0 ? tri_mesh_new(&mesh, &figure, &settings, NULL)
+                                          : par_mesh_new(&mesh, &figure, &settings, NULL);
+        assert_int_equal(status, TRI_OK);
+        assert_int_equal(sscanf(tri_mesh_notes(mesh), "edge_length returned %lf at (%lf, %lf)", &length, &x, &y), 3);
+        assert_true(length == -0.25 && x >= 2 && x <= 4 && y >= 0 && y <= 3);
+        assert_string_equal(note, tri_mesh_notes(mesh));
+        tri_mesh_delete(mesh);
+    }
+}
+
+/* --- notes */
+
+static enum tri_status take_no_triangles(void *user, const struct tri_tile *tile, struct tri_error *error)
+{
+    (void)user, (void)error;
+    assert_int_equal(tile->n_triangles, 0);
+    return TRI_OK;
+}
+
+static void test_notes_of_an_empty_mesh(void **state)
+{
+    (void)state;
+    static const int32_t open[] = {0, 1, 1, 2, 2, 3, 7, 99};
+    static const char *const wanted[] = {"the mesh is empty: the outline is open at points 0 and 3",
+                                         "the mesh is empty: segment 3 names point 99 of 10: numbers count from 0"
+                                         " here; it is skipped"};
+    struct tri_figure figure = plate();
+    struct tri_settings settings = tri_no_settings();
+    char note[600];
+    figure.holes.n = figure.regions.n = 0;
+    figure.segment_markers = tri_ints_of(NULL, 0, 1);
+    settings.min_angle = 20;
+    settings.note = keep_note;
+    settings.note_user = note;
+    for (int n = 3; n <= 4; n++) {
+        figure.segments = tri_ints_of(open, n, 2);
+        struct tri_mesh *mesh = mesh_of(&figure, &settings);
+        assert_int_equal(tri_mesh_triangles(mesh).n, 0);
+        assert_string_equal(tri_mesh_notes(mesh), wanted[n - 3]);
+        assert_string_equal(note, wanted[n - 3]);
+        assert_int_equal(tri_mesh_refine(mesh, &settings, NULL), TRI_OK); /* it is no less empty then */
+        assert_string_equal(tri_mesh_notes(mesh), wanted[n - 3]);
+        tri_mesh_delete(mesh);
+        const struct tri_sink sink = {.take = take_no_triangles};
+        note[0] = 0;
+        assert_int_equal(par_mesh_stream(&figure, &settings, 0, NULL, &sink, NULL), TRI_OK);
+        assert_string_equal(note, wanted[n - 3]);
+    }
+}
+
+static void test_notes_of_skipped_segments(void **state)
+{
+    (void)state;
+    static const int32_t ends[] = {0, 1, 1, 2, 2, 3, 3, 0, 4, 4, -1, 2};
+    struct tri_figure figure = plate();
+    struct tri_mesh *mesh = mesh_of(&figure, NULL);
+    assert_string_equal(tri_mesh_notes(mesh), "");
+    tri_mesh_delete(mesh);
+    figure.segment_markers = tri_ints_of(NULL, 0, 1);
+    figure.segments = tri_ints_of(ends, 6, 2);
+    figure.holes.n = 0;
+    mesh = mesh_of(&figure, NULL);
+    assert_true(tri_mesh_triangles(mesh).n > 0);
+    assert_string_equal(tri_mesh_notes(mesh),
+                        "segment 5 names point -1 of 10: numbers count from 0 here; 2 segments are skipped");
+    tri_mesh_delete(mesh);
 }
 
 static void test_too_large_leaves_no_mesh(void **state)
@@ -671,6 +769,9 @@ int main(void)
         cmocka_unit_test(test_even_odd),
         cmocka_unit_test(test_edge_length),
         cmocka_unit_test(test_edge_lengths_without_meaning),
+        cmocka_unit_test(test_place_of_an_odd_length),
+        cmocka_unit_test(test_notes_of_an_empty_mesh),
+        cmocka_unit_test(test_notes_of_skipped_segments),
         cmocka_unit_test(test_too_large_leaves_no_mesh),
         cmocka_unit_test(test_input_that_is_not_finite),
         cmocka_unit_test(test_gate_and_fence),

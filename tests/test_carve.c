@@ -266,12 +266,12 @@ static void test_holes_between_faces_empty_nothing(void **state)
         support_add_segment(&pslg, 4, 5);
         memcpy(pslg.holes, (double[]){cases[i].x, cases[i].y}, 2 * sizeof(double));
         pslg.n_holes = 1;
-        int32_t between = -1;
-        const struct tri_carve_options options = {.between = &between};
+        struct tri_carve_report carved;
+        const struct tri_carve_options options = {.report = &carved};
         struct tri_constrain_report report;
         struct tri_mesh mesh = support_constrained(&pslg, &report);
         assert_int_equal(tri_carve(&mesh, &pslg, &options, NULL), TRI_OK);
-        assert_int_equal(between, cases[i].between);
+        assert_int_equal(carved.between, cases[i].between);
         assert_int_equal(mesh.n_triangles, cases[i].triangles);
         tri_mesh_free(&mesh);
         tri_pslg_free(&pslg);

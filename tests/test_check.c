@@ -1246,6 +1246,42 @@ static void broken_hull(void **state)
     expect(TRI_CHECK_HULL, 1, -1);
 }
 
+/* Vertices on an edge of the hull may lie to either side of it, within the tolerance; not so far inside. */
+static void rounded_hull(void **state)
+{
+    (void)state;
+    static const struct {
+        int32_t ulps;
+        bool good;
+    } cases[] = {{0, true}, {1, true}, {-1, true}, {14, true}, {-14, true}, {17, false}, {1000, false}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        begin();
+        add_point(0, 0), add_point(4, 0), add_point(4, 4), add_point(0, 4), add_point(2, cases[i].ulps * 4 * 0x1p-52);
+        add_triangle(0, 4, 3), add_triangle(4, 1, 2), add_triangle(4, 2, 3);
+        trial.options.convex = true;
+        if (cases[i].good)
+            expect_good();
+        else
+            expect(TRI_CHECK_HULL, 1, -1);
+    }
+}
+
+/* A boundary that turns right within rounding at each vertex, but is hollow. */
+static void hollow_hull(void **state)
+{
+    (void)state;
+    enum { N = 64 };
+    begin();
+    for (int k = 0; k <= N; k++)
+        add_point(k, k * (N - k) * 0x1p-50);
+    int32_t top = add_point(N / 2, N);
+    for (int k = 0; k < N; k++)
+        add_triangle(k, k + 1, top);
+    trial.options.convex = true;
+    trial.options.delaunay = TRI_CHECK_NOT_DELAUNAY;
+    expect(TRI_CHECK_HULL, 1, -1);
+}
+
 /* --- the order of the sweep */
 
 static bool is_below_limit(const void *user, int32_t s)
@@ -1470,6 +1506,8 @@ int main(void)
         cmocka_unit_test(small_input_angles_explain),
         cmocka_unit_test(broken_areas),
         cmocka_unit_test(broken_hull),
+        cmocka_unit_test(rounded_hull),
+        cmocka_unit_test(hollow_hull),
         cmocka_unit_test(good_nodes),
         cmocka_unit_test(broken_nodes),
         cmocka_unit_test(broken_vertex_attributes),

@@ -9,6 +9,7 @@
 #include <locale.h>
 #include <pthread.h>
 #include <stdio.h>
+#include <unistd.h>
 
 #include "allocations.h"
 #include "support.h"
@@ -736,7 +737,7 @@ static void test_remarks(void **state)
         assert_int_equal(triangulate_with(switches, &in, &out, NULL, &options), 0);
         assert_int_equal(out.numberoftriangles, 2);
         assert_int_equal(told.errors, 0);
-        assert_int_equal(told.remarks, quiet ? 0 : 3); /* w, one duplicate, three segments that are none */
+        assert_int_equal(told.remarks, quiet ? 0 : 3); /* w, one duplicate, segments that are none */
         release(switches, &out, &vorout);
     }
     struct told told = {0};
@@ -745,6 +746,92 @@ static void test_remarks(void **state)
     assert_int_equal(triangulate_with("pq40a1e-2z", &in, &out, NULL, &options), 0);
     assert_int_equal(told.remarks, 4);
     release("pe", &out, &vorout);
+}
+
+/* --- words for who does not ask */
+
+/* What triangulate(), or triangulate_with() without options, writes to standard error. */
+static void listen_to_stderr(const char *switches, struct triangulateio *in, bool with, char text[600])
+{
+    struct triangulateio out = {0};
+    FILE *file = tmpfile();
+    assert_non_null(file);
+    fflush(stderr);
+    const int kept = dup(STDERR_FILENO);
+    assert_true(kept >= 0 && dup2(fileno(file), STDERR_FILENO) >= 0);
+    if (with)
+        triangulate_with(switches, in, &out, NULL, NULL);
+    else
+        triangulate(switches, in, &out, NULL);
+    fflush(stderr);
+    assert_true(dup2(kept, STDERR_FILENO) >= 0);
+    close(kept);
+    rewind(file);
+    text[fread(text, 1, 599, file)] = 0;
+    fclose(file);
+    trifree(out.pointlist);
+    trifree(out.pointmarkerlist);
+    trifree(out.trianglelist);
+    trifree(out.segmentlist);
+    trifree(out.segmentmarkerlist);
+}
+
+static void test_words_for_who_does_not_ask(void **state)
+{
+    (void)state;
+    static REAL one_place[] = {1, 1, 1, 1, 1, 1}, xy[] = {0, 0, 1, 0, 1, 1, 0, 1, 0, 1};
+    static int fine[] = {1, 2, 2, 3, 3, 4, 4, 1}, open[] = {1, 2, 2, 3, 3, 4}, far[] = {1, 2, 2, 3, 3, 4, 4, 1, 4, 6};
+    const struct {
+        REAL *xy;
+        int n_points, *ends, n_segments;
+        const char *switches, *wanted;
+    } cases[] = {
+        {one_place, 3, fine, 0, "", "triangulate: all points are at the same place\n"},
+        {xy, 4, fine, 4, "pa0", "triangulate: "},
+        {xy, 4, open, 3, "p", "triangulate: the mesh is empty: the outline is open at points 1 and 4\n"},
+        {xy, 4, open, 3, "pz", "triangulate: the mesh is empty: segment 2 names point 4 of 4: numbers count from 0"},
+        {xy, 4, far, 5, "p", "triangulate: segment 5 names point 6 of 4: numbers count from 1 here; it is skipped\n"},
+        {xy, 4, fine, 4, "p", ""},
+        {xy, 5, fine, 4, "p", ""}, /* what is odd, but harmless: a duplicate */
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[600], quiet[16];
+        struct triangulateio in = points_only(cases[i].xy, cases[i].n_points);
+        in.segmentlist = cases[i].ends;
+        in.segmentmarkerlist = NULL;
+        in.numberofsegments = cases[i].n_segments;
+        in.numberofholes = in.numberofregions = 0;
+        snprintf(quiet, sizeof quiet, "%sQ", cases[i].switches);
+        listen_to_stderr(cases[i].switches, &in, false, text);
+        if (strncmp(text, cases[i].wanted, strlen(cases[i].wanted) + !*cases[i].wanted) != 0)
+            fail_msg("case %zu: %s", i, text);
+        listen_to_stderr(quiet, &in, false, text);
+        assert_string_equal(text, "");
+        listen_to_stderr(cases[i].switches, &in, true, text);
+        assert_string_equal(text, "");
+    }
+}
+
+/* Why a mesh is empty is told to a function also with Q. */
+static void test_an_empty_mesh_is_told(void **state)
+{
+    (void)state;
+    static int open[] = {0, 1, 1, 2, 2, 3};
+    struct triangulateio in = figure("pz"), out, vorout;
+    in.segmentlist = open;
+    in.segmentmarkerlist = NULL;
+    in.numberofsegments = 3;
+    in.numberofholes = in.numberofregions = 0;
+    for (int quiet = 0; quiet < 2; quiet++) {
+        struct told told = {0};
+        struct triangulate_options options = {.message = listen, .message_user = &told};
+        const char *switches = quiet ? "pzQ" : "pz";
+        prepare(switches, &out, &vorout);
+        assert_int_equal(triangulate_with(switches, &in, &out, NULL, &options), 0);
+        assert_true(out.numberoftriangles == 0 && told.errors == 0 && told.remarks == 1);
+        assert_string_equal(told.text, "the mesh is empty: the outline is open at points 0 and 3");
+        release(switches, &out, &vorout);
+    }
 }
 
 /* Segments that name points at the ends of the range of int, from 1. */
@@ -1318,6 +1405,8 @@ int main(void)
         cmocka_unit_test(test_bad_calls),
         cmocka_unit_test(test_remarks),
         cmocka_unit_test(test_far_indices),
+        cmocka_unit_test(test_words_for_who_does_not_ask),
+        cmocka_unit_test(test_an_empty_mesh_is_told),
 #ifdef SUPPORT_WRAP
         cmocka_unit_test(test_every_allocation_may_fail),
 #endif

@@ -6,6 +6,7 @@
 
 #include <assert.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "triangle/grow.h"
 #include "triangle/locate.h"
@@ -16,6 +17,8 @@ struct flood {
     struct tri_mesh *mesh;
     int32_t *stack;    /* [n_triangles]: each triangle is pushed at most once a flood */
     uint8_t *dead;     /* [n_triangles] 0: live */
+    struct tri_carve_report report;
+    struct tri_emptied holes;
 };
 
 static void kill_from(struct flood *f, tri_triangle_id start)
@@ -285,20 +288,20 @@ static bool is_between_faces(const struct tri_mesh *mesh, tri_triangle_id t, str
     return on_sub;
 }
 
-static enum tri_status kill_holes(struct flood *f, const struct tri_pslg *pslg, int32_t *between,
-                                  struct tri_error *error)
+static enum tri_status kill_holes(struct flood *f, const struct tri_pslg *pslg, struct tri_error *error)
 {
     int32_t *faces;
     enum tri_status status = locate(f->mesh, pslg->holes, pslg->n_holes, 2, &faces, error);
-    *between = 0;
     for (int32_t k = 0; !status && k < pslg->n_holes; k++) {
         const double *at = &pslg->holes[2 * (size_t)k];
         if (faces[k] == TRI_NONE)
             continue;
-        if (is_between_faces(f->mesh, faces[k], tri_to_units(f->mesh, at[0], at[1])))
-            ++*between;
-        else
+        if (is_between_faces(f->mesh, faces[k], tri_to_units(f->mesh, at[0], at[1]))) {
+            f->report.between++;
+        } else if (!f->dead[faces[k]]) {
+            f->holes.first = f->holes.n++ == 0 ? k : f->holes.first;
             kill_from(f, faces[k]);
+        }
     }
     free(faces);
     return status;
@@ -455,33 +458,43 @@ static enum tri_status order_subs(struct tri_mesh *mesh, int32_t n_segments, str
     return status;
 }
 
+/* What goes is marked. */
+static enum tri_status kill(struct flood *f, const struct tri_pslg *pslg, const struct tri_carve_options *options,
+                            struct tri_error *error)
+{
+    enum tri_status status = TRI_OK;
+    if (options->even_odd)
+        status = kill_even(f, options->keep_hull, error);
+    else if (!options->keep_hull)
+        kill_concavities(f);
+    if (!status && !options->ignore_holes)
+        status = kill_holes(f, pslg, error);
+    if (!status && options->keep_hull && options->drop_flat)
+        status = kill_flat_faces(f, error);
+    if (!status && !memchr(f->dead, 0, (size_t)f->mesh->n_triangles))
+        status = tri_why_empty(&f->report.why, f->mesh, options->even_odd, options->keep_hull, &f->holes, error);
+    return status;
+}
+
 enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_carve_options *options,
                           struct tri_error *error)
 {
     size_t n = (size_t)mesh->n_triangles + 1;
     assert(mesh->n_subs == mesh->n_parents); /* one each */
-    struct flood f = {mesh, malloc(n * sizeof *f.stack), calloc(n, 1)};
+    struct flood f = {.mesh = mesh, .stack = malloc(n * sizeof *f.stack), .dead = calloc(n, 1)};
     enum tri_status status = TRI_OK;
-    int32_t between = 0;
     if (!f.stack || !f.dead)
         status = tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d triangles", (int)mesh->n_triangles);
     tri_mark_vertices(mesh);
     if (!status && mesh->n_triangles > 0) {
-        if (options->even_odd)
-            status = kill_even(&f, options->keep_hull, error);
-        else if (!options->keep_hull)
-            kill_concavities(&f);
-        if (!status && !options->ignore_holes)
-            status = kill_holes(&f, pslg, &between, error);
-        if (!status && options->keep_hull && options->drop_flat)
-            status = kill_flat_faces(&f, error);
+        status = kill(&f, pslg, options, error);
         if (!status && options->spread_regions)
             status = spread_regions(&f, pslg, error);
         if (!status)
             remove_dead(&f);
     }
-    if (options->between)
-        *options->between = between;
+    if (options->report)
+        *options->report = f.report;
     free(f.stack);
     free(f.dead);
     return status ? status : order_subs(mesh, pslg->n_segments, error);

@@ -3,10 +3,16 @@
 #define TRIANGLE_CARVE_H
 
 #include "triangle/mesh.h"
+#include "triangle/why_empty.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+struct tri_carve_report {
+    int32_t between;       /* hole points that lie between faces */
+    struct tri_empty why;  /* nothing is left */
+};
 
 struct tri_carve_options {
     bool keep_hull;     /* the convex hull stays whole: its edges count as segments (-c) */
@@ -14,7 +20,7 @@ struct tri_carve_options {
     bool spread_regions;
     bool even_odd;      /* segments tell what is inside: see below */
     bool drop_flat;     /* with keep_hull: faces of no width at the hull go, see below; for meshes to be refined */
-    int32_t *between;   /* told: hole points that lie between faces; NULL: nobody asks */
+    struct tri_carve_report *report; /* NULL: nobody asks */
 };
 
 /* Removes what is reachable from outside the hull, or from a hole point, without crossing a segment; then gives every

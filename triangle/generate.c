@@ -44,7 +44,7 @@ static enum tri_status constrain_and_carve(struct tri_mesh *mesh, const struct t
     announce(options, TRI_STAGE_HOLES);
     if (options->use_segments) {
         struct tri_carve_options carve = {options->keep_hull, options->ignore_holes, options->spread_regions,
-                                          options->even_odd, options->refine, &report->holes_between};
+                                          options->even_odd, options->refine, &report->carve};
         status = tri_carve(mesh, pslg, &carve, error);
         assert(status || tri_mesh_is_sound(mesh));
     }
@@ -68,6 +68,10 @@ static enum tri_status triangulate(struct tri_mesh *mesh, const struct tri_pslg 
     free(place);
     status = status ? status : constrain_and_carve(mesh, &renamed, options, report, error);
     free(renamed.segments);
+    if (!status && mesh->n_triangles == 0 && report->carve.why.reason == TRI_EMPTY_NOT)
+        report->carve.why.reason = TRI_EMPTY_LINE;
+    if (!status)
+        tri_notes_make(&report->notes, &report->carve.why, pslg, report->constrain.skipped, options->base);
     return status;
 }
 

@@ -51,7 +51,7 @@ struct tri_options {
     const struct tri_elements *elements; /* a mesh that is there (-r): it is rebuilt, and use_segments and refine are
                                             those of tri_reconstruct; NULL: one is made from the points */
     bool *is_edge;       /* with elements: as in struct tri_reconstruct_options */
-    int32_t base;        /* with elements: likewise */
+    int32_t base;        /* 0 or 1: from which the caller counts, for words */
     const struct tri_executor *executor; /* for what is done in pieces; NULL: one after another */
     const struct tri_stop *stop;         /* asked whether to go on, here and, by mesh->stop, later; NULL: nobody */
     void (*stage)(void *user, enum tri_stage begins); /* told when a stage begins; NULL: nobody */
@@ -60,7 +60,8 @@ struct tri_options {
 
 struct tri_report {
     int32_t duplicates; /* points that have a twin of lower index; 0 with elements */
-    int32_t holes_between; /* hole points on segments, which empty nothing (carve.h) */
+    struct tri_carve_report carve;
+    struct tri_notes notes; /* what of the input was hardly meant so */
     int32_t loose;      /* with elements: segments that are no edges of them, see struct tri_reconstruct_options */
     struct tri_constrain_report constrain;
     struct tri_refine_report quality;

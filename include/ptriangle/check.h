@@ -4,7 +4,8 @@
  * Decided by exact arithmetic: all triangles are counter-clockwise; two of them share nothing, one corner or one whole
  * edge; each edge that is no segment is locally Delaunay; segments are edges, the boundary consists of segments; input
  * points are corners, holes are empty. Within 8 units in the last place of the coordinates: each input segment is a
- * chain of edges, but for pieces outside the mesh or on its boundary. In double precision: angles and areas. */
+ * chain of edges, but for pieces outside the mesh or on its boundary; within 16: the convex hull is filled. In double
+ * precision: angles and areas. */
 #ifndef PTRIANGLE_CHECK_H
 #define PTRIANGLE_CHECK_H
 

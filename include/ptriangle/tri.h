@@ -88,8 +88,8 @@ struct tri_figure {
     struct tri_reals points;           /* [n][2] x, y; at least 3 */
     struct tri_reals point_attributes; /* [points.n][any]: interpolated at new points */
     struct tri_ints point_markers;     /* [points.n][1]; not given: 0 */
-    struct tri_ints segments;          /* [n][2] points; one that names no point, or the same twice, is skipped. Without
-                                          segments the convex hull is meshed, else what they enclose */
+    struct tri_ints segments;          /* [n][2] points; one that names no point, or the same twice, is skipped, and
+                                          noted. Without segments the convex hull is meshed, else what they enclose */
     struct tri_ints segment_markers;   /* [segments.n][1]; not given: 0 */
     struct tri_reals holes;            /* [n][2] x, y: what can be reached from there without crossing a segment goes */
     struct tri_reals regions;          /* [n][4] x, y, attribute, largest area (<= 0: any): of what can be reached from
@@ -120,7 +120,8 @@ struct tri_settings {
     int64_t most_new_points; /* > 0: then refinement ends */
 
     /* Wanted length of edges around a place: no triangle is larger than an equilateral one with edges of the least
-     * length at its corners and centroid. 0, negative, infinite or NaN: any length will do there. */
+     * length at its corners and centroid. Infinite: any length will do there. So it will where the function returns 0,
+     * a negative number or NaN, but a note tells so, with one such place. */
     double (*edge_length)(void *user, const double at[2]);
     void *edge_length_user;
     /* Must the triangle a, b, c (counter-clockwise) be refined? Asked about triangles that keep all bounds of size;
@@ -154,6 +155,11 @@ struct tri_settings {
      * the least number of segments' pieces on a way from outside counts, of those pieces along which an odd number of
      * segments run. So dangling segments, and single ones across a ring, change nothing. */
     bool even_odd;
+
+    /* Told what tri_mesh_notes will say, unless that is "", before a call with these settings returns, by its thread:
+     * for meshes that are handed out meanwhile (par_mesh_stream). */
+    void (*note)(void *user, const char *notes);
+    void *note_user;
 
     /* Told every so often while triangles are refined, by the calling thread: which share of the work is done, from 0 on
      * and never less than before, at last 1; and how many triangles there are. The share is of an estimate. */
@@ -217,6 +223,11 @@ enum tri_status tri_mesh_edges(struct tri_mesh *mesh, struct tri_ints *edges, st
 void tri_mesh_figure(const struct tri_mesh *mesh, struct tri_figure *figure);
 
 /* --- what was odd, and what could not be reached */
+
+/* What was hardly meant so, a line each: why the mesh is empty ("the mesh is empty: the outline is open at points 3 and
+ * 17"), that segments are skipped, that edge_length returned what is no length. "" where there is nothing to say, which
+ * is the rule. The mesh's, valid until it is refined or deleted. */
+const char *tri_mesh_notes(const struct tri_mesh *mesh);
 
 enum tri_count {
     TRI_COUNT_DUPLICATES,       /* points that lie where a point of lower number lies, and are not used */

@@ -10,7 +10,7 @@ import threading
 from ctypes import byref
 from typing import Any, Callable, Dict, Optional, TypeVar
 
-from ._errors import SizeWarning, exception_of, warn
+from ._errors import exception_of
 from ._library import ErrorDetail, Stop
 
 R = TypeVar("R")
@@ -22,7 +22,6 @@ class Calls:
     def __init__(self, who: str) -> None:
         self.who = who
         self.fault: Optional[BaseException] = None  # the first one
-        self.words: Optional[str] = None            # a warning that is to be given after the call
         self._thread = threading.get_ident()
         self._inside = False    # this thread is in a function of the caller's, where an exception is caught
         self._running = False
@@ -54,11 +53,6 @@ class Calls:
             return Stop(lambda _user: self.fault is not None)
         asked = self.guarded(lambda: bool(function()), True)
         return Stop(lambda _user: asked() or self.fault is not None)
-
-    def give_warnings(self) -> None:
-        """What the call has noted, as warnings of the line that called the package."""
-        if self.words is not None:
-            warn(self.words, SizeWarning)
 
     # --- signals
 

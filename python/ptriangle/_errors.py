@@ -1,7 +1,6 @@
-"""Exceptions, which say what the library says, and warnings."""
+"""Exceptions, which say what the library says."""
 from __future__ import annotations
 
-import warnings
 from typing import Type
 
 
@@ -44,20 +43,3 @@ _KINDS = {1: TooLargeError, 2: TooLargeError, 3: InputError, 4: FileError, 5: Fi
 def exception_of(status: int, text: str) -> Error:
     kind: Type[Error] = _KINDS.get(status, Error)
     return kind(text, status)
-
-
-class MeshWarning(UserWarning):
-    """The mesh was made, but may not be what was meant."""
-
-
-class SizeWarning(MeshWarning):
-    """The size function returned 0, a negative number or NaN."""
-
-
-def warn(text: str, kind: Type[MeshWarning]) -> None:
-    """Warns of the line that called the package, however deep it was called from."""
-    import sys
-    depth, frame = 2, sys._getframe(1)
-    while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
-        depth, frame = depth + 1, frame.f_back
-    warnings.warn(text, kind, stacklevel=depth - 1)

@@ -53,6 +53,7 @@ else:
 Unsuitable = CFUNCTYPE(c_int, c_void_p, POINTER(c_double), POINTER(c_double), POINTER(c_double), c_double)
 Gate = CFUNCTYPE(c_bool, c_void_p, POINTER(c_double))
 Stop = CFUNCTYPE(c_bool, c_void_p)
+Note = CFUNCTYPE(None, c_void_p, c_char_p)
 Progress = CFUNCTYPE(None, c_void_p, c_double, c_int64)
 
 
@@ -65,7 +66,7 @@ class Settings(Sized):
                 ("stop", Stop), ("stop_user", c_void_p),
                 ("threads", c_int), ("callbacks_in_parallel", c_bool), ("numbered_by_block", c_bool),
                 ("even_odd", c_bool),
-                ("progress", Progress), ("progress_user", c_void_p)]
+                ("note", Note), ("note_user", c_void_p), ("progress", Progress), ("progress_user", c_void_p)]
 
 
 class Demands(Sized):
@@ -151,6 +152,7 @@ _declare("tri_mesh_edges", c_int, _mesh, POINTER(Ints), POINTER(Ints), _error)
 _declare("tri_mesh_figure", None, _mesh, POINTER(Figure))
 _declare("tri_mesh_count", c_int64, _mesh, c_int)
 _declare("tri_mesh_count_bad", c_int64, _mesh, POINTER(Settings), POINTER(c_int64), c_int)
+_declare("tri_mesh_notes", c_char_p, _mesh)
 _declare("tri_version", c_char_p)
 _declare("tri_check_figure", c_int, POINTER(Figure), POINTER(Figure), POINTER(Demands), POINTER(VerdictDetail), _error)
 _declare("tri_file_read", c_int, c_char_p, POINTER(Figure), _error)

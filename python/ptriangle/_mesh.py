@@ -14,6 +14,7 @@ from ._calls import Calls
 from ._errors import InputError
 from ._figure import figure_of
 from ._library import Demands, Figure, Ints, Settings, VerdictDetail, library
+from ._notes import tell
 from ._settings import Progress, Size, Unsuitable, settings_of
 from ._signature import explained
 from ._verdict import Verdict
@@ -333,5 +334,5 @@ def finished(handle: Handle, order: int, calls: Calls) -> Mesh:
     """The mesh of a call that has come to its end: here is where warnings are given."""
     if order not in (1, 2):
         raise InputError("%s: order is %r instead of 1 or 2" % (calls.who, order))
-    calls.give_warnings()
+    tell(library.tri_mesh_notes(handle.mesh), calls.who)
     return Mesh(handle, order)

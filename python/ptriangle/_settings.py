@@ -41,19 +41,15 @@ def _refuse(who: str, name: str, given: Any) -> None:
 
 
 def _length_asked(calls: Calls, function: Callable[[float, float], float]) -> Callable[[Any, Any], float]:
-    """The caller's function of a place as the library calls it; it notes the first length that cannot be."""
+    """The caller's function of a place as the library calls it."""
     def ask(_user: Any, at: Any) -> float:
         x, y = at[0], at[1]
         given = function(x, y)
         try:
-            length = float(given)
+            return float(given)
         except (TypeError, ValueError):
             raise TypeError("%s: size: %s(%r, %r) returned %r instead of a number"
                             % (calls.who, _name_of(function), x, y, given)) from None
-        if not length > 0 and calls.words is None:
-            calls.words = ("%s: size: %s(%r, %r) returned %r: any length will do there"
-                           % (calls.who, _name_of(function), x, y, length))
-        return length
     return calls.guarded(ask, math.inf)
 
 

@@ -15,6 +15,7 @@ from ._compat_files import load, loads
 from ._compat_plot import compare, comparev, plot
 from ._errors import InputError, exception_of
 from ._library import TriangulateIO, TriangulateOptions, library
+from ._notes import tell
 
 __version__ = "20250106"  # of the package whose functions these are
 __all__ = ["compare", "comparev", "convex_hull", "delaunay", "get_data", "load", "loads", "plot", "show_data",
@@ -84,12 +85,14 @@ def _release(io, borrowed):
             library.trifree(address)
 
 
-def _options_of(unsuitable, calls, words):
+def _options_of(unsuitable, calls, words, notes):
     options = TriangulateOptions()
 
     def tell(_user, is_error, text):
         if is_error:
             words.append(text.decode("utf-8", "replace"))
+        else:  # why the mesh is empty
+            notes.append(text)
 
     def ask(_user, a, b, c, area):
         return int(bool(unsuitable((a[0], a[1]), (b[0], b[1]), (c[0], c[1]), area)))
@@ -102,7 +105,7 @@ def _options_of(unsuitable, calls, words):
 
 
 def _call(tri, opts, unsuitable=None, with_voronoi=False):
-    data, out, vorout, kept, words = TriangulateIO(), TriangulateIO(), TriangulateIO(), [], []
+    data, out, vorout, kept, words, notes = TriangulateIO(), TriangulateIO(), TriangulateIO(), [], [], []
     if np.asarray(tri.get("vertices", ())).size < 6:
         raise InputError("Input must have at least three vertices.")
     for key, given in tri.items():
@@ -112,13 +115,14 @@ def _call(tri, opts, unsuitable=None, with_voronoi=False):
             kept.append(_fill(data, key, given))
     opts = opts.encode() if isinstance(opts, str) else bytes(opts)
     calls = Calls("triangulate()")
-    options = _options_of(unsuitable, calls, words)
+    options = _options_of(unsuitable, calls, words, notes)
     borrowed = {data.holelist, data.regionlist}  # which `out` names as well
     try:
         status = calls.run(library.triangulate_with, b"zQ" + opts, byref(data), byref(out), byref(vorout),
                            byref(options))
         if status:
             raise exception_of(status, words[-1] if words else "error %d" % status)
+        tell(b"\n".join(notes), calls.who)
         mesh = _taken(out, _FIELDS)
         return (mesh, _taken(vorout, _VORONOI)) if with_voronoi else mesh
     finally:

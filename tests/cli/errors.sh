@@ -37,6 +37,54 @@ for program in triangle ptriangle trianglecheck meshplot; do
     check "--version" sh -c '"$1" --version | grep -qE "^$2 [0-9]+\.[0-9]+\.[0-9]+$"' sh "$bin/$program" $program
     check "--help" sh -c '"$1" --help | grep -qi "^usage: $2 "' sh "$bin/$program" $program
 done
+# a mesh that is empty: one line says why, also if quiet, in the numbers of the file
+outline() { # outline BASE ENDS...: the square whose numbers count from there, and a segment for each pair
+    base=$1
+    shift
+    printf '4 2 0 0\n%d 0 0\n%d 4 0\n%d 4 4\n%d 0 4\n%d 0\n' $base $((base + 1)) $((base + 2)) $((base + 3)) $(($# / 2))
+    k=$base
+    while [ $# -gt 0 ]; do
+        echo "$k $1 $2"
+        k=$((k + 1))
+        shift 2
+    done
+}
+tells() { # tells TEXT: one line, which ends so
+    check "one line: $(cat .err)" sh -c 'test "$(wc -l <.err)" -eq 1'
+    complains "riangle: warning: $1\$"
+    silent_on "keep the bounds"
+}
+(outline 1 1 2 2 3 3 4; echo 0) >open.poly
+(outline 0 0 1 1 2 2 3; echo 0) >zero.poly
+(outline 0 1 2 2 3 3 4 4 1; echo 0) >shifted.poly
+(outline 1 1 2 2 3 3 4 4 1; printf '1\n1 2 2\n') >hole.poly
+(outline 1 1 2 2 3 3 4 4 1 3 9; echo 0) >skipped.poly
+for program in triangle ptriangle; do
+    [ -x "$bin/$program" ] || continue
+    for switches in -pq20a1 -pQ -p; do
+        mesher 0 $program $switches open.poly
+        tells 'the mesh is empty: the outline is open at points 1 and 4'
+        mesher 0 $program $switches zero.poly
+        tells 'the mesh is empty: the outline is open at points 0 and 3'
+        mesher 0 $program $switches shifted.poly
+        tells 'the mesh is empty: segment 2 names point 4 of 4: numbers count from 0 here; 2 segments are skipped'
+        mesher 0 $program $switches hole.poly
+        tells 'the mesh is empty: hole 1 lies in the only face'
+    done
+    mesher 0 $program -pO hole.poly
+    calm
+    mesher 0 $program -p skipped.poly
+    complains '^p?triangle: warning: segment 5 names point 9 of 4: numbers count from 1 here; it is skipped$'
+    mesher 0 $program -pQ skipped.poly
+    calm
+done
+if [ -x "$bin/ptriangle" ]; then
+    program 0 -pq20a1 open.poly --dry-run
+    tells 'the mesh is empty: the outline is open at points 1 and 4'
+    program 0 -pq20a1 open.poly --output open.vtu --memory 200M
+    tells 'the mesh is empty: the outline is open at points 1 and 4'
+fi
+rm -f open.* zero.* shifted.* hole.* skipped.*
 what='a newline in a name'
 "$bin/trianglecheck" 'no
 y' >.out 2>.err

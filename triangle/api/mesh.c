@@ -5,7 +5,10 @@
 #include "triangle/api/mesh.h"
 
 #include <math.h>
+#include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "triangle/api/figure.h"
 #include "triangle/census.h"
@@ -31,17 +34,35 @@ enum tri_status tri_api_settings_take(struct tri_settings *settings, const struc
     return TRI_OK;
 }
 
+/* The caller's functions of size, and the first length that is none. Several threads may ask. */
+struct sizes {
+    const struct tri_settings *settings;
+    atomic_flag is_odd;
+    double odd, odd_at[2];
+};
+
+static void note_odd(struct sizes *sizes, double length, const double at[2])
+{
+    if (atomic_flag_test_and_set_explicit(&sizes->is_odd, memory_order_relaxed))
+        return;
+    sizes->odd = length;
+    sizes->odd_at[0] = at[0];
+    sizes->odd_at[1] = at[1];
+}
+
 /* Is the area above that of an equilateral triangle with edges of the least length that is wanted here? A length that
  * is not above 0 wants nothing: no mesh could have it. */
-static bool is_above_length(const struct tri_settings *s, const double a[2], const double b[2], const double c[2],
-                            double area)
+static bool is_above_length(struct sizes *sizes, const double a[2], const double b[2], const double c[2], double area)
 {
+    const struct tri_settings *s = sizes->settings;
     const double share = 0.43301270189221932; /* sqrt(3) / 4 */
     const double centroid[2] = {(a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3};
     const double *places[4] = {centroid, a, b, c};
     for (int k = 0; k < 4; k++) {
         double length = s->edge_length(s->edge_length_user, places[k]);
-        if (length > 0 && area > share * length * length)
+        if (!(length > 0))
+            note_odd(sizes, length, places[k]);
+        else if (area > share * length * length)
             return true;
     }
     return false;
@@ -49,8 +70,9 @@ static bool is_above_length(const struct tri_settings *s, const double a[2], con
 
 static int ask_both(void *user, const double a[2], const double b[2], const double c[2], double area)
 {
-    const struct tri_settings *s = user;
-    if (s->edge_length && is_above_length(s, a, b, c, area))
+    struct sizes *sizes = user;
+    const struct tri_settings *s = sizes->settings;
+    if (s->edge_length && is_above_length(sizes, a, b, c, area))
         return 1;
     return s->unsuitable ? s->unsuitable(s->unsuitable_user, a, b, c, area) : 0;
 }
@@ -61,9 +83,9 @@ static bool has_bounds(const struct tri_api_mesh *m, const struct tri_settings *
 }
 
 /* *fence is room for the settings' fence in the units of the mesh. */
-static struct tri_refine_options quality_of(const struct tri_api_mesh *m, const struct tri_settings *s,
-                                            struct tri_fence *fence)
+static struct tri_refine_options quality_of(const struct tri_api_mesh *m, struct sizes *sizes, struct tri_fence *fence)
 {
+    const struct tri_settings *s = sizes->settings;
     struct tri_refine_options how = tri_refine_defaults();
     how.min_angle = s->min_angle;
     how.max_area = s->max_area;
@@ -72,7 +94,7 @@ static struct tri_refine_options quality_of(const struct tri_api_mesh *m, const 
     how.protect = s->protect;
     how.max_steiner = s->most_new_points > 0 ? s->most_new_points : -1;
     how.unsuitable = s->edge_length || s->unsuitable ? ask_both : NULL;
-    how.unsuitable_user = (void *)s; /* which only reads it */
+    how.unsuitable_user = sizes;
     how.gate = s->gate;
     how.gate_user = s->gate_user;
     if (s->fence) {
@@ -125,10 +147,27 @@ static enum tri_status make_attributes(struct tri_api_mesh *m, struct tri_error 
     return TRI_OK;
 }
 
+static void add_note(struct tri_api_mesh *m, const char *note)
+{
+    const size_t n = strlen(m->notes);
+    snprintf(m->notes + n, sizeof m->notes - n, "%s%s", n > 0 && note[0] ? "\n" : "", note);
+}
+
+static void make_notes(struct tri_api_mesh *m, const struct tri_settings *s)
+{
+    m->notes[0] = 0;
+    add_note(m, m->report.notes.empty);
+    add_note(m, m->report.notes.skipped);
+    add_note(m, m->odd_length);
+    if (s->note && m->notes[0])
+        s->note(s->note_user, m->notes);
+}
+
 /* Brings the invariant about. */
-static enum tri_status settle(struct tri_api_mesh *m, struct tri_error *error)
+static enum tri_status settle(struct tri_api_mesh *m, const struct tri_settings *s, struct tri_error *error)
 {
     forget(m);
+    make_notes(m, s);
     m->mesh.stop = NULL;
     enum tri_status status = make_places(m, error);
     return status ? status : make_attributes(m, error);
@@ -187,20 +226,30 @@ struct refiner {
     const struct tri_api_way *way;
 };
 
+static void tell_odd(struct tri_api_mesh *m, const struct sizes *sizes)
+{
+    snprintf(m->odd_length, sizeof m->odd_length, "edge_length returned %g at (%.12g, %.12g), which is no length: any"
+             " will do there", isnan(sizes->odd) ? fabs(sizes->odd) : sizes->odd, sizes->odd_at[0], sizes->odd_at[1]);
+}
+
 static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tri_refine_options *options,
                               struct tri_refine_report *report, struct tri_error *error)
 {
     const struct refiner *refiner = user;
     const struct tri_settings *s = refiner->settings;
     struct tri_fence fence;
-    struct tri_refine_options how = quality_of(refiner->m, s, &fence);
+    struct sizes sizes = {.settings = s, .is_odd = ATOMIC_FLAG_INIT};
+    struct tri_refine_options how = quality_of(refiner->m, &sizes, &fence);
     (void)options;
     *report = (struct tri_refine_report){0};
+    refiner->m->odd_length[0] = 0;
     if (!has_bounds(refiner->m, s) && !refiner->way->figure)
         return TRI_OK;
-    if (s->progress)
-        return refine_told(refiner->way, mesh, &how, s, report, error);
-    return refiner->way->refine(refiner->way, mesh, &how, s, report, error);
+    enum tri_status status = s->progress ? refine_told(refiner->way, mesh, &how, s, report, error)
+                                         : refiner->way->refine(refiner->way, mesh, &how, s, report, error);
+    if (atomic_flag_test_and_set(&sizes.is_odd))
+        tell_odd(refiner->m, &sizes);
+    return status;
 }
 
 static enum tri_status generate(struct tri_api_mesh *m, const struct tri_api_figure *figure,
@@ -232,7 +281,7 @@ static enum tri_status make(struct tri_api_mesh *m, const struct tri_api_figure 
     enum tri_status status = generate(m, figure, s, way, error);
     if (!m->mesh.regions) /* empty */
         return status;
-    enum tri_status settled = settle(m, status ? NULL : error);
+    enum tri_status settled = settle(m, s, status ? NULL : error);
     if (settled)
         tri_mesh_free(&m->mesh);
     return status ? status : settled;
@@ -267,6 +316,8 @@ static enum tri_status stream(struct tri_api_figure *figure, const struct tri_se
     way.figure = &figure->pslg;
     way.has_attributes = m.has_attributes;
     enum tri_status status = generate(&m, figure, settings, &way, error);
+    if (!status)
+        make_notes(&m, settings);
     tri_mesh_free(&m.mesh);
     return status;
 }
@@ -289,7 +340,7 @@ enum tri_status tri_api_mesh_refine(struct tri_mesh *mesh, const struct tri_sett
     struct refiner refiner = {m, settings, way};
     mesh->stop = settings->stop ? &stop : NULL;
     enum tri_status status = refine(&refiner, mesh, NULL, &m->report.quality, error);
-    enum tri_status settled = settle(m, status ? NULL : error);
+    enum tri_status settled = settle(m, settings, status ? NULL : error);
     return status ? status : settled;
 }
 
@@ -332,6 +383,8 @@ void tri_mesh_delete(struct tri_mesh *mesh)
 
 /* --- asked */
 
+const char *tri_mesh_notes(const struct tri_mesh *mesh) { return ((const struct tri_api_mesh *)mesh)->notes; }
+
 int64_t tri_mesh_count(const struct tri_mesh *mesh, enum tri_count what)
 {
     const struct tri_api_mesh *m = (const struct tri_api_mesh *)mesh;
@@ -365,7 +418,8 @@ int64_t tri_mesh_count_bad(const struct tri_mesh *mesh, const struct tri_setting
     struct tri_fence fence;
     if (tri_api_settings_take(&own, settings, NULL))
         return -1;
-    const struct tri_refine_options how = quality_of(m, &own, &fence);
+    struct sizes sizes = {.settings = &own, .is_odd = ATOMIC_FLAG_INIT};
+    const struct tri_refine_options how = quality_of(m, &sizes, &fence);
     tri_count_bad(mesh, &how, &m->report.quality, NULL, count);
     for (int k = 0; by_reason && k < n_reasons; k++)
         by_reason[k] = 0;

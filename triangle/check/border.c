@@ -90,6 +90,12 @@ static bool is_along_hull(const struct border *b, int32_t s)
     return is_along_chain(b, 0, p, q) || is_along_chain(b, 1, p, q);
 }
 
+/* Did whoever asks forget to say that the mesh may end there? */
+static bool may_be_meant(struct border *b, int32_t s)
+{
+    return (b->hull[0] || find_hull(b) == TRI_OK) && is_along_hull(b, s);
+}
+
 static void check_border(struct border *b, bool hull)
 {
     struct checker *c = b->c;
@@ -103,7 +109,8 @@ static void check_border(struct border *b, bool hull)
                         check_frame_vertex(c, c->segments[2 * (size_t)s]),
                         check_frame_vertex(c, c->segments[2 * (size_t)s + 1]),
                         check_number(c, (there < 0 ? back : there) / 3),
-                        hull ? " and not along the convex hull" : "");
+                        hull ? " and not along the convex hull"
+                        : may_be_meant(b, s) ? ", but along the convex hull: was it made with -c (keep-hull)?" : "");
     }
 }
 

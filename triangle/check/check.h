@@ -35,7 +35,9 @@
  * What is checked within a tolerance, because vertices on segments are rounded: each input segment is a chain of
  * subsegments whose vertices are at most TRI_CHECK_ULPS * 2^-52 * (the segment's largest coordinate) off its line.
  * Pieces may be missing only where they are outside the mesh (carved), or no farther than that from its boundary; that
- * is tested at three points of each missing piece.
+ * is tested at three points of each missing piece. The mesh fills the convex hull (options.convex) where no boundary
+ * vertex is farther inside it than 2 * TRI_CHECK_ULPS * 2^-52 * (the largest coordinate): vertices on its edges are
+ * rounded to either side.
  * Angles and areas are computed in double precision and may miss their bounds by a relative 1e-12 (of the squared
  * sine, of the area). Attributes of new vertices may lie outside the range of the input's by a millionth of it: between
  * which vertices they were interpolated nobody knows.
@@ -147,7 +149,7 @@ struct tri_check_options {
      * input angle explains (see tri_check_report) */
     int64_t max_bad;
     enum tri_check_border border;
-    bool convex;       /* the mesh must fill the convex hull and use every point */
+    bool convex;       /* the mesh must fill the convex hull, within the tolerance above, and use every point */
     bool renumbered;   /* unused input vertices were dropped (-j): input vertices are known by coordinates alone */
     bool ignore_holes; /* hole points of the input were not carved */
     bool any_holes;    /* faces may be empty without a hole point: the mesher chose them by another rule */

@@ -69,6 +69,9 @@ static enum tri_status take_loose(struct tri_io_input *input, const struct trian
     return input->is_edge && (input->pslg.segment_markers || !in->segmentmarkerlist) ? TRI_OK : TRI_NO_MEMORY;
 }
 
+/* Likewise, but goes on telling what it is, as far as that can be told. */
+static int32_t end_of(int number, int32_t base) { return number > INT32_MIN ? number - base : number; }
+
 /* Ends of segments. Without r those that name no point are skipped later. */
 static enum tri_status take_segments(struct tri_io_input *input, const struct triangulateio *in,
                                      const struct tri_switches *switches, struct tri_error *error)
@@ -81,8 +84,8 @@ static enum tri_status take_segments(struct tri_io_input *input, const struct tr
     if (!ends)
         return TRI_NO_MEMORY;
     for (size_t i = 0; i < 2 * (size_t)n; i++) {
-        ends[i] = index_of(in->segmentlist[i], base, in->numberofpoints);
-        if (ends[i] < 0 && switches->mesh)
+        ends[i] = end_of(in->segmentlist[i], base);
+        if ((ends[i] < 0 || ends[i] >= in->numberofpoints) && switches->mesh)
             return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "segment %d has end %d, of %d points",
                             (int)(i / 2) + base, in->segmentlist[i], in->numberofpoints);
     }

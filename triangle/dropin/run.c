@@ -11,6 +11,7 @@ extern __attribute__((weak)) int triunsuitable(REAL *origin, REAL *destination, 
 struct io_run {
     const struct tri_switches *switches;
     const struct triangulate_options *options;
+    bool aloud;
     struct tri_io_input input;
     struct tri_options how;
     struct tri_mesh mesh;
@@ -56,10 +57,28 @@ static bool is_stopped(void *user)
 
 /* --- messages */
 
+static void tell(const struct io_run *run, bool is_error, const char *text)
+{
+    if (run->options->message)
+        run->options->message(run->options->message_user, is_error, text);
+    if (run->aloud && !run->switches->quiet)
+        tri_io_print(text);
+}
+
 static void warn(const struct io_run *run, const char *text)
 {
     if (run->options->message && !run->switches->quiet)
         run->options->message(run->options->message_user, 0, text);
+}
+
+/* The reason why a mesh is empty is told to a function also if quiet. */
+static void tell_notes(const struct io_run *run)
+{
+    const struct tri_notes *notes = &run->report.notes;
+    if (notes->skipped[0] && !run->switches->quiet)
+        tell(run, false, notes->skipped);
+    if (notes->empty[0])
+        tell(run, false, notes->empty);
 }
 
 static void warn_number(const struct io_run *run, int n, const char *what)
@@ -82,8 +101,8 @@ static void warn_of_input(const struct io_run *run)
     warn_number(run, report->loose,
                 "segments are no edges of the mesh: they are passed on, but the mesh does not keep them");
     warn_number(run, report->duplicates, "points lie where a point of lower number lies, and are not used");
-    warn_number(run, report->constrain.skipped, "segments name no point, or the same point twice, and are skipped");
-    warn_number(run, report->holes_between, "hole points lie on segments, and empty nothing");
+    tell_notes(run);
+    warn_number(run, report->carve.between, "hole points lie on segments, and empty nothing");
     if (report->quality.hit_limit && run->how.quality.conforming)
         warn(run, "the limit of S was reached before the mesh was conforming");
 }
@@ -138,31 +157,31 @@ static void zero_counts(struct triangulateio *io)
 }
 
 int tri_io_triangulate(const char *switches, const struct triangulateio *in, struct triangulateio *out,
-                       struct triangulateio *vorout, const struct triangulate_options *options, tri_refine_call *refine,
-                       const struct tri_executor *executor)
+                       struct triangulateio *vorout, const struct triangulate_options *options, bool aloud,
+                       tri_refine_call *refine, const struct tri_executor *executor)
 {
     static const struct triangulate_options none;
     struct tri_error error = {0};
     struct tri_switches s = tri_switches_none();
     enum tri_status status;
     options = options ? options : &none;
-    if (switches && in && out) {
-        tri_switches_add(&s, switches);
-        struct io_run run = {.switches = &s, .options = options, .how = tri_switches_options(&s), .error = &error};
-        const struct tri_stop stop = {is_stopped, (void *)options}; /* which only reads it */
-        run.how.executor = executor;
-        run.how.refine_call = refine;
-        run.how.refine_user = (void *)options; /* which only reads it */
-        run.how.stop = options->stop ? &stop : NULL;
+    tri_switches_add(&s, switches ? switches : "");
+    struct io_run run = {.switches = &s, .options = options, .aloud = aloud, .how = tri_switches_options(&s),
+                         .error = &error};
+    const struct tri_stop stop = {is_stopped, (void *)options}; /* which only reads it */
+    run.how.executor = executor;
+    run.how.refine_call = refine;
+    run.how.refine_user = (void *)options; /* which only reads it */
+    run.how.stop = options->stop ? &stop : NULL;
+    if (switches && in && out)
         status = run_all(&run, in, out, vorout);
-    } else {
+    else
         status = tri_fail(&error, TRI_BAD_INPUT, NULL, 0, "switches, in and out must not be NULL");
-    }
     if (status && out && out != in)
         zero_counts(out);
     if (status && vorout && vorout != in)
         zero_counts(vorout);
-    if (status && options->message)
-        options->message(options->message_user, 1, error.text);
+    if (status)
+        tell(&run, true, error.text);
     return (int)status;
 }

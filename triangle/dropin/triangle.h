@@ -8,14 +8,16 @@
  * Inside, coordinates are double either way; rounded to float, triangles may turn flat or over where a float is coarse
  * against them, so keep the origin near.
  *
- * No call prints, ends the process or keeps anything: any number of threads may call at the same time. The same
+ * No call ends the process or keeps anything: any number of threads may call at the same time. The same
  * input and switches give the same output, bit for bit, for any number of threads, compiler or locale; the two
  * libraries make different meshes for the same bounds. In a forked child libptriangle refines on one thread.
  *
  * ERRORS are returned, as an enum triangulate_status; Triangle's own function returns nothing. After an error
  * nothing is allocated, no array is changed, and all counts in *out and *vorout are 0, so that a client that does not
  * ask sees no mesh; only an *out that is *in stays as it was. The words that go with the error are told to
- * options->message. */
+ * options->message. Since old clients do not ask, triangulate() writes them as one line to standard error, unless the
+ * switches have Q; so it does why a mesh is empty without an error ("the outline is open at points 3 and 17"), and that
+ * segments are skipped. It prints nothing else, triangulate_with() nothing at all. */
 #ifndef TRIANGLE_TRIANGLE_H
 #define TRIANGLE_TRIANGLE_H
 
@@ -114,8 +116,9 @@ struct triangulate_options {
                                    answers must not depend on order; it is then also asked about triangles that are
                                    never made. Else u means one thread */
     int threads;                /* of libptriangle; <= 0: OMP_NUM_THREADS, else one for each core */
-    /* Told of the error in one sentence, without newline; unless the switches have Q, also of what is odd about the
-     * input (is_error 0): duplicate points, segments that name no point and so on. Called by the calling thread. */
+    /* Told of the error in one sentence, without newline; with is_error 0 why a mesh is empty, and, unless the switches
+     * have Q, what is odd about the input: duplicate points, segments that name no point and so on. Called by the
+     * calling thread. */
     void (*message)(void *user, int is_error, const char *text);
     void *message_user;
     /* Not 0: the call ends soon, with TRIANGULATE_STOPPED. Asked every few thousand steps, by several threads at once;

@@ -45,11 +45,11 @@ _Static_assert((int)TRIANGULATE_OK == (int)TRI_OK && (int)TRIANGULATE_NO_MEMORY 
 int triangulate_with(const char *switches, const struct triangulateio *in, struct triangulateio *out,
                      struct triangulateio *vorout, const struct triangulate_options *options)
 {
-    return tri_io_triangulate(switches, in, out, vorout, options, NULL, NULL);
+    return tri_io_triangulate(switches, in, out, vorout, options, false, NULL, NULL);
 }
 
 int triangulate(const char *switches, struct triangulateio *in, struct triangulateio *out,
                 struct triangulateio *vorout)
 {
-    return triangulate_with(switches, in, out, vorout, NULL);
+    return tri_io_triangulate(switches, in, out, vorout, NULL, true, NULL, NULL);
 }
