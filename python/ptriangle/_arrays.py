@@ -1,7 +1,7 @@
 """Arrays of the library as numpy sees them, and the other way round."""
 from __future__ import annotations
 
-from typing import Any, Optional, Tuple, Type, Union
+from typing import Any, Iterable, Optional, Tuple, Type, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -28,6 +28,12 @@ def to_numpy(array: Union[Reals, Ints], owner: object) -> Array:
     if array.n == 0:
         return np.empty((0, array.width), array.dtype)
     return np.asarray(_View(array, owner))
+
+
+def freeze(arrays: Iterable[Array]) -> None:
+    """They are read-only from now on."""
+    for rows in arrays:
+        rows.flags.writeable = False
 
 
 def _refuse_other_ints(rows: Array, name: str) -> None:

@@ -22,7 +22,7 @@ Arrays = Dict[str, Array]
 
 def _h5py(who: str) -> Any:
     try:
-        import h5py
+        import h5py  # type: ignore[import-untyped, unused-ignore]
     except ImportError:
         raise ImportError("%s: files .h5 need h5py: pip install h5py" % who) from None
     return h5py

@@ -60,7 +60,7 @@ Progress = CFUNCTYPE(None, c_void_p, c_double, c_int64)
 class Settings(Sized):
     _fields_ = [("size", c_size_t), ("min_angle", c_double), ("max_area", c_double), ("conforming", c_bool),
                 ("keep_hull", c_bool), ("protect", c_int), ("most_new_points", c_int64),
-                ("edge_length", SizeFunction), ("edge_length_user", c_void_p),
+                ("edge_length", SizeFunction), ("edge_length_user", c_void_p),  # type: ignore[list-item]
                 ("unsuitable", Unsuitable), ("unsuitable_user", c_void_p),
                 ("gate", Gate), ("gate_user", c_void_p), ("fence", POINTER(c_double)),
                 ("stop", Stop), ("stop_user", c_void_p),

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _files, _picture, _second_order
-from ._arrays import Array, to_numpy
+from ._arrays import Array, freeze, to_numpy
 from ._calls import Calls
 from ._errors import InputError
 from ._figure import figure_of
@@ -97,7 +97,7 @@ class Mesh:
     @property
     def triangle_attributes(self) -> Reals:
         """Attributes of the triangles, [m, k]: those of the regions that they lie in; k is 0 where there are none."""
-        return self._arrays["triangle_attributes"]
+        return np.asarray(self._arrays["triangle_attributes"])
 
     @property
     def segments(self) -> Integers:
@@ -107,7 +107,7 @@ class Mesh:
     @property
     def segment_markers(self) -> Integers:
         """Markers of the segments, [s]: as given, else 1 on the boundary and 0 inside."""
-        return self._arrays["segment_markers"]
+        return np.asarray(self._arrays["segment_markers"])
 
     @property
     def neighbors(self) -> Integers:
@@ -148,8 +148,8 @@ class Mesh:
         """Angles of the triangles at their corners in degrees, [m, 3]."""
         a, b, c = self._corners
         sides = [(b - a, c - a), (c - b, a - b), (a - c, b - c)]
-        return np.degrees(np.column_stack([np.arctan2(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0], (u * v).sum(axis=1))
-                                           for u, v in sides]))
+        return np.asarray(np.degrees([np.arctan2(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0], (u * v).sum(axis=1))
+                                      for u, v in sides]).T)
 
     @property
     def quality(self) -> Reals:
@@ -171,14 +171,18 @@ class Mesh:
         points, attributes, markers = (self._arrays[name] for name in _NAMES[:3])
         if self._order == 1:
             return points, attributes, markers
-        return _second_order.points_of(points, attributes, markers, self.edges, self.edge_markers)
+        found = _second_order.points_of(points, attributes, markers, self.edges, self.edge_markers)
+        freeze(found)
+        return found
 
     @cached_property
     def _triangles(self) -> Array:
         triangles = self._arrays["triangles"]
         if self._order == 1:
             return triangles
-        return _second_order.triangles_of(triangles, self.edges, len(self._arrays["points"]))
+        found = _second_order.triangles_of(triangles, self.edges, len(self._arrays["points"]))
+        freeze([found])
+        return found
 
     def _with_middles(self, ends: Array) -> Array:
         if self._order == 1:
@@ -221,8 +225,7 @@ class Mesh:
     def __setstate__(self, state: Mapping[str, Any]) -> None:
         self._handle = None
         self._order, self._arrays, self._counts = state["order"], dict(state["arrays"]), state["counts"]
-        for rows in self._arrays.values():
-            rows.flags.writeable = False
+        freeze(self._arrays.values())
 
     def __copy__(self) -> "Mesh":
         return self  # it does not change
@@ -296,16 +299,16 @@ class Mesh:
         """The mesh as a meshio.Mesh: triangles (triangle6 with order 2), then segments (line, line3), with their
         markers as cell data `marker`, attributes as `attribute 0`, ...; z is 0."""
         try:
-            import meshio
+            import meshio  # type: ignore[import-untyped, unused-ignore]
         except ImportError:
             raise ImportError("to_meshio() needs meshio: pip install meshio") from None
         points = np.column_stack([self.points, np.zeros(len(self.points))])
         kinds = ("triangle", "line") if self._order == 1 else ("triangle6", "line3")
         cells = [(kinds[0], self.triangles), (kinds[1], self.segments)]
-        cell_data = {"marker": [np.zeros(len(self.triangles), np.int32), self.segment_markers]}
+        cell_data: Dict[str, List[Array]] = {"marker": [np.zeros(len(self.triangles), np.int32), self.segment_markers]}
         for k, column in enumerate(self.triangle_attributes.T):
             cell_data["attribute %d" % k] = [column, np.zeros(len(self.segments))]
-        point_data = {"marker": self.point_markers}
+        point_data: Dict[str, Array] = {"marker": self.point_markers}
         for k, column in enumerate(self.point_attributes.T):
             point_data["attribute %d" % k] = column
         return meshio.Mesh(points, cells, point_data=point_data, cell_data=cell_data)

@@ -46,7 +46,7 @@ def plot(points: Array, triangles: Array, segments: Array, ax: Any, color: Any, 
     if len(triangles):
         ax.triplot(points[:, 0], points[:, 1], triangles, color=color, linewidth=linewidth)
     if segment_color is not None:
-        ax.add_collection(LineCollection(points[segments], colors=segment_color, linewidths=2 * linewidth))
+        ax.add_collection(LineCollection(list(points[segments]), colors=segment_color, linewidths=2 * linewidth))
     ax.set_aspect("equal")
     ax.autoscale_view()
     return ax

@@ -11,7 +11,7 @@ from ._arrays import Array
 def _keys(ends: Array) -> Array:
     """One number for each edge, whatever its direction."""
     low, high = np.sort(ends.astype(np.int64), axis=1).T
-    return low << 32 | high
+    return np.asarray(low << 32 | high)
 
 
 def numbers_of(edges: Array, some: Array) -> Array:

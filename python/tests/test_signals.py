@@ -23,8 +23,8 @@ LONG = """
     class Alarm(BaseException): pass
     def ring(*_): raise Alarm
     signal.signal(signal.SIGALRM, ring)
-    threading.Timer(delay, os.kill, (os.getpid(), number)).start()
     try:
+        threading.Timer(delay, os.kill, (os.getpid(), number)).start()
         %s
         print("lost")
     except BaseException as fault:
