@@ -38,7 +38,7 @@ PATH=$work/none "$work/venv/bin/python" -m pytest -q -rs -p no:cacheprovider "$r
 cp "$root/python/tests/typed_client.py" "$work"
 "$work/venv/bin/python" -m mypy --strict typed_client.py
 "$work/venv/bin/python" typed_client.py
-"$work/venv/bin/python" -m mypy --strict -p ptriangle --exclude 'compat' >mypy.log || { cat mypy.log; exit 1; }
+"$work/venv/bin/python" -m mypy --strict -p ptriangle >mypy.log || { cat mypy.log; exit 1; }
 MPLBACKEND=Agg PYVISTA_OFF_SCREEN=true "$work/venv/bin/python" "$root/python/tests/run_examples.py" \
     "$root/docs/python.md" "$work/examples"
 if pip install triangle==20250106; then
