@@ -245,8 +245,8 @@ static enum tri_status take_output(struct long_options *options, const struct ki
         return add_file(options->exports, &options->n_exports, value, error);
     const char *missing = value[tri_format_base(value)] ? NULL : tri_format_missing(value);
     if (missing)
-        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--output: there is no format %.20s: there are " STREAM_SUFFIX ", "
-                        TRI_FORMAT_SUFFIXES ", and .node, .ele, .poly; for a name with a dot add .node", missing);
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "--output: there is no format %.20s: there are " STREAM_SUFFIX
+                        ", " TRI_FORMAT_SUFFIXES ", and .node, .ele, .poly; for a name with a dot add .node", missing);
     if (*value && !is_base(value))
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0,
                         "--output: \"%.40s\" does not end in a name that .node and so on could go behind", value);

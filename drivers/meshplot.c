@@ -31,14 +31,16 @@ static const char usage[] = "Usage: " PTRIANGLE_NAME " BASE -o FILE.png|FILE.svg
 static const char help[] = /* in the form that cmake/help.awk makes a manual page of */
     "\n"
     "Draws the mesh in BASE.node and BASE.ele, with the segments of BASE.poly where that exists. Without BASE.ele:\n"
-    "the points and segments alone. Or the mesh in one HDF5 file, where BASE ends in .h5. Of a mesh that is larger\n"
-    "than the memory, or an HDF5 file, what lies in the window is drawn, if that is few enough, or densities.\n"
+    "the points and segments alone. Or the mesh in one file that ptriangle has written, .h5, .vtu, .msh, .2dm, .14 or\n"
+    ".grd, where BASE is its name. Of a mesh that is larger than the memory (.h5 and text files), or that has more\n"
+    "than 16.7 million triangles, what lies in the window is drawn; if that is more than so many triangles, densities\n"
+    "are.\n"
     "\n"
     "  -o, --output FILE        FILE.png or FILE.svg\n"
     "  -c, --color quality|area|region|block|none|density\n"
-    "                           quality (default): the smallest angle of each triangle; region: the first\n"
-    "                           attribute in BASE.ele; block: see --blocks; density: how many triangles there\n"
-    "                           are at each pixel, for a mesh of any size\n"
+    "                           quality (default): the smallest angle of each triangle; region: its first\n"
+    "                           attribute; block: see --blocks; density: how many triangles there are at each\n"
+    "                           pixel, below 1 where they are larger than pixels, for a mesh of any size\n"
     "  -s, --size WIDTH         of the picture in pixels, 64 to 12000 (default 1200)\n"
     "  -w, --window X0,Y0,X1,Y1  the part to show (default: all)\n"
     "  -m, --mark X0,Y0,X1,Y1  a red frame around a part\n"
@@ -303,8 +305,8 @@ static enum tri_status shade(const struct settings *s, const struct files *f, co
         return plot_shade_area(shading, mesh, error);
     case BY_REGION:
         if (f->elements.n_attributes == 0)
-            return tri_fail(error, TRI_BAD_INPUT, "", 0, "%s has no attribute of triangles for the region (made without -A?)",
-                            s->base);
+            return tri_fail(error, TRI_BAD_INPUT, "", 0,
+                            "%s has no attribute of triangles for the region (made without -A?)", s->base);
         return plot_shade_region(shading, mesh, f->elements.attributes, f->elements.n_attributes, error);
     case BY_BLOCK:
         return plot_shade_block(shading, mesh, f->block_phase, error);

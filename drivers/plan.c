@@ -79,13 +79,21 @@ enum tri_status plan_check_files(const struct run *run, const struct file_names 
     return TRI_OK;
 }
 
+/* To write HDF5 of a mesh that nothing refines, beside the half of the peak that the mesh itself takes. */
+static double unrefined_streams(const struct run *run)
+{
+    const double triangles = run->elements.n > 0 ? run->elements.n : 2.0 * run->pslg.n_points;
+    return run->options.refine ? 0 : estimate_streams(run->hooks->n_streamed, triangles);
+}
+
 /* At its peak, what has been read included. */
 static double input_bytes(const struct run *run)
 {
     const struct tri_pslg *p = &run->pslg;
     const double point = (run->elements.n > 0 ? REBUILT_POINT_BYTES : POINT_BYTES) + ATTRIBUTE_BYTES * p->n_attributes;
-    return PROCESS_BYTES + point * p->n_points + SEGMENT_BYTES * p->n_segments + ELEMENT_BYTES * run->elements.n +
-           fmin(TEXT_BYTES * p->n_points, MOST_TEXT);
+    const double made = point * p->n_points + SEGMENT_BYTES * p->n_segments + ELEMENT_BYTES * run->elements.n +
+                        fmin(TEXT_BYTES * p->n_points, MOST_TEXT);
+    return PROCESS_BYTES + fmax(made, made / 2 + unrefined_streams(run));
 }
 
 enum tri_status plan_check_input(const struct run *run, const struct console *console, struct tri_error *error)
@@ -96,8 +104,9 @@ enum tri_status plan_check_input(const struct run *run, const struct console *co
     const double all = resources_memory_used() + plan_memory_left(run);
     if ((is_strict(run) ? needed : SURE_SHARE * needed) > all)
         return tri_fail(error, TRI_NO_MEMORY, NULL, 0,
-                        "to triangulate the input, %s points and %s segments, takes about %s of memory; there are %s",
+                        "to triangulate the input, %s points and %s segments,%s takes about %s of memory; there are %s",
                         tri_count_text(run->pslg.n_points).text, tri_count_text(run->pslg.n_segments).text,
+                        unrefined_streams(run) > 0 ? " and write it as HDF5," : "",
                         tri_size_text(needed).text, tri_size_text(all).text);
     if (needed > all)
         console_warn(console, "to triangulate the input may take about %s of memory; there are %s.\n",

@@ -24,8 +24,10 @@ static const char usage[] = "Usage: " PTRIANGLE_NAME " [options] BASE\n";
 static const char help[] = /* in the form that cmake/help.awk makes a manual page of */
     "\n"
     "Checks the mesh in BASE.node and BASE.ele; also BASE.poly (subsegments) and BASE.neigh where they exist. Or\n"
-    "that in one HDF5 file, where BASE ends in .h5. Of triangles with six nodes each edge has one node, half the way\n"
-    "along it, with its subsegment's marker and half the way between the attributes of its ends.\n"
+    "that in one file that ptriangle has written, .h5, .vtu, .msh, .2dm, .14 or .grd, where BASE is its name. The\n"
+    "last three keep the boundary alone: subsegments, regions and (but for -D) circles are not compared. Of\n"
+    "triangles with six nodes each edge has one node, half the way along it, with its subsegment's marker and half\n"
+    "the way between the attributes of its ends.\n"
     "\n"
     "  -p, --poly FILE      compare with the input that the mesh was made from, a .poly or .node file: its\n"
     "                       vertices come first and unmoved, its segments are chains of subsegments except where\n"

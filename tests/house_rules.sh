@@ -69,6 +69,7 @@ tested_by() {
     triangle/text/joined.c) echo joint_files ;;
     triangle/text/stream.c) echo text_stream ;;
     triangle/text/boundary.c | triangle/text/gmsh.c | triangle/text/grouping.c) echo formats ;;
+    triangle/text/bytes.c | triangle/text/read_*.c | triangle/text/tags.c) echo read_formats ;;
     triangle/text/hydro.c | triangle/text/parts.c | triangle/text/vtu.c) echo formats ;;
     sched/triangulate.c) echo par_triangulate ;;
     sched/halt.c | sched/sweep/carry_halt.c | sched/sweep/checkpoint.c | sched/sweep/spool.c) echo checkpoint ;;

@@ -631,6 +631,9 @@ static void test_files(void **state)
     assert_int_equal(tri_file_write("nowhere/x", &figure, 0, &error), TRI_CANNOT_WRITE);
     assert_true(read.points.n == 0 && error.file[0]);
     assert_int_equal(tri_file_write("from_two", &figure, 2, &error), TRI_BAD_INPUT);
+    assert_int_equal(tri_file_write("x.shp", &figure, 1, &error), TRI_BAD_INPUT);
+    assert_non_null(strstr(error.text, "no format .shp: there are .node"));
+    assert_int_equal(tri_file_read("x.shp.node", &read, NULL), TRI_CANNOT_READ);
     assert_int_equal(tri_file_read("from_two.poly", &read, NULL), TRI_CANNOT_READ);
     tri_mesh_delete(mesh);
 }

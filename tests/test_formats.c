@@ -501,6 +501,24 @@ static void test_names(void **state)
     assert_null(tri_format_of(""));
 }
 
+/* What looks like a format and is none; numbers of versions and runs do not. */
+static void test_missing_formats(void **state)
+{
+    (void)state;
+    static const char *const missing[] = {"x.shp", "a/b.c.VTK", "x.geojson", "grid.gr3", "x.h5", "run.1.fine", "a.x"};
+    static const char *const fine[] = {"x.vtu", "fort.14", "run.1", "mesh.v2", "x", "", ".hidden", "a.shp/x", "x.",
+                                       "a.shp/", "x.3a", "naca0012", "x.r2b"};
+    for (size_t i = 0; i < sizeof missing / sizeof *missing; i++)
+        assert_string_equal(tri_format_missing(missing[i]), strrchr(missing[i], '.'));
+    for (size_t i = 0; i < sizeof fine / sizeof *fine; i++)
+        assert_null(tri_format_missing(fine[i]));
+    assert_int_equal(tri_format_base("run.1.node"), 5);
+    assert_int_equal(tri_format_base("a.poly"), 1);
+    assert_int_equal(tri_format_base("a.ele"), 1);
+    assert_int_equal(tri_format_base("a.14"), 4);
+    assert_int_equal(tri_format_base(".node"), 5);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -515,6 +533,7 @@ int main(void)
         cmocka_unit_test(test_where_parts_meet),
         cmocka_unit_test(test_bytes_of_a_part),
         cmocka_unit_test(test_names),
+        cmocka_unit_test(test_missing_formats),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

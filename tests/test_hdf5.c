@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -530,6 +531,117 @@ static void test_no_such_mesh(void **state)
     refuse("x.h5", TRI_BAD_INPUT, "no array /points");
 }
 
+/* x.h5 with another /points, which somebody has made as only HDF5 can; then it is refused with these words. */
+static void replace_points(void (*make)(hid_t file), const char *words)
+{
+    struct tri_error error;
+    assert_int_equal(write_lattice(&SMALL, true, 0, &error), TRI_OK);
+    hid_t file = H5Fopen("x.h5", H5F_ACC_RDWR, H5P_DEFAULT);
+    H5Ldelete(file, "points", H5P_DEFAULT);
+    make(file);
+    H5Fclose(file);
+    refuse("x.h5", TRI_BAD_INPUT, words);
+    assert_int_equal(files_here(), 2);
+}
+
+/* Without rows of data: size rows are made, and none is written. */
+static void make_dataset(hid_t file, const char *name, hid_t creation, hid_t type, hsize_t rows, hsize_t width)
+{
+    const hsize_t size[2] = {rows, width}, most[2] = {H5S_UNLIMITED, width};
+    hid_t space = H5Screate_simple(2, size, H5Pget_layout(creation) == H5D_CHUNKED ? most : NULL);
+    hid_t dataset = H5Dcreate2(file, name, type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+    assert_true(dataset >= 0);
+    H5Dclose(dataset);
+    H5Sclose(space);
+    H5Pclose(creation);
+}
+
+static hsize_t small_rows(void) { return (hsize_t)lattice_points(&SMALL); }
+
+static void make_external(hid_t file)
+{
+    hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_external(creation, "/etc/passwd", 0, 16 * small_rows());
+    make_dataset(file, "points", creation, H5T_IEEE_F64LE, small_rows(), 2);
+}
+
+static void make_soft_link(hid_t file)
+{
+    make_dataset(file, "elsewhere", H5Pcreate(H5P_DATASET_CREATE), H5T_IEEE_F64LE, small_rows(), 2);
+    H5Lcreate_soft("/elsewhere", file, "points", H5P_DEFAULT, H5P_DEFAULT);
+}
+
+static void make_external_link(hid_t file)
+{
+    H5Lcreate_external("y.h5", "/points", file, "points", H5P_DEFAULT, H5P_DEFAULT);
+}
+
+static void make_virtual(hid_t file)
+{
+    const hsize_t size[2] = {small_rows(), 2};
+    hid_t creation = H5Pcreate(H5P_DATASET_CREATE), space = H5Screate_simple(2, size, NULL);
+    H5Pset_virtual(creation, space, "y.h5", "/points", space);
+    H5Sclose(space);
+    make_dataset(file, "points", creation, H5T_IEEE_F64LE, small_rows(), 2);
+}
+
+static void make_compressed(hid_t file)
+{
+    const hsize_t chunk[2] = {8, 2};
+    hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_chunk(creation, 2, chunk);
+    H5Pset_deflate(creation, 1);
+    make_dataset(file, "points", creation, H5T_IEEE_F64LE, small_rows(), 2);
+}
+
+static void make_chunks(hid_t file)
+{
+    const hsize_t chunk[2] = {8, 2};
+    hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_chunk(creation, 2, chunk);
+    make_dataset(file, "points", creation, H5T_IEEE_F64LE, small_rows(), 2);
+}
+
+static void make_piece(hid_t file)
+{
+    make_dataset(file, "points", H5Pcreate(H5P_DATASET_CREATE), H5T_IEEE_F64LE, small_rows(), 2);
+}
+
+static void make_floats(hid_t file)
+{
+    make_dataset(file, "points", H5Pcreate(H5P_DATASET_CREATE), H5T_IEEE_F32LE, small_rows(), 2);
+}
+
+static void test_not_in_this_file(void **state)
+{
+    (void)state;
+    replace_points(make_external, "/points lies in another file");
+    replace_points(make_soft_link, "/points is a link");
+    replace_points(make_external_link, "/points is a link");
+    replace_points(make_virtual, "/points is kept in a way that is not read");
+    replace_points(make_compressed, "/points is compressed");
+    replace_points(make_chunks, "/points is not there in full");
+    replace_points(make_piece, "/points is not there in full");
+    replace_points(make_floats, "/points has not the type");
+    assert_int_equal(mkfifo("y", 0600), 0);
+    refuse("y", TRI_CANNOT_READ, "not a regular file");
+}
+
+/* A small file may say that it holds very much. */
+static void test_more_than_can_be(void **state)
+{
+    (void)state;
+    struct tri_error error;
+    const hsize_t chunk[2] = {65536, 3};
+    assert_int_equal(write_lattice(&SMALL, true, 0, &error), TRI_OK);
+    hid_t file = H5Fopen("x.h5", H5F_ACC_RDWR, H5P_DEFAULT), creation = H5Pcreate(H5P_DATASET_CREATE);
+    H5Ldelete(file, "triangles", H5P_DEFAULT);
+    H5Pset_chunk(creation, 2, chunk);
+    make_dataset(file, "triangles", creation, H5T_STD_I64LE, (hsize_t)1 << 40, 3);
+    H5Fclose(file);
+    refuse("x.h5", TRI_BAD_INPUT, "/triangles has more rows than a mesh of so many points");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -548,6 +660,8 @@ int main(void)
         cmocka_unit_test_teardown(test_no_memory, remove_files),
         cmocka_unit_test_teardown(test_stop, remove_files),
         cmocka_unit_test_teardown(test_no_such_mesh, remove_files),
+        cmocka_unit_test_teardown(test_not_in_this_file, remove_files),
+        cmocka_unit_test_teardown(test_more_than_can_be, remove_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -98,3 +98,39 @@ if [ -e /dev/full ]; then
     complains 'cannot write'
     wrote x.14
 fi
+
+# Each is read again, and judged: the same vertices and triangles, with what the format keeps of markers and regions.
+fresh section.poly
+program 0 -pq30aAQ --output x --output x.vtu --output x.msh --output x.2dm --output x.14 section.poly
+wrote x.node x.ele x.poly x.vtu x.msh x.2dm x.14
+for file in x x.vtu x.msh x.2dm x.14; do
+    "$bin/trianglecheck" --poly section.poly --min-angle 30 "$file" >".$file.verdict" 2>&1 ||
+        fault "$file: $(grep -v '^ok' ".$file.verdict" | head -n 1)"
+    check "the shapes of $file" sh -c "grep '^info' '.$file.verdict' | cut -c -60 >.this; grep '^info' .x.verdict |
+        cut -c -60 | cmp -s - .this"
+done
+rm -f .*.verdict .this
+program 0 -pq30aAQo2 --output x.vtu --output x.msh --output x.2dm section.poly
+for file in x.vtu x.msh x.2dm; do
+    check "six nodes in $file" "$bin/trianglecheck" --quiet --poly section.poly --min-angle 30 "$file"
+done
+head -c 3000 x.vtu >short.vtu
+check "a truncated .vtu" sh -c "! '$bin/trianglecheck' short.vtu 2>.said && [ \$(wc -l <.said) -eq 1 ]"
+rm -f .said
+
+# A name is no format without a word about it.
+fresh letter.poly
+program 1 -p --output x.shp letter.poly
+complains '--output: there is no format \.shp: there are \.h5, \.vtu, '
+program 1 -p --output mesh.fine letter.poly
+complains 'no format \.fine: .*for a name with a dot add \.node$'
+program 0 -pQ --output mesh.fine.poly letter.poly
+wrote mesh.fine.node mesh.fine.ele mesh.fine.poly
+rm -f mesh.fine.*
+program 0 -pQ --output run.1 letter.poly
+wrote run.1.node run.1.ele run.1.poly
+rm -f run.1.*
+program 0 -pQ --output mesh.v2 letter.poly
+wrote mesh.v2.node mesh.v2.ele mesh.v2.poly
+program 0 -pQ --output mesh.14.node letter.poly
+check "a base that looks like ADCIRC's" "$bin/trianglecheck" --quiet mesh.14

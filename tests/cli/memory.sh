@@ -151,6 +151,16 @@ for budget in 24 28; do
     [ $found -eq 0 ] || complains '--memory [0-9]+M would do$'
 done
 
+# --- what HDF5 takes counts where nothing is refined, too
+what="ptriangle, nothing refined"
+for budget in 13 33 60; do
+    "$python" "$data/../tests/cli/peak.py" "$budget"000000 "$bin/ptriangle" -Qp g.poly --output g1.h5 \
+        --memory "$budget"000000 --threads 2 >.out 2>.err
+    found=$?
+    check "within ${budget}000000, or refused: exit code $found" test $found -le 1
+done
+rm -f g1.h5 g1.xdmf
+
 # --- the judge: what stays in memory beside the parts of a mesh fits, or the trial is refused before
 program 0 -Qp g.poly --output g1
 what="trianglecheck of many subsegments"

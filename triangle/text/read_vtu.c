@@ -22,8 +22,9 @@ static const struct kind {
     const char *section, *name; /* NULL: any */
     int components;             /* 0: any */
 } kinds[ARRAYS] = {
-    {"PointData", "marker", 1}, {"PointData", "attributes", 0}, {"CellData", "marker", 1}, {"CellData", "attributes", 0},
-    {"Points", NULL, 3},        {"Cells", "connectivity", 1},   {"Cells", "offsets", 1},   {"Cells", "types", 1},
+    {"PointData", "marker", 1},    {"PointData", "attributes", 0}, {"CellData", "marker", 1},
+    {"CellData", "attributes", 0}, {"Points", NULL, 3},            {"Cells", "connectivity", 1},
+    {"Cells", "offsets", 1},       {"Cells", "types", 1},
 };
 
 static const struct type {
@@ -103,9 +104,10 @@ static struct span value_of(struct span tag, const char *name)
 {
     const size_t n = strlen(name);
     for (const char *at = tag.at; at < tag.end && (size_t)(tag.end - at) > n + 2; at++) {
-        if (!is_blank(*at) || memcmp(at + 1, name, n) != 0 || at[n + 1] != '=' || (at[n + 2] != '"' && at[n + 2] != '\''))
+        const char quote = at[n + 2];
+        if (!is_blank(*at) || memcmp(at + 1, name, n) != 0 || at[n + 1] != '=' || (quote != '"' && quote != '\''))
             continue;
-        const char *begin = at + n + 3, *end = memchr(begin, at[n + 2], (size_t)(tag.end - begin));
+        const char *begin = at + n + 3, *end = memchr(begin, quote, (size_t)(tag.end - begin));
         return end ? (struct span){begin, end} : (struct span){NULL, NULL};
     }
     return (struct span){NULL, NULL};
