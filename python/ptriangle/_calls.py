@@ -57,8 +57,8 @@ class Calls:
     # --- signals
 
     def _instead(self, handler: Callable[[int, Any], Any]) -> Callable[[int, Any], Any]:
-        """A handler may run at any instruction, as the first of a function that C code calls, before any `try`. So
-        what it raises is kept; unless it is in a function of the caller's, which might go on for ever: that one ends."""
+        """A handler may run at any instruction, also the first of a function that C code calls, before any `try`. So
+        what it raises is kept, unless it is in a function of the caller's, which might go on for ever: that ends."""
         def handle(number: int, frame: Any) -> None:
             try:
                 handler(number, frame)

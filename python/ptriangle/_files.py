@@ -11,7 +11,7 @@ from typing import Any, Callable, Dict, List, Tuple
 import numpy as np
 
 from . import _library as lib
-from ._arrays import Array, to_numpy
+from ._arrays import Array, from_numpy, to_numpy
 from ._calls import Calls
 from ._errors import FileError, InputError
 from ._figure import SHAPES, figure_of
@@ -44,12 +44,12 @@ def _write_h5(path: str, arrays: Arrays, who: str) -> None:
     h5py, temporary = _h5py(who), path + ".part"
     points, triangles = arrays["points"], arrays["triangles"]
     if triangles.shape[1] != 3:
-        raise InputError("%s: .h5 holds no second-order triangles" % who)
+        raise InputError("%s: %s: .h5 files hold no second-order triangles" % (who, path))
     corners = points[np.unique(triangles)] if len(triangles) else points
     bounds = np.concatenate([corners.min(axis=0), corners.max(axis=0)]) if len(corners) else np.zeros(4)
-    about = {"format": "ptriangle mesh", "version": np.int64(1), "program": "ptriangle " + library.tri_version().decode(),
-             "bounds": bounds, **{name: np.int64(len(arrays[name])) for name in ("points", "triangles", "segments")},
-             "input_points": np.int64(len(points))}
+    about = {"format": "ptriangle mesh", "version": np.int64(1), "bounds": bounds,
+             "program": "ptriangle " + library.tri_version().decode(), "input_points": np.int64(len(points)),
+             **{name: np.int64(len(arrays[name])) for name in ("points", "triangles", "segments")}}
     try:
         with h5py.File(temporary, "w") as file:
             for name in ("points", "point_markers", "point_attributes", "triangles", "triangle_attributes", "segments",
@@ -105,6 +105,10 @@ def write_arrays(path: Any, arrays: Arrays, first: int, who: str) -> None:
         return
     if suffix[1:].isalpha() and suffix not in _OF_THE_LIBRARY:
         raise InputError("%s: %s: cannot write %r files, but %s" % (who, path, suffix, _known(_WRITERS)))
-    figure, kept = figure_of(arrays, who)
+    triangles = arrays["triangles"]
+    figure, kept = figure_of(dict(arrays, triangles=None), who)
+    if triangles.shape[1] == 6:  # the library has middles opposite the corners
+        triangles = triangles[:, [0, 1, 2, 4, 5, 3]]
+    figure.triangles, owner = from_numpy(lib.Ints, triangles, who + ": triangles")
     Calls(who).run_checked(library.tri_file_write, os.fsencode(path), byref(figure), first)
-    del kept  # which the library has looked at until here
+    del kept, owner  # which the library has looked at until here

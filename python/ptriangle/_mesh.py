@@ -289,10 +289,10 @@ class Mesh:
     def write(self, path: Any, first: int = 1) -> None:
         """Writes the mesh in the format that the suffix says: x.vtu (VTK), x.msh (Gmsh), x.h5 (HDF5, by h5py), x.2dm
         (SMS), x.14 or x.grd (ADCIRC); x.poly, x.ele, x.node or x without suffix: x.node, x.ele and x.poly, whose
-        numbers count from `first`, 0 or 1."""
+        numbers count from `first`, 0 or 1. Order 2 is for all of them but .h5 and .14."""
         arrays = dict(self._arrays)
         if self._order == 2:
-            raise InputError("write(): second-order meshes are written by to_meshio(): m.to_meshio().write(path)")
+            arrays.update(zip(_NAMES[:4], (*self._nodes, self._triangles)))
         _files.write_arrays(path, arrays, first, "write()")
 
     def to_meshio(self) -> Any:

@@ -1,4 +1,4 @@
-"""What Python people expect of a package: signatures, words of errors, copies, pictures, files, geometries of others."""
+"""What Python people expect: signatures, words of errors, copies, pictures, files, geometries of others."""
 import copy
 import inspect
 import json
@@ -52,8 +52,8 @@ def test_unknown_keywords(call, words):
 
 @pytest.mark.parametrize("wanted, words", [
     (dict(min_angle=-1), r"^mesh\(\): min_angle is -1"), (dict(min_angle="big"), r"^mesh\(\): min_angle is 'big'"),
-    (dict(size=0), r"^mesh\(\): size"), (dict(order=3), r"^mesh\(\): order is 3"), (dict(protect=0.5), "protect is 0.5"),
-    (dict(stop=1), "stop is 1"), (dict(fence=(1, 2)), "fence has 2"), (dict(union=True), "union"),
+    (dict(size=0), r"^mesh\(\): size"), (dict(order=3), r"^mesh\(\): order is 3"),
+    (dict(protect=0.5), "protect is 0.5"), (dict(stop=1), "stop is 1"), (dict(fence=(1, 2)), "fence has 2"), (dict(union=True), "union"),
     (dict(regions=[[1, 2]]), r"^mesh\(\): regions: shape \(1, 2\)"), (dict(segment_markers="x"), "segment_markers")])
 def test_errors_name_function_and_argument(wanted, words):
     with pytest.raises(ptriangle.InputError, match=words):
@@ -232,8 +232,6 @@ def test_suffixes_that_do_not_exist(tmp_path):
     for name in ("x.shp", "x.stl", "x.geojson"):
         with pytest.raises(ptriangle.InputError, match=r"write\(\): .*\.vtu, \.msh, \.2dm"):
             m.write(tmp_path / name)
-    with pytest.raises(ptriangle.InputError, match="h5|mesh"):
-        ptriangle.mesh(PLATE, RINGS, order=2).write(tmp_path / "x.h5")
     assert os.listdir(tmp_path) == []
     m.write(tmp_path / "run.1")
     assert sorted(os.listdir(tmp_path)) == ["run.1.ele", "run.1.node", "run.1.poly"]
@@ -251,6 +249,26 @@ def test_meshio(order, tmp_path):
     read = meshio.read(tmp_path / "plate.vtu")
     assert np.array_equal(read.cells[0].data, m.triangles) and np.array_equal(read.points[:, :2], m.points)
     assert read.cells[0].type == ("triangle", "triangle6")[order - 1] and set(read.cell_data["attribute 0"][0]) == {7}
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".msh", ".ele", ".14", ".h5"])
+def test_second_order_in_files(suffix, tmp_path):
+    m = plate(min_angle=30, order=2)
+    if suffix in (".14", ".h5"):
+        with pytest.raises(ptriangle.InputError, match="%s files hold no second-order" % suffix):
+            m.write(tmp_path / ("plate" + suffix))
+        assert os.listdir(tmp_path) == []
+        return
+    m.write(tmp_path / ("plate" + suffix), first=0)
+    corners = ptriangle.read(tmp_path / ("plate" + suffix))
+    assert np.array_equal(corners["points"], m.points) and np.array_equal(corners["triangles"], m.triangles[:, :3])
+    if suffix == ".ele":
+        rows = np.loadtxt(tmp_path / "plate.ele", skiprows=1, dtype=int)
+        assert np.array_equal(rows[:, 1:], m.triangles[:, [0, 1, 2, 4, 5, 3]])
+    else:
+        meshio = pytest.importorskip("meshio")
+        cells = meshio.read(tmp_path / ("plate" + suffix)).get_cells_type("triangle6")
+        assert np.array_equal(cells, m.triangles)
 
 
 # --- programs
