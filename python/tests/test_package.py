@@ -53,7 +53,8 @@ def test_unknown_keywords(call, words):
 @pytest.mark.parametrize("wanted, words", [
     (dict(min_angle=-1), r"^mesh\(\): min_angle is -1"), (dict(min_angle="big"), r"^mesh\(\): min_angle is 'big'"),
     (dict(size=0), r"^mesh\(\): size"), (dict(order=3), r"^mesh\(\): order is 3"),
-    (dict(protect=0.5), "protect is 0.5"), (dict(stop=1), "stop is 1"), (dict(fence=(1, 2)), "fence has 2"), (dict(union=True), "union"),
+    (dict(protect=0.5), "protect is 0.5"), (dict(stop=1), "stop is 1"), (dict(fence=(1, 2)), "fence has 2"),
+    (dict(union=True), "union"),
     (dict(regions=[[1, 2]]), r"^mesh\(\): regions: shape \(1, 2\)"), (dict(segment_markers="x"), "segment_markers")])
 def test_errors_name_function_and_argument(wanted, words):
     with pytest.raises(ptriangle.InputError, match=words):

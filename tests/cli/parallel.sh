@@ -69,6 +69,9 @@ cat >rings.poly <<'END'
 END
 program 0 --holes auto -pq30a0.5 rings
 judge rings.1 --poly rings.poly --any-holes --min-angle 30 --max-area 0.5
+cp "$data/regress/carved_fan.poly" . # markers of what is left of segments within rounding of each other
+program 0 --holes auto -pQ carved_fan
+judge carved_fan.1 --poly carved_fan.poly --any-holes
 check "what is odd stays" sh -c '"$0/trianglecheck" rings.1 | grep -q "total 49\$"' "$bin"
 cp rings.1.ele auto.ele
 program 0 --holes points -pq30a0.5Q rings

@@ -164,16 +164,30 @@ static bool is_exactly_on(const struct chains *k, const struct line *l, int32_t 
     return holds(l, check_point(k->c, ends[0])) && holds(l, check_point(k->c, ends[1]));
 }
 
+/* Does a step of the chain that leads to u lead no farther on than the tolerance? Then it may lead over to another
+ * input segment's vertices, and past a piece that was carved. */
+static bool has_side_step(const struct chains *k, const struct line *l, int32_t u)
+{
+    const struct checker *c = k->c;
+    for (; k->via[u] >= 0; u = c->segments[k->via[u]])
+        if (along(l, check_point(c, u)) - along(l, check_point(c, c->segments[k->via[u]])) <= l->tolerance)
+            return true;
+    return false;
+}
+
 /* The input segment runs along the chain by which the search came to u: for certain up to the first fork, or, where
- * pieces of it are missing (that the chain is its own is a guess then), where the chain is exactly on its line. */
+ * that the chain is its own is a guess, where the chain is exactly on its line. */
 static void mark(struct chains *k, const struct line *l, int32_t u, bool whole)
 {
     const struct checker *c = k->c;
     int32_t end = u;
+    if (l->marker == 0)
+        return;
+    whole = whole && !has_side_step(k, l, u);
     for (; k->via[u] >= 0; u = c->segments[k->via[u]])
         if (k->forked[c->segments[k->via[u]]] == k->search)
             end = c->segments[k->via[u]];
-    for (u = end; l->marker != 0 && k->via[u] >= 0; u = c->segments[k->via[u]])
+    for (u = end; k->via[u] >= 0; u = c->segments[k->via[u]])
         if (k->certain[k->via[u] >> 1] < 0 && (whole || is_exactly_on(k, l, k->via[u] >> 1)))
             k->certain[k->via[u] >> 1] = l->id;
 }
