@@ -217,7 +217,7 @@ static enum tri_status take_densities(struct settings *s, struct files *f, const
 static enum tri_status take_triangles(const struct settings *s, struct files *f, const struct tri_check_source *source,
                                       bool all, struct tri_error *error)
 {
-    if (all && source->n_triangles > PLOT_MOST_TRIANGLES)
+    if (all && source->n_triangles > plot_most_triangles())
         return TRI_TOO_LARGE;
     enum tri_status status = plot_part_take(source, &s->style.window, &f->mesh, &f->elements, error);
     if (status == TRI_TOO_LARGE) {
@@ -230,7 +230,7 @@ static enum tri_status take_triangles(const struct settings *s, struct files *f,
 static void say_densities(struct settings *s)
 {
     fail(0, "there are more than %d triangles to show: a picture of densities; --window shows those of a part",
-         (int)PLOT_MOST_TRIANGLES);
+         (int)plot_most_triangles());
     s->colour = BY_DENSITY;
 }
 
@@ -284,7 +284,7 @@ static enum tri_status read_mesh(struct settings *s, struct files *f, struct tri
     enum tri_status status = format != NULL ? read_format(f, &ask, format, error) : read_text(f, s->base, error);
     f->all_points = f->mesh.n_points;
     f->all_triangles = f->elements.n;
-    if (status != TRI_OK || f->elements.n <= PLOT_MOST_TRIANGLES || s->colour == BY_BLOCK)
+    if (status != TRI_OK || f->elements.n <= plot_most_triangles() || s->colour == BY_BLOCK)
         return status;
     tri_pslg_free(&f->mesh);
     tri_elements_free(&f->elements);

@@ -15,6 +15,16 @@ enum {
     SLICE = 1 << 16 /* triangles or segments */
 };
 
+int32_t plot_most_triangles(void)
+{
+#ifdef PTRIANGLE_TESTS
+    const char *text = getenv("PTRIANGLE_TEST_TRIANGLES");
+    if (text != NULL)
+        return (int32_t)strtol(text, NULL, 10);
+#endif
+    return 1 << 24;
+}
+
 struct cache {
     const struct tri_check_source *source;
     struct tri_error *error;
@@ -138,9 +148,9 @@ static enum tri_status take_triangle(struct part *p, const int64_t *v, const dou
 {
     if (!shows(p, v, 3))
         return TRI_OK;
-    if (p->corners.n / 3 >= PLOT_MOST_TRIANGLES)
+    if (p->corners.n / 3 >= plot_most_triangles())
         return tri_fail(error, TRI_TOO_LARGE, "", 0, "there are more than %d triangles to draw",
-                        (int)PLOT_MOST_TRIANGLES);
+                        (int)plot_most_triangles());
     enum tri_status status = add(&p->corners, v, 3, error);
     return !status && attribute != NULL ? add_attribute(p, *attribute, error) : status;
 }

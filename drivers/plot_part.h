@@ -8,7 +8,8 @@
 #include "triangle/pslg.h"
 #include "triangle/reconstruct.h"
 
-enum { PLOT_MOST_TRIANGLES = 1 << 24 }; /* in a picture that shows each */
+/* In a picture that shows each: 2^24. In a build with tests PTRIANGLE_TEST_TRIANGLES of the environment. */
+int32_t plot_most_triangles(void);
 
 /* The box around all points, a little wider, and never flat. */
 enum tri_status plot_part_box(const struct tri_check_source *source, struct plot_box *box, struct tri_error *error);

@@ -318,8 +318,8 @@ static int run(const struct settings *s, struct judged_files *f)
     struct tri_check_report report;
     int threads = par_threads(s->threads < PAR_MOST_THREADS ? (int)s->threads : PAR_MOST_THREADS, false);
     const struct tri_executor executor = par_executor(&threads);
-    struct judged_ask ask = {s->base, s->is_base, s->input, memory_to_use(s), s->scratch != NULL ? s->scratch : usual_scratch(),
-                             &executor};
+    const char *scratch = s->scratch != NULL ? s->scratch : usual_scratch();
+    struct judged_ask ask = {s->base, s->is_base, s->input, memory_to_use(s), scratch, &executor};
     enum tri_status status = judged_read(f, &ask, &error);
     if (f->stale_neighbors)
         fail("%s.neigh is of another mesh than %s.ele, by their numbers of triangles: it is not judged", s->base,

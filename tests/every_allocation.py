@@ -34,6 +34,9 @@ ALL = FEW + [
     ("ptriangle", "-rpqa0.0005 letter.1 --threads 2", ["letter.poly", "mesh:letter -pq"]),
     ("trianglecheck", "section.1 --poly section.poly --quiet --min-angle 20", ["section.poly", "mesh:section -pqaA"]),
     ("meshplot", "square.1 -o square.svg", ["square.poly", "mesh:square -pq"]),
+] + [("trianglecheck", f"{name} --poly section.poly --quiet", ["section.poly", f"export:section -pqA {name}"])
+     for name in ("x.vtu", "x.msh", "x.2dm", "fort.14")] + [
+    ("meshplot", "x.vtu -c region -o x.svg", ["section.poly", "export:section -pqA x.vtu"]),
 ]
 
 LONGEST = 60  # seconds of one run
@@ -49,6 +52,9 @@ def prepare(folder, inputs, bin_folder, data):
         if kind == "mesh":
             stem, switches = rest.split()
             subprocess.run([f"{bin_folder}/triangle", switches + "Q", stem], cwd=folder, check=True)
+        elif kind == "export":
+            stem, switches, name = rest.split()
+            subprocess.run([f"{bin_folder}/ptriangle", switches + "Q", stem, "--output", name], cwd=folder, check=True)
         elif kind == "rename":
             old, new = rest.split(":")
             os.rename(f"{folder}/{old}", f"{folder}/{new}")

@@ -55,6 +55,15 @@ for colour in quality area region block; do
 done
 [ "$(fills none.svg)" -eq 1 ] || fault "none.svg has $(fills none.svg) colours instead of 1"
 
+# More triangles than are drawn: densities, unless the window shows few enough.
+export PTRIANGLE_TEST_TRIANGLES=1
+draws -o many.png --size 300 --color area
+grep -q '^meshplot: there are more than 1 triangles to show: a picture of densities' out.txt || fault "not a word of it"
+cmp -s many.png density.png || fault "many.png is no picture of densities"
+draws -o one.svg --window 0.4,1.4,0.5,1.5 --edges off --segments off --legend off
+[ -s out.txt ] && fault "one triangle is not too many"
+unset PTRIANGLE_TEST_TRIANGLES
+
 # The header of a PNG gives its width in bytes 16 to 19.
 width=$(od -An -tu1 -j16 -N4 quality.png | awk '{ print $1 * 16777216 + $2 * 65536 + $3 * 256 + $4 }')
 [ "$width" = 300 ] || fault "quality.png is $width pixels wide instead of 300"

@@ -1,6 +1,6 @@
 /* Formats of other programs, read again: what each keeps of a mesh comes back, of a part what is in it, in whatever
- * order a file has it; what is not read is refused by one sentence; whatever happens to a file, reading ends with a mesh
- * whose numbers are those of points, or with an error. */
+ * order a file has it; what is not read is refused by one sentence; whatever happens to a file, reading ends with a
+ * mesh whose numbers are those of points, or with an error. */
 #include <fcntl.h>
 #include <math.h>
 #include <setjmp.h>
@@ -17,8 +17,8 @@
 #include "tests/files.h"
 #include "triangle/text/formats.h"
 
-/* The square of tests/test_formats.c: 3 x 3 points less its upper right quarter; segment 6 is inside. Behind its corners
- * the nodes amid edges. */
+/* The square of tests/test_formats.c: 3 x 3 points less its upper right quarter; the last segment is inside. Behind the
+ * corners come the nodes amid edges. */
 static const double points[] = {0, 0, 1, 0, 2, 0, 0, 1, 1, 1, 2, 1, 0, 2, 1, 2, 0.5, 0.5, 1, 0.5, 0.5, 0, 0, 0.5,
                                 0.5, 1, 1.5, 0.5, 2, 0.5, 1.5, 0, 1.5, 1, 0.5, 1.5, 1, 1.5, 0, 1.5, 0.5, 2};
 static const double depths[] = {1, 2, 3, 4, 5, 6, 7, 8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.1};
@@ -230,7 +230,7 @@ static void test_parts(void **state)
 /* --- files of others */
 
 #define VTU_HEAD "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\"><UnstructuredGrid>" \
-                 "<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" format=\"ascii\">1</DataArray></FieldData>" \
+                 "<FieldData><DataArray type=\"Float64\" Name=\"T\" format=\"ascii\">1</DataArray></FieldData>" \
                  "<!-- <Piece> --><Piece NumberOfPoints='4' NumberOfCells=\"3\">\n"
 #define VTU_POINTS "<Points><DataArray type=\"Float32\" Name=\"Points\" NumberOfComponents=\"3\" format=\"ascii\">\n" \
                    "0 0 0 1 0 0 1 1 0 0 1 0 <InformationKey name=\"L2\"></InformationKey></DataArray></Points>\n"

@@ -153,7 +153,7 @@ done
 
 # --- what HDF5 takes counts where nothing is refined, too
 what="ptriangle, nothing refined"
-for budget in 13 33 60; do
+for budget in 20 33 60; do
     "$python" "$data/../tests/cli/peak.py" "$budget"000000 "$bin/ptriangle" -Qp g.poly --output g1.h5 \
         --memory "$budget"000000 --threads 2 >.out 2>.err
     found=$?

@@ -138,7 +138,7 @@ static enum tri_status take_file_tag(struct reading *r, struct span tag)
     if (is_value(value_of(tag, "byte_order"), "BigEndian"))
         return fail(r, "big-endian: only little-endian data are read");
     if (value_of(tag, "compressor").at)
-        return fail(r, "its data are compressed: only raw appended data and text are read");
+        return fail(r, "its data are compressed: only raw appended data and text are read (meshio: binary=False)");
     r->wide_sizes = is_value(value_of(tag, "header_type"), "UInt64");
     return TRI_OK;
 }
@@ -190,7 +190,7 @@ static enum tri_status take_array_tag(struct reading *r, struct span tag)
     if (k == ARRAYS)
         return TRI_OK;
     if (!array.appended && !is_value(format, "ascii"))
-        return fail(r, "an array is neither appended nor text (base64): meshio or ParaView write it so");
+        return fail(r, "its data are base64: only raw appended data and text are read (meshio: binary=False)");
     const int64_t offset = count_of(tag, "offset", 0);
     if (!array.type || offset < 0 || array.components < 1 || array.components > MOST_COMPONENTS ||
         (kinds[k].components > 0 && array.components != kinds[k].components) || (!array.appended && !array.text.at))
@@ -203,7 +203,7 @@ static enum tri_status take_array_tag(struct reading *r, struct span tag)
 static enum tri_status take_data_tag(struct reading *r, struct span tag)
 {
     if (!is_value(value_of(tag, "encoding"), "raw"))
-        return fail(r, "its data are encoded (base64): only raw appended data and text are read");
+        return fail(r, "its data are base64: only raw appended data and text are read (meshio: binary=False)");
     if (!tri_bytes_pass(&r->file, "_"))
         return fail(r, "there are no data");
     r->data = r->file.at;
