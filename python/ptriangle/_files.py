@@ -41,10 +41,10 @@ def _read_h5(path: str, who: str) -> Arrays:
 
 
 def _write_h5(path: str, arrays: Arrays, who: str) -> None:
-    h5py, temporary = _h5py(who), path + ".part"
     points, triangles = arrays["points"], arrays["triangles"]
     if triangles.shape[1] != 3:
         raise InputError("%s: %s: .h5 files hold no second-order triangles" % (who, path))
+    h5py, temporary = _h5py(who), path + ".part"
     corners = points[np.unique(triangles)] if len(triangles) else points
     bounds = np.concatenate([corners.min(axis=0), corners.max(axis=0)]) if len(corners) else np.zeros(4)
     about = {"format": "ptriangle mesh", "version": np.int64(1), "bounds": bounds,
