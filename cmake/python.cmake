@@ -1,5 +1,6 @@
-# The one shared library of the Python package (python/): everything in one, with the C++ runtime inside and the OpenMP
-# runtime beside it, so that a wheel needs neither a compiler nor packages of the system.
+# What the Python package (python/) carries: one shared library, with everything in one, and the programs. All have the
+# C++ runtime inside and the OpenMP runtime beside them, so that a wheel needs neither a compiler nor packages of the
+# system; but for meshplot, which needs libcairo. The target python_package builds all.
 set(sources ${PTRIANGLE_MESHER_SOURCES} ${PTRIANGLE_CHECK_SOURCES} ${PTRIANGLE_TEXT_SOURCES})
 if(TARGET libptriangle)
     list(REMOVE_ITEM sources triangle/dropin/triangulate.c) # the other triangulate() is that of sched/
@@ -33,3 +34,12 @@ if(TARGET libptriangle)
         endif()
     endforeach()
 endif()
+
+add_custom_target(python_package DEPENDS libptriangle_python)
+foreach(program IN ITEMS ptriangle trianglecheck meshplot)
+    if(TARGET ${program})
+        add_dependencies(python_package ${program})
+        set_target_properties(${program} PROPERTIES INSTALL_RPATH $ORIGIN/..)
+        install(TARGETS ${program} RUNTIME DESTINATION ptriangle/programs COMPONENT python EXCLUDE_FROM_ALL)
+    endif()
+endforeach()

@@ -5,6 +5,13 @@
 #include "sched/schedule.h"
 #include "sched/threads.h"
 
+/* Passes on what the schedule tells. */
+static void follow(void *user, const struct par_place *place)
+{
+    const struct tri_refine_options *quality = user;
+    quality->told(quality->told_user, place->triangles);
+}
+
 enum tri_status par_refine_as(const struct tri_api_way *way, struct tri_mesh *mesh,
                               const struct tri_refine_options *quality, const struct tri_settings *settings,
                               struct tri_refine_report *report, struct tri_error *error)
@@ -15,6 +22,8 @@ enum tri_status par_refine_as(const struct tri_api_way *way, struct tri_mesh *me
     how.size_test_in_parallel = settings->callbacks_in_parallel;
     how.figure = way->figure;
     how.region_column = way->has_attributes;
+    how.progress = quality->told ? follow : NULL;
+    how.progress_user = (void *)quality; /* which only reads it */
     enum tri_status status = par_refine(mesh, quality, &how, &schedule, error);
     *report = schedule.total;
     par_report_free(&schedule);

@@ -305,6 +305,7 @@ static void set_up(struct phase *p, struct task *task)
     task->active = (struct tri_fence){active.x_min * unit, active.y_min * unit, active.x_max * unit,
                                       active.y_max * unit};
     task->options = *state->quality;
+    task->options.told = NULL; /* a block is not the mesh */
     task->options.gate = state->options->margin ? is_active : NULL; /* else the fence says all */
     task->options.gate_user = &task->active;
     task->options.fence = &task->fence;

@@ -531,6 +531,44 @@ static void test_stop(void **state)
 
 /* --- refusals */
 
+struct told {
+    double done;
+    int64_t triangles;
+    int times;
+};
+
+static void hear(void *user, double done, int64_t triangles)
+{
+    struct told *told = user;
+    assert_true(done >= told->done && done <= 1 && triangles > 0 && told->done < 1);
+    *told = (struct told){done, triangles, told->times + 1};
+}
+
+/* By one sequential call and by the schedule: the share never falls, and ends with 1; the mesh is the same. */
+static void test_progress(void **state)
+{
+    (void)state;
+    struct tri_figure figure = plate();
+    struct tri_settings settings = tri_no_settings();
+    for (int parallel = 0; parallel < 2; parallel++) {
+        struct told told = {0};
+        struct tri_mesh *mesh, *silent;
+        enum tri_status (*make)(struct tri_mesh **, const struct tri_figure *, const struct tri_settings *,
+                                struct tri_error *) = parallel ? par_mesh_new : tri_mesh_new;
+        settings.min_angle = 30;
+        settings.max_area = 1e-4;
+        settings.progress = NULL;
+        assert_int_equal(make(&silent, &figure, &settings, NULL), TRI_OK);
+        settings.progress = hear;
+        settings.progress_user = &told;
+        assert_int_equal(make(&mesh, &figure, &settings, NULL), TRI_OK);
+        assert_true(told.done == 1 && told.times > 5 && told.triangles == tri_mesh_triangles(mesh).n);
+        assert_true(same_meshes(mesh, silent));
+        tri_mesh_delete(mesh);
+        tri_mesh_delete(silent);
+    }
+}
+
 static void assert_refused(const struct tri_figure *figure, const struct tri_settings *settings)
 {
     struct tri_mesh *mesh = (struct tri_mesh *)&mesh;
@@ -779,6 +817,7 @@ int main(void)
         cmocka_unit_test(test_input_that_is_not_finite),
         cmocka_unit_test(test_gate_and_fence),
         cmocka_unit_test(test_stop),
+        cmocka_unit_test(test_progress),
         cmocka_unit_test(test_figures_without_meaning),
         cmocka_unit_test(test_settings_without_meaning),
         cmocka_unit_test(test_headers_of_other_versions),

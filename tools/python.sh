@@ -1,7 +1,7 @@
 #!/bin/sh
 # The Python package as users get it: builds the wheel, installs it where there is no compiler to be found, runs its
-# tests, and compares ptriangle.compat with the package `triangle` from PyPI. Where PyPI cannot be reached, one line
-# says so.
+# tests, mypy --strict on a client of it, and every example of docs/python.md as it is written, and compares
+# ptriangle.compat with the package `triangle` from PyPI. Where PyPI cannot be reached, one line says so.
 # Usage: tools/python.sh [FOLDER]   a scratch folder; build/python without
 set -eu
 cd "$(dirname "$0")/.."
@@ -19,16 +19,28 @@ pip() { "$work/venv/bin/python" -m pip --disable-pip-version-check --no-input --
 must() { "$@" || { cat "$work/log"; exit 1; }; }
 
 python3 -m venv "$work/venv" >"$work/log" 2>&1 || skip "python3 has no venv (Debian: python3-venv)"
-pip install numpy pytest matplotlib scikit-build-core || skip "PyPI cannot be reached"
+pip install numpy pytest scikit-build-core mypy || skip "PyPI cannot be reached"
+for package in matplotlib ipython shapely geopandas h5py meshio numba pyvista; do
+    pip install "$package" ||
+        echo "python: without $package, which does not install here ($(tail -n 1 "$work/log"))"
+done
 
 must pip wheel --no-build-isolation --no-deps --wheel-dir "$work/wheels" "$root"
 wheel=$(echo "$work"/wheels/ptriangle-*-py3-none-*.whl)
 [ -f "$wheel" ] || { echo "python: no wheel py3-none-PLATFORM: $(ls "$work/wheels")"; exit 1; }
 must pip install "$wheel"
+"$work/venv/bin/python" -m zipfile -l "$wheel" >"$work/contents"
+grep -q 'licenses/.*THIRD-PARTY' "$work/contents" || { echo "python: the wheel does not say what it carries"; exit 1; }
 
 cd "$work"
 mkdir none # is all there is in the path: no compiler
-PATH=$work/none "$work/venv/bin/python" -m pytest -q -p no:cacheprovider "$root/python/tests" -o testpaths=
+PATH=$work/none "$work/venv/bin/python" -m pytest -q -rs -p no:cacheprovider "$root/python/tests" -o testpaths=
+cp "$root/python/tests/typed_client.py" "$work"
+"$work/venv/bin/python" -m mypy --strict typed_client.py
+"$work/venv/bin/python" typed_client.py
+"$work/venv/bin/python" -m mypy --strict -p ptriangle >mypy.log || { cat mypy.log; exit 1; }
+MPLBACKEND=Agg PYVISTA_OFF_SCREEN=true "$work/venv/bin/python" "$root/python/tests/run_examples.py" \
+    "$root/docs/python.md" "$work/examples"
 if pip install triangle==20250106; then
     PATH=$work/none "$work/venv/bin/python" "$root/python/tests/against_pypi.py"
 else

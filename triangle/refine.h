@@ -79,6 +79,8 @@ struct tri_refine_options {
     tri_more_room *more_room; /* NULL: the mesh's arrays grow */
     void *more_room_user;
     const struct tri_part *part; /* NULL: all of the mesh is here */
+    void (*told)(void *user, int64_t triangles); /* how many triangles there are, every so often; NULL: nobody */
+    void *told_user;
 };
 
 /* Is there any bound on sizes? */

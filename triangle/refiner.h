@@ -66,7 +66,7 @@ enum tri_outcome tri_treat(struct tri_refiner *r, struct tri_entry entry);
  * memory. */
 bool tri_split_encroached(struct tri_refiner *r);
 
-/* Somebody asks for the end: between two points the mesh is in order. */
+/* Somebody asks for the end, or how far the work is: between two points the mesh is in order. */
 bool tri_refiner_must_stop(struct tri_refiner *r);
 
 #endif

@@ -361,6 +361,8 @@ static bool at_limit(struct tri_refiner *r)
 /* Somebody asks for the end: between two points the mesh is in order. */
 bool tri_refiner_must_stop(struct tri_refiner *r)
 {
+    if (r->options->told && r->step_of_stop % TRI_STOP_STEPS == 0)
+        r->options->told(r->options->told_user, r->mesh->n_triangles);
     return tri_stop_is_due(r->mesh->stop, &r->step_of_stop) && tri_fail_stopped(&r->error);
 }
 

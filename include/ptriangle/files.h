@@ -36,7 +36,8 @@ void tri_file_free(struct tri_figure *figure);
  * "mesh.v2" are names. Coordinates have 17 digits, or are bytes: what is read back is the same. All files appear
  * together, when all are complete, or none; files that exist are replaced. The boundary, where a format asks for it, is
  * among the segments. TRI_CANNOT_WRITE, TRI_NO_MEMORY; TRI_BAD_INPUT also: another `first`, an array has not the shape
- * it should have, or triangles and segments for those formats name points that are not there. */
+ * it should have, or triangles and segments for those formats name points that are not there. Here triangles may be
+ * [n][6], of second order: behind the corners the points amid the edges opposite to them. ADCIRC's files hold none. */
 enum tri_status tri_file_write(const char *name, const struct tri_figure *figure, int first, struct tri_error *error);
 
 #ifdef __cplusplus

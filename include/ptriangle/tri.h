@@ -161,6 +161,11 @@ struct tri_settings {
      * for meshes that are handed out meanwhile (par_mesh_stream). */
     void (*note)(void *user, const char *notes);
     void *note_user;
+
+    /* Told every so often while triangles are refined, by the calling thread: which share of the work is done, by an
+     * estimate, from 0 on and never less than before, at last 1; and how many triangles there are. */
+    void (*progress)(void *user, double done, int64_t triangles);
+    void *progress_user;
 };
 
 static inline struct tri_settings tri_no_settings(void)

@@ -1,29 +1,33 @@
 """Triangle's text files as dictionaries, as the package `triangle` has them."""
+from __future__ import annotations
+
 import os
+from typing import Any, Dict, List, Optional, Tuple
 
 import numpy as np
 
+Arrays = Dict[str, Any]
 ENDINGS = ("node", "ele", "poly", "area", "edge", "neigh")
 
 
 class _Numbers:
     """The records of a file: lines of numbers; comments and empty lines are left out."""
 
-    def __init__(self, text):
+    def __init__(self, text: str) -> None:
         lines = (line.split("#", 1)[0].split() for line in text.splitlines())
         self.records = [words for words in lines if words]
         self.at = 0
 
-    def next(self):
+    def next(self) -> List[str]:
         self.at += 1
         return self.records[self.at - 1]
 
-    def header(self, n):
+    def header(self, n: int) -> List[int]:
         """The next record as n integers, 0 for those that are missing."""
         words = self.next() if self.at < len(self.records) else []
         return [int(word) for word in words[:n]] + [0] * (n - len(words))
 
-    def table(self, n, width):
+    def table(self, n: int, width: int) -> Tuple[int, Any]:
         """n records: the number of the first, and `width` values each, 0 where there are fewer."""
         rows = [self.next() for _ in range(n)]
         values = np.zeros((n, width))
@@ -32,7 +36,7 @@ class _Numbers:
             row[:len(found)] = found
         return int(rows[0][0]) if rows else 0, values
 
-    def regions(self, n):
+    def regions(self, n: int) -> Any:
         """n regions: x, y, attribute, largest area; a single value behind the place is the area."""
         single = [len(words) == 4 for words in self.records[self.at:self.at + n]]
         values = self.table(n, 4)[1]
@@ -40,7 +44,7 @@ class _Numbers:
         return values
 
 
-def _vertices(numbers, data):
+def _vertices(numbers: _Numbers, data: Arrays) -> Optional[int]:
     """The vertices at the head of .node and .poly files; the number of the first, or None without vertices."""
     n, _, attributes, markers = numbers.header(4)
     if n == 0:
@@ -54,12 +58,12 @@ def _vertices(numbers, data):
     return first
 
 
-def _node(numbers, data, first):
+def _node(numbers: _Numbers, data: Arrays, first: int) -> int:
     found = _vertices(numbers, data)
     return first if found is None else found
 
 
-def _poly(numbers, data, first):
+def _poly(numbers: _Numbers, data: Arrays, first: int) -> int:
     found = _vertices(numbers, data)
     first = first if found is None else found
     n, markers = numbers.header(2)
@@ -77,7 +81,7 @@ def _poly(numbers, data, first):
     return first
 
 
-def _ele(numbers, data, first):
+def _ele(numbers: _Numbers, data: Arrays, first: int) -> int:
     n, nodes, attributes = numbers.header(3)
     if n:
         _, rows = numbers.table(n, nodes + attributes)
@@ -87,14 +91,14 @@ def _ele(numbers, data, first):
     return first
 
 
-def _area(numbers, data, first):
+def _area(numbers: _Numbers, data: Arrays, first: int) -> int:
     n, = numbers.header(1)
     if n:
         data["triangle_max_area"] = numbers.table(n, 1)[1]
     return first
 
 
-def _edge(numbers, data, first):
+def _edge(numbers: _Numbers, data: Arrays, first: int) -> int:
     n, markers = numbers.header(2)
     if n:
         _, rows = numbers.table(n, 2 + markers)
@@ -104,7 +108,7 @@ def _edge(numbers, data, first):
     return first
 
 
-def _neigh(numbers, data, first):
+def _neigh(numbers: _Numbers, data: Arrays, first: int) -> int:
     n, _ = numbers.header(2)
     if n:
         found, rows = numbers.table(n, 3)
@@ -116,17 +120,19 @@ def _neigh(numbers, data, first):
 _READERS = {"node": _node, "poly": _poly, "ele": _ele, "area": _area, "edge": _edge, "neigh": _neigh}
 
 
-def loads(node=None, ele=None, poly=None, area=None, edge=None, neigh=None):
+def loads(node: Optional[str] = None, ele: Optional[str] = None, poly: Optional[str] = None,
+          area: Optional[str] = None, edge: Optional[str] = None, neigh: Optional[str] = None) -> Arrays:
     """The arrays of files that are given as texts; indices count from 0, whatever the files do."""
     texts = {"node": node, "poly": poly, "ele": ele, "area": area, "edge": edge, "neigh": neigh}
-    data, first = {}, 1
+    data: Arrays = {}
+    first = 1
     for ending, text in texts.items():
         if text is not None:
             first = _READERS[ending](_Numbers(text), data, first)
     return data
 
 
-def load(directory, name):
+def load(directory: str, name: str) -> Arrays:
     """The arrays of the files name.node, name.poly, name.ele and so on in a directory, as far as there are any."""
     texts = {}
     for ending in ENDINGS:

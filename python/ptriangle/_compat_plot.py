@@ -1,13 +1,17 @@
 """Pictures of meshes by matplotlib, as the package `triangle` draws them: what is given is drawn."""
+from __future__ import annotations
+
+from typing import Any, Mapping, Tuple
+
 import numpy as np
 
 
-def _lines(ax, ends, **style):
+def _lines(ax: Any, ends: Any, **style: Any) -> None:
     from matplotlib.collections import LineCollection
     ax.add_collection(LineCollection(ends, **style))
 
 
-def _rays(ax, origins, directions):
+def _rays(ax: Any, origins: Any, directions: Any) -> None:
     """Rays are drawn as far as the figure is wide."""
     length = np.ptp(np.asarray(ax.dataLim.get_points(), float)).max() if ax.has_data() else 1.0
     norms = np.linalg.norm(directions, axis=1, keepdims=True)
@@ -15,19 +19,19 @@ def _rays(ax, origins, directions):
     _lines(ax, np.stack([origins, tips], axis=1), colors="black", linestyles="dashed", linewidths=0.8)
 
 
-def _numbers(ax, places, markers):
+def _numbers(ax: Any, places: Any, markers: Any) -> None:
     for (x, y), marker in zip(places, np.ravel(markers)):
         ax.annotate(str(int(marker)), (x, y), textcoords="offset points", xytext=(3, 3), fontsize=7)
 
 
-def _triangles(ax, at, kw):
+def _triangles(ax: Any, at: Any, kw: Mapping[str, Any]) -> None:
     corners = np.asarray(kw["triangles"])[:, :3]
     ax.triplot(at[:, 0], at[:, 1], corners, color="black", linewidth=0.7)
     if "triangle_attributes" in kw:
         _numbers(ax, at[corners].mean(axis=1), np.asarray(kw["triangle_attributes"])[:, 0])
 
 
-def plot(ax, **kw):
+def plot(ax: Any, **kw: Any) -> None:
     """Draws arrays as triangulate() takes and gives them, or (vertices, edges, rays as ray_origins and ray_directions)
     as voronoi() does, on the axes of matplotlib."""
     at = np.asarray(kw["vertices"], float)
@@ -51,7 +55,7 @@ def plot(ax, **kw):
     ax.get_yaxis().set_visible(False)
 
 
-def _side_by_side(plt, rows, columns, figures, figsize):
+def _side_by_side(plt: Any, rows: int, columns: int, figures: Tuple[Any, Any], figsize: Tuple[float, float]) -> None:
     plt.figure(figsize=figsize)
     first = None
     for k, figure in enumerate(figures):
@@ -60,11 +64,11 @@ def _side_by_side(plt, rows, columns, figures, figsize):
     plt.tight_layout()
 
 
-def compare(plt, A, B, figsize=(6, 3)):
+def compare(plt: Any, A: Any, B: Any, figsize: Tuple[float, float] = (6, 3)) -> None:
     """Two figures side by side."""
     _side_by_side(plt, 1, 2, (A, B), figsize)
 
 
-def comparev(plt, A, B, figsize=(3, 6)):
+def comparev(plt: Any, A: Any, B: Any, figsize: Tuple[float, float] = (3, 6)) -> None:
     """Two figures, one above the other."""
     _side_by_side(plt, 2, 1, (A, B), figsize)

@@ -2,12 +2,15 @@
 
 The library lies beside this file. PTRIANGLE_LIBRARY names another one.
 """
+from __future__ import annotations
+
 import ctypes
 import ctypes.util
 import os
 from ctypes import (CFUNCTYPE, POINTER, Structure, byref, c_bool, c_char, c_char_p, c_double, c_int, c_int32, c_int64,
                     c_long, c_size_t, c_void_p, sizeof)
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, Callable, Iterator, Union
 
 import numpy as np
 
@@ -29,7 +32,7 @@ class ErrorDetail(Structure):
 class Sized(Structure):
     """A struct that begins with its size; the rest is 0."""
 
-    def __init__(self, **fields):
+    def __init__(self, **fields: Any) -> None:
         super().__init__(size=sizeof(self), **fields)
 
 
@@ -39,21 +42,31 @@ class Figure(Sized):
                 ("triangles", Ints), ("triangle_attributes", Reals), ("triangle_areas", Reals)]
 
 
-Length = CFUNCTYPE(c_double, c_void_p, POINTER(c_double))
+if TYPE_CHECKING:
+    class SizeFunction:
+        """Compiled code that tells the length of edges: double (*)(void *, const double[2]), by its address."""
+
+        def __init__(self, function: Union[int, Callable[[Any, Any], float]]) -> None: ...
+else:
+    SizeFunction = CFUNCTYPE(c_double, c_void_p, POINTER(c_double))
+    SizeFunction.__name__ = "SizeFunction"
 Unsuitable = CFUNCTYPE(c_int, c_void_p, POINTER(c_double), POINTER(c_double), POINTER(c_double), c_double)
 Gate = CFUNCTYPE(c_bool, c_void_p, POINTER(c_double))
 Stop = CFUNCTYPE(c_bool, c_void_p)
+Note = CFUNCTYPE(None, c_void_p, c_char_p)
+Progress = CFUNCTYPE(None, c_void_p, c_double, c_int64)
 
 
 class Settings(Sized):
     _fields_ = [("size", c_size_t), ("min_angle", c_double), ("max_area", c_double), ("conforming", c_bool),
                 ("keep_hull", c_bool), ("protect", c_int), ("most_new_points", c_int64),
-                ("edge_length", Length), ("edge_length_user", c_void_p),
+                ("edge_length", SizeFunction), ("edge_length_user", c_void_p),  # type: ignore[list-item]
                 ("unsuitable", Unsuitable), ("unsuitable_user", c_void_p),
                 ("gate", Gate), ("gate_user", c_void_p), ("fence", POINTER(c_double)),
                 ("stop", Stop), ("stop_user", c_void_p),
                 ("threads", c_int), ("callbacks_in_parallel", c_bool), ("numbered_by_block", c_bool),
-                ("even_odd", c_bool)]
+                ("even_odd", c_bool),
+                ("note", Note), ("note_user", c_void_p), ("progress", Progress), ("progress_user", c_void_p)]
 
 
 class Demands(Sized):
@@ -92,7 +105,7 @@ class TriangulateOptions(Structure):
                 ("stop", StopTest), ("stop_user", c_void_p)]
 
 
-def _candidates():
+def _candidates() -> Iterator[str]:
     if os.environ.get("PTRIANGLE_LIBRARY"):
         yield os.environ["PTRIANGLE_LIBRARY"]
         return
@@ -105,7 +118,7 @@ def _candidates():
         yield found
 
 
-def _load():
+def _load() -> ctypes.CDLL:
     faults = []
     for name in _candidates():
         try:
@@ -118,7 +131,7 @@ def _load():
 library = _load()
 
 
-def _declare(name, result, *arguments):
+def _declare(name: str, result: Any, *arguments: Any) -> None:
     function = getattr(library, name, None)
     if function is not None:
         function.restype = result
@@ -148,101 +161,3 @@ _declare("tri_file_write", c_int, c_char_p, POINTER(Figure), c_int, _error)
 _declare("triangulate_with", c_int, c_char_p, POINTER(TriangulateIO), POINTER(TriangulateIO), POINTER(TriangulateIO),
          POINTER(TriangulateOptions))
 _declare("trifree", None, c_void_p)
-
-
-# --- errors
-
-class Error(Exception):
-    """A call of the library failed; the text is the library's. status: enum tri_status."""
-
-    def __init__(self, text, status=0):
-        super().__init__(text)
-        self.status = status
-
-
-class InputError(Error, ValueError):
-    """The input has no meaning; the text says what and where."""
-
-
-class TooLargeError(Error, MemoryError):
-    """More memory than there is, or more triangles than one mesh holds."""
-
-
-class FileError(Error, OSError):
-    """A file cannot be read or written."""
-
-    def __str__(self):
-        return self.args[0]
-
-
-class StoppedError(Error):
-    """Somebody asked for it."""
-
-
-_KINDS = {1: TooLargeError, 2: TooLargeError, 3: InputError, 4: FileError, 5: FileError, 8: StoppedError}
-
-
-def exception_of(status, text):
-    return _KINDS.get(status, Error)(text, status)
-
-
-def raise_error(status, error):
-    text = error.text.decode("utf-8", "replace")
-    if error.file:
-        where = error.file.decode("utf-8", "replace") + (":%d" % error.line if error.line else "")
-        text = where + ": " + text
-    raise exception_of(status, text)
-
-
-def check(status, error):
-    if status:
-        raise_error(status, error)
-
-
-# --- arrays
-
-class _View:
-    """What numpy needs to see an array of the library, and who owns that."""
-
-    def __init__(self, array, owner):
-        size = array.dtype.itemsize
-        self.owner = owner
-        self.__array_interface__ = {
-            "version": 3, "typestr": array.dtype.str, "data": (array.at, True),
-            "shape": (array.n, array.width), "strides": (array.stride * size, size)}
-
-
-def to_numpy(array, owner):
-    """[n][width], without a copy, read-only: it belongs to the owner, who lives as long as it does."""
-    if array.n == 0:
-        return np.empty((0, array.width), array.dtype)
-    return np.asarray(_View(array, owner))
-
-
-def _refuse_other_ints(rows, name):
-    if rows.dtype.kind not in "iub":
-        raise InputError("%s: %s instead of integers" % (name, rows.dtype), 3)
-    if rows.max() > np.iinfo(np.int32).max or rows.min() < np.iinfo(np.int32).min:
-        raise InputError("%s: beyond the range of 32 bits" % name, 3)
-
-
-def from_numpy(kind, given, name, width=None):
-    """(array of the library, numpy array that must live as long). Rows of equal steps are passed without a copy."""
-    if given is None:
-        return kind(), None
-    rows = np.asarray(given)
-    if rows.size == 0:
-        return kind(), None
-    if kind is Ints and rows.dtype != kind.dtype:
-        _refuse_other_ints(rows, name)
-    rows = rows.astype(kind.dtype, copy=False)
-    if rows.ndim == 1 and width in (None, 1):
-        rows = rows.reshape(-1, 1)
-    if rows.ndim != 2 or (width is not None and rows.shape[1] != width):
-        raise InputError("%s: shape %s instead of (n, %s)" % (name, rows.shape, "any" if width is None else width), 3)
-    item = rows.dtype.itemsize
-    plain = rows.strides[1] == item and rows.strides[0] % item == 0 and rows.strides[0] >= rows.shape[1] * item
-    if not plain or not rows.flags.aligned:
-        rows = np.ascontiguousarray(rows)
-    stride = rows.strides[0] // item if rows.shape[0] > 1 else rows.shape[1]
-    return kind(rows.ctypes.data, rows.shape[0], rows.shape[1], max(stride, rows.shape[1])), rows

@@ -1,269 +1,341 @@
-"""Meshes as Python has them: made by mesh(), refined, judged, written."""
-import math
-import os
-import threading
-from ctypes import byref, c_double, c_int64, c_void_p
+"""Meshes as Python has them: arrays, and what is worked out of them when it is asked for."""
+from __future__ import annotations
+
+from ctypes import byref, c_int64, c_void_p
+from functools import cached_property
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
+import numpy.typing as npt
 
-from . import _library as lib
-from . import _notes
-from ._library import Demands, ErrorDetail, Figure, InputError, Ints, Reals, Settings, VerdictDetail, library
+from . import _files, _picture, _second_order
+from ._arrays import Array, freeze, to_numpy
+from ._calls import Calls
+from ._errors import InputError
+from ._figure import figure_of
+from ._library import Demands, Figure, Ints, Settings, VerdictDetail, library
+from ._notes import tell
+from ._settings import Progress, Size, Unsuitable, settings_of
+from ._signature import explained
+from ._verdict import Verdict
 
-_PARALLEL = hasattr(library, "par_mesh_new")
-_SHAPES = {  # of a figure: the library's kind, and the width of a row
-    "points": (Reals, 2), "point_attributes": (Reals, None), "point_markers": (Ints, 1), "segments": (Ints, 2),
-    "segment_markers": (Ints, 1), "holes": (Reals, 2), "regions": (Reals, 4), "triangles": (Ints, 3),
-    "triangle_attributes": (Reals, None), "triangle_areas": (Reals, 1)}
+Reals = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int32]
+
+PARALLEL = hasattr(library, "par_mesh_new")
 _COUNTS = ("duplicates", "crossings", "skipped_segments", "new_points", "new_points_on_segments", "gated", "fenced")
 _REASONS = ("input_angle", "narrow_gap", "protected", "limit", "precision", "deferred")
+_NAMES = ("points", "point_attributes", "point_markers", "triangles", "triangle_attributes", "segments",
+          "segment_markers")
 
 
-def _figure_of(arrays):
-    figure, kept = Figure(), []
-    for name, given in arrays.items():
-        kind, width = _SHAPES[name]
-        array, owner = lib.from_numpy(kind, given, name, width)
-        setattr(figure, name, array)
-        kept.append(owner)
-    return figure, kept
-
-
-class _Callbacks:
-    """Python functions that the library calls. The first exception in one ends the work, and is raised after it."""
-
-    def __init__(self):
-        self.fault = None
-        self.main = threading.current_thread() is threading.main_thread()
-
-    def guarded(self, function, otherwise):
-        def call(*arguments):
-            if self.fault is not None:
-                return otherwise
-            try:
-                return function(*arguments)
-            except BaseException as fault:  # KeyboardInterrupt, too
-                self.fault = fault
-                return otherwise
-        return call
-
-    def stop(self, function):
-        def asked(_user):
-            return self.fault is not None or (function is not None and bool(function()))
-        guarded = self.guarded(asked, True)
-        return lib.Stop(lambda user: self.fault is not None or guarded(user))
-
-
-def _callbacks_of(settings, size, unsuitable, gate, stop):
-    calls = _Callbacks()
-    if isinstance(size, lib.Length):
-        settings.edge_length = size
-        settings.callbacks_in_parallel = unsuitable is None
-    elif callable(size):
-        settings.edge_length = lib.Length(calls.guarded(lambda _, at: float(size(at[0], at[1])), math.inf))
-    elif size is not None:
-        size = float(size)
-        if not size > 0:
-            raise InputError("size: %g is not > 0" % size, 3)
-        area = math.sqrt(3) / 4 * size * size
-        settings.max_area = min(settings.max_area, area) if settings.max_area > 0 else area
-    if unsuitable is not None:
-        settings.unsuitable = lib.Unsuitable(calls.guarded(
-            lambda _, a, b, c, area: int(bool(unsuitable((a[0], a[1]), (b[0], b[1]), (c[0], c[1]), area))), 0))
-    if gate is not None:
-        settings.gate = lib.Gate(calls.guarded(lambda _, at: bool(gate(at[0], at[1])), False))
-    settings.stop = calls.stop(stop)
-    return calls
-
-
-def _settings_of(min_angle=0, max_area=None, size=None, unsuitable=None, conforming=False, keep_hull=False, protect=0,
-                 max_new_points=None, gate=None, fence=None, threads=None, stop=None):
-    settings = Settings(min_angle=float(min_angle or 0), max_area=float(max_area or 0), conforming=bool(conforming),
-                        keep_hull=bool(keep_hull), protect=int(protect), most_new_points=int(max_new_points or 0),
-                        threads=int(threads or 0))
-    if fence is not None:
-        settings.fence = (c_double * 4)(*map(float, fence))
-    return settings, _callbacks_of(settings, size, unsuitable, gate, stop)
-
-
-def _run(function, calls, *arguments):
-    """Calls the library, which needs no lock of the interpreter meanwhile."""
-    error = ErrorDetail()
-    status = function(*arguments, byref(error))
-    if calls is not None and calls.fault is not None:
-        raise calls.fault
-    lib.check(status, error)
-
-
-class _Handle:
+class Handle:
     """The library's mesh, deleted with the last array that looks into it."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.mesh = c_void_p()
 
-    def __del__(self, delete=library.tri_mesh_delete):
+    def __del__(self, delete: Any = library.tri_mesh_delete) -> None:
         delete(self.mesh)
-        self.mesh = None
+        self.mesh = None  # type: ignore[assignment]
 
 
-class Verdict:
-    """What check() found. Truth value: the mesh is as it should be."""
+def made(figure: Figure, settings: Settings, calls: Calls) -> Handle:
+    handle = Handle()
+    calls.run_checked(library.par_mesh_new if PARALLEL else library.tri_mesh_new, byref(handle.mesh), byref(figure),
+                      byref(settings))
+    return handle
 
-    def __init__(self, detail):
-        for name, _ in VerdictDetail._fields_:
-            value = getattr(detail, name)
-            setattr(self, name, value.decode("utf-8", "replace") if isinstance(value, bytes) else value)
 
-    def __bool__(self):
-        return self.n_faults == 0
-
-    def __repr__(self):
-        return "<Verdict: %s>" % ("sound" if self else "%d faults: %s" % (self.n_faults, self.text))
+def _arrays_of(handle: Handle) -> Dict[str, Array]:
+    arrays = {name: to_numpy(getattr(library, "tri_mesh_" + name)(handle.mesh), handle) for name in _NAMES}
+    for kind in ("point", "triangle"):  # where there are none: a row of no columns for each
+        if len(arrays[kind + "_attributes"]) == 0:
+            arrays[kind + "_attributes"] = np.empty((len(arrays[kind + "s"]), 0))
+    for kind in ("point", "segment"):
+        arrays[kind + "_markers"] = arrays[kind + "_markers"][:, 0]
+    return arrays
 
 
 class Mesh:
-    """A triangle mesh. Arrays are numpy's, read-only, and see the library's memory without a copy.
+    """A triangle mesh, made by ptriangle.mesh(). It does not change; refine() makes another one.
 
-    points [n, 2] float64            triangles [m, 3] int32, counter-clockwise
-    point_markers [n] int32          triangle_attributes [m, k] float64, k 0 where there are none
-    point_attributes [n, k] float64  neighbors [m, 3] int32, opposite each corner; -1: none
-    segments [s, 2] int32            edges [e, 2] int32
-    segment_markers [s] int32        edge_markers [e] int32
+    Arrays are numpy's, read-only, and see the library's memory without a copy. Numbers of points count from 0. A mesh
+    can be pickled and copied, and is a picture in notebooks.
     """
 
-    def __init__(self, handle):
-        self._handle = handle
+    def __init__(self, handle: Handle, order: int = 1) -> None:
+        self._handle: Optional[Handle] = handle
+        self._order = order
+        self._arrays = _arrays_of(handle)
+        self._counts = {name: int(library.tri_mesh_count(handle.mesh, k)) for k, name in enumerate(_COUNTS)}
 
-    def _rows(self, name):
-        return lib.to_numpy(getattr(library, "tri_mesh_" + name)(self._handle.mesh), self._handle)
-
-    def _values(self, name, of):
-        """The same, with a row of no columns for each where there are none."""
-        rows = self._rows(name)
-        return rows if len(rows) else np.empty((len(of), 0))
-
-    points = property(lambda self: self._rows("points"))
-    point_attributes = property(lambda self: self._values("point_attributes", self.points))
-    point_markers = property(lambda self: self._rows("point_markers")[:, 0])
-    triangles = property(lambda self: self._rows("triangles"))
-    triangle_attributes = property(lambda self: self._values("triangle_attributes", self.triangles))
-    segments = property(lambda self: self._rows("segments"))
-    segment_markers = property(lambda self: self._rows("segment_markers")[:, 0])
+    # --- arrays
 
     @property
-    def neighbors(self):
-        found = Ints()
-        _run(library.tri_mesh_neighbors, None, self._handle.mesh, byref(found))
-        return lib.to_numpy(found, self._handle)
-
-    def _edges(self):
-        edges, markers = Ints(), Ints()
-        _run(library.tri_mesh_edges, None, self._handle.mesh, byref(edges), byref(markers))
-        return lib.to_numpy(edges, self._handle), lib.to_numpy(markers, self._handle)[:, 0]
-
-    edges = property(lambda self: self._edges()[0])
-    edge_markers = property(lambda self: self._edges()[1])
+    def points(self) -> Reals:
+        """Coordinates, [n, 2]: the points that were given, in their order, new ones, and with order 2 the middles of
+        the edges."""
+        return self._nodes[0]
 
     @property
-    def counts(self):
-        """What was odd about the input, and what the last refinement did."""
-        return {name: library.tri_mesh_count(self._handle.mesh, k) for k, name in enumerate(_COUNTS)}
+    def point_attributes(self) -> Reals:
+        """Attributes of the points, [n, k], interpolated at new points; k is 0 where none were given."""
+        return self._nodes[1]
 
-    def _figure(self):
-        figure = Figure()
-        library.tri_mesh_figure(self._handle.mesh, byref(figure))
-        return figure
+    @property
+    def point_markers(self) -> Integers:
+        """Markers of the points, [n]: as given, else that of a segment there, else 1 on the boundary and 0 inside."""
+        return self._nodes[2]
 
-    def refine(self, **wanted):
-        """A finer mesh, by the keywords of mesh(); this one stays as it is.
+    @property
+    def triangles(self) -> Integers:
+        """Points of the triangles, counter-clockwise, [m, 3]; with order 2 [m, 6]: corners a, b, c, then the middles of
+        ab, bc and ca, as VTK, Gmsh and meshio have them."""
+        return self._triangles
 
-        Bounds that came with regions count no more. New ones for each triangle:
-        mesh(m.points, m.segments, triangles=m.triangles, triangle_areas=...)."""
-        return _make(self._figure(), wanted)
+    @property
+    def triangle_attributes(self) -> Reals:
+        """Attributes of the triangles, [m, k]: those of the regions that they lie in; k is 0 where there are none."""
+        return np.asarray(self._arrays["triangle_attributes"])
 
-    def bad(self, **wanted):
-        """How many triangles do not keep the bounds, by reason; keywords as those of mesh()."""
-        settings, calls = _settings_of(**wanted)
+    @property
+    def segments(self) -> Integers:
+        """Pieces of the segments that were given, and of the boundary, [s, 2]; with order 2 [s, 3], the middle last."""
+        return self._with_middles(self._arrays["segments"])
+
+    @property
+    def segment_markers(self) -> Integers:
+        """Markers of the segments, [s]: as given, else 1 on the boundary and 0 inside."""
+        return np.asarray(self._arrays["segment_markers"])
+
+    @property
+    def neighbors(self) -> Integers:
+        """The triangle opposite each corner of each triangle, [m, 3]; -1 where there is none."""
+        return self._neighbors
+
+    @property
+    def edges(self) -> Integers:
+        """Ends of all edges, [e, 2]. With order 2 the middle of edge i is point len(points) - len(edges) + i."""
+        return self._edges[0]
+
+    @property
+    def edge_markers(self) -> Integers:
+        """Markers of the edges, [e]: that of the segment which the edge is, else 0."""
+        return self._edges[1]
+
+    @property
+    def boundary(self) -> Integers:
+        """Edges with a triangle on one side only, [b, 2], with that on their left; with order 2 [b, 3], the middle
+        last. np.unique(m.boundary) are the points of the boundary."""
+        corners = self._arrays["triangles"]
+        triangle, k = np.nonzero(self.neighbors < 0)
+        return self._with_middles(np.column_stack([corners[triangle, (k + 1) % 3], corners[triangle, (k + 2) % 3]]))
+
+    @property
+    def order(self) -> int:
+        """1: triangles are their corners; 2: there are points amid the edges, too."""
+        return self._order
+
+    @property
+    def areas(self) -> Reals:
+        """Areas of the triangles, [m]."""
+        a, b, c = self._corners
+        return np.asarray(((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) / 2)
+
+    @property
+    def angles(self) -> Reals:
+        """Angles of the triangles at their corners in degrees, [m, 3]."""
+        a, b, c = self._corners
+        sides = [(b - a, c - a), (c - b, a - b), (a - c, b - c)]
+        return np.asarray(np.degrees([np.arctan2(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0], (u * v).sum(axis=1))
+                                      for u, v in sides]).T)
+
+    @property
+    def quality(self) -> Reals:
+        """Quality of the triangles, [m]: twice the radius of the inscribed circle over that of the circumscribed one: 1
+        for an equilateral triangle, 0 for a flat one."""
+        sines = np.sin(np.radians(self.angles) / 2)
+        return np.asarray(8 * sines.prod(axis=1))
+
+    @property
+    def counts(self) -> Dict[str, int]:
+        """What was odd about the input (duplicates, crossings, skipped_segments), and what refinement did (new_points,
+        new_points_on_segments, gated, fenced)."""
+        return dict(self._counts)
+
+    # --- what they are made of
+
+    @cached_property
+    def _nodes(self) -> Tuple[Array, Array, Array]:
+        points, attributes, markers = (self._arrays[name] for name in _NAMES[:3])
+        if self._order == 1:
+            return points, attributes, markers
+        found = _second_order.points_of(points, attributes, markers, self.edges, self.edge_markers)
+        freeze(found)
+        return found
+
+    @cached_property
+    def _triangles(self) -> Array:
+        triangles = self._arrays["triangles"]
+        if self._order == 1:
+            return triangles
+        found = _second_order.triangles_of(triangles, self.edges, len(self._arrays["points"]))
+        freeze([found])
+        return found
+
+    def _with_middles(self, ends: Array) -> Array:
+        if self._order == 1:
+            return ends
+        return _second_order.with_middles(ends, self.edges, len(self._arrays["points"]))
+
+    @property
+    def _corners(self) -> List[Array]:
+        return [self._arrays["points"][self._arrays["triangles"][:, k]] for k in range(3)]
+
+    @cached_property
+    def _neighbors(self) -> Array:
+        if len(self._arrays["triangles"]) == 0:
+            return np.empty((0, 3), np.int32)
+        found, handle = Ints(), self._library_mesh()
+        Calls("neighbors").run_checked(library.tri_mesh_neighbors, handle.mesh, byref(found))
+        return to_numpy(found, handle)
+
+    @cached_property
+    def _edges(self) -> Tuple[Array, Array]:
+        if len(self._arrays["triangles"]) == 0:
+            return np.empty((0, 2), np.int32), np.empty(0, np.int32)
+        edges, markers, handle = Ints(), Ints(), self._library_mesh()
+        Calls("edges").run_checked(library.tri_mesh_edges, handle.mesh, byref(edges), byref(markers))
+        return to_numpy(edges, handle), to_numpy(markers, handle)[:, 0]
+
+    def _library_mesh(self) -> Handle:
+        """The library's mesh; after unpickling it is built again, with the same numbers."""
+        if self._handle is None:
+            calls = Calls("Mesh")
+            figure, kept = figure_of(self._arrays, calls.who)
+            self._handle = made(figure, Settings(), calls)
+            del kept
+        return self._handle
+
+    def __getstate__(self) -> Mapping[str, Any]:
+        return {"order": self._order, "arrays": {name: np.array(rows) for name, rows in self._arrays.items()},
+                "counts": self._counts}
+
+    def __setstate__(self, state: Mapping[str, Any]) -> None:
+        self._handle = None
+        self._order, self._arrays, self._counts = state["order"], dict(state["arrays"]), state["counts"]
+        freeze(self._arrays.values())
+
+    def __copy__(self) -> "Mesh":
+        return self  # it does not change
+
+    def __deepcopy__(self, memo: Dict[int, Any]) -> "Mesh":
+        return self
+
+    # --- what can be done with it
+
+    @explained
+    def refine(self, *, min_angle: Optional[float] = None, max_area: Optional[float] = None,
+               size: Optional[Size] = None, unsuitable: Optional[Unsuitable] = None,
+               triangle_areas: Optional[npt.ArrayLike] = None, conforming: bool = False, protect: int = 0,
+               max_new_points: Optional[int] = None, gate: Optional[Callable[[float, float], Any]] = None,
+               fence: Optional[Sequence[float]] = None, order: Optional[int] = None, threads: Optional[int] = None,
+               stop: Optional[Callable[[], Any]] = None, progress: Optional[Progress] = None) -> "Mesh":
+        """A finer mesh, by the keywords of ptriangle.mesh(); this one stays as it is.
+
+        Bounds that came with regions count no more; triangle_areas, [m], are new ones for each triangle. order is that
+        of this mesh where it is not given.
+        """
+        settings, calls = settings_of("refine()", min_angle, max_area, size, unsuitable, conforming, False, protect,
+                                      max_new_points, gate, fence, threads, stop, progress)
+        figure, kept = figure_of(dict(self._arrays, triangle_areas=triangle_areas), calls.who)
+        finer = finished(made(figure, settings, calls), self._order if order is None else order, calls)
+        del kept
+        return finer
+
+    @explained
+    def bad(self, *, min_angle: Optional[float] = None, max_area: Optional[float] = None, size: Optional[Size] = None,
+            unsuitable: Optional[Unsuitable] = None, conforming: bool = False, protect: int = 0,
+            max_new_points: Optional[int] = None, gate: Optional[Callable[[float, float], Any]] = None,
+            fence: Optional[Sequence[float]] = None) -> Dict[str, int]:
+        """How many triangles do not keep the bounds, by reason; keywords as those of ptriangle.mesh().
+
+        Reasons: input_angle (a small angle of the input), narrow_gap (between segments), protected, limit (of new
+        points, or they would have run away), precision (of the coordinates), deferred (by gate or fence, or not refined
+        by these bounds yet).
+        """
+        settings, calls = settings_of("bad()", min_angle, max_area, size, unsuitable, conforming, False, protect,
+                                      max_new_points, gate, fence)
+        if len(self._arrays["triangles"]) == 0:
+            return {}
         count = (c_int64 * len(_REASONS))()
-        if library.tri_mesh_count_bad(self._handle.mesh, byref(settings), count, len(_REASONS)) < 0:
-            raise InputError("settings without meaning", 3)
-        if calls.fault is not None:
-            raise calls.fault
+        if calls.run(library.tri_mesh_count_bad, self._library_mesh().mesh, byref(settings), count, len(_REASONS)) < 0:
+            raise InputError("bad(): bounds without meaning")
         return {name: count[k] for k, name in enumerate(_REASONS) if count[k]}
 
-    def check(self, min_angle=0, max_area=None, conforming=False):
-        """A judgement by exact arithmetic, independent of the mesher."""
-        detail = VerdictDetail()
+    @explained
+    def check(self, min_angle: Optional[float] = None, max_area: Optional[float] = None,
+              conforming: bool = False) -> Verdict:
+        """A judgement by exact arithmetic, independent of the mesher: is it a mesh, and does it keep these bounds?"""
+        detail, calls = VerdictDetail(), Calls("check()")
         demands = Demands(min_angle=float(min_angle or 0), max_area=float(max_area or 0), delaunay=int(conforming))
-        figure = self._figure()
-        _run(library.tri_check_figure, None, byref(figure), None, byref(demands), byref(detail))
+        figure, kept = figure_of(self._arrays, calls.who)
+        calls.run_checked(library.tri_check_figure, byref(figure), None, byref(demands), byref(detail))
+        del kept
         return Verdict(detail)
 
-    def write(self, base, first=1):
-        """base.node, base.ele and base.poly."""
-        figure = self._figure()
-        _run(library.tri_file_write, None, os.fsencode(base), byref(figure), int(first))
+    @explained
+    def write(self, path: Any, first: int = 1) -> None:
+        """Writes the mesh in the format that the suffix says: x.vtu (VTK), x.msh (Gmsh), x.h5 (HDF5, by h5py), x.2dm
+        (SMS), x.14 or x.grd (ADCIRC); x.poly, x.ele, x.node or x without suffix: x.node, x.ele and x.poly, whose
+        numbers count from `first`, 0 or 1. Order 2 is for all of them but .h5 and .14."""
+        arrays = dict(self._arrays)
+        if self._order == 2:
+            arrays.update(zip(_NAMES[:4], (*self._nodes, self._triangles)))
+        _files.write_arrays(path, arrays, first, "write()")
 
-    def __repr__(self):
-        return "<Mesh: %d points, %d triangles>" % (len(self.points), len(self.triangles))
+    def to_meshio(self) -> Any:
+        """The mesh as a meshio.Mesh: triangles (triangle6 with order 2), then segments (line, line3), with their
+        markers as cell data `marker`, attributes as `attribute 0`, ...; z is 0."""
+        try:
+            import meshio  # type: ignore[import-untyped, unused-ignore]
+        except ImportError:
+            raise ImportError("to_meshio() needs meshio: pip install meshio") from None
+        points = np.column_stack([self.points, np.zeros(len(self.points))])
+        kinds = ("triangle", "line") if self._order == 1 else ("triangle6", "line3")
+        cells = [(kinds[0], self.triangles), (kinds[1], self.segments)]
+        cell_data: Dict[str, List[Array]] = {"marker": [np.zeros(len(self.triangles), np.int32), self.segment_markers]}
+        for k, column in enumerate(self.triangle_attributes.T):
+            cell_data["attribute %d" % k] = [column, np.zeros(len(self.segments))]
+        point_data: Dict[str, Array] = {"marker": self.point_markers}
+        for k, column in enumerate(self.point_attributes.T):
+            point_data["attribute %d" % k] = column
+        return meshio.Mesh(points, cells, point_data=point_data, cell_data=cell_data)
 
+    def plot(self, ax: Any = None, *, color: Any = "tab:blue", segment_color: Any = "black",
+             linewidth: float = 0.5) -> Any:
+        """Draws the mesh by matplotlib on `ax`, else on the current axes, which it returns. segment_color=None leaves
+        the segments out."""
+        return _picture.plot(self._arrays["points"], self._arrays["triangles"], self._arrays["segments"], ax, color,
+                             segment_color, linewidth)
 
-def _make(figure, wanted, even_odd=False):
-    settings, calls = _settings_of(**wanted)
-    settings.even_odd = even_odd
-    handle = _Handle()
-    function = library.par_mesh_new if _PARALLEL else library.tri_mesh_new
-    _run(function, calls, byref(handle.mesh), byref(figure), byref(settings))
-    _notes.tell(library.tri_mesh_notes(handle.mesh), stacklevel=3)
-    return Mesh(handle)
+    def _repr_svg_(self) -> str:
+        """The mesh in a notebook."""
+        return _picture.svg(self._arrays["points"], self.edges, self._arrays["segments"], self._words())
 
+    def _words(self) -> str:
+        order = "" if self._order == 1 else ", order %d" % self._order
+        return "%d points, %d triangles, %d segments%s" % (len(self.points), len(self.triangles),
+                                                           len(self._arrays["segments"]), order)
 
-def _with_polygons(points, segments, polygons):
-    """Points and segments with those of rings behind them."""
-    points = np.empty((0, 2)) if points is None else np.asarray(points, float).reshape(-1, 2)
-    segments = np.empty((0, 2), int) if segments is None else np.asarray(segments).reshape(-1, 2)
-    first, all_points, all_segments = len(points), [points], [segments]
-    for ring in polygons:
-        ring = np.asarray(ring, float)
-        if ring.ndim != 2 or ring.shape[1] != 2:
-            raise InputError("polygons: a ring of shape %s instead of (n, 2)" % (ring.shape,), 3)
-        if len(ring) > 1 and np.array_equal(ring[0], ring[-1]):
-            ring = ring[:-1]
-        number = np.arange(first, first + len(ring))
-        all_points.append(ring)
-        all_segments.append(np.column_stack([number, np.roll(number, -1)]))
-        first += len(ring)
-    return np.concatenate(all_points), np.concatenate(all_segments)
-
-
-def mesh(points=None, segments=None, *, polygons=None, holes=None, regions=None, point_attributes=None,
-         point_markers=None, segment_markers=None, triangles=None, triangle_attributes=None,
-         triangle_areas=None, **wanted):
-    """A triangle mesh of a planar figure; see help(ptriangle)."""
-    even_odd = polygons is not None or isinstance(holes, str)
-    if polygons is not None:
-        points, segments = _with_polygons(points, segments, polygons)
-    if points is None:
-        raise InputError("neither points nor polygons are given", 3)
-    if isinstance(holes, str):
-        if holes != "auto":
-            raise InputError('holes: %r is neither "auto" nor places' % holes, 3)
-        holes = None
-    arrays = dict(points=points, segments=segments, holes=holes, regions=regions, point_attributes=point_attributes,
-                  point_markers=point_markers, segment_markers=segment_markers, triangles=triangles,
-                  triangle_attributes=triangle_attributes, triangle_areas=triangle_areas)
-    figure, kept = _figure_of(arrays)
-    made = _make(figure, wanted, even_odd)
-    del kept  # which the library has looked at until here
-    return made
+    def __repr__(self) -> str:
+        return "<Mesh: %s>" % self._words()
 
 
-def read(path):
-    """The arrays of x.poly, x.node or x.ele (with its points, segments and area bounds), as keywords of mesh()."""
-    figure = Figure()
-    _run(library.tri_file_read, None, os.fsencode(path), byref(figure))
-    try:
-        return {name: np.array(lib.to_numpy(getattr(figure, name), None)) for name in _SHAPES
-                if getattr(figure, name).n > 0}
-    finally:
-        library.tri_file_free(byref(figure))
+def finished(handle: Handle, order: int, calls: Calls) -> Mesh:
+    """The mesh of a call that has come to its end: here is where warnings are given."""
+    if order not in (1, 2):
+        raise InputError("%s: order is %r instead of 1 or 2" % (calls.who, order))
+    tell(library.tri_mesh_notes(handle.mesh), calls.who)
+    return Mesh(handle, order)

@@ -4,23 +4,30 @@ Dictionaries have the same keys, types and shapes; meshes are ptriangle's own, r
 purpose: what ends the interpreter there is an exception here; input without meaning (NaN, numbers of points that do not
 exist) is refused or skipped; the switch u needs the argument `unsuitable`.
 """
+from __future__ import annotations
+
 import os
-from ctypes import POINTER, byref, c_double, c_int, cast, string_at
+from ctypes import byref, c_void_p, string_at
+from typing import Any, Callable, Dict, List, Mapping, Optional, Set, Tuple, Union
 
 import numpy as np
 
 from . import _library as lib
-from . import _notes
+from ._calls import Calls
 from ._compat_files import load, loads
 from ._compat_plot import compare, comparev, plot
-from ._library import Ints, Reals, TriangulateIO, TriangulateOptions, library
+from ._errors import InputError, exception_of
+from ._library import TriangulateIO, TriangulateOptions, library
+from ._notes import tell
 
 __version__ = "20250106"  # of the package whose functions these are
 __all__ = ["compare", "comparev", "convex_hull", "delaunay", "get_data", "load", "loads", "plot", "show_data",
            "triangulate", "voronoi"]
 
 # key: (type, list of the struct, count of the struct, columns: a number or the count that tells)
-_FIELDS = {
+Arrays = Dict[str, Any]
+_Fields = Dict[str, Tuple[Any, str, str, Union[int, str]]]
+_FIELDS: _Fields = {
     "vertices": (np.float64, "pointlist", "numberofpoints", 2),
     "vertex_attributes": (np.float64, "pointattributelist", "numberofpoints", "numberofpointattributes"),
     "vertex_markers": (np.int32, "pointmarkerlist", "numberofpoints", 1),
@@ -35,14 +42,14 @@ _FIELDS = {
     "edges": (np.int32, "edgelist", "numberofedges", 2),
     "edge_markers": (np.int32, "edgemarkerlist", "numberofedges", 1),
 }
-_VORONOI = {
+_VORONOI: _Fields = {
     "edges": (np.int32, "edgelist", "numberofedges", 2),
     "directions": (np.float64, "normlist", "numberofedges", 2),
     "vertices": _FIELDS["vertices"],
 }
 
 
-def _fill(io, key, given):
+def _fill(io: TriangulateIO, key: str, given: Any) -> Any:
     """Sets the fields of one key; the array that must live as long, or None."""
     dtype, list_name, count_name, width = _FIELDS[key]
     rows = np.asarray(given, dtype)
@@ -51,10 +58,10 @@ def _fill(io, key, given):
     if rows.ndim == 1:
         rows = rows.reshape(-1, 1)
     if rows.ndim != 2 or (isinstance(width, int) and rows.shape[1] != width):
-        raise lib.InputError("%s: shape %s is not (n, %s)" % (key, np.shape(given), width), 3)
+        raise InputError("%s: shape %s is not (n, %s)" % (key, np.shape(given), width))
     there = getattr(io, count_name)
     if there not in (0, len(rows)):
-        raise lib.InputError("%s: %d rows instead of %d" % (key, len(rows), there), 3)
+        raise InputError("%s: %d rows instead of %d" % (key, len(rows), there))
     rows = np.ascontiguousarray(rows)
     setattr(io, count_name, len(rows))
     if isinstance(width, str):
@@ -63,7 +70,7 @@ def _fill(io, key, given):
     return rows
 
 
-def _taken(io, fields):
+def _taken(io: TriangulateIO, fields: _Fields) -> Arrays:
     """The arrays of a struct, copied; the ones that are empty are left out."""
     taken = {}
     for key, (dtype, list_name, count_name, width) in fields.items():
@@ -75,65 +82,67 @@ def _taken(io, fields):
     return taken
 
 
-def _release(io, borrowed):
+def _release(io: TriangulateIO, borrowed: Set[Any]) -> None:
     """Frees what the library has allocated."""
-    for name, kind in io._fields_:
+    for name, kind, *_ in io._fields_:
         address = getattr(io, name)
-        if kind is lib.c_void_p and address and address not in borrowed:
+        if kind is c_void_p and address and address not in borrowed:
             library.trifree(address)
 
 
-def _options_of(unsuitable, faults, words, notes):
+def _options_of(unsuitable: Optional[Callable[..., Any]], calls: Calls, words: List[str],
+                notes: List[bytes]) -> TriangulateOptions:
     options = TriangulateOptions()
 
-    def tell(_user, is_error, text):
+    def hear(_user: Any, is_error: int, text: bytes) -> None:
         if is_error:
             words.append(text.decode("utf-8", "replace"))
         else:  # why the mesh is empty
             notes.append(text)
 
-    def ask(_user, a, b, c, area):
-        try:
-            return int(not faults and bool(unsuitable((a[0], a[1]), (b[0], b[1]), (c[0], c[1]), area)))
-        except BaseException as fault:
-            faults.append(fault)
-            return 0
+    def ask(_user: Any, a: Any, b: Any, c: Any, area: float) -> int:
+        assert unsuitable is not None
+        return int(bool(unsuitable((a[0], a[1]), (b[0], b[1]), (c[0], c[1]), area)))
 
-    options.message = lib.Message(tell)
+    options.message = lib.Message(hear)
     if unsuitable is not None:
-        options.unsuitable = lib.SizeTest(ask)
-    options.stop = lib.StopTest(lambda _user: int(bool(faults)))
+        options.unsuitable = lib.SizeTest(calls.guarded(ask, 0))
+    options.stop = lib.StopTest(lambda _user: int(calls.fault is not None))
     return options
 
 
-def _call(tri, opts, unsuitable=None, with_voronoi=False):
-    data, out, vorout, kept, faults = TriangulateIO(), TriangulateIO(), TriangulateIO(), [], []
-    words, notes = [], []
+def _call(tri: Mapping[str, Any], opts: Union[str, bytes],
+          unsuitable: Optional[Callable[..., Any]] = None) -> Tuple[Arrays, Arrays]:
+    """The mesh and, with the switch v, its Voronoi diagram."""
+    data, out, vorout, kept = TriangulateIO(), TriangulateIO(), TriangulateIO(), []
+    words: List[str] = []
+    notes: List[bytes] = []
     if np.asarray(tri.get("vertices", ())).size < 6:
-        raise lib.InputError("Input must have at least three vertices.", 3)
+        raise InputError("Input must have at least three vertices.")
     for key, given in tri.items():
         if key not in _FIELDS:
             raise KeyError(key)
         if key not in ("edges", "edge_markers", "neighbors"):
             kept.append(_fill(data, key, given))
     opts = opts.encode() if isinstance(opts, str) else bytes(opts)
-    options = _options_of(unsuitable, faults, words, notes)
-    status = library.triangulate_with(b"zQ" + opts, byref(data), byref(out), byref(vorout), byref(options))
+    calls = Calls("triangulate()")
+    options = _options_of(unsuitable, calls, words, notes)
     borrowed = {data.holelist, data.regionlist}  # which `out` names as well
     try:
-        if faults:
-            raise faults[0]
+        status = calls.run(library.triangulate_with, b"zQ" + opts, byref(data), byref(out), byref(vorout),
+                           byref(options))
         if status:
-            raise lib.exception_of(status, words[-1] if words else "error %d" % status)
-        _notes.tell(b"\n".join(notes), stacklevel=3)
+            raise exception_of(status, words[-1] if words else "error %d" % status)
+        tell(b"\n".join(notes), calls.who)
         mesh = _taken(out, _FIELDS)
-        return (mesh, _taken(vorout, _VORONOI)) if with_voronoi else mesh
+        return mesh, _taken(vorout, _VORONOI)
     finally:
         _release(out, borrowed)
         _release(vorout, borrowed)
 
 
-def triangulate(tri, opts="", unsuitable=None):
+def triangulate(tri: Mapping[str, Any], opts: Union[str, bytes] = "",
+                unsuitable: Optional[Callable[..., Any]] = None) -> Arrays:
     """Triangulates a dictionary of arrays by Triangle's switches; z and Q are always set.
 
     Keys of `tri`: vertices [n, 2]; optional vertex_attributes, vertex_markers, segments [s, 2], segment_markers,
@@ -143,34 +152,34 @@ def triangulate(tri, opts="", unsuitable=None):
 
     unsuitable(a, b, c, area), for the switch u: must this triangle be refined?
     """
-    return _call(tri, opts, unsuitable)
+    return _call(tri, opts, unsuitable)[0]
 
 
-def delaunay(pts):
+def delaunay(pts: Any) -> Any:
     """Triangles [m, 3] of the Delaunay triangulation of points."""
     return triangulate({"vertices": pts})["triangles"]
 
 
-def convex_hull(pts):
+def convex_hull(pts: Any) -> Any:
     """Segments [h, 2] of the convex hull of points, clockwise order of their own."""
     return triangulate({"vertices": pts}, "c")["segments"]
 
 
-def voronoi(pts):
+def voronoi(pts: Any) -> Tuple[Any, Any, Any, Any]:
     """Vertices [m, 2], edges [e, 2], numbers of the vertices at which rays begin [r], their directions [r, 2]."""
-    _, diagram = _call({"vertices": pts}, "v", with_voronoi=True)
+    _, diagram = _call({"vertices": pts}, "v")
     ends = diagram.get("edges", np.empty((0, 2), np.int32))
     is_ray = ends[:, 1] == -1
     directions = diagram.get("directions", np.empty((0, 2)))
     return diagram.get("vertices", np.empty((0, 2))), ends[~is_ray], ends[is_ray, 0], directions[is_ray]
 
 
-def get_data(name):
+def get_data(name: str) -> Arrays:
     """An example: its arrays, by the name of its files; {} where there is none of that name."""
     return load(os.path.join(os.path.dirname(os.path.abspath(__file__)), "data"), name)
 
 
-def show_data(name):
+def show_data(name: str) -> None:
     """Draws an example, and waits until the window is closed."""
     import matplotlib.pyplot as plt
     plot(plt.axes(), **get_data(name))

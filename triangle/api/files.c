@@ -115,6 +115,7 @@ struct writing {
     const struct tri_api_figure *figure;
     const char *name;
     int first;
+    struct tri_ints middles; /* [triangles][3] of the edges opposite each corner; n is 0 where they have none */
     struct tri_output_set *set;
     struct tri_error *error;
 };
@@ -129,45 +130,56 @@ static enum tri_status open_file(const struct writing *w, const char *ending, st
 }
 
 /* The grid of a figure. */
+static const struct tri_pslg *pslg_of(const void *user) { return &((const struct writing *)user)->figure->pslg; }
+
+static const struct tri_elements *elements_of(const void *user)
+{
+    return &((const struct writing *)user)->figure->elements;
+}
+
 static void point(const void *user, int64_t i, struct tri_grid_point *point)
 {
-    const struct tri_pslg *pslg = &((const struct tri_api_figure *)user)->pslg;
+    const struct tri_pslg *pslg = pslg_of(user);
     *point = (struct tri_grid_point){{pslg->points[2 * i], pslg->points[2 * i + 1]},
                                      pslg->markers ? pslg->markers[i] : 0};
 }
 
 static double attribute(const void *user, int64_t i, int32_t k)
 {
-    const struct tri_pslg *pslg = &((const struct tri_api_figure *)user)->pslg;
+    const struct tri_pslg *pslg = pslg_of(user);
     return pslg->attributes[i * pslg->n_attributes + k];
 }
 
 static void triangle(const void *user, int64_t i, int64_t nodes[6])
 {
-    const struct tri_elements *elements = &((const struct tri_api_figure *)user)->elements;
+    const struct tri_ints *middles = &((const struct writing *)user)->middles;
+    const struct tri_elements *elements = elements_of(user);
     for (int k = 0; k < 3; k++)
         nodes[k] = elements->corners[3 * i + k];
+    for (int k = 0; k < 3 && middles->n > 0; k++)
+        nodes[3 + k] = middles->at[i * middles->stride + k];
 }
 
 static double column(const void *user, int64_t i, int32_t k)
 {
-    const struct tri_elements *elements = &((const struct tri_api_figure *)user)->elements;
+    const struct tri_elements *elements = elements_of(user);
     return elements->attributes[i * elements->n_attributes + k];
 }
 
 static void segment(const void *user, int64_t i, struct tri_grid_edge *segment)
 {
-    const struct tri_pslg *pslg = &((const struct tri_api_figure *)user)->pslg;
+    const struct tri_pslg *pslg = pslg_of(user);
     *segment = (struct tri_grid_edge){{pslg->segments[2 * i], pslg->segments[2 * i + 1]},
                                       pslg->segment_markers ? pslg->segment_markers[i] : 0, {0}};
 }
 
-static struct tri_grid grid_of(const struct tri_api_figure *figure, int first)
+static struct tri_grid grid_of(const struct writing *w, int first)
 {
-    const struct tri_pslg *pslg = &figure->pslg;
-    const struct tri_elements *elements = &figure->elements;
-    return (struct tri_grid){.user = figure, .base = first, .n_points = pslg->n_points,
-                             .n_attributes = pslg->n_attributes, .n_triangles = elements->n, .n_nodes = 3,
+    const struct tri_pslg *pslg = &w->figure->pslg;
+    const struct tri_elements *elements = &w->figure->elements;
+    return (struct tri_grid){.user = w, .base = first, .n_points = pslg->n_points,
+                             .n_attributes = pslg->n_attributes, .n_triangles = elements->n,
+                             .n_nodes = w->middles.n > 0 ? 6 : 3,
                              .n_columns = elements->n_attributes, .n_segments = pslg->n_segments, .figure = pslg,
                              .point = point, .attribute = attribute, .triangle = triangle, .column = column,
                              .segment = segment};
@@ -175,7 +187,7 @@ static struct tri_grid grid_of(const struct tri_api_figure *figure, int first)
 
 static enum tri_status write_own(const struct writing *w)
 {
-    struct tri_grid grid = grid_of(w->figure, w->first);
+    struct tri_grid grid = grid_of(w, w->first);
     struct tri_output *output;
     enum tri_status status = open_file(w, ".node", &output);
     grid.has_markers = w->figure->pslg.markers != NULL;
@@ -192,23 +204,30 @@ static enum tri_status write_own(const struct writing *w)
     return status;
 }
 
-static enum tri_status check_numbers(const struct writing *w, const char *what, const int32_t *at, int64_t n, int width)
+static enum tri_status check_numbers(const struct writing *w, const char *what, struct tri_ints rows)
 {
     const int32_t n_points = w->figure->pslg.n_points;
-    for (int64_t i = 0; i < n * width; i++)
-        if (at[i] < 0 || at[i] >= n_points)
-            return tri_fail(w->error, TRI_BAD_INPUT, w->name, 0, "%s %lld names point %ld of %ld: numbers count from 0",
-                            what, (long long)(i / width), (long)at[i], (long)n_points);
+    for (int64_t i = 0; i < rows.n; i++)
+        for (int64_t k = 0; k < rows.width; k++) {
+            int32_t v = rows.at[i * rows.stride + k];
+            if (v < 0 || v >= n_points)
+                return tri_fail(w->error, TRI_BAD_INPUT, w->name, 0,
+                                "%s %lld names point %ld of %ld: numbers count from 0", what, (long long)i, (long)v,
+                                (long)n_points);
+        }
     return TRI_OK;
 }
 
 static enum tri_status write_export(const struct writing *w, const struct tri_format *format)
 {
     const struct tri_api_figure *f = w->figure;
-    struct tri_grid grid = grid_of(f, 0);
+    struct tri_grid grid = grid_of(w, 0);
     struct tri_output *output;
-    enum tri_status status = check_numbers(w, "triangle", f->elements.corners, f->elements.n, 3);
-    status = status ? status : check_numbers(w, "segment", f->pslg.segments, f->pslg.n_segments, 2);
+    enum tri_status status = check_numbers(w, "triangle", tri_ints_of(f->elements.corners, f->elements.n, 3));
+    if (w->middles.n > 0 && !format->second_order)
+        return tri_fail(w->error, TRI_BAD_INPUT, w->name, 0, "%s files hold no second-order triangles", format->suffix);
+    status = status ? status : check_numbers(w, "triangle", w->middles);
+    status = status ? status : check_numbers(w, "segment", tri_ints_of(f->pslg.segments, f->pslg.n_segments, 2));
     status = status ? status : tri_output_open(w->set, w->name, &output, w->error);
     grid.has_markers = f->pslg.markers || f->pslg.segment_markers;
     return status ? status : format->write(output, &grid, NULL, w->error);
@@ -234,17 +253,35 @@ static enum tri_status write_all(const struct writing *w)
     return status;
 }
 
+/* Second-order triangles become corners and *middles. */
+static enum tri_status part_nodes(struct tri_figure *own, const struct tri_figure *figure, struct tri_ints *middles,
+                                  struct tri_error *error)
+{
+    enum tri_status status = tri_api_struct_take(own, sizeof *own, figure, "tri_figure", error);
+    *middles = (struct tri_ints){0};
+    if (status || own->triangles.width != 6 || own->triangles.n <= 0 || !own->triangles.at)
+        return status;
+    *middles = (struct tri_ints){own->triangles.at + 3, own->triangles.n, 3, own->triangles.stride};
+    own->triangles.width = 3;
+    return TRI_OK;
+}
+
 enum tri_status tri_file_write(const char *name, const struct tri_figure *figure, int first, struct tri_error *error)
 {
     struct tri_api_figure taken;
+    struct tri_figure own;
+    struct tri_ints middles;
     struct tri_output_set set;
     if (first != 0 && first != 1)
         return tri_fail(error, TRI_BAD_INPUT, NULL, 0, "files count from 0 or from 1, not from %d", first);
     enum tri_status status = check_name(name, error);
     if (status)
         return status;
-    status = tri_api_figure_take(&taken, figure, error);
-    const struct writing writing = {&taken, name, first, &set, error};
+    status = part_nodes(&own, figure, &middles, error);
+    if (status)
+        return status;
+    status = tri_api_figure_take(&taken, &own, error);
+    const struct writing writing = {&taken, name, first, middles, &set, error};
     status = status ? status : write_all(&writing);
     tri_api_figure_free(&taken);
     return status;

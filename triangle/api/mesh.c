@@ -12,6 +12,7 @@
 
 #include "triangle/api/figure.h"
 #include "triangle/census.h"
+#include "triangle/estimate.h"
 
 /* --- settings */
 
@@ -189,6 +190,35 @@ static void note_sizes(struct tri_api_mesh *m, const struct tri_api_figure *figu
     }
 }
 
+/* How far refinement is, for settings.progress. */
+struct following {
+    const struct tri_settings *settings;
+    double first, estimate, done; /* triangles at first and at last; the share that was told */
+};
+
+static void tell(void *user, int64_t triangles)
+{
+    struct following *f = user;
+    const double most = 0.99; /* the end is told when it has come */
+    double done = f->estimate > f->first ? ((double)triangles - f->first) / (f->estimate - f->first) : 0;
+    f->done = done > most ? most : done > f->done ? done : f->done;
+    f->settings->progress(f->settings->progress_user, f->done, triangles);
+}
+
+static enum tri_status refine_told(const struct tri_api_way *way, struct tri_mesh *mesh,
+                                   struct tri_refine_options *how, const struct tri_settings *s,
+                                   struct tri_refine_report *report, struct tri_error *error)
+{
+    double sure;
+    struct following f = {s, (double)mesh->n_triangles, tri_estimate(mesh, how, way->executor, &sure), 0};
+    how->told = tell;
+    how->told_user = &f;
+    enum tri_status status = way->refine(way, mesh, how, s, report, error);
+    if (!status)
+        s->progress(s->progress_user, 1, mesh->n_triangles);
+    return status;
+}
+
 /* Whose refinement, for tri_generate. */
 struct refiner {
     struct tri_api_mesh *m;
@@ -209,13 +239,14 @@ static enum tri_status refine(void *user, struct tri_mesh *mesh, const struct tr
     const struct tri_settings *s = refiner->settings;
     struct tri_fence fence;
     struct sizes sizes = {.settings = s, .is_odd = ATOMIC_FLAG_INIT};
-    const struct tri_refine_options how = quality_of(refiner->m, &sizes, &fence);
+    struct tri_refine_options how = quality_of(refiner->m, &sizes, &fence);
     (void)options;
     *report = (struct tri_refine_report){0};
     refiner->m->odd_length[0] = 0;
     if (!has_bounds(refiner->m, s) && !refiner->way->figure)
         return TRI_OK;
-    enum tri_status status = refiner->way->refine(refiner->way, mesh, &how, s, report, error);
+    enum tri_status status = s->progress ? refine_told(refiner->way, mesh, &how, s, report, error)
+                                         : refiner->way->refine(refiner->way, mesh, &how, s, report, error);
     if (atomic_flag_test_and_set(&sizes.is_odd))
         tell_odd(refiner->m, &sizes);
     return status;

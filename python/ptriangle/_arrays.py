@@ -1,0 +1,75 @@
+"""Arrays of the library as numpy sees them, and the other way round."""
+from __future__ import annotations
+
+from typing import Any, Iterable, Optional, Tuple, Type, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from ._errors import InputError
+from ._library import Ints, Reals
+
+Array = npt.NDArray[Any]
+
+
+class _View:
+    """What numpy needs to see an array of the library, and who owns that."""
+
+    def __init__(self, array: Union[Reals, Ints], owner: object) -> None:
+        size = array.dtype.itemsize
+        self.owner = owner
+        self.__array_interface__ = {
+            "version": 3, "typestr": array.dtype.str, "data": (array.at, True),
+            "shape": (array.n, array.width), "strides": (array.stride * size, size)}
+
+
+def to_numpy(array: Union[Reals, Ints], owner: object) -> Array:
+    """[n][width], without a copy, read-only: it belongs to the owner, who lives as long as it does."""
+    if array.n == 0:
+        return np.empty((0, array.width), array.dtype)
+    return np.asarray(_View(array, owner))
+
+
+def freeze(arrays: Iterable[Array]) -> None:
+    """They are read-only from now on."""
+    for rows in arrays:
+        rows.flags.writeable = False
+
+
+def _refuse_other_ints(rows: Array, name: str) -> None:
+    if rows.dtype.kind not in "iub":
+        raise InputError("%s: %s instead of integers" % (name, rows.dtype))
+    if rows.max() > np.iinfo(np.int32).max or rows.min() < np.iinfo(np.int32).min:
+        raise InputError("%s: beyond the range of 32 bits" % name)
+
+
+def numbers(given: Any, name: str) -> Array:
+    """An array of numbers of whatever is given."""
+    try:
+        rows = np.asarray(given)
+        return rows if rows.dtype.kind in "fiub" else rows.astype(np.float64)
+    except (TypeError, ValueError) as fault:
+        raise InputError("%s: no array of numbers (%s)" % (name, fault)) from None
+
+
+def from_numpy(kind: Union[Type[Reals], Type[Ints]], given: Any, name: str,
+               width: Optional[int] = None) -> Tuple[Union[Reals, Ints], Optional[Array]]:
+    """(array of the library, numpy array that must live as long). Rows of equal steps are passed without a copy."""
+    if given is None:
+        return kind(), None
+    rows = numbers(given, name)
+    if rows.size == 0:
+        return kind(), None
+    if kind is Ints and rows.dtype != kind.dtype:
+        _refuse_other_ints(rows, name)
+    rows = rows.astype(kind.dtype, copy=False)
+    if rows.ndim == 1 and width in (None, 1):
+        rows = rows.reshape(-1, 1)
+    if rows.ndim != 2 or (width is not None and rows.shape[1] != width):
+        raise InputError("%s: shape %s instead of (n, %s)" % (name, rows.shape, "any" if width is None else width))
+    item = rows.dtype.itemsize
+    plain = rows.strides[1] == item and rows.strides[0] % item == 0 and rows.strides[0] >= rows.shape[1] * item
+    if not plain or not rows.flags.aligned:
+        rows = np.ascontiguousarray(rows)
+    stride = rows.strides[0] // item if rows.shape[0] > 1 else rows.shape[1]
+    return kind(rows.ctypes.data, rows.shape[0], rows.shape[1], max(stride, rows.shape[1])), rows

@@ -1,0 +1,110 @@
+"""Calls of the library, and what may come in between: functions of the caller's, signals, exceptions in both.
+
+INVARIANT: no exception leaves a function that C code has called; ctypes would drop it. What is raised in a function of
+the caller's, or in a handler of a signal (KeyboardInterrupt!), is kept, ends the work, and is raised when it has ended.
+"""
+from __future__ import annotations
+
+import signal
+import threading
+from ctypes import byref
+from typing import Any, Callable, Dict, Optional, TypeVar
+
+from ._errors import exception_of
+from ._library import ErrorDetail, Stop
+
+R = TypeVar("R")
+
+
+class Calls:
+    """What one call of the library calls back. who: the function as the caller knows it, for messages."""
+
+    def __init__(self, who: str) -> None:
+        self.who = who
+        self.fault: Optional[BaseException] = None  # the first one
+        self._thread = threading.get_ident()
+        self._inside = False    # this thread is in a function of the caller's, where an exception is caught
+        self._running = False
+
+    def keep(self, fault: BaseException) -> None:
+        if self.fault is None:
+            self.fault = fault
+
+    def guarded(self, function: Callable[..., R], otherwise: R) -> Callable[..., R]:
+        """The function for C code. After a fault it is not called any more; `otherwise` is what it returns then."""
+        def call(*arguments: Any) -> R:
+            if self.fault is not None:
+                return otherwise
+            try:
+                try:
+                    self._inside = threading.get_ident() == self._thread
+                    return function(*arguments)
+                finally:
+                    self._inside = False
+            except BaseException as fault:
+                self._inside = False
+                self.keep(fault)
+                return otherwise
+        return call
+
+    def stop(self, function: Optional[Callable[[], Any]]) -> Any:
+        """Asks the caller's function, if there is one, whether to stop; and does so after a fault."""
+        if function is None:
+            return Stop(lambda _user: self.fault is not None)
+        asked = self.guarded(lambda: bool(function()), True)
+        return Stop(lambda _user: asked() or self.fault is not None)
+
+    # --- signals
+
+    def _instead(self, handler: Callable[[int, Any], Any]) -> Callable[[int, Any], Any]:
+        """A handler may run at any instruction, also the first of a function that C code calls, before any `try`. So
+        what it raises is kept, unless it is in a function of the caller's, which might go on for ever: that ends."""
+        def handle(number: int, frame: Any) -> None:
+            try:
+                handler(number, frame)
+            except BaseException as fault:
+                if not self._running:
+                    raise
+                if self._inside and self.fault is None:
+                    self._inside = False  # once
+                    raise
+                self.keep(fault)
+        return handle
+
+    def run(self, function: Callable[..., R], *arguments: Any) -> R:
+        """Calls the library, which needs no lock of the interpreter meanwhile."""
+        handlers = _handlers()
+        try:
+            self._running = True
+            for number, handler in handlers.items():
+                signal.signal(number, self._instead(handler))
+            returned = function(*arguments)
+        finally:
+            self._running = False  # a handler of ours that a signal leaves in place does what the one before it does
+            for number, handler in handlers.items():
+                signal.signal(number, handler)
+        if self.fault is not None:
+            raise self.fault
+        return returned
+
+    def run_checked(self, function: Callable[..., int], *arguments: Any) -> None:
+        """The same, for functions that return a status and take a tri_error as their last argument."""
+        error = ErrorDetail()
+        status = self.run(function, *arguments, byref(error))
+        if status:
+            raise exception_of(status, self._text(error))
+
+    def _text(self, error: ErrorDetail) -> str:
+        text: str = error.text.decode("utf-8", "replace")
+        if error.file:
+            where = error.file.decode("utf-8", "replace") + (":%d" % error.line if error.line else "")
+            return "%s: %s" % (where, text)
+        return "%s: %s" % (self.who, text[len("settings: "):] if text.startswith("settings: ") else text)
+
+
+def _handlers() -> Dict[int, Callable[[int, Any], Any]]:
+    """Handlers that are written in Python; none outside of the main thread, which alone runs them."""
+    if threading.current_thread() is not threading.main_thread():
+        return {}
+    found = {number: signal.getsignal(number) for number in signal.valid_signals()}
+    return {number: handler for number, handler in found.items() if callable(handler)}

@@ -1,0 +1,45 @@
+"""Exceptions, which say what the library says."""
+from __future__ import annotations
+
+from typing import Type
+
+
+class Error(Exception):
+    """A call of the library failed; the text is the library's. status: enum tri_status."""
+
+    def __init__(self, text: str, status: int = 0) -> None:
+        super().__init__(text, status)
+        self.status = status
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+class InputError(Error, ValueError):
+    """What was given has no meaning; the text says what and where."""
+
+    def __init__(self, text: str, status: int = 3) -> None:
+        super().__init__(text, status)
+
+
+class TooLargeError(Error, MemoryError):
+    """More memory than there is, or more triangles than one mesh holds."""
+
+
+class FileError(Error, OSError):
+    """A file cannot be read or written."""
+
+    def __init__(self, text: str, status: int = 4) -> None:
+        super().__init__(text, status)
+
+
+class StoppedError(Error):
+    """The function given as `stop` asked for it."""
+
+
+_KINDS = {1: TooLargeError, 2: TooLargeError, 3: InputError, 4: FileError, 5: FileError, 8: StoppedError}
+
+
+def exception_of(status: int, text: str) -> Error:
+    kind: Type[Error] = _KINDS.get(status, Error)
+    return kind(text, status)

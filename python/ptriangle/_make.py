@@ -1,0 +1,137 @@
+"""mesh() and read(): where everything begins."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence, Tuple
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _files, _rings, _union
+from ._arrays import Array, numbers
+from ._calls import Calls
+from ._errors import InputError
+from ._figure import figure_of
+from ._library import Settings
+from ._mesh import Mesh, finished, made
+from ._settings import Progress, Size, Unsuitable, settings_of
+from ._signature import explained
+
+if TYPE_CHECKING:
+    from typing import TypedDict
+
+    class Arrays(TypedDict, total=False):
+        """What a file holds, by the keywords of mesh()."""
+
+        points: npt.NDArray[np.float64]
+        point_attributes: npt.NDArray[np.float64]
+        point_markers: npt.NDArray[np.int32]
+        segments: npt.NDArray[np.int32]
+        segment_markers: npt.NDArray[np.int32]
+        holes: npt.NDArray[np.float64]
+        regions: npt.NDArray[np.float64]
+        triangles: npt.NDArray[np.int32]
+        triangle_attributes: npt.NDArray[np.float64]
+        triangle_areas: npt.NDArray[np.float64]
+else:
+    Arrays = dict
+
+
+def _outline(polygons: Any, calls: Calls) -> Tuple[Array, Array]:
+    """Points and segments of the polygons' union."""
+    points, segments = _rings.segments_of(polygons, 0)
+    if len(points) < 3:
+        return points, segments
+    figure, kept = figure_of({"points": points, "segments": segments}, calls.who)
+    all_of_it = Mesh(made(figure, Settings(keep_hull=True), calls))
+    del kept
+    corners, neighbors = all_of_it.triangles, all_of_it.neighbors
+    sides = np.stack([corners[:, [1, 2]], corners[:, [2, 0]], corners[:, [0, 1]]], axis=1)
+    walls = _union.is_among(sides.reshape(-1, 2), all_of_it.segments).reshape(-1, 3)
+    return _union.outline_of(all_of_it.points, corners, neighbors, walls, polygons)
+
+
+def _with_polygons(points: Any, segments: Any, polygons: Any, union: bool, who: str) -> Tuple[Array, Array]:
+    """Points and segments with those of polygons behind them."""
+    points = np.empty((0, 2)) if points is None else numbers(points, who + ": points").reshape(-1, 2)
+    segments = np.empty((0, 2), int) if segments is None else numbers(segments, who + ": segments").reshape(-1, 2)
+    found = _rings.polygons_of(polygons, who + ": polygons")
+    behind = _outline(found, Calls(who)) if union else _rings.segments_of(found, 0)
+    return np.concatenate([points, behind[0]]), np.concatenate([segments, behind[1] + len(points)])
+
+
+@explained
+def mesh(points: Optional[npt.ArrayLike] = None, segments: Optional[npt.ArrayLike] = None, *, polygons: Any = None,
+         union: bool = False, holes: Any = None, regions: Optional[npt.ArrayLike] = None,
+         point_attributes: Optional[npt.ArrayLike] = None, point_markers: Optional[npt.ArrayLike] = None,
+         segment_markers: Optional[npt.ArrayLike] = None, triangles: Optional[npt.ArrayLike] = None,
+         triangle_attributes: Optional[npt.ArrayLike] = None, triangle_areas: Optional[npt.ArrayLike] = None,
+         min_angle: Optional[float] = None, max_area: Optional[float] = None, size: Optional[Size] = None,
+         unsuitable: Optional[Unsuitable] = None, conforming: bool = False, keep_hull: bool = False, protect: int = 0,
+         max_new_points: Optional[int] = None, gate: Optional[Callable[[float, float], Any]] = None,
+         fence: Optional[Sequence[float]] = None, order: int = 1, threads: Optional[int] = None,
+         stop: Optional[Callable[[], Any]] = None, progress: Optional[Progress] = None) -> Mesh:
+    """A triangle mesh of a plane figure.
+
+    What is given, anything that numpy makes an array of (arrays of the right type are not copied):
+
+    points [n, 2]; segments [s, 2]: point numbers from 0. Without segments the convex hull is meshed.
+    polygons: a list of rings [k, 2], closed or not, of lists of rings (an outline and its holes) or of shapely's
+        polygons; a GeoSeries of geopandas, or GeoJSON. What lies in an odd number of rings is meshed; z is dropped.
+    union: polygons may overlap; what lies in any of them is meshed, and borders inside vanish.
+    holes [h, 2]: places; or "auto": the segments are rings as above.
+    regions [r, 4]: x, y, attribute, largest area (<= 0: any).
+    point_attributes [n, k], point_markers [n], segment_markers [s].
+    triangles [m, 3]: a mesh that is there, to be kept and refined; triangle_attributes [m, k], triangle_areas [m].
+
+    What is wanted; without bounds it is the constrained Delaunay triangulation:
+
+    min_angle: degrees, up to 34; above best effort.
+    max_area: of a triangle.
+    size: bounds triangles by the area of an equilateral one with edges of this length: a number, or a function of x and
+        y, asked at corners and centroids (inf: any); or a SizeFunction, of compiled code, which all threads call.
+    unsuitable: function of a, b, c and area: must this triangle be refined?
+    conforming: every triangle is Delaunay, no point lies in the circle over a segment.
+    keep_hull: the convex hull is meshed, whatever the segments enclose.
+    protect: 1: no points on the boundary; 2: nor on any segment.
+    max_new_points: then refinement ends.
+    gate: function of x and y: may a point be put here now? fence: x_min, y_min, x_max, y_max: changes stay within.
+    order: 2: points amid the edges, too.
+    threads: else OMP_NUM_THREADS, else one for each core. The mesh does not depend on it.
+    stop: function that is asked often, by any thread: True ends the work with StoppedError.
+    progress: True: a line on standard error; or a function of the share that is done, 0 to 1, and of the number of
+        triangles so far.
+
+    Functions are called under the interpreter's lock, `stop` by any thread, the others by the calling one; an exception
+    in one ends the work, and so does Ctrl-C.
+    """
+    who = "mesh()"
+    settings, calls = settings_of(who, min_angle, max_area, size, unsuitable, conforming, keep_hull, protect,
+                                  max_new_points, gate, fence, threads, stop, progress)
+    settings.even_odd = polygons is not None or isinstance(holes, str)
+    if union and polygons is None:
+        raise InputError("%s: union=True without polygons" % who)
+    if polygons is not None:
+        points, segments = _with_polygons(points, segments, polygons, union, who)
+    if points is None:
+        raise InputError("%s: neither points nor polygons are given" % who)
+    if isinstance(holes, str):
+        if holes != "auto":
+            raise InputError('%s: holes: %r is neither "auto" nor places' % (who, holes))
+        holes = None
+    figure, kept = figure_of(dict(
+        points=points, segments=segments, holes=holes, regions=regions, point_attributes=point_attributes,
+        point_markers=point_markers, segment_markers=segment_markers, triangles=triangles,
+        triangle_attributes=triangle_attributes, triangle_areas=triangle_areas), who)
+    found = finished(made(figure, settings, calls), order, calls)
+    del kept  # which the library has looked at until here
+    return found
+
+
+@explained
+def read(path: Any) -> "Arrays":
+    """The arrays of a file, as keywords of mesh(): mesh(**read("plate.poly"), min_angle=30).
+
+    Figures: x.poly, x.node. Meshes, which mesh() keeps, and refines where it is asked for more: x.ele (with its points,
+    segments and area bounds), x.vtu, x.msh, x.2dm, x.14, x.grd, x.h5 (by h5py).
+    """
+    return _files.read_arrays(path, "read()")  # type: ignore[return-value]

@@ -1,0 +1,72 @@
+"""Polygons in the forms that people have them in: rings, lists of rings, shapely's, geopandas' series, GeoJSON."""
+from __future__ import annotations
+
+from typing import Any, Iterable, Iterator, List, Mapping, Tuple
+
+import numpy as np
+
+from ._arrays import Array, numbers
+from ._errors import InputError
+
+Polygon = List[Array]  # rings [k, 2] without a last point that is the first; inside is what lies in an odd number
+
+
+def _ring(given: Any, name: str) -> Array:
+    ring = numbers(given, name).astype(np.float64, copy=False)
+    if ring.ndim != 2 or ring.shape[1] not in (2, 3, 4):
+        raise InputError("%s: a ring of shape %s instead of (n, 2)" % (name, ring.shape))
+    ring = ring[:, :2]  # z goes
+    return ring[:-1] if len(ring) > 1 and np.array_equal(ring[0], ring[-1]) else ring
+
+
+def _of_mapping(geometry: Mapping[str, Any], name: str) -> Iterator[Polygon]:
+    """A GeoJSON object, as __geo_interface__ gives it."""
+    kind = geometry.get("type")
+    if kind in ("FeatureCollection", "GeometryCollection"):
+        for part in geometry["features" if kind == "FeatureCollection" else "geometries"]:
+            yield from _of_mapping(part, name)
+    elif kind == "Feature":
+        if geometry["geometry"] is not None:
+            yield from _of_mapping(geometry["geometry"], name)
+    elif kind in ("Polygon", "MultiPolygon"):
+        for rings in [geometry["coordinates"]] if kind == "Polygon" else geometry["coordinates"]:
+            yield [_ring(ring, name) for ring in rings if len(ring) > 0]
+    elif kind == "LinearRing":
+        yield [_ring(geometry["coordinates"], name)]
+    else:
+        raise InputError("%s: a %s is no polygon" % (name, kind))
+
+
+def _is_list_of_rings(given: Any) -> bool:
+    """[outer, hole, ..] rather than one ring?"""
+    return isinstance(given, (list, tuple)) and len(given) > 0 and np.ndim(given[0]) == 2
+
+
+def _of_any(given: Any, name: str) -> Iterator[Polygon]:
+    geometry = getattr(given, "__geo_interface__", given)
+    if isinstance(geometry, Mapping):
+        yield from _of_mapping(geometry, name)
+    elif _is_list_of_rings(given):
+        yield [_ring(ring, name) for ring in given]
+    else:
+        yield [_ring(given, name)]
+
+
+def polygons_of(given: Any, name: str) -> List[Polygon]:
+    geometry = getattr(given, "__geo_interface__", given)
+    if isinstance(geometry, Mapping):
+        return list(_of_mapping(geometry, name))
+    if not isinstance(given, Iterable):
+        raise InputError("%s: %r instead of a list of rings or polygons" % (name, type(given).__name__))
+    return [polygon for k, item in enumerate(given) for polygon in _of_any(item, "%s[%d]" % (name, k))]
+
+
+def segments_of(polygons: Iterable[Polygon], first: int) -> Tuple[Array, Array]:
+    """Points and segments of all rings; numbers begin with `first`."""
+    points, segments = [np.empty((0, 2))], [np.empty((0, 2), np.int64)]
+    for ring in (ring for polygon in polygons for ring in polygon):
+        number = np.arange(first, first + len(ring))
+        points.append(ring)
+        segments.append(np.column_stack([number, np.roll(number, -1)]))
+        first += len(ring)
+    return np.concatenate(points), np.concatenate(segments)

@@ -1,0 +1,102 @@
+"""What is wanted of a mesh, as the library takes it."""
+from __future__ import annotations
+
+import math
+from ctypes import c_double
+from typing import Any, Callable, Optional, Sequence, Tuple, Union
+
+from . import _library as lib
+from ._calls import Calls
+from ._errors import InputError
+from ._library import Settings, SizeFunction
+from ._progress import follow
+
+Size = Union[float, Callable[[float, float], float], SizeFunction]
+Place = Tuple[float, float]
+Unsuitable = Callable[[Place, Place, Place, float], Any]
+Progress = Union[bool, Callable[[float, int], Any]]
+
+
+def number(who: str, name: str, given: Any) -> float:
+    try:
+        return float(given)
+    except (TypeError, ValueError):
+        raise InputError("%s: %s is %r instead of a number" % (who, name, given)) from None
+
+
+def whole(who: str, name: str, given: Any) -> int:
+    value = number(who, name, 0 if given is None else given)
+    if value != math.floor(value) or math.isinf(value):
+        raise InputError("%s: %s is %r instead of a whole number" % (who, name, given))
+    return int(value)
+
+
+def _name_of(function: Any) -> str:
+    return str(getattr(function, "__name__", type(function).__name__))
+
+
+def _refuse(who: str, name: str, given: Any) -> None:
+    if given is not None and not callable(given):
+        raise InputError("%s: %s is %r instead of a function" % (who, name, given))
+
+
+def _length_asked(calls: Calls, function: Callable[[float, float], float]) -> Callable[[Any, Any], float]:
+    """The caller's function of a place as the library calls it."""
+    def ask(_user: Any, at: Any) -> float:
+        x, y = at[0], at[1]
+        given = function(x, y)
+        try:
+            return float(given)
+        except (TypeError, ValueError):
+            raise TypeError("%s: size: %s(%r, %r) returned %r instead of a number"
+                            % (calls.who, _name_of(function), x, y, given)) from None
+    return calls.guarded(ask, math.inf)
+
+
+def _take_size(settings: Settings, calls: Calls, size: Any, unsuitable: Any) -> None:
+    if isinstance(size, SizeFunction):
+        settings.edge_length = size
+        settings.callbacks_in_parallel = unsuitable is None
+    elif callable(size):
+        settings.edge_length = SizeFunction(_length_asked(calls, size))
+    elif size is not None:
+        length = number(calls.who, "size", size)
+        if not length > 0:
+            raise InputError("%s: size: %g is not > 0" % (calls.who, length))
+        area = math.sqrt(3) / 4 * length * length
+        settings.max_area = min(settings.max_area, area) if settings.max_area > 0 else area
+
+
+def _take_functions(settings: Settings, calls: Calls, unsuitable: Any, gate: Any, stop: Any) -> None:
+    for name, function in (("unsuitable", unsuitable), ("gate", gate), ("stop", stop)):
+        _refuse(calls.who, name, function)
+    if unsuitable is not None:
+        settings.unsuitable = lib.Unsuitable(calls.guarded(
+            lambda _, a, b, c, area: int(bool(unsuitable((a[0], a[1]), (b[0], b[1]), (c[0], c[1]), area))), 0))
+    if gate is not None:
+        settings.gate = lib.Gate(calls.guarded(lambda _, at: bool(gate(at[0], at[1])), False))
+    settings.stop = calls.stop(stop)
+
+
+def settings_of(who: str, min_angle: Optional[float], max_area: Optional[float], size: Optional[Size],
+                unsuitable: Optional[Unsuitable], conforming: bool, keep_hull: bool, protect: int,
+                max_new_points: Optional[int], gate: Optional[Callable[[float, float], Any]],
+                fence: Optional[Sequence[float]], threads: Optional[int] = None,
+                stop: Optional[Callable[[], Any]] = None,
+                progress: Optional[Progress] = None) -> Tuple[Settings, Calls]:
+    """The keywords of mesh() and refine(); what they are called with is said in InputErrors in the name of `who`."""
+    calls = Calls(who)
+    settings = Settings(min_angle=number(who, "min_angle", min_angle or 0),
+                        max_area=number(who, "max_area", max_area or 0), conforming=bool(conforming),
+                        keep_hull=bool(keep_hull), protect=whole(who, "protect", protect),
+                        most_new_points=whole(who, "max_new_points", max_new_points),
+                        threads=whole(who, "threads", threads))
+    if fence is not None:
+        if len(fence) != 4:
+            raise InputError("%s: fence has %d numbers instead of 4" % (who, len(fence)))
+        settings.fence = (c_double * 4)(*(number(who, "fence", value) for value in fence))
+    _take_size(settings, calls, size, unsuitable)
+    _take_functions(settings, calls, unsuitable, gate, stop)
+    if progress:
+        settings.progress = follow(calls, progress)
+    return settings, calls

@@ -1,0 +1,89 @@
+"""The union of polygons that may overlap.
+
+All rings are triangulated at once, with points where they cross. What the segments divide the plane into are faces:
+each lies in a polygon or not, as one point of it does. The outline of the faces that do is the union, made of points
+that there are: nothing is computed twice in different ways.
+"""
+from __future__ import annotations
+
+from typing import List, Tuple
+
+import numpy as np
+
+from ._arrays import Array
+from ._rings import Polygon
+
+_MOST = 1 << 22  # pairs of points and edges that are looked at together
+
+
+def is_among(some: Array, segments: Array) -> Array:
+    """Which of some pairs of points are segments, in either direction."""
+    def keys(pairs: Array) -> Array:
+        low, high = np.sort(pairs.astype(np.int64), axis=1).T
+        return np.asarray(low << 32 | high)
+    return np.isin(keys(some), keys(segments))
+
+
+def faces_of(neighbors: Array, walls: Array) -> Array:
+    """The face of each triangle, known by a triangle of it. walls [m, 3]: which edges are segments."""
+    label = np.arange(len(neighbors))
+    triangle, corner = np.nonzero((neighbors >= 0) & ~walls)
+    beside = neighbors[triangle, corner]
+    while True:
+        least = np.minimum(label[triangle], label[beside])
+        differ = label[triangle] != label[beside]
+        if not differ.any():
+            return label
+        for ends in (triangle, beside):
+            np.minimum.at(label, label[ends[differ]], least[differ])
+        while not np.array_equal(label, label[label]):
+            label = label[label]
+
+
+def _is_inside(places: Array, polygon: Polygon) -> Array:
+    """Which places lie in an odd number of the polygon's rings."""
+    odd = np.zeros(len(places), bool)
+    x, y = places[:, :1], places[:, 1:]
+    for ring in polygon:
+        a, b = ring, np.roll(ring, -1, axis=0)
+        up = (a[:, 1] <= y) != (b[:, 1] <= y)
+        side = (b[:, 0] - a[:, 0]) * (y - a[:, 1]) - (x - a[:, 0]) * (b[:, 1] - a[:, 1])
+        odd ^= np.count_nonzero(up & ((side > 0) == (b[:, 1] > a[:, 1])), axis=1) % 2 == 1
+    return odd
+
+
+def inside_any(places: Array, polygons: List[Polygon]) -> Array:
+    found = np.zeros(len(places), bool)
+    for polygon in polygons:
+        corners = np.concatenate(polygon)
+        near = (places >= corners.min(axis=0)).all(axis=1) & (places <= corners.max(axis=0)).all(axis=1) & ~found
+        which = np.nonzero(near)[0]
+        step = max(1, _MOST // len(corners))
+        for k in range(0, len(which), step):
+            some = which[k:k + step]
+            found[some] = _is_inside(places[some], polygon)
+    return found
+
+
+def _largest_of(label: Array, areas: Array) -> Array:
+    """For each triangle, the largest of its face."""
+    order = np.lexsort((areas, label))
+    last = np.append(label[order][1:] != label[order][:-1], True)
+    largest = np.empty(len(label), int)
+    largest[label[order][last]] = order[last]
+    return largest[label]
+
+
+def outline_of(points: Array, triangles: Array, neighbors: Array, walls: Array,
+               polygons: List[Polygon]) -> Tuple[Array, Array]:
+    """Points and segments of the union's border, of a triangulation of all rings that fills their convex hull."""
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    areas = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    witness = _largest_of(faces_of(neighbors, walls), areas)
+    asked, of = np.unique(witness, return_inverse=True)
+    inside = inside_any(((a + b + c) / 3)[asked], polygons)[of]
+    outside_there = ~np.append(inside, False)[neighbors]  # -1, nobody, is the last
+    triangle, corner = np.nonzero(inside[:, None] & outside_there)
+    ends = np.column_stack([triangles[triangle, (corner + 1) % 3], triangles[triangle, (corner + 2) % 3]])
+    used, segments = np.unique(ends, return_inverse=True)
+    return points[used], segments.reshape(-1, 2)
