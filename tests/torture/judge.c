@@ -231,8 +231,8 @@ static int32_t triangles_of(const struct torture_case *as, const struct outcome 
     return n;
 }
 
-/* So many times the triangles of another way to make the mesh are a run-away: edges become a sixth of the features around
- * them for angles (README). */
+/* So many times the triangles of another way to make the mesh are a run-away: for angles, edges become a sixth of the
+ * features around them (README). */
 enum { RUN_AWAY = 36, TIMES = 8, FEW = 3000 };
 
 /* The schedule's mesh, by the rules of one call in another order. */
