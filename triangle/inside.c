@@ -22,7 +22,7 @@
  * centroid, if the test refuses the lowest triangle on its longest edge, too. (The letter R with edges of 0.5, its
  * sides protected, at 20 degrees: 5,103 triangles for 16,755; those with longer edges cover 0.07% of it.)
  *
- * So the bound on areas is kept by every triangle whose least height is more than three shortest edges, some 400 ulps
+ * So the bound on areas is kept by every triangle whose least height is more than three shortest edges, some 100 ulps
  * of the largest coordinate. */
 #include "triangle/inside.h"
 
