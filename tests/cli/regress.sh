@@ -315,7 +315,7 @@ for switches in -pcq20 -pcq30a0.05 -pcq20F; do
 done
 fresh regress/near_wall.poly # a corner 115 resolutions from a wall
 run 0 -pq20D near_wall
-says "All triangles keep the bounds on angles"
+matches "^All triangles keep the bounds"
 judge near_wall.1 --poly near_wall.poly --min-angle 20 --conforming
 fresh regress/subnormal.poly # the crossing would be rounded to a corner
 run 1 -p subnormal
