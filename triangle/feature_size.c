@@ -13,8 +13,8 @@
  *     meet;
  *   - for a point inserted because of sizes: no more than its distance from its neighbours. A size that is asked for is
  *     a feature.
- * What coordinates do not resolve is no feature: no size is below the square root of limits.shortest2, and where an
- * end of a segment is as near to another segment the two touch (tri_touches), as if they met there, unless it
+ * What coordinates do not resolve is no feature: distances below the square root of limits.shortest2 do not count, and
+ * where an end of a segment is as near to another segment the two touch (tri_touches), as if they met there, unless it
  * is at less than 60 degrees. (Ruppert's size would fall to that distance, but triangles that bridge it are flat, and
  * stay whatever is around them: 18 points on a turned grid had 2,600 triangles at 34 degrees, 203 of them bad, and have
  * 177, 19 of them bad.) Such sizes are larger than Ruppert's, so the theorem holds with fewer sources.
@@ -94,14 +94,15 @@ static void divide_vertices(struct estimate *e)
     e->own[shares] = e->mesh->n_vertices;
 }
 
-/* The least of its distances from the other corners, and from the wall opposite to it; no less than coordinates
- * resolve. */
+/* The least of its distances from the other corners, and from the wall opposite to it, that coordinates resolve. */
 static void estimate_corner(struct tri_mesh *mesh, const struct tri_triangle *t, const struct tri_shape *shape, int k)
 {
     double edge = shape->l[k], left = shape->l[tri_next[k]], right = shape->l[tri_prev[k]];
     bool wall = t->n[k] < 0 && is_beside(edge, left, right);
-    double size2 = tri_lesser(tri_lesser(left, right), wall ? shape->area2 * shape->area2 / edge : HUGE_VAL);
-    size2 = tri_larger(size2, mesh->limits.shortest2);
+    double distance2[3] = {left, right, wall ? shape->area2 * shape->area2 / edge : HUGE_VAL}, size2 = HUGE_VAL;
+    for (int i = 0; i < 3; i++)
+        if (distance2[i] >= mesh->limits.shortest2)
+            size2 = tri_lesser(size2, distance2[i]);
     mesh->feature[t->v[k]] = tri_lesser(mesh->feature[t->v[k]], sqrt(size2));
 }
 
@@ -162,6 +163,15 @@ static void estimate_others(const struct estimate *e, size_t share)
     }
 }
 
+/* Vertices of which no distance can be resolved. */
+static void settle_own(void *context, size_t share)
+{
+    const struct estimate *e = context;
+    double *feature = e->mesh->feature;
+    for (tri_vertex_id v = e->own[share]; v < e->own[share + 1]; v++)
+        feature[v] = feature[v] < HUGE_VAL ? feature[v] : sqrt(e->mesh->limits.shortest2);
+}
+
 void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *executor)
 {
     struct estimate e = {.mesh = mesh};
@@ -171,6 +181,7 @@ void tri_estimate_features(struct tri_mesh *mesh, const struct tri_executor *exe
         estimate_others(&e, share);
         free(e.crossing[share].item);
     }
+    tri_execute(executor, tri_shares(mesh->n_triangles), settle_own, &e);
 }
 
 double tri_feature_inside(const struct tri_mesh *mesh, tri_vertex_id a, tri_vertex_id b, struct tri_point p, bool sized)
