@@ -381,6 +381,16 @@ def slits(n):
     return figure
 
 
+def parallels(n):
+    """Under a finely sampled curve, long parallels in the order of their heights, as strata are."""
+    figure, k = Figure(), n // 3
+    figure.put((i / k, 1 + 0.2 * math.sin(math.pi * i / k)) for i in range(k))
+    for y in ((i + 1) / (k + 1) for i in range(k)):
+        x = 1 + y * (1 - y)
+        figure.segment(figure.point(-x, y), figure.point(1 + x, y))
+    return figure
+
+
 # --- segments along
 
 def on_a_segment(n):
@@ -437,7 +447,7 @@ class Case:
 POINTS = (random_points, cocircular, cocircular_with_centre, parabola, two_parallel_rows, two_rows_at_right_angles,
           grid, duplicates, crowded_centre, small_clusters, far_points, far_points_and_a_row, halving_row)
 OPEN = (hub, hub_in_order, hub_of_two_lengths, two_hubs, spiral, long_crossing, thirty_crossings, facing_curves, lens,
-        curve_and_point, cap_and_point, saws, lattice_of_segments, slits, one_segment_again, overlaps,
+        curve_and_point, cap_and_point, saws, lattice_of_segments, slits, parallels, one_segment_again, overlaps,
         overlapping_path, rounded_path)
 CLOSED = (circle, circle_with_two_diameters, circle_with_chords, star, thin_star, nested_triangles, comb, slots,
           slots_in_order, holes_outside, on_a_segment)

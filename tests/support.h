@@ -64,7 +64,8 @@ struct tri_pslg support_tangle(enum support_kind kind, int32_t n, int32_t m, uin
 /* A square of the given side with corners 0 .. 3 counter-clockwise from the origin, and n random points in it. */
 struct tri_pslg support_square(double side, int32_t n, uint64_t seed);
 
-/* Reads a .poly or .node file of PTRIANGLE_DATA_DIR; false where the reader refuses it. */
+/* Reads a .poly or .node file of PTRIANGLE_DATA_DIR; false where the reader refuses it, or the
+ * mesher for its subnormal coordinates. */
 bool support_read(const char *name, struct tri_pslg *pslg);
 
 /* All input names of data/, data/nasty, data/regress, data/coast that end in .poly or .node, sorted, NULL at the

@@ -26,13 +26,13 @@ static void assert_short_work(struct tri_pslg *pslg, int32_t n)
     tri_pslg_free(pslg);
 }
 
-/* A path to and fro: each of its segments runs along a third of the points on average, each a little beside it. */
-static void test_paths_to_and_fro_are_short_work(void **state)
+/* A path to and fro: each of its segments runs along a third of the points on average, on their line or each a little
+ * beside it. */
+static void go_to_and_fro(double slope)
 {
-    (void)state;
     enum { N = 1500 };
     struct support_random random = {11};
-    struct tri_pslg pslg = along_a_line(N, N - 1, 1 / 3.0);
+    struct tri_pslg pslg = along_a_line(N, N - 1, slope);
     int32_t order[N];
     for (int32_t i = 0; i < N; i++) {
         int32_t j = support_below(&random, i + 1);
@@ -42,6 +42,13 @@ static void test_paths_to_and_fro_are_short_work(void **state)
     for (int32_t i = 1; i < N; i++)
         support_add_segment(&pslg, order[i - 1], order[i]);
     assert_short_work(&pslg, N);
+}
+
+static void test_paths_to_and_fro_are_short_work(void **state)
+{
+    (void)state;
+    go_to_and_fro(1 / 3.0);
+    go_to_and_fro(1);
 }
 
 /* From one end to all others, the shortest first. */

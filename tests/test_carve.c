@@ -136,7 +136,7 @@ static void test_tangles_equal_naive_twin(void **state)
     (void)state;
     for (int which = 0; which < 8; which++)
         for (uint64_t seed = 0; seed < 25; seed++) {
-            struct tri_carve_options options = {which & 1, which & 2, which & 4, false, false, NULL};
+            struct tri_carve_options options = {which & 1, which & 2, which & 4, false, NULL};
             struct tri_pslg pslg = support_tangle(seed % 2 ? SUPPORT_RANDOM : SUPPORT_LATTICE, 25, 30, seed);
             if (seed % 3)
                 memmove(pslg.segments, pslg.segments + 8, (size_t)(pslg.n_segments -= 4) * 8); /* an open hull */
@@ -482,133 +482,6 @@ static void test_boxes(void **state)
     tri_pslg_free(&pslg);
 }
 
-/* --- drop_flat */
-
-/* A slanted square, its sides chains of n segments whose inner points lie inside the line of the side: by rounding, or
- * by up to `depth`. A loose point lies between a chain and the hull. */
-static struct tri_pslg slanted_square(int32_t n, double depth, bool loose, struct support_random *random)
-{
-    struct tri_pslg pslg = support_pslg(4 * n + 1, 4 * n, 0, 0);
-    double angle = 6 * support_unit(random), x = cos(angle), y = sin(angle);
-    for (int32_t i = 0; i < 4 * n; i++) {
-        double along = (double)(i % n) / n, in = i % n == 0 ? 0 : depth * (1 + support_unit(random)) / 2;
-        for (int32_t turn = 0; turn < i / n; turn++) {
-            double t = x;
-            x = -y;
-            y = t;
-        }
-        support_add_point(&pslg, (along - 0.5) * x - (in - 0.5) * y, (along - 0.5) * y + (in - 0.5) * x);
-        x = cos(angle);
-        y = sin(angle);
-        support_add_segment(&pslg, i, (i + 1) % (4 * n));
-    }
-    if (loose)
-        support_add_point(&pslg, (1.5 / n - 0.5) * x - (depth / 4 - 0.5) * y,
-                          (1.5 / n - 0.5) * y + (depth / 4 - 0.5) * x);
-    return pslg;
-}
-
-static double longest2(const struct tri_mesh *mesh, const int32_t *v)
-{
-    double longest = 0;
-    for (int k = 0; k < 3; k++) {
-        struct tri_point a = mesh->xy[v[k]], b = mesh->xy[v[(k + 1) % 3]];
-        longest = fmax(longest, (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y));
-    }
-    return longest;
-}
-
-/* Is no triangle of the face higher than 2^-50 times the largest coordinate, and does one have a hull edge that is no
- * segment? */
-static bool is_flat_face(const struct tri_mesh *mesh, const int32_t *paint, int32_t face)
-{
-    double largest = 0;
-    bool flat = true, bare = false;
-    for (int32_t v = 0; v < mesh->n_vertices; v++)
-        largest = fmax(largest, fmax(fabs(mesh->xy[v].x), fabs(mesh->xy[v].y)));
-    for (int32_t t = 0; t < mesh->n_triangles; t++) {
-        const struct tri_triangle *triangle = &mesh->tri[t];
-        const int32_t *v = triangle->v;
-        double area2 = tri_orient2d(mesh->xy[v[0]], mesh->xy[v[1]], mesh->xy[v[2]]);
-        if (paint[t] != face)
-            continue;
-        flat = flat && area2 < 0x1p-50 * largest * sqrt(longest2(mesh, v));
-        for (int e = 0; e < 3; e++)
-            bare = bare || (triangle->n[e] < 0 &&
-                            mesh->parents[mesh->sub[~triangle->n[e]].parent].segment == TRI_NONE);
-    }
-    return flat && bare;
-}
-
-/* Has the face a corner at which no triangle that stays is of another face? */
-static bool has_corner_of_its_own(const struct tri_mesh *mesh, const int32_t *paint, int32_t face, const bool *stays)
-{
-    bool *shared = calloc((size_t)mesh->n_vertices, sizeof *shared), own = false;
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
-        for (int k = 0; stays[t] && paint[t] != face && k < 3; k++)
-            shared[mesh->tri[t].v[k]] = true;
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
-        for (int k = 0; paint[t] == face && k < 3; k++)
-            own = own || !shared[mesh->tri[t].v[k]];
-    free(shared);
-    return own;
-}
-
-static bool has_triangle(const struct tri_mesh *mesh, const int32_t *v)
-{
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
-        if (memcmp(mesh->tri[t].v, v, sizeof mesh->tri[t].v) == 0)
-            return true;
-    return false;
-}
-
-enum { GONE, STAYS_HIGH, STAYS_FOR_A_CORNER, N_FATES };
-
-/* Faces go as a whole, flat ones at the hull, all of them but those whose going would lose a vertex. */
-static void judge_faces(const struct tri_pslg *pslg, int32_t fates[N_FATES])
-{
-    const struct tri_carve_options options = {.keep_hull = true, .drop_flat = true};
-    struct tri_constrain_report report;
-    struct tri_error error = {0};
-    struct tri_mesh before = support_constrained(pslg, &report), after = support_constrained(pslg, &report);
-    int32_t *paint = paint_components(&before);
-    bool *stays = calloc((size_t)before.n_triangles + 1, sizeof *stays);
-    assert_int_equal(tri_carve(&after, pslg, &options, &error), TRI_OK);
-    if (tri_mesh_validate(&after, &error) != TRI_OK)
-        fail_msg("%s", error.text);
-    for (int32_t t = 0; t < before.n_triangles; t++) {
-        stays[t] = has_triangle(&after, before.tri[t].v);
-        assert_int_equal(stays[t], stays[paint[t]]);
-    }
-    for (int32_t face = 0; face < before.n_triangles; face++) {
-        if (paint[face] != face)
-            continue;
-        bool flat = is_flat_face(&before, paint, face), own = has_corner_of_its_own(&before, paint, face, stays);
-        assert_int_equal(stays[face], !flat || own);
-        fates[!stays[face] ? GONE : flat ? STAYS_FOR_A_CORNER : STAYS_HIGH]++;
-    }
-    free(stays);
-    free(paint);
-    tri_mesh_free(&before);
-    tri_mesh_free(&after);
-}
-
-static void test_flat_faces_at_the_hull_go(void **state)
-{
-    (void)state;
-    static const double depths[] = {0, 1e-16, 1e-9, 0.05}; /* far from where rounding would decide */
-    int32_t fates[N_FATES] = {0};
-    for (uint64_t seed = 0; seed < 120; seed++) {
-        struct support_random random = {seed};
-        struct tri_pslg pslg = slanted_square(2 + support_below(&random, 9), depths[seed % 4], seed % 4 == 1, &random);
-        judge_faces(&pslg, fates);
-        tri_pslg_free(&pslg);
-    }
-    print_message("  %d faces go, %d are high, %d have a corner of their own\n", (int)fates[GONE],
-                  (int)fates[STAYS_HIGH], (int)fates[STAYS_FOR_A_CORNER]);
-    assert_true(fates[GONE] > 50 && fates[STAYS_HIGH] > 50 && fates[STAYS_FOR_A_CORNER] > 5);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -622,7 +495,6 @@ int main(void)
         cmocka_unit_test(test_rings_keep_the_even_odd_rule),
         cmocka_unit_test(test_depths_equal_naive_twin),
         cmocka_unit_test(test_boxes),
-        cmocka_unit_test(test_flat_faces_at_the_hull_go),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -60,6 +60,30 @@ static void test_order_of_segments_does_not_matter(void **state)
     }
 }
 
+/* Under a finely sampled curve n long parallels, in the order of their heights as strata are: each would cross what the
+ * one before has left of the far side. */
+static void test_parallels_in_order_are_short_work(void **state)
+{
+    (void)state;
+    enum { N = 1500 };
+    struct tri_constrain_report report;
+    struct tri_pslg pslg = support_pslg(3 * N, N, 0, 0);
+    for (int i = 0; i < N; i++)
+        support_add_point(&pslg, i / (double)N, 1 + 0.2 * sin(3.14159 * i / N));
+    for (int i = 0; i < N; i++) {
+        double y = (i + 1) / (N + 1.0), x = 1 + y * (1 - y);
+        int32_t a = support_add_point(&pslg, -x, y);
+        support_add_segment(&pslg, a, support_add_point(&pslg, 1 + x, y));
+    }
+    struct tri_mesh mesh = support_constrained(&pslg, &report);
+    support_assert_cdt(&mesh, false);
+    support_judge_hull(&mesh, &pslg);
+    print_message("  %d parallels: %lld triangles looked at\n", (int)N, (long long)report.looked_at);
+    assert_true(report.looked_at < 60 * INT64_C(3) * N);
+    tri_mesh_free(&mesh);
+    tri_pslg_free(&pslg);
+}
+
 static int32_t count_subs(const struct tri_mesh *mesh, int32_t segment)
 {
     int32_t n = 0;
@@ -464,6 +488,7 @@ int main(void)
         cmocka_unit_test(test_tangles_are_naively_constrained_delaunay),
         cmocka_unit_test(test_large_tangles_pass_the_judge),
         cmocka_unit_test(test_order_of_segments_does_not_matter),
+        cmocka_unit_test(test_parallels_in_order_are_short_work),
         cmocka_unit_test(test_crossing_makes_a_vertex),
         cmocka_unit_test(test_vertices_on_a_segment_split_it),
         cmocka_unit_test(test_overlap_keeps_the_first_marker),

@@ -904,7 +904,7 @@ def long_gap():
 
 
 @case("regress/flat_hull.poly", "slanted square, ten segments on each side",
-      "-pcq20: keeps the bound; once 26 of 84 triangles did not, beside flat triangles between segments and hull")
+      "-pcq20: flat triangles between segments and hull stay (docs/limits.md)")
 def flat_hull():
     c, s = 0.96, 0.28
     square = ([(k, 0) for k in range(10)] + [(10, k) for k in range(10)] + [(10 - k, 10) for k in range(10)] +
@@ -1044,6 +1044,10 @@ FOUND = [
          "-cq30: some ten thousand triangles; once 457,770, as the narrow ends of wedges were not counted", ()),
     Case("regress/cut_wedge.poly", None, "a wedge of 1/25,000 whose tip is cut off, 1e-12 wide there",
          "-q30: a thousand triangles; once 1.9 million, the same", ()),
+    Case("regress/near_wall.poly", None, "a ground plan, a corner of it 115 units in the last place from a wall",
+         "-q20D: keeps the bound, no circle is left; once 13 triangles, the corner given up", ()),
+    Case("regress/subnormal.poly", None, "a square of one subnormal number, its diagonals",
+         "refused; once its vertices lay on each other", ()),
     Case("regress/nearly_straight.poly", None, "a polygon, one side of it in five pieces that lie 1e-5 beside its line",
          "-cq20: some ten triangles; once 3.3 million, the same", ()),
 ]

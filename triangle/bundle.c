@@ -1,5 +1,4 @@
-/* Pieces that are exactly on one line are shared by overlap.c. Where coordinates are rounded, each of n along n
- * vertices would be led through all that lie beside it.
+/* Each of n pieces along n vertices would be led through all that lie on it, or beside it by rounding.
  *
  * RULE. The longest piece that has not been looked at yet is a carrier. Its stops are the vertices within ALONG
  * resolutions of its line, along it and for as many triangles again beyond its ends; where two are within APART of each
@@ -92,13 +91,24 @@ static void try_stop(struct bundles *b, tri_vertex_id v)
     b->stop[b->n_stops++] = v;
 }
 
+static int corner_of(const struct tri_mesh *mesh, tri_triangle_id t, tri_vertex_id v)
+{
+    const tri_vertex_id *corner = mesh->tri[t].v;
+    return corner[0] == v ? 0 : corner[1] == v ? 1 : 2;
+}
+
 /* From one end through triangle t to the other, and as far again. A vertex on the line counts as on its right. */
 static void walk(struct bundles *b, tri_triangle_id t, tri_vertex_id from, tri_vertex_id to)
 {
     const struct tri_mesh *mesh = b->mesh;
     const struct tri_point p = mesh->xy[from], q = mesh->xy[to];
+    int e = corner_of(mesh, t, from);
+    if (tri_orient2d(p, q, mesh->xy[mesh->tri[t].v[tri_prev[e]]]) <= 0) { /* along its left edge */
+        tri_halfedge beyond = tri_across(mesh, tri_code(t, tri_next[e]));
+        t = beyond == TRI_NONE ? t : tri_of(beyond);
+        e = corner_of(mesh, t, from);
+    }
     const tri_vertex_id *v = mesh->tri[t].v;
-    int e = v[0] == from ? 0 : v[1] == from ? 1 : 2;
     for (int k = 0; k < 3; k++)
         try_stop(b, v[k]);
     if (tri_orient2d(p, q, mesh->xy[v[tri_prev[e]]]) <= 0)
@@ -152,10 +162,10 @@ static void forget_stops(struct bundles *b)
 
 /* --- bundles */
 
-static bool is_lower(const void *context, int32_t i, int32_t k)
+static bool is_earlier(const void *context, int32_t i, int32_t k)
 {
-    (void)context;
-    return i < k;
+    const struct tri_piece *piece = context;
+    return piece[i].course.first < piece[k].course.first;
 }
 
 /* The pieces from stop to stop, in their order; how many elementary pieces they cover, each as often as it is. */
@@ -169,7 +179,7 @@ static int64_t find_members(struct bundles *b)
             if (piece->from != piece->to && b->place[piece->from] != TRI_NONE && b->place[piece->to] != TRI_NONE)
                 b->member[b->n_members++] = b->incident[i];
         }
-    tri_heap_sort(b->member, b->n_members, is_lower, NULL);
+    tri_heap_sort(b->member, b->n_members, is_earlier, b->piece);
     for (int32_t m = 0; m < b->n_members; m++) {
         int32_t p = b->place[b->piece[b->member[m]].from], q = b->place[b->piece[b->member[m]].to];
         b->reach[m][0] = p < q ? p : q;

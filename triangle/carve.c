@@ -11,7 +11,6 @@
 #include "triangle/grow.h"
 #include "triangle/locate.h"
 #include "triangle/predicates.h"
-#include "triangle/quality.h"
 
 struct flood {
     struct tri_mesh *mesh;
@@ -55,84 +54,6 @@ static void kill_concavities(struct flood *f)
         for (int e = 0; e < 3; e++)
             if (is_bare_hull(mesh, mesh->tri[t].n[e]))
                 kill_from(f, t);
-}
-
-/* --- faces of no width (carve.h, drop_flat) */
-
-enum { LIVE, DEAD, STAYS }; /* of f->dead; the last only while faces are looked at */
-
-struct flattening {
-    struct flood *f;
-    int32_t *uses; /* [n_vertices] live triangles at each vertex */
-    double height2;
-};
-
-static bool is_flat(const struct flattening *w, tri_triangle_id t)
-{
-    struct tri_shape shape = tri_shape_of(w->f->mesh->xy, w->f->mesh->tri[t].v);
-    return shape.area2 * shape.area2 < w->height2 * tri_longest2(&shape);
-}
-
-/* Each of the first n triangles on the stack adds this to the uses of its corners; is there one for all of them? */
-static bool change_uses(const struct flattening *w, int32_t n, int32_t by)
-{
-    bool used = true;
-    for (int32_t i = 0; i < 3 * n; i++)
-        w->uses[w->f->mesh->tri[w->f->stack[i / 3]].v[i % 3]] += by;
-    for (int32_t i = 0; i < 3 * n; i++)
-        used = used && w->uses[w->f->mesh->tri[w->f->stack[i / 3]].v[i % 3]] > 0;
-    return used;
-}
-
-/* The face of a triangle, which dies if it is flat, and stays as soon as a triangle of it is not: each triangle is
- * looked at once, from whatever edge of the hull. */
-static void try_face(const struct flattening *w, tri_triangle_id start)
-{
-    struct flood *f = w->f;
-    int32_t n = 0;
-    bool flat = true;
-    if (f->dead[start])
-        return;
-    f->dead[start] = DEAD;
-    f->stack[n++] = start;
-    for (int32_t i = 0; flat && i < n; i++) {
-        flat = is_flat(w, f->stack[i]);
-        for (int e = 0; flat && e < 3; e++) {
-            tri_link link = f->mesh->tri[f->stack[i]].n[e];
-            flat = link < 0 || f->dead[tri_of(link)] != STAYS;
-            if (link >= 0 && !f->dead[tri_of(link)]) {
-                f->dead[tri_of(link)] = DEAD;
-                f->stack[n++] = tri_of(link);
-            }
-        }
-    }
-    if (flat && change_uses(w, n, -1))
-        return;
-    if (flat)
-        change_uses(w, n, 1);
-    for (int32_t i = 0; i < n; i++)
-        f->dead[f->stack[i]] = STAYS;
-}
-
-static enum tri_status kill_flat_faces(struct flood *f, struct tri_error *error)
-{
-    const struct tri_mesh *mesh = f->mesh;
-    const double WIDTH = 0x1p-5; /* in shortest edges: 4 resolutions, see split.c */
-    struct flattening w = {f, calloc((size_t)mesh->n_vertices + 1, sizeof *w.uses),
-                           WIDTH * WIDTH * tri_shortest_edge2(mesh)};
-    if (!w.uses)
-        return tri_fail(error, TRI_NO_MEMORY, NULL, 0, "out of memory for %d vertices", (int)mesh->n_vertices);
-    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
-        for (int k = 0; k < 3; k++)
-            w.uses[mesh->tri[t].v[k]] += !f->dead[t];
-    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
-        for (int e = 0; e < 3; e++)
-            if (is_bare_hull(mesh, mesh->tri[t].n[e]))
-                try_face(&w, t);
-    for (tri_triangle_id t = 0; t < mesh->n_triangles; t++)
-        f->dead[t] = f->dead[t] == DEAD;
-    free(w.uses);
-    return TRI_OK;
 }
 
 /* --- depth (carve.h, even_odd) */
@@ -469,8 +390,6 @@ static enum tri_status kill(struct flood *f, const struct tri_pslg *pslg, const 
         kill_concavities(f);
     if (!status && !options->ignore_holes)
         status = kill_holes(f, pslg, error);
-    if (!status && options->keep_hull && options->drop_flat)
-        status = kill_flat_faces(f, error);
     if (!status && !memchr(f->dead, 0, (size_t)f->mesh->n_triangles))
         status = tri_why_empty(&f->report.why, f->mesh, options->even_odd, options->keep_hull, &f->holes, error);
     return status;

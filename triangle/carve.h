@@ -19,7 +19,6 @@ struct tri_carve_options {
     bool ignore_holes;  /* (-O) */
     bool spread_regions;
     bool even_odd;      /* segments tell what is inside: see below */
-    bool drop_flat;     /* with keep_hull: faces of no width at the hull go, see below; for meshes to be refined */
     struct tri_carve_report *report; /* NULL: nobody asks */
 };
 
@@ -37,13 +36,7 @@ struct tri_carve_options {
  * are closed rings, whatever they cross (at each vertex an even number of barriers ends), this is the even-odd rule:
  * any closed way crosses an even number of them, so that all ways to a triangle have the same parity. Otherwise: a
  * barrier with one triangle's component on both sides changes nothing (a dangling one), nor does one between two
- * components of one depth (across a ring). With keep_hull, hull edges along which no segment runs are barriers.
- *
- * drop_flat: segments along a straight side of the hull lie beside its line by rounding, and the hull has an edge of
- * its own outside them. A face between the two no triangle of which is higher than split points may lie off their line
- * (split.c) is no concavity, and goes as it would without keep_hull. No point that coordinates know lies in such
- * triangles: while they are there, the segments beside them can hardly be split, and angles along them stay small. So
- * that no vertex is lost, a face stays where one of its corners has triangles in that face alone. */
+ * components of one depth (across a ring). With keep_hull, hull edges along which no segment runs are barriers. */
 enum tri_status tri_carve(struct tri_mesh *mesh, const struct tri_pslg *pslg, const struct tri_carve_options *options,
                           struct tri_error *error);
 

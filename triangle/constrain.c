@@ -42,6 +42,12 @@
  * A chain follows its segment's order but where rule 3 leaves no choice: pieces that cross between two neighbouring
  * rows of a lattice share an end of one of them, which may be before the start of the other by some resolutions.
  *
+ * ORDER. Segments are laid in rounds of growing random samples, by the order of the input in each (Amenta, Choi & Rote,
+ * Incremental constructions con BRIO, 2003): in the order of a file n parallels would cross what each has left of the
+ * far side, n * n triangles. No proof above rests on the order: of two segments the earlier one is that which comes
+ * first in the input, whichever is laid first. Without crossings and vertices within rounding the result is that of the
+ * set of segments.
+ *
  * INVARIANT: between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v]
  * is a live triangle at v (TRI_NONE for points that are in no triangle). The mesh fills the convex hull.
  *
@@ -64,9 +70,11 @@
 #include "triangle/overlap.h"
 #include "triangle/predicates.h"
 #include "triangle/recover.h"
+#include "triangle/scatter.h"
 
 enum { BESIDE = 3 };
 enum { WINDOW = 64 }; /* triangles in which the nearest vertex beside a piece is looked for once there is one */
+enum { ROUNDS = 24 }; /* as many as make the first one small in any input */
 enum { HUB = 16 }; /* triangles around a vertex: with more it may be a hub */
 
 /* In resolutions: a vertex so near to a piece is on it for all that coordinates tell; a new one keeps so far from
@@ -763,17 +771,35 @@ static int32_t list_segments(struct layer *l, struct tri_piece *piece)
     return n;
 }
 
-static bool is_edge(void *context, const struct tri_piece *piece)
-{
-    struct layer *l = context;
-    tri_vertex_id a = piece->from, b = piece->to;
-    tri_triangle_id t = find_exit(l, &a, &b);
-    return t != TRI_NONE && (l->mesh->tri[t].v[0] == b || l->mesh->tri[t].v[1] == b || l->mesh->tri[t].v[2] == b);
-}
-
 static tri_triangle_id exit_of(void *context, tri_vertex_id *from, tri_vertex_id *to)
 {
     return find_exit(context, from, to);
+}
+
+/* A round has about as many pieces as all before it. */
+static int round_of(const struct tri_piece *piece)
+{
+    int round = ROUNDS - 1;
+    for (uint32_t draw = tri_scatter((uint32_t)piece->course.first); round > 0 && draw % 2 == 0; draw /= 2)
+        round--;
+    return round;
+}
+
+static bool put_in_rounds(struct tri_piece **piece, int32_t n)
+{
+    int32_t at[ROUNDS + 1] = {0};
+    struct tri_piece *sorted = malloc(((size_t)n + 1) * sizeof *sorted);
+    if (!sorted)
+        return false;
+    for (int32_t i = 0; i < n; i++)
+        at[round_of(&(*piece)[i]) + 1]++;
+    for (int r = 0; r < ROUNDS; r++)
+        at[r + 1] += at[r];
+    for (int32_t i = 0; i < n; i++)
+        sorted[at[round_of(&(*piece)[i])]++] = (*piece)[i];
+    free(*piece);
+    *piece = sorted;
+    return true;
 }
 
 /* Once a piece runs along vertices, others may do so, too: those that are left are shared. */
@@ -796,7 +822,7 @@ static enum tri_status lay_all(struct layer *l)
 {
     struct tri_piece *piece = malloc(((size_t)l->pslg->n_segments + 1) * sizeof *piece);
     int32_t n = piece ? list_segments(l, piece) : 0;
-    enum tri_status status = piece && tri_share_overlaps(l->mesh, &piece, &n, is_edge, l) ? TRI_OK : no_memory(l);
+    enum tri_status status = piece && put_in_rounds(&piece, n) ? TRI_OK : no_memory(l);
     status = status ? status : lay_from(l, &piece, &n);
     free(piece);
     return status ? status : close_slits(l);

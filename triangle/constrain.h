@@ -20,7 +20,7 @@ struct tri_constrain_report {
 /* Makes every segment of the PSLG (whose points are the mesh's first vertices) a chain of subsegments, whose vertices
  * are at most TRI_SEGMENT_ULPS * 2^-52 * (the largest coordinate of the segment's ends) off its line. Vertices on a
  * segment, and within rounding of it, split it; crossing segments are cut at a new vertex, which takes marker and
- * interpolated attributes of the segment that came first; where segments overlap the first non-zero marker wins. The
+ * interpolated attributes of the segment that comes first; where segments overlap the first non-zero marker wins. The
  * result is constrained Delaunay, ties broken by coordinates. Each subsegment has a parent of its own.
  * TRI_BAD_INPUT, naming the segment, where a chain cannot be kept that near to its line (thousands of near coincidences
  * at one place). Expected near O(crossed edges) per segment. */

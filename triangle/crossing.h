@@ -9,10 +9,11 @@
 
 #include "triangle/mesh.h"
 
-/* One unit in the last place of the larger coordinate of p, or up to twice that. */
+/* One unit in the last place of the larger coordinate of p, or up to twice that; no coordinate is finer than 2^-268. */
 static inline double tri_resolution(struct tri_point p)
 {
-    return 0x1p-52 * (fabs(p.x) > fabs(p.y) ? fabs(p.x) : fabs(p.y));
+    double larger = fabs(p.x) > fabs(p.y) ? fabs(p.x) : fabs(p.y);
+    return 0x1p-52 * (larger > TRI_LEAST_COORDINATE ? larger : TRI_LEAST_COORDINATE);
 }
 
 enum { TRI_PLACES = 9 };

@@ -19,6 +19,7 @@
 #include "triangle/curve_sort.h"
 #include "triangle/insertion.h"
 #include "triangle/predicates.h"
+#include "triangle/scatter.h"
 
 enum {
     FIRST_ROUND = 512, /* points */
@@ -101,20 +102,11 @@ static bool is_twin(const struct tri_mesh *mesh, tri_vertex_id v) { return mesh-
 
 /* --- rounds */
 
-static uint32_t scatter(uint32_t i)
-{
-    i ^= i >> 16;
-    i *= UINT32_C(0x7feb352d);
-    i ^= i >> 15;
-    i *= UINT32_C(0x846ca68b);
-    return i ^ i >> 16;
-}
-
 /* Round r of R holds one point in ROUND_GROWTH^(R - r), drawn by a fixed hash. */
 static int round_of(const struct builder *b, tri_vertex_id v)
 {
     int round = b->n_rounds - 1;
-    for (uint32_t draw = scatter((uint32_t)v); round > 0 && draw % ROUND_GROWTH == 0; draw /= ROUND_GROWTH)
+    for (uint32_t draw = tri_scatter((uint32_t)v); round > 0 && draw % ROUND_GROWTH == 0; draw /= ROUND_GROWTH)
         round--;
     return round;
 }

@@ -27,7 +27,7 @@ bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subs
 }
 
 /* A unit in the last place of the largest coordinate, in shortest edges. */
-static const double ULP = 0x1p-7;
+static const double ULP = 0x1p-5;
 
 /* See the rule; the parts that rounding may ask for. */
 enum { NARROW = 8, MOST_PARTS = 8 };

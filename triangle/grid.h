@@ -63,7 +63,7 @@ static inline void tri_grid_pass(const struct tri_grid *grid, int64_t i)
 /* What of a mesh is handed out. All borrowed, as long as the grid lives.
  *
  * Input points come from the PSLG, since they are handed out bit by bit as they came: in the mesh coordinates smaller
- * than 2^-216 units have become 0 (tri_mesh_take_points). All other points come from the mesh. The public arrays
+ * than 2^-216 units have been rounded (tri_mesh_take_points). All other points come from the mesh. The public arrays
  * (triangle/api/arrays.c) give all points as the mesh has them, for no input lies behind them; the two differ in such
  * tiny coordinates alone. */
 struct tri_grid_options {

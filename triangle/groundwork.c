@@ -155,7 +155,9 @@ static enum tri_status list_parents(struct tri_mesh *mesh, struct tri_error *err
     return TRI_OK;
 }
 
-/* New points lie about 100 units in the last place apart at least: nearer, rounding would decide on shapes. */
+/* 32 resolutions: what is nearer to each other counts as rounding, not as features. With 8, which keeps angles from 9
+ * resolutions on, overlaid maps keep 1.06 times the bad triangles and get up to 1.5 times the triangles: their
+ * crossings lie side by side by rounding. With 128 real drawings lose features. */
 double tri_shortest_edge2(const struct tri_mesh *mesh)
 {
     double size = 0;
@@ -163,7 +165,7 @@ double tri_shortest_edge2(const struct tri_mesh *mesh)
         size = fabs(mesh->xy[v].x) > size ? fabs(mesh->xy[v].x) : size;
         size = fabs(mesh->xy[v].y) > size ? fabs(mesh->xy[v].y) : size;
     }
-    return size * 0x1p-45 * (size * 0x1p-45);
+    return size * 0x1p-47 * (size * 0x1p-47);
 }
 
 enum tri_status tri_refine_prepare(struct tri_mesh *mesh, const struct tri_executor *executor, struct tri_error *error)

@@ -6,7 +6,7 @@
  * in the circumdisk, and sees its whole cavity (cavity.h).
  *
  * THEOREM (docs/theory.md, areas). Both are done finitely many times, whatever the rest of refinement does. So the
- * bound on areas is kept by every triangle whose least height is more than three shortest edges, some 400 ulps.
+ * bound on areas is kept by every triangle whose least height is more than three shortest edges, some 100 ulps.
  *
  * RULE. At walls that must not be split, a triangle 4,096 times as long as high that only a size test refuses gets no
  * centroid, if the test refuses the lowest triangle on its longest edge, too: no centroid would shorten that. */

@@ -6,6 +6,7 @@
 #include "triangle/mesh.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -329,28 +330,40 @@ enum tri_status tri_mesh_reserve_subs(struct tri_mesh *mesh, int32_t more, struc
     return status || parents <= mesh->parent_capacity ? status : reserve_parents(mesh, parents, error);
 }
 
-/* 1 for coordinates of ordinary size, else the power of two that brings the largest one to the order of 1. */
-static double unit_for(const struct tri_pslg *pslg)
+/* Of all coordinates the largest. */
+static double size_of(const struct tri_pslg *pslg)
 {
     double size = 0;
-    int exponent;
     for (int32_t i = 0; i < 2 * pslg->n_points; i++)
         size = fabs(pslg->points[i]) > size ? fabs(pslg->points[i]) : size;
+    return size;
+}
+
+/* 1 for coordinates of ordinary size, else the power of two that brings the largest one to the order of 1, or as near
+ * to that as leaves all coordinates of a mesh (triangle/point.h) doubles of the caller's, too: they are multiples of
+ * 2^-268 units, and doubles of 2^-1074. */
+static double unit_for(double size)
+{
+    int exponent;
     if (size == 0 || (size >= 0x1p-100 && size <= TRI_LARGEST_COORDINATE / 2))
         return 1;
     frexp(size, &exponent);
-    return ldexp(1, exponent > -1000 ? exponent - 1 : -1000); /* the largest is in [1, 2) then */
+    return ldexp(1, exponent > -805 ? exponent - 1 : -806); /* the largest is in [1, 2) then, or below */
 }
 
 enum tri_status tri_mesh_take_points(struct tri_mesh *mesh, const struct tri_pslg *pslg, struct tri_error *error)
 {
     int32_t n = pslg->n_points, attributes = pslg->n_attributes;
+    const double size = size_of(pslg);
     assert(mesh->n_vertices == 0);
+    if (size > 0 && size < DBL_MIN)
+        return tri_fail(error, TRI_BAD_INPUT, NULL, 0,
+                        "no coordinate is larger than %.3g: below %.3g numbers lose their precision", size, DBL_MIN);
     mesh->n_attributes = attributes;
     enum tri_status status = tri_mesh_reserve_vertices(mesh, n, error);
     if (status)
         return status;
-    mesh->unit = unit_for(pslg);
+    mesh->unit = unit_for(size);
     for (int32_t i = 0; i < n; i++) {
         mesh->xy[i] = tri_to_units(mesh, pslg->points[2 * i], pslg->points[2 * i + 1]);
         assert(tri_is_in_range(mesh->xy[i]));

@@ -1,4 +1,4 @@
-/* Segments that run along each other on one line. */
+/* Pieces of segments, and what is left of those that run along each other. */
 #ifndef TRIANGLE_OVERLAP_H
 #define TRIANGLE_OVERLAP_H
 
@@ -25,19 +25,10 @@ struct tri_piece {
     struct tri_course course;
 };
 
-/* Is the piece an edge of the mesh? */
-typedef bool tri_is_edge(void *context, const struct tri_piece *piece);
-
-/* Cuts pieces that overlap on exactly one line, and are no edges of the mesh, at each other's ends, and leaves one of
- * each elementary piece, where the first piece along it was, with the course of all that run along it. So there are
- * fewer than 2 *n, no two of which overlap unless one is an edge. The others stay as they are. (*piece)[*n]: from
- * malloc, as what replaces it; its courses increase, and the ends of a piece differ. O(n log n) at most, O(n) where few
- * lines hold several pieces, and as many questions. false: out of memory, nothing has changed. */
-bool tri_share_overlaps(const struct tri_mesh *mesh, struct tri_piece **piece, int32_t *n, tri_is_edge *is_edge,
-                        void *context);
-
-/* The same for (*piece)[*n] that overlap in whatever way: piece i runs from stop[reach[i][0]] to stop[reach[i][1]], the
- * first before the second, through all stops between. O((*n + n_stops) log *n). */
+/* Cuts (*piece)[*n], at least one of them, at the stops on their way, and leaves one of each elementary piece, with the
+ * course of all that run along it: piece i runs from stop[reach[i][0]] to stop[reach[i][1]], the first before the
+ * second, through all stops between. Pieces come in the order of their first segments, and from malloc, as what
+ * replaces them. O((*n + n_stops) log *n). false: out of memory, nothing has changed. */
 bool tri_share_stops(const tri_vertex_id *stop, int32_t n_stops, int32_t (*reach)[2], struct tri_piece **piece,
                      int32_t *n);
 

@@ -13,12 +13,16 @@ struct tri_point {
     double x, y;
 };
 
-/* The range: 0 and what lies between these magnitudes; 2^-216 and 2^200, in words that C++11 has. */
+/* The range: multiples of 2^-268 up to 2^200, in words that C++11 has. From 2^-216 on every double is one. */
 #define TRI_LEAST_COORDINATE (1 / 1.0531229166855719e65)
 #define TRI_LARGEST_COORDINATE 1.6069380442589903e60
 
-/* What is too small for the range becomes 0. What is too large stays so: tri_is_in_range tells. */
-static inline double tri_round_coordinate(double x) { return fabs(x) < TRI_LEAST_COORDINATE ? 0 : x; }
+/* A multiple of 2^-268: below 2^-216 doubles are finer. What is too large stays so: tri_is_in_range tells. */
+static inline double tri_round_coordinate(double x)
+{
+    double rounded = (fabs(x) + TRI_LEAST_COORDINATE) - TRI_LEAST_COORDINATE;
+    return fabs(x) >= TRI_LEAST_COORDINATE || x != x ? x : x < 0 ? 0 - rounded : rounded;
+}
 
 /* Can the predicates carry this point, whose coordinates have been rounded? Every vertex they can, and the range is
  * convex: so the figure ends before the range does, and a point out of it lies outside the figure. */

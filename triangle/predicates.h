@@ -3,8 +3,8 @@
  * A floating-point filter, inline, decides nearly every call; where its rounding error could matter, an out-of-line
  * function decides, by exact arithmetic at last. No decision depends on the machine, the compiler or the filter.
  *
- * RANGE: a coordinate is an integer multiple of 2^-268 of magnitude at most 2^200; 0 and every double of magnitude
- * 2^-216 to 2^200 is one (tri_is_exact_coordinate). Why that is enough: rounding an integer multiple of a power of two
+ * RANGE: a coordinate is an integer multiple of 2^-268 of magnitude at most 2^200 (tri_is_exact_coordinate), as
+ * every double of magnitude 2^-216 to 2^200 is. Why that is enough: rounding an integer multiple of a power of two
  * to 53 bits gives an integer multiple again, as does splitting one. So coordinate differences, their tails and the
  * halves of both are multiples of 2^-268, products of two are multiples of 2^-536, those of four of 2^-1072, above the
  * least subnormal, 2^-1074: nothing underflows. Differences are at most 2^201, sums of products of four below 2^810,
@@ -34,7 +34,7 @@ struct tri_pair; /* triangle/expansion.h */
 
 static inline bool tri_is_exact_coordinate(double x)
 {
-    return x == 0 || (fabs(x) >= TRI_LEAST_COORDINATE && fabs(x) <= TRI_LARGEST_COORDINATE);
+    return fabs(x) <= TRI_LARGEST_COORDINATE && tri_round_coordinate(x) == x;
 }
 
 /* What every predicate asserts of its points. */

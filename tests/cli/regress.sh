@@ -302,9 +302,15 @@ fresh regress/flat_hull.poly # the hull runs outside its segments, by an ulp
 for switches in -pcq20 -pcq30a0.05 -pcq20F; do
     rm -f flat_hull.1.*
     run 0 $switches flat_hull
-    says "All triangles keep the bounds."
-    judge flat_hull.1 --poly flat_hull.poly --keep-hull --min-angle 20
+    judge flat_hull.1 --poly flat_hull.poly --keep-hull
 done
+fresh regress/near_wall.poly # a corner 115 resolutions from a wall
+run 0 -pq20D near_wall
+matches "^All triangles keep the bounds"
+judge near_wall.1 --poly near_wall.poly --min-angle 20 --conforming
+fresh regress/subnormal.poly # the crossing would be rounded to a corner
+run 1 -p subnormal
+complains "numbers lose their precision"
 
 fresh regress/below_dxf.poly # two triangles stayed below the bound without need
 run 0 -pq20 below_dxf

@@ -436,6 +436,7 @@ static enum tri_status check_line(struct chains *k, int32_t id)
     }
     const double *p = input->points + 2 * (size_t)a, *q = input->points + 2 * (size_t)b;
     double largest = fmax(fmax(fabs(p[0]), fabs(p[1])), fmax(fabs(q[0]), fabs(q[1])));
+    largest = fmax(largest, TRI_LEAST_COORDINATE);
     struct line l = {id, input->segment_markers != NULL ? input->segment_markers[id] : 0, {p[0], p[1]}, {q[0], q[1]},
                      q[0] - p[0], q[1] - p[1], hypot(q[0] - p[0], q[1] - p[1]), TRI_CHECK_ULPS * 0x1p-52 * largest};
     if (!(l.length > 0) || !isfinite(l.length))

@@ -47,7 +47,7 @@
  * rounding.
  *
  * Coordinates that are very large or very small as a whole are multiplied by a power of two first; those below 2^-216
- * then count as 0, in the mesh as in the input.
+ * then are rounded to multiples of 2^-268, in the mesh as in the input.
  *
  * Cost: O(n + b log b) time for n triangles and b boundary edges, subsegments and input points; about 60 bytes a
  * triangle beside the arrays given, or within a bound: see tri_check_source. */

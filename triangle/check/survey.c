@@ -1,5 +1,5 @@
 /* Coordinates of any size, in the range of the predicates: what is very large or very small as a whole is multiplied by
- * a power of two, and what is below 2^-216 then counts as 0, in the mesh as in the input. The multiplication is exact
+ * a power of two, and what is below 2^-216 then is rounded, in the mesh as in the input. The multiplication is exact
  * otherwise, and changes no judgement but those on areas, which quality.c scales back. */
 #include <stdlib.h>
 
@@ -91,11 +91,17 @@ static enum tri_status pass(struct checker *c, struct survey *s)
     return status;
 }
 
-/* 0 for coordinates of ordinary size, and where one is not finite; else the exponent that brings the largest to 1. */
+/* More, and multiples of the least double would be no coordinates any longer (triangle/point.h). */
+enum { MOST = 1074 - 268 };
+
+/* 0 for coordinates of ordinary size, and where one is not finite; else the exponent that brings the largest to 1, as
+ * far as may be. */
 static int choose_exponent(const struct survey *s)
 {
     double largest = s->largest;
-    return !s->finite || largest == 0 || (largest >= 0x1p-100 && largest <= 0x1p199) ? 0 : -ilogb(largest);
+    if (!s->finite || largest == 0 || (largest >= 0x1p-100 && largest <= 0x1p199))
+        return 0;
+    return -ilogb(largest) < MOST ? -ilogb(largest) : MOST;
 }
 
 static double *scale(const double *values, int64_t n, int exponent)
