@@ -94,11 +94,25 @@ static void judge_angles(const struct outcome *o, const struct bounds *b, const 
     judge_unexplained(o, b, report, count, verdict);
 }
 
+/* Is a triangle beside the subsegment as flat as rounding? Then that leaves no room for a split point. */
+static bool is_beside_flat(const struct tri_mesh *mesh, const struct tri_subsegment *s, double least_height)
+{
+    for (int side = 0; side < 2; side++) {
+        if (s->side[side] == TRI_NONE)
+            continue;
+        struct tri_shape shape = tri_shape_of(mesh->xy, mesh->tri[tri_of(s->side[side])].v);
+        if (shape.area2 < least_height * sqrt(tri_longest2(&shape)))
+            return true;
+    }
+    return false;
+}
+
 /* Is the apex on this side in the circle of the subsegment, although it lies well beside it? */
 static bool is_resolvable(const struct tri_mesh *mesh, int32_t i, int side, double largest)
 {
     const struct tri_subsegment *s = &mesh->sub[i];
-    if (s->side[side] == TRI_NONE || !tri_is_in_diametral_disk(mesh, s, s->side[side]))
+    if (s->side[side] == TRI_NONE || !tri_is_in_diametral_disk(mesh, s, s->side[side]) ||
+        is_beside_flat(mesh, s, RESOLUTION * largest))
         return false;
     return tri_line_distance(mesh->xy[s->v[0]], mesh->xy[s->v[1]], mesh->xy[tri_apex(mesh, s->side[side])]) >
            LEVEL * largest;
