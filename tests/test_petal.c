@@ -19,7 +19,8 @@ static struct tri_point centre_of(const struct tri_mesh *mesh, tri_triangle_id t
     return tri_place(mesh->xy, v, &shape, HUGE_VAL);
 }
 
-static struct petal petal_of(const struct tri_mesh *mesh, tri_triangle_id t, const struct tri_shape *shape, double angle)
+static struct petal petal_of(const struct tri_mesh *mesh, tri_triangle_id t, const struct tri_shape *shape,
+                             double angle)
 {
     const tri_vertex_id *v = mesh->tri[t].v;
     struct petal p = {.a = mesh->xy[v[tri_next[shape->shortest]]], .b = mesh->xy[v[tri_prev[shape->shortest]]]};
@@ -86,8 +87,8 @@ static bool is_bad(const struct tri_shape *shape, double angle)
     return shape->area2 * shape->area2 < sine * sine * tri_longer_product(shape->l[0], shape->l[1], shape->l[2]);
 }
 
-/* Of all bad triangles: the point lies in the petal, its edges are no shorter than those of the circumcentre; where there
- * are no segments no other point of the diagram is better. */
+/* Of all bad triangles: the point lies in the petal, and its edges are no shorter than those of the circumcentre; where
+ * there are no segments no other point of the diagram is better. */
 static void judge_points(const struct tri_mesh *mesh, double angle, bool open, int *better, int *petals)
 {
     double height = tri_bounds_for(angle, false).off_centre;

@@ -840,7 +840,7 @@ static void faults_in_shares(void **state)
     free_input(&in);
 }
 
-/* A bound that is out of reach: the mesh is that of the usual angle. Refining a mesh that keeps its bound adds nothing. */
+/* A bound that is out of reach: the mesh is that of the usual angle. Refining one that keeps its bound adds nothing. */
 static void a_mesh_that_keeps_its_bound_is_not_refined_again(void **state)
 {
     (void)state;

@@ -560,8 +560,7 @@ static void test_a_sweep_holds_few_columns(void **state)
 }
 
 /* Definition 3: with the paper's margin, and fences that are wide against the radii, no cavity meets a fence. */
-/* Above 31 degrees sizes are brought about first, above 34 a sequential call has the last word: what comes after
- * must not see other numbers. */
+/* Above 31 degrees sizes are brought about first: what comes after must not see other numbers. */
 static void test_the_way_of_numbering_moves_ids_alone(void **state)
 {
     (void)state;

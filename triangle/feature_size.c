@@ -2,9 +2,9 @@
  *
  * Every vertex v has a size s(v), an estimate of Ruppert's local feature size (1995): of a vertex of the input, how far
  * it is to the vertices and segments that its triangles reach; of a point inserted for a triangle with shortest edge
- * ab, the lesser of s(a) + SLOPE * |ap| and s(b) + SLOPE * |bp|, inherited as insertion radii are (Shewchuk 2002); of a split point the same from
- * all around it, but no more than its distance from other features; of a point inserted because of sizes no more than
- * its distance from its neighbours. What coordinates do not resolve is no feature (limits.shortest2, tri_touches).
+ * ab, the lesser of s(a) + SLOPE * |ap| and s(b) + SLOPE * |bp|, inherited as insertion radii are (Shewchuk 2002); of a
+ * split point the same from all around it, but no more than its distance from other features; of a point inserted
+ * because of sizes no more than its distance from its neighbours. What coordinates do not resolve is no feature (limits.shortest2, tri_touches).
  *
  * RULE. A triangle whose shortest edge ab is shorter than min(s(a), s(b)) / SHRINK is not refined for its angle.
  *

@@ -52,7 +52,7 @@ struct tri_part {
 };
 
 struct tri_refine_options {
-    double min_angle;      /* degrees; 0: no bound on angles; above 34 as 34 */
+    double min_angle;      /* degrees; 0: no bound on angles; above 38 as 38 */
     double max_area;       /* <= 0: none */
     bool region_areas;     /* mesh->regions[t.region].max_area applies too */
     double area_scale;     /* > 0: all area bounds are multiplied by this, for pre-refinement, and the size test is

@@ -112,7 +112,8 @@ static inline struct tri_figure tri_no_figure(void)
  * the constrained Delaunay triangulation. */
 struct tri_settings {
     size_t size; /* sizeof(struct tri_settings) */
-    double min_angle;   /* degrees: no smaller angle, but at small angles of the input; up to 34, above best effort */
+    double min_angle;   /* degrees: no smaller angle, but at small angles of the input; reached up to 36 on nine inputs in
+                           ten; above 38 as 38 */
     double max_area;    /* of a triangle, in squared units of the coordinates */
     bool conforming;    /* each triangle is Delaunay, no point lies in the diametral circle of a segment's piece */
     bool keep_hull;     /* segments that enclose nothing are fine: the convex hull is meshed, but for the holes */
