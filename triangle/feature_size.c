@@ -4,7 +4,8 @@
  * it is to the vertices and segments that its triangles reach; of a point inserted for a triangle with shortest edge
  * ab, the lesser of s(a) + SLOPE * |ap| and s(b) + SLOPE * |bp|, inherited as insertion radii are (Shewchuk 2002); of a
  * split point the same from all around it, but no more than its distance from other features; of a point inserted
- * because of sizes no more than its distance from its neighbours. What coordinates do not resolve is no feature (limits.shortest2, tri_touches).
+ * because of sizes no more than its distance from its neighbours. What coordinates do not resolve is no feature
+ * (limits.shortest2, tri_touches).
  *
  * RULE. A triangle whose shortest edge ab is shorter than min(s(a), s(b)) / SHRINK is not refined for its angle.
  *

@@ -112,8 +112,8 @@ static inline struct tri_figure tri_no_figure(void)
  * the constrained Delaunay triangulation. */
 struct tri_settings {
     size_t size; /* sizeof(struct tri_settings) */
-    double min_angle;   /* degrees: no smaller angle, but at small angles of the input; reached up to 36 on nine inputs in
-                           ten; above 38 as 38 */
+    double min_angle;   /* degrees: no smaller angle, but at small angles of the input; up to 36 nearly everywhere,
+                           above 38 as 38 */
     double max_area;    /* of a triangle, in squared units of the coordinates */
     bool conforming;    /* each triangle is Delaunay, no point lies in the diametral circle of a segment's piece */
     bool keep_hull;     /* segments that enclose nothing are fine: the convex hull is meshed, but for the holes */
@@ -122,8 +122,8 @@ struct tri_settings {
 
     /* Length of edges around a place, as a bound on areas: no triangle is larger than an equilateral one with edges of
      * the least length at its corners and centroid. In the median edges come out at about 0.8 of it. Infinite: any
-     * length will do there. So it will where the function returns 0, a negative number or NaN, but a note tells so, with
-     * one such place. */
+     * length will do there. So it will where the function returns 0, a negative number or NaN, but a note tells so,
+     * with one such place. */
     double (*edge_length)(void *user, const double at[2]);
     void *edge_length_user;
     /* Must the triangle a, b, c (counter-clockwise) be refined? Asked about triangles that keep all bounds of size;
