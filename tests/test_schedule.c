@@ -106,8 +106,8 @@ static void compare_with_sequential(const struct trial *trial, const struct star
         (int)plain_bad, (int)report->columns, (int)report->rows, report->levels, report->rounds,
         (long long)report->deferred, (long long)report->left_over);
     judge(start, mesh, bad);
-    bool beyond = start->options.quality.min_angle > TRI_USUAL_ANGLE; /* then what is bad depends on the order */
-    assert_true(bad <= plain_bad + (beyond ? plain_bad : plain_bad / 4) + 10 * (plain_bad > 0));
+    bool beyond = start->options.quality.min_angle > 28; /* then what is bad depends on the order */
+    assert_true(bad <= plain_bad + plain_bad / 4 + 10 * (beyond || plain_bad > 0));
     assert_true(report->columns * report->rows >= 9);
     assert_true(mesh->n_triangles < 1.18 * plain.n_triangles);
     assert_int_equal(mesh->n_vertices, start->pslg.n_points + sequential.constrain.crossings +

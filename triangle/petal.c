@@ -116,7 +116,7 @@ static bool walk(struct petal *petal, const struct tri_fence *fence, tri_triangl
             if (e != from && n < MOST_PENDING)
                 pending[n++] = (struct pending){tri_code(t, e), c};
         for (t = TRI_NONE; t == TRI_NONE && n > 0;) {
-            const struct pending edge = pending[--n];
+            const struct pending edge = pending[--n]; /* cppcheck-suppress uninitvar ; n entries are */
             const struct tri_triangle *near = &petal->mesh->tri[tri_of(edge.code)];
             const int e = tri_edge(edge.code);
             if (near->n[e] == TRI_BEYOND) {

@@ -206,14 +206,15 @@ static void tell(void *user, int64_t triangles)
 }
 
 static enum tri_status refine_told(const struct tri_api_way *way, struct tri_mesh *mesh,
-                                   struct tri_refine_options *how, const struct tri_settings *s,
+                                   const struct tri_refine_options *how, const struct tri_settings *s,
                                    struct tri_refine_report *report, struct tri_error *error)
 {
     double sure;
     struct following f = {s, (double)mesh->n_triangles, tri_estimate(mesh, how, way->executor, &sure), 0};
-    how->told = tell;
-    how->told_user = &f;
-    enum tri_status status = way->refine(way, mesh, how, s, report, error);
+    struct tri_refine_options told = *how;
+    told.told = tell;
+    told.told_user = &f;
+    enum tri_status status = way->refine(way, mesh, &told, s, report, error);
     if (!status)
         s->progress(s->progress_user, 1, mesh->n_triangles);
     return status;
