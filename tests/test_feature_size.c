@@ -102,8 +102,8 @@ static int32_t triangles_at(const struct tri_pslg *pslg, double angle, bool conf
     return n;
 }
 
-/* Up to 34 degrees at most so many times the triangles at 28 degrees, a bound that is reached by theory; beyond at most
- * so many times those at 34, and a constant. */
+/* Up to 34 degrees at most so many times the triangles at 28 degrees, a bound that is reached by theory; up to 36
+ * at most so many times those at 34; beyond, where most figures keep no bound, what is given up alone ends it. */
 static void check_bounds(const char *name, const struct tri_pslg *pslg, int32_t most)
 {
     static const double angles[] = {33, 34, 35, 36, 60};
@@ -117,7 +117,7 @@ static void check_bounds(const char *name, const struct tri_pslg *pslg, int32_t 
             if (angles[i] == 34)
                 limit = 3.0 * n + 150;
             if (angles[i] == 36)
-                limit = 8.0 * n + 150;
+                limit = 40.0 * usual + 150;
         }
     }
 }
