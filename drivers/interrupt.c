@@ -1,9 +1,7 @@
-/* Handlers and the program share one word, the state, and the names of the temporary files.
- *
- * THE STATE says who has asked for the end, whether the time to end in is over (LATE), whether the program is changing
- * the set of files, or telling of its end (HELD), whether it must end as soon as it no longer is (DUE), and whether
- * somebody ends it (ENDING).
- * Every transition is one compare-and-exchange of the word:
+/* Handlers and the program share one word, the state, and the names of the temporary files. The state says who has
+ * asked for the end, whether the time to end in is over (LATE), whether the program is changing the set of files, or
+ * telling of its end (HELD), whether it must end as soon as it no longer is (DUE), and whether somebody ends it
+ * (ENDING). Every transition is one compare-and-exchange of the word:
  *
  *     nobody has asked    -- first request -->          asked; the grace begins
  *     asked               -- grace is over -->          LATE; patience begins, if there is any
@@ -12,14 +10,8 @@
  *     HELD                -- the set is changed -->     not HELD, or, if DUE, ENDING, by the program
  *     HELD                -- all have their names -->   DONE: from then on no request ends the program
  *
- * So a handler never waits, no request is lost, and one alone ends the program, while nobody changes the set, and with
- * one line, neither two nor none. (Where nobody reads that line, a handler ends the write.) Handlers may run on any
- * thread.
- *
- * INVARIANT: while the state is not HELD, every temporary file there is stands in `temporaries`.
- *
- * A handler calls write(), unlink(), timer_settime(), signal(), raise() and _exit(), which POSIX allows, and reads and
- * writes lock-free atomics, which C allows, and what was set before it was installed. */
+ * INVARIANT: while the state is not HELD, every temporary file there is stands in `temporaries`. A handler never waits
+ * (docs/theory.md, the end by a signal), and calls and reads only what POSIX and C allow in a handler. */
 #include "drivers/interrupt.h"
 
 #include <errno.h>

@@ -1,22 +1,17 @@
 /* The plane cut into cells of about equal work, and the blocks of cells that are refined at once.
  *
  * Columns of cells hold equal shares of the estimated final triangles, whatever the grading. Block column k reaches
- * over the columns of cells on both sides of boundary k, so that blocks with odd numbers tile the line, and those
- * with even numbers tile it with seams in the middles of the others:
+ * over the columns of cells on both sides of boundary k:
  *
  *      boundaries      0   1   2   3   4   5   6
  *      blocks 1 3 5    |-------|-------|-------|         (the first and the last reach to infinity)
  *      blocks 0 2 4 6  |---|-------|-------|---|
  *
- * Rows are cut in the same way, for each block column from the work inside it. A block has four cells, half or a
- * quarter of that where the cells end. Its phase is the parity of its column and of its row; phase 0 has the odd ones,
- * and both phases of odd columns come before those of even ones.
+ * Rows are cut in the same way, for each block column from the work inside it. The phase of a block is the parity of
+ * its column and of its row; phase 0 has the odd ones, and both phases of odd columns come before those of even ones.
  *
- * INVARIANT: blocks of one phase are disjoint half-open boxes and tile the plane; a block of the next phase covers
- * the seams of the last one. So the first phase does most of the work and the other three close the
- * seams, and a triangle smaller than half a cell lies in some block of some phase.
- *
- * The partition depends on the mesh and the bounds alone, never on the number of threads. */
+ * INVARIANT (docs/theory.md, cells and phases). Blocks of one phase are disjoint half-open boxes and tile the plane; a
+ * block of the next phase covers the seams of the last one. The partition depends on the mesh and the bounds alone. */
 #ifndef SCHED_PARTITION_H
 #define SCHED_PARTITION_H
 

@@ -1,20 +1,15 @@
-/* Each of n pieces along n vertices would be led through all that lie on it, or beside it by rounding.
+/* Paths that are shared by pieces along the same vertices.
  *
  * RULE. The longest piece that has not been looked at yet is a carrier. Its stops are the vertices within ALONG
- * resolutions of its line, along it and for as many triangles again beyond its ends; where two are within APART of each
+ * resolutions of its line, along it and for as many triangles again beyond its ends; of two stops within APART of each
  * other along the line, the first alone is one. The pieces from stop to stop run through all the stops between them.
- * Where some of them overlap, they are cut there, and one of each elementary piece is left (tri_share_stops).
+ * Where some of these pieces overlap, they are cut there, and one of each elementary piece is left (tri_share_stops).
  *
- * THEOREM (distance). A piece is cut at vertices within 2 ALONG resolutions of its own line, those of its larger end.
- * Proof: its ends are within ALONG of the carrier's line, and so is all of the piece; the stop is on the other side of
- * that line by no more than ALONG. Of the vertices between two ends none has a larger coordinate than both.
+ * THEOREM (distance; docs/theory.md, bundles). A piece is cut at vertices within 2 ALONG resolutions of its own line,
+ * those of its larger end.
  *
- * COST. A carrier costs four times what it crosses, at most. If n segments lie along a line as well as rounding lets
- * them, the first carriers share all but a few, in O(n log n). Where nothing is to be shared, carriers may cross far
- * more than those who lay the pieces one after the other, each cutting the ways of the next: once MOST_IN_VAIN
- * triangles for each piece and vertex have been looked at for nothing, the pieces that are left stay as they are. Each
- * piece is listed at that end which has fewer, so that a vertex of many pieces need not be asked for all of them by
- * each carrier. */
+ * COST. A carrier costs at most four times what it crosses. Once MOST_IN_VAIN triangles for each piece and vertex have
+ * been looked at for nothing, the pieces that are left stay as they are. */
 #include "triangle/bundle.h"
 
 #include <assert.h>

@@ -3,20 +3,16 @@
  * The cavity of a point p is the set of triangles whose circumdisk holds p, connected without crossing a subsegment.
  * Its boundary, seen from p, is a closed chain of edges in counter-clockwise order.
  *
- * THEOREM (star shape, no point location). Start at a triangle t with p in its circumdisk. Whenever the search crosses
- * an edge ab with p on the near side into a triangle abc whose circumdisk holds p, p lies in the cap of that disk
- * beyond ab, hence strictly left of a -> c and c -> b. So every edge is seen counter-clockwise from p, except edges
- * reached from t itself across an edge that has p beyond it: in a Delaunay triangulation such an edge is crossed (the
- * cap of the disk of t beyond it lies in its neighbour's disk), unless it is a subsegment. A subsegment among them is a
- * wall; the caller tests its side.
+ * THEOREM (star shape; docs/theory.md, cavities). The search begins at a triangle with p in its circumdisk, and needs
+ * no point location. It sees every edge counter-clockwise from p, but for subsegments of the first triangle that have p
+ * beyond them: the caller tests the side of these walls.
  *
  * THEOREM (encroachment is local). Let no vertex of the mesh encroach subsegment e, and let p encroach e and see it.
- * Then e is a wall of p's own cavity. Proof. The triangle beside e on p's side has its apex outside the disk in which p
- * encroaches, so its circumdisk holds all of that disk that lies on this side of e, and p with it.
+ * Then e is a wall of p's own cavity.
  *
- * The search carries coordinates relative to p, so each step loads one triangle and one vertex; the filter for incircle
- * is the bound (10 + 96 u) u of Shewchuk (1997) with the permanent overestimated by Cauchy-Schwarz, decided exactly in
- * doubt. */
+ * The search carries coordinates relative to p, so each step loads one triangle and one vertex. The filter for incircle
+ * is the bound (10 + 96 u) u of Shewchuk (1997), with the permanent overestimated by Cauchy-Schwarz; doubtful cases are
+ * decided exactly. */
 #ifndef TRIANGLE_CAVITY_H
 #define TRIANGLE_CAVITY_H
 

@@ -1,19 +1,16 @@
 /* Subsegments that are one straight segment.
  *
  * A vertex is a joint where exactly two subsegments end, of one marker and both on the boundary or both inside, and run
- * on as far as rounding tells. Between two vertices that are none lies a chain of joints; or it is closed. It becomes
- * one parent where all of it keeps to the line between its ends. Else it goes round: beside a corner of a segment or of
- * a smooth curve pieces may be so short that no joint shows how far the next one leaves their line. Then it is cut
- * where it is farthest from that line, which is at a corner (Douglas & Peucker 1973), and so on. Of vertices that are
- * as far up to the tolerance, or half of that distance if it is less, it is the first, since refinement numbers the
- * vertices that it makes after those that it finds.
+ * on as far as rounding tells. A chain of joints lies between two vertices that are none, or is closed.
  *
- * COST. Cuts at the farthest vertex may leave one piece nearly as long as the chain. From the DEEP-th cut within a cut
- * on they halve it: n vertices cost at most n * (DEEP + log2(n)).
+ * RULE. A chain becomes one parent where all of it keeps to the line between its ends. Else it is cut at the vertex
+ * that is farthest from that line (Douglas & Peucker 1973), and so on; of vertices as far, up to the tolerance or half
+ * of that distance if it is less, at the first. Why: docs/theory.md, chains.
  *
- * The tolerance is what split points and arranged vertices may be off their lines (split.c, constrain.c), so the
- * parents of a refined mesh come back: with them its corners (small_angle.h), narrow spaces and sizes are what they
- * were when it was made, and whatever was given up then is given up again. */
+ * INVARIANT. The tolerance is what split points and arranged vertices may be off their lines (split.c, constrain.c). So
+ * the parents of a refined mesh come back, and with them its corners (small_angle.h), narrow spaces and sizes.
+ *
+ * COST. From the DEEP-th cut within a cut on, chains are halved: n vertices cost at most n * (DEEP + log2(n)). */
 #include "triangle/chain.h"
 
 #include <assert.h>

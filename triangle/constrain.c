@@ -1,58 +1,18 @@
-/* Segments into a Delaunay triangulation: each becomes a chain of subsegments.
+/* Segments into a Delaunay triangulation: each becomes a chain of subsegments, laid piece by piece.
  *
- * A segment a -> b is laid piece by piece. A piece is straight; from its start the walk along it meets first a vertex
- * on it, a vertex beside it, a subsegment across it, or its end. RULES, in this order:
- *   1. A vertex on the piece ends it.
- *   2. A vertex within NEAR of the piece (in resolutions, crossing.h; and within BESIDE of the segment's own line) is
- *      on it for all that coordinates tell: the piece runs through it. Of several the nearest is taken, so the triangle
- *      that the piece sweeps over holds none of the others; or the nearest of the first ones, and what else that
- *      triangle holds is no farther from the piece's second part than NEAR, in resolutions of the larger end, and ends
- *      it in its turn where that is NEAR in its own. (So n vertices along a segment are found in O(n) steps, not n for
- *      each of n pieces.) Looked at are the corners of the triangles that the piece crosses; so rule 4. Where many
- *      pieces run along the same vertices they are shared (bundle.h).
- *   3. Where the piece crosses a subsegment, both get a vertex in common: one that is within APART of the crossing,
- *      else a new one, the rounded crossing of the two input segments (of the pieces, where bends have moved the
- *      crossing away from that), else, where rounding leaves no room for that, one within APART that is not between the
- *      ends of both, else the end of one that is nearest to the other. The subsegment is taken up, and its two parts
- *      and those of the piece are laid by the same rules.
- *   4. When all are laid, a subsegment with an apex of its triangles beside it, as rule 2 has it, is taken up and runs
- *      through that: it was an edge before it was laid, or the apex came later. Else a face would open there through a
- *      slit of no width.
- * So a piece that becomes a subsegment meets no vertex and no subsegment; no two chains cross, and whoever shares a
- * chain shares its subsegments. No vertex ever moves.
- * Distance: a chain is made of vertices of the input within BESIDE resolutions of the segment's line, of rounded
- * crossings, within one of it, and of vertices within APART of a crossing. What bends add up to is checked for every
- * subsegment: more than TRI_SEGMENT_ULPS is an error that names the segment.
+ * RULES (docs/theory.md, constraining segments). A vertex on the piece ends it (1); so does a vertex beside it that
+ * coordinates do not tell from one on it (2). Where the piece crosses a subsegment, both get a vertex in common (3).
+ * When all are laid, a subsegment with an apex beside it is laid again through that (4). No vertex ever moves.
  *
- * THEOREM (end). Laying ends, with all segments laid or with an error that names one.
- * Proof: each input segment orders all places by how far along it they are, those as far as each other across it
- * (advance). Let m be the number of vertices that come strictly between the ends of a piece or of a subsegment in the
- * order of the first segment along it, and S the sum over all pieces and subsegments. With r, how often rule 3 may
- * still be applied, (r, S, pieces) decreases lexicographically in every step:
- *   - Rules 1, 2 and 4 cut at a vertex v that comes between the ends: of those between, none comes between both ends of
- *     both parts, and v of neither, so m becomes m1 + m2 <= m - 1. Rule 2 demands it; a vertex on a piece is between
- *     its ends in either order. That a subsegment which rule 4 takes up is a piece then changes no m.
- *   - A piece that is laid becomes a subsegment, or is one with what lies there, by the order of the earlier segment:
- *     S does not grow, and there is a piece less.
- *   - Rule 3 makes r smaller, whatever becomes of S. r begins anew for each segment and once for rule 4, finite. q.e.d.
- * Debug builds assert each comes_between. Rule 3 may lead pieces to and fro on lattices of a few units in the last
- * place, where each way round a vertex crosses another: in the second half of r it cuts the piece at an end of the
- * subsegment, which stays, where one is near, so that what crosses becomes shorter. That this is enough in practice is
- * experience; where it is not the segment is named.
- * A chain follows its segment's order but where rule 3 leaves no choice: pieces that cross between two neighbouring
- * rows of a lattice share an end of one of them, which may be before the start of the other by some resolutions.
- *
- * ORDER. Segments are laid in rounds of growing random samples, by the order of the input in each (Amenta, Choi & Rote,
- * Incremental constructions con BRIO, 2003): in the order of a file n parallels would cross what each has left of the
- * far side, n * n triangles. No proof above rests on the order: of two segments the earlier one is that which comes
- * first in the input, whichever is laid first. Without crossings and vertices within rounding the result is that of the
- * set of segments.
- *
- * INVARIANT: between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v]
+ * INVARIANT. Between two pieces the mesh is a constrained Delaunay triangulation of what has been laid, and corner[v]
  * is a live triangle at v (TRI_NONE for points that are in no triangle). The mesh fills the convex hull.
  *
- * Source of the idea that vertices attract what passes them within rounding: snap rounding (Hobby, Practical segment
- * intersection with finite precision output, Computational Geometry 13, 1999), here without a grid. */
+ * THEOREM (end). Laying ends, with all segments laid or with an error that names one. For rules 1, 2 and 4 take a
+ * vertex from between the ends of pieces, in the order along the first segment there, and rule 3 is applied a bounded
+ * number of times. Debug builds assert each comes_between.
+ *
+ * Source of the idea: snap rounding (Hobby 1999), here without a grid. Order of the rounds: Amenta, Choi & Rote 2003.
+ * */
 #include "triangle/constrain.h"
 
 #include <assert.h>

@@ -1,28 +1,17 @@
 /* One point more in a Delaunay triangulation, by a worker who keeps to a stretch of vertices.
  *
  * The plane outside the hull is tiled by ghosts: triangles of a hull edge and a vertex at infinity (TRI_GHOST). The
- * "circumdisk" of a ghost is the open half plane beyond its hull edge, and the open edge itself; with that, insertion
- * knows no special case outside the hull. INVARIANT: every edge of every triangle, real or ghost, has a neighbour.
+ * "circumdisk" of a ghost is the open half plane beyond its hull edge, and the open edge itself; with these disks,
+ * insertion knows no special case outside the hull. INVARIANT: every edge of every triangle, real or ghost, has a
+ * neighbour.
  *
- * STRETCHES. Vertices are numbered, and a stretch is a range of numbers. It owns the triangles whose corners all lie
- * in the range, where infinity counts as in every range. A point is inserted only if the stretch owns its whole
- * cavity.
- * THEOREM. Stretches that are disjoint may insert at the same time; the result is that of one after the other, in any
- * order. Proof: every edge has an end other than infinity, so triangles of different owners share no edge. What a
- * stretch writes are triangles it owns, two triangles that are the insertion's alone, and links back to these in
- * triangles just outside the cavity. Such a triangle shares a corner in the range, so nobody else owns it or changes
- * its corners; and nobody else reads or writes its link across an edge of the stretch. What a stretch reads are
- * corners and links of what it owns, and corners of their neighbours: the same argument. New triangles have corners of
- * the cavity and the new vertex, so the stretch owns them: what it has owned it goes on owning, and what others own it
- * never does.
+ * STRETCHES. Vertices are numbered, and a stretch is a range of numbers. It owns the triangles whose corners all lie in
+ * the range, where infinity counts as in every range. A point is inserted only if the stretch owns its whole cavity.
+ * THEOREM (docs/theory.md, stretches). Stretches that are disjoint may insert at the same time; the result is that of
+ * one after the other, in any order.
  *
- * Beside triangle/cavity.h this is a search of its own: here every edge has a neighbour and some have a corner at
- * infinity, the stretch is a range of numbers, and nothing but links is wanted; there edges may be subsegments, which
- * are told apart, the fence is a box, and regions and coordinates are kept for those who judge the fan. One search
- * for both would ask of each triangle what only one of its two callers wants to know.
- *
- * A disk without a vertex inside is replaced by two triangles more than it had, whatever its place: so who inserts n
- * points knows beforehand how many triangles that takes, and nobody needs to be asked for room. */
+ * A disk without a vertex inside is replaced by two triangles more than it had. So n points take a known number of
+ * triangles, and nobody needs to be asked for room. */
 #ifndef TRIANGLE_INSERTION_H
 #define TRIANGLE_INSERTION_H
 

@@ -1,20 +1,18 @@
 /* The mesh: flat index arrays that every stage of the triangulator works on.
  *
- * A triangle is 32 bytes: three corners counter-clockwise, three links, a region, a life. Link e lies opposite
- * corner e.
+ * A triangle is 32 bytes: three corners counter-clockwise, three links, a region, a life. Link e lies opposite corner
+ * e.
  *   link >= 0   code 4 * t + f: the neighbour is triangle t, and its edge f is the same edge seen from the other side;
  *   link <  0   ~s: the edge is subsegment s, whose record names the triangle on either side.
  * INVARIANT (links): for every live triangle t and edge e, either link(link(t, e)) == (t, e), or the subsegment behind
- * the link has (t, e) on the side that its direction says. Every edge of the outer boundary is a subsegment. What the
- * invariant buys: a search that must not cross constrained edges stops at a sign bit, loads nothing for it, and
- * unconstrained triangles pay nothing for constraints, markers and parents.
+ * the link has (t, e) on the side that its direction says. Every edge of the outer boundary is a subsegment. So a
+ * search that must not cross constrained edges stops at a sign bit, and loads nothing for it; unconstrained triangles
+ * pay nothing for constraints, markers and parents.
  *
- * Where only a part of a mesh is here, what leads out of it is TRI_BEYOND. A search that meets that says so, and is
- * repeated once there is more.
+ * TRI_BEYOND is the link out of a part of a mesh. A search that meets it says so, and is repeated once there is more.
  *
- * Vertices are x, y pairs; attributes, markers and parents lie apart, since only new vertices touch them.
- *
- * Corners are ids below 2^28, triangles below 2^29 (4 * t + e is a non-negative int32_t). */
+ * Vertices are x, y pairs; attributes, markers and parents lie apart, since only new vertices touch them. Corners are
+ * ids below 2^28, triangles below 2^29 (4 * t + e is a non-negative int32_t). */
 #ifndef TRIANGLE_MESH_H
 #define TRIANGLE_MESH_H
 

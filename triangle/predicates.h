@@ -1,17 +1,13 @@
 /* Geometric predicates: the sign of a polynomial of coordinates, decided exactly.
  *
- * A floating-point filter, inline, decides nearly every call; where its rounding error could matter, an out-of-line
+ * A floating-point filter, inline, decides nearly every call. Where its rounding error could matter, an out-of-line
  * function decides, by exact arithmetic at last. No decision depends on the machine, the compiler or the filter.
  *
- * RANGE: a coordinate is an integer multiple of 2^-268 of magnitude at most 2^200 (tri_is_exact_coordinate), as
- * every double of magnitude 2^-216 to 2^200 is. Why that is enough: rounding an integer multiple of a power of two
- * to 53 bits gives an integer multiple again, as does splitting one. So coordinate differences, their tails and the
- * halves of both are multiples of 2^-268, products of two are multiples of 2^-536, those of four of 2^-1072, above the
- * least subnormal, 2^-1074: nothing underflows. Differences are at most 2^201, sums of products of four below 2^810,
- * and splitting multiplies factors, all below 2^404, by 2^27 + 1: nothing overflows.
- * FILTER: a test is |det| > k * size. The product k * size may be subnormal, off by up to 2^-1075; det is a multiple
- * of 2^-1072, the computed bound of 2^-1074, so that a det above the computed bound is above the true one too. Hence
- * the filters need no absolute term.
+ * RANGE: a coordinate is an integer multiple of 2^-268 of magnitude at most 2^200 (tri_is_exact_coordinate), as every
+ * double of magnitude 2^-216 to 2^200 is. THEOREM (docs/theory.md, exact signs). In this range nothing underflows or
+ * overflows.
+ * FILTER: a test is |det| > k * size. A det above the computed bound is above the true one, too, so the filters need no
+ * absolute term.
  *
  * Source: J. R. Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates, Discrete &
  * Computational Geometry 18 (1997); O. Devillers and M. Teillaud, Perturbations for Delaunay and Weighted Delaunay 3D

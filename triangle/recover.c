@@ -1,25 +1,13 @@
 /* Two polygons, left and right of the new edge, are triangulated by division and merging.
  *
  * The vertices left of ab, in the order in which the edges from them cross ab, make a chain from a to b; those right of
- * it, from b to a. What follows speaks of the left one, with ab as the ground and the chain above it. A vertex may
- * stand in it more than once (both sides of an edge that hangs into the polygon belong to the chain), so all here is
- * said of places in the chain. Every place p has a sight down to the ground, a part of an edge that crossed ab, and the
- * sights meet neither the chain nor each other.
+ * it, from b to a. A vertex may stand in a chain more than once, so all here is said of places in the chain.
  *
- * STRING: for places i < k the taut string is the shortest path from i to k in the polygon. It meets the sights of i
- * and k only once; so it lies between them, where all corners that a shortest path can bend at are places between i and
- * k, above it. It bends only upwards: the angle below is 180 degrees or more.
+ * INVARIANT. The string of places i < k is the shortest path from i to k in the polygon. What lies between the chain
+ * and its string (pockets) is triangulated, constrained Delaunay; the string from a to b is the edge ab.
  *
- * INVARIANT: what lies between the chain from i to k and its string (pockets) is triangulated, constrained Delaunay;
- * the string from a to b is the ground.
- *
- * MERGE of i..j and j..k: where the two strings do not bend upwards in j, the string from i to k leaves them at places
- * l and r, and the three paths l-r, l-j, j-r bound a gap, whose sides l-j and r-j bulge into it. No edge of the new
- * pockets joins two places of one side but in its old pockets (it would be a second shortest path), so all new
- * triangles have corners of both, and the rising bubble of Guibas & Stolfi finds them: on the edge lr a circle through
- * l and r grows into the gap until it meets the next corner; triangles beside the gap whose circles hold the edge's
- * other end, which sees them, are dug away first. Walls, the edges of the chain itself, stop the digging. Each of the
- * O(log m) rounds makes and digs away O(m) triangles.
+ * MERGE (docs/theory.md, recovering an edge). Two neighbouring strings are joined by a rising bubble: O(log m) rounds,
+ * each of which makes and digs away O(m) triangles.
  *
  * Source: L. Guibas and J. Stolfi, Primitives for the Manipulation of General Subdivisions and the Computation of
  * Voronoi Diagrams, ACM Transactions on Graphics 4 (1985), section 9; D. T. Lee and A. K. Lin, Generalized Delaunay

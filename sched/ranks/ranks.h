@@ -1,32 +1,18 @@
-/* The schedule's last level on several ranks, each in an address space of its own: the same mesh, tile for tile, as
- * one process makes.
- *
- * Every rank has made the coarse mesh, and owns some tiles (territory.h).
+/* The schedule's last level on several ranks, each in an address space of its own: the same mesh, tile for tile, as one
+ * process makes. Every rank has made the coarse mesh, and owns some tiles (territory.h).
  *
  * INVARIANT. Between phases a rank's mesh is the triangles of the true one that have a corner in its tiles, and no
  * others; links to others are TRI_BEYOND. Triangles that have corners of other ranks, too (straddlers), are in the mesh
- * of each of these. Its worklist holds entries of the true one among them, and each entry of the true one is with at
- * least one of the ranks that own a corner of its triangle: a block that takes it has all corners in its box, so that
- * each of them either works on the block or lends to it.
+ * of each of these. Each entry of the true worklist is with at least one of the ranks that own a corner of its
+ * triangle.
  *
- * A block that lies in the tiles of one rank asks for nothing: all triangles that it may change are here, and so are
- * those that share an edge with one of them. A block over the tiles of several ranks (at a border) is done by the one
- * that owns the first of these tiles. The others lend it what it needs: its entries of the worklist, some rings of
- * triangles around them, and all straddlers. Behind these lies the unknown; where a cavity may reach there, the block
- * pauses, and gets more rings (refine.h, struct tri_part). So how much is lent decides nothing but the time it takes.
- * When the phase is over the others are told which triangles have gone and which have come, and the borrowed ones are
- * dropped.
+ * RULE. A block in the tiles of one rank asks for nothing. A block over the tiles of several is done by the owner of
+ * the first of these tiles, who borrows from the others, and pauses where a cavity may reach behind what it has
+ * (refine.h, struct tri_part). After the phase the others are told what has changed, and borrowed triangles are
+ * dropped. So how much is lent decides nothing but the time it takes.
  *
- * A second schedule, for larger angles, begins with what is bad then, which the ranks find and put in order by tiles
- * (sched/by_tile.h): each entry is with one owner of a corner, and the others learn of it where it is taken.
- *
- * THEOREM. The mesh is that of one process. For blocks of a phase commute (phase.h), a block sees all that it would see
- * in one process, with every triangle turned as there, and finds its share of the worklist in the same order, that of
- * keys, which do not depend on who left what.
- *
- * WHAT MOVES. Rings and what they become: in proportion to the seams between blocks of several ranks, not to the mesh.
- * That holds for later rounds and the last call, too, which is a block like others, with all of the plane as its box:
- * it borrows the surroundings of what is left over, and the straddlers. */
+ * THEOREM (docs/theory.md, ranks). The mesh is that of one process. What moves is in proportion to the seams between
+ * blocks of several ranks, not to the mesh. */
 #ifndef SCHED_RANKS_RANKS_H
 #define SCHED_RANKS_RANKS_H
 

@@ -1,53 +1,14 @@
 /* The judge of meshes: asks, never mends, and shares no data structure with the mesher it judges.
  *
- * What is proved, all of it by exact predicates and comparisons:
- *   (1) every triangle is strictly counter-clockwise;
- *   (2) every directed edge belongs to at most one triangle, hence every edge to at most two, on opposite sides;
- *   (3) the boundary edges (those of one triangle only) meet nowhere but at common end points, two boundary vertices
- *       never lie at the same place, and the winding number of the boundary is 0 or 1 everywhere.
- * THEOREM. (1), (2) and (3) hold if and only if the triangles are a triangulation: two of them share nothing, one
- * corner or one whole edge. Proof: by (2) the interior edges cancel in the boundary of the sum of all triangles, so
- * the number of triangles over a generic point, each counted +1 by (1), is the winding number of the boundary edges
- * about it, which (3) bounds by one: no two triangles overlap. A vertex inside an edge, or two vertices at one place,
- * would make its triangles overlap those of the edge, unless both lie on the boundary, which (3) excludes. The
- * converse is clear.
- * The sum of the areas proves nothing beyond (2): it equals the area that the boundary encloses,
- * overlap or not. That is why no sum is compared. The star check (each inner vertex is wound once) follows from the
- * theorem too; it is kept since it names the vertex where a mesh folds, and the sweep of (3) names only where the
- * boundary shows it.
- *   (4) Locally Delaunay at every edge that is not constrained: by Delaunay's lemma the mesh is constrained Delaunay.
- *   (5) Conforming: also across subsegments, and no apex strictly inside a subsegment's diametral circle. In a
- *       Delaunay mesh no other vertex that sees a subsegment from its meshed side can lie there then.
- *   (6) Boundary edges are listed subsegments, listed subsegments are edges, input vertices are unchanged, input
- *       vertices in the mesh's area are corners of it, hole points lie outside.
- *   (7) Every boundary edge is a piece of an input segment's chain, or of the convex hull of the input's points where
- *       options.border allows that: the mesh ends where the input says, and a segment whose outside was carved is
- *       there. By (3) the mesh is then a union of faces of the input, none of them in part.
- *   (8) Every bounded component of the plane without the mesh and the input's segments has a hole point in it, or
- *       beside it within rounding: carving takes what is reachable, without crossing a segment, from outside or from a
- *       hole point.
- *   (9) Triangles on the two sides of an edge that is no subsegment have the same attribute, and it is that of the last
- *       region of the input whose point is in their face, or 0.
- *  (10) Of triangles with six nodes: each edge has one node, half the way along it, with the marker of its subsegment.
- *  (11) Attributes of input vertices are the input's; those of nodes amid edges lie half the way between those of the
- *       ends.
+ * THEOREM (docs/theory.md, the judge). Triangles are a triangulation if and only if (1) each is strictly
+ * counter-clockwise, (2) every directed edge belongs to at most one of them, and (3) the edges of one triangle only
+ * meet nowhere but at common ends, two boundary vertices never lie at one place, and the boundary winds 0 or 1 times
+ * around every point. These are decided by exact predicates and comparisons, and so is what the input asks for:
+ * Delaunay, conforming, segments, border, holes, regions, nodes amid edges.
  *
- * What is checked within a tolerance, because vertices on segments are rounded: each input segment is a chain of
- * subsegments whose vertices are at most TRI_CHECK_ULPS * 2^-52 * (the segment's largest coordinate) off its line.
- * Pieces may be missing only where they are outside the mesh (carved), or no farther than that from its boundary; that
- * is tested at three points of each missing piece. The mesh fills the convex hull (options.convex) where no boundary
- * vertex is farther inside it than 2 * TRI_CHECK_ULPS * 2^-52 * (the largest coordinate): vertices on its edges are
- * rounded to either side.
- * Angles and areas are computed in double precision and may miss their bounds by a relative 1e-12 (of the squared
- * sine, of the area). Attributes of new vertices may lie outside the range of the input's by a millionth of it: between
- * which vertices they were interpolated nobody knows.
- *
- * What is not checked: (8) takes an input's segments outside the mesh for no walls where they meet each other, or the
- * mesh, so close that rounding turns their order round; (9) not the faces beside which a region point lies within
- * rounding.
- *
- * Coordinates that are very large or very small as a whole are multiplied by a power of two first; those below 2^-216
- * then are rounded to multiples of 2^-268, in the mesh as in the input.
+ * TOLERANCE. Each input segment is a chain of subsegments whose vertices are at most TRI_CHECK_ULPS * 2^-52 * (the
+ * segment's largest coordinate) off its line. Angles and areas may miss their bounds by a relative 1e-12 (of the
+ * squared sine, of the area).
  *
  * Cost: O(n + b log b) time for n triangles and b boundary edges, subsegments and input points; about 60 bytes a
  * triangle beside the arrays given, or within a bound: see tri_check_source. */

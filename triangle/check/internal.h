@@ -1,18 +1,14 @@
 /* What the files of the judge share: the trial in progress. Private to them.
  *
- * THE WAY. The mesh is looked at part by part: as many triangles at a time, in their order, as the memory holds (all
- * of them, where no bound is set). In a part vertices have numbers of its own. What triangles of one part say by
- * themselves or as neighbours is judged there; half-edges whose other side is not in the part are kept (store.h),
- * matched when all parts have been seen, and judged then. What is left are the boundary edges. These, the subsegments
- * and the input's points are small against the mesh: the frame, in memory as a whole, on which all other checks work.
- * Of vertices a byte is kept.
- *   If the mesh is one part, that part is the caller's arrays, and the frame has its vertices: nothing is copied.
+ * THE WAY. The mesh is looked at part by part: as many triangles at a time, in their order, as the memory holds (all of
+ * them, where no bound is set). Vertices have numbers of their own in a part. What triangles of one part say by
+ * themselves or as neighbours is judged there. Half-edges whose other side is not in the part are kept (store.h),
+ * matched when all parts have been seen, and judged then. The boundary edges are left. These, the subsegments and the
+ * input's points are the frame, in memory as a whole, on which all other checks work. Of vertices a byte is kept. A
+ * mesh of one part is that part: nothing is copied.
  *
- * THEOREM. No fault is missed over the cut into parts. Half-edges that have been paired cancel, in one part or across
- * parts, so check.h's theorem holds of what stays unpaired. Only which kind of fault is told could depend on parts: of
- * three half-edges on one edge two may have been paired in one part. Then the third is no lawful boundary edge, and a
- * second pass (tri_check_match) looks for what else there is on the edges that seem to be the boundary. (Pairs in
- * several parts that lie on one edge inside are not counted among the faults; their triangles' boundary is.)
+ * THEOREM (docs/theory.md, the judge). No fault is missed over the cut into parts; only which kind of fault is told
+ * could depend on them, and a second pass (tri_check_match) looks for that.
  *
  * A half-edge of the mesh is named 3 * t + k, 64 bits wide: the edge of triangle t opposite its corner k, directed so
  * that t lies on its left. A corner has the same name. In a part t counts from the part's first triangle. */

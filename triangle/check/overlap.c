@@ -4,19 +4,14 @@
  *   1. the edges of the order that pass through the event point are found by search; each must end there;
  *   2. they are removed, and the edges that start there inserted, sorted by direction;
  *   3. edges that have become neighbours must not meet before the earlier of their right ends;
- *   4. from bottom to top, edges must alternate: mesh above, mesh below, mesh above ... which says that the winding
- *      number is 0, 1, 0, 1 ... everywhere.
- * The leftmost point where two edges meet wrongly has two of them as neighbours just before, so 1 or 3 finds it.
- * Queries (is this point inside the mesh?) ride along as events. O(b log b).
+ *   4. from bottom to top, edges must alternate: mesh above, mesh below, mesh above ...: then the winding number is
+ *      0, 1, 0, 1 ... everywhere.
+ * THEOREM. The leftmost point where two edges meet wrongly has two of them as neighbours just before, so 1 or 3 finds
+ * it. Queries (is this point inside the mesh?) ride along as events. O(b log b).
  *
- * Faces: what is above an edge and what is below the next one is the same face, and so are what is below the lowest and
- * above the highest edge. Faces are the classes of sides that that joins: between two events a face is cut into gaps
- * between neighbours, and a gap that goes on beyond an event, on either side of what starts or ends there, keeps the
- * edge below or above it.
- *   Each face outside the mesh but the outer one must have been emptied for a hole point, whether mesh is beside it or
- * only other such faces. Where pieces of input segments are missing, or triangles have attributes, a second sweep has
- * these pieces and the inner subsegments among its edges, since neither carving nor regions cross them. Missing pieces
- * are rounded where they meet: should the sweep fail over that, they are left out. */
+ * Faces (docs/theory.md, the judge): each face outside the mesh but the outer one must have been emptied for a hole
+ * point. A second sweep, with missing pieces of segments and inner subsegments, is left out where it fails by rounding
+ * of the pieces. */
 #include <assert.h>
 #include <stdlib.h>
 

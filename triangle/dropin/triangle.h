@@ -5,21 +5,21 @@
  * Includes nothing, so that it may stand within a namespace or within extern "C"; C89 and later, C++98 and later.
  * The coordinate type is TRI_REAL, which is double. A REAL of the client's, which Triangle's own header asks for, must
  * be the same type; none is made. A library built with PTRIANGLE_SINGLE has float instead; its clients define SINGLE.
- * Inside, coordinates are double either way; rounded to float, triangles may turn flat or over where a float is coarse
- * against them, so keep the origin near.
+ * Inside, coordinates are double either way. Rounded to float, triangles may turn flat or over where a float is coarse
+ * against them: keep the origin near.
  *
- * No call ends the process or keeps anything: any number of threads may call at the same time. The same
- * input and switches give the same output, bit for bit, for any number of threads, compiler or locale; the two
- * libraries make different meshes for the same bounds. In a forked child libptriangle refines on one thread.
- *
- * ERRORS are returned, as an enum triangulate_status; Triangle's own function returns nothing. After an error
- * nothing is allocated, no array is changed, and all counts in *out and *vorout are 0, so that a client that does not
- * ask sees no mesh; only an *out that is *in stays as it was. The words that go with the error are told to
- * options->message. Since old clients do not ask, triangulate() writes them as one line to standard error, unless the
- * switches have Q; so it does why a mesh is empty without an error ("the outline is open at points 3 and 17"), and that
- * segments are skipped. It prints nothing else, triangulate_with() nothing at all. */
+ * No call ends the process or keeps anything: any number of threads may call at the same time. The same input and
+ * switches give the same output, bit for bit, for any number of threads, compiler or locale; the two libraries make
+ * different meshes for the same bounds. In a forked child libptriangle refines on one thread. */
 #ifndef TRIANGLE_TRIANGLE_H
 #define TRIANGLE_TRIANGLE_H
+
+/* ERRORS are returned, as an enum triangulate_status; Triangle's own function returns nothing. After an error nothing
+ * is allocated, no array is changed, and all counts in *out and *vorout are 0, so that a client that does not ask sees
+ * no mesh; only an *out that is *in stays as it was. The words that go with the error are told to options->message.
+ * Since old clients do not ask, triangulate() writes them as one line to standard error, unless the switches have Q. It
+ * writes a line, too, where a mesh is empty without an error ("the outline is open at points 3 and 17"), and where
+ * segments are skipped. It prints nothing else, triangulate_with() nothing at all. */
 
 #ifndef TRI_REAL
 #ifdef SINGLE
