@@ -40,7 +40,7 @@ static int agree_on_failure(struct launch *launch, int code, struct tri_error *e
     return code == EXIT_SUCCESS && agreed ? EXIT_FAILURE : code;
 }
 
-/* All come here, whatever they have agreed on before: so they can be asked once more. */
+/* Every task comes here, whatever the tasks have agreed on before, so all can be asked once more. */
 int launch_agree(struct launch *launch, int code, struct tri_error *error)
 {
     enum { FIRST_STOP = 124 };
@@ -56,17 +56,18 @@ int launch_agree(struct launch *launch, int code, struct tri_error *error)
     return code;
 }
 
-/* False: a signal has come before that. */
+/* Sleeps so many tenths of a second. False: a signal has come before the time is over. */
 static bool pause_for(int tenths)
 {
     const struct timespec time = {tenths / 10, tenths % 10 * 100000000L};
     return nanosleep(&time, NULL) == 0;
 }
 
-/* The launcher kills the others when this one aborts, so that the first one may say nothing, or only that it was asked
- * to end. Where that one has met the same it has told, and is given the time to end all; so is a lower one by those
- * behind it, up to some: whoever is told to end by then is silent. Afterwards the launcher needs some to pass the words
- * on: that of MPICH drops what it has not read by then. */
+/* When this task aborts, the launcher kills the others, and task 0 may say nothing, or only that it was asked to end.
+ * If task 0 has met the same loss, it has told of it: this task waits until task 0 has ended all. Likewise every task
+ * waits for the tasks with lower numbers, up to LAST of them, and whoever is ended meanwhile is silent. After its line
+ * a task waits for the launcher to pass the line on: the launcher of MPICH drops words that it has not read when a task
+ * ends. */
 static void tell_loss(const struct launch *launch, bool told)
 {
     enum { ENDING = 10, EACH = 20, LAST = 5, READING = 5 };

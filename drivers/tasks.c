@@ -14,7 +14,7 @@ static long number_of(const char *name)
     return text ? strtol(text, NULL, 10) : -1;
 }
 
-/* OpenMPI, then MPICH and its kin, then a step of SLURM. */
+/* The variables of OpenMPI, of MPICH and its kin, of a step of SLURM. */
 static const char *const sizes[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
 static const char *const ranks[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "SLURM_PROCID"};
 
@@ -29,7 +29,7 @@ int tasks_started(int *task)
     return 1;
 }
 
-/* Of OpenMP, GCC's library and LLVM's. */
+/* The variables by which OpenMP, GCC's library and LLVM's are told how threads wait. */
 static const char *const ways_to_wait[] = {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT", "KMP_BLOCKTIME"};
 
 static bool is_way_told(void)
@@ -64,8 +64,8 @@ static bool is_machine_busy(void)
     return is_read && tasks_is_busy(text, sysconf(_SC_NPROCESSORS_ONLN));
 }
 
-/* What is set tells the new start that it is one. The descriptors by which a launcher is reached stay open: whoever is
- * at main() has not yet opened any. */
+/* The variable that is set here tells the new program that it is the second start. The descriptors by which a launcher
+ * is reached stay open, and there are no others: main() has opened nothing yet. */
 void tasks_wait_idly(char **argv)
 {
     char path[OWN_PATH];

@@ -7,15 +7,15 @@
 /* How many tasks have been started, of which this is number *task, from 0; without a launcher 1. */
 int tasks_started(int *task);
 
-/* So many processors are there, and so many threads run or wait for one (first word behind the averages of
- * /proc/loadavg, this one among them): does every second processor have other work? False: not known. */
+/* Does every second processor have other work? loadavg: the text of /proc/loadavg, whose first word behind the averages
+ * tells how many threads run or wait for a processor, this one among them. False: not known. */
 bool tasks_is_busy(const char *loadavg, long processors);
 
-/* One of several tasks, and a process on a busy machine, does not let threads spin where they wait: cores have others
- * to run, which would wait for those that spin. OpenMP's library takes that from the environment when it is loaded,
- * before main(): so the program starts itself anew, once, as the same process, unless the caller has told how to wait.
- * To be called before anything else; argv: that of main(). Costs a millisecond, and some microseconds where there is
- * nothing to do. Returns there, and where there is no way. */
+/* One of several tasks, and a process on a busy machine, does not let waiting threads spin: other threads would wait
+ * for the cores on which they spin. OpenMP's library reads from the environment how threads wait when it is loaded,
+ * before main(). So the program starts itself anew, once, as the same process, unless the caller has told how to wait.
+ * To be called before anything else; argv: that of main(). A new start costs a millisecond. Where none is needed or
+ * possible the function returns, after some microseconds. */
 void tasks_wait_idly(char **argv);
 
 #endif

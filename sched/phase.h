@@ -1,8 +1,13 @@
-/* One phase: its blocks, refined at once on views of the mesh.
+/* One phase: its blocks, refined at once on views of the mesh. What the phases of a run hand on is here, too:
  *
- * THEOREM. The result of a phase is that of running its blocks one after the other, in any order (triangle/refine.h,
- * serialisation): their fences are disjoint. And what a block does, it does in an order of its own: so the mesh does
- * not depend on the number of threads. */
+ *   par_keys    who left each triangle of the worklist, which decides on the order
+ *   par_share   how several ranks divide the blocks of a phase
+ *   par_state   the run: the mesh, the worklist, the place that the run has reached, what has been counted
+ *   par_phase   runs a phase, of all blocks or of one column
+ *
+ * THEOREM (triangle/refine.h, serialisation; docs/theory.md, cells and phases). The fences of a phase are disjoint, so
+ * its result is that of running its blocks one after the other, in any order. Each block does its work in an order of
+ * its own, so the mesh does not depend on the number of threads. */
 #ifndef SCHED_PHASE_H
 #define SCHED_PHASE_H
 
@@ -16,21 +21,21 @@ struct par_park;
 struct par_state;
 struct tri_pause;
 
-/* Triangles there are, with those that have been handed out and those of blocks that have been halted. */
+/* The number of triangles, with those that have been handed out and those of blocks that have been halted. */
 int64_t par_triangles(const struct par_state *state);
 
 /* Tells of the phase that begins. */
 void par_tell(const struct par_state *state, int phase);
 
-/* All that gates and fences have kept back has had its turn: the total says nothing of it any more. */
+/* Every triangle that gates and fences have kept back has had its turn: the report's total forgets them. */
 void par_forget_deferred(struct par_report *report);
 
 void par_add_up(struct tri_refine_report *sum, const struct tri_refine_report *add);
 
 /* Who left each triangle of a worklist, and when: round + 1 (8 bits), place of the block in the order of all, by
- * column, phase and row, + 1 (24 bits), how many it had left before (32 bits). Of those that no block has had:
- * PAR_NO_ROUND, the tile (block of the first phase) and their places in its list (sched/by_tile.h); or only their
- * places in the list of all. So keys do not depend on who else was at work. */
+ * column, phase and row, + 1 (24 bits), how many triangles it had left before (32 bits). A triangle that no block has
+ * had has the key PAR_NO_ROUND, its tile (block of the first phase) and its place in the tile's list (sched/by_tile.h);
+ * or only its place in the list of all. So keys do not depend on who else was at work. */
 struct par_keys {
     uint64_t *item;
     int32_t n, capacity;
@@ -39,9 +44,9 @@ struct par_keys {
 /* How ranks share the blocks of a phase (sched/ranks/ranks.h). */
 struct par_share {
     const bool *is_mine;   /* [blocks] */
-    const bool *is_border; /* [blocks] others hold a part of it: what is not here of that is TRI_BEYOND */
+    const bool *is_border; /* [blocks] others hold a part of the block, which is TRI_BEYOND here */
     struct par_ids changed; /* triangles made by such blocks, some of them several times */
-    /* Brings what lies around these vertices, which blocks wait for. */
+    /* Brings the triangles around these vertices, for which blocks wait. */
     enum tri_status (*more)(void *user, const struct par_ids *asked, struct tri_error *error);
     void *user;
 };
@@ -50,13 +55,13 @@ struct par_share {
 enum par_stage {
     PAR_SIZES,   /* sizes, where angles are dear */
     PAR_BOUNDS,  /* all bounds */
-    PAR_FINISHED /* nothing is left but to hand it out */
+    PAR_FINISHED /* the mesh is only to be handed out */
 };
 
 /* How near a mesh is to its end. */
 enum par_end {
     PAR_UNFINISHED, /* it is being refined, or is as blocks have left it */
-    PAR_NUMBERED,   /* its numbers are those in which it is handed out */
+    PAR_NUMBERED,   /* its vertices and triangles have the numbers by which they are handed out */
     PAR_DELIVERED   /* it has been handed out */
 };
 
@@ -69,32 +74,32 @@ struct par_state {
     struct par_ids worklist; /* triangles that may be bad, in canonical order; some may have gone since */
     struct par_keys key;     /* [worklist.n] ascending; n == 0: no block has had any */
     struct par_ids remaining; /* where bad triangles are counted as they leave (sched/sweep/remain.h) */
-    bool counts_remaining;   /* so it is now */
-    int64_t remained[TRI_EXCUSES + 1]; /* those that have left (tri_count_bad_among) */
+    bool counts_remaining;   /* such triangles are counted now */
+    int64_t remained[TRI_EXCUSES + 1]; /* bad triangles that have left (tri_count_bad_among) */
     struct par_room spare;   /* unused ranges of the arrays */
     double radius;           /* largest circumradius in the worklist when it was last filled */
     struct par_report *report;
     int32_t n_schedules;     /* begun so far; the last is the one that works */
     enum par_stage stage;
     int level;               /* of the schedule or the call at work */
-    bool amid;               /* in this stage's schedule: `cells` are its blocks before the first round; in a sweep: in
-                                a column, whose worklist has been given */
-    int round, phase;        /* of that, the second from 0 */
+    bool amid;               /* the run is in this stage's schedule, and `cells` are the blocks of its first round; in a
+                                sweep: in a column, whose worklist has been given */
+    int round, phase;        /* of the schedule; the phase from 0 */
     int32_t column, n_columns; /* of a sweep, the first from 1; 0: it is none */
-    struct tri_pause *paused; /* where a sequential call goes on that a checkpoint's state is amid; else NULL */
-    bool may_halt;           /* a phase that is stopped is to be kept in `halt`, rather than ended as it is; where that
-                                cannot be it fails */
-    struct par_halt halt;    /* of phase `phase`, which goes on from there */
+    struct tri_pause *paused; /* the sequential call that goes on, amid which a checkpoint's state was kept; or NULL */
+    bool may_halt;           /* a phase that is stopped is kept in `halt`, rather than ended as it is; it fails where it
+                                cannot be kept */
+    struct par_halt halt;    /* phase `phase`, which goes on from there */
     struct par_share *share; /* NULL: all blocks are done here, with all that they may look at */
-    int32_t n_kept;          /* vertices there were before */
-    bool sizes_first;        /* a schedule for sizes comes before that for all bounds (tri_sizes_come_first) */
+    int32_t n_kept;          /* vertices that there were before refinement */
+    bool sizes_first;        /* a schedule for sizes comes before the one for all bounds (tri_sizes_come_first) */
     const struct tri_refine_options *then; /* what is asked for behind this schedule, on its cells, before the mesh is
                                 numbered; NULL: nothing, or something else */
     bool may_number;         /* nothing is refined after this schedule, and what it makes is to be numbered */
     struct par_partition cells; /* of the last schedule of the whole mesh, and the tiles by which it is numbered */
     enum par_end end;
     int64_t gone;            /* triangles that have been handed out, and are no more */
-    bool stays;              /* a mesh that does not fit in memory is not swept, or no more */
+    bool stays;              /* the mesh is not swept, or no longer swept, though it does not fit in memory */
     struct par_park *park;   /* bounds the memory of the mesh; NULL: nobody does */
 };
 

@@ -18,10 +18,10 @@ double tri_area_demand(const struct tri_mesh *mesh, const struct tri_refine_opti
 enum tri_status tri_refine_check(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                                  const struct tri_executor *executor, struct tri_error *error);
 
-/* found[last - first] receives the triangles from first to last - 1 at which there is something for the loop to do (an
- * angle that is bad and not hopeless, a bad size; if conforming, a subsegment that the triangle encroaches; all of
- * that only where it is urgent), in order; returns how many. Neighbours are not asked, which may be elsewhere. To be
- * told the bounds costs more than to judge a triangle. */
+/* found[last - first] receives, in order, the triangles from first to last - 1 at which the loop has something to do:
+ * an angle that is bad and not hopeless, a bad size, or, if conforming, a subsegment that the triangle encroaches; of
+ * these the urgent ones, where options->urgent is set. Returns how many. Neighbours are not looked at: they may be
+ * elsewhere. Each call works the bounds out anew, which costs more than to judge a triangle. */
 int32_t tri_find_work(const struct tri_mesh *mesh, const struct tri_refine_options *options, tri_triangle_id first,
                       tri_triangle_id last, tri_triangle_id *found);
 
@@ -32,10 +32,11 @@ int32_t tri_find_work_among(const struct tri_mesh *mesh, const struct tri_refine
 /* The corner at which a triangle is obtuse, so that it encroaches a subsegment that lies opposite; -1: none. Exact. */
 int tri_obtuse_corner(const struct tri_mesh *mesh, tri_triangle_id triangle);
 
-/* Counts the subsegments with a vertex of a triangle beside them in their diametral circle, which -D could not mend: by
- * precision where the vertex lies on the subsegment as far as coordinates tell, or they have no place for the split;
- * else, where the vertex is level with an end but for rounding and it would take too many parts, by place: at a small
- * angle of the input, between segments near to each other. With such vertices on both sides the first reason counts. */
+/* Counts, by reason, the subsegments that -D could not mend: an apex beside them lies in their diametral circle.
+ * TRI_EXCUSE_PRECISION: the vertex lies on the subsegment as far as coordinates tell, or coordinates have no place for
+ * the split. Else the vertex is level with an end but for rounding, and the split would take too many parts: the reason
+ * is the place, at a small angle of the input or between segments near to each other. Where both sides have such a
+ * vertex, the first reason counts. */
 void tri_count_encroached(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                           const struct tri_refine_report *report, int64_t count[TRI_EXCUSES]);
 
@@ -45,8 +46,8 @@ void tri_count_bad(const struct tri_mesh *mesh, const struct tri_refine_options 
                    const struct tri_refine_report *report, const struct tri_executor *executor,
                    int64_t count[TRI_EXCUSES]);
 
-/* The same of n triangles alone, each of which is listed once; adds to the counts. The last is of those that have no
- * reason of their own. */
+/* The same of n triangles alone, each of which is listed once; adds to the counts. The last count is of triangles that
+ * have no reason of their own. */
 void tri_count_bad_among(const struct tri_mesh *mesh, const struct tri_refine_options *options,
                          const struct tri_refine_report *report, const tri_triangle_id *triangle, int32_t n,
                          int64_t count[TRI_EXCUSES + 1]);

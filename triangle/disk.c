@@ -29,12 +29,12 @@ bool tri_is_in_diametral_disk(const struct tri_mesh *mesh, const struct tri_subs
 /* A unit in the last place of the largest coordinate, in shortest edges. */
 static const double ULP = 0x1p-5;
 
-/* See the rule; the parts that rounding may ask for. */
+/* The rule's NARROW; and the most parts into which a subsegment is cut because of rounding. */
 enum { NARROW = 8, MOST_PARTS = 8 };
 
 static double distance(struct tri_point a, struct tri_point b) { return sqrt(tri_distance2(a, b)); }
 
-/* Where on the subsegment from a to b is the point level with v? */
+/* The fraction of the subsegment at which the point level with v lies. */
 static double level_with(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v)
 {
     struct tri_point a = mesh->xy[s->v[0]], b = mesh->xy[s->v[1]], at = mesh->xy[v];
@@ -48,7 +48,7 @@ static double level_with(const struct tri_mesh *mesh, const struct tri_subsegmen
     return ((at.x - a.x) * x + (at.y - a.y) * y) / (x * x + y * y);
 }
 
-/* Vertex v as a subsegment of length l sees it: see the rule. */
+/* The l, h and d of the rule, for one vertex and one subsegment. */
 struct sight {
     double l, h, d;
     bool from_end; /* d is measured from the subsegment's second end */
@@ -62,7 +62,7 @@ static struct sight sight_of(const struct tri_mesh *mesh, const struct tri_subse
     return (struct sight){l, fabs(x * (at.y - a.y) - y * (at.x - a.x)) / l, nearer * l, level >= 0.5};
 }
 
-/* Is the point level with the vertex the one to split at? Below the shortest edge d is rounding. */
+/* Is the subsegment split at the point level with the vertex? A d below the shortest edge is rounding. */
 static bool is_split_level(const struct sight *v, double shortest)
 {
     return NARROW * v->h < v->l && v->d >= shortest && v->d >= v->h;
@@ -105,9 +105,9 @@ bool tri_is_encroached_from(const struct tri_mesh *mesh, const struct tri_subseg
     return is;
 }
 
-/* The place on subsegment s at this fraction, level with a point. Where a level is an ulp or two from the foot of the
- * perpendicular, ulps of the end to which the fraction was worked out, that is taken, which is level as well and has
- * been rounded once. */
+/* The place on subsegment s at this fraction, level with the point `at`. If it lies within an ulp or two of the foot of
+ * the perpendicular (ulps of the end from which the fraction was worked out), the foot is taken: it is level as well,
+ * and has been rounded once. */
 static bool place_level(const struct tri_mesh *mesh, const struct tri_subsegment *s, double fraction,
                         struct tri_point at, int choice, struct tri_point *p)
 {

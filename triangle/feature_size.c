@@ -1,11 +1,12 @@
 /* The size of features, and why points for angles cannot run away.
  *
- * Every vertex v has a size s(v), an estimate of Ruppert's local feature size (1995): of a vertex of the input, how far
- * it is to the vertices and segments that its triangles reach; of a point inserted for a triangle with shortest edge
- * ab, the lesser of s(a) + SLOPE * |ap| and s(b) + SLOPE * |bp|, inherited as insertion radii are (Shewchuk 2002); of a
- * split point the same from all around it, but no more than its distance from other features; of a point inserted
- * because of sizes no more than its distance from its neighbours. What coordinates do not resolve is no feature
- * (limits.shortest2, tri_touches).
+ * Every vertex v has a size s(v), an estimate of Ruppert's local feature size (1995):
+ *   - a vertex of the input: its distance from the vertices and segments that its triangles reach;
+ *   - a point p for a triangle with shortest edge ab: the lesser of s(a) + SLOPE * |ap| and s(b) + SLOPE * |bp|,
+ *     inherited as insertion radii are (Shewchuk 2002);
+ *   - a split point: the same from all vertices around it, but no more than its distance from other features;
+ *   - a point inserted because of sizes: no more than its distance from its neighbours.
+ * Distances that coordinates do not resolve are no features (limits.shortest2, tri_touches).
  *
  * RULE. A triangle whose shortest edge ab is shorter than min(s(a), s(b)) / SHRINK is not refined for its angle.
  *
@@ -25,9 +26,9 @@ static const double SLOPE = 0.5;
 /* Is the corner beside the edge opposite to it, not before its start or beyond its end? From squared lengths. */
 static bool is_beside(double edge, double left, double right) { return left <= right + edge && right <= left + edge; }
 
-/* Estimates in shares of the triangles. Each share has vertices of its own: triangles that are sorted along a curve, by
- * vertices that are, begin share by share with higher ones. Corners that are another share's come afterwards; the least
- * of all estimates is the same in any order. */
+/* Estimates in shares of the triangles. Each share owns a range of vertices: triangles are sorted along a curve by
+ * their vertices, so each share begins with a higher vertex than the last one. Corners that another share owns are
+ * looked at afterwards; the least of all estimates is the same in any order. */
 struct estimate {
     struct tri_mesh *mesh;
     tri_vertex_id own[TRI_MOST_SHARES + 1]; /* share i: vertices own[i] .. own[i + 1] - 1 */
@@ -101,7 +102,7 @@ static void estimate_own(void *context, size_t share)
     }
 }
 
-/* And at those of other shares. Where they have not been noted, all are looked at. */
+/* The share's triangles at vertices of other shares. Where they have not been noted, all triangles are looked at. */
 static void estimate_others(const struct estimate *e, size_t share)
 {
     struct tri_mesh *mesh = e->mesh;
@@ -160,7 +161,8 @@ static double size_from(const struct tri_mesh *mesh, tri_parent_id p, struct tri
     return is_feature && distance < inherited ? distance : inherited;
 }
 
-/* The distance of the new point from a subsegment on its edge, where it lies beside it and that counts. */
+/* The distance of the new point from a subsegment on its cavity's boundary; infinity where the point does not lie
+ * beside the subsegment, or the space between is not filled. */
 static double size_from_wall(const struct tri_mesh *mesh, tri_parent_id p, struct tri_point at, int32_t wall)
 {
     const struct tri_subsegment *sub = &mesh->sub[wall];

@@ -1,6 +1,7 @@
-/* What waits to be treated. A triangle with a corner that sees a subsegment of its own under too wide an angle comes
- * before all others (refine.c, order); then those with bad angles, by their shortest edges; then those that are only
- * too large. */
+/* What waits to be treated: new bad triangles are judged and queued.
+ *
+ * Three kinds wait, in this order (refine.c): triangles with a corner that sees the opposite subsegment under too wide
+ * an angle; other triangles with bad angles, by their shortest edges; triangles that are only too large. */
 #include "triangle/refiner.h"
 
 #include <assert.h>
@@ -67,7 +68,7 @@ static bool judge_edge(struct tri_refiner *r, const struct tri_cavity_edge *edge
     return tri_bad_queue_push_size(&r->queue, entry, is_bad);
 }
 
-/* The same where only what is urgent counts. */
+/* Judges the new triangles where only urgent ones count (options->urgent). */
 static bool judge_urgent(struct tri_refiner *r)
 {
     for (int32_t i = 0; i < r->cavity.n_edges; i++) {

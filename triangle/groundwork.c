@@ -1,5 +1,12 @@
-/* Made in this order: limits of size, feature sizes, acute vertices, incidence, and by these the limit of narrow
- * gaps. */
+/* What tri_refine_prepare finds in a mesh before the first point is inserted, in this order:
+ *
+ *   limits      the shortest edge that coordinates can carry
+ *   features    how far each vertex is from what is around it (feature_size.h)
+ *   acute       input vertices at which two subsegments meet at less than 60 degrees
+ *   incidence   the parents that end at each vertex, in order of direction where they are many
+ *   gaps        the dearest narrow space that will be filled, by all of the above (small_angle.h)
+ *
+ * INVARIANT. Refinement only reads these, but for the sizes of the vertices that it adds. */
 #include "triangle/groundwork.h"
 
 #include <assert.h>

@@ -1,15 +1,15 @@
-/* Sizes, whatever stands in the way.
+/* Points for triangles that are too large, whatever stands in the way.
  *
- * The usual point of a triangle that is too large may be out of reach: beyond a wall that cannot be split, farther away
- * than coordinates go, on a vertex. Then the triangle's own longest subsegment is split, if it is among the longer
- * edges; and where that cannot be, its centroid is inserted, which nothing can refuse: it lies in its triangle, hence
- * in the circumdisk, and sees its whole cavity (cavity.h).
+ * The usual point of such a triangle may be out of reach: beyond a wall that cannot be split, farther away than
+ * coordinates go, on a vertex. Then the triangle's own longest subsegment is split, if it is among the longer edges. If
+ * it cannot be split, the centroid is inserted. Nothing can refuse the centroid: it lies in its triangle, hence in the
+ * circumdisk, and sees its whole cavity (cavity.h).
  *
  * THEOREM (docs/theory.md, areas). Both are done finitely many times, whatever the rest of refinement does. So the
  * bound on areas is kept by every triangle whose least height is more than three shortest edges, some 100 ulps.
  *
  * RULE. At walls that must not be split, a triangle 4,096 times as long as high that only a size test refuses gets no
- * centroid, if the test refuses the lowest triangle on its longest edge, too: no centroid would shorten that. */
+ * centroid, if the test refuses the lowest triangle on its longest edge, too: no centroid would shorten that edge. */
 #include "triangle/inside.h"
 
 #include <assert.h>

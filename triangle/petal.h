@@ -1,10 +1,10 @@
 /* The best place for the point of a triangle with a bad angle: the locally optimal Steiner point.
  *
  * Of a bad triangle with shortest edge ab, the petal is the part, on the triangle's side of ab, of the disk through a
- * and b that sees ab under the angle bound: any point there makes a good angle opposite ab. The petal of a bad triangle
- * holds no vertex that sees ab. The best point of it is the one farthest from all vertices; it lies at a vertex of the
- * Voronoi diagram, or where an edge of that leaves the petal (Erten & Üngör, Quality triangulations with locally
- * optimal Steiner points, SIAM J. Sci. Comput. 31, 2009). docs/theory.md has the proofs.
+ * and b that sees ab under the angle bound or more: any point there makes a good angle opposite ab. The petal of a bad
+ * triangle holds no vertex that sees ab. Its best point is the one farthest from all vertices, which lies at a vertex
+ * of the Voronoi diagram, or where an edge of the diagram leaves the petal (Erten & Üngör, Quality triangulations with
+ * locally optimal Steiner points, SIAM J. Sci. Comput. 31, 2009). docs/theory.md has the proofs.
  *
  * THEOREM. Whatever is found is at least as far from all vertices that it sees as the triangle's circumcentre is from
  * its corners; so refinement ends for the same bounds as with circumcentres. */

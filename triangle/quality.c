@@ -1,4 +1,4 @@
-/* Bounds, and the placement of new points. */
+/* Bounds, and the usual new point. */
 #include "triangle/quality.h"
 
 #include <assert.h>

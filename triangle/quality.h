@@ -1,6 +1,13 @@
-/* When is a triangle bad, and where does the point go that removes it?
+/* The geometry of one triangle: its shape, its bounds in the form in which the inner loop compares them, and the usual
+ * point of a bad one (circumcentre or off-centre).
  *
- * All decisions use + - * / and sqrt alone, so that they are the same on every machine. */
+ *   tri_bounds_for       what an angle bound is: a squared sine, the lens of a subsegment, the height of an off-centre
+ *   tri_shape_of         squared edge lengths, twice the area, the shortest edge
+ *   tri_longer_product   what the sine of the smallest angle is measured by
+ *   tri_place            the usual point
+ *
+ * criterion.h asks with these whether a triangle of a mesh is bad; treat.c chooses between tri_place and petal.h.
+ * INVARIANT. All decisions use + - * / and sqrt alone, so that they are the same on every machine. */
 #ifndef TRIANGLE_QUALITY_H
 #define TRIANGLE_QUALITY_H
 

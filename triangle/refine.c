@@ -1,10 +1,9 @@
-/* The refinement loop: takes the worst bad triangle, treats it (treat.c), queues what that has made bad (feed.c).
+/* The refinement loop: takes the worst bad triangle, treats it (treat.c), queues the new bad triangles (feed.c).
  *
- * ORDER. The walls of a cavity are all the subsegments that its point encroaches and sees only if none of them is
- * encroached already (cavity.h): the corner that encroaches it may hide it, and the point would come to lie anywhere
- * near it. So triangles with such a corner come first: their points lie behind the subsegment, and it is split, unless
- * a fence forbids that. Then those with the shortest edges (bad_queue.h). Under -D, subsegments whose diametral circle
- * is not empty are split before anything else (disk.c).
+ * ORDER. Under -D, subsegments whose diametral circle is not empty are split before anything else (disk.c). Then come
+ * triangles with a corner that encroaches the opposite subsegment: while it is encroached, the corner may hide it from
+ * the cavity of another point (cavity.h), which would come to lie anywhere near it. Then come the triangles with the
+ * shortest edges (bad_queue.h), and at last those that are only too large.
  *
  * COST. A triangle costs what its cavity has: O(1) on average, but up to n beside n points at a wall that must not be
  * split (-Y).
@@ -78,10 +77,11 @@ static bool queue_chunk(struct tri_refiner *r)
     return true;
 }
 
-/* Passes over the worklist. First, chunk by chunk, the bad angles beside the shorter half of the edges: the order by
- * shortest edge (bad_queue.h) then nearly holds for the whole mesh, but the work stays in the cache, if triangles that
- * are neighbours in the list are neighbours in the plane. Then what is left of the bad angles, in the same order, and,
- * place by place, what is only too large. Resumable: false means that something failed or that there was no room. */
+/* Passes over the worklist twice. The first pass takes, chunk by chunk, the bad angles beside the shorter half of the
+ * edges: the order by shortest edge (bad_queue.h) then nearly holds for the whole mesh, and the work stays in the
+ * cache, if neighbours in the list are neighbours in the plane. The second pass takes the other bad angles, in the same
+ * order, and then, place by place, triangles that are only too large. Resumable: false means that something failed, or
+ * that there was no room. */
 static bool refine_worklist(struct tri_refiner *r)
 {
     if (r->step == NOT_BEGUN) {
@@ -115,8 +115,8 @@ static double worked_angle(const struct tri_refine_options *options)
 }
 
 /* Where areas decide on the mesh and the angle bound is above TRI_EASY_ANGLE, sizes come first, with an easy bound
- * (tri_sizes_come_first). Not within a fence, nor with a worklist: what the first stage makes bad for the second is not
- * among its triangles. */
+ * (tri_sizes_come_first). A call with a fence or a worklist has one stage: triangles that the first stage makes bad for
+ * the second would not be in its list. */
 static void begin_stages(struct tri_refiner *r)
 {
     bool easy = !r->options->fence && !r->options->worklist && tri_sizes_come_first(r->mesh, r->options, NULL);

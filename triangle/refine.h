@@ -23,8 +23,8 @@ extern "C" {
  * larger one is worked for as this one; triangles are still counted by what is asked for. */
 #define TRI_USUAL_ANGLE 38.0
 
-/* Above the first, in degrees, sizes are brought about before angles, with the second as bound: see refine.c,
- * stages. */
+/* Where the bound on angles is above TRI_EASY_ANGLE degrees, sizes may be refined first, with TRI_SIZES_ANGLE as bound
+ * (begin_stages in refine.c). */
 #define TRI_EASY_ANGLE 31.0
 #define TRI_SIZES_ANGLE 25.0
 

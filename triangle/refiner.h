@@ -1,5 +1,5 @@
-/* A refiner, for the three files that it is made of: refine.c, the loop; feed.c, what waits in its queue; treat.c, what
- * is done about one bad triangle. */
+/* The state of a refiner, private to its three files: refine.c is the loop, feed.c fills its queue, treat.c treats one
+ * bad triangle. pause.h keeps the state in files. */
 #ifndef TRIANGLE_REFINER_H
 #define TRIANGLE_REFINER_H
 
@@ -34,11 +34,11 @@ struct tri_refiner {
     uint32_t step_of_stop; /* see tri_stop_is_due */
 };
 
-/* What came of a bad triangle. */
+/* How the treatment of a bad triangle ended. */
 enum tri_outcome {
     DONE,     /* a point was inserted, or the triangle is gone */
     AGAIN,    /* a subsegment was split instead, and the triangle may still stand */
-    REFUSED,  /* this point cannot be had, for the reason in `excuse`; perhaps another */
+    REFUSED,  /* this point cannot be had, for the reason in `excuse`; perhaps another one can */
     GIVEN_UP, /* it stays, and has been counted */
     DEFERRED, /* the gate or the fence stands before it: somebody else's */
     FAILED    /* no memory, no room, or somebody asks for the end */

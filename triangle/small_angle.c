@@ -1,15 +1,15 @@
-/* Rules that make refinement end on any PSLG, beside those of the loop.
+/* Rules that make refinement end on any PSLG, beside the order of the loop (refine.c).
  *
- * THEORY. Refinement with bounds up to 28.6 degrees ends where segments meet at 60 degrees or more (Chew 1993; Shewchuk
- * 2002; Rand 2011). A triangle whose shortest edge is of one of these kinds stays:
+ * THEOREM (Chew 1993; Shewchuk 2002; Rand 2011). Refinement with bounds up to 28.6 degrees ends where segments meet at
+ * 60 degrees or more. RULE. A triangle stays if its shortest edge is of one of these kinds (docs/theory.md, the rule):
  *   - it joins two segments that meet at an acute vertex, on one of the circles on which they are split (concentric
- *     shells: Ruppert 1995; Miller, Pav & Walkington 2003): its length is dictated by the angle of the input;
+ *     shells: Ruppert 1995; Miller, Pav & Walkington 2003): the angle of the input dictates its length;
  *   - it joins the sides of a spike, two segments that meet at less than 1 / SHARP;
  *   - it bridges a space between two segments that would take more points to fill than the mesh can afford, at length /
  *     width each (tri_choose_gaps);
  *   - it, or the triangle's height, is shorter than limits.shortest2 says: rounding;
- *   - it has run away (feature_size.c): above 28.6 degrees points may beget points in ever smaller triangles. What
- *     stays is counted by reason (tri_count_bad). */
+ *   - it has run away (feature_size.c): above 28.6 degrees points may beget points in ever smaller triangles.
+ * Triangles that stay are counted by reason (tri_count_bad). */
 #include "triangle/small_angle.h"
 
 #include <assert.h>
@@ -52,8 +52,8 @@ static tri_vertex_id apex_between(const struct tri_mesh *mesh, tri_vertex_id u, 
     return TRI_NONE;
 }
 
-/* Both on subsegments of segments that meet at a common vertex, at the same distance from it? Then their distance is
- * dictated by the angle there (Miller, Pav & Walkington 2003). */
+/* Do u and v lie on two segments that meet at a vertex, at the same distance from it? Then the angle there dictates how
+ * far apart they are (Miller, Pav & Walkington 2003). */
 static bool on_one_shell(const struct tri_mesh *mesh, tri_vertex_id u, tri_vertex_id v, double uv2)
 {
     tri_vertex_id apex = apex_between(mesh, u, v);
@@ -390,13 +390,14 @@ static struct demand whole_demand(const struct tri_mesh *mesh, const struct tri_
     return d.share[0];
 }
 
-/* Which narrow spaces are filled, by their cost. All that are seen, where their costs, each counted for every triangle
- * in its space, come to a quarter of a million: thin layers and slits of ordinary parts. Else, where there are spikes
- * of no width or lines a few units in the last place apart, the cheap ones: up to the largest power of two, 2^10 or
- * more, such that filling every space as far as this cost goes takes no more than PER_VERTEX points for each vertex of
- * the input, or each end of a segment if there are fewer, and an ALLOWANCE. (A dearer space is still filled where it is
- * wide.) Vertices that lie in a space may hide it here: none, hidden or not, is filled at more than what has been seen
- * costs, or all that was allowed. */
+/* Chooses the narrow spaces that are filled, by their cost.
+ *
+ * The demand counts a space once for every triangle in it. If all demands come to at most ALL, every space is filled:
+ * thin layers and slits of ordinary parts. Else there are spikes of no width, or lines a few units in the last place
+ * apart, and the cheap spaces are filled: those up to the largest power of two, 2^10 or more, for which filling every
+ * space as far as this cost goes takes at most PER_VERTEX points for each vertex of the input (or each end of a segment
+ * if these are fewer) and an ALLOWANCE. A dearer space is still filled where it is wide. Vertices in a space may hide
+ * it here; whether hidden or not, no space takes more points than limits.gap_points. */
 void tri_choose_gaps(struct tri_mesh *mesh, const struct tri_executor *executor)
 {
     const double ALL = 250000, ALLOWANCE = 20000, PER_VERTEX = 4;

@@ -1,11 +1,11 @@
 /* Places of split points.
  *
- * A split point is rounded, so that it lies beside its subsegment. So errors would add up from split to split, and a
- * boundary subsegment that moves outwards might meet another part of the boundary, which is gone once what is outside
- * has been carved. Hence: the place is that on the parent's line, rounded once, or a neighbour of it or of the place on
- * the subsegment, not more than ASTRAY away from the line (TRI_CHAIN_ASTRAY in a mesh that was read: chain.h), a unit
- * away in each coordinate's own measure, then in that of the larger one. The first from which all of the cavity can be
- * seen is taken.
+ * A split point is rounded, so it lies beside its subsegment. Errors would add up from split to split, and a boundary
+ * subsegment that moves outwards might meet another part of the boundary. RULE. The place is the one on the parent's
+ * line, rounded once, or a neighbour of it or of the place on the subsegment. A neighbour is a unit away in each
+ * coordinate's own measure, or else in the measure of the larger coordinate, and at most ASTRAY away from the line
+ * (TRI_CHAIN_ASTRAY in a mesh that was read: chain.h). The first place from which all of the cavity can be seen is
+ * taken.
  *
  * THEOREM (boundary; docs/theory.md, split points). Each parent on the boundary has an empty triangle of its own
  * outside: its ends and its guard. If every split point of a boundary subsegment lies on its inner side, in that
@@ -17,14 +17,13 @@
 #include "triangle/chain.h"
 #include "triangle/predicates.h"
 
-/* Resolutions, those of the parent's largest coordinate, that a split point may lie off its line: where coordinates are
- * finer than at an end, a part from a point near that end is as far off. Its own resolutions, where it is chosen to be
- * level with a vertex: the wider, the more places coordinates offer (disk.c, columns). 200 fans and bundles of 3 to 12
- * lines 3e-7 to 3e-10 of their length apart keep 1,624 circles, with two of its own 2,201. */
+/* How far a split point may lie off its line, in resolutions of the parent's largest coordinate: a part that begins at
+ * a point near a coarse end is as far off, also where its other coordinates are finer. A point that is to be level with
+ * a vertex is measured in its own resolutions: the wider this bound, the more places coordinates offer (disk.c). */
 static const double ASTRAY = 4;
 
-/* Is p on the line of the parent, or on that side of it that is left of the way from `from` to `to`, subsegments being
- * far longer than they are off it? */
+/* Is p on the line of the parent, or on the side of it that is left of the way from `from` to `to`? (Subsegments are
+ * far longer than their distance from the line.) */
 static bool is_inside_line(struct tri_point a, struct tri_point b, struct tri_point from, struct tri_point to,
                            struct tri_point p)
 {
@@ -32,7 +31,7 @@ static bool is_inside_line(struct tri_point a, struct tri_point b, struct tri_po
     return (along ? tri_orient2d(a, b, p) : tri_orient2d(b, a, p)) >= 0;
 }
 
-/* Else it is one of a mesh that was read, and found as a chain. */
+/* Was the parent a straight line from the start? Else it belongs to a mesh that was read, and was found as a chain. */
 static bool began_as_line(const struct tri_mesh *mesh, const struct tri_parent *parent)
 {
     return tri_compare_places(parent->guard, mesh->xy[parent->v[0]]) != 0;
@@ -57,7 +56,7 @@ static bool is_allowed(const struct tri_mesh *mesh, const struct tri_subsegment 
     return !boundary || keeps_to_itself(mesh, &mesh->parents[s->parent], from, to, p);
 }
 
-/* Is it one of the places on the parent's line? Else on the subsegment, which lies inside by now. */
+/* Is this choice a place on the parent's line? Else it is one on the subsegment, which lies inside by now. */
 static bool is_on_line(int choice) { return choice / TRI_PLACES % 2 == 0; }
 
 /* How far a neighbour lies from the rounded place in each coordinate. */

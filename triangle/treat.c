@@ -1,8 +1,9 @@
 /* What is done about one bad triangle.
  *
- * It proposes a point (quality.h). The point's cavity is searched completely; every subsegment that the point
- * encroaches is a wall of it (cavity.h), and if there is one it is split instead, and the triangle, if it still stands,
- * is asked again. Else the point is inserted. Nothing is changed before everything is known, so nothing is undone.
+ * The triangle proposes a point (petal.h, quality.h). The point's cavity is searched completely. Every subsegment that
+ * the point encroaches is a wall of the cavity (cavity.h): if there is one, it is split instead, and the triangle, if
+ * it still stands, proposes again. Else the point is inserted. Nothing is changed before everything is known, so
+ * nothing is undone.
  *
  * INVARIANT. A triangle is refined for its angle unless its shortest edge is shorter than s(v) / 6 (feature_size.c),
  * joins two segments that meet at an acute vertex (shell, spike), or bridges a space that is dearer than the mesh can

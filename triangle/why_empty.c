@@ -1,4 +1,6 @@
-/* THEOREM. Nothing is enclosed exactly where the subsegments along which segments run form a forest, and a tree with
+/* Why a mesh has no triangles.
+ *
+ * THEOREM. Nothing is enclosed exactly where the subsegments along which segments run form a forest, and a tree with
  * more than one vertex has leaves: points at which one segment ends alone. A segment between two leaves of a tree
  * closes a ring, unless all of the tree between them lies on its line. */
 #include "triangle/why_empty.h"

@@ -21,19 +21,19 @@
 
 struct par_tiles {
     struct tri_mesh *mesh;
-    const struct par_partition *partition; /* NULL: the mesh has no tiles, and goes in pieces */
+    const struct par_partition *partition; /* NULL: the mesh has no tiles, and is handed out in pieces */
     const struct tri_executor *executor;
     const struct tri_sink *sink;
-    const struct tri_pslg *figure; /* its points are handed out as they came, bit by bit; NULL: the mesh's are */
+    const struct tri_pslg *figure; /* the input: its points are handed out bit by bit; NULL: the mesh's points are */
     int32_t n_kept;               /* vertices that there were before refinement */
     bool region_column;           /* the attribute of a triangle's region is handed out, unless the mesh has columns */
     bool kept_elsewhere;          /* the vertices that keep their numbers are handed out by another rank */
     int32_t n_ranks, rank;        /* see struct tri_stream; 0: one */
     const int64_t *first[3];
     int64_t *number;              /* [capacity] of each vertex; -1: none yet */
-    int32_t *kept_tile;           /* [n_kept] column * n_rows + row of those that keep theirs */
+    int32_t *kept_tile;           /* [n_kept] column * n_rows + row of the vertices that keep their numbers */
     int32_t capacity;
-    bool is_in_files;             /* number is; the mesh's storage has it */
+    bool is_in_files;             /* the array `number` lies in files, in the mesh's storage */
     int64_t n_vertices, n_triangles, n_segments; /* handed out so far */
     struct par_ids held;          /* numbered vertices that triangles beyond the last column still have */
     int32_t n_threads;            /* of the executor; 0: one */

@@ -1,10 +1,10 @@
 /* The judge of meshes: asks, never mends, and shares no data structure with the mesher it judges.
  *
  * THEOREM (docs/theory.md, the judge). Triangles are a triangulation if and only if (1) each is strictly
- * counter-clockwise, (2) every directed edge belongs to at most one of them, and (3) the edges of one triangle only
- * meet nowhere but at common ends, two boundary vertices never lie at one place, and the boundary winds 0 or 1 times
- * around every point. These are decided by exact predicates and comparisons, and so is what the input asks for:
- * Delaunay, conforming, segments, border, holes, regions, nodes amid edges.
+ * counter-clockwise, (2) every directed edge belongs to at most one of them, and (3) the boundary edges, those of one
+ * triangle only, meet nowhere but at common ends, two boundary vertices never lie at one place, and the boundary winds
+ * 0 or 1 times around every point. These are decided by exact predicates and comparisons, and so is what the input asks
+ * for: Delaunay, conforming, segments, border, holes, regions, nodes amid edges.
  *
  * TOLERANCE. Each input segment is a chain of subsegments whose vertices are at most TRI_CHECK_ULPS * 2^-52 * (the
  * segment's largest coordinate) off its line. Angles and areas may miss their bounds by a relative 1e-12 (of the
