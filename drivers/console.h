@@ -55,7 +55,7 @@ void console_error(const struct console *console, const struct tri_error *error)
  * no error: he has seen what he wanted to see. */
 enum tri_status console_flush(struct tri_error *error);
 
-/* The same as the last thing that is done. False, after a word on standard error: could not be written. */
+/* The same as the last act of the program. False, after a word on standard error: output could not be written. */
 bool console_close(const struct console *console);
 
 #endif

@@ -1,7 +1,9 @@
-/* RULE. What is sure refuses, what is likely warns: areas ask for so many triangles beyond doubt, angles for about so
- * many. A bound that somebody has set, --memory or a limit of the process, refuses what is likely, too; so does what a
- * mesh holds where areas decide, since a mesh fails at that after all the work. A mesh that fits stays in memory, which
- * is quicker. */
+/* Can the machine carry the mesh that is asked for, and in what way?
+ *
+ * RULE. A sure estimate refuses, a likely one warns: areas ask for a number of triangles beyond doubt, angles for about
+ * a number. A likely estimate refuses, too, against a bound that somebody has set (--memory, or a limit of the
+ * process), and against the most that a mesh holds where areas decide, since the mesh would fail there after all the
+ * work. A mesh that fits stays in memory, which is quicker. */
 #define _DEFAULT_SOURCE /* access */
 
 #include "drivers/plan.h"
@@ -17,9 +19,9 @@
 #include "drivers/resources.h"
 #include "triangle/size_text.h"
 
-/* A mesh in memory may take so much more than expected; more where it must not; and most where angles above 31 degrees
- * or diametral circles without vertices are asked for as well, of which an estimate knows least. Less than the last is
- * not worth looking for. */
+/* By how many times a mesh in memory may exceed its estimate: in general; where it must not; and where, as well, angles
+ * above 31 degrees or diametral circles without vertices are asked for, of which an estimate knows least. Memory below
+ * WORTH_A_LOOK bytes is not looked for. */
 static const double MARGIN = 1.15, STRICT_MARGIN = 1.5, STEEP_MARGIN = 2.5, CONFORMING_MARGIN = 4, WORTH_A_LOOK = 1e8;
 
 /* Areas decide on a mesh that has hardly more triangles than they ask for beyond doubt: 1.14 times as many, as a rule.

@@ -47,8 +47,8 @@ static bool is_left_out(const char *word)
     return is_option(word, "--checkpoint") || is_option(word, "--resume") || is_option(word, "--time-limit");
 }
 
-/* The command that goes on: the words that were given, but for those that name the directory, and the limit of time,
- * which was that of the run that is over. */
+/* The command that goes on: the words that were given, without the directory, which --resume names, and without the
+ * limit of time, which was for the run that is over. */
 static void print_command(FILE *to, const struct restart *r, const char *program, const struct arguments *arguments)
 {
     fputs(program, to);

@@ -63,8 +63,8 @@ static inline int32_t par_tile_of_block(const struct par_partition *p, int32_t b
     return block / p->n_rows / 2 * par_tile_rows(p) + block % p->n_rows / 2;
 }
 
-/* Things lie in order, those of k = 0 .. n - 1 (tiles, rows, ranks) from start[k] to start[k + 1] - 1: whose is this
- * place, which is one's? O(log n). */
+/* Things lie in order, the things of k = 0 .. n - 1 (tiles, rows, ranks) from start[k] to start[k + 1] - 1: whose is
+ * this place, which is one's? O(log n). */
 static inline int32_t par_holder_of(const int32_t *start, int32_t n, int32_t place)
 {
     int32_t low = 0, high = n;

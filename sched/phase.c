@@ -380,7 +380,7 @@ static enum tri_status deal_room(struct phase *p, struct tri_error *error)
     return status;
 }
 
-/* What tasks wait for, if that is not room, all at once. */
+/* Brings, all at once, the triangles for which tasks wait; tasks that wait for room are left alone. */
 static enum tri_status fetch_more(struct phase *p, struct tri_error *error)
 {
     struct par_ids asked = {0};
@@ -861,7 +861,8 @@ static bool halt_tasks(struct phase *p)
     return true;
 }
 
-/* Begins, or goes on; halts where that is wanted, or collects what tasks have done. */
+/* Begins the phase, or goes on with it; then halts it, where it is stopped and may be kept, or collects what its tasks
+ * have done. */
 static enum tri_status run_phase(struct phase *p, struct tri_error *error)
 {
     enum tri_status status = p->state->halt.n_blocks > 0 ? take_up(p, error) : begin_tasks(p, error);

@@ -244,7 +244,7 @@ static enum tri_status number_mesh(struct par_state *state, struct tri_error *er
     return status;
 }
 
-/* What blocks have left unused is gone afterwards, by numbering if that is now due. Triangles move. */
+/* Closes the gaps that blocks have left unused, by numbering if it is due now. Triangles move. */
 static enum tri_status leave_no_gaps(struct par_state *state, bool numbering, struct tri_error *error)
 {
     enum tri_status status = TRI_OK;
@@ -585,7 +585,7 @@ static enum tri_status refine_a_little(struct par_state *state, const struct tri
     return status;
 }
 
-/* Refines to these bounds: sequentially if that is little work, else by the schedule. What areas and the triangles that
+/* Refines to these bounds: sequentially if the work is little, else by the schedule. What areas and the triangles that
  * there are ask for is known; what angles ask for is a guess, which small parts of a mesh may spoil by orders of
  * magnitude. Where the guess alone says that there is much work, a little of it is done first: that may be all, and
  * what then remains is guessed better. */

@@ -1,4 +1,4 @@
-/* What is outside goes: concavities, holes; then regions spread. */
+/* Triangles outside go: in concavities and holes. Then regions spread. */
 #ifndef TRIANGLE_CARVE_H
 #define TRIANGLE_CARVE_H
 

@@ -200,7 +200,7 @@ static struct tri_point end_of(const struct layer *l, int32_t segment, int k)
     return l->mesh->xy[l->pslg->segments[2 * segment + k]];
 }
 
-/* Does v lie within so many resolutions, those of the segment's larger end, of the line of an input segment? */
+/* Does v lie within so many resolutions (of the segment's larger end) of the line of an input segment? */
 static bool keeps_to(const struct layer *l, int32_t segment, tri_vertex_id v, double resolutions)
 {
     const int32_t *ends = &l->pslg->segments[2 * segment];

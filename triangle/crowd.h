@@ -1,5 +1,5 @@
-/* How many triangles refinement will end with, from how crowded the features of a mesh are: the better part of what
- * --dry-run says. Blocks are cut by the quicker measure of triangle/estimate.h. */
+/* How many triangles refinement will end with, from how crowded the features of a mesh are: --dry-run tells it. Blocks
+ * are cut by the quicker measure of triangle/estimate.h. */
 #ifndef TRIANGLE_CROWD_H
 #define TRIANGLE_CROWD_H
 

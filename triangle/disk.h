@@ -17,13 +17,13 @@ struct tri_disk_split {
  * it, as far as coordinates tell? */
 bool tri_is_resolved_from(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_vertex_id v);
 
-/* Does that apex, and do coordinates resolve a split because of it? Where is then in *split: see the rule in the .c
- * file. */
+/* Does the apex of the triangle with this code lie in the circle, and do coordinates resolve a split because of it?
+ * *split: where the subsegment is split then, by the rule in disk.c. */
 bool tri_is_encroached_from(const struct tri_mesh *mesh, const struct tri_subsegment *s, tri_halfedge code,
                             struct tri_disk_split *split);
 
-/* The places for a split, as tri_place_split; those from TRI_SPLIT_PLACES on are for a point level with a vertex alone,
- * and nearer to being so than the others. */
+/* The places for a split, as tri_place_split has them. Places from TRI_SPLIT_PLACES on are only for a point level with
+ * a vertex, and are nearer to the level than the others. */
 enum { TRI_COLUMNS = 9, TRI_DISK_PLACES = TRI_SPLIT_PLACES + 2 * TRI_COLUMNS };
 bool tri_place_disk_split(const struct tri_mesh *mesh, const struct tri_subsegment *s,
                           const struct tri_disk_split *split, int choice, struct tri_point *p);

@@ -1,6 +1,6 @@
-/* The work of a triangle has two parts: what an area bound asks for inside it, and what an angle bound asks for to
- * grade from its shortest edge to its longest. For samples of the first, large triangles are cut into small ones, so
- * that their work lies where it is; the second lies at the shortest edge. */
+/* The work of a triangle has two parts: triangles that an area bound asks for inside it, and triangles that an angle
+ * bound asks for, to grade from the shortest edge to the longest. Samples of the first part are taken from small pieces
+ * of large triangles, so that the work lies where it will be; the second part lies at the shortest edge. */
 #include "triangle/estimate.h"
 
 #include <assert.h>

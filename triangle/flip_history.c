@@ -1,8 +1,8 @@
-/* Back through the flips: before a flip, a point of its quadrilateral lay in that of its two triangles which is on the
- * point's side of the diagonal that was there. So a walk from the triangle that a point lies in now, from flip to
- * earlier flip, ends at the number of the triangle that it lay in at first. The side is decided exactly; where rounding
- * has moved a centroid out of its triangle, the walk ends at a triangle nearby that no subsegment parts from it, since
- * no flip has crossed one. */
+/* Back through the flips: before a flip, a point of its quadrilateral lay in the one of its two triangles that is on
+ * the point's side of the former diagonal. So a walk from the triangle that a point lies in now, from flip to earlier
+ * flip, ends at the number of the triangle that it lay in at first. The side is decided exactly; where rounding has
+ * moved a centroid out of its triangle, the walk ends at a triangle nearby that no subsegment parts from it, since no
+ * flip has crossed one. */
 #include "triangle/flip_history.h"
 
 #include <assert.h>

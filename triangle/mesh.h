@@ -45,7 +45,7 @@ enum tri_vertex_kind { /* values of tri_mesh.on below 0 */
     TRI_VERTEX_FREE = -2,  /* made by refinement in the interior of a region */
     TRI_VERTEX_ACUTE = -3, /* as TRI_VERTEX_INPUT, and two subsegments meet there at less than 60 degrees */
     TRI_VERTEX_NONE = -4   /* no vertex: an id that is free (only until par_number) */
-    /* >= 0: made by refinement on the parent with that id */
+    /* >= 0: made by refinement, on the parent with this id */
 };
 
 struct tri_triangle {

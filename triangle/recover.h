@@ -1,4 +1,4 @@
-/* Recovery of an edge: the triangles that it crosses make way for it. */
+/* Recovery of an edge: the triangles that the edge crosses make way for it. */
 #ifndef TRIANGLE_RECOVER_H
 #define TRIANGLE_RECOVER_H
 

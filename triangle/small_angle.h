@@ -37,14 +37,15 @@ tri_vertex_id tri_common_end(const struct tri_mesh *mesh, tri_parent_id parent, 
 /* A bad angle that no point can mend, or that would only move it: see the rules in the .c file. */
 bool tri_is_hopeless(const struct tri_mesh *mesh, tri_triangle_id triangle, const struct tri_shape *shape);
 
-/* How many points, to the order, would it take to fill the space between two parents, the first through u, the second
- * through v, that are nearest to each other there, as far apart as v is from the line of the first? The integral of
- * 1 / width along it: Ruppert's of 1 / size^2 (1995), each place being as wide as its features. */
+/* How many points, to the order, would fill the space between two parents? The first runs through u, the second through
+ * v, and they are nearest to each other there: as far apart as v is from the line of the first. The cost is the
+ * integral of 1 / width along the space: Ruppert's integral of 1 / size^2 (1995), where each place is as wide as its
+ * features. */
 double tri_filling_cost(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
                         struct tri_point v);
 
-/* Is the space between them one that will be filled, so that its width is a feature? Not where an end of one touches
- * the other and they do not meet at less than 60 degrees. u and v as above. */
+/* Will the space between two parents be filled, so that its width is a feature? Not where an end of one touches the
+ * other, unless they meet at less than 60 degrees. u and v as above. */
 bool tri_is_filled(const struct tri_mesh *mesh, tri_parent_id first, tri_parent_id second, struct tri_point u,
                    struct tri_point v);
 

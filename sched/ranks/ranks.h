@@ -42,8 +42,8 @@ struct par_index {
 
 /* How far the schedule is: what comes next. */
 struct par_stand {
-    int32_t schedule;     /* 0; 1: that for what the state asks for then */
-    int32_t round, phase; /* the second PAR_PHASES: the round is over */
+    int32_t schedule;     /* 0; 1: the second one, for larger angles (par_state.then) */
+    int32_t round, phase; /* phase PAR_PHASES: the round is over */
     int32_t step;         /* of the phase */
 };
 

@@ -1,9 +1,10 @@
-/* What a sweep has to do in columns to come: the triangles of a worklist that no block can have yet.
+/* The triangles of a sweep's worklist that no block can have yet: the work of columns to come.
  *
  * THEOREM. A triangle waits for the first odd column whose blocks' right end lies right of all its corners. Until then
  * no block changes it, and none takes it from the worklist: for a block takes and changes what has all corners in its
- * fence, and the fences of that step and of those before end no further right. So a list from which it is missing, and
- * into which it comes by its key when its column has its turn, does the same, and costs what is in a few columns. */
+ * fence, and the fences of that step and of those before end no further right. So the
+ * triangle may be missing from the list until its column has its turn, and come into it by its key then. A list costs
+ * what is in a few columns. */
 #ifndef SCHED_SWEEP_AHEAD_H
 #define SCHED_SWEEP_AHEAD_H
 

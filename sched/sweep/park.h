@@ -1,8 +1,8 @@
 /* A mesh that may be larger than the memory it is allowed: its arrays are in memory as long as they fit, then in files.
  *
- * Whenever arrays are about to grow, what the process has in memory is looked at, before anything grows. If the arrays
- * and all else would no longer fit, all of them move to files, one for each, which are mapped: so all that works on a
- * mesh works on this one, and makes the same. Disk space is taken before it is used: a full disk is an error of the
+ * Before arrays grow, the memory of the process is looked at. If the arrays and all else would no longer fit, all of
+ * them move to files, one for each, which are mapped: whatever works on a mesh works on this one, too, and makes the
+ * same. Disk space is taken before it is used: a full disk is an error of the
  * call that grows the mesh, not a signal. Files are as long as their arrays, and have no name once they are open:
  * nothing is left of them, however the process ends. From then on whoever works on the mesh, and one more thread, look
  * at how much the process has in memory, and unmap all pages of the files when that is too much; who touches one finds

@@ -116,7 +116,7 @@ static enum tri_status sweep_columns(struct par_state *state, struct par_tiles *
     return status || *left ? status : end_tiles(state, tiles, odd, error);
 }
 
-/* *odd: the column to begin with, for which the worklist is as that of the sweep then. */
+/* *odd: the column to begin with, for which the worklist is as the sweep had it then. */
 static enum tri_status begin_sweep(struct par_state *state, struct par_tiles *tiles, struct par_ahead *ahead,
                                    int32_t *odd, struct tri_error *error)
 {

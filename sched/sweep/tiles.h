@@ -62,10 +62,10 @@ static inline size_t par_tiles_bytes(const struct par_tiles *tiles)
 /* Room for what each vertex has here; nothing is known yet of those that come later. False: no memory. */
 bool par_tiles_reserve(struct par_tiles *tiles);
 
-/* The same in two steps, in each of which columns come from left to right. Number: its vertices, from
- * tiles->n_vertices on; ids that are free have been marked (par_room_mark) and stay so; *numbered is to be freed in any
- * case, and is small until then. Hand out: by then all corners of its triangles have their numbers, or are vertices of
- * later tiles. */
+/* par_tiles_column in two steps, in each of which columns come from left to right. par_tiles_number numbers the
+ * vertices of a column, from tiles->n_vertices on. Free ids have been marked (par_room_mark) and stay marked; *numbered
+ * is to be freed in any case, and is small until it is handed out. When par_tiles_hand_out is called, all corners of
+ * the column's triangles have their numbers, or are vertices of later tiles. */
 struct par_column;
 enum tri_status par_tiles_number(struct par_tiles *tiles, int32_t column, struct par_column **numbered,
                                  struct tri_error *error);
