@@ -443,6 +443,30 @@ static void links_stay_links(void **state)
     assert_int_equal(empty_directory(), 3);
 }
 
+/* Only the system's administrator can give links away. */
+static void links_of_others_are_refused(void **state)
+{
+    (void)state;
+    if (geteuid() != 0)
+        skip();
+    empty_directory();
+    make_file(in_directory("precious"), "x");
+    assert_int_equal(symlink("precious", in_directory("link")), 0);
+    assert_int_equal(symlink("link", in_directory("own")), 0);
+    assert_int_equal(lchown(in_directory("link"), 1234, 1234), 0);
+    for (int i = 0; i < 2; i++) {
+        struct tri_output_set set;
+        struct tri_output *output;
+        struct tri_error error;
+        tri_outputs_begin(&set);
+        assert_int_equal(tri_output_open(&set, in_directory(i ? "own" : "link"), &output, &error), TRI_CANNOT_WRITE);
+        assert_non_null(strstr(error.text, "another user"));
+        assert_int_equal(set.n, 0);
+    }
+    assert_contents(in_directory("precious"), "x");
+    assert_int_equal(empty_directory(), 3);
+}
+
 static void refused_before_any_work(void **state)
 {
     (void)state;
@@ -569,7 +593,7 @@ int main(void)
         cmocka_unit_test(names_appear_at_commit),
         cmocka_unit_test(abort_leaves_nothing),
         cmocka_unit_test(two_writers_of_one_name),
-        cmocka_unit_test(links_stay_links),
+        cmocka_unit_test(links_stay_links), cmocka_unit_test(links_of_others_are_refused),
         cmocka_unit_test(refused_before_any_work),
         cmocka_unit_test(devices_are_written_in_place),
         cmocka_unit_test(full_disk_leaves_old_files),

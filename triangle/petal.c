@@ -4,8 +4,10 @@
 
 #include <assert.h>
 
-/* The most edges of the diagram that wait. Deeper trees are left unsearched behind these. */
-enum { MOST_PENDING = 64 };
+/* The most edges of the diagram that wait, and triangles that are walked through. Larger trees are left unsearched
+ * behind these; a hundred triangles were never seen. Rounding can make a ring of circumcentres around a corner where
+ * vertices lie a few units in the last place apart, so only the second ends the walk for sure. */
+enum { MOST_PENDING = 64, MOST_WALKED = 1024 };
 
 /* Flatter triangles have no circumcentre to rely on: twice the area over the longest squared edge. */
 static const double FLAT = 1e-12;
@@ -111,7 +113,7 @@ static bool walk(struct petal *petal, const struct tri_fence *fence, tri_triangl
 {
     struct pending pending[MOST_PENDING];
     int n = 0;
-    for (;;) {
+    for (int walked = 0; t != TRI_NONE && walked < MOST_WALKED; walked++) {
         for (int e = 0; e < 3; e++)
             if (e != from && n < MOST_PENDING)
                 pending[n++] = (struct pending){tri_code(t, e), c};
@@ -127,9 +129,8 @@ static bool walk(struct petal *petal, const struct tri_fence *fence, tri_triangl
             t = near->n[e] >= 0 ? follow(petal, fence, &edge, &c) : TRI_NONE;
             from = t == TRI_NONE ? from : tri_edge(near->n[e]);
         }
-        if (t == TRI_NONE)
-            return true;
     }
+    return true;
 }
 
 static bool owns(const struct tri_mesh *mesh, const struct tri_fence *fence, const struct tri_triangle *t)

@@ -22,6 +22,7 @@ LONG = """
     delay, number = float(sys.argv[1]), int(sys.argv[2])
     class Alarm(BaseException): pass
     def ring(*_): raise Alarm
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGALRM, ring)
     try:
         threading.Timer(delay, os.kill, (os.getpid(), number)).start()
@@ -43,6 +44,14 @@ WAYS = {
     "refine": "ptriangle.mesh(points, segments).refine(max_area=1e-7)",
     "compat": "ptriangle.compat.triangulate({'vertices': points, 'segments': segments}, 'pq30a0.0000001')",
 }
+
+
+@pytest.fixture(autouse=True)
+def heard():
+    """A shell's job in the background begins with SIGINT ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 def ended_by(way, delay, number):
@@ -70,7 +79,6 @@ def test_many_interrupts_in_one_process(threads):
     found = []
     for k in range(N):
         timer = threading.Timer(0.02 + 0.0017 * (k % 30), os.kill, (os.getpid(), signal.SIGINT))
-        begin = time.monotonic()
         try:
             timer.start()  # which may take as long, on a busy machine
             ptriangle.mesh(*SQUARE, min_angle=30, max_area=1e-7, threads=threads)

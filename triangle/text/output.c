@@ -52,6 +52,25 @@ static char *beside(const char *directory_of, const char *name)
     return path;
 }
 
+static bool stat_directory(const char *path, struct stat *status)
+{
+    char name[MAX_PATH];
+    const size_t length = directory_length(path);
+    if (length + 2 > sizeof name)
+        return false;
+    memcpy(name, path, length);
+    strcpy(name + length, ".");
+    return stat(name, status) == 0;
+}
+
+/* Made by this user, the administrator or who owns the directory? Anybody else's may lead to what only we can write. */
+static bool is_trusted_link(const char *path)
+{
+    struct stat link, directory;
+    return lstat(path, &link) == 0 && stat_directory(path, &directory) &&
+           (link.st_uid == geteuid() || link.st_uid == 0 || link.st_uid == directory.st_uid);
+}
+
 /* What a symbolic link at path points to, malloc'ed; NULL and errno: no link (EINVAL, ENOENT), or trouble. */
 static char *follow(const char *path)
 {
@@ -59,6 +78,10 @@ static char *follow(const char *path)
     const ssize_t length = readlink(path, target, sizeof target);
     if (length < 0)
         return NULL;
+    if (!is_trusted_link(path)) {
+        errno = EPERM;
+        return NULL;
+    }
     if ((size_t)length == sizeof target) {
         errno = ENAMETOOLONG;
         return NULL;
@@ -252,17 +275,6 @@ static enum tri_status check_target(const struct tri_output *output, const struc
     return old && access(output->path, W_OK) != 0 ? cannot_create(output, error) : TRI_OK;
 }
 
-static bool stat_directory(const char *path, struct stat *status)
-{
-    char name[MAX_PATH];
-    const size_t length = directory_length(path);
-    if (length + 2 > sizeof name)
-        return false;
-    memcpy(name, path, length);
-    strcpy(name + length, ".");
-    return stat(name, status) == 0;
-}
-
 /* old: of the file at path; NULL: there is none. */
 static struct tri_output_place place_of(const char *path, const struct stat *old)
 {
@@ -305,6 +317,8 @@ static enum tri_status open_output(struct tri_output_set *set, struct tri_output
     struct stat old;
     const bool exists = stat(path, &old) == 0, replaces = exists && S_ISREG(old.st_mode);
     output->path = !exists || replaces ? resolve(path) : beside("", path); /* /dev/stdout must not be followed */
+    if (!output->path && errno == EPERM)
+        return tri_fail(error, TRI_CANNOT_WRITE, path, 0, "is a link that another user made, which is not followed");
     if (!output->path)
         return errno == ENOMEM ? tri_fail(error, TRI_NO_MEMORY, path, 0, "no memory to create the file")
                                : tri_fail_system(error, TRI_CANNOT_WRITE, path, "cannot create", errno);
