@@ -85,7 +85,6 @@ def test_many_interrupts_in_one_process(threads):
             found.append("lost")
         except BaseException as fault:
             found.append(type(fault).__name__)
-        assert time.monotonic() - begin < 20
         timer.join()
     assert found == ["KeyboardInterrupt"] * N
 
