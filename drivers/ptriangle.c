@@ -140,7 +140,7 @@ static enum tri_status refine_with(struct program *p, struct run *run, const str
                      options->sweep ? 0 : p->schedule.seconds_number);
     p->refined = true;
     if (status == TRI_STOPPED && p->restart.wanted && p->restart.checkpoint.saved > 0)
-        tell_reached(p, p->restart.checkpoint.manifest.triangles);
+        interrupt_reached(p->restart.checkpoint.manifest.triangles, " triangles"); /* of all ranks */
     else if (status == TRI_STOPPED && !options->sweep)
         tell_reached(p, mesh->n_triangles);
     return status;

@@ -371,7 +371,7 @@ check "it is told once" test "$(grep -c 'stopped by SIGTERM after .* no file was
 check "the state is kept" grep -q 'to go on: ptriangle -Qpq30a0.00001e letter --output two --every 0 --resume state' .err
 rm -rf state
 
-# --- the same where each refines its part: the first one says how far it is
+# --- the same where each refines its part: what all have kept counts
 what="a signal to one of two that refine"
 checks=$((checks + 1))
 timeout 100 "$MPIEXEC" -n 2 sh -c 'rank=${OMPI_COMM_WORLD_RANK:-$PMI_RANK}
@@ -384,7 +384,8 @@ while [ ! -e state/piece-0-0 ] && kill -0 $launcher; do
 done
 kill -TERM "$(cat .pid1)"
 wait $launcher
-complains 'stopped by .* while [a-z]+: about [0-9]+ triangles in the part of the first task; no file was written'
+complains 'stopped by .* while [a-z]+: about [0-9]+ triangles; no file was written'
+check "both lines tell of as many" test "$(grep -Eo '[0-9]+ triangles' .err | uniq | wc -l)" -eq 1
 rm -rf state two.*
 
 # --- stopped by the limit of time, the first task writes what it has
