@@ -124,13 +124,13 @@ double estimate_streams(int n_files, double triangles)
 /* What is done with a mesh that is finished, one after the other. */
 static double bytes_beside(const struct run *run, double grown)
 {
-    return fmax(bytes_of_check(run, grown), estimate_streams(run->hooks->n_streamed, grown));
+    return fmax(bytes_of_check(run, grown), estimate_streams(run->hooks->n_streamed, run->mesh.n_triangles + grown));
 }
 
 /* At the peak, of a mesh that grows by so many triangles, of which areas demand some. */
 static double bytes_whole(const struct run *run, double grown, double demand)
 {
-    if (!run->hooks->refine || grown <= 0)
+    if (!run->hooks->refine || !run->options.refine)
         return grown * bytes_a_triangle(run);
     double places = grown + EMPTY_PLACES * fmax(grown - demand, 0);
     double refined = places * bytes_a_triangle(run) + (run->mesh.n_triangles + places) * NUMBERING_BYTES +

@@ -151,13 +151,17 @@ for budget in 24 28; do
     [ $found -eq 0 ] || complains '--memory [0-9]+M would do$'
 done
 
-# --- what HDF5 takes counts where nothing is refined, too
-what="ptriangle, nothing refined"
-for budget in 20 33 60; do
-    "$python" "$data/../tests/cli/peak.py" "$budget"000000 "$bin/ptriangle" -Qp g.poly --output g1.h5 \
-        --memory "$budget"000000 --threads 2 >.out 2>.err
-    found=$?
-    check "within ${budget}000000, or refused: exit code $found" test $found -le 1
+# --- what HDF5 takes counts where nothing is refined, too, or is to be and nothing grows
+cp "$data/square.poly" t.poly
+for run in "p g" "pD t"; do
+    for budget in 20 33 60; do
+        what="ptriangle -$run, nothing refined"
+        # shellcheck disable=SC2086 # two words
+        "$python" "$data/../tests/cli/peak.py" "$budget"000000 "$bin/ptriangle" -Q$run.poly --output g1.h5 \
+            --memory "$budget"000000 --threads 2 >.out 2>.err
+        found=$?
+        check "within ${budget}000000, or refused: exit code $found" test $found -le 1
+    done
 done
 rm -f g1.h5 g1.xdmf
 
